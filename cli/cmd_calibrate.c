@@ -11,10 +11,11 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
-#include "cli/calibrate_bend3p.h"
+#include "cli/calibrate_compliance.h"
 #include "cli/calibrate_constituents.h"
 #include "cli/calibrate_cycle.h"
 #include "cli/calibrate_tensile.h"
+#include "cli/calibrate_three_point.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/settings.h"
@@ -38,14 +39,15 @@ struct options {
     const struct wb_setting *of[METHODS];  /* the first option of either method that was given */
     struct wb_calibrate_settings settings; /* of the paper's method */
     struct wb_calibrate_cycle cycle;
-    struct wb_bend3p_calibrate_settings bend3p;
+    struct wb_three_point_calibrate_settings three_point;
 };
 
 enum {
     KEY_METHOD = WB_KEY_OWN,
-    /* In the help only: cli/calibrate_tensile.c and calibrate_constituents.c take them. */
+    /* In the help only: cli/calibrate_tensile.c and its siblings take them. */
     KEY_TENSILE,
-    KEY_CONSTITUENTS
+    KEY_CONSTITUENTS,
+    KEY_COMPLIANCE
 };
 
 static const struct argp_option other_options[] = {
@@ -58,6 +60,10 @@ static const struct argp_option other_options[] = {
     {"constituents", KEY_CONSTITUENTS, NULL, 0,
      "A wire's rigidity and moments from conductor and jacket; see `wirebench calibrate "
      "--constituents --help`",
+     0},
+    {"compliance", KEY_COMPLIANCE, NULL, 0,
+     "How much a machine gives way, from a stiff bar; see `wirebench calibrate --compliance "
+     "--help`",
      0},
     {"output", 'o', "PROPERTIES.yaml", 0, "Write the properties here", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
@@ -74,9 +80,9 @@ static const struct wb_settings_source sources[] = {
      .n_tables = 1,
      .offset = offsetof(struct options, settings),
      .title = "Settings of --method paper:"},
-    {.tables = wb_bend3p_calibrate_tables,
-     .n_tables = WB_BEND3P_CALIBRATE_TABLES,
-     .offset = offsetof(struct options, bend3p),
+    {.tables = wb_three_point_calibrate_tables,
+     .n_tables = WB_THREE_POINT_CALIBRATE_TABLES,
+     .offset = offsetof(struct options, three_point),
      .title = "Settings of datasets of three-point bending:"},
 };
 
@@ -101,15 +107,15 @@ static void note_option(void *input, const struct wb_setting *row)
     struct options *const o = input;
     const bool is_papers =
         row >= wb_calibrate_table.rows && row < wb_calibrate_table.rows + wb_calibrate_table.n;
-    bool is_bend3p = false;
-    for (int t = 0; t < WB_BEND3P_CALIBRATE_TABLES; t++) {
-        const struct wb_setting_table *const table = &wb_bend3p_calibrate_tables[t];
-        is_bend3p = is_bend3p || (row >= table->rows && row < table->rows + table->n);
+    bool is_three_point = false;
+    for (int t = 0; t < WB_THREE_POINT_CALIBRATE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_three_point_calibrate_tables[t];
+        is_three_point = is_three_point || (row >= table->rows && row < table->rows + table->n);
     }
     /* --threads serves all but the paper's, which has one. */
     if (strcmp(row->option, "threads") == 0)
         return;
-    const enum method method = is_bend3p ? THREE_POINT : is_papers ? PAPER : CYCLE;
+    const enum method method = is_three_point ? THREE_POINT : is_papers ? PAPER : CYCLE;
     if (!o->of[method])
         o->of[method] = row;
 }
@@ -448,9 +454,9 @@ static int run(struct options *o)
         return WB_EXIT_USAGE;
     if (o->names_method && o->method == THREE_POINT)
         wb_info("three-point bending: --method is for tests of cantilevers");
-    o->bend3p.threads = o->cycle.settings.threads;
+    o->three_point.threads = o->cycle.settings.threads;
     if (o->method == THREE_POINT)
-        return wb_calibrate_bend3p(&o->bend3p, &o->datasets, &o->common);
+        return wb_calibrate_three_point(&o->three_point, &o->datasets, &o->common);
     return o->method == PAPER ? run_paper(o) : run_cycle(o);
 }
 
@@ -466,12 +472,14 @@ int wb_cmd_calibrate(int argc, char **argv)
     struct options options = {.common = {.noun = "at least one dataset", .least = 1}};
     if (wb_calibrate_is_tensile(argc, argv))
         return wb_calibrate_tensile(argc, argv);
+    if (wb_calibrate_is_compliance(argc, argv))
+        return wb_calibrate_compliance(argc, argv);
     if (wb_calibrate_is_constituents(argc, argv))
         return wb_calibrate_constituents(argc, argv);
     wb_calibrate_default_settings(&options.settings);
     wb_cycle_calibrate_default_settings(&options.cycle.settings);
-    wb_setting_fill(&wb_bend3p_calibrate_tables[0], &options.bend3p.data);
-    wb_setting_fill(&wb_bend3p_calibrate_tables[1], &options.bend3p.fit);
+    wb_setting_fill(&wb_three_point_calibrate_tables[0], &options.three_point.data);
+    wb_setting_fill(&wb_three_point_calibrate_tables[1], &options.three_point.fit);
     wb_settings_parse(&command, argc, argv, &options);
     wb_interrupt_install();
     const int code = run(&options);

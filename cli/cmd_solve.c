@@ -86,9 +86,9 @@ static void check(struct argp_state *state, const struct wb_solve_settings *s)
         argp_error(state, "--checkpoint-minutes is for --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)
         argp_error(state, "name the %s file: %s %s.yaml",
-                   s->kind == WB_SOLVE_BENDING3P ? "wire's" : "model", wb_solve_settings_kind(s),
-                   s->kind == WB_SOLVE_BENDING3P ? "WIRE" : "MODEL");
-    if (s->kind == WB_SOLVE_BENDING3P && (s->span == 0.0 || s->deflection == 0.0))
+                   s->kind == WB_SOLVE_THREE_POINT ? "wire's" : "model", wb_solve_settings_kind(s),
+                   s->kind == WB_SOLVE_THREE_POINT ? "WIRE" : "MODEL");
+    if (s->kind == WB_SOLVE_THREE_POINT && (s->span == 0.0 || s->deflection == 0.0))
         argp_error(state, "--span-mm and --deflection-mm are needed");
     if (s->kind == WB_SOLVE_CANTILEVER && (!s->wire || s->length == 0.0 || s->deflection == 0.0))
         argp_error(state, "--wire, --length-mm and --deflection-mm are needed");
@@ -176,7 +176,7 @@ enum {
     BENDING_COLUMNS = 12
 };
 
-static void bending_columns(const struct wb_bending3p_point *p,
+static void bending_columns(const struct wb_three_point_bending_point *p,
                             struct bending_column columns[BENDING_COLUMNS])
 {
     const struct bending_column all[BENDING_COLUMNS] = {

@@ -10,7 +10,7 @@ static void print_bench(const struct wb_validate_three_point *r)
     printf("  bench          rollers %g mm, nose %g mm, friction %g, compliance %g mm/N%s\n",
            r->info.machine.roller_radius / WB_MM, r->bench.nose_radius / WB_MM, r->bench.friction,
            r->bench.compliance / WB_MM, r->is_compliance_known ? "" : " (not known)");
-    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
+    for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         if (isfinite(r->bench_rms[i]))
             printf("    if %-11s %g%s: loading RMS %.3g\n", r->ends[i].name,
                    r->ends[i].value / (i < 2 ? 1.0 : WB_MM), i < 2 ? "" : " mm", r->bench_rms[i]);

@@ -468,13 +468,13 @@ enum wb_status wb_properties_write(const char *path, const struct wb_calibrate_r
 /* --- calibrations on three-point bending --- */
 
 /* All tests have a way back, and the law follows both ways. */
-static bool has_tested_rule(const struct wb_bend3p_calibration *c)
+static bool has_tested_rule(const struct wb_three_point_calibration *c)
 {
     return c->is_rigidity_identifiable;
 }
 
-void wb_properties_from_bend3p(const struct wb_bend3p_calibration *c,
-                               struct wb_properties *properties)
+static void from_three_point(const struct wb_three_point_calibration *c,
+                             struct wb_properties *properties)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     make_unknown(properties);
@@ -493,15 +493,14 @@ void wb_properties_from_bend3p(const struct wb_bend3p_calibration *c,
         properties->rigidity = c->rigidity;
     properties->is_rule_tested = has_tested_rule(c);
     properties->is_rule_supported = has_tested_rule(c) && c->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
-    properties->n_moments = WB_BEND3P_MOMENTS;
-    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+    properties->n_moments = WB_THREE_POINT_MOMENTS;
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         properties->curvature[k] = c->curvature[k];
         properties->moment[k] = c->moment[k];
     }
-    find_deviation(properties);
 }
 
-static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *c)
+static void put_bench(struct wb_text *text, const struct wb_three_point_calibration *c)
 {
     wb_text_append(text, "three_point:\n");
     put_number(text, "  ", "span_mm", c->members[0].data.info.length / WB_MM);
@@ -515,8 +514,8 @@ static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *
     put_number(text, "  ", "series_deviation", c->series_deviation);
     wb_text_append(text, "  # the fits again with what the curves do not tell; EI over that above\n"
                          "  bands:\n");
-    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
-        const struct wb_bend3p_variant *const v = &c->variants[i];
+    for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
+        const struct wb_three_point_variant *const v = &c->variants[i];
         wb_text_append(text, "    - of: \"%s\"\n", v->name);
         put_number(text, "      ", i < 2 ? "value" : "value_mm",
                    i < 2 ? v->value : v->value / WB_MM);
@@ -528,7 +527,7 @@ static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *
     }
     wb_text_append(text, "  tests:\n");
     for (int i = 0; i < c->n_members; i++) {
-        const struct wb_bend3p_member *const m = &c->members[i];
+        const struct wb_three_point_member *const m = &c->members[i];
         wb_text_append(text, "    - sample: %d\n      series: ", m->data.info.sample);
         put_quoted(text, m->data.info.piece.series);
         wb_text_append(text, "\n      fitted: %s\n", m->is_fitted ? "true" : "false");
@@ -542,18 +541,18 @@ static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *
         put_number(text, "      ", "natural_bow_error_mm", m->fit.bow_error / WB_MM);
         wb_text_append(text, "      natural_bow_told: %s\n", m->fit.is_bow_told ? "true" : "false");
         put_number(text, "      ", "usable_mm", m->data.usable / WB_MM);
-        wb_text_append(text, "      usable_by: \"%s\"\n", wb_bend3p_limit_name(m->data.limit));
+        wb_text_append(text, "      usable_by: \"%s\"\n", wb_three_point_limit_name(m->data.limit));
         put_number(text, "      ", "misfit", m->fit.misfit);
         put_number(text, "      ", "largest_curvature_1_m", m->fit.largest_curvature);
         put_number(text, "      ", "wrapped_rad", m->fit.wrapped);
     }
 }
 
-static void format_bend3p(struct wb_text *text, const struct wb_bend3p_calibration *c)
+static void format_three_point(struct wb_text *text, const struct wb_three_point_calibration *c)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     struct wb_properties p;
-    wb_properties_from_bend3p(c, &p);
+    from_three_point(c, &p);
     put_wire(text, info);
     wb_text_append(text,
                    "# These four numbers are derived from the law below: Ludwik's, isotropic, "
@@ -588,14 +587,14 @@ static void format_bend3p(struct wb_text *text, const struct wb_bend3p_calibrati
     wb_text_append(text, "  tool: \"wirebench %s (%s)\"\n", wb_version(), wb_version_revision());
 }
 
-enum wb_status wb_properties_write_bend3p(const char *path,
-                                          const struct wb_bend3p_calibration *calibration,
-                                          const char *const *names, int n_names, bool force)
+enum wb_status wb_properties_write_three_point(const char *path,
+                                               const struct wb_three_point_calibration *calibration,
+                                               const char *const *names, int n_names, bool force)
 {
     struct wb_text text = {0};
     if (!force && wb_file_exists(path))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
-    format_bend3p(&text, calibration);
+    format_three_point(&text, calibration);
     put_datasets(&text, names, n_names);
     const enum wb_status status = wb_file_write_text(path, &text);
     wb_text_release(&text);

@@ -31,9 +31,9 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/bend3p_calibrate.h"
 #include "analysis/calibration/calibrate.h"
 #include "analysis/calibration/cycle_calibrate.h"
+#include "analysis/calibration/three_point_calibrate.h"
 #include "base/status.h"
 #include "fe/material/law.h"
 
@@ -103,14 +103,13 @@ wb_properties_write_cycle(const char *path, const struct wb_cycle_calibration *c
                           const char *const *names, int n_names, bool force);
 /* The same of a calibration on three-point bending tests: method `three-point`. */
 WB_MUST_CHECK enum wb_status
-wb_properties_write_bend3p(const char *path, const struct wb_bend3p_calibration *calibration,
-                           const char *const *names, int n_names, bool force);
+wb_properties_write_three_point(const char *path,
+                                const struct wb_three_point_calibration *calibration,
+                                const char *const *names, int n_names, bool force);
 /* The same properties without a file in between. */
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties);
-void wb_properties_from_bend3p(const struct wb_bend3p_calibration *calibration,
-                               struct wb_properties *properties);
 
 #endif

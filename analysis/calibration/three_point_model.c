@@ -28,7 +28,7 @@ struct way {
 
 struct wb_three_point_model {
     struct wb_test_info info;
-    struct wb_bending3p *bending;
+    struct wb_three_point_bending *bending;
     double natural_curvature;
     struct way up, back;
 };
@@ -64,7 +64,7 @@ enum wb_status wb_three_point_model_create(struct wb_three_point_model **out,
     model->info = *info;
     enum wb_status status = wb_section_init_law(&section, info->outer_diameter, law, 0);
     if (status == WB_OK) {
-        const struct wb_bending3p_model how = {
+        const struct wb_three_point_bending_model how = {
             .section = &section,
             .diameter = info->outer_diameter,
             .span = info->length,
@@ -74,7 +74,7 @@ enum wb_status wb_three_point_model_create(struct wb_three_point_model **out,
             .compliance = bench->compliance,
             .n_elements = n_elements,
         };
-        status = wb_bending3p_create(&model->bending, &how);
+        status = wb_three_point_bending_create(&model->bending, &how);
         wb_section_release(&section);
     }
     if (status != WB_OK) {
@@ -89,7 +89,7 @@ void wb_three_point_model_destroy(struct wb_three_point_model *model)
 {
     if (!model)
         return;
-    wb_bending3p_destroy(model->bending);
+    wb_three_point_bending_destroy(model->bending);
     release_way(&model->up);
     release_way(&model->back);
     free(model);
@@ -111,10 +111,10 @@ static double evenly(void *context, double from_middle)
 static enum wb_status add(struct wb_three_point_model *model, struct way *way, int at,
                           double deflection, struct wb_three_point_run *run, bool *reached)
 {
-    struct wb_bending3p_point point;
-    WB_TRY(wb_bending3p_move(model->bending, deflection, &point));
+    struct wb_three_point_bending_point point;
+    WB_TRY(wb_three_point_bending_move(model->bending, deflection, &point));
     run->end = point.end;
-    *reached = point.end == WB_BENDING3P_CONVERGED;
+    *reached = point.end == WB_THREE_POINT_BENDING_CONVERGED;
     if (!*reached)
         return WB_OK;
     way->travel[at] = point.travel;
@@ -153,7 +153,7 @@ static enum wb_status go_back(struct wb_three_point_model *model, double deflect
         if (!*reached)
             return WB_OK;
     }
-    run->left = wb_bending3p_contact_level(model->bending);
+    run->left = wb_three_point_bending_contact_level(model->bending);
     *reached = gsl_spline_init(back->spline, back->travel, back->force, BACK + 1) == GSL_SUCCESS;
     return WB_OK;
 }
@@ -164,14 +164,15 @@ enum wb_status wb_three_point_model_run(struct wb_three_point_model *model,
                                         struct wb_three_point_run *run)
 {
     bool reached = false;
-    *run = (struct wb_three_point_run){.end = WB_BENDING3P_NOT_CONVERGED, .left = (double)NAN};
+    *run = (struct wb_three_point_run){.end = WB_THREE_POINT_BENDING_NOT_CONVERGED,
+                                       .left = (double)NAN};
     if (!(fabs(natural_curvature) * model->info.length < most_bent))
         return WB_OK;
     if (natural_curvature != model->natural_curvature) {
         model->natural_curvature = natural_curvature;
-        WB_TRY(wb_bending3p_set_curvature(model->bending, evenly, model));
+        WB_TRY(wb_three_point_bending_set_curvature(model->bending, evenly, model));
     }
-    WB_TRY(wb_bending3p_set_law(model->bending, law));
+    WB_TRY(wb_three_point_bending_set_law(model->bending, law));
     gsl_interp_accel_reset(model->up.accel);
     gsl_interp_accel_reset(model->back.accel);
     WB_TRY(go_up(model, deflection, run, &reached));

@@ -8,7 +8,7 @@
 #include "analysis/dataset/dataset.h"
 #include "base/status.h"
 #include "fe/material/law.h"
-#include "fe/trial/bending3p.h"
+#include "fe/trial/three_point_bending.h"
 
 struct wb_three_point_model; /* opaque */
 
@@ -18,12 +18,12 @@ struct wb_three_point_bench {
 };
 
 struct wb_three_point_run {
-    bool reached;              /* the end of all that was asked; else `end` says why not, */
-    enum wb_bending3p_end end; /* and only what is before `travel` was computed */
-    double travel;             /* m, largest */
-    double largest_curvature;  /* 1/m, in the middle, beyond the natural one */
-    double wrapped;            /* rad, largest */
-    double left;               /* m of travel where the nose leaves the wire; NaN: no way back */
+    bool reached; /* the end of all that was asked; else `end` says why not, */
+    enum wb_three_point_bending_end end; /* and only what is before `travel` was computed */
+    double travel;                       /* m, largest */
+    double largest_curvature;            /* 1/m, in the middle, beyond the natural one */
+    double wrapped;                      /* rad, largest */
+    double left; /* m of travel where the nose leaves the wire; NaN: no way back */
 };
 
 /* For tests with this span, rollers and diameter, and for laws of one kind: plain, or overlays of

@@ -145,10 +145,10 @@ enum wb_status wb_simulated_fill(struct wb_dataset *dataset, const struct wb_tes
     return WB_OK;
 }
 
-enum wb_status wb_simulated_fill_bending3p(struct wb_dataset *dataset,
-                                           const struct wb_test_info *info,
-                                           const struct wb_simulated_bending *bending,
-                                           const struct wb_simulated_origin *origin)
+enum wb_status wb_simulated_fill_three_point(struct wb_dataset *dataset,
+                                             const struct wb_test_info *info,
+                                             const struct wb_simulated_bending *bending,
+                                             const struct wb_simulated_origin *origin)
 {
     double travelled = 0.0;
 

@@ -10,8 +10,8 @@
 #include "base/status.h"
 #include "fe/material/law.h"
 #include "fe/model/wire_model.h"
-#include "fe/trial/bending3p.h"
 #include "fe/trial/loading_steps.h"
+#include "fe/trial/three_point_bending.h"
 #include "fe/trial/wire3d.h"
 #include "fe/trial/wire_run.h"
 
@@ -29,7 +29,7 @@ struct wb_simulated_bending {
     const struct wb_simulated_bending_row {
         int cycle;
         enum wb_phase phase;
-        struct wb_bending3p_point point;
+        struct wb_three_point_bending_point point;
     } * rows; /* (n_rows) */
     bool converged;
 };
@@ -43,10 +43,10 @@ WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
 
 /* The same of three-point bending: `info` is of that kind, with its machine. Rows are those of a
  * testing machine, deflection the travel. */
-WB_MUST_CHECK enum wb_status wb_simulated_fill_bending3p(struct wb_dataset *dataset,
-                                                         const struct wb_test_info *info,
-                                                         const struct wb_simulated_bending *bending,
-                                                         const struct wb_simulated_origin *origin);
+WB_MUST_CHECK enum wb_status
+wb_simulated_fill_three_point(struct wb_dataset *dataset, const struct wb_test_info *info,
+                              const struct wb_simulated_bending *bending,
+                              const struct wb_simulated_origin *origin);
 
 /* A shape in space: n places (m) at the arc lengths s (m). */
 struct wb_simulated_shape {

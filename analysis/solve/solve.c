@@ -14,10 +14,10 @@
 
 static const struct wb_solve_kind *find_kind(unsigned bit)
 {
-    return bit == WB_SOLVE_CANTILEVER  ? &wb_solve_cantilever
-           : bit == WB_SOLVE_BUNDLE    ? &wb_solve_bundle
-           : bit == WB_SOLVE_BENDING3P ? &wb_solve_bending3p
-                                       : &wb_solve_wire;
+    return bit == WB_SOLVE_CANTILEVER    ? &wb_solve_cantilever
+           : bit == WB_SOLVE_BUNDLE      ? &wb_solve_bundle
+           : bit == WB_SOLVE_THREE_POINT ? &wb_solve_three_point
+                                         : &wb_solve_wire;
 }
 
 /* --- before --- */

@@ -17,7 +17,7 @@
 #include "base/json.h"
 #include "base/status.h"
 #include "fe/linear/trial.h"
-#include "fe/trial/bending3p.h"
+#include "fe/trial/three_point_bending.h"
 
 struct wb_solve; /* opaque; a computed test */
 
@@ -29,9 +29,9 @@ struct wb_solve_row {
     bool
         is_spatial; /* the model is one in space, and the tip may leave the plane of the test by: */
     double tip_z;   /* m */
-    const char *step;                         /* of the model; NULL: it has none */
-    const struct wb_bending3p_point *bending; /* of three-point bending, with deflection of the
-                                                 travel and force as above; else NULL */
+    const char *step;                                   /* of the model; NULL: it has none */
+    const struct wb_three_point_bending_point *bending; /* of three-point bending, with deflection
+                                                 of the travel and force as above; else NULL */
 };
 
 int wb_solve_count(const struct wb_solve *solve); /* of its rows */

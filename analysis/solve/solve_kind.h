@@ -44,6 +44,6 @@ struct wb_solve_kind {
 };
 
 extern const struct wb_solve_kind wb_solve_cantilever, wb_solve_wire, wb_solve_bundle,
-    wb_solve_bending3p;
+    wb_solve_three_point;
 
 #endif

@@ -14,7 +14,7 @@ enum {
     WB_SOLVE_WIRE3D = 2,
     WB_SOLVE_WIRE1D = 4,
     WB_SOLVE_BUNDLE = 8,
-    WB_SOLVE_BENDING3P = 16,
+    WB_SOLVE_THREE_POINT = 16,
     WB_SOLVE_KINDS = 5 /* how many */
 };
 

@@ -10,29 +10,29 @@
 #define WB_LOG_DOMAIN "validation"
 
 /* Deflection of a point of the loading. */
-static double way_of(const struct wb_bend3p_member *member, int i)
+static double way_of(const struct wb_three_point_member *member, int i)
 {
     return member->data.points[i].travel - member->data.first_contact;
 }
 
-static double force_of(const struct wb_bend3p_member *member, double at)
+static double force_of(const struct wb_three_point_member *member, double at)
 {
-    return wb_bend3p_data_force(&member->data, at + member->data.first_contact, false);
+    return wb_three_point_data_force(&member->data, at + member->data.first_contact, false);
 }
 
 /* --- tests left out --- */
 
-static enum wb_status find_grid(struct wb_left_out *r, const struct wb_bend3p_calibration *c,
+static enum wb_status find_grid(struct wb_left_out *r, const struct wb_three_point_calibration *c,
                                 struct wb_reason *why)
 {
     double from = 0.0, to = HUGE_VAL;
     for (int i = 0; i < c->n_members; i++) {
-        const struct wb_bend3p_member *const m = &c->members[i];
+        const struct wb_three_point_member *const m = &c->members[i];
         if (!m->is_fitted)
             continue;
         r->n++;
         from = fmax(from, way_of(m, 0));
-        to = fmin(to, way_of(m, wb_bend3p_data_count_loading(&m->data) - 1));
+        to = fmin(to, way_of(m, wb_three_point_data_count_loading(&m->data) - 1));
     }
     if (r->n < 2)
         return wb_fail_to(why, WB_ERR_DATA, "%d of %d tests fitted: none can be left out", r->n,
@@ -44,7 +44,7 @@ static enum wb_status find_grid(struct wb_left_out *r, const struct wb_bend3p_ca
     return WB_OK;
 }
 
-static void find_scatter(struct wb_left_out *r, const struct wb_bend3p_calibration *c)
+static void find_scatter(struct wb_left_out *r, const struct wb_three_point_calibration *c)
 {
     double squares = 0.0;
     for (int k = 0; k < WB_LEFT_OUT_GRID; k++) {
@@ -65,7 +65,8 @@ static void find_scatter(struct wb_left_out *r, const struct wb_bend3p_calibrati
 }
 
 /* Where the others' fits put the first contact beyond where the readings show it, and their bow. */
-static double contact_of_others(const struct wb_bend3p_calibration *c, int without, double *bow)
+static double contact_of_others(const struct wb_three_point_calibration *c, int without,
+                                double *bow)
 {
     double sum = 0.0, bows = 0.0;
     int n = 0;
@@ -81,7 +82,7 @@ static double contact_of_others(const struct wb_bend3p_calibration *c, int witho
 }
 
 static enum wb_status compute(struct wb_three_point_model *model,
-                              const struct wb_bend3p_calibration *c, const struct wb_law *law,
+                              const struct wb_three_point_calibration *c, const struct wb_law *law,
                               double bow, double to, struct wb_reason *why)
 {
     const double curvature = wb_three_point_model_curvature(&c->members[0].data.info, bow);
@@ -91,18 +92,18 @@ static enum wb_status compute(struct wb_three_point_model *model,
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
                           "wire '%s': the model of the others comes to %.3g of %.3g mm (%s)",
                           c->members[0].data.info.wire, run.travel / WB_MM, to / WB_MM,
-                          wb_bending3p_end_name(run.end));
+                          wb_three_point_bending_end_name(run.end));
     return WB_OK;
 }
 
-static enum wb_status leave_out(struct wb_left_out *r, const struct wb_bend3p_calibration *c, int i,
-                                int n_elements, double *squares, struct wb_reason *why)
+static enum wb_status leave_out(struct wb_left_out *r, const struct wb_three_point_calibration *c,
+                                int i, int n_elements, double *squares, struct wb_reason *why)
 {
     double bow;
     const double contact = contact_of_others(c, i, &bow);
     struct wb_three_point_model *model;
     struct wb_law law;
-    wb_bend3p_calibrate_law(c, i, &law);
+    wb_three_point_calibrate_law(c, i, &law);
     WB_TRY(
         wb_three_point_model_create(&model, &c->members[0].data.info, &c->bench, &law, n_elements));
     const enum wb_status status =
@@ -119,7 +120,7 @@ static enum wb_status leave_out(struct wb_left_out *r, const struct wb_bend3p_ca
 }
 
 enum wb_status wb_left_out_run(struct wb_left_out *result,
-                               const struct wb_bend3p_calibration *calibration, int n_elements,
+                               const struct wb_three_point_calibration *calibration, int n_elements,
                                struct wb_reason *why)
 {
     struct wb_left_out r = {.n = 0};

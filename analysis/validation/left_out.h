@@ -10,7 +10,7 @@
 #ifndef WB_ANALYSIS_LEFT_OUT_H
 #define WB_ANALYSIS_LEFT_OUT_H
 
-#include "analysis/calibration/bend3p_calibrate.h"
+#include "analysis/calibration/three_point_calibrate.h"
 #include "base/reason.h"
 #include "base/status.h"
 
@@ -34,7 +34,7 @@ struct wb_left_out {
 /* WB_ERR_DATA with fewer than two fitted tests or no deflections that all have, WB_ERR_CONVERGENCE
  * where the beam does not come to the end; the reason goes to `why` (NULL: logged). */
 WB_MUST_CHECK enum wb_status wb_left_out_run(struct wb_left_out *result,
-                                             const struct wb_bend3p_calibration *calibration,
+                                             const struct wb_three_point_calibration *calibration,
                                              int n_elements, struct wb_reason *why);
 
 #endif

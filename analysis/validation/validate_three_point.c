@@ -31,7 +31,7 @@ static const double beyond = 1.1;
 struct group {
     struct wb_validate_three_point *result;
     const struct wb_law *law;
-    struct wb_bend3p_calibrate_settings settings;
+    struct wb_three_point_calibrate_settings settings;
     struct wb_three_point_model *model;
     double deepest; /* m of deflection, of all tests */
 };
@@ -58,13 +58,13 @@ static enum wb_status create(const struct group *g, const struct wb_three_point_
 static double misfit_at(const struct group *g, const struct wb_validate_three_point_test *test,
                         double contact)
 {
-    const struct wb_bend3p_data *const data = &test->data;
-    const struct wb_bend3p_fit_settings *const fit = &g->settings.fit;
+    const struct wb_three_point_data *const data = &test->data;
+    const struct wb_three_point_fit_settings *const fit = &g->settings.fit;
     const double scale = fmax(data->noise, fit->force_share * data->max_force);
     const double off = (contact - data->first_contact) / (fit->contact_prior * data->info.length);
     double mm = 0.0, mf = 0.0, ff = 0.0;
-    for (int i = 0; i < wb_bend3p_data_count_loading(data); i++) {
-        const struct wb_bend3p_point *const point = &data->points[i];
+    for (int i = 0; i < wb_three_point_data_count_loading(data); i++) {
+        const struct wb_three_point_point *const point = &data->points[i];
         const double force = wb_three_point_model_force(g->model, point->travel - contact, false);
         mm += point->force * point->force;
         mf += point->force * force;
@@ -106,10 +106,10 @@ static void find_contacts(const struct group *g)
         if (!test->is_used)
             continue;
         test->first_contact = find_contact(g, test);
-        const int n = wb_bend3p_data_count_loading(&test->data);
+        const int n = wb_three_point_data_count_loading(&test->data);
         double sum = 0.0;
         for (int k = 0; k < n; k++) {
-            const struct wb_bend3p_point *const point = &test->data.points[k];
+            const struct wb_three_point_point *const point = &test->data.points[k];
             const double force =
                 wb_three_point_model_force(g->model, point->travel - test->first_contact, false);
             sum += pow(force - point->force, 2);
@@ -127,11 +127,11 @@ static enum wb_status find_loading(struct wb_validate_three_point *r, struct wb_
     double from = 0.0, to = HUGE_VAL, squares = 0.0;
     for (int i = 0; i < r->n_tests; i++) {
         const struct wb_validate_three_point_test *const test = &r->tests[i];
-        const struct wb_bend3p_point *const points = test->data.points;
+        const struct wb_three_point_point *const points = test->data.points;
         if (!test->is_used)
             continue;
         from = fmax(from, points[0].travel - test->first_contact);
-        to = fmin(to, points[wb_bend3p_data_count_loading(&test->data) - 1].travel -
+        to = fmin(to, points[wb_three_point_data_count_loading(&test->data) - 1].travel -
                           test->first_contact);
     }
     if (!(to > from))
@@ -148,7 +148,7 @@ static enum wb_status find_loading(struct wb_validate_three_point *r, struct wb_
                 const struct wb_validate_three_point_test *const test = &r->tests[i];
                 if (!test->is_used)
                     continue;
-                const double force = wb_bend3p_data_force(
+                const double force = wb_three_point_data_force(
                     &test->data, way->deflection[k] + test->first_contact, false);
                 if (pass == 0)
                     sum += force / r->n_used;
@@ -222,7 +222,7 @@ static enum wb_status find_elastic(const struct group *g)
 static enum wb_status vary_bench(const struct group *g)
 {
     struct wb_validate_three_point *const r = g->result;
-    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
+    for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         struct wb_three_point_bench bench = r->bench;
         double *const number = i < 2 ? &bench.friction : &bench.nose_radius;
         struct wb_three_point_model *model;
@@ -249,7 +249,7 @@ static double zero_of(const struct wb_validate_three_point_test *test)
     const int first = test->data.n_points - LAST_POINTS;
     double x[LAST_POINTS], y[LAST_POINTS];
     struct wb_fit_line line;
-    if (first <= wb_bend3p_data_count_loading(&test->data))
+    if (first <= wb_three_point_data_count_loading(&test->data))
         return (double)NAN;
     for (int i = 0; i < LAST_POINTS; i++) {
         x[i] = test->data.points[first + i].travel - test->first_contact;
@@ -263,7 +263,7 @@ static double zero_of(const struct wb_validate_three_point_test *test)
 static enum wb_status go_back(const struct group *g, struct wb_validate_three_point_test *test,
                               bool *reached)
 {
-    const struct wb_bend3p_data *const data = &test->data;
+    const struct wb_three_point_data *const data = &test->data;
     const double top = data->usable - test->first_contact;
     const double force = wb_three_point_model_force(g->model, top, false);
     struct wb_three_point_run run;
@@ -272,7 +272,7 @@ static enum wb_status go_back(const struct group *g, struct wb_validate_three_po
     *reached = run.reached;
     if (!run.reached)
         return WB_OK;
-    const int loading = wb_bend3p_data_count_loading(data);
+    const int loading = wb_three_point_data_count_loading(data);
     double sum = 0.0;
     for (int i = loading; i < data->n_points; i++)
         sum += pow(wb_three_point_model_force(g->model,
@@ -292,11 +292,11 @@ static void find_common(const struct wb_validate_three_point *r, double *low, do
     *high = HUGE_VAL;
     for (int i = 0; i < r->n_tests; i++) {
         const struct wb_validate_three_point_test *const test = &r->tests[i];
-        const struct wb_bend3p_data *const data = &test->data;
+        const struct wb_three_point_data *const data = &test->data;
         if (!test->is_used || !data->has_unloading)
             continue;
-        *high = fmin(*high,
-                     data->points[wb_bend3p_data_count_loading(data)].travel - test->first_contact);
+        *high = fmin(*high, data->points[wb_three_point_data_count_loading(data)].travel -
+                                test->first_contact);
         *low = fmax(*low, data->points[data->n_points - 1].travel - test->first_contact);
     }
 }
@@ -320,13 +320,13 @@ static enum wb_status validate_unloading(const struct group *g)
         WB_TRY(go_back(g, test, &reached));
         if (!reached)
             continue;
-        const int n = test->data.n_points - wb_bend3p_data_count_loading(&test->data);
+        const int n = test->data.n_points - wb_three_point_data_count_loading(&test->data);
         r->n_unloading++;
         squares += n * pow(test->unloading_rms * test->data.max_force, 2);
         n_points += n;
         for (int k = 0; k < GRID; k++) {
-            way->measured[k] +=
-                wb_bend3p_data_force(&test->data, way->deflection[k] + test->first_contact, true);
+            way->measured[k] += wb_three_point_data_force(
+                &test->data, way->deflection[k] + test->first_contact, true);
             way->computed[k] += wb_three_point_model_force(g->model, way->deflection[k], true);
         }
         if (!isfinite(test->left_measured))
@@ -394,8 +394,8 @@ static double scatter_of_series(const struct wb_validate_three_point *r)
                 const struct wb_validate_three_point_test *const test = &r->tests[j];
                 if (!test->is_used || (j > i && series_of(r, j) != i))
                     continue;
-                mean += wb_bend3p_data_force(&test->data,
-                                             r->loading.deflection[k] + test->first_contact, false);
+                mean += wb_three_point_data_force(
+                    &test->data, r->loading.deflection[k] + test->first_contact, false);
                 n++;
             }
             mean /= n * r->max_force;
@@ -433,15 +433,15 @@ static enum wb_status take_tests(struct group *g, const struct wb_dataset *const
     struct wb_validate_three_point *const r = g->result;
     for (int i = 0; i < r->n_tests; i++) {
         struct wb_validate_three_point_test *const test = &r->tests[i];
-        test->is_used =
-            wb_bend3p_data_make(&test->data, datasets[i], &g->settings.data, &test->why) == WB_OK;
+        test->is_used = wb_three_point_data_make(&test->data, datasets[i], &g->settings.data,
+                                                 &test->why) == WB_OK;
         if (!test->is_used) {
             test->data.info = datasets[i]->info;
             wb_warn("%s: left out", test->why.text);
             continue;
         }
-        const struct wb_bend3p_data *const data = &test->data;
-        const double last = data->points[wb_bend3p_data_count_loading(data) - 1].force;
+        const struct wb_three_point_data *const data = &test->data;
+        const double last = data->points[wb_three_point_data_count_loading(data) - 1].force;
         r->n_used++;
         r->n_series += series_of(r, i) == i;
         g->deepest =
@@ -467,7 +467,7 @@ static enum wb_status validate(struct group *g, const struct wb_properties *prop
                           "wire '%s', span %g mm: the model comes to %.3g of %.3g mm (%s): give "
                           "the specimen a usable_travel_mm",
                           r->info.wire, r->info.length / WB_MM, run.travel / WB_MM,
-                          g->deepest / WB_MM, wb_bending3p_end_name(run.end));
+                          g->deepest / WB_MM, wb_three_point_bending_end_name(run.end));
     r->largest_curvature = run.largest_curvature;
     find_contacts(g);
     WB_TRY(find_loading(r, why));
@@ -499,10 +499,10 @@ enum wb_status wb_validate_three_point_run(struct wb_validate_three_point *resul
     struct group g = {.result = result, .law = &properties->law};
     *result = (struct wb_validate_three_point){.info = datasets[0]->info, .n_tests = n};
     WB_TRY(wb_validate_check_wire(properties, &result->info, why));
-    wb_setting_fill(&wb_bend3p_calibrate_tables[0], &g.settings.data);
-    wb_setting_fill(&wb_bend3p_calibrate_tables[1], &g.settings.fit);
+    wb_setting_fill(&wb_three_point_calibrate_tables[0], &g.settings.data);
+    wb_setting_fill(&wb_three_point_calibrate_tables[1], &g.settings.fit);
     result->is_compliance_known = result->info.machine.compliance.known;
-    wb_bend3p_calibrate_bench(&result->info.machine, &result->bench, result->ends);
+    wb_three_point_calibrate_bench(&result->info.machine, &result->bench, result->ends);
     result->tests = calloc((size_t)n, sizeof *result->tests);
     if (!result->tests)
         return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", n);
@@ -521,7 +521,7 @@ enum wb_status wb_validate_three_point_run(struct wb_validate_three_point *resul
 void wb_validate_three_point_release(struct wb_validate_three_point *result)
 {
     for (int i = 0; result->tests && i < result->n_tests; i++)
-        wb_bend3p_data_release(&result->tests[i].data);
+        wb_three_point_data_release(&result->tests[i].data);
     free(result->tests);
     result->tests = NULL;
     result->n_tests = 0;
@@ -611,7 +611,7 @@ void wb_validate_three_point_put_json(struct wb_json *item, const struct wb_vali
     wb_json_set_number(loading, "rms_with_contact_as_read", r->rms_as_read);
     wb_json_set_number(wb_json_set_object(item, "elastic"), "rms", r->elastic_rms);
     struct wb_json *const bands = wb_json_set_array(item, "bands");
-    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
+    for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         if (r->ends[i].value == (i < 2 ? r->bench.friction : r->bench.nose_radius))
             continue; /* known */
         struct wb_json *const entry = wb_json_append_object(bands);

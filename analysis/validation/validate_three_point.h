@@ -15,8 +15,8 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/bend3p_calibrate.h"
 #include "analysis/calibration/properties.h"
+#include "analysis/calibration/three_point_calibrate.h"
 #include "analysis/dataset/dataset.h"
 #include "analysis/validation/expected.h"
 #include "base/json.h"
@@ -29,7 +29,7 @@ enum {
 };
 
 struct wb_validate_three_point_test {
-    struct wb_bend3p_data data; /* owned */
+    struct wb_three_point_data data; /* owned */
     bool is_used;
     struct wb_reason why;      /* where it is not */
     double first_contact;      /* m of travel, found with the law */
@@ -60,11 +60,11 @@ struct wb_validate_three_point {
     double elastic[WB_VALIDATE_THREE_POINT_GRID]; /* N, of the loading */
     double elastic_rms;
     double rms_as_read; /* of the loading with the contacts that the readings show */
-    double bench_rms[WB_BEND3P_VARIANTS]; /* of the loading at the bench's ends, in the order of
-                                             struct wb_bend3p_calibration; NaN: known, or it does
-                                             not come so far */
-    struct wb_bend3p_variant ends[WB_BEND3P_VARIANTS]; /* name and value of those */
-    int n_unloading;                                   /* tests with a way back */
+    double bench_rms[WB_THREE_POINT_VARIANTS]; /* of the loading at the bench's ends, in the order
+                                             of struct wb_three_point_calibration; NaN: known, or it
+                                             does not come so far */
+    struct wb_three_point_variant ends[WB_THREE_POINT_VARIANTS]; /* name and value of those */
+    int n_unloading;                                             /* tests with a way back */
     double unloading_rms_of_tests;       /* of all their points, each test by itself, over F_max */
     double left_measured, left_computed; /* m, means over those tests; NaN none */
     double scatter_rms; /* standard deviation between tests, over F_max; NaN of one */

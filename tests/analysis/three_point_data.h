@@ -4,7 +4,7 @@
 #define WB_TESTS_ANALYSIS_THREE_POINT_DATA_H
 
 #include "analysis/dataset/dataset.h"
-#include "fe/trial/bending3p.h"
+#include "fe/trial/three_point_bending.h"
 #include "tests/check.h"
 #include "tests/fe/rod/wires.h"
 
@@ -18,7 +18,7 @@ struct three_point_made {
     double noise;   /* N, alternating */
     double slip;    /* m of deflection at which the force drops by a tenth; 0: none */
     bool with_way_back;
-    double bow; /* m, see struct wb_bend3p_fit */
+    double bow; /* m, see struct wb_three_point_fit */
 };
 
 static const double three_point_span = 20e-3, three_point_deepest = 5e-3;
@@ -67,7 +67,7 @@ static inline void three_point_make(struct wb_dataset *dataset, const struct thr
     const struct wb_band unknown = {false, (double)NAN, (double)NAN, (double)NAN};
     const struct wb_material material = three_point_material(made);
     struct wb_section section;
-    struct wb_bending3p *bending;
+    struct wb_three_point_bending *bending;
 
     assert_int_equal(wb_dataset_init(dataset), WB_OK);
     dataset->info = (struct wb_test_info){
@@ -91,7 +91,7 @@ static inline void three_point_make(struct wb_dataset *dataset, const struct thr
     };
     snprintf(dataset->info.piece.series, sizeof dataset->info.piece.series, "%s", series);
     assert_int_equal(wb_section_init_circle(&section, d, &material, 40), WB_OK);
-    const struct wb_bending3p_model model = {
+    const struct wb_three_point_bending_model model = {
         .section = &section,
         .diameter = d,
         .span = three_point_span,
@@ -102,21 +102,21 @@ static inline void three_point_make(struct wb_dataset *dataset, const struct thr
         .natural_curvature = three_point_curvature,
         .curvature_context = (void *)(uintptr_t)made,
     };
-    assert_int_equal(wb_bending3p_create(&bending, &model), WB_OK);
+    assert_int_equal(wb_three_point_bending_create(&bending, &model), WB_OK);
     for (int i = 0; i < 20 && made->contact > 0.0; i++)
         three_point_add_row(dataset, made, made->contact * i / 20.0, 0.0, WB_PHASE_LOAD);
     const int n = 200;
     for (int i = 0; i <= (made->with_way_back ? 2 * n : n); i++) {
-        struct wb_bending3p_point point;
+        struct wb_three_point_bending_point point;
         const double w = three_point_deepest * (i <= n ? i : 2 * n - i) / n;
-        assert_int_equal(wb_bending3p_move(bending, w, &point), WB_OK);
-        assert_int_equal(point.end, WB_BENDING3P_CONVERGED);
+        assert_int_equal(wb_three_point_bending_move(bending, w, &point), WB_OK);
+        assert_int_equal(point.end, WB_THREE_POINT_BENDING_CONVERGED);
         const bool slipped = made->slip > 0.0 && w >= made->slip;
         three_point_add_row(dataset, made, made->contact + point.travel,
                             slipped ? 0.9 * point.force : point.force,
                             i <= n ? WB_PHASE_LOAD : WB_PHASE_UNLOAD);
     }
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(bending);
     wb_section_release(&section);
 }
 

@@ -222,5 +222,27 @@ grep -q 'parts,20,unloading,' bent-scores/scores.csv || fail 'no score of the wa
 [ -s bent-scores/parts-L20-three-point-unloading.csv ] || fail 'no table of the way back'
 expect 0 '"kind": "three-point"' "$wirebench" validate bent.yaml bent-2 --json
 
+# The compliance of a machine: from a stiff bar, and not from a soft one.
+cat >bar.yaml <<END
+name: bar
+outer_diameter_mm: 6
+conductor_diameter_mm: 6
+density_g_cm3: 7.8
+properties:
+  youngs_modulus_MPa: 200000
+  poissons_ratio: 0.3
+  yield_stress_MPa: 100000
+  strength_coefficient_MPa: 1000
+  hardening_exponent: 0.5
+END
+bench='--span-mm 40 --points 40 --roller-radius-mm 2 --nose-radius-mm 2 --compliance-mm-n 0.002'
+"$wirebench" solve bending3p ./bar.yaml $bench --deflection-mm 0.1 -o bar >/dev/null || fail 'solve bar'
+expect 0 'compliance_mm_N: 0.002' \
+    "$wirebench" calibrate --compliance bar --rigidity-n-mm2 12723450
+expect 3 'the bar is not stiff enough to tell' \
+    "$wirebench" calibrate --compliance bar --rigidity-n-mm2 600000 --rigidity-error 1 \
+    --from-force 0.5
+expect 1 'rigidity is missing' "$wirebench" calibrate --compliance bar
+
 [ $failures -eq 0 ] && echo 'all as expected'
 exit $((failures > 0))

@@ -28,7 +28,7 @@ done
 for kind in force mocap; do
     check import "$kind"
 done
-for other in --tensile --constituents; do
+for other in --tensile --constituents --compliance; do
     check calibrate "$other"
 done
 exit $bad

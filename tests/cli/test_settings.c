@@ -7,12 +7,13 @@
 #include <unistd.h>
 
 #include "analysis/align/align.h"
-#include "analysis/calibration/bend3p_calibrate.h"
 #include "analysis/calibration/calibrate.h"
 #include "analysis/calibration/cycle_calibrate.h"
 #include "analysis/calibration/layers.h"
+#include "analysis/calibration/machine_compliance.h"
 #include "analysis/calibration/tensile.h"
 #include "analysis/calibration/tensile_material.h"
+#include "analysis/calibration/three_point_calibrate.h"
 #include "analysis/import/mocap_import.h"
 #include "analysis/report/campaign.h"
 #include "analysis/solve/solve_settings.h"
@@ -43,15 +44,18 @@ static const struct command {
     {"calibrate", "none", "calibrate", wb_cycle_calibrate_tables, WB_CYCLE_CALIBRATE_TABLES, 0},
     {"calibrate --tensile", "none", "calibrate --tensile", &wb_tensile_table, 1, 1},
     {"calibrate --tensile", "none", "calibrate --tensile", &wb_tensile_material_table, 1, 1},
+    {"calibrate --compliance", "none --rigidity-n-mm2 1", "calibrate --compliance",
+     &wb_machine_compliance_table, 1, 1},
     {"calibrate --constituents",
      "--conductor ./none --jacket none --conductor-diameter-mm 1 --outer-diameter-mm 1",
      "calibrate --constituents", &wb_layers_table, 1, 1},
-    {"calibrate", "none", "calibrate", wb_bend3p_calibrate_tables, WB_BEND3P_CALIBRATE_TABLES, 0},
+    {"calibrate", "none", "calibrate", wb_three_point_calibrate_tables,
+     WB_THREE_POINT_CALIBRATE_TABLES, 0},
     {"validate", "none.yaml none", "validate", &wb_calibrate_table, 1, WB_CALIBRATE_VALIDATE},
     {"solve cantilever", "--wire ./none --length-mm 1 --deflection-mm 1", "solve",
      &wb_solve_settings_table, 1, WB_SOLVE_CANTILEVER},
     {"solve bending3p", "./none.yaml --span-mm 1 --deflection-mm 1", "solve",
-     &wb_solve_settings_table, 1, WB_SOLVE_BENDING3P},
+     &wb_solve_settings_table, 1, WB_SOLVE_THREE_POINT},
     {"solve wire3d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE3D},
     {"solve wire1d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE1D},
     {"solve bundle", "./none.yaml --vtk none --checkpoint none", "solve", &wb_solve_settings_table,
@@ -191,7 +195,7 @@ static void options_of_other_kinds_are_refused(void **unused)
                  {"wire3d", WB_SOLVE_WIRE3D},
                  {"wire1d", WB_SOLVE_WIRE1D},
                  {"bundle", WB_SOLVE_BUNDLE},
-                 {"bending3p", WB_SOLVE_BENDING3P}};
+                 {"bending3p", WB_SOLVE_THREE_POINT}};
     for (size_t k = 0; k < WB_COUNT(kinds); k++)
         for (size_t i = 0; i < wb_solve_settings_table.n; i++) {
             const struct wb_setting *const row = &wb_solve_settings_table.rows[i];

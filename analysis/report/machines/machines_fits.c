@@ -22,11 +22,11 @@ static bool goes_on(void *context, int done, int all)
 static void fit_wire(struct wb_machines_fit *fit, const struct wb_dataset *const *datasets,
                      int n_threads)
 {
-    struct wb_bend3p_calibrate_settings settings = {.threads = n_threads, .progress = goes_on};
-    wb_setting_fill(&wb_bend3p_calibrate_tables[0], &settings.data);
-    wb_setting_fill(&wb_bend3p_calibrate_tables[1], &settings.fit);
-    fit->is_fitted =
-        wb_bend3p_calibrate_run(&fit->calibration, datasets, fit->n, &settings, &fit->why) == WB_OK;
+    struct wb_three_point_calibrate_settings settings = {.threads = n_threads, .progress = goes_on};
+    wb_setting_fill(&wb_three_point_calibrate_tables[0], &settings.data);
+    wb_setting_fill(&wb_three_point_calibrate_tables[1], &settings.fit);
+    fit->is_fitted = wb_three_point_calibrate_run(&fit->calibration, datasets, fit->n, &settings,
+                                                  &fit->why) == WB_OK;
     fit->is_validated =
         fit->is_fitted && wb_left_out_run(&fit->left_out, &fit->calibration,
                                           settings.fit.n_elements, &fit->why) == WB_OK;
@@ -96,7 +96,7 @@ enum wb_status wb_machines_fits_compute(struct wb_machines_fits *fits,
 void wb_machines_fits_release(struct wb_machines_fits *fits)
 {
     for (int i = 0; i < fits->n; i++)
-        wb_bend3p_calibrate_release(&fits->fits[i].calibration);
+        wb_three_point_calibrate_release(&fits->fits[i].calibration);
     free(fits->fits);
     memset(fits, 0, sizeof *fits);
 }

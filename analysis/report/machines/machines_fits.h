@@ -12,7 +12,7 @@ struct wb_machines_fit {
     int n;     /* tests */
     bool is_fitted, is_validated;
     struct wb_reason why; /* where it is not */
-    struct wb_bend3p_calibration calibration;
+    struct wb_three_point_calibration calibration;
     struct wb_left_out left_out;
 };
 

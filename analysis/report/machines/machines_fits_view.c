@@ -68,17 +68,29 @@ enum wb_status wb_machines_fits_draw(struct wb_figures_item *item)
 
 /* --- pages --- */
 
+/* Of three digits. */
+static int decimals(double value)
+{
+    return value > 0.0 ? (int)fmin(fmax(2.0 - floor(log10(value)), 0.0), 6.0) : 0;
+}
+
+static void put_range(struct wb_document_table *table, enum wb_document_tone tone, double low,
+                      double high)
+{
+    wb_pages_cell(table, tone, "%.*f to %.*f", decimals(low), low, decimals(high), high);
+}
+
 static void put_estimate(struct wb_document_table *table, const struct wb_estimate *e, double unit,
                          bool is_quiet)
 {
     const enum wb_document_tone tone = is_quiet ? WB_TONE_QUIET : WB_TONE_PLAIN;
-    wb_pages_cell(table, tone, "%.4g", e->value / unit);
-    wb_pages_cell(table, tone, "%.4g to %.4g", e->low / unit, e->high / unit);
-    wb_pages_cell(table, tone, "%.4g to %.4g", e->candidates_low / unit, e->candidates_high / unit);
+    wb_pages_cell(table, tone, "%.*f", decimals(e->value / unit), e->value / unit);
+    put_range(table, tone, e->low / unit, e->high / unit);
+    put_range(table, tone, e->candidates_low / unit, e->candidates_high / unit);
 }
 
 /* Fits whose iterations ran out. */
-static int count_unsettled(const struct wb_bend3p_calibration *c)
+static int count_unsettled(const struct wb_three_point_calibration *c)
 {
     int n = 0;
     for (int i = 0; i < c->n_members; i++)
@@ -94,7 +106,7 @@ static void put_problems(struct wb_document *document, const struct wb_machines_
         wb_pages_item(document, WB_TONE_WARNING, "<b>", wire_of(results, fit),
                       "</b>: ", fit->n > 0 ? fit->why.text : "no test");
     for (int i = 0; fit->is_fitted && i < fit->calibration.n_members; i++) {
-        const struct wb_bend3p_member *const m = &fit->calibration.members[i];
+        const struct wb_three_point_member *const m = &fit->calibration.members[i];
         if (!m->is_fitted)
             wb_pages_item(document, WB_TONE_WARNING, "<b>", wire_of(results, fit),
                           "</b>: ", m->why.text);
@@ -103,7 +115,7 @@ static void put_problems(struct wb_document *document, const struct wb_machines_
 
 static void put_counts(struct wb_document_table *table, const struct wb_machines_fit *fit)
 {
-    const struct wb_bend3p_calibration *const c = &fit->calibration;
+    const struct wb_three_point_calibration *const c = &fit->calibration;
     const int unsettled = count_unsettled(c);
     wb_pages_cell(table, c->n_fitted < fit->n ? WB_TONE_WARNING : WB_TONE_PLAIN, "%d of %d",
                   c->n_fitted, fit->n);
@@ -134,7 +146,7 @@ static void put_calibrations(struct wb_document *document,
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->fits.n; i++) {
         const struct wb_machines_fit *const fit = &results->fits.fits[i];
-        const struct wb_bend3p_calibration *const c = &fit->calibration;
+        const struct wb_three_point_calibration *const c = &fit->calibration;
         for (size_t k = 0; k < WB_COUNT(at); k++) {
             if (!fit->is_fitted && k > 0)
                 continue;
@@ -173,7 +185,7 @@ static void put_rigidities(struct wb_document *document, const struct wb_machine
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->fits.n; i++) {
         const struct wb_machines_fit *const fit = &results->fits.fits[i];
-        const struct wb_bend3p_calibration *const c = &fit->calibration;
+        const struct wb_three_point_calibration *const c = &fit->calibration;
         if (!fit->is_fitted)
             continue;
         wb_document_row(table, false);
@@ -251,7 +263,7 @@ static void put_number(struct wb_json *object, const char *key, const struct wb_
     wb_json_set_number(entry, "high_of_bench", e->candidates_high / unit);
 }
 
-static void put_calibration(struct wb_json *entry, const struct wb_bend3p_calibration *c)
+static void put_calibration(struct wb_json *entry, const struct wb_three_point_calibration *c)
 {
     wb_json_set_integer(entry, "tests_fitted", c->n_fitted);
     wb_json_set_integer(entry, "series", c->n_series);
@@ -260,14 +272,14 @@ static void put_calibration(struct wb_json *entry, const struct wb_bend3p_calibr
     wb_json_set_boolean(entry, "EI_identifiable", c->is_rigidity_identifiable);
     put_number(entry, "EI_Nmm2", &c->rigidity, n_mm2);
     struct wb_json *const moments = wb_json_set_array(entry, "moments");
-    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         struct wb_json *const moment = wb_json_append_object(moments);
         wb_json_set_number(moment, "curvature_1_m", c->curvature[k]);
         put_number(moment, "moment_Nmm", &c->moment[k], n_mm);
     }
     struct wb_json *const tests = wb_json_set_array(entry, "tests");
     for (int i = 0; i < c->n_members; i++) {
-        const struct wb_bend3p_member *const m = &c->members[i];
+        const struct wb_three_point_member *const m = &c->members[i];
         struct wb_json *const test = wb_json_append_object(tests);
         wb_json_set_text(test, "series", m->data.info.piece.series);
         wb_json_set_integer(test, "sample", m->data.info.sample);
@@ -276,12 +288,13 @@ static void put_calibration(struct wb_json *entry, const struct wb_bend3p_calibr
             continue;
         }
         wb_json_set_number(test, "EI_Nmm2", m->rigidity / n_mm2);
-        wb_json_set_number(test, "largest_moment_Nmm", m->moment[WB_BEND3P_MOMENTS - 1] / n_mm);
+        wb_json_set_number(test, "largest_moment_Nmm",
+                           m->moment[WB_THREE_POINT_MOMENTS - 1] / n_mm);
         wb_json_set_number(test, "misfit", m->fit.misfit);
         wb_json_set_boolean(test, "converged", m->fit.is_converged);
         wb_json_set_number(test, "first_contact_mm", m->fit.first_contact / WB_MM);
         wb_json_set_number(test, "usable_mm", m->data.usable / WB_MM);
-        wb_json_set_text(test, "limit", wb_bend3p_limit_name(m->data.limit));
+        wb_json_set_text(test, "limit", wb_three_point_limit_name(m->data.limit));
     }
 }
 

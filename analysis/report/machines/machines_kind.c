@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/report/machines/machines_cable_view.h"
 #include "analysis/report/machines/machines_fits_view.h"
@@ -47,7 +48,9 @@ static enum wb_status add_tests(struct wb_panel *panel, const struct wb_machines
     return WB_OK;
 }
 
-static void add_mean(struct wb_panel *panel, const struct wb_machines_group_results *results)
+/* The mean last: tests would cover it. */
+static enum wb_status add_curves(struct wb_panel *panel, const struct wb_machines_group *group,
+                                 const struct wb_machines_group_results *results)
 {
     static const struct wb_figure_style style = {.colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.4};
     static const struct wb_colour pale = {0.34, 0.71, 0.91, 0.5};
@@ -62,7 +65,18 @@ static void add_mean(struct wb_panel *panel, const struct wb_machines_group_resu
     const double *const edges[2] = {low, high};
     if (results->n_usable > 1)
         wb_figure_add_band(panel, "mean \xc2\xb1 s", WB_MACHINES_GRID, x, edges, pale);
+    WB_TRY(add_tests(panel, group, results));
     wb_figure_add_line(panel, "mean, usable range", WB_MACHINES_GRID, x, y, &style);
+    return WB_OK;
+}
+
+/* "4: six wires", or the name alone where it has no label of its own. */
+static void full_name(char *text, size_t size, const struct wb_machines_group *group)
+{
+    if (strcmp(group->name, group->label) == 0)
+        snprintf(text, size, "%s", group->name);
+    else
+        snprintf(text, size, "%s: %s", group->name, group->label);
 }
 
 static enum wb_status draw_group(struct wb_figures_item *item)
@@ -79,12 +93,11 @@ static enum wb_status draw_group(struct wb_figures_item *item)
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "Travel from the first contact (mm)", "Force (mN)");
     wb_figure_set_y_range(panel, 0.0, (double)NAN);
-    add_mean(panel, of);
     wb_text_append(&item->caption, "Force over travel of ");
     wb_text_append_escaped(&item->caption, group->label);
     wb_text_append(&item->caption, ", %d of %d tests, span %.4g mm.", of->n_usable, group->n_tests,
                    group->machine.span / WB_MM);
-    return add_tests(panel, group, of);
+    return add_curves(panel, group, of);
 }
 
 static const struct wb_figures_row figures[] = {
@@ -131,8 +144,10 @@ static void put_overview(struct wb_document *document, const struct wb_machines_
     for (int g = 0; g < results->campaign->n_groups; g++) {
         const struct wb_machines_group *const group = &results->campaign->groups[g];
         const struct wb_machines_group_results *const of = &results->groups[g];
+        char name[240];
         wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, group->label);
+        full_name(name, sizeof name, group);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, name);
         wb_pages_cell_number(table, group->piece.outer_diameter / WB_MM, 2);
         wb_pages_cell_number(table, group->machine.span / WB_MM, 1);
         wb_pages_cell(table, of->n_usable < group->n_tests ? WB_TONE_WARNING : WB_TONE_PLAIN,
@@ -154,7 +169,7 @@ static void put_tests(struct wb_document *document, const struct wb_machines_gro
         {"Partial", .right = true},
         {"F<sub>max</sub> (mN)", .right = true},
         {"Contact (mm)", .right = true},
-        {"F L<sup>3</sup>/48 d", .right = true},
+        {"F L<sup>3</sup>/48 d (N mm<sup>2</sup>)", .right = true},
     };
     struct wb_document_table *const table =
         wb_document_table(document, NULL, (int)WB_COUNT(columns), columns);
@@ -180,7 +195,7 @@ static void build_pages(struct wb_document *document, const void *context,
 {
     const struct wb_machines_results *const results = context;
     const struct wb_machines *const campaign = results->campaign;
-    char subtitle[200], footer[300], anchor[32];
+    char subtitle[200], footer[300], anchor[32], name[240];
     snprintf(subtitle, sizeof subtitle, "%d of %d tests used", results->outcome.n_usable,
              results->outcome.n_wanted);
     snprintf(footer, sizeof footer, "%.200s", campaign->head.title);
@@ -192,7 +207,8 @@ static void build_pages(struct wb_document *document, const void *context,
     wb_machines_fits_put(document, results, drawn);
     for (int g = 0; g < campaign->n_groups; g++) {
         snprintf(anchor, sizeof anchor, "group-%d", g + 1);
-        wb_document_heading(document, 2, anchor, campaign->groups[g].label);
+        full_name(name, sizeof name, &campaign->groups[g]);
+        wb_document_heading(document, 2, anchor, name);
         wb_figures_put(drawn, document, "group", g);
         put_tests(document, &campaign->groups[g], &results->groups[g]);
     }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "base/units.h"
-#include "fe/trial/bending3p.h"
+#include "fe/trial/three_point_bending.h"
 #include "tests/check.h"
 
 enum {
@@ -12,24 +12,24 @@ enum {
     POINTS = 60
 };
 
-static struct wb_bend3p_calibration calibration;
-static struct wb_bend3p_member members[TESTS];
+static struct wb_three_point_calibration calibration;
+static struct wb_three_point_member members[TESTS];
 
 static void set_law(struct wb_law *law, double times)
 {
-    struct wb_law_part parts[WB_BEND3P_PARTS];
-    for (int i = 0; i < WB_BEND3P_PARTS; i++)
-        parts[i] = (struct wb_law_part){times * 1e9, i + 1 < WB_BEND3P_PARTS ? 1e-3 * pow(2.0, i)
-                                                                             : (double)INFINITY};
-    wb_law_init_parallel(law, parts, WB_BEND3P_PARTS, 0.0, 0.4);
+    struct wb_law_part parts[WB_THREE_POINT_PARTS];
+    for (int i = 0; i < WB_THREE_POINT_PARTS; i++)
+        parts[i] = (struct wb_law_part){
+            times * 1e9, i + 1 < WB_THREE_POINT_PARTS ? 1e-3 * pow(2.0, i) : (double)INFINITY};
+    wb_law_init_parallel(law, parts, WB_THREE_POINT_PARTS, 0.0, 0.4);
 }
 
 /* The curve of a law, as points behind a contact at `contact`. */
-static void make_member(struct wb_bend3p_member *m, double times, double contact)
+static void make_member(struct wb_three_point_member *m, double times, double contact)
 {
     struct wb_section section = {0};
-    struct wb_bending3p *bending;
-    *m = (struct wb_bend3p_member){.is_fitted = true};
+    struct wb_three_point_bending *bending;
+    *m = (struct wb_three_point_member){.is_fitted = true};
     m->data.info.outer_diameter = 1e-3;
     m->data.info.length = 20e-3;
     m->data.info.machine.roller_radius = 2e-3;
@@ -38,28 +38,29 @@ static void make_member(struct wb_bend3p_member *m, double times, double contact
     set_law(&m->fit.law, times);
     m->fit.first_contact = contact;
     assert_int_equal(wb_section_init_law(&section, 1e-3, &m->fit.law, 0), WB_OK);
-    const struct wb_bending3p_model model = {.section = &section,
-                                             .diameter = 1e-3,
-                                             .span = 20e-3,
-                                             .support_radius = 2e-3,
-                                             .nose_radius = 2e-3,
-                                             .friction = 0.2,
-                                             .n_elements = 32};
-    assert_int_equal(wb_bending3p_create(&bending, &model), WB_OK);
+    const struct wb_three_point_bending_model model = {.section = &section,
+                                                       .diameter = 1e-3,
+                                                       .span = 20e-3,
+                                                       .support_radius = 2e-3,
+                                                       .nose_radius = 2e-3,
+                                                       .friction = 0.2,
+                                                       .n_elements = 32};
+    assert_int_equal(wb_three_point_bending_create(&bending, &model), WB_OK);
     wb_section_release(&section);
     for (int i = 0; i < POINTS; i++) {
-        struct wb_bending3p_point point;
-        assert_int_equal(wb_bending3p_move(bending, (0.2 + 0.05 * i) * WB_MM, &point), WB_OK);
-        assert_int_equal(point.end, WB_BENDING3P_CONVERGED);
+        struct wb_three_point_bending_point point;
+        assert_int_equal(wb_three_point_bending_move(bending, (0.2 + 0.05 * i) * WB_MM, &point),
+                         WB_OK);
+        assert_int_equal(point.end, WB_THREE_POINT_BENDING_CONVERGED);
         m->data.points[m->data.n_points++] =
-            (struct wb_bend3p_point){contact + point.travel, point.force, false};
+            (struct wb_three_point_point){contact + point.travel, point.force, false};
     }
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(bending);
 }
 
 static void make_tests(const double times[TESTS])
 {
-    calibration = (struct wb_bend3p_calibration){.n_members = TESTS, .n_fitted = TESTS};
+    calibration = (struct wb_three_point_calibration){.n_members = TESTS, .n_fitted = TESTS};
     calibration.members = members;
     calibration.bench = (struct wb_three_point_bench){.friction = 0.2, .nose_radius = 2e-3};
     for (int i = 0; i < TESTS; i++)

@@ -1,4 +1,4 @@
-#include "analysis/calibration/bend3p_calibrate.h"
+#include "analysis/calibration/three_point_calibrate.h"
 
 #include <stdlib.h>
 
@@ -7,23 +7,23 @@
 #include "tests/analysis/calibration/properties_path.h"
 #include "tests/analysis/three_point_data.h"
 
-static struct wb_bend3p_calibrate_settings settings_of_defaults(void)
+static struct wb_three_point_calibrate_settings settings_of_defaults(void)
 {
-    struct wb_bend3p_calibrate_settings settings = {.progress = NULL};
-    wb_setting_fill(&wb_bend3p_calibrate_tables[0], &settings.data);
-    wb_setting_fill(&wb_bend3p_calibrate_tables[1], &settings.fit);
+    struct wb_three_point_calibrate_settings settings = {.progress = NULL};
+    wb_setting_fill(&wb_three_point_calibrate_tables[0], &settings.data);
+    wb_setting_fill(&wb_three_point_calibrate_tables[1], &settings.fit);
     return settings;
 }
 
-static struct wb_bend3p_calibration calibrate(struct wb_dataset *datasets, int n)
+static struct wb_three_point_calibration calibrate(struct wb_dataset *datasets, int n)
 {
-    const struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
+    const struct wb_three_point_calibrate_settings settings = settings_of_defaults();
     const struct wb_dataset *pointers[8];
-    struct wb_bend3p_calibration c;
+    struct wb_three_point_calibration c;
     struct wb_reason why;
     for (int i = 0; i < n; i++)
         pointers[i] = &datasets[i];
-    if (wb_bend3p_calibrate_run(&c, pointers, n, &settings, &why) != WB_OK)
+    if (wb_three_point_calibrate_run(&c, pointers, n, &settings, &why) != WB_OK)
         fail_msg("%s", why.text);
     for (int i = 0; i < n; i++)
         wb_dataset_release(&datasets[i]);
@@ -31,22 +31,23 @@ static struct wb_bend3p_calibration calibrate(struct wb_dataset *datasets, int n
 }
 
 /* The calibrated moments and rigidity against the truth, which lies in the intervals too. */
-static void compare_with_truth(const struct wb_bend3p_calibration *c,
+static void compare_with_truth(const struct wb_three_point_calibration *c,
                                const struct three_point_made *made)
 {
     const struct wb_material material = three_point_material(made);
     const double d = test_wire_type(2).diameter;
-    double moment[WB_BEND3P_MOMENTS];
+    double moment[WB_THREE_POINT_MOMENTS];
     struct wb_law law;
     wb_law_init_ludwik(&law, &material);
-    assert_int_equal(wb_bending_moments(&law, d, WB_BEND3P_MOMENTS, c->curvature, moment), WB_OK);
+    assert_int_equal(wb_bending_moments(&law, d, WB_THREE_POINT_MOMENTS, c->curvature, moment),
+                     WB_OK);
     const double EI = material.youngs_modulus * M_PI * pow(d, 4) / 64.0;
     if (c->is_rigidity_identifiable)
         assert_true(c->rigidity.low < EI && EI < c->rigidity.high);
     print_message("EI %.4g (%.4g to %.4g), truth %.4g; M at the largest curvature %+.2f %%\n",
                   1e6 * c->rigidity.value, 1e6 * c->rigidity.low, 1e6 * c->rigidity.high, 1e6 * EI,
                   100.0 * (c->moment[4].value / moment[4] - 1.0));
-    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         const double tolerance = c->curvature[k] < 0.15 * c->largest_curvature ? 0.05 : 0.02;
         assert_close_relative(c->moment[k].value, moment[k], tolerance);
     }
@@ -64,8 +65,8 @@ static void law_and_first_contact_are_found_again(void **unused)
                                           .noise = 2e-3};
     struct wb_dataset dataset;
     three_point_make(&dataset, &made, "");
-    struct wb_bend3p_calibration c = calibrate(&dataset, 1);
-    const struct wb_bend3p_member *const m = &c.members[0];
+    struct wb_three_point_calibration c = calibrate(&dataset, 1);
+    const struct wb_three_point_member *const m = &c.members[0];
     assert_true(m->is_fitted && m->fit.is_converged && m->data.is_zeroed);
     assert_close(m->data.zero_force, made.zero, 1e-3);
     assert_close(m->fit.first_contact, made.contact,
@@ -74,7 +75,7 @@ static void law_and_first_contact_are_found_again(void **unused)
     assert_true(c.misfit < 2e-3);
     assert_false(c.is_rigidity_identifiable);
     compare_with_truth(&c, &made);
-    wb_bend3p_calibrate_release(&c);
+    wb_three_point_calibrate_release(&c);
 }
 
 static void way_back_tells_the_hardening_rule(void **unused)
@@ -84,17 +85,17 @@ static void way_back_tells_the_hardening_rule(void **unused)
         .modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3, .with_way_back = true};
     struct wb_dataset dataset;
     three_point_make(&dataset, &made, "");
-    struct wb_bend3p_calibration c = calibrate(&dataset, 1);
+    struct wb_three_point_calibration c = calibrate(&dataset, 1);
     assert_true(c.members[0].data.has_unloading);
     assert_true(c.is_rigidity_identifiable);
     assert_true(c.law.isotropic_share > 0.8); /* the wire's is isotropic */
     struct wb_properties read;
-    assert_int_equal(wb_properties_write_bend3p(path, &c, NULL, 0, true), WB_OK);
+    assert_int_equal(wb_properties_write_three_point(path, &c, NULL, 0, true), WB_OK);
     assert_int_equal(wb_properties_read(path, &read), WB_OK);
     assert_true(read.is_rule_tested && read.is_rule_supported);
     assert_close_relative(read.rigidity.value, c.rigidity.value, 1e-9);
     compare_with_truth(&c, &made);
-    wb_bend3p_calibrate_release(&c);
+    wb_three_point_calibrate_release(&c);
 }
 
 /* Its last part has next to no modulus, so that no reading tells how much. */
@@ -105,13 +106,13 @@ static void wire_that_hardly_hardens_is_found_with_its_errors(void **unused)
         .modulus_factor = 1.0, .softness = 50.0, .friction = 0.3, .nose_radius = 2e-3};
     struct wb_dataset dataset;
     three_point_make(&dataset, &made, "");
-    struct wb_bend3p_calibration c = calibrate(&dataset, 1);
-    const struct wb_bend3p_member *const m = &c.members[0];
-    assert_int_equal(m->fit.n_moved, WB_BEND3P_PARTS + 1);
-    for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
+    struct wb_three_point_calibration c = calibrate(&dataset, 1);
+    const struct wb_three_point_member *const m = &c.members[0];
+    assert_int_equal(m->fit.n_moved, WB_THREE_POINT_PARTS + 1);
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++)
         assert_true(m->moment_error[k] > 0.0 && m->moment_error[k] < 0.2);
     compare_with_truth(&c, &made);
-    wb_bend3p_calibrate_release(&c);
+    wb_three_point_calibrate_release(&c);
 }
 
 static double moment_of(const struct three_point_made *made, double curvature)
@@ -144,8 +145,8 @@ static void bow_of_the_specimen_is_taken_into_account(void **unused)
         struct wb_dataset dataset;
         three_point_make(&dataset, &made, "");
         dataset.info.piece.natural_bow = says[i];
-        struct wb_bend3p_calibration c = calibrate(&dataset, 1);
-        const struct wb_bend3p_fit *const fit = &c.members[0].fit;
+        struct wb_three_point_calibration c = calibrate(&dataset, 1);
+        const struct wb_three_point_fit *const fit = &c.members[0].fit;
         misfit[i] = fit->misfit;
         print_message("bow %+.3f +- %.3f mm (prior %+.3f +- %.3f), told: %d, correlation with the "
                       "contact %+.2f, misfit %.2g\n",
@@ -165,7 +166,7 @@ static void bow_of_the_specimen_is_taken_into_account(void **unused)
         else
             assert_close(fit->bow, made.bow, 2.5 * fit->bow_error);
         assert_close(fit->bow, i == 0 ? 0.0 : made.bow, i < 2 ? 1e-12 : 0.3e-3);
-        wb_bend3p_calibrate_release(&c);
+        wb_three_point_calibrate_release(&c);
     }
     assert_true(misfit[1] < misfit[0]);
 }
@@ -175,22 +176,22 @@ static void kink_and_given_travel_end_the_range(void **unused)
     (void)unused;
     const struct three_point_made made = {
         .modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3, .noise = 1e-3, .slip = 3.2e-3};
-    struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
-    struct wb_bend3p_data data;
+    struct wb_three_point_calibrate_settings settings = settings_of_defaults();
+    struct wb_three_point_data data;
     struct wb_dataset dataset;
     three_point_make(&dataset, &made, "");
-    assert_int_equal(wb_bend3p_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
-    assert_int_equal(data.limit, WB_BEND3P_LIMIT_KINK);
+    assert_int_equal(wb_three_point_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
+    assert_int_equal(data.limit, WB_THREE_POINT_LIMIT_KINK);
     assert_close(data.usable, made.slip, 0.1e-3);
     for (int i = 1; i < data.n_points; i++)
         assert_true(data.points[i].travel > data.points[i - 1].travel);
     assert_true(data.points[0].travel >= data.first_contact + 0.00999 * three_point_span);
-    wb_bend3p_data_release(&data);
+    wb_three_point_data_release(&data);
     settings.data.usable = 2e-3;
-    assert_int_equal(wb_bend3p_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
-    assert_int_equal(data.limit, WB_BEND3P_LIMIT_GIVEN);
+    assert_int_equal(wb_three_point_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
+    assert_int_equal(data.limit, WB_THREE_POINT_LIMIT_GIVEN);
     assert_close(data.usable, 2e-3, 1e-9);
-    wb_bend3p_data_release(&data);
+    wb_three_point_data_release(&data);
     wb_dataset_release(&dataset);
 }
 
@@ -202,7 +203,7 @@ static void friction_is_not_told_by_the_curve_but_is_in_the_band(void **unused)
     struct wb_dataset dataset;
     three_point_make(&dataset, &made, "");
     dataset.info.machine.friction.known = false;
-    struct wb_bend3p_calibration c = calibrate(&dataset, 1);
+    struct wb_three_point_calibration c = calibrate(&dataset, 1);
     assert_close(c.bench.friction, 0.3, 1e-12);
     assert_close(c.variants[0].value, 0.0, 0.0);
     assert_close(c.variants[1].value, 0.6, 1e-12);
@@ -215,7 +216,7 @@ static void friction_is_not_told_by_the_curve_but_is_in_the_band(void **unused)
     assert_true(c.variants[0].moment[4] > 1.03 && c.variants[1].moment[4] < 0.97);
     assert_true(c.moment[4].candidates_low < 0.97 * c.moment[4].value);
     assert_true(c.moment[4].candidates_high > 1.03 * c.moment[4].value);
-    wb_bend3p_calibrate_release(&c);
+    wb_three_point_calibrate_release(&c);
 }
 
 static void series_are_not_averaged_away(void **unused)
@@ -229,40 +230,38 @@ static void series_are_not_averaged_away(void **unused)
                                               .noise = 2e-3};
         three_point_make(&datasets[i], &made, i < 2 ? "1" : "1b");
     }
-    struct wb_bend3p_calibration c = calibrate(datasets, 4);
+    struct wb_three_point_calibration c = calibrate(datasets, 4);
     assert_int_equal(c.n_series, 2);
     assert_int_equal(c.n_fitted, 4);
     assert_close(c.series_deviation, log(1.15 / 0.87) / sqrt(2.0), 0.06);
     /* Two means: t of one degree of freedom. */
     assert_true(c.moment[4].high / c.moment[4].low > 2.0);
-    /* The properties keep how far series differ, not how far tests do; so does the file. */
-    struct wb_properties properties, read;
-    wb_properties_from_bend3p(&c, &properties);
-    assert_int_equal(wb_properties_units(&properties), 2);
-    assert_close(properties.stiffness_deviation, log(1.15 / 0.87) / sqrt(2.0), 0.06);
-    assert_int_equal(wb_properties_write_bend3p(path, &c, NULL, 0, true), WB_OK);
+    /* The properties keep how far series differ, not how far tests do. */
+    struct wb_properties read;
+    assert_int_equal(wb_properties_write_three_point(path, &c, NULL, 0, true), WB_OK);
     assert_int_equal(wb_properties_read(path, &read), WB_OK);
     assert_int_equal(read.n_series, 2);
     assert_int_equal(read.n_samples, 4);
-    assert_close_relative(read.stiffness_deviation, properties.stiffness_deviation, 1e-9);
+    assert_int_equal(wb_properties_units(&read), 2);
+    assert_close(read.stiffness_deviation, log(1.15 / 0.87) / sqrt(2.0), 0.06);
     assert_false(read.is_rule_tested);
-    wb_bend3p_calibrate_release(&c);
+    wb_three_point_calibrate_release(&c);
 }
 
 static bool stop_at_the_second(void *context, int done, int all)
 {
     *(int *)context = done;
-    assert_int_equal(all, 2 * (1 + WB_BEND3P_VARIANTS));
+    assert_int_equal(all, 2 * (1 + WB_THREE_POINT_VARIANTS));
     return done < 2;
 }
 
 static void threads_change_nothing_and_a_stop_ends(void **unused)
 {
     (void)unused;
-    struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
+    struct wb_three_point_calibrate_settings settings = settings_of_defaults();
     struct wb_dataset datasets[2];
     const struct wb_dataset *const pointers[2] = {&datasets[0], &datasets[1]};
-    struct wb_bend3p_calibration one, three;
+    struct wb_three_point_calibration one, three;
     struct wb_reason why;
     int done = 0;
     for (int i = 0; i < 2; i++) {
@@ -273,21 +272,22 @@ static void threads_change_nothing_and_a_stop_ends(void **unused)
     }
     settings.fit.max_iterations = 3;
     settings.threads = 1;
-    assert_int_equal(wb_bend3p_calibrate_run(&one, pointers, 2, &settings, NULL), WB_OK);
+    assert_int_equal(wb_three_point_calibrate_run(&one, pointers, 2, &settings, NULL), WB_OK);
     settings.threads = 3;
-    assert_int_equal(wb_bend3p_calibrate_run(&three, pointers, 2, &settings, NULL), WB_OK);
+    assert_int_equal(wb_three_point_calibrate_run(&three, pointers, 2, &settings, NULL), WB_OK);
     assert_close(one.rigidity.low, three.rigidity.low, 0.0);
-    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         assert_close(one.moment[k].value, three.moment[k].value, 0.0);
         assert_close(one.moment[k].candidates_low, three.moment[k].candidates_low, 0.0);
         assert_true(one.moment[k].candidates_low < one.moment[k].value);
     }
-    wb_bend3p_calibrate_release(&one);
-    wb_bend3p_calibrate_release(&three);
+    wb_three_point_calibrate_release(&one);
+    wb_three_point_calibrate_release(&three);
     settings.threads = 1;
     settings.progress = stop_at_the_second;
     settings.progress_context = &done;
-    assert_int_equal(wb_bend3p_calibrate_run(&one, pointers, 2, &settings, &why), WB_ERR_TIMEOUT);
+    assert_int_equal(wb_three_point_calibrate_run(&one, pointers, 2, &settings, &why),
+                     WB_ERR_TIMEOUT);
     assert_int_equal(done, 2);
     wb_dataset_release(&datasets[0]);
     wb_dataset_release(&datasets[1]);
@@ -298,23 +298,23 @@ static void other_tests_are_refused(void **unused)
     (void)unused;
     const struct three_point_made made = {
         .modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3};
-    const struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
+    const struct wb_three_point_calibrate_settings settings = settings_of_defaults();
     struct wb_dataset datasets[2];
     const struct wb_dataset *pointers[2] = {&datasets[0], &datasets[1]};
-    struct wb_bend3p_calibration c;
+    struct wb_three_point_calibration c;
     struct wb_reason why;
     three_point_make(&datasets[0], &made, "");
     three_point_make(&datasets[1], &made, "");
     datasets[1].info.length = 2.0 * three_point_span;
-    assert_int_equal(wb_bend3p_calibrate_run(&c, pointers, 2, &settings, &why), WB_ERR_DATA);
+    assert_int_equal(wb_three_point_calibrate_run(&c, pointers, 2, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "different benches"));
     datasets[1].info.length = three_point_span;
     snprintf(datasets[1].info.wire, sizeof datasets[1].info.wire, "other");
-    assert_int_equal(wb_bend3p_calibrate_run(&c, pointers, 2, &settings, &why), WB_ERR_DATA);
+    assert_int_equal(wb_three_point_calibrate_run(&c, pointers, 2, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "expected one wire"));
     for (size_t i = 0; i < datasets[0].n_rows; i++)
         datasets[0].rows[i].force = 0.0;
-    assert_int_equal(wb_bend3p_calibrate_run(&c, pointers, 1, &settings, &why), WB_ERR_DATA);
+    assert_int_equal(wb_three_point_calibrate_run(&c, pointers, 1, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "first contact"));
     wb_dataset_release(&datasets[0]);
     wb_dataset_release(&datasets[1]);

@@ -1,4 +1,4 @@
-#include "analysis/calibration/bend3p_fit.h"
+#include "analysis/calibration/three_point_fit.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -34,9 +34,9 @@ static const double know_nothing = 1e-6, moved_by = 0.1, farthest = 1.0;
 /* Parts may yield before the first point, down to this part of its strain. */
 static const double before_first = 0.25;
 
-#define AT(field) offsetof(struct wb_bend3p_fit_settings, field)
+#define AT(field) offsetof(struct wb_three_point_fit_settings, field)
 
-const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
+const struct wb_setting wb_three_point_fit_rows[WB_THREE_POINT_FIT_ROWS] = {
     {.name = "curve_share",
      .type = WB_SETTING_NUMBER,
      .offset = AT(force_share),
@@ -97,21 +97,21 @@ const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
 #undef AT
 
 struct problem {
-    const struct wb_bend3p_data *data;
-    const struct wb_bend3p_strains *strains;
-    const struct wb_bend3p_fit_settings *settings;
+    const struct wb_three_point_data *data;
+    const struct wb_three_point_strains *strains;
+    const struct wb_three_point_fit_settings *settings;
     struct wb_three_point_model *model;
     /* The law's numbers (moduli, and share), the bow where it is free, and last the contact. */
     int n_law, n_curve, n_free, n_residuals; /* n_curve: those that change the curve */
     double bow, bow_deviation;               /* m: where it is looked for, and its prior; 0: held */
     double start_bow;
-    double start_modulus[WB_BEND3P_PARTS], yield_strain[WB_BEND3P_PARTS];
+    double start_modulus[WB_THREE_POINT_PARTS], yield_strain[WB_THREE_POINT_PARTS];
     double start_share;
     double contact, force_scale;
     double deepest; /* m: the largest deflection that is computed */
 
     /* The law last computed: what a nose does, whenever it came. */
-    double of[WB_BEND3P_MOST_FREE];
+    double of[WB_THREE_POINT_MOST_FREE];
     bool is_computed;
     struct wb_three_point_run run;
     int runs;
@@ -132,56 +132,59 @@ static double bow_of(const struct problem *p, const double *x)
 /* The isotropic share comes last of the law's numbers. */
 static void law_of(const struct problem *p, const double *x, struct wb_law *law)
 {
-    struct wb_law_part parts[WB_BEND3P_PARTS];
-    const double share = p->n_law > WB_BEND3P_PARTS
-                             ? 1.0 / (1.0 + exp(-(p->start_share + x[WB_BEND3P_PARTS])))
+    struct wb_law_part parts[WB_THREE_POINT_PARTS];
+    const double share = p->n_law > WB_THREE_POINT_PARTS
+                             ? 1.0 / (1.0 + exp(-(p->start_share + x[WB_THREE_POINT_PARTS])))
                              : 0.0;
     const double poissons_ratio =
         p->data->info.poissons_ratio > 0.0 ? p->data->info.poissons_ratio : 0.4;
-    for (int i = 0; i < WB_BEND3P_PARTS; i++)
+    for (int i = 0; i < WB_THREE_POINT_PARTS; i++)
         parts[i] = (struct wb_law_part){p->start_modulus[i] *
                                             (least_modulus + wb_least_squares_positive(x[i])),
                                         p->yield_strain[i]};
-    wb_law_init_parallel(law, parts, WB_BEND3P_PARTS, share, poissons_ratio);
+    wb_law_init_parallel(law, parts, WB_THREE_POINT_PARTS, share, poissons_ratio);
 }
 
 /* Strain of the outer fibre in the middle of an elastic beam at a deflection. */
-static double strain_at(const struct wb_bend3p_data *data, double deflection)
+static double strain_at(const struct wb_three_point_data *data, double deflection)
 {
     return 6.0 * deflection * data->info.outer_diameter / (data->info.length * data->info.length);
 }
 
-struct wb_bend3p_strains wb_bend3p_fit_strains(const struct wb_bend3p_data *data)
+struct wb_three_point_strains wb_three_point_fit_strains(const struct wb_three_point_data *data)
 {
     const double way = fmax(data->points[0].travel - data->first_contact, 1e-3 * data->info.length);
     /* A wire that yields bends more sharply in the middle. */
-    return (struct wb_bend3p_strains){before_first * strain_at(data, way),
-                                      1.5 * strain_at(data, data->usable - data->first_contact)};
+    return (struct wb_three_point_strains){before_first * strain_at(data, way),
+                                           1.5 *
+                                               strain_at(data, data->usable - data->first_contact)};
 }
 
-static void start_law(struct problem *p, const struct wb_bend3p_fit *start)
+static void start_law(struct problem *p, const struct wb_three_point_fit *start)
 {
-    const struct wb_bend3p_data *const data = p->data;
-    const struct wb_bend3p_point *const first = &data->points[0];
+    const struct wb_three_point_data *const data = p->data;
+    const struct wb_three_point_point *const first = &data->points[0];
     const double span = data->info.length, d = data->info.outer_diameter;
     const double way = fmax(first->travel - data->first_contact, 1e-3 * span);
     const double EI = fmax(first->force, 1e-3 * data->max_force) * pow(span, 3) / (48.0 * way);
     const double E = EI * 64.0 / (M_PI * pow(d, 4));
-    const struct wb_bend3p_strains strains = p->strains ? *p->strains : wb_bend3p_fit_strains(data);
+    const struct wb_three_point_strains strains =
+        p->strains ? *p->strains : wb_three_point_fit_strains(data);
     const double ratio = strains.last / strains.first;
 
-    for (int i = 0; i < WB_BEND3P_PARTS; i++) {
-        p->yield_strain[i] = i + 1 < WB_BEND3P_PARTS
-                                 ? strains.first * pow(ratio, (double)i / (WB_BEND3P_PARTS - 1))
-                                 : (double)INFINITY;
-        p->start_modulus[i] = E / WB_BEND3P_PARTS;
+    for (int i = 0; i < WB_THREE_POINT_PARTS; i++) {
+        p->yield_strain[i] =
+            i + 1 < WB_THREE_POINT_PARTS
+                ? strains.first * pow(ratio, (double)i / (WB_THREE_POINT_PARTS - 1))
+                : (double)INFINITY;
+        p->start_modulus[i] = E / WB_THREE_POINT_PARTS;
     }
     p->contact = data->first_contact;
     p->start_bow = p->bow;
     p->start_share = 0.0;
     if (!start)
         return;
-    for (int i = 0; i < WB_BEND3P_PARTS; i++) {
+    for (int i = 0; i < WB_THREE_POINT_PARTS; i++) {
         p->start_modulus[i] = start->law.parts[i].modulus;
         p->yield_strain[i] = start->law.parts[i].yield_strain;
     }
@@ -214,7 +217,7 @@ static void compute(struct problem *p, const double *x)
 
 static int residuals(struct problem *p, const double *x, double *r)
 {
-    const struct wb_bend3p_data *const data = p->data;
+    const struct wb_three_point_data *const data = p->data;
     const double span = data->info.length;
     const double contact = contact_of(p, x);
     struct wb_law law;
@@ -229,19 +232,19 @@ static int residuals(struct problem *p, const double *x, double *r)
         return GSL_SUCCESS;
     }
     for (int i = 0; i < data->n_points; i++) {
-        const struct wb_bend3p_point *const point = &data->points[i];
+        const struct wb_three_point_point *const point = &data->points[i];
         const double force =
             wb_three_point_model_force(p->model, point->travel - contact, point->is_unloading);
         r[at++] = (force - point->force) / p->force_scale;
     }
     law_of(p, x, &law);
-    at += wb_least_squares_smooth_parts(law.parts, WB_BEND3P_PARTS, p->settings->modulus_prior,
+    at += wb_least_squares_smooth_parts(law.parts, WB_THREE_POINT_PARTS, p->settings->modulus_prior,
                                         r + at);
     r[at++] = (contact - data->first_contact) / (p->settings->contact_prior * span);
     if (p->bow_deviation > 0.0)
         r[at++] = (bow_of(p, x) - p->bow) / p->bow_deviation;
-    if (p->n_law > WB_BEND3P_PARTS)
-        r[at++] = (p->start_share + x[WB_BEND3P_PARTS]) / share_prior;
+    if (p->n_law > WB_THREE_POINT_PARTS)
+        r[at++] = (p->start_share + x[WB_THREE_POINT_PARTS]) / share_prior;
     return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
 }
 
@@ -255,7 +258,7 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
 {
     struct problem *const p = context;
     const size_t n = (size_t)p->n_residuals;
-    double moved[WB_BEND3P_MOST_FREE];
+    double moved[WB_THREE_POINT_MOST_FREE];
     double *const base = calloc(2 * n, sizeof *base);
     if (!base)
         return GSL_ENOMEM;
@@ -319,14 +322,14 @@ static bool find_covariance(const gsl_matrix *J, size_t n_readings, double varia
 /* The law moved along the columns of the covariance's triangular factor, which the covariance is
  * destroyed for. */
 static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *covariance,
-                     struct wb_bend3p_fit *fit)
+                     struct wb_three_point_fit *fit)
 {
     const size_t n = (size_t)p->n_free;
     fit->n_moved = 0;
     if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
         return;
     for (size_t k = 0; k < n; k++) {
-        double step[WB_BEND3P_MOST_FREE], largest = 1e-300;
+        double step[WB_THREE_POINT_MOST_FREE], largest = 1e-300;
         for (size_t i = k; i < n; i++)
             largest = fmax(largest, fabs(gsl_matrix_get(covariance, i, k)));
         const double by = fmin(moved_by, farthest / largest);
@@ -338,7 +341,7 @@ static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *c
 }
 
 static void find_errors(struct problem *p, gsl_multifit_nlinear_workspace *w,
-                        struct wb_bend3p_fit *fit)
+                        struct wb_three_point_fit *fit)
 {
     const size_t n = (size_t)p->n_free, contact = n - 1, bow = (size_t)p->n_law;
     const double span = p->data->info.length;
@@ -368,7 +371,7 @@ static void find_errors(struct problem *p, gsl_multifit_nlinear_workspace *w,
 }
 
 static enum wb_status search(struct problem *p, const struct wb_three_point_bench *bench,
-                             gsl_multifit_nlinear_workspace *w, struct wb_bend3p_fit *fit,
+                             gsl_multifit_nlinear_workspace *w, struct wb_three_point_fit *fit,
                              struct wb_reason *why)
 {
     gsl_multifit_nlinear_fdf fdf = {
@@ -378,16 +381,18 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
         .p = (size_t)p->n_free,
         .params = p,
     };
-    double zero[WB_BEND3P_MOST_FREE] = {0.0};
+    double zero[WB_THREE_POINT_MOST_FREE] = {0.0};
     const gsl_vector_view x = gsl_vector_view_array(zero, (size_t)p->n_free);
     const int started = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
     if (p->status != WB_OK)
         return p->status;
     if (started != GSL_SUCCESS || !p->run.reached)
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
-                          "wire '%s', sample %d: the beam does not come to %.3g mm of deflection "
-                          "with a nose of %.3g mm and friction %.2g from the first guess",
-                          p->data->info.wire, p->data->info.sample, p->deepest / WB_MM,
+                          "wire '%s', sample %d: the beam comes to %.3g of %.3g mm of deflection "
+                          "(%s) with a nose of %.3g mm and friction %.2g from the first guess: use "
+                          "less of the test (usable_travel_mm, --usable-mm)",
+                          p->data->info.wire, p->data->info.sample, p->run.travel / WB_MM,
+                          p->deepest / WB_MM, wb_three_point_bending_end_name(p->run.end),
                           bench->nose_radius / WB_MM, bench->friction);
     const struct wb_least_squares_search how = {
         .max_iterations = p->settings->max_iterations,
@@ -430,33 +435,35 @@ static void take_bow(struct problem *p)
         given->known ? 0.25 * (given->most - given->least) : p->settings->bow_prior * info->length;
 }
 
-enum wb_status wb_bend3p_fit_run(struct wb_bend3p_fit *fit, const struct wb_bend3p_data *data,
-                                 const struct wb_three_point_bench *bench,
-                                 const struct wb_bend3p_strains *strains,
-                                 const struct wb_bend3p_fit *start,
-                                 const struct wb_bend3p_fit_settings *settings,
-                                 struct wb_reason *why)
+enum wb_status wb_three_point_fit_run(struct wb_three_point_fit *fit,
+                                      const struct wb_three_point_data *data,
+                                      const struct wb_three_point_bench *bench,
+                                      const struct wb_three_point_strains *strains,
+                                      const struct wb_three_point_fit *start,
+                                      const struct wb_three_point_fit_settings *settings,
+                                      struct wb_reason *why)
 {
     const double begin = wb_progress_thread_cpu();
-    const double no_step[WB_BEND3P_MOST_FREE] = {0.0};
+    const double no_step[WB_THREE_POINT_MOST_FREE] = {0.0};
     struct problem p = {.data = data, .strains = strains, .settings = settings};
     struct wb_law law;
     double last_force = data->points[0].force;
 
     for (int i = 0; i < data->n_points && !data->points[i].is_unloading; i++)
         last_force = data->points[i].force;
-    *fit = (struct wb_bend3p_fit){.is_converged = false};
+    *fit = (struct wb_three_point_fit){.is_converged = false};
     p.deepest = data->usable - data->first_contact - bench->compliance * last_force;
     if (!(p.deepest > 0.0))
         return wb_fail_to(why, WB_ERR_DATA,
                           "wire '%s', sample %d: a compliance of %.3g mm/N takes all of the travel",
                           data->info.wire, data->info.sample, bench->compliance / WB_MM);
-    p.n_law = WB_BEND3P_PARTS + data->has_unloading;
+    p.n_law = WB_THREE_POINT_PARTS + data->has_unloading;
     take_bow(&p);
     const int is_bow_free = p.bow_deviation > 0.0;
     p.n_curve = p.n_law + is_bow_free;
     p.n_free = p.n_curve + 1;
-    p.n_residuals = data->n_points + WB_BEND3P_PARTS - 3 + 1 + is_bow_free + data->has_unloading;
+    p.n_residuals =
+        data->n_points + WB_THREE_POINT_PARTS - 3 + 1 + is_bow_free + data->has_unloading;
     p.force_scale = fmax(data->noise, settings->force_share * data->max_force);
     start_law(&p, start);
     law_of(&p, no_step, &law);

@@ -1,4 +1,4 @@
-#include "analysis/calibration/bend3p_data.h"
+#include "analysis/calibration/three_point_data.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -10,9 +10,9 @@
 
 #define WB_LOG_DOMAIN "three-point"
 
-#define AT(field) offsetof(struct wb_bend3p_data_settings, field)
+#define AT(field) offsetof(struct wb_three_point_data_settings, field)
 
-const struct wb_setting wb_bend3p_data_rows[WB_BEND3P_DATA_ROWS] = {
+const struct wb_setting wb_three_point_data_rows[WB_THREE_POINT_DATA_ROWS] = {
     {.name = "seating",
      .type = WB_SETTING_NUMBER,
      .offset = AT(seating),
@@ -63,10 +63,10 @@ static const double turn_distance = 0.02;
 static const double last_force = 0.03;
 static const double largest_part = 1.0 / 3.0; /* of the span */
 
-const char *wb_bend3p_limit_name(enum wb_bend3p_limit limit)
+const char *wb_three_point_limit_name(enum wb_three_point_limit limit)
 {
-    static const char *const names[WB_BEND3P_LIMITS] = {"end of the loading", "given", "kink",
-                                                        "third of the span"};
+    static const char *const names[WB_THREE_POINT_LIMITS] = {"end of the loading", "given", "kink",
+                                                             "third of the span"};
     return names[limit];
 }
 
@@ -217,16 +217,17 @@ static double force_at(const struct readings *r, size_t from, size_t to, double 
     return (double)NAN;
 }
 
-static void add_point(struct wb_bend3p_data *data, double travel, double force, bool is_unloading)
+static void add_point(struct wb_three_point_data *data, double travel, double force,
+                      bool is_unloading)
 {
     if (!isfinite(force) || data->n_points == MOST_POINTS)
         return;
-    data->points[data->n_points++] = (struct wb_bend3p_point){travel, force, is_unloading};
+    data->points[data->n_points++] = (struct wb_three_point_point){travel, force, is_unloading};
     data->max_force = fmax(data->max_force, force);
 }
 
-static void add_points(struct wb_bend3p_data *data, const struct readings *r, double span,
-                       const struct wb_bend3p_data_settings *s, size_t last)
+static void add_points(struct wb_three_point_data *data, const struct readings *r, double span,
+                       const struct wb_three_point_data_settings *s, size_t last)
 {
     const double first = data->first_contact + s->seating * span;
     const double step = s->step * span;
@@ -248,8 +249,8 @@ static void add_points(struct wb_bend3p_data *data, const struct readings *r, do
     }
 }
 
-static enum wb_status make(struct wb_bend3p_data *data, const struct readings *r,
-                           const struct wb_bend3p_data_settings *s, struct wb_reason *why)
+static enum wb_status make(struct wb_three_point_data *data, const struct readings *r,
+                           const struct wb_three_point_data_settings *s, struct wb_reason *why)
 {
     const struct wb_test_info *const info = &data->info;
     const double span = info->length;
@@ -257,19 +258,19 @@ static enum wb_status make(struct wb_bend3p_data *data, const struct readings *r
 
     data->noise = find_noise(r, r->top);
     data->usable = r->travel[r->top];
-    data->limit = WB_BEND3P_LIMIT_END;
+    data->limit = WB_THREE_POINT_LIMIT_END;
     const double wanted = s->usable > 0.0 ? s->usable : given->known ? given->least : 0.0;
     size_t last = r->top;
     if (wanted > 0.0) {
         while (last > 0 && r->travel[last] > wanted)
             last--;
         if (wanted < data->usable)
-            data->limit = WB_BEND3P_LIMIT_GIVEN;
+            data->limit = WB_THREE_POINT_LIMIT_GIVEN;
         data->usable = fmin(data->usable, wanted);
     } else {
         last = find_kink(r, kink_reach * span, data->noise);
         if (last < r->top)
-            data->limit = WB_BEND3P_LIMIT_KINK;
+            data->limit = WB_THREE_POINT_LIMIT_KINK;
         data->usable = r->travel[last];
     }
     double largest = 0.0;
@@ -287,7 +288,7 @@ static enum wb_status make(struct wb_bend3p_data *data, const struct readings *r
                           info->wire, info->sample);
     if (data->usable > data->first_contact + largest_part * span) {
         data->usable = data->first_contact + largest_part * span;
-        data->limit = WB_BEND3P_LIMIT_THIRD;
+        data->limit = WB_THREE_POINT_LIMIT_THIRD;
     }
     data->points = calloc(MOST_POINTS, sizeof *data->points);
     if (!data->points)
@@ -299,18 +300,19 @@ static enum wb_status make(struct wb_bend3p_data *data, const struct readings *r
                           "expected at least %d",
                           info->wire, info->sample, data->n_points,
                           (data->first_contact + s->seating * span) / WB_MM, data->usable / WB_MM,
-                          wb_bend3p_limit_name(data->limit), LEAST_POINTS);
+                          wb_three_point_limit_name(data->limit), LEAST_POINTS);
     return WB_OK;
 }
 
-enum wb_status wb_bend3p_data_make(struct wb_bend3p_data *data, const struct wb_dataset *dataset,
-                                   const struct wb_bend3p_data_settings *settings,
-                                   struct wb_reason *why)
+enum wb_status wb_three_point_data_make(struct wb_three_point_data *data,
+                                        const struct wb_dataset *dataset,
+                                        const struct wb_three_point_data_settings *settings,
+                                        struct wb_reason *why)
 {
     struct readings readings = {.n = 0};
     enum wb_status status = WB_OK;
 
-    *data = (struct wb_bend3p_data){.info = dataset->info};
+    *data = (struct wb_three_point_data){.info = dataset->info};
     if (dataset->info.kind != WB_TEST_THREE_POINT)
         return wb_fail_to(why, WB_ERR_DATA, "wire '%s': not a three-point bending test",
                           dataset->info.wire);
@@ -323,11 +325,11 @@ enum wb_status wb_bend3p_data_make(struct wb_bend3p_data *data, const struct wb_
         status = make(data, &readings, settings, why);
     release(&readings);
     if (status != WB_OK)
-        wb_bend3p_data_release(data);
+        wb_three_point_data_release(data);
     return status;
 }
 
-int wb_bend3p_data_count_loading(const struct wb_bend3p_data *data)
+int wb_three_point_data_count_loading(const struct wb_three_point_data *data)
 {
     int n = 0;
     while (n < data->n_points && !data->points[n].is_unloading)
@@ -335,19 +337,20 @@ int wb_bend3p_data_count_loading(const struct wb_bend3p_data *data)
     return n;
 }
 
-double wb_bend3p_data_force(const struct wb_bend3p_data *data, double travel, bool is_unloading)
+double wb_three_point_data_force(const struct wb_three_point_data *data, double travel,
+                                 bool is_unloading)
 {
-    const int loading = wb_bend3p_data_count_loading(data);
+    const int loading = wb_three_point_data_count_loading(data);
     const int end = is_unloading ? data->n_points : loading;
     const double sense = is_unloading ? -1.0 : 1.0;
     int i = (is_unloading ? loading : 0) + 1;
     while (i + 1 < end && sense * data->points[i].travel < sense * travel)
         i++;
-    const struct wb_bend3p_point *const a = &data->points[i - 1], *const b = &data->points[i];
+    const struct wb_three_point_point *const a = &data->points[i - 1], *const b = &data->points[i];
     return a->force + (travel - a->travel) / (b->travel - a->travel) * (b->force - a->force);
 }
 
-void wb_bend3p_data_release(struct wb_bend3p_data *data)
+void wb_three_point_data_release(struct wb_three_point_data *data)
 {
     free(data->points);
     data->points = NULL;

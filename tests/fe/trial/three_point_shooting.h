@@ -11,8 +11,8 @@
  * pressed together and springs off the nose between two lines of contact, a force normal to the
  * nose at alpha, behind which only an axial force is left, and another arc length to the middle.
  */
-#ifndef WB_TESTS_FE_TRIAL_SHOOTING3P_H
-#define WB_TESTS_FE_TRIAL_SHOOTING3P_H
+#ifndef WB_TESTS_FE_TRIAL_THREE_POINT_SHOOTING_H
+#define WB_TESTS_FE_TRIAL_THREE_POINT_SHOOTING_H
 
 #include <math.h>
 #include <stdbool.h>

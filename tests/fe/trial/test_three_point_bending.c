@@ -1,9 +1,9 @@
-#include "fe/trial/bending3p_private.h"
+#include "fe/trial/three_point_bending_private.h"
 
 #include <stdlib.h>
 
 #include "tests/fe/rod/wires.h"
-#include "tests/fe/trial/shooting3p.h"
+#include "tests/fe/trial/three_point_shooting.h"
 
 /* An elastic wire on a bench like the ones of the shared tests, in round numbers. */
 static const double modulus = 5e9, diameter = 1e-3, span = 40e-3;
@@ -18,9 +18,9 @@ static struct wb_section elastic_section(double shear_factor)
     return section;
 }
 
-static struct wb_bending3p_model bench(const struct wb_section *section)
+static struct wb_three_point_bending_model bench(const struct wb_section *section)
 {
-    return (struct wb_bending3p_model){
+    return (struct wb_three_point_bending_model){
         .section = section,
         .diameter = diameter,
         .span = span,
@@ -29,7 +29,7 @@ static struct wb_bending3p_model bench(const struct wb_section *section)
     };
 }
 
-static struct shooting same(const struct wb_bending3p_model *model)
+static struct shooting same(const struct wb_three_point_bending_model *model)
 {
     const double d = model->diameter;
     return (struct shooting){
@@ -44,20 +44,21 @@ static struct shooting same(const struct wb_bending3p_model *model)
     };
 }
 
-static struct wb_bending3p *create(const struct wb_bending3p_model *model)
+static struct wb_three_point_bending *create(const struct wb_three_point_bending_model *model)
 {
-    struct wb_bending3p *bending = NULL;
-    assert_int_equal(wb_bending3p_create(&bending, model), WB_OK);
+    struct wb_three_point_bending *bending = NULL;
+    assert_int_equal(wb_three_point_bending_create(&bending, model), WB_OK);
     return bending;
 }
 
 /* Moves and insists on convergence. */
-static struct wb_bending3p_point move(struct wb_bending3p *bending, double deflection)
+static struct wb_three_point_bending_point move(struct wb_three_point_bending *bending,
+                                                double deflection)
 {
-    struct wb_bending3p_point point;
-    assert_int_equal(wb_bending3p_move(bending, deflection, &point), WB_OK);
-    if (point.end != WB_BENDING3P_CONVERGED)
-        fail_msg("at %g m: %s", deflection, wb_bending3p_end_name(point.end));
+    struct wb_three_point_bending_point point;
+    assert_int_equal(wb_three_point_bending_move(bending, deflection, &point), WB_OK);
+    if (point.end != WB_THREE_POINT_BENDING_CONVERGED)
+        fail_msg("at %g m: %s", deflection, wb_three_point_bending_end_name(point.end));
     return point;
 }
 
@@ -65,16 +66,16 @@ static void small_deflection_is_F_L3_over_48_EI(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
-    struct wb_bending3p_model model = bench(&section);
+    struct wb_three_point_bending_model model = bench(&section);
     model.support_radius = model.nose_radius = 0.0;
     const struct shooting p = same(&model);
     const double flexibility = pow(span, 3) / (48.0 * p.EI) + span / (4.0 * p.GA);
     for (int whole = 0; whole < 2; whole++) {
         model.whole = whole;
-        struct wb_bending3p *bending = create(&model);
+        struct wb_three_point_bending *bending = create(&model);
         const double w = 1e-4 * span;
         assert_close_relative(move(bending, w).force * flexibility, w, 1e-4);
-        wb_bending3p_destroy(bending);
+        wb_three_point_bending_destroy(bending);
     }
     wb_section_release(&section);
 }
@@ -94,8 +95,8 @@ struct compared {
     double worst;   /* deviation of the force */
 };
 
-static struct compared compare(struct wb_bending3p_model *model, struct shooting *p, double natural,
-                               double tolerance)
+static struct compared compare(struct wb_three_point_bending_model *model, struct shooting *p,
+                               double natural, double tolerance)
 {
     const double rn = p->nose_radius + 0.5 * p->diameter, r = p->support_radius + 0.5 * p->diameter;
     struct compared compared = {0};
@@ -105,7 +106,7 @@ static struct compared compare(struct wb_bending3p_model *model, struct shooting
     p->natural = natural;
     model->natural_curvature = natural != 0.0 ? constant : NULL;
     model->curvature_context = &natural;
-    struct wb_bending3p *bending = create(model);
+    struct wb_three_point_bending *bending = create(model);
     const double rest = natural != 0.0 ? asin(0.5 * p->span / (1.0 / natural + r)) : 0.0;
     for (int i = 1; i < 200; i++) {
         struct shot shot;
@@ -129,7 +130,7 @@ static struct compared compare(struct wb_bending3p_model *model, struct shooting
         assert_true(found);
         if (shot.deflection > p->span / 3.0)
             break;
-        const struct wb_bending3p_point point = move(bending, shot.deflection);
+        const struct wb_three_point_bending_point point = move(bending, shot.deflection);
         const double phi = point.contact_angle;
         const double sliding =
             p->friction * 0.5 * point.force / (cos(phi) + p->friction * sin(phi));
@@ -146,7 +147,7 @@ static struct compared compare(struct wb_bending3p_model *model, struct shooting
         compared.two_lines += contact == SHOOTING_TWO_LINES;
         compared.deepest = shot.deflection / p->span;
     }
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(bending);
     print_message("friction %g, natural curvature %g /m, rollers %g mm, nose %g mm: %d points up "
                   "to %.3f of the span, force within %.4f %%\n",
                   p->friction, natural, 1e3 * p->support_radius, 1e3 * p->nose_radius,
@@ -163,7 +164,7 @@ static void large_deflection_and_wandering_contacts_match_shooting(void **unused
     } cases[] = {{0.0, 0.0, 2e-3},   {0.3, 0.0, 2e-3},   {0.6, 0.0, 2e-3}, {0.3, 10.0, 2e-3},
                  {0.2, -10.0, 2e-3}, {0.3, 0.0, 0.1e-3}, {0.0, 0.0, 8e-3}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct wb_bending3p_model model = bench(&section);
+        struct wb_three_point_bending_model model = bench(&section);
         model.friction = cases[i].friction;
         model.support_radius = cases[i].support_radius;
         struct shooting p = same(&model);
@@ -182,7 +183,7 @@ static void wrapping_matches_shooting(void **unused)
     struct wb_section stiff = elastic_section(400.0), plain = elastic_section(1.0);
 
     for (int i = 0; i < 3; i++) {
-        struct wb_bending3p_model model = bench(&stiff);
+        struct wb_three_point_bending_model model = bench(&stiff);
         model.nose_radius = 18e-3;
         model.friction = friction[i];
         struct shooting p = same(&model);
@@ -192,7 +193,7 @@ static void wrapping_matches_shooting(void **unused)
         assert_true(i == 2 ? c.wrapped >= 20 : c.two_lines >= 20);
     }
     /* With the shear stiffness of a wire the contact is smeared over some (EI / GA)^1/2. */
-    struct wb_bending3p_model model = bench(&plain);
+    struct wb_three_point_bending_model model = bench(&plain);
     model.nose_radius = 18e-3;
     model.friction = 0.6;
     struct shooting p = same(&model);
@@ -251,12 +252,12 @@ static void elastoplastic_wire_matches_shooting(void **unused)
             table.moment[i] += 2.0 * y * area * wb_law_virgin_stress(&law, y * curvature, NULL);
         }
     }
-    struct wb_bending3p_model model = {.section = &section,
-                                       .diameter = wire.diameter,
-                                       .span = span,
-                                       .support_radius = 2e-3,
-                                       .nose_radius = 3e-3,
-                                       .friction = 0.2};
+    struct wb_three_point_bending_model model = {.section = &section,
+                                                 .diameter = wire.diameter,
+                                                 .span = span,
+                                                 .support_radius = 2e-3,
+                                                 .nose_radius = 3e-3,
+                                                 .friction = 0.2};
     struct shooting p = same(&model);
     p.EI = wire.material.youngs_modulus * M_PI * pow(wire.diameter, 4) / 64.0;
     p.EA = wire.material.youngs_modulus * M_PI * wire.diameter * wire.diameter / 4.0;
@@ -280,30 +281,30 @@ static void half_is_a_twin_of_the_whole(void **unused)
     const struct test_wire wire = test_wire_type(2);
     struct wb_section section = test_section(&wire);
     double natural = 5.0;
-    struct wb_bending3p_model model = bench(&section);
+    struct wb_three_point_bending_model model = bench(&section);
     model.diameter = wire.diameter;
     model.nose_radius = 8e-3;
     model.friction = 0.3;
     model.n_elements = 40;
     model.natural_curvature = constant;
     model.curvature_context = &natural;
-    struct wb_bending3p *half = create(&model);
+    struct wb_three_point_bending *half = create(&model);
     model.whole = true;
-    struct wb_bending3p *whole = create(&model);
+    struct wb_three_point_bending *whole = create(&model);
     for (int i = 0; i < PATH; i++) {
-        const struct wb_bending3p_point a = move(half, path[i] * span);
-        const struct wb_bending3p_point b = move(whole, path[i] * span);
+        const struct wb_three_point_bending_point a = move(half, path[i] * span);
+        const struct wb_three_point_bending_point b = move(whole, path[i] * span);
         assert_close_relative(b.force, a.force, 2e-3);
         assert_close(b.draw_in, a.draw_in, 1e-4 * span);
         const double places[3] = {-0.4 * span, 0.0, 0.4 * span};
         double x[3], y[3], t[3];
-        wb_bending3p_shape(whole, 3, places, x, y, t);
+        wb_three_point_bending_shape(whole, 3, places, x, y, t);
         assert_close(x[0], -x[2], 1e-7);
         assert_close(y[0], y[2], 1e-7);
         assert_close(t[0], -t[2], 1e-5);
     }
-    wb_bending3p_destroy(half);
-    wb_bending3p_destroy(whole);
+    wb_three_point_bending_destroy(half);
+    wb_three_point_bending_destroy(whole);
     wb_section_release(&section);
 }
 
@@ -318,33 +319,33 @@ static void mirrored_bow_gives_the_mirrored_test(void **unused)
     (void)unused;
     struct wb_section section = elastic_section(1.0);
     double right = 300.0, left = -300.0, none = 0.0;
-    struct wb_bending3p_model model = bench(&section);
+    struct wb_three_point_bending_model model = bench(&section);
     model.whole = true;
     model.n_elements = 40;
     model.friction = 0.2;
     model.natural_curvature = lopsided;
     model.curvature_context = &right;
-    struct wb_bending3p *a = create(&model);
+    struct wb_three_point_bending *a = create(&model);
     model.curvature_context = &left;
-    struct wb_bending3p *b = create(&model);
+    struct wb_three_point_bending *b = create(&model);
     model.curvature_context = &none;
-    struct wb_bending3p *even = create(&model);
+    struct wb_three_point_bending *even = create(&model);
     for (int i = 0; i < 4; i++) {
         const double w = 0.05 * (i + 1) * span;
         const double places[2] = {-0.45 * span, 0.45 * span};
         double xa[2], ya[2], xb[2], yb[2];
         const double force = move(a, w).force;
         assert_close_relative(move(b, w).force, force, 1e-6);
-        wb_bending3p_shape(a, 2, places, xa, ya, NULL);
-        wb_bending3p_shape(b, 2, places, xb, yb, NULL);
+        wb_three_point_bending_shape(a, 2, places, xa, ya, NULL);
+        wb_three_point_bending_shape(b, 2, places, xb, yb, NULL);
         assert_close(xa[0], -xb[1], 1e-9);
         assert_close(ya[0], yb[1], 1e-9);
         assert_true(fabs(ya[0] - ya[1]) > 1e-6);
         assert_close_relative(move(even, w).force, force, 0.05);
     }
-    wb_bending3p_destroy(a);
-    wb_bending3p_destroy(b);
-    wb_bending3p_destroy(even);
+    wb_three_point_bending_destroy(a);
+    wb_three_point_bending_destroy(b);
+    wb_three_point_bending_destroy(even);
     wb_section_release(&section);
 }
 
@@ -353,12 +354,12 @@ static void work_of_the_nose_is_stored_or_used_up(void **unused)
     (void)unused;
     const struct test_wire wire = test_wire_type(2);
     struct wb_section section = test_section(&wire);
-    struct wb_bending3p_model model = bench(&section);
+    struct wb_three_point_bending_model model = bench(&section);
     model.diameter = wire.diameter;
     model.friction = 0.3;
     model.nose_radius = 8e-3;
-    struct wb_bending3p *bending = create(&model);
-    struct wb_bending3p_point point = {0};
+    struct wb_three_point_bending *bending = create(&model);
+    struct wb_three_point_bending_point point = {0};
     double friction = 0.0, most = 0.0;
     for (int i = 1; i <= 200; i++) {
         point = move(bending, (i <= 120 ? i : 240 - i) * 0.0025 * span);
@@ -369,7 +370,7 @@ static void work_of_the_nose_is_stored_or_used_up(void **unused)
     }
     assert_true(friction > 0.05 * most);
     assert_true(point.internal_work > 0.1 * most); /* of which plastic */
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(bending);
     wb_section_release(&section);
 }
 
@@ -377,19 +378,19 @@ static void elastic_wire_without_friction_comes_back_on_itself(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
-    struct wb_bending3p_model model = bench(&section);
+    struct wb_three_point_bending_model model = bench(&section);
     model.nose_radius = 18e-3;
-    struct wb_bending3p *bending = create(&model);
+    struct wb_three_point_bending *bending = create(&model);
     double force[31];
     for (int i = 1; i <= 30; i++)
         force[i] = move(bending, 0.01 * i * span).force;
     for (int i = 29; i >= 1; i--)
         assert_close_relative(move(bending, 0.01 * i * span).force, force[i], 1e-6);
-    const struct wb_bending3p_point point = move(bending, -0.01 * span);
+    const struct wb_three_point_bending_point point = move(bending, -0.01 * span);
     assert_true(point.slack);
     assert_close(point.force, 0.0, 0.0);
-    assert_close(wb_bending3p_contact_level(bending), 0.0, 1e-7 * span);
-    wb_bending3p_destroy(bending);
+    assert_close(wb_three_point_bending_contact_level(bending), 0.0, 1e-7 * span);
+    wb_three_point_bending_destroy(bending);
     wb_section_release(&section);
 }
 
@@ -398,13 +399,13 @@ static void bent_wire_stays_bent_and_is_met_there_again(void **unused)
     (void)unused;
     const struct test_wire wire = test_wire_type(2);
     struct wb_section section = test_section(&wire);
-    struct wb_bending3p_model model = bench(&section);
+    struct wb_three_point_bending_model model = bench(&section);
     model.diameter = wire.diameter;
     model.friction = 0.2;
-    struct wb_bending3p *bending = create(&model);
+    struct wb_three_point_bending *bending = create(&model);
     move(bending, 0.2 * span);
-    struct wb_bending3p_point point = move(bending, 0.0);
-    const double level = wb_bending3p_contact_level(bending);
+    struct wb_three_point_bending_point point = move(bending, 0.0);
+    const double level = wb_three_point_bending_contact_level(bending);
     assert_true(point.slack);
     assert_true(level > 0.02 * span && level < 0.19 * span);
     assert_close(point.deflection, 0.0, 0.0);
@@ -412,12 +413,12 @@ static void bent_wire_stays_bent_and_is_met_there_again(void **unused)
     point = move(bending, level + 0.01 * span);
     assert_false(point.slack);
     assert_true(point.force > 0.0);
-    wb_bending3p_reset(bending);
+    wb_three_point_bending_reset(bending);
     const double virgin = move(bending, 0.1 * span).force;
-    struct wb_bending3p *other = create(&model);
+    struct wb_three_point_bending *other = create(&model);
     assert_close(move(other, 0.1 * span).force, virgin, 0.0);
-    wb_bending3p_destroy(other);
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(other);
+    wb_three_point_bending_destroy(bending);
     wb_section_release(&section);
 }
 
@@ -425,13 +426,13 @@ static void compliance_adds_to_the_travel_alone(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
-    struct wb_bending3p_model model = bench(&section);
+    struct wb_three_point_bending_model model = bench(&section);
     model.compliance = 1e-3;
-    struct wb_bending3p *bending = create(&model);
-    const struct wb_bending3p_point point = move(bending, 0.1 * span);
+    struct wb_three_point_bending *bending = create(&model);
+    const struct wb_three_point_bending_point point = move(bending, 0.1 * span);
     assert_close(point.deflection, 0.1 * span, 0.0);
     assert_close(point.travel, 0.1 * span + 1e-3 * point.force, 1e-15);
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(bending);
     wb_section_release(&section);
 }
 
@@ -439,24 +440,24 @@ static void end_of_the_test_is_said(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
-    struct wb_bending3p_model model = bench(&section);
-    struct wb_bending3p_point point;
+    struct wb_three_point_bending_model model = bench(&section);
+    struct wb_three_point_bending_point point;
 
     model.overhang = 0.01 * span;
-    struct wb_bending3p *bending = create(&model);
-    assert_int_equal(wb_bending3p_move(bending, 0.4 * span, &point), WB_OK);
-    assert_int_equal(point.end, WB_BENDING3P_RAN_OFF);
+    struct wb_three_point_bending *bending = create(&model);
+    assert_int_equal(wb_three_point_bending_move(bending, 0.4 * span, &point), WB_OK);
+    assert_int_equal(point.end, WB_THREE_POINT_BENDING_RAN_OFF);
     assert_true(point.deflection > 0.1 * span && point.deflection < 0.4 * span);
     assert_true(point.draw_in <= 0.01 * span && point.draw_in > 0.009 * span);
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(bending);
 
     model.overhang = 0.0;
     model.nose_radius = 0.45 * span;
     bending = create(&model);
-    assert_int_equal(wb_bending3p_move(bending, 0.4 * span, &point), WB_OK);
-    assert_int_equal(point.end, WB_BENDING3P_PINCHED);
+    assert_int_equal(wb_three_point_bending_move(bending, 0.4 * span, &point), WB_OK);
+    assert_int_equal(point.end, WB_THREE_POINT_BENDING_PINCHED);
     assert_true(point.deflection > 0.05 * span);
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(bending);
     wb_section_release(&section);
 }
 
@@ -464,10 +465,10 @@ static void model_that_is_no_test_is_refused(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
-    struct wb_bending3p *bending = NULL;
+    struct wb_three_point_bending *bending = NULL;
     wb_log_set_sink(discard_message, NULL);
     for (int i = 0; i < 6; i++) {
-        struct wb_bending3p_model model = bench(&section);
+        struct wb_three_point_bending_model model = bench(&section);
         double natural = 200.0;
         switch (i) {
         case 0:
@@ -490,14 +491,14 @@ static void model_that_is_no_test_is_refused(void **unused)
             model.n_elements = -1;
             break;
         }
-        assert_int_equal(wb_bending3p_create(&bending, &model), WB_ERR_ARGUMENT);
+        assert_int_equal(wb_three_point_bending_create(&bending, &model), WB_ERR_ARGUMENT);
         assert_null(bending);
     }
-    struct wb_bending3p_model model = bench(&section);
-    struct wb_bending3p_point point;
+    struct wb_three_point_bending_model model = bench(&section);
+    struct wb_three_point_bending_point point;
     bending = create(&model);
-    assert_int_equal(wb_bending3p_move(bending, (double)NAN, &point), WB_ERR_ARGUMENT);
-    wb_bending3p_destroy(bending);
+    assert_int_equal(wb_three_point_bending_move(bending, (double)NAN, &point), WB_ERR_ARGUMENT);
+    wb_three_point_bending_destroy(bending);
     wb_log_set_sink(NULL, NULL);
     wb_section_release(&section);
 }

@@ -1,4 +1,4 @@
-#include "cli/calibrate_bend3p.h"
+#include "cli/calibrate_three_point.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +29,7 @@ static void print_estimate(const char *name, const struct wb_estimate *e, double
            e->candidates_high / unit);
 }
 
-static void print_member(const struct wb_bend3p_member *m)
+static void print_member(const struct wb_three_point_member *m)
 {
     const struct wb_test_info *const info = &m->data.info;
     printf("sample %d%s%s: ", info->sample, info->piece.series[0] ? ", series " : "",
@@ -42,7 +42,7 @@ static void print_member(const struct wb_bend3p_member *m)
            "misfit %.2g%s\n",
            m->rigidity / N_MM2, 200.0 * m->rigidity_error, m->fit.first_contact / WB_MM,
            2.0 * m->fit.first_contact_error / WB_MM, m->data.usable / WB_MM,
-           wb_bend3p_limit_name(m->data.limit), m->fit.misfit,
+           wb_three_point_limit_name(m->data.limit), m->fit.misfit,
            m->data.has_unloading ? ", with the way back" : "");
     if (m->fit.bow_error > 0.0)
         printf("    natural bow %+.3f +- %.2g mm, %s; correlation with the first contact %+.2f\n",
@@ -56,7 +56,7 @@ static void print_member(const struct wb_bend3p_member *m)
         printf("    natural bow %+.3f mm, given\n", m->fit.bow / WB_MM);
 }
 
-static void print_text(const struct wb_bend3p_calibration *c)
+static void print_text(const struct wb_three_point_calibration *c)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     char name[64];
@@ -70,18 +70,18 @@ static void print_text(const struct wb_bend3p_calibration *c)
     if (!c->is_rigidity_identifiable)
         printf("EI is not identifiable from loading alone: what stands here is the law's form "
                "before the first point\n");
-    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         snprintf(name, sizeof name, "M at %.4g /m", c->curvature[k]);
         print_estimate(name, &c->moment[k], N_MM, "N mm");
     }
-    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
-        const struct wb_bend3p_variant *const v = &c->variants[i];
+    for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
+        const struct wb_three_point_variant *const v = &c->variants[i];
         if (v->value == (i < 2 ? c->bench.friction : c->bench.nose_radius))
             continue; /* known */
         printf("%s %g%s: ", v->name, i < 2 ? v->value : v->value / WB_MM, i < 2 ? "" : " mm");
         if (v->is_possible)
             printf("EI x %.4f, M at the largest curvature x %.4f, misfit %.2g (%.2g)\n",
-                   v->rigidity, v->moment[WB_BEND3P_MOMENTS - 1], v->misfit, c->misfit);
+                   v->rigidity, v->moment[WB_THREE_POINT_MOMENTS - 1], v->misfit, c->misfit);
         else
             printf("no test of this kind comes so far\n");
     }
@@ -102,7 +102,7 @@ static void set_estimate(struct wb_json *object, const struct wb_estimate *e, do
     wb_json_set_number(object, "band_high", e->candidates_high / unit);
 }
 
-static int print_json(const struct wb_bend3p_calibration *c)
+static int print_json(const struct wb_three_point_calibration *c)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     struct wb_json *const root = wb_json_create();
@@ -119,14 +119,14 @@ static int print_json(const struct wb_bend3p_calibration *c)
     wb_json_set_boolean(root, "rigidity_identifiable", c->is_rigidity_identifiable);
     set_estimate(wb_json_set_object(root, "flexural_rigidity_N_mm2"), &c->rigidity, N_MM2);
     struct wb_json *const moments = wb_json_set_array(root, "moment_curvature");
-    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         struct wb_json *const item = wb_json_append_object(moments);
         wb_json_set_number(item, "curvature_1_m", c->curvature[k]);
         set_estimate(wb_json_set_object(item, "moment_N_mm"), &c->moment[k], N_MM);
     }
     struct wb_json *const bands = wb_json_set_array(root, "bands");
-    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
-        const struct wb_bend3p_variant *const v = &c->variants[i];
+    for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
+        const struct wb_three_point_variant *const v = &c->variants[i];
         struct wb_json *const item = wb_json_append_object(bands);
         wb_json_set_text(item, "of", v->name);
         wb_json_set_number(item, i < 2 ? "value" : "value_mm", i < 2 ? v->value : v->value / WB_MM);
@@ -136,7 +136,7 @@ static int print_json(const struct wb_bend3p_calibration *c)
     }
     struct wb_json *const tests = wb_json_set_array(root, "tests");
     for (int i = 0; i < c->n_members; i++) {
-        const struct wb_bend3p_member *const m = &c->members[i];
+        const struct wb_three_point_member *const m = &c->members[i];
         struct wb_json *const item = wb_json_append_object(tests);
         wb_json_set_integer(item, "sample", m->data.info.sample);
         wb_json_set_text(item, "series", m->data.info.piece.series);
@@ -155,7 +155,7 @@ static int print_json(const struct wb_bend3p_calibration *c)
         wb_json_set_number(item, "natural_bow_off_prior", m->fit.bow_off);
         wb_json_set_number(item, "bow_contact_correlation", m->fit.bow_contact_correlation);
         wb_json_set_number(item, "usable_mm", m->data.usable / WB_MM);
-        wb_json_set_text(item, "usable_by", wb_bend3p_limit_name(m->data.limit));
+        wb_json_set_text(item, "usable_by", wb_three_point_limit_name(m->data.limit));
         wb_json_set_boolean(item, "with_unloading", m->data.has_unloading);
         wb_json_set_boolean(item, "converged", m->fit.is_converged);
         wb_json_set_number(item, "misfit", m->fit.misfit);
@@ -164,12 +164,13 @@ static int print_json(const struct wb_bend3p_calibration *c)
     return wb_command_print_json(root);
 }
 
-static int deliver(const struct wb_bend3p_calibration *c, const struct wb_command_common *common)
+static int deliver(const struct wb_three_point_calibration *c,
+                   const struct wb_command_common *common)
 {
     bool complete = c->n_fitted == c->n_members;
     if (common->output) {
-        const enum wb_status status =
-            wb_properties_write_bend3p(common->output, c, common->inputs, common->n, common->force);
+        const enum wb_status status = wb_properties_write_three_point(
+            common->output, c, common->inputs, common->n, common->force);
         if (status != WB_OK)
             return wb_command_exit(status);
     }
@@ -183,7 +184,7 @@ static int deliver(const struct wb_bend3p_calibration *c, const struct wb_comman
     if (!complete)
         wb_warn("%d of %d tests could not be fitted", c->n_members - c->n_fitted, c->n_members);
     for (int i = 0; i < c->n_members; i++) {
-        const struct wb_bend3p_member *const m = &c->members[i];
+        const struct wb_three_point_member *const m = &c->members[i];
         if (!m->is_fitted || m->fit.is_converged)
             continue;
         wb_warn("sample %d: the iterations ran out (--curve-iterations)", m->data.info.sample);
@@ -192,19 +193,20 @@ static int deliver(const struct wb_bend3p_calibration *c, const struct wb_comman
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
-int wb_calibrate_bend3p(struct wb_bend3p_calibrate_settings *settings,
-                        const struct wb_datasets *datasets, const struct wb_command_common *common)
+int wb_calibrate_three_point(struct wb_three_point_calibrate_settings *settings,
+                             const struct wb_datasets *datasets,
+                             const struct wb_command_common *common)
 {
-    struct wb_bend3p_calibration calibration = {0};
+    struct wb_three_point_calibration calibration = {0};
     struct wb_progress progress;
     settings->progress = report_fits;
     settings->progress_context = &progress;
     wb_progress_start(&progress, "calibrate", "fits",
-                      (double)datasets->n * (1 + WB_BEND3P_VARIANTS));
+                      (double)datasets->n * (1 + WB_THREE_POINT_VARIANTS));
     const enum wb_status status =
-        wb_bend3p_calibrate_run(&calibration, datasets->pointers, datasets->n, settings, NULL);
+        wb_three_point_calibrate_run(&calibration, datasets->pointers, datasets->n, settings, NULL);
     wb_progress_finish(&progress);
     const int code = status == WB_OK ? deliver(&calibration, common) : wb_command_exit(status);
-    wb_bend3p_calibrate_release(&calibration);
+    wb_three_point_calibrate_release(&calibration);
     return code;
 }

@@ -6,12 +6,12 @@
  * machine's compliance are the caller's: the curves do not tell them (theory, "Three-point
  * bending").
  */
-#ifndef WB_ANALYSIS_BEND3P_FIT_H
-#define WB_ANALYSIS_BEND3P_FIT_H
+#ifndef WB_ANALYSIS_THREE_POINT_FIT_H
+#define WB_ANALYSIS_THREE_POINT_FIT_H
 
 #include <stdbool.h>
 
-#include "analysis/calibration/bend3p_data.h"
+#include "analysis/calibration/three_point_data.h"
 #include "analysis/calibration/three_point_model.h"
 #include "base/reason.h"
 #include "base/setting.h"
@@ -19,16 +19,16 @@
 #include "fe/material/law.h"
 
 enum {
-    WB_BEND3P_PARTS = 7,     /* of the law, the last elastic */
-    WB_BEND3P_MOST_FREE = 10 /* and isotropic share, natural bow, first contact */
+    WB_THREE_POINT_PARTS = 7,     /* of the law, the last elastic */
+    WB_THREE_POINT_MOST_FREE = 10 /* and isotropic share, natural bow, first contact */
 };
 
 /* Yield strains of the parts, spaced by logarithm. */
-struct wb_bend3p_strains {
+struct wb_three_point_strains {
     double first, last;
 };
 
-struct wb_bend3p_fit_settings {
+struct wb_three_point_fit_settings {
     double force_share;   /* of the largest force: a point weighs one over this or the noise */
     double modulus_prior; /* 1, of the second differences of ln(modulus) */
     double contact_prior; /* of the span: standard deviation of the first contact about the place
@@ -39,11 +39,11 @@ struct wb_bend3p_fit_settings {
     int max_iterations;
 };
 enum {
-    WB_BEND3P_FIT_ROWS = 6
+    WB_THREE_POINT_FIT_ROWS = 6
 };
-extern const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS];
+extern const struct wb_setting wb_three_point_fit_rows[WB_THREE_POINT_FIT_ROWS];
 
-struct wb_bend3p_fit {
+struct wb_three_point_fit {
     struct wb_law law;
     double first_contact, first_contact_error; /* m of travel */
     /* How far the wire's middle lies below its places on the rollers by nature (hollow upwards),
@@ -60,22 +60,23 @@ struct wb_bend3p_fit {
     /* The law moved by so many standard errors in independent directions, the first contact's
      * error among them: see struct wb_cycle_fit. */
     int n_moved;
-    double moved_by[WB_BEND3P_MOST_FREE];
-    struct wb_law moved[WB_BEND3P_MOST_FREE];
+    double moved_by[WB_THREE_POINT_MOST_FREE];
+    struct wb_law moved[WB_THREE_POINT_MOST_FREE];
     int runs;
     double cpu_s;
 };
 
 /* The yield strains that a test asks for. */
-struct wb_bend3p_strains wb_bend3p_fit_strains(const struct wb_bend3p_data *data);
+struct wb_three_point_strains wb_three_point_fit_strains(const struct wb_three_point_data *data);
 
 /* `start`: a fit of the same test to begin with, or NULL; `strains` NULL: those of the test.
  * WB_ERR_CONVERGENCE where the beam does
  * not come to the end of the test; the reason goes to `why` (NULL: logged). */
 WB_MUST_CHECK enum wb_status
-wb_bend3p_fit_run(struct wb_bend3p_fit *fit, const struct wb_bend3p_data *data,
-                  const struct wb_three_point_bench *bench, const struct wb_bend3p_strains *strains,
-                  const struct wb_bend3p_fit *start, const struct wb_bend3p_fit_settings *settings,
-                  struct wb_reason *why);
+wb_three_point_fit_run(struct wb_three_point_fit *fit, const struct wb_three_point_data *data,
+                       const struct wb_three_point_bench *bench,
+                       const struct wb_three_point_strains *strains,
+                       const struct wb_three_point_fit *start,
+                       const struct wb_three_point_fit_settings *settings, struct wb_reason *why);
 
 #endif

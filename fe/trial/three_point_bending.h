@@ -23,8 +23,8 @@
  *
  * The wire has no weight: a machine is tared with the wire in it.
  */
-#ifndef WB_FE_TRIAL_BENDING3P_H
-#define WB_FE_TRIAL_BENDING3P_H
+#ifndef WB_FE_TRIAL_THREE_POINT_BENDING_H
+#define WB_FE_TRIAL_THREE_POINT_BENDING_H
 
 #include <stdbool.h>
 
@@ -32,7 +32,7 @@
 #include "fe/material/law.h"
 #include "fe/rod/section.h"
 
-struct wb_bending3p_model {
+struct wb_three_point_bending_model {
     const struct wb_section *section; /* borrowed during creation only */
     double diameter;                  /* d, m: outer */
     double span;                      /* m, between the rollers' axes */
@@ -44,21 +44,22 @@ struct wb_bending3p_model {
     bool whole;                         /* compute both halves */
     /* Natural curvature, 1/m, over the arc length from the middle (m; negative on the left, never
      * asked for by half a wire); positive is hollow upwards, as the nose bends it. NULL: straight.
-     * Called at creation, and by wb_bending3p_set_curvature(). */
+     * Called at creation, and by wb_three_point_bending_set_curvature(). */
     double (*natural_curvature)(void *context, double from_middle);
     void *curvature_context;
 };
 
-enum wb_bending3p_end {
-    WB_BENDING3P_CONVERGED,
-    WB_BENDING3P_NOT_CONVERGED, /* the state is at the last equilibrium short of the target */
-    WB_BENDING3P_RAN_OFF,       /* the same: the wire's end comes to a roller */
-    WB_BENDING3P_PINCHED        /* the same: the wire is caught between nose and rollers */
+enum wb_three_point_bending_end {
+    WB_THREE_POINT_BENDING_CONVERGED,
+    WB_THREE_POINT_BENDING_NOT_CONVERGED, /* the state is at the last equilibrium short of the
+                                             target */
+    WB_THREE_POINT_BENDING_RAN_OFF,       /* the same: the wire's end comes to a roller */
+    WB_THREE_POINT_BENDING_PINCHED /* the same: the wire is caught between nose and rollers */
 };
 
 /* One equilibrium. */
-struct wb_bending3p_point {
-    enum wb_bending3p_end end;
+struct wb_three_point_bending_point {
+    enum wb_three_point_bending_end end;
     double deflection;    /* way of the nose since it touched the wire at rest, m */
     double travel;        /* the crosshead's: with the machine's compliance, m */
     double force;         /* of the nose, N */
@@ -78,38 +79,40 @@ struct wb_bending3p_point {
     double residual;         /* last relative residual */
 };
 
-struct wb_bending3p; /* opaque */
+struct wb_three_point_bending; /* opaque */
 
 /* Takes all memory; the wire lies on the rollers, the nose just touches it. On failure *out is
  * NULL. */
-WB_MUST_CHECK enum wb_status wb_bending3p_create(struct wb_bending3p **out,
-                                                 const struct wb_bending3p_model *model);
-void wb_bending3p_destroy(struct wb_bending3p *bending); /* accepts NULL */
+WB_MUST_CHECK enum wb_status
+wb_three_point_bending_create(struct wb_three_point_bending **out,
+                              const struct wb_three_point_bending_model *model);
+void wb_three_point_bending_destroy(struct wb_three_point_bending *bending); /* accepts NULL */
 
 /* Exchanges the law for one of the same kind as the section's (wb_cantilever_set_law()), and goes
  * back to the virgin wire at rest. Keeps all memory. */
-WB_MUST_CHECK enum wb_status wb_bending3p_set_law(struct wb_bending3p *bending,
-                                                  const struct wb_law *law);
+WB_MUST_CHECK enum wb_status wb_three_point_bending_set_law(struct wb_three_point_bending *bending,
+                                                            const struct wb_law *law);
 
 /* Exchanges the natural curvature, as in the model, and goes back to the virgin wire at rest.
  * WB_ERR_ARGUMENT where it is too bent to lie on the rollers: then only another curvature serves.
  */
 WB_MUST_CHECK enum wb_status
-wb_bending3p_set_curvature(struct wb_bending3p *bending,
-                           double (*natural_curvature)(void *context, double from_middle),
-                           void *context);
+wb_three_point_bending_set_curvature(struct wb_three_point_bending *bending,
+                                     double (*natural_curvature)(void *context, double from_middle),
+                                     void *context);
 
 /* Moves the nose to a deflection from wherever it is, in as many sub-steps as convergence needs.
  * Where the force comes down to zero on the way up, the nose leaves the wire there: the point is
  * slack, and so is every later one above that level. WB_OK also when it did not arrive: point->end
  * says so. */
-WB_MUST_CHECK enum wb_status wb_bending3p_move(struct wb_bending3p *bending, double deflection,
-                                               struct wb_bending3p_point *point);
+WB_MUST_CHECK enum wb_status
+wb_three_point_bending_move(struct wb_three_point_bending *bending, double deflection,
+                            struct wb_three_point_bending_point *point);
 
 /* Level of the nose at which it last touched or left the wire, m of deflection. */
-double wb_bending3p_contact_level(const struct wb_bending3p *bending);
+double wb_three_point_bending_contact_level(const struct wb_three_point_bending *bending);
 
 /* "converged", "not converged", ... */
-const char *wb_bending3p_end_name(enum wb_bending3p_end end);
+const char *wb_three_point_bending_end_name(enum wb_three_point_bending_end end);
 
 #endif

@@ -1,4 +1,4 @@
-#include "fe/trial/bending3p.h"
+#include "fe/trial/three_point_bending.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,10 +7,10 @@
 #include "base/memory.h"
 #include "fe/linear/band.h"
 #include "fe/rod/beam.h"
-#include "fe/trial/bending3p_private.h"
 #include "fe/trial/roller.h"
+#include "fe/trial/three_point_bending_private.h"
 
-#define WB_LOG_DOMAIN "bending3p"
+#define WB_LOG_DOMAIN "three-point"
 
 enum {
     DEFAULT_ELEMENTS = 80,
@@ -58,8 +58,8 @@ struct state {
     struct wb_roller_state roller[MOST_ROLLERS];
 };
 
-struct wb_bending3p {
-    struct wb_bending3p_model model; /* without section and curvature */
+struct wb_three_point_bending {
+    struct wb_three_point_bending_model model; /* without section and curvature */
     struct wb_beam *beam;
     int n_nodes, middle; /* the node that is held to x = 0 */
     double middle_arc;   /* of it, m */
@@ -90,11 +90,11 @@ struct wb_bending3p {
 /* The beam's first node is the middle, or the left end. */
 static double curvature_of(void *context, double arc)
 {
-    const struct wb_bending3p *b = context;
+    const struct wb_three_point_bending *b = context;
     return b->natural_curvature(b->curvature_context, arc - b->middle_arc);
 }
 
-static enum wb_status check_model(const struct wb_bending3p_model *m)
+static enum wb_status check_model(const struct wb_three_point_bending_model *m)
 {
     const double lengths[] = {m->overhang, m->support_radius, m->nose_radius, m->friction,
                               m->compliance};
@@ -114,7 +114,7 @@ static enum wb_status check_model(const struct wb_bending3p_model *m)
     return WB_OK;
 }
 
-static bool take_memory(struct wb_bending3p *b)
+static bool take_memory(struct wb_three_point_bending *b)
 {
     const size_t nodes = (size_t)b->n_nodes;
     b->unbalanced = wb_memory_take(&b->memory, nodes, sizeof *b->unbalanced);
@@ -128,7 +128,8 @@ static bool take_memory(struct wb_bending3p *b)
 
 /* The gap of a roller when the wire lies with its middle at (0, y), turned by `turn`; false where
  * it does not reach. */
-static bool gap_at(struct wb_bending3p *b, double y, double turn, double gap[MOST_ROLLERS])
+static bool gap_at(struct wb_three_point_bending *b, double y, double turn,
+                   double gap[MOST_ROLLERS])
 {
     struct wb_beam_node first = {0.0, 0.0, 0.0};
 
@@ -151,7 +152,7 @@ static bool gap_at(struct wb_bending3p *b, double y, double turn, double gap[MOS
 }
 
 /* Lays the virgin wire on the rollers, and the nose on the wire. */
-static enum wb_status lay_down(struct wb_bending3p *b)
+static enum wb_status lay_down(struct wb_three_point_bending *b)
 {
     const double small = 1e-6 * b->model.span;
     double y = 0.0, turn = 0.0, gap[MOST_ROLLERS] = {0}, more[MOST_ROLLERS] = {0};
@@ -200,7 +201,7 @@ static enum wb_status lay_down(struct wb_bending3p *b)
     return WB_OK;
 }
 
-static enum wb_status start(struct wb_bending3p *b)
+static enum wb_status start(struct wb_three_point_bending *b)
 {
     WB_TRY(lay_down(b));
     b->state = (struct state){
@@ -210,13 +211,13 @@ static enum wb_status start(struct wb_bending3p *b)
     return WB_OK;
 }
 
-enum wb_status wb_bending3p_create(struct wb_bending3p **out,
-                                   const struct wb_bending3p_model *model)
+enum wb_status wb_three_point_bending_create(struct wb_three_point_bending **out,
+                                             const struct wb_three_point_bending_model *model)
 {
     *out = NULL;
     WB_TRY(check_model(model));
 
-    struct wb_bending3p *b = calloc(1, sizeof *b);
+    struct wb_three_point_bending *b = calloc(1, sizeof *b);
     if (!b)
         return wb_fail(WB_ERR_MEMORY, "no memory for a bending test");
     b->model = *model;
@@ -265,7 +266,7 @@ enum wb_status wb_bending3p_create(struct wb_bending3p **out,
             status = start(b);
     }
     if (status != WB_OK) {
-        wb_bending3p_destroy(b);
+        wb_three_point_bending_destroy(b);
         return status;
     }
     b->model.section = NULL;
@@ -273,7 +274,7 @@ enum wb_status wb_bending3p_create(struct wb_bending3p **out,
     return WB_OK;
 }
 
-void wb_bending3p_destroy(struct wb_bending3p *bending)
+void wb_three_point_bending_destroy(struct wb_three_point_bending *bending)
 {
     if (!bending)
         return;
@@ -282,14 +283,15 @@ void wb_bending3p_destroy(struct wb_bending3p *bending)
     free(bending);
 }
 
-void wb_bending3p_reset(struct wb_bending3p *bending)
+void wb_three_point_bending_reset(struct wb_three_point_bending *bending)
 {
     wb_beam_reset(bending->beam);
     /* It lay down before. */
     (void)start(bending);
 }
 
-enum wb_status wb_bending3p_set_law(struct wb_bending3p *bending, const struct wb_law *law)
+enum wb_status wb_three_point_bending_set_law(struct wb_three_point_bending *bending,
+                                              const struct wb_law *law)
 {
     WB_TRY(wb_law_check(law, NULL));
     if (wb_law_is_plain(law)) {
@@ -299,14 +301,14 @@ enum wb_status wb_bending3p_set_law(struct wb_bending3p *bending, const struct w
         wb_law_overlay(law, &overlay);
         WB_TRY(wb_beam_set_overlay(bending->beam, &overlay));
     }
-    wb_bending3p_reset(bending);
+    wb_three_point_bending_reset(bending);
     return WB_OK;
 }
 
-enum wb_status wb_bending3p_set_curvature(struct wb_bending3p *bending,
-                                          double (*natural_curvature)(void *context,
-                                                                      double from_middle),
-                                          void *context)
+enum wb_status wb_three_point_bending_set_curvature(struct wb_three_point_bending *bending,
+                                                    double (*natural_curvature)(void *context,
+                                                                                double from_middle),
+                                                    void *context)
 {
     bending->natural_curvature = natural_curvature;
     bending->curvature_context = context;
@@ -314,21 +316,22 @@ enum wb_status wb_bending3p_set_curvature(struct wb_bending3p *bending,
     return start(bending);
 }
 
-double wb_bending3p_contact_level(const struct wb_bending3p *bending)
+double wb_three_point_bending_contact_level(const struct wb_three_point_bending *bending)
 {
     return bending->state.contact_level;
 }
 
 /* --- the nose --- */
 
-static double node_stiffness(const struct wb_bending3p *b, int node)
+static double node_stiffness(const struct wb_three_point_bending *b, int node)
 {
     /* Half of the middle's contact belongs to the other half of the wire. */
     return b->parts == 2.0 && node == b->middle ? 0.5 * b->stiffness : b->stiffness;
 }
 
 /* Adds what the nose does to one node; `held` also where it would pull. */
-static void press_node(struct wb_bending3p *b, int i, double nose_y, bool held, bool with_tangent)
+static void press_node(struct wb_three_point_bending *b, int i, double nose_y, bool held,
+                       bool with_tangent)
 {
     const struct wb_beam_node *node = &wb_beam_nodes(b->beam)[i];
     const double rx = node->x, ry = node->y - nose_y;
@@ -356,7 +359,7 @@ static void press_node(struct wb_bending3p *b, int i, double nose_y, bool held, 
 
 /* A wire that no node of which touches is held by the nearest one, so that it cannot fly away on
  * the way to the force zero: the force is then below zero. */
-static void press(struct wb_bending3p *b, double level, bool with_tangent)
+static void press(struct wb_three_point_bending *b, double level, bool with_tangent)
 {
     const struct wb_beam_node *node = wb_beam_nodes(b->beam);
     const double y = b->nose_level - level;
@@ -386,14 +389,14 @@ static double size_of(const double force[3], double lever)
 }
 
 /* The middle's x is held; with half a wire its rotation too. */
-static bool is_held(const struct wb_bending3p *b, int node, int k)
+static bool is_held(const struct wb_three_point_bending *b, int node, int k)
 {
     return node == b->middle && (k == 0 || (k == 2 && b->parts == 2.0));
 }
 
 /* Unbalanced forces of the trial state with the nose at `level`, and what it takes of them to be
  * an equilibrium. False where the wire has left a roller. */
-static bool evaluate(struct wb_bending3p *b, double level, bool with_tangent)
+static bool evaluate(struct wb_three_point_bending *b, double level, bool with_tangent)
 {
     struct wb_beam_balance balance;
     const double lever = 1.0 / b->model.span;
@@ -449,7 +452,7 @@ static bool evaluate(struct wb_bending3p *b, double level, bool with_tangent)
 }
 
 /* Newton's method from the trial state; true when it converged. */
-static bool solve(struct wb_bending3p *b, double level)
+static bool solve(struct wb_three_point_bending *b, double level)
 {
     int held_back = 0;
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
@@ -487,7 +490,7 @@ static bool solve(struct wb_bending3p *b, double level)
 }
 
 /* From the extrapolated state, else from the last one. */
-static bool settle(struct wb_bending3p *b, double level)
+static bool settle(struct wb_three_point_bending *b, double level)
 {
     const double ratio =
         b->state.last_step != 0.0 ? (level - b->state.level) / b->state.last_step : 0.0;
@@ -500,7 +503,7 @@ static bool settle(struct wb_bending3p *b, double level)
     return solve(b, level);
 }
 
-static void accept(struct wb_bending3p *b, double level)
+static void accept(struct wb_three_point_bending *b, double level)
 {
     struct state *s = &b->state;
     const double force = b->parts * b->nose.force;
@@ -518,7 +521,7 @@ static void accept(struct wb_bending3p *b, double level)
 }
 
 /* The level of the nose at which only the wire's thickness is left between it and a roller. */
-static double pinching_level(const struct wb_bending3p *b)
+static double pinching_level(const struct wb_three_point_bending *b)
 {
     const struct wb_roller *r = &b->roller[0];
     const double reach = b->nose_radius + r->radius, aside = r->x;
@@ -527,7 +530,8 @@ static double pinching_level(const struct wb_bending3p *b)
     return b->nose_level - (r->y + sqrt(reach * reach - aside * aside));
 }
 
-static void describe(const struct wb_bending3p *b, double level, struct wb_bending3p_point *point)
+static void describe(const struct wb_three_point_bending *b, double level,
+                     struct wb_three_point_bending_point *point)
 {
     const struct wb_beam_node *node = wb_beam_nodes(b->beam);
     const struct state *s = &b->state;
@@ -555,7 +559,7 @@ static void describe(const struct wb_bending3p *b, double level, struct wb_bendi
 
 /* Finds where the force is zero between the last state and `level`, where it is below, and leaves
  * the nose there. */
-static bool leave(struct wb_bending3p *b, double level)
+static bool leave(struct wb_three_point_bending *b, double level)
 {
     double high = level, low = b->state.level;
     double at_high = b->parts * b->nose.force, at_low = b->state.force;
@@ -587,10 +591,11 @@ static bool leave(struct wb_bending3p *b, double level)
     return false;
 }
 
-enum wb_status wb_bending3p_move(struct wb_bending3p *bending, double deflection,
-                                 struct wb_bending3p_point *point)
+enum wb_status wb_three_point_bending_move(struct wb_three_point_bending *bending,
+                                           double deflection,
+                                           struct wb_three_point_bending_point *point)
 {
-    struct wb_bending3p *b = bending;
+    struct wb_three_point_bending *b = bending;
     struct state *s = &b->state;
     if (!isfinite(deflection))
         return wb_fail(WB_ERR_ARGUMENT, "deflection %g is not a finite number", deflection);
@@ -601,7 +606,7 @@ enum wb_status wb_bending3p_move(struct wb_bending3p *bending, double deflection
     double step = s->step;
 
     b->iterations = 0;
-    point->end = WB_BENDING3P_CONVERGED;
+    point->end = WB_THREE_POINT_BENDING_CONVERGED;
     /* Where the nose turns back, friction turns within a hair's breadth. */
     if ((deflection - s->level) * s->last_step < 0.0)
         step = fmin(step, turning_step * b->model.span);
@@ -616,7 +621,7 @@ enum wb_status wb_bending3p_move(struct wb_bending3p *bending, double deflection
         const double next =
             fabs(way) <= 1.0001 * step ? deflection : s->level + copysign(step, way);
         if (next >= pinched) {
-            point->end = WB_BENDING3P_PINCHED;
+            point->end = WB_THREE_POINT_BENDING_PINCHED;
             break;
         }
         if (settle(b, next)) {
@@ -634,20 +639,21 @@ enum wb_status wb_bending3p_move(struct wb_bending3p *bending, double deflection
         failed = true;
         step = 0.5 * fmin(step, fabs(way));
         if (step < smallest_step * b->model.span || b->iterations > MOST_SPENT) {
-            point->end = b->off ? WB_BENDING3P_RAN_OFF : WB_BENDING3P_NOT_CONVERGED;
+            point->end =
+                b->off ? WB_THREE_POINT_BENDING_RAN_OFF : WB_THREE_POINT_BENDING_NOT_CONVERGED;
             break;
         }
     }
-    if (point->end != WB_BENDING3P_CONVERGED) {
+    if (point->end != WB_THREE_POINT_BENDING_CONVERGED) {
         wb_beam_revert(b->beam);
         (void)evaluate(b, s->level, false);
     }
-    describe(b, point->end == WB_BENDING3P_CONVERGED ? deflection : s->level, point);
+    describe(b, point->end == WB_THREE_POINT_BENDING_CONVERGED ? deflection : s->level, point);
     return WB_OK;
 }
 
-void wb_bending3p_shape(const struct wb_bending3p *bending, int n, const double *from_middle,
-                        double *x, double *y, double *angle)
+void wb_three_point_bending_shape(const struct wb_three_point_bending *bending, int n,
+                                  const double *from_middle, double *x, double *y, double *angle)
 {
     for (int i = 0; i < n; i++) {
         const double side = bending->parts == 2.0 && from_middle[i] < 0.0 ? -1.0 : 1.0;
@@ -660,7 +666,7 @@ void wb_bending3p_shape(const struct wb_bending3p *bending, int n, const double 
     }
 }
 
-const char *wb_bending3p_end_name(enum wb_bending3p_end end)
+const char *wb_three_point_bending_end_name(enum wb_three_point_bending_end end)
 {
     static const char *const names[] = {"converged", "not converged", "ran off", "pinched"};
     return names[end];

@@ -19,11 +19,11 @@ struct run {
     struct wb_wire wire;
     struct wb_law law; /* as computed with: the wire's, or elastic */
     struct wb_section section;
-    struct wb_bending3p *bending;
+    struct wb_three_point_bending *bending;
     double curvature; /* natural, 1/m */
     int planned;      /* rows, at most */
     struct wb_simulated_bending_row *rows;
-    enum wb_bending3p_end end;
+    enum wb_three_point_bending_end end;
 };
 
 static double natural_curvature(void *context, double from_middle)
@@ -51,7 +51,7 @@ static enum wb_status prepare(void *context)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d rows", run->planned);
     /* Of the arc that rises by the bow over the span. */
     run->curvature = 8.0 * o->bow / (o->span * o->span + 4.0 * o->bow * o->bow);
-    const struct wb_bending3p_model model = {
+    const struct wb_three_point_bending_model model = {
         .section = &run->section,
         .diameter = run->wire.outer_diameter,
         .span = o->span,
@@ -64,7 +64,7 @@ static enum wb_status prepare(void *context)
         .natural_curvature = o->bow != 0.0 ? natural_curvature : NULL,
         .curvature_context = &run->curvature,
     };
-    return wb_bending3p_create(&run->bending, &model);
+    return wb_three_point_bending_create(&run->bending, &model);
 }
 
 /* One row; false when the test ends with it. */
@@ -76,11 +76,11 @@ static bool add_row(struct run *run, int cycle, enum wb_phase phase, double defl
     if (run->solve.stopped)
         return false;
     wb_progress_update(&run->solve.progress, run->solve.n_rows, NULL);
-    *status = wb_bending3p_move(run->bending, deflection, &row->point);
+    *status = wb_three_point_bending_move(run->bending, deflection, &row->point);
     if (*status != WB_OK)
         return false;
     run->end = row->point.end;
-    if (run->end != WB_BENDING3P_CONVERGED)
+    if (run->end != WB_THREE_POINT_BENDING_CONVERGED)
         return false;
     row->cycle = cycle;
     row->phase = phase == WB_PHASE_UNLOAD && row->point.slack ? WB_PHASE_SLACK : phase;
@@ -111,7 +111,7 @@ static enum wb_status compute(void *context)
         }
     }
     wb_progress_finish(&run->solve.progress);
-    run->solve.converged = run->end == WB_BENDING3P_CONVERGED;
+    run->solve.converged = run->end == WB_THREE_POINT_BENDING_CONVERGED;
     return status;
 }
 
@@ -165,7 +165,7 @@ static enum wb_status fill(const void *context, struct wb_dataset *dataset)
 
     snprintf(info.wire, sizeof info.wire, "%s", run->wire.name);
     snprintf(info.piece.wire, sizeof info.piece.wire, "%s", run->wire.name);
-    return wb_simulated_fill_bending3p(dataset, &info, &bending, &origin);
+    return wb_simulated_fill_three_point(dataset, &info, &bending, &origin);
 }
 
 static void take_row(const void *context, int index, struct wb_solve_row *out)
@@ -188,9 +188,9 @@ static void describe(const void *context, struct wb_json *object)
 {
     const struct run *const run = context;
     wb_json_set_boolean(object, "converged", run->solve.converged);
-    wb_json_set_text(object, "end", wb_bending3p_end_name(run->end));
+    wb_json_set_text(object, "end", wb_three_point_bending_end_name(run->end));
     wb_json_set_number(object, "contact_level_mm",
-                       wb_bending3p_contact_level(run->bending) / WB_MM);
+                       wb_three_point_bending_contact_level(run->bending) / WB_MM);
     wb_json_set_number(object, "wall_s", run->solve.spent.wall);
     wb_json_set_number(object, "cpu_s", run->solve.spent.cpu);
 }
@@ -200,11 +200,11 @@ static void tell_lost(const void *context)
     const struct run *const run = context;
     /* The point that was not reached lies behind the last row. */
     const double at = run->rows[run->solve.n_rows].point.deflection / WB_MM;
-    if (run->end == WB_BENDING3P_RAN_OFF)
+    if (run->end == WB_THREE_POINT_BENDING_RAN_OFF)
         wb_warn("the wire's end comes to a roller at a deflection of %.4g mm: a longer overhang "
                 "reaches farther; the curve ends at row %d",
                 at, run->solve.n_rows);
-    else if (run->end == WB_BENDING3P_PINCHED)
+    else if (run->end == WB_THREE_POINT_BENDING_PINCHED)
         wb_warn("the wire is pinched between nose and rollers at a deflection of %.4g mm; the "
                 "curve ends at row %d",
                 at, run->solve.n_rows);
@@ -217,12 +217,12 @@ static void tell_lost(const void *context)
 static void release(void *context)
 {
     struct run *const run = context;
-    wb_bending3p_destroy(run->bending);
+    wb_three_point_bending_destroy(run->bending);
     wb_section_release(&run->section);
     free(run->rows);
 }
 
-const struct wb_solve_kind wb_solve_bending3p = {
+const struct wb_solve_kind wb_solve_three_point = {
     .size = sizeof(struct run),
     .prepare = prepare,
     .compute = compute,

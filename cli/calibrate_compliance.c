@@ -1,0 +1,136 @@
+#include "cli/calibrate_compliance.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/calibration/machine_compliance.h"
+#include "base/json.h"
+#include "base/units.h"
+#include "cli/command.h"
+#include "cli/datasets.h"
+#include "cli/settings.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+enum {
+    KEY_COMPLIANCE = WB_KEY_OWN
+};
+
+struct options {
+    struct wb_command_common common;
+    struct wb_datasets datasets;
+    struct wb_machine_compliance_settings settings;
+};
+
+static const struct argp_option other_options[] = {
+    {"compliance", KEY_COMPLIANCE, NULL, 0, "Compliance of a machine from a stiff bar", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+    if (key == KEY_COMPLIANCE)
+        return 0;
+    return wb_command_parse_common(key, argument, state, &o->common);
+}
+
+static const struct argp argp = {
+    .options = other_options,
+    .parser = parse,
+    .args_doc = "DATASET...",
+    .doc = "How much a three-point bending machine gives way, from tests of a stiff elastic bar "
+           "whose flexural rigidity is known: compliance_mm_N of its machine file.\v"
+           "Exit code 3: the bar is not stiff enough, or not known well enough, to tell.",
+};
+
+bool wb_calibrate_is_compliance(int argc, char **argv)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (strcmp(argv[i], "--compliance") == 0)
+            return true;
+    }
+    return false;
+}
+
+static void print_text(const struct wb_machine_compliance *c, const struct wb_test_info *info)
+{
+    printf("%s, three-point bending, span %g mm, %d test%s\n", info->wire, info->length / WB_MM,
+           c->n_tests, c->n_tests == 1 ? "" : "s");
+    printf("the machine gives way %.3g mm/N, %.3g to %.3g (95 %%); the bar itself %.3g mm/N\n",
+           c->value / WB_MM, c->low / WB_MM, c->high / WB_MM, c->of_bar / WB_MM);
+    printf("of the interval's half: readings %.2g, the bar's rigidity %.2g, friction %.2g mm/N\n",
+           c->of_readings / WB_MM, c->of_rigidity / WB_MM, c->of_friction / WB_MM);
+    printf("readings are %.2g mm off their line\n", c->misfit / WB_MM);
+    if (c->is_told)
+        printf("in the machine file:\ncompliance_mm_N: %.3g\n", c->value / WB_MM);
+}
+
+static int print_json(const struct wb_machine_compliance *c, const struct wb_test_info *info)
+{
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "bar", info->wire);
+    wb_json_set_integer(root, "tests", c->n_tests);
+    wb_json_set_number(root, "compliance_mm_N", c->value / WB_MM);
+    wb_json_set_number(root, "low", c->low / WB_MM);
+    wb_json_set_number(root, "high", c->high / WB_MM);
+    wb_json_set_boolean(root, "told", c->is_told);
+    wb_json_set_boolean(root, "straight", c->is_straight);
+    wb_json_set_number(root, "of_the_bar_mm_N", c->of_bar / WB_MM);
+    wb_json_set_number(root, "half_by_readings_mm_N", c->of_readings / WB_MM);
+    wb_json_set_number(root, "half_by_rigidity_mm_N", c->of_rigidity / WB_MM);
+    wb_json_set_number(root, "half_by_friction_mm_N", c->of_friction / WB_MM);
+    wb_json_set_number(root, "misfit_mm", c->misfit / WB_MM);
+    return wb_command_print_json(root);
+}
+
+static int deliver(const struct options *o, const struct wb_machine_compliance *c)
+{
+    const struct wb_test_info *const info = &o->datasets.items[0].info;
+    if (o->common.json) {
+        const int code = print_json(c, info);
+        if (code != WB_EXIT_OK)
+            return code;
+    } else {
+        print_text(c, info);
+    }
+    if (c->is_told)
+        return WB_EXIT_OK;
+    if (!c->is_straight && c->low > 0.0)
+        wb_warn("the readings are no line: the bar yields or slips, or the machine has play; take "
+                "less force, or a thicker bar");
+    else if (c->of_rigidity > fmax(c->of_readings, c->of_friction))
+        wb_warn("the bar is not stiff enough to tell: it gives way %.3g mm/N itself, known within "
+                "%.2g %%; a bar %.2g times as stiff, or a shorter span, would do",
+                c->of_bar / WB_MM, 100.0 * c->of_rigidity / c->of_bar,
+                fmax(2.0, 4.0 * c->of_rigidity / fmax(fabs(c->value), 0.1 * c->of_rigidity)));
+    else
+        wb_warn("the machine's compliance is not told: %s leave more open than it is",
+                c->of_readings > c->of_friction ? "the readings" : "the bounds of friction");
+    return WB_EXIT_INCOMPLETE;
+}
+
+int wb_calibrate_compliance(int argc, char **argv)
+{
+    struct options options = {.common = {.noun = "at least one dataset", .least = 1}};
+    struct wb_machine_compliance result;
+    static const struct wb_settings_source source = {.tables = &wb_machine_compliance_table,
+                                                     .n_tables = 1,
+                                                     .offset = offsetof(struct options, settings)};
+    static const struct wb_settings_command command = {
+        .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
+    wb_setting_fill(&wb_machine_compliance_table, &options.settings);
+    wb_settings_parse(&command, argc, argv, &options);
+    enum wb_status status = wb_datasets_read(&options.datasets, options.common.inputs,
+                                             options.common.n, WB_TEST_BIT(WB_TEST_THREE_POINT));
+    if (status == WB_OK)
+        status = wb_machine_compliance_find(&result, options.datasets.pointers, options.datasets.n,
+                                            &options.settings, NULL);
+    const int code = status == WB_OK ? deliver(&options, &result) : wb_command_exit(status);
+    wb_datasets_release(&options.datasets);
+    wb_command_release(&options.common);
+    return code;
+}

@@ -1,0 +1,13 @@
+/* `wirebench calibrate --compliance`: how much a machine gives way, from a stiff bar. */
+#ifndef WB_CLI_CALIBRATE_COMPLIANCE_H
+#define WB_CLI_CALIBRATE_COMPLIANCE_H
+
+#include <stdbool.h>
+
+/* Whether --compliance is among the arguments. */
+bool wb_calibrate_is_compliance(int argc, char **argv);
+
+/* Runs the command; returns an exit code. */
+int wb_calibrate_compliance(int argc, char **argv);
+
+#endif

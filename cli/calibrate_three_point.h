@@ -1,0 +1,14 @@
+/* `wirebench calibrate` on datasets of three-point bending. */
+#ifndef WB_CLI_CALIBRATE_THREE_POINT_H
+#define WB_CLI_CALIBRATE_THREE_POINT_H
+
+#include "analysis/calibration/three_point_calibrate.h"
+#include "cli/command.h"
+#include "cli/datasets.h"
+
+/* Calibrates, writes the properties if an output was named, prints; returns an exit code. */
+int wb_calibrate_three_point(struct wb_three_point_calibrate_settings *settings,
+                             const struct wb_datasets *datasets,
+                             const struct wb_command_common *common);
+
+#endif
