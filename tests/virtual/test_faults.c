@@ -1,5 +1,6 @@
 /* Lists of faults: what is read, and what is refused with one message. */
 #include "fixtures/virtual/faults.h"
+#include "fixtures/virtual/faults_private.h"
 
 #include <stdlib.h>
 
