@@ -140,6 +140,27 @@ static const struct wb_setting rig_rows[] = {
      .separator = '@',
      .members = &lost_steps_table,
      .given = RIG_AT(has_lost_steps)},
+    {.name = "faults",
+     .type = WB_SETTING_TEXT,
+     .offset = RIG_AT(bench.faults),
+     .otherwise = "none",
+     .option = "faults",
+     .argument = "LIST",
+     .help = "What is wrong with the bench, such as loss=5,wrong-up: names and values are in the "
+             "manual"},
+    {.name = "natnet_port",
+     .type = WB_SETTING_INTEGER,
+     .offset = RIG_AT(bench.natnet_port),
+     .least = 0,
+     .largest = 65535,
+     .option = "natnet-port",
+     .argument = "N",
+     .help = "UDP port of the motion capture; 0 is a free one"},
+    {.name = "multicast",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = RIG_AT(bench.multicast),
+     .option = "multicast",
+     .help = "Let the motion capture stream to a multicast group on the loopback"},
 };
 
 const struct wb_setting_table wb_bench_options_rig = {.rows = rig_rows, .n = WB_COUNT(rig_rows)};

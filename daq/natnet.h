@@ -7,8 +7,8 @@
  * result as it was, but for wb_natnet_decode_frame(), whose large result is overwritten in any
  * case. Decoding a hostile datagram reads nothing beyond it and ends in time proportional to it.
  *
- * Versions above 4.1 are read as 4.1 as far as it goes: sections are skipped by their announced
- * size, and of a labelled marker the first fields are read.
+ * The layout of versions above 4.1 is not verified: they are read as 4.1, and like every frame only
+ * when sections, stamps and end mark fit to the last byte. Other layouts are refused.
  */
 #ifndef WB_DAQ_NATNET_H
 #define WB_DAQ_NATNET_H
@@ -116,7 +116,7 @@ struct wb_natnet_analog {
 
 /* One frame of data. `mocap` holds the labelled markers and the stamps; its t_ns and t_clock are
  * the client's to fill. Each n_ counts what was sent; an array holds the first of them, up to its
- * length (`mocap.n_markers` counts what it holds). Of a skipped section the count is 0. */
+ * length (`mocap.n_markers` counts what it holds). */
 struct wb_natnet_frame {
     struct wb_mocap_frame mocap;
     int n_labelled;
@@ -138,7 +138,6 @@ struct wb_natnet_frame {
     double timestamp;   /* s, from 2.6 on */
     bool has_precision; /* 4.1 and later, at times 4.0 */
     uint32_t precision_seconds, precision_fraction;
-    size_t skipped; /* bytes of sections that were skipped by size (above 4.1) */
 };
 
 /* Reads the header. */
@@ -152,7 +151,9 @@ WB_MUST_CHECK enum wb_status wb_natnet_decode_server(const struct wb_natnet_pack
                                                      struct wb_natnet_fault *fault);
 
 /* FRAMEOFDATA of a server of `version`, consumed to its last byte. Fills t_device with the
- * server's capture time: the f64 stamp (2.7 on), the f32 stamp (2.6) or the f32 latency (2.5). */
+ * server's capture time: the f64 stamp (2.7 on), the f32 stamp (2.6) or the f32 latency (2.5). A
+ * frame is refused whose section sizes (4.1 on) differ from what was read, whose end mark is not 0,
+ * whose stamp is not from 0 to 1e9 s, or whose stamps contradict each other. */
 WB_MUST_CHECK enum wb_status wb_natnet_decode_frame(const struct wb_natnet_packet *packet,
                                                     struct wb_natnet_version version,
                                                     struct wb_natnet_frame *frame,

@@ -30,15 +30,19 @@
 enum query {
     QUERY_UNITS,
     QUERY_FRAME_RATE,
+    QUERY_BITSTREAM, /* of servers whose own layout is not verified, see n_queries() */
     N_QUERIES
 };
-static const char *const queries[N_QUERIES] = {"UnitsToMillimeters", "FrameRate"};
+static const char *const queries[N_QUERIES] = {"UnitsToMillimeters", "FrameRate", "Bitstream,4.1"};
+
+/* Frames in a row without a measured marker before it is told: somebody may walk by. */
+#define UNMEASURED_FRAMES 100
 
 /* Remarks that are made once a connection. */
 enum {
     SAID_EARLY = 1 << 0,
     SAID_NO_LABELLED = 1 << 1,
-    SAID_SKIPPED = 1 << 2,
+    SAID_UNMEASURED = 1 << 2,
     SAID_TOO_MANY = 1 << 3,
     SAID_NOT_FINITE = 1 << 4,
     SAID_NOT_LIVE = 1 << 5,
@@ -55,6 +59,7 @@ struct natnet_state {
     int n_strays;        /* answers that cannot be to the first query */
     double units_factor; /* server's length unit in m */
     uint64_t n_frames, n_refused;
+    int n_unmeasured; /* frames in a row whose markers are all flagged as not measured */
     int64_t last_receive_ns;
     unsigned said;
     /* For sending. */
@@ -73,6 +78,18 @@ static bool first_time(struct natnet_state *state, unsigned what)
 }
 
 /* --- server info --- */
+
+/* NatNet 4.1 is the newest version whose layout is known. */
+static bool is_unverified(const struct natnet_state *state)
+{
+    return wb_natnet_version_at_least(state->version, 4, 2);
+}
+
+/* A unicast server streams the version that it is asked for; a multicast one serves many. */
+static int n_queries(const struct natnet_state *state)
+{
+    return is_unverified(state) && !state->server.multicast ? N_QUERIES : QUERY_BITSTREAM;
+}
 
 /* Compares where the server sends with where the rig file listens. */
 static void check_group(const struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
@@ -124,11 +141,15 @@ static void remark_version(const struct natnet_state *state, int64_t t_ns,
     wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected",
                      "the server is '%s' %u.%u.%u.%u, NatNet %u.%u", name, app[0], app[1], app[2],
                      app[3], version.major, version.minor);
-    if (wb_natnet_version_at_least(version, 4, 2))
+    if (is_unverified(state))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "version",
-                         "the server speaks NatNet %u.%u, newer than 4.1, the newest known here: "
-                         "what is not known is skipped",
-                         version.major, version.minor);
+                         "the server speaks NatNet %u.%u: layout unverified. Its frames are read "
+                         "as 4.1 and refused where they do not fit%s",
+                         version.major, version.minor,
+                         state->server.multicast ? "; a unicast server can be asked for 4.1: "
+                                                   "set the server to unicast and remove the "
+                                                   "group from mocap.address"
+                                                 : "; the server is asked for 4.1");
     else if (!wb_natnet_version_at_least(version, 2, 5))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "version",
                          "the server speaks NatNet %u.%u, older than 2.5, the oldest known here: "
@@ -204,6 +225,19 @@ static void take_frame_rate(const struct natnet_state *state, float rate, int64_
                          (double)rate, expected);
 }
 
+/* The answer is an integer, 0 when the server will do it. */
+static void take_bitstream(const struct wb_natnet_response *response, int64_t t_ns,
+                           const struct wb_sink *sink)
+{
+    if (response->is_number && response->integer == 0)
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "version",
+                         "the server agrees to stream NatNet 4.1");
+    else
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "version",
+                         "the server does not stream NatNet 4.1 when asked: its frames stay "
+                         "unverified");
+}
+
 /* An answer does not repeat its question: they come one at a time, in the order asked. After the
  * server announced itself anew, answers to questions of before may come first. */
 static void receive_response(struct natnet_state *state, int64_t t_ns,
@@ -214,7 +248,7 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
     const bool unknown = packet->message == WB_NATNET_UNRECOGNIZED_REQUEST;
     if (!unknown && wb_natnet_decode_response(packet, &response, fault) != WB_OK)
         return;
-    if (!state->connected || state->n_answers == N_QUERIES)
+    if (!state->connected || state->n_answers == n_queries(state))
         return;
     if (state->n_answers == QUERY_UNITS && response.is_number && !is_unit((double)response.real) &&
         state->n_strays < STRAYS_MAX) {
@@ -226,12 +260,14 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
         return;
     }
     const enum query query = (enum query)state->n_answers++;
-    if (unknown || !response.is_number)
+    if (query == QUERY_BITSTREAM)
+        take_bitstream(&response, t_ns, sink);
+    else if (unknown || !response.is_number)
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "query", "the server does not answer '%s'",
                          queries[query]);
     if (query == QUERY_UNITS)
         take_units(state, (double)response.real, t_ns, sink);
-    else if (response.is_number)
+    else if (query == QUERY_FRAME_RATE && response.is_number)
         take_frame_rate(state, response.real, t_ns, sink);
 }
 
@@ -263,6 +299,31 @@ static void receive_echo(const struct natnet_state *state, int64_t t_ns,
 
 /* --- frames --- */
 
+/* Markers that the server made up are no shape, however many there are. */
+static void remark_unmeasured(struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
+{
+    const struct wb_mocap_frame *const mocap = &state->frame.mocap;
+    int n_filled = 0, n_lost = 0;
+    for (int i = 0; i < mocap->n_markers; i++) {
+        const int params = mocap->markers[i].params;
+        n_filled += (params & WB_MARKER_MODEL_FILLED) != 0;
+        n_lost += (params & (WB_MARKER_MODEL_FILLED | WB_MARKER_OCCLUDED)) == WB_MARKER_OCCLUDED;
+    }
+    const bool none = mocap->n_markers > 0 && n_filled + n_lost == mocap->n_markers;
+    state->n_unmeasured = none ? state->n_unmeasured + 1 : 0;
+    if (state->n_unmeasured < UNMEASURED_FRAMES || !first_time(state, SAID_UNMEASURED))
+        return;
+    wb_driver_remark(
+        sink, WB_LOG_WARNING, t_ns, "markers",
+        "for %d frames no marker was measured: of the %d that the server sends, %d are filled in "
+        "by its model and %d occluded: %s",
+        state->n_unmeasured, mocap->n_markers, n_filled, n_lost,
+        n_filled > 0 ? "delete the rigid body or asset that holds the wire's markers, and stream "
+                       "unlabelled markers"
+                     : "look for what hides the wire from the cameras, and mend their exposure or "
+                       "threshold");
+}
+
 static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     const struct wb_natnet_frame *const frame = &state->frame;
@@ -275,10 +336,6 @@ static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct 
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
                          "a frame has %d markers, of which the first %d are kept: mask reflections",
                          frame->n_labelled, frame->mocap.n_markers);
-    if (frame->skipped > 0 && first_time(state, SAID_SKIPPED))
-        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "version",
-                         "each frame has %zu bytes of sections that are not known here and skipped",
-                         frame->skipped);
     if (wb_natnet_version_at_least(state->version, 2, 6) && !(frame->mocap.params & 4) &&
         first_time(state, SAID_NOT_LIVE))
         wb_driver_remark(
@@ -333,6 +390,7 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
             seconds_of_ticks(mocap->camera_data_received, state->server.clock_frequency);
     mend_markers(state, t_ns, sink);
     remark_frame(state, t_ns, sink);
+    remark_unmeasured(state, t_ns, sink);
     state->n_frames++;
     if (sink->mocap)
         sink->mocap(sink->context, mocap);
@@ -365,6 +423,19 @@ static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     state->receive_noticed_ns = now_ns;
     state->next_keepalive_ns = now_ns + KEEPALIVE_PERIOD_NS;
     send_connect(state, now_ns, outbox);
+}
+
+/* Why datagrams are refused, and what to change. */
+static const char *likely_cause(const struct natnet_state *state)
+{
+    if (!is_unverified(state))
+        return "Another program may send to this port, or the network damages datagrams: check "
+               "host, port and group in mocap.address";
+    if (state->server.multicast)
+        return "The layout of this version may be another one: set the server to unicast and "
+               "remove the group from mocap.address, so that 4.1 can be asked for";
+    return "The layout of this version may be another one: set the server's bitstream version to "
+           "4.1";
 }
 
 static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
@@ -417,9 +488,9 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
         wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "refused",
             "datagram of %zu bytes (message %d, NatNet %u.%u) refused at byte %zu: %s; %" PRIu64
-            " so far",
+            " so far. %s",
             n, packet.message, state->version.major, state->version.minor, fault.offset,
-            fault.reason, state->n_refused);
+            fault.reason, state->n_refused, likely_cause(state));
 }
 
 /* Clock probes: a burst to start with, then one a period (of the rig's own time). */
@@ -443,7 +514,7 @@ static void send_query(struct natnet_state *state, int64_t now_ns, struct wb_out
 {
     uint8_t buffer[64];
     const bool waits = state->n_asked > state->n_answers && now_ns < state->next_query_ns;
-    if (state->n_answers == N_QUERIES || waits)
+    if (state->n_answers == n_queries(state) || waits)
         return;
     const size_t n =
         wb_natnet_encode_text(buffer, sizeof buffer, WB_NATNET_REQUEST, queries[state->n_answers]);

@@ -101,12 +101,6 @@ static bool at_least(const struct reader *reader, int major, int minor)
     return wb_natnet_version_at_least(reader->version, major, minor);
 }
 
-/* Above 4.1 a section is known by its size only. */
-static bool is_beyond(const struct reader *reader)
-{
-    return at_least(reader, 4, 2);
-}
-
 /* A count of items of at least `minimum` bytes each; refused when they cannot be in the window. */
 static int get_count(struct reader *reader, size_t minimum)
 {
@@ -164,20 +158,6 @@ static void close_section(struct reader *reader, const struct section *section)
         refuse(reader, "a section's size differs from its content");
 }
 
-/* Jumps over a section of a version whose items we do not know; true when it was. */
-static bool skip_section(struct reader *reader, const struct section *section,
-                         struct wb_natnet_frame *frame)
-{
-    if (!is_beyond(reader))
-        return false;
-    reader->n = section->outer;
-    if (!reader->reason) {
-        frame->skipped += section->end - reader->at;
-        reader->at = section->end;
-    }
-    return true;
-}
-
 static void get_name(struct reader *reader, char *name, size_t size)
 {
     const size_t limit = remaining(reader);
@@ -197,8 +177,6 @@ static void get_name(struct reader *reader, char *name, size_t size)
 static void read_sets(struct reader *reader, struct wb_natnet_frame *frame)
 {
     const struct section section = open_section(reader, 5);
-    if (skip_section(reader, &section, frame))
-        return;
     frame->n_sets = section.count;
     for (int i = 0; i < section.count && !reader->reason; i++) {
         struct wb_natnet_set set = {.first_point = frame->n_points};
@@ -221,8 +199,6 @@ static void read_sets(struct reader *reader, struct wb_natnet_frame *frame)
 static void read_others(struct reader *reader, struct wb_natnet_frame *frame)
 {
     const struct section section = open_section(reader, 12);
-    if (skip_section(reader, &section, frame))
-        return;
     frame->n_others = section.count;
     for (int i = 0; i < section.count; i++) {
         float point[3];
@@ -264,8 +240,6 @@ static bool read_body(struct reader *reader, struct wb_natnet_frame *frame)
 static void read_bodies(struct reader *reader, struct wb_natnet_frame *frame)
 {
     const struct section section = open_section(reader, body_minimum(reader));
-    if (skip_section(reader, &section, frame))
-        return;
     frame->n_bodies = section.count;
     for (int i = 0; i < section.count && !reader->reason; i++)
         read_body(reader, frame);
@@ -277,8 +251,6 @@ static int read_groups(struct reader *reader, struct wb_natnet_frame *frame,
                        struct wb_natnet_group *groups, bool assets)
 {
     const struct section section = open_section(reader, assets ? 12 : 8);
-    if (skip_section(reader, &section, frame))
-        return 0;
     for (int i = 0; i < section.count && !reader->reason; i++) {
         struct wb_natnet_group group = {.id = get_i32(reader), .first_body = frame->n_bodies_kept};
         group.n_bodies = get_count(reader, body_minimum(reader));
@@ -305,15 +277,6 @@ static void read_labelled(struct reader *reader, struct wb_natnet_frame *frame)
 {
     struct wb_mocap_frame *const mocap = &frame->mocap;
     const struct section section = open_section(reader, labelled_minimum(reader));
-    /* A later version may append fields to a marker: step by what its size says. */
-    size_t stride = 0;
-    if (is_beyond(reader) && section.count > 0) {
-        const size_t size = section.end - section.start;
-        stride = size / (size_t)section.count;
-        if (size % (size_t)section.count != 0)
-            refuse(reader, "labelled markers are not all of one size");
-        frame->skipped += size - (size_t)section.count * labelled_minimum(reader);
-    }
     frame->n_labelled = section.count;
     for (int i = 0; i < section.count && !reader->reason; i++) {
         struct wb_marker marker = {.id = get_i32(reader)};
@@ -325,19 +288,14 @@ static void read_labelled(struct reader *reader, struct wb_natnet_frame *frame)
             marker.residual = get_f32(reader);
         if (mocap->n_markers < WB_MAX_MARKERS)
             mocap->markers[mocap->n_markers++] = marker;
-        if (stride)
-            reader->at = section.start + (size_t)(i + 1) * stride;
     }
     close_section(reader, &section);
 }
 
 /* Force plates and devices share one layout. */
-static int read_analogs(struct reader *reader, struct wb_natnet_frame *frame,
-                        struct wb_natnet_analog *analogs)
+static int read_analogs(struct reader *reader, struct wb_natnet_analog *analogs)
 {
     const struct section section = open_section(reader, 8);
-    if (skip_section(reader, &section, frame))
-        return 0;
     for (int i = 0; i < section.count && !reader->reason; i++) {
         struct wb_natnet_analog analog = {.id = get_i32(reader)};
         analog.n_channels = get_count(reader, 4);
@@ -355,15 +313,24 @@ static int read_analogs(struct reader *reader, struct wb_natnet_frame *frame,
 
 /* --- the end of a frame --- */
 
-static double finite_or_nan(double value)
+/* Thirty years: what is later was no time when it was sent. */
+#define STAMP_MAX 1e9 /* s */
+
+/* Stamps of a misread frame are any numbers. A server's clock has run for hours or days, and a
+ * frame is exposed, received and sent in this order; 0 stands for a stamp that it does not have. */
+static void check_stamps(struct reader *reader, const struct wb_mocap_frame *mocap)
 {
-    return isfinite(value) ? value : (double)NAN;
+    if (!(mocap->t_device >= 0.0 && mocap->t_device <= STAMP_MAX))
+        refuse(reader, "the time stamp is no time of a running server");
+    const uint64_t exposed = mocap->camera_mid_exposure, received = mocap->camera_data_received;
+    if ((exposed && received && exposed > received) ||
+        (received && mocap->transmit && received > mocap->transmit))
+        refuse(reader, "the frame was sent before it was exposed");
 }
 
 static void read_stamps(struct reader *reader, struct wb_natnet_frame *frame)
 {
     struct wb_mocap_frame *const mocap = &frame->mocap;
-    mocap->t_device = (double)NAN;
     if (!at_least(reader, 3, 0))
         frame->latency = get_f32(reader);
     frame->timecode = get_u32(reader);
@@ -372,8 +339,7 @@ static void read_stamps(struct reader *reader, struct wb_natnet_frame *frame)
         frame->timestamp = get_f64(reader);
     else if (at_least(reader, 2, 6))
         frame->timestamp = (double)get_f32(reader);
-    mocap->t_device =
-        finite_or_nan(at_least(reader, 2, 6) ? frame->timestamp : (double)frame->latency);
+    mocap->t_device = at_least(reader, 2, 6) ? frame->timestamp : (double)frame->latency;
     if (at_least(reader, 3, 0)) {
         mocap->camera_mid_exposure = get_u64(reader);
         mocap->camera_data_received = get_u64(reader);
@@ -388,15 +354,12 @@ static void read_stamps(struct reader *reader, struct wb_natnet_frame *frame)
     }
     if (at_least(reader, 2, 6))
         mocap->params = get_i16(reader);
+    check_stamps(reader, mocap);
 }
 
-static void read_end(struct reader *reader, struct wb_natnet_frame *frame)
+static void read_end(struct reader *reader)
 {
-    if (is_beyond(reader) && remaining(reader) > 4) {
-        frame->skipped += remaining(reader) - 4;
-        reader->at = reader->n - 4;
-    }
-    if (get_u32(reader) != 0 && !is_beyond(reader))
+    if (get_u32(reader) != 0)
         refuse(reader, "the end mark is not where this version has it");
     if (remaining(reader) != 0)
         refuse(reader, "bytes are left over after the frame");
@@ -415,11 +378,11 @@ static void read_frame(struct reader *reader, struct wb_natnet_frame *frame)
     if (at_least(reader, 2, 3))
         read_labelled(reader, frame);
     if (at_least(reader, 2, 9))
-        frame->n_force_plates = read_analogs(reader, frame, frame->force_plates);
+        frame->n_force_plates = read_analogs(reader, frame->force_plates);
     if (at_least(reader, 2, 11))
-        frame->n_devices = read_analogs(reader, frame, frame->devices);
+        frame->n_devices = read_analogs(reader, frame->devices);
     read_stamps(reader, frame);
-    read_end(reader, frame);
+    read_end(reader);
 }
 
 /* --- messages --- */
@@ -504,7 +467,6 @@ enum wb_status wb_natnet_decode_frame(const struct wb_natnet_packet *packet,
     frame->latency = 0.0F;
     frame->timestamp = (double)NAN;
     frame->precision_seconds = frame->precision_fraction = 0;
-    frame->skipped = 0;
     read_frame(&reader, frame);
     return finish(&reader, fault);
 }

@@ -90,6 +90,14 @@ enum wb_status wb_align_markers(struct wb_align *align)
     }
     WB_TRY(
         wb_frame_fit(&align->frame, &align->tracks, align->frame_t, CLAMP_WINDOW, up, align->why));
+    /* Across the axis it is anybody's guess which way is up, and the force's sign with it. */
+    if (align->frame.tilt > 45.0 * WB_DEGREE)
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: the clamp's motion leans %.1f degrees from the server's %c axis: "
+                          "set mocap.up of the rig file to %c (align takes a corrected one with "
+                          "--rig)",
+                          align->name, align->frame.tilt / WB_DEGREE, align->rig.mocap.up,
+                          align->rig.mocap.up == 'z' ? 'y' : 'z');
     if (align->frame.tilt > 5.0 * WB_DEGREE)
         wb_align_warn(align,
                       "the clamp's motion leans %.1f degrees from the server's %c axis: is "
@@ -389,8 +397,9 @@ enum wb_status wb_align_cycles(struct wb_align *align)
     find_range(align, &low, &high);
     if (high - low < LEAST_TURN)
         return wb_fail_to(align->why, WB_ERR_DATA,
-                          "%s: the clamp moved by %.2f mm only: this is no bending test",
-                          align->name, (high - low) / WB_MM);
+                          "%s: the clamp moved by %.2f mm only along the server's %c axis: this is "
+                          "no bending test, or the rig's mocap.up is wrong",
+                          align->name, (high - low) / WB_MM, align->rig.mocap.up);
     cut_cycles(align, fmax(TURN_PART * (high - low), LEAST_TURN));
     if (align->n_cycle_starts > 0 && align->n_cycle_starts != align->n_cycles)
         wb_align_warn(align, "the recording tells %d cycles, the clamp's path has %d",

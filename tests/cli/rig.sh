@@ -70,6 +70,15 @@ grep -q 'wire_law: mixed$' "$folder/two/deep/rig.yaml" || fail "two: no law of t
 [ "$(cat "$folder"/*/deep/rig.yaml | grep 'bow_mm' | sort -u | wc -l)" = 2 ] ||
     fail "both seeds gave the same wire"
 
+# Its ports have names that stay, and its UDP port is the one that was asked for.
+for port in load-cell stage; do
+    grep -q "\"pty:$(readlink "$folder/one/deep/$port")\"" "$folder/one/deep/rig.yaml" ||
+        fail "one: $port leads to $(readlink "$folder/one/deep/$port")"
+done
+taken=$(grep -o '127.0.0.1:[0-9]*' "$folder/one/deep/rig.yaml" | cut -d: -f2)
+refused 1 "UDP port $taken of 127.0.0.1 cannot be used.*--natnet-port" "$rig" \
+    --specimen "$specimen" --run "$folder/refused" --natnet-port "$taken"
+
 # A second one in the same folder is refused with the first one's number, and takes nothing away.
 timeout 10 "$wirebench" rig "$rig" --specimen "$specimen" --run "$folder/one/deep" 2>"$folder/err"
 [ $? = 1 ] || fail "a second rig in one folder was not refused"
@@ -95,6 +104,11 @@ wait "$one"
 code=$?
 [ $code = 0 ] || fail "ended with $code"
 [ ! -e "$folder/one/deep/rig.yaml" ] || fail "the file outlived its rig"
+[ ! -L "$folder/one/deep/stage" ] || fail "a link outlived its rig"
+start four --natnet-port "$taken" --multicast --faults loss=5,wrong-up
+grep -q "udp:127.0.0.1:$taken,group=239.255.42.99:$taken,interface=127.0.0.1" \
+    "$folder/four/deep/rig.yaml" || fail "four: not the port and group that were asked for"
+grep -q '^    faults: "loss=5,wrong-up"' "$folder/four/deep/rig.yaml" || fail "four: no faults"
 [ "$(grep -c error: "$folder/one.log")" = 0 ] || fail "complained: $(cat "$folder/one.log")"
 
 refused 2 'name a rig file' --specimen "$specimen" --run "$folder/refused"
@@ -108,6 +122,8 @@ refused 2 'expected M.N, not' "$rig" --specimen "$specimen" --run "$folder/refus
     --natnet-version 3
 refused 2 'MM@MM' "$rig" --specimen "$specimen" --run "$folder/refused" --lost-steps 3
 refused 2 'time-scale' "$rig" --specimen "$specimen" --run "$folder/refused" --time-scale 0
+refused 1 'rubber.*expected some of loss' "$rig" --specimen "$specimen" \
+    --run "$folder/refused" --faults rubber
 refused 1 '2.5 to 4.1' "$rig" --specimen "$specimen" --run "$folder/refused" --natnet-version 4.2
 refused 1 'nowhere.yaml' "$folder/nowhere.yaml" --specimen "$specimen" --run "$folder/refused"
 refused 1 'nowhere.yaml' "$rig" --specimen "$folder/nowhere.yaml" --run "$folder/refused"

@@ -155,7 +155,8 @@ static void newer_and_older_versions_come_with_a_warning(void **state)
     receive(driver, 2, frame_of(4, 1));
     assert_int_equal(collect.n_mocap, 2);
     assert_int_equal(collect.mocap.n_markers, 7);
-    assert_int_equal(collect_count(&collect, "version"), 2); /* the warning, and what is skipped */
+    assert_int_equal(collect_count(&collect, "version"), 1);
+    assert_non_null(strstr(collect_text(&collect, "version"), "NatNet 4.3: layout unverified"));
     assert_int_equal(collect.remarks[1].level, WB_LOG_WARNING);
     free(driver);
     memset(&collect, 0, sizeof collect);
@@ -163,6 +164,117 @@ static void newer_and_older_versions_come_with_a_warning(void **state)
     receive(driver, 0, server_info(2, 2, false));
     assert_int_equal(collect_count(&collect, "version"), 1);
     free(driver);
+}
+
+/* What the client asks for in a tick, "" for nothing. */
+static const char *asked_in(void *driver, int64_t t_ns)
+{
+    static char text[64];
+    struct wb_outbox outbox = {0};
+    text[0] = '\0';
+    wb_natnet_client.tick(driver, t_ns, &outbox);
+    for (size_t k = 0; k < outbox.n_entries; k++) {
+        size_t n;
+        const uint8_t *const entry = collect_entry(&outbox, k, &n);
+        if (entry[0] == WB_NATNET_REQUEST)
+            snprintf(text, sizeof text, "%s", (const char *)entry + 4);
+    }
+    return text;
+}
+
+static void a_newer_unicast_server_is_asked_for_4_1(void **state)
+{
+    (void)state;
+    static const struct {
+        int minor;
+        bool multicast, asked;
+    } cases[] = {{1, false, false}, {2, false, true}, {4, false, true}, {4, true, false}};
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        memset(&collect, 0, sizeof collect);
+        void *const driver = collect_open(&wb_natnet_client, &rig);
+        receive(driver, 0, server_info(4, cases[i].minor, cases[i].multicast));
+        assert_string_equal(asked_in(driver, 1 * S), "UnitsToMillimeters");
+        receive(driver, 1 * S, answer_of(1000.0F));
+        assert_string_equal(asked_in(driver, 2 * S), "FrameRate");
+        receive(driver, 2 * S, answer_of(120.0F));
+        assert_string_equal(asked_in(driver, 4 * S), cases[i].asked ? "Bitstream,4.1" : "");
+        const int n_before = collect_count(&collect, "version");
+        receive(driver, 5 * S,
+                wb_natnet_encode_integer(buffer, sizeof buffer, WB_NATNET_RESPONSE, 0));
+        assert_int_equal(collect_count(&collect, "version"), n_before + cases[i].asked);
+        assert_string_equal(asked_in(driver, 8 * S), "");
+        free(driver);
+    }
+    /* A refusal is told. */
+    void *const driver = collect_open(&wb_natnet_client, &rig);
+    memset(&collect, 0, sizeof collect);
+    receive(driver, 0, server_info(4, 4, false));
+    receive(driver, 1, answer_of(1000.0F));
+    receive(driver, 2, answer_of(120.0F));
+    receive(driver, 3,
+            wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_UNRECOGNIZED_REQUEST));
+    assert_int_equal(collect_count(&collect, "version"), 2);
+    assert_int_equal(collect.remarks[collect.n_remarks - 1].level, WB_LOG_WARNING);
+    free(driver);
+}
+
+static void refused_datagrams_name_the_likely_cause(void **state)
+{
+    (void)state;
+    static const struct {
+        int major, minor;
+        bool multicast;
+        const char *cause;
+    } cases[] = {{3, 0, false, "check host, port and group in mocap.address"},
+                 {4, 3, false, "set the server's bitstream version to 4.1"},
+                 {4, 3, true, "remove the group from mocap.address"}};
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        memset(&collect, 0, sizeof collect);
+        void *const driver = collect_open(&wb_natnet_client, &rig);
+        receive(driver, 0, server_info(cases[i].major, cases[i].minor, cases[i].multicast));
+        natnet_example(&frame, 7);
+        frame.timestamp = 2e272;
+        receive(driver, 1, frame_of(cases[i].major, cases[i].minor == 3 ? 1 : cases[i].minor));
+        assert_int_equal(collect.n_mocap, 0);
+        assert_non_null(strstr(collect_text(&collect, "refused"), cases[i].cause));
+        free(driver);
+    }
+    natnet_example(&frame, 7);
+}
+
+static void markers_that_are_never_measured_are_told_once(void **state)
+{
+    (void)state;
+    static const struct {
+        int params;
+        const char *said;
+    } cases[] = {{WB_MARKER_OCCLUDED, "look for what hides the wire"},
+                 {WB_MARKER_MODEL_FILLED | WB_MARKER_OCCLUDED, "delete the rigid body"}};
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        memset(&collect, 0, sizeof collect);
+        void *const driver = collect_open(&wb_natnet_client, &rig);
+        receive(driver, 0, server_info(3, 0, false));
+        natnet_example(&frame, 7);
+        for (int i = 0; i < 7; i++)
+            frame.mocap.markers[i].params = (int16_t)cases[k].params;
+        for (int i = 0; i < 99; i++)
+            receive(driver, i, frame_of(3, 0));
+        frame.mocap.markers[4].params = 0; /* one is seen for a frame: it starts anew */
+        receive(driver, 100, frame_of(3, 0));
+        frame.mocap.markers[4].params = (int16_t)cases[k].params;
+        for (int i = 0; i < 99; i++)
+            receive(driver, 101 + i, frame_of(3, 0));
+        assert_int_equal(collect_count(&collect, "markers"), 0);
+        for (int i = 0; i < 300; i++)
+            receive(driver, 201 + i, frame_of(3, 0));
+        assert_int_equal(collect_count(&collect, "markers"), 1);
+        assert_non_null(strstr(collect_text(&collect, "markers"), cases[k].said));
+        free(driver);
+    }
+    natnet_example(&frame, 7);
 }
 
 static void group_of_the_server_is_compared_with_the_rig(void **state)
@@ -432,6 +544,9 @@ int main(void)
         DRIVER_TEST(frames_become_samples_with_their_stamps),
         cmocka_unit_test(every_version_from_2_5_to_4_1_is_decoded_by_its_announcement),
         cmocka_unit_test(newer_and_older_versions_come_with_a_warning),
+        cmocka_unit_test(a_newer_unicast_server_is_asked_for_4_1),
+        cmocka_unit_test(refused_datagrams_name_the_likely_cause),
+        cmocka_unit_test(markers_that_are_never_measured_are_told_once),
         cmocka_unit_test(group_of_the_server_is_compared_with_the_rig),
         DRIVER_TEST(clock_is_probed_in_a_burst_and_then_every_second),
         DRIVER_TEST(servers_without_echo_are_not_probed),

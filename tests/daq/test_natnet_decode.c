@@ -82,7 +82,6 @@ static void check_sections(struct wb_natnet_version version)
     assert_int_equal(got.n_devices, has(version, 2, 11) ? 2 : 0);
     if (has(version, 2, 11))
         assert_int_equal(got.devices[0].n_values, 4);
-    assert_int_equal(got.skipped, 0);
 }
 
 static void check_stamps(struct wb_natnet_version version)
@@ -225,65 +224,113 @@ static void section_size_must_equal_its_content(void **state)
     assert_int_equal(decode(n, version, &fault), WB_OK);
 }
 
-/* Grows each labelled marker of a 4.1 datagram by `extra` bytes, as a later version may, and adds
- * `more` bytes before the end mark; returns the new size. */
-static size_t grow(size_t n, size_t extra, size_t more)
+/* Makes room for `n_more` bytes at `at` of the datagram; returns its new size. */
+static size_t insert(size_t n, size_t at, const void *more, size_t n_more)
 {
-    static uint8_t grown[sizeof buffer];
-    uint8_t marker[26] = {0};
+    memmove(buffer + at + n_more, buffer + at, n - at);
+    memcpy(buffer + at, more, n_more);
+    n += n_more;
+    buffer[2] = (uint8_t)(n - WB_NATNET_HEADER);
+    buffer[3] = (uint8_t)((n - WB_NATNET_HEADER) >> 8);
+    return n;
+}
+
+/* Where the first labelled marker stands. */
+static size_t first_marker(size_t n)
+{
+    uint8_t marker[16];
     const uint32_t id = (uint32_t)sent.mocap.markers[0].id;
     memcpy(marker, &id, 4);
-    /* Found by its id and position, so the test need not know the layout before it. */
     memcpy(marker + 4, sent.mocap.markers[0].position, 12);
-    const uint8_t *const first = memmem(buffer, n, marker, 16);
+    const uint8_t *const first = memmem(buffer, n, marker, sizeof marker);
     assert_non_null(first);
-    const size_t start = (size_t)(first - buffer), n_markers = (size_t)sent.n_labelled;
-    set_i32(start - 4, (uint32_t)(n_markers * (26 + extra)));
-    memcpy(grown, buffer, start);
-    size_t out = start, in = start;
-    for (size_t i = 0; i < n_markers; i++, in += 26, out += 26 + extra) {
-        memcpy(grown + out, buffer + in, 26);
-        memset(grown + out + 26, 0xee, extra);
-    }
-    const size_t rest = n - in - 4;
-    memcpy(grown + out, buffer + in, rest);
-    memset(grown + out + rest, 0xdd, more);
-    memset(grown + out + rest + more, 0, 4);
-    out += rest + more + 4;
-    memcpy(buffer, grown, out);
-    buffer[2] = (uint8_t)(out - WB_NATNET_HEADER);
-    buffer[3] = (uint8_t)((out - WB_NATNET_HEADER) >> 8);
-    return out;
+    return (size_t)(first - buffer);
 }
 
-static void check_markers_of_newer(void)
-{
-    assert_int_equal(got.mocap.n_markers, 7);
-    for (int i = 0; i < 7; i++) {
-        const struct wb_marker *const a = &sent.mocap.markers[i], *const b = &got.mocap.markers[i];
-        assert_int_equal(b->id, a->id);
-        assert_memory_equal(b->position, a->position, sizeof a->position);
-        assert_int_equal(b->params, a->params);
-        assert_true(b->size == a->size && b->residual == a->residual);
-    }
-    assert_close(got.mocap.t_device, 1356.125, 0.0);
-    assert_int_equal(got.mocap.params, 4);
-    assert_true(got.skipped > 0);
-    assert_int_equal(got.n_sets, 0);
-}
+static const struct wb_natnet_version known = {4, 1}, newer = {4, 4};
+/* From here to the end of a datagram of 4.1: timecodes, time stamp, three of ticks, the precision
+ * stamp, parameters, end mark. */
+enum {
+    TAIL = 8 + 8 + 24 + 8 + 2 + 4
+};
 
-static void newer_versions_are_skipped_by_size(void **state)
+static void newer_versions_of_the_same_layout_are_read(void **state)
 {
     (void)state;
-    const struct wb_natnet_version known = {4, 1}, newer = {4, 4};
-    for (size_t extra = 0; extra < 9; extra += 4) {
+    struct wb_natnet_fault fault;
+    natnet_example(&sent, 7);
+    assert_int_equal(decode(encode(known), newer, &fault), WB_OK);
+    check_markers(known);
+    check_sections(known);
+    check_stamps(known);
+}
+
+static void an_unknown_section_is_refused(void **state)
+{
+    (void)state;
+    struct wb_natnet_fault fault;
+    uint8_t section[8 + 12] = {1, 0, 0, 0, 12, 0, 0, 0};
+    natnet_example(&sent, 7);
+    /* Whatever it holds, before the stamps, where a later version would add one. */
+    for (int fill = 0; fill < 256; fill++) {
+        memset(section + 8, fill, 12);
+        size_t n = encode(known);
+        n = insert(n, n - TAIL, section, sizeof section);
+        assert_int_equal(decode(n, newer, &fault), WB_ERR_FORMAT);
+        assert_int_equal(decode(n, known, &fault), WB_ERR_FORMAT);
+    }
+}
+
+static void a_field_more_in_a_marker_is_refused(void **state)
+{
+    (void)state;
+    struct wb_natnet_fault fault;
+    natnet_example(&sent, 7);
+    size_t n = encode(known);
+    const size_t first = first_marker(n);
+    for (size_t i = 7; i > 0; i--)
+        n = insert(n, first + i * 26, "\1\2\3\4", 4);
+    set_i32(first - 4, 7 * 30); /* its size is right */
+    assert_int_equal(decode(n, newer, &fault), WB_ERR_FORMAT);
+    assert_string_equal(fault.reason, "a section's size differs from its content");
+}
+
+static void bytes_before_the_end_mark_are_refused(void **state)
+{
+    (void)state;
+    struct wb_natnet_fault fault;
+    natnet_example(&sent, 7);
+    size_t n = encode(known);
+    n = insert(n, n - 4, "\0\0\0\0", 4);
+    assert_int_equal(decode(n, newer, &fault), WB_ERR_FORMAT);
+    n = encode(known);
+    buffer[n - 1] = 1;
+    assert_int_equal(decode(n, newer, &fault), WB_ERR_FORMAT);
+}
+
+static void stamps_that_are_no_times_are_refused(void **state)
+{
+    (void)state;
+    static const double odd[] = {2e272, -1.0, 1.1e9, (double)NAN, (double)INFINITY};
+    for (int i = 0; i < N_VERSIONS; i++) {
         struct wb_natnet_fault fault;
+        for (size_t k = 0; k < sizeof odd / sizeof odd[0]; k++) {
+            natnet_example(&sent, 7);
+            sent.timestamp = odd[k];
+            sent.latency = (float)odd[k];
+            assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_ERR_FORMAT);
+            assert_string_equal(fault.reason, "the time stamp is no time of a running server");
+        }
+        if (!has(versions[i], 3, 0))
+            continue;
         natnet_example(&sent, 7);
-        const size_t n = grow(encode(known), extra, 2 * extra);
-        assert_int_equal(decode(n, newer, &fault), WB_OK);
-        /* Labelled markers and stamps are read, the other sections are not. */
-        check_markers_of_newer();
-        assert_int_equal(decode(n, known, &fault), extra ? WB_ERR_FORMAT : WB_OK);
+        sent.mocap.transmit = sent.mocap.camera_data_received - 1;
+        assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_ERR_FORMAT);
+        sent.mocap.transmit = 0; /* not told */
+        assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_OK);
+        sent.mocap.camera_mid_exposure = sent.mocap.camera_data_received + 1;
+        assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_ERR_FORMAT);
+        assert_string_equal(fault.reason, "the frame was sent before it was exposed");
     }
 }
 
@@ -295,18 +342,11 @@ static void markers_beyond_the_limit_are_counted(void **state)
     natnet_example(&sent, WB_MAX_MARKERS);
     const size_t n = encode(version);
     /* One marker more: repeat the last one and raise the count before the first. */
-    uint8_t marker[16];
-    memcpy(marker, &sent.mocap.markers[0].id, 4);
-    memcpy(marker + 4, sent.mocap.markers[0].position, 12);
-    uint8_t *const first = memmem(buffer, n, marker, sizeof marker);
-    assert_non_null(first);
-    const size_t end = (size_t)(first - buffer) + (size_t)WB_MAX_MARKERS * 26;
-    memmove(buffer + end + 26, buffer + end, n - end);
-    memcpy(buffer + end, buffer + end - 26, 26);
-    set_i32((size_t)(first - buffer) - 4, WB_MAX_MARKERS + 1);
-    const size_t n_payload = n + 26 - WB_NATNET_HEADER;
-    buffer[2] = (uint8_t)n_payload;
-    buffer[3] = (uint8_t)(n_payload >> 8);
+    const size_t first = first_marker(n), end = first + (size_t)WB_MAX_MARKERS * 26;
+    uint8_t last[26];
+    memcpy(last, buffer + end - 26, 26);
+    set_i32(first - 4, WB_MAX_MARKERS + 1);
+    assert_int_equal(insert(n, end, last, 26), n + 26);
     assert_int_equal(decode(n + 26, version, &fault), WB_OK);
     assert_int_equal(got.n_labelled, WB_MAX_MARKERS + 1);
     assert_int_equal(got.mocap.n_markers, WB_MAX_MARKERS);
@@ -438,7 +478,11 @@ int main(void)
         cmocka_unit_test(left_over_bytes_are_refused),
         cmocka_unit_test(hostile_counts_are_refused),
         cmocka_unit_test(section_size_must_equal_its_content),
-        cmocka_unit_test(newer_versions_are_skipped_by_size),
+        cmocka_unit_test(newer_versions_of_the_same_layout_are_read),
+        cmocka_unit_test(an_unknown_section_is_refused),
+        cmocka_unit_test(a_field_more_in_a_marker_is_refused),
+        cmocka_unit_test(bytes_before_the_end_mark_are_refused),
+        cmocka_unit_test(stamps_that_are_no_times_are_refused),
         cmocka_unit_test(markers_beyond_the_limit_are_counted),
         cmocka_unit_test(server_info_survives_the_round_trip),
         cmocka_unit_test(echoes_carry_the_stamp_verbatim),

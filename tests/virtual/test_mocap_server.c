@@ -8,6 +8,7 @@
 
 #include "daq/drivers.h"
 #include "daq/natnet_encode.h"
+#include "daq/stream.h"
 #include "fixtures/virtual/random.h"
 #include "fixtures/virtual/sim_mocap_private.h"
 #include "tests/virtual/setup.h"
@@ -78,7 +79,8 @@ static void open_scene(struct scene *scene, struct wb_natnet_version version)
     scene->view.n_markers = 7;
     for (int i = 0; i < 7; i++)
         scene->view.x[i] = scene->setup.specimen.markers[i];
-    assert_int_equal(wb_mocap_server_open(&scene->server, version, &scene->mocap), WB_OK);
+    const struct wb_mocap_server_settings settings = {.version = version};
+    assert_int_equal(wb_mocap_server_open(&scene->server, &settings, &scene->mocap), WB_OK);
     scene->socket = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     assert_true(scene->socket >= 0);
     scene->address.sin_family = AF_INET;
@@ -317,22 +319,71 @@ static void several_servers_have_ports_of_their_own(void **state)
     struct setup setup;
     struct wb_sim_mocap mocap;
     struct wb_mocap_server *servers[4];
-    const struct wb_natnet_version version = {3, 0}, wrong = {4, 2};
+    const struct wb_mocap_server_settings settings = {.version = {3, 0}};
+    const struct wb_mocap_server_settings wrong = {.version = {4, 2}};
     setup_bench(&setup, "type1-L85-1", 4);
-    wb_sim_mocap_init(&mocap, &setup.truth, 'y', 7, version);
+    wb_sim_mocap_init(&mocap, &setup.truth, 'y', 7, settings.version);
     for (int i = 0; i < 4; i++)
-        assert_int_equal(wb_mocap_server_open(&servers[i], version, &mocap), WB_OK);
+        assert_int_equal(wb_mocap_server_open(&servers[i], &settings, &mocap), WB_OK);
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < i; j++)
             assert_int_not_equal(wb_mocap_server_port(servers[i]),
                                  wb_mocap_server_port(servers[j]));
+    /* A port that is asked for is the one, or refused. */
+    const int port = wb_mocap_server_port(servers[0]);
+    const struct wb_mocap_server_settings fixed = {.version = {3, 0}, .port = port};
+    struct wb_mocap_server *other;
+    wb_log_set_sink(count_errors, NULL);
+    assert_int_equal(wb_mocap_server_open(&other, &fixed, &mocap), WB_ERR_BUSY);
+    assert_null(other);
+    assert_int_equal(refused, 1);
     for (int i = 0; i < 4; i++)
         wb_mocap_server_close(servers[i]);
-    wb_log_set_sink(count_errors, NULL);
-    assert_int_equal(wb_mocap_server_open(&servers[0], wrong, &mocap), WB_ERR_UNSUPPORTED);
+    assert_int_equal(wb_mocap_server_open(&other, &fixed, &mocap), WB_OK);
+    assert_int_equal(wb_mocap_server_port(other), port);
+    wb_mocap_server_close(other);
+    assert_int_equal(wb_mocap_server_open(&servers[0], &wrong, &mocap), WB_ERR_UNSUPPORTED);
     wb_log_set_sink(NULL, NULL);
-    assert_int_equal(refused, 1);
+    assert_int_equal(refused, 2);
     assert_null(servers[0]);
+}
+
+/* The address that a rig file has for it is the one by which the real stream hears it. */
+static void frames_come_through_a_multicast_group(void **state)
+{
+    (void)state;
+    struct setup setup;
+    struct wb_sim_mocap mocap;
+    struct wb_mocap_server *server;
+    struct wb_stream *stream;
+    struct wb_natnet_packet packet;
+    struct wb_natnet_fault fault;
+    static struct wb_natnet_frame frame, heard;
+    static uint8_t bytes[65536];
+    const struct wb_mocap_server_settings settings = {.version = {3, 0}, .multicast = true};
+    char address[128];
+    size_t n = 0;
+    setup_bench(&setup, "type1-L85-1", 4);
+    wb_sim_mocap_init(&mocap, &setup.truth, 'y', 7, settings.version);
+    assert_int_equal(wb_mocap_server_open(&server, &settings, &mocap), WB_OK);
+    const int port = wb_mocap_server_port(server);
+    snprintf(address, sizeof address,
+             "udp:127.0.0.1:%d,group=" WB_MOCAP_SERVER_GROUP ":%d,interface=127.0.0.1", port, port);
+    if (wb_stream_open(&stream, address) != WB_OK) {
+        wb_mocap_server_close(server);
+        skip();
+    }
+    frame.mocap.frame_number = 77; /* nobody has connected */
+    wb_mocap_server_send(server, &frame, 0);
+    for (int i = 0; i < 1000 && n == 0; i++) {
+        usleep(1000);
+        assert_int_equal(wb_stream_read(stream, bytes, sizeof bytes, &n), WB_OK);
+    }
+    assert_int_equal(wb_natnet_decode_packet(bytes, n, &packet, &fault), WB_OK);
+    assert_int_equal(wb_natnet_decode_frame(&packet, settings.version, &heard, &fault), WB_OK);
+    assert_int_equal(heard.mocap.frame_number, 77);
+    wb_stream_close(stream);
+    wb_mocap_server_close(server);
 }
 
 int main(void)
@@ -344,6 +395,7 @@ int main(void)
         cmocka_unit_test(requests_are_answered),
         cmocka_unit_test(random_datagrams_do_no_harm),
         cmocka_unit_test(several_servers_have_ports_of_their_own),
+        cmocka_unit_test(frames_come_through_a_multicast_group),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -131,6 +131,35 @@ static void a_reader_that_sleeps_does_not_block(void **state)
     wb_pty_port_close(&port);
 }
 
+static void ignore(void *context, enum wb_log_level level, const char *domain, const char *message)
+{
+    (void)context;
+    (void)level;
+    (void)domain;
+    (void)message;
+}
+
+static void a_port_that_is_pulled_out_is_gone_for_its_reader(void **state)
+{
+    (void)state;
+    struct wb_pty_port port;
+    char byte;
+    size_t n;
+    assert_int_equal(wb_pty_port_open(&port), WB_OK);
+    struct wb_stream *const stream = open_stream(&port);
+    wb_pty_port_update(&port);
+    wb_pty_port_close(&port);
+    assert_false(port.is_open);
+    assert_false(wb_pty_port_update(&port));
+    assert_false(port.is_open);
+    wb_pty_port_write(&port, "x", 1);
+    assert_int_equal(wb_pty_port_read(&port, &byte, 1), 0);
+    wb_log_set_sink(ignore, NULL);
+    assert_int_not_equal(wb_stream_read(stream, &byte, 1, &n), WB_OK);
+    wb_log_set_sink(NULL, NULL);
+    wb_stream_close(stream);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -139,6 +168,7 @@ int main(void)
         cmocka_unit_test(the_line_is_raw_from_the_start),
         cmocka_unit_test(bytes_for_a_closed_port_are_lost),
         cmocka_unit_test(a_reader_that_sleeps_does_not_block),
+        cmocka_unit_test(a_port_that_is_pulled_out_is_gone_for_its_reader),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

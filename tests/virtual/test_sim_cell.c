@@ -374,6 +374,32 @@ static void an_unread_port_costs_lines_not_memory(void **state)
     assert_close(scene.cell.reading, 0.0, 0.0);
 }
 
+static void the_unit_key_changes_the_number_and_the_unit(void **state)
+{
+    (void)state;
+    struct scene scene;
+    char line[64], unit[8];
+    double value;
+    make_scene(&scene);
+    open_scene(&scene);
+    const double tension = 100.0 * WB_MN;
+    for (int i = 0; i < 3; i++) {
+        /* Long enough for the filter; the last line stands at the end. */
+        for (int k = 0; k < 200; k++, scene.k++) {
+            wb_reply_take(&scene.cell.out, line, sizeof line);
+            wb_sim_cell_read(&scene.cell, scene.k, wb_sim_cell_time(&scene.cell, scene.k), tension);
+        }
+        line[wb_reply_take(&scene.cell.out, line, sizeof line - 1)] = '\0';
+        assert_int_equal(sscanf(line, "%lf %7s", &value, unit), 2);
+        assert_string_equal(unit, i == 1 ? "oz" : "g");
+        const double ounce = 28.349523125 * WB_G * WB_STANDARD_GRAVITY;
+        const double force = value * (i == 1 ? ounce : WB_G * WB_STANDARD_GRAVITY);
+        assert_close(force, tension, 0.05 * tension);
+        wb_sim_cell_change_unit(&scene.cell);
+    }
+    close_scene(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -388,6 +414,7 @@ int main(void)
         cmocka_unit_test(mtsics_says_dynamic_while_the_load_changes),
         cmocka_unit_test(mtsics_answers_questions),
         cmocka_unit_test(an_unread_port_costs_lines_not_memory),
+        cmocka_unit_test(the_unit_key_changes_the_number_and_the_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -279,6 +279,21 @@ static void the_clock_is_hours_off_and_drifts(void **state)
     }
 }
 
+static void a_clock_that_restarts_shows_one_second(void **state)
+{
+    (void)state;
+    struct setup setup;
+    struct wb_sim_mocap mocap;
+    setup_bench(&setup, "type1-L85-1", 3);
+    wb_sim_mocap_init(&mocap, &setup.truth, 'y', 7, v30);
+    assert_true(wb_sim_mocap_clock(&mocap, 50.0) > 3600.0);
+    for (double t = 50.0; t < 100.0; t += 30.0) {
+        wb_sim_mocap_restart_clock(&mocap, t);
+        assert_close(wb_sim_mocap_clock(&mocap, t), 1.0, 1e-9);
+        assert_close(wb_sim_mocap_clock(&mocap, t + 10.0), 11.0, 1e-3);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -289,6 +304,7 @@ int main(void)
         cmocka_unit_test(the_order_changes_and_a_ghost_comes_and_goes),
         cmocka_unit_test(filled_markers_are_flagged_and_wrong),
         cmocka_unit_test(the_clock_is_hours_off_and_drifts),
+        cmocka_unit_test(a_clock_that_restarts_shows_one_second),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

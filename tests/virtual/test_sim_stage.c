@@ -457,6 +457,27 @@ static void with_a_time_scale_feeds_are_the_hosts(void **state)
     assert_non_null(strstr(tell(&scene, "?"), "FS:600,0"));
 }
 
+static void a_clamp_that_jams_stays_until_the_stage_is_homed(void **state)
+{
+    (void)state;
+    static struct scene scene;
+    struct wb_sim_stage_settings settings = plain;
+    settings.stuck_at = 7.0 * WB_MM;
+    open_scene(&scene, &settings);
+    tell(&scene, "$J=G91 X20 F600\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), 7.0 * WB_MM, 1e-12);
+    assert_non_null(strstr(tell(&scene, "?"), "-42.000")); /* it reports 20 mm */
+    tell(&scene, "$J=G91 X-20 F600\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), 7.0 * WB_MM, 1e-12);
+    tell(&scene, "$H\n");
+    wait(&scene, 60.0);
+    tell(&scene, "$J=G91 X5 F600\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), 5.0 * WB_MM, 1e-4);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -484,6 +505,7 @@ int main(void)
         SCENE_TEST(reports_have_the_work_offset_now_and_then),
         SCENE_TEST(a_reset_empties_the_receive_buffer),
         cmocka_unit_test(endless_lines_are_refused),
+        cmocka_unit_test(a_clamp_that_jams_stays_until_the_stage_is_homed),
         cmocka_unit_test(with_a_time_scale_feeds_are_the_hosts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
