@@ -18,7 +18,9 @@ struct three_point_made {
     double noise;   /* N, alternating */
     double slip;    /* m of deflection at which the force drops by a tenth; 0: none */
     bool with_way_back;
-    double bow; /* m, see struct wb_three_point_fit */
+    double seating; /* m of travel that the wire takes to settle on its rollers, half of it before
+                       it bends as much; 0: none */
+    double bow;     /* m, see struct wb_three_point_fit */
 };
 
 static const double three_point_span = 20e-3, three_point_deepest = 5e-3;
@@ -58,6 +60,11 @@ static inline double three_point_curvature(void *context, double from_middle)
     const struct three_point_made *const made = context;
     (void)from_middle;
     return 8.0 * made->bow / (three_point_span * three_point_span);
+}
+
+static inline double settled(const struct three_point_made *made, double deflection)
+{
+    return made->seating > 0.0 ? made->seating * (1.0 - exp(-deflection / made->seating)) : 0.0;
 }
 
 static inline void three_point_make(struct wb_dataset *dataset, const struct three_point_made *made,
@@ -112,7 +119,7 @@ static inline void three_point_make(struct wb_dataset *dataset, const struct thr
         assert_int_equal(wb_three_point_bending_move(bending, w, &point), WB_OK);
         assert_int_equal(point.end, WB_THREE_POINT_BENDING_CONVERGED);
         const bool slipped = made->slip > 0.0 && w >= made->slip;
-        three_point_add_row(dataset, made, made->contact + point.travel,
+        three_point_add_row(dataset, made, made->contact + point.travel + settled(made, w),
                             slipped ? 0.9 * point.force : point.force,
                             i <= n ? WB_PHASE_LOAD : WB_PHASE_UNLOAD);
     }
