@@ -272,6 +272,7 @@ static void step_check(struct wb_bend_test *test)
                  check->load.n, check->n_frames, wb_seconds_from_ns(waited_ns));
     if (!enough || !wb_start_check_stage(&latest->stage, test->rig_path, text) ||
         !check_settings(test, text) || !wb_start_check_markers(check, &test->specimen, text) ||
+        !wb_start_check_chain(check, &test->specimen, &test->run.rig, text) ||
         !wb_start_check_zero(check, &test->run.rig, test->rig_path, text)) {
         refuse(test, text);
         return;

@@ -128,6 +128,65 @@ static void a_marker_may_be_lost_in_less_than_half_of_the_frames(void **state)
     }
 }
 
+/* 20 frames of all markers, which jitter by `noise` m up and down and along, times `factor`. */
+static struct wb_start_check frames(double noise, double factor)
+{
+    struct wb_start_check check = {0};
+    for (int k = 0; k < 20; k++) {
+        struct wb_mocap_frame frame = {.n_markers = 0};
+        for (int m = 0; m < N; m++) {
+            place(&frame, m, 2e-3, 1.0);
+            for (int c = 0; c < 3; c++)
+                frame.markers[m].position[c] =
+                    (float)(factor * ((double)frame.markers[m].position[c] +
+                                      noise * (((k + m + c) % 2) ? 1.0 : -1.0)));
+        }
+        wb_start_check_frame(&check, &frame, &specimen);
+    }
+    return check;
+}
+
+static void a_still_picture_is_no_measurement(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = {.name = ""};
+    char text[WB_START_CHECK_TEXT] = "";
+    const struct wb_start_check measured = frames(1e-4, 1.0), still = frames(0.0, 1.0);
+    assert_true(wb_start_check_markers(&still, &specimen, text));
+    assert_false(wb_start_check_chain(&still, &specimen, &rig, text));
+    assert_non_null(strstr(text, "the same place in 20 frames"));
+    assert_true(wb_start_check_chain(&measured, &specimen, &rig, text));
+}
+
+static void cameras_in_another_scale_are_told_from_a_wrong_file(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = {.name = ""};
+    char text[WB_START_CHECK_TEXT] = "";
+    struct wb_start_check check = frames(1e-4, 1.03);
+    assert_false(wb_start_check_chain(&check, &specimen, &rig, text));
+    assert_non_null(strstr(text, "87.6 mm long"));
+    assert_non_null(strstr(text, "scale is off by +3.0 %"));
+    check = frames(1e-4, 1000.0);
+    assert_false(wb_start_check_markers(&check, &specimen, text));
+    assert_non_null(strstr(text, "millimetres"));
+}
+
+static void markers_that_a_model_fills_in_are_told(void **state)
+{
+    (void)state;
+    struct wb_start_check check = {0};
+    struct wb_mocap_frame frame = {.n_markers = 0};
+    char text[WB_START_CHECK_TEXT] = "";
+    for (int m = 0; m < N; m++) {
+        place(&frame, m, 0.0, 0.0);
+        frame.markers[m].params = m % 2 ? WB_MARKER_MODEL_FILLED : WB_MARKER_OCCLUDED;
+    }
+    wb_start_check_frame(&check, &frame, &specimen);
+    assert_false(wb_start_check_markers(&check, &specimen, text));
+    assert_non_null(strstr(text, "filled in by a model"));
+}
+
 static struct wb_start_check readings(double mean, double deviation)
 {
     struct wb_start_check check = {0};
@@ -263,6 +322,9 @@ int main(void)
         cmocka_unit_test(occluded_and_filled_in_markers_are_not_seen),
         cmocka_unit_test(no_and_one_and_far_too_many_markers_are_survived),
         cmocka_unit_test(a_marker_may_be_lost_in_less_than_half_of_the_frames),
+        cmocka_unit_test(a_still_picture_is_no_measurement),
+        cmocka_unit_test(cameras_in_another_scale_are_told_from_a_wrong_file),
+        cmocka_unit_test(markers_that_a_model_fills_in_are_told),
         cmocka_unit_test(zero_is_judged_by_capacity_and_noise),
         cmocka_unit_test(a_tare_with_the_counterweight_expects_its_weight),
         cmocka_unit_test(stage_must_be_idle_at_a_known_position),
