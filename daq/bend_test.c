@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "base/version.h"
 #include "daq/bend_recording.h"
+#include "daq/first_motion.h"
 #include "daq/stage_check.h"
 #include "daq/start_check.h"
 #include "daq/tip_watch.h"
@@ -41,6 +42,7 @@ struct wb_bend_test {
     struct wb_start_check check;
     struct wb_average zero; /* N, of the tare */
     struct wb_tip_watch tip;
+    bool motion_agrees; /* the first motion was seen as the stage reported it */
     bool has_tare;
     double unloaded; /* N, reading without tension: the tare less what hung on the cell then */
     struct wb_bend_test_result result;
@@ -355,9 +357,34 @@ static void step_tare(struct wb_bend_test *test)
     begin_cycle(test);
 }
 
+/* Half a second's way: reports of the stage and frames are that old at most. */
+static double uncertain_way(const struct wb_bend_test *test)
+{
+    const struct wb_rig *const rig = &test->run.rig;
+    return 0.5 * rig->stage.speed * fmax(rig->time_scale, 1.0);
+}
+
+static void check_motion(struct wb_bend_test *test)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
+    const double travel = wb_sequence_travel(&test->run, latest->stage.position);
+    const double ahead = uncertain_way(test);
+    char text[WB_START_CHECK_TEXT];
+    if (test->motion_agrees || !(travel >= WB_FIRST_MOTION))
+        return;
+    test->motion_agrees = wb_first_motion_agrees(&test->tip, travel, ahead, &test->run.rig, text);
+    if (test->motion_agrees)
+        wb_acquisition_event(test->run.acquisition, "first_motion",
+                             "the markers moved with the stage, %.2f mm on its way",
+                             travel / WB_MM);
+    else if (travel >= WB_FIRST_MOTION + ahead)
+        wb_sequence_give_up(&test->run, WB_INTERLOCK_MOTION, "%s", text);
+}
+
 static void step_down(struct wb_bend_test *test)
 {
-    if (!arrived(test))
+    check_motion(test);
+    if (test->run.phase != PHASE_DOWN || !arrived(test))
         return;
     wb_acquisition_event(test->run.acquisition, "turn", "%d", test->cycle);
     wb_sequence_jog_to(&test->run, 0.0, test->run.rig.stage.speed, PHASE_UP);

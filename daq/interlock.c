@@ -14,11 +14,12 @@
 const char *wb_interlock_reason_name(enum wb_interlock_reason reason)
 {
     static const char *const names[] = {
-        [WB_INTERLOCK_NONE] = "none",         [WB_INTERLOCK_FORCE] = "force",
-        [WB_INTERLOCK_OVERLOAD] = "overload", [WB_INTERLOCK_UNIT] = "unit",
-        [WB_INTERLOCK_TRAVEL] = "travel",     [WB_INTERLOCK_ALARM] = "alarm",
-        [WB_INTERLOCK_STAGE] = "stage",       [WB_INTERLOCK_STREAM_LOST] = "stream_lost",
-        [WB_INTERLOCK_DISK] = "disk",         [WB_INTERLOCK_INTERRUPT] = "interrupt",
+        [WB_INTERLOCK_NONE] = "none",           [WB_INTERLOCK_FORCE] = "force",
+        [WB_INTERLOCK_OVERLOAD] = "overload",   [WB_INTERLOCK_UNIT] = "unit",
+        [WB_INTERLOCK_TRAVEL] = "travel",       [WB_INTERLOCK_ALARM] = "alarm",
+        [WB_INTERLOCK_STAGE] = "stage",         [WB_INTERLOCK_STREAM_LOST] = "stream_lost",
+        [WB_INTERLOCK_DISK] = "disk",           [WB_INTERLOCK_MOTION] = "motion",
+        [WB_INTERLOCK_INTERRUPT] = "interrupt",
     };
     return (size_t)reason < sizeof names / sizeof names[0] ? names[reason] : "unknown";
 }

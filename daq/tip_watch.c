@@ -39,7 +39,9 @@ void wb_tip_watch_rest(struct wb_tip_watch *watch, const struct wb_mocap_frame *
 {
     if (watch->found) {
         if (follow_ends(watch, frame)) {
-            wb_average_add(&watch->rest, watch->at[1][watch->up] - watch->at[0][watch->up]);
+            for (int end = 0; end < 2; end++)
+                for (int k = 0; k < 3; k++)
+                    wb_average_add(&watch->rest[end][k], watch->at[end][k]);
             watch->settled = true;
         }
         return;
@@ -61,6 +63,8 @@ void wb_tip_watch_follow(struct wb_tip_watch *watch, const struct wb_mocap_frame
     if (!watch->settled || !follow_ends(watch, frame))
         return;
     /* Which end is the tip shows by itself: it is the one that stays higher. */
-    const double now = fabs(watch->at[1][watch->up] - watch->at[0][watch->up] - watch->rest.mean);
+    const int up = watch->up;
+    const double now = fabs((watch->at[1][up] - watch->rest[1][up].mean) -
+                            (watch->at[0][up] - watch->rest[0][up].mean));
     watch->deflection += SMOOTHING * (now - watch->deflection);
 }

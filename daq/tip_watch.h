@@ -13,12 +13,12 @@
 
 /* All zero is not started. */
 struct wb_tip_watch {
-    bool found;             /* both ends are being followed */
-    bool settled;           /* the heights at rest are known */
-    int up;                 /* index of the vertical coordinate */
-    double at[2][3];        /* m, server's frame: where the two ends were seen last */
-    struct wb_average rest; /* m: their difference of height at rest */
-    double deflection;      /* m, smoothed over some frames */
+    bool found;                   /* both ends are being followed */
+    bool settled;                 /* the heights at rest are known */
+    int up;                       /* index of the vertical coordinate */
+    double at[2][3];              /* m, server's frame: where the two ends were seen last */
+    struct wb_average rest[2][3]; /* m: where they rest */
+    double deflection;            /* m, smoothed over some frames */
 };
 
 /* A frame of the unloaded wire: finds the ends, then averages their heights. */

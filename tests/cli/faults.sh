@@ -78,7 +78,8 @@ garbage() {
 }
 
 wrong_up() {
-    run up 0 wrong-up
+    run up 3 wrong-up
+    said up record 'set mocap.up'
     said up align 'mocap.up'
     [ ! -e "$folder/up.data/force_deflection.csv" ] || fail "up: a dataset was made of it"
     # The recording is not lost: a corrected rig file holds in place of its own.

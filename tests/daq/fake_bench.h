@@ -59,6 +59,8 @@ struct fake_bench {
     atomic_int force_mg;     /* added to the reading */
     atomic_int spring_mg_mm; /* per mm of travel beyond slack_mm */
     atomic_int slack_mm;
+    atomic_int markers_follow; /* percent of the stage's way, downwards, */
+    atomic_bool markers_level; /* or sideways */
     atomic_int force_limit_mg; /* the first reading beyond it is timed */
 
     /* What it saw, ns of the monotonic clock; 0 not yet. Of what it sends, from before it goes:
@@ -287,8 +289,10 @@ static inline void fake_frame(struct fake_bench *bench)
         marker->id = 50000 + m;
         /* The eighth and later ones are strays. */
         marker->position[0] = (float)(m < FAKE_MARKERS ? 0.3 + 0.015 * m : 0.9 + 0.1 * m);
-        marker->position[1] = (float)(1.2 - 1e-3 * bench->position_mm + 1e-4 * fake_noise(bench));
-        marker->position[2] = 0.05F;
+        const double moved = 1e-5 * bench->markers_follow * bench->position_mm;
+        const bool level = bench->markers_level;
+        marker->position[1] = (float)(1.2 - (level ? 0.0 : moved) + 1e-4 * fake_noise(bench));
+        marker->position[2] = (float)(0.05 - (level ? moved : 0.0));
         marker->size = 0.003F;
         marker->params = WB_MARKER_POINT_CLOUD_SOLVED | WB_MARKER_UNLABELED;
     }
@@ -404,6 +408,7 @@ static inline struct fake_bench *fake_start(void)
     bench->port = ntohs(address.sin_port);
     bench->state = "Idle";
     bench->markers = FAKE_MARKERS;
+    bench->markers_follow = 100;
     bench->fastest_mm_min = 6000;
     bench->soft_travel_mm = 200;
     bench->force_mg = 150;

@@ -467,6 +467,38 @@ static void a_full_disk_stops_the_stage_and_what_was_written_stays(void **state)
     assert_non_null(strstr(fixture->events, "cycle_start: 1"));
 }
 
+static void a_first_motion_that_the_cameras_see_otherwise_ends_the_test(void **state)
+{
+    struct fixture *const fixture = *state;
+    static const struct {
+        int follow;
+        bool level;
+        const char *word;
+    } faults[] = {{0, false, "is the take live"},
+                  {100, true, "set mocap.up"},
+                  {-100, false, "set stage.down of the rig file to -1"}};
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+        struct fake_bench *const bench = fixture->bench;
+        struct wb_bend_test *test;
+        struct wb_bend_test_result result;
+        unlink(fixture->output);
+        bench->spring_mg_mm = 10;
+        bench->markers_follow = faults[i].follow;
+        bench->markers_level = faults[i].level;
+        assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+        assert_false(run(test, NULL));
+        assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+        if (result.end != WB_SEQUENCE_FAILED || !strstr(result.text, faults[i].word))
+            fail_msg("fault %zu: ended with '%s'", i, result.text);
+        assert_true(result.standing);
+        /* 2 mm and what a report may be old, at 40 mm/s; the whole test goes farther. */
+        assert_in_range((int)bench->position_mm, 2, 40);
+        read_events(fixture);
+        assert_null(strstr(fixture->events, "first_motion"));
+        renew(fixture, 60.0);
+    }
+}
+
 static void a_stage_that_refuses_to_move_is_told(void **state)
 {
     struct fixture *const fixture = *state;
@@ -519,6 +551,7 @@ int main(void)
         TEST(ctrl_c_before_any_motion_sends_no_hold),
         TEST(an_unplugged_bench_ends_the_test_and_keeps_the_recording),
         TEST(a_full_disk_stops_the_stage_and_what_was_written_stays),
+        TEST(a_first_motion_that_the_cameras_see_otherwise_ends_the_test),
         TEST(a_stage_that_refuses_to_move_is_told),
         TEST(a_lost_answer_of_the_stage_only_delays_the_next_motion),
     };
