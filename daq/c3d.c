@@ -316,7 +316,8 @@ static enum wb_status read_layout(struct reading *reading)
     reading->scale = fabs(scale);
     if (!find_number(reading, "POINT", "RATE", &rate))
         rate = get_float(reading, reading->bytes + 20);
-    if (!(rate > 0.0) || !(rate < 1e6))
+    /* Slower, and the times of frames that are numbered from far on do not fit 64 bits of ns. */
+    if (!(rate >= 0.5) || !(rate < 1e6))
         return refuse_parameter(reading, "POINT:RATE", "%g frames a second", rate);
     reading->take->rate = rate;
     if (!find_text(reading, "POINT", "UNITS", 0, &unit, &n_unit))

@@ -132,7 +132,7 @@ static void read_header(struct header *header, const struct wb_text_table_column
     size_t n = take_unit(header, column->name);
     if (column->unit[0]) {
         const size_t length = strlen(column->unit);
-        const bool bracketed = column->unit[0] == '(' || column->unit[0] == '[';
+        const bool bracketed = length > 1 && (column->unit[0] == '(' || column->unit[0] == '[');
         copy_unit(header, column->unit + bracketed, length - 2 * (size_t)bracketed);
     }
     size_t k = 0;

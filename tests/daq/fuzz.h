@@ -1,9 +1,12 @@
 /* What the fuzz targets share. With clang -fsanitize=fuzzer and -DWB_LIBFUZZER a target is
- * libFuzzer's; otherwise it drives itself as a test: each seed as it is, then a fixed number of
- * mutations of the seeds from a fixed random sequence. `fuzz_x N [SEED]` runs N mutations. */
+ * libFuzzer's; otherwise it drives itself as a test: each seed as it is, each input that libFuzzer
+ * once found (files of the folder in FUZZ_CORPUS), then a fixed number of mutations of the seeds
+ * from a fixed random sequence. `fuzz_x N [SEED]` runs N mutations, `fuzz_x seeds FOLDER` writes
+ * the seeds as files, for libFuzzer to begin with. */
 #ifndef WB_TESTS_DAQ_FUZZ_H
 #define WB_TESTS_DAQ_FUZZ_H
 
+#include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -85,30 +88,77 @@ static inline size_t fuzz_mutate(uint8_t *bytes, size_t n, const uint8_t *other,
     }
 }
 
+/* A copy of exactly this size, so that a sanitizer sees one byte too many. */
+static inline void fuzz_run(const uint8_t *bytes, size_t n)
+{
+    uint8_t *const copy = malloc(n ? n : 1);
+    FUZZ_REQUIRE(copy != NULL);
+    memcpy(copy, bytes, n);
+    LLVMFuzzerTestOneInput(copy, n);
+    free(copy);
+}
+
+/* Runs what was found before; a corpus that is named must be there. Returns how many inputs. */
+static inline int fuzz_corpus(const char *folder)
+{
+    static uint8_t bytes[FUZZ_MAX];
+    int n_inputs = 0;
+    DIR *const entries = opendir(folder);
+    FUZZ_REQUIRE(entries != NULL);
+    for (const struct dirent *entry; (entry = readdir(entries));) {
+        char path[4096];
+        if (entry->d_name[0] == '.')
+            continue;
+        FUZZ_REQUIRE(snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) <
+                     (int)sizeof path);
+        FILE *const file = fopen(path, "rb");
+        FUZZ_REQUIRE(file != NULL);
+        const size_t n = fread(bytes, 1, sizeof bytes, file);
+        fclose(file);
+        fuzz_run(bytes, n);
+        n_inputs++;
+    }
+    closedir(entries);
+    FUZZ_REQUIRE(n_inputs > 0);
+    return n_inputs;
+}
+
+static inline int fuzz_write_seeds(const char *folder, const uint8_t *const *seeds,
+                                   const size_t *sizes, size_t n_seeds)
+{
+    for (size_t i = 0; i < n_seeds; i++) {
+        char path[4096];
+        FUZZ_REQUIRE(snprintf(path, sizeof path, "%s/seed-%02zu", folder, i) < (int)sizeof path);
+        FILE *const file = fopen(path, "wb");
+        FUZZ_REQUIRE(file != NULL);
+        FUZZ_REQUIRE(fwrite(seeds[i], 1, sizes[i], file) == sizes[i] && fclose(file) == 0);
+    }
+    return 0;
+}
+
 /* Runs the seeds and `n_runs` mutations of them (or as many as the arguments say). */
 static inline int fuzz_main(int argc, char **argv, const uint8_t *const *seeds, const size_t *sizes,
                             size_t n_seeds, unsigned long n_runs)
 {
     static uint8_t bytes[FUZZ_MAX];
+    const char *const corpus = getenv("FUZZ_CORPUS");
+    if (argc == 3 && strcmp(argv[1], "seeds") == 0)
+        return fuzz_write_seeds(argv[2], seeds, sizes, n_seeds);
     if (argc > 1)
         n_runs = strtoul(argv[1], NULL, 10);
     fuzz_state = argc > 2 ? strtoull(argv[2], NULL, 10) | 1 : UINT64_C(0x9e3779b97f4a7c15);
     for (size_t i = 0; i < n_seeds; i++)
         LLVMFuzzerTestOneInput(seeds[i], sizes[i]);
+    const int n_found = corpus && *corpus ? fuzz_corpus(corpus) : 0;
     for (unsigned long run = 0; run < n_runs; run++) {
         const size_t seed = fuzz_below(n_seeds), other = fuzz_below(n_seeds);
         size_t n = sizes[seed];
         memcpy(bytes, seeds[seed], n);
         for (size_t k = 1 + fuzz_below(4); k > 0; k--)
             n = fuzz_mutate(bytes, n, seeds[other], sizes[other]);
-        /* A copy of exactly this size, so that a sanitizer sees one byte too many. */
-        uint8_t *const copy = malloc(n ? n : 1);
-        FUZZ_REQUIRE(copy != NULL);
-        memcpy(copy, bytes, n);
-        LLVMFuzzerTestOneInput(copy, n);
-        free(copy);
+        fuzz_run(bytes, n);
     }
-    printf("%zu seeds, %lu mutations\n", n_seeds, n_runs);
+    printf("%zu seeds, %d inputs found before, %lu mutations\n", n_seeds, n_found, n_runs);
     return 0;
 }
 
