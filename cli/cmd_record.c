@@ -166,7 +166,14 @@ static void run(struct wb_bend_test *test)
 
 static const char *end_name(enum wb_sequence_end end)
 {
-    static const char *const names[] = {"running", "done", "limit", "interrupted", "failed"};
+    static const char *const names[] = {
+        [WB_SEQUENCE_RUNNING] = "running",
+        [WB_SEQUENCE_DONE] = "done",
+        [WB_SEQUENCE_LIMIT] = "limit",
+        [WB_SEQUENCE_INTERRUPTED] = "interrupted",
+        [WB_SEQUENCE_STILL_LOADED] = "still_loaded",
+        [WB_SEQUENCE_FAILED] = "failed",
+    };
     return names[end];
 }
 
