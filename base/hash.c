@@ -56,3 +56,26 @@ void wb_hash_bytes(const void *bytes, size_t n, char hex[WB_SHA256_TEXT])
     g_checksum_update(checksum, bytes, (gssize)n);
     finish(checksum, hex);
 }
+
+/* struct wb_hash is GLib's checksum under our name. */
+
+struct wb_hash *wb_hash_create(void)
+{
+    return (struct wb_hash *)g_checksum_new(G_CHECKSUM_SHA256);
+}
+
+void wb_hash_add(struct wb_hash *hash, const void *bytes, size_t n)
+{
+    g_checksum_update((GChecksum *)hash, bytes, (gssize)n);
+}
+
+void wb_hash_so_far(const struct wb_hash *hash, char hex[WB_SHA256_TEXT])
+{
+    finish(g_checksum_copy((const GChecksum *)hash), hex);
+}
+
+void wb_hash_destroy(struct wb_hash *hash)
+{
+    if (hash)
+        g_checksum_free((GChecksum *)hash);
+}

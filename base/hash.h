@@ -18,4 +18,12 @@ WB_MUST_CHECK enum wb_status wb_hash_descriptor(int descriptor, const char *name
 /* Of bytes in memory. */
 void wb_hash_bytes(const void *bytes, size_t n, char hex[WB_SHA256_TEXT]);
 
+/* Of bytes that come piece by piece. */
+struct wb_hash;
+struct wb_hash *wb_hash_create(void); /* never NULL: GLib ends the process without memory */
+void wb_hash_add(struct wb_hash *hash, const void *bytes, size_t n);
+/* Of all that was added so far; more may follow. */
+void wb_hash_so_far(const struct wb_hash *hash, char hex[WB_SHA256_TEXT]);
+void wb_hash_destroy(struct wb_hash *hash); /* accepts NULL */
+
 #endif

@@ -17,8 +17,10 @@ static const struct argp argp = {
     .options = option_table,
     .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr...",
-    .doc = "Checks recordings (.wbr or .wbr.zst): the CRC-32 of every chunk, gaps in the sequence "
-           "numbers, frames and lines that never came, drops noted while recording, silent or "
+    .doc = "Checks recordings (.wbr or .wbr.zst): the checksum and the place of every row, gaps in "
+           "the "
+           "sequence numbers, frames and lines that never came, drops noted while recording, "
+           "silent or "
            "missing streams, and whether the file was closed properly.\v"
            "Exit codes: 0 all is there; 1 a file could not be opened; 3 something is missing or "
            "damaged, the rest is usable.",
@@ -27,9 +29,12 @@ static const struct argp argp = {
 static void print_text(const char *path, const char *sha256, const struct wb_survey *survey)
 {
     bool whole = wb_survey_is_whole(survey);
-    printf("%s: %s%s, %" PRIu64 " chunks in %.1f s, sha256 %s\n", path,
-           survey->is_virtual ? "virtual rig, " : "", whole ? "whole" : "NOT WHOLE", survey->chunks,
-           wb_survey_duration(survey), sha256[0] ? sha256 : "unknown");
+    printf("%s: %s%s%s, %" PRIu64 " chunks in %.1f s, sha256 %s\n", path,
+           survey->is_virtual ? "virtual rig, " : "", whole ? "whole" : "NOT WHOLE",
+           survey->check.is_protected ? ""
+                                      : ", partly protected (an older recording: of it the chunks' "
+                                        "bytes alone have a checksum)",
+           survey->chunks, wb_survey_duration(survey), sha256[0] ? sha256 : "unknown");
     char text[256];
     for (int at = 0; wb_survey_problem(survey, &at, text, sizeof text);)
         printf("  %s\n", text);
@@ -64,7 +69,12 @@ static void add_json(struct wb_json *array, const char *path, const char *sha256
     wb_json_set_boolean(object, "virtual_rig", survey->is_virtual);
     wb_json_set_boolean(object, "whole", wb_survey_is_whole(survey));
     wb_json_set_boolean(object, "closed", survey->closed);
+    wb_json_set_boolean(object, "protected", survey->check.is_protected);
     wb_json_set_boolean(object, "database_damaged", survey->broken);
+    wb_json_set_integer(object, "rows", (int64_t)survey->check.rows);
+    wb_json_set_integer(object, "damaged_rows", (int64_t)survey->check.damaged);
+    wb_json_set_integer(object, "missing_rows", (int64_t)survey->check.lost);
+    wb_json_set_integer(object, "displaced_rows", (int64_t)survey->check.displaced);
     wb_json_set_integer(object, "chunks", (int64_t)survey->chunks);
     wb_json_set_integer(object, "damaged_chunks", (int64_t)survey->damaged);
     wb_json_set_integer(object, "missing_chunks", (int64_t)survey->missing);

@@ -185,6 +185,8 @@ static enum wb_status put_clock(void *context, const struct wb_clock_row *row)
 static enum wb_status find_start(void *context, const struct wb_chunk *chunk)
 {
     struct export *export = context;
+    if (!chunk->intact)
+        return WB_OK;
     export->started = true;
     export->first_ns = chunk->t_ns;
     return WB_ERR_TIMEOUT; /* the first one is enough */

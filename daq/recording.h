@@ -1,8 +1,11 @@
 /* Recordings: the raw bytes with their arrival times, in an SQLite database `NAME.wbr`.
  *
- * Tables (schema 1): meta(key, value), stream(id, role, address, protocol, settings),
- * chunk(stream, seq, t_ns, bytes, crc32), event(t_ns, kind, text),
- * clock(stream, t_host_ns, t_device, rtt_ns). application_id is 0x57425231 ("WBR1"),
+ * Tables (schema 2): meta(key, value), stream(id, role, address, protocol, settings),
+ * chunk(stream, seq, t_ns, bytes), event(t_ns, kind, text),
+ * clock(stream, t_host_ns, t_device, rtt_ns); each row also has n, its number in order of writing
+ * over all tables, crc32, of all that the row says, and chain, of the crc32 of all rows up to it.
+ * The last row is a SHA-256 over all rows. Schema 1 has crc32 for the bytes of chunks alone.
+ * docs/file-formats.md has the details. application_id is 0x57425231 ("WBR1"),
  * user_version is the schema. WAL while recording; closing checkpoints and sets
  * journal_mode=DELETE, so that a finished file can be read from a read-only folder.
  * `.wbr.zst` is the same file compressed with zstd; opening takes both.
@@ -20,7 +23,7 @@
 #include "base/reason.h"
 #include "daq/driver.h"
 
-#define WB_RECORDING_SCHEMA 1
+#define WB_RECORDING_SCHEMA 2
 
 struct wb_recording; /* opaque; used by one thread */
 
@@ -29,7 +32,7 @@ struct wb_recording; /* opaque; used by one thread */
 /* Creates a new recording; WB_ERR_EXISTS if the path exists (a recording is never overwritten). */
 WB_MUST_CHECK enum wb_status wb_recording_create(struct wb_recording **out, const char *path);
 
-/* Sets one meta value (text); replaces an earlier one. */
+/* Sets one meta value (text). The key may be set again: the last value counts. */
 WB_MUST_CHECK enum wb_status wb_recording_set_meta(struct wb_recording *recording, const char *key,
                                                    const char *value);
 
@@ -105,8 +108,8 @@ struct wb_chunk {
     int64_t seq, t_ns;
     const uint8_t *bytes; /* valid until the next call */
     size_t n;
-    uint32_t crc32; /* stored */
-    bool intact;    /* stored CRC equals the computed one */
+    bool intact; /* as it was written; otherwise nothing of it can be relied on (of schema 1: its
+                    bytes cannot) */
 };
 
 /* Something that happened, in words: a step of the test, a remark on an instrument, a mark. */
@@ -124,10 +127,31 @@ struct wb_clock_row {
     int64_t rtt_ns;
 };
 
+/* What wb_recording_check() finds. The places are lists in words, "row 12 (meta 'rig'), row 700
+ * (stream 1, chunk 33), ...". */
+struct wb_recording_check {
+    bool is_protected;     /* everything is under a checksum (schema 2) */
+    bool is_broken;        /* the database itself is damaged */
+    bool is_closed;        /* the last row, the digest, is there */
+    bool digest_fits;      /* and it is that of the rows */
+    uint64_t rows;         /* that could be read */
+    uint64_t damaged;      /* of them not as they were written */
+    uint64_t lost;         /* rows that are not there, those at the end not counted */
+    uint64_t displaced;    /* rows that do not follow the one before */
+    uint64_t after_digest; /* rows behind the last one */
+    char damaged_where[160], lost_where[160], displaced_where[160];
+};
+
+/* Reads every row and compares it with its checksum, its place, the chain and the digest. Of schema
+ * 1 only the bytes of chunks can be compared. */
+WB_MUST_CHECK enum wb_status wb_recording_check(struct wb_recording *recording,
+                                                struct wb_recording_check *check);
+
 /* Visits all chunks in order of arrival (t_ns, then stream, then seq; ties in the order of
- * writing); events and clock rows are visited in order of time as well. A visitor returns a status:
- * anything but WB_OK ends the walk and is returned. WB_ERR_DATA (told) when the database breaks
- * off or rows cannot be read; everything else has been visited. */
+ * writing); events and clock rows are visited in order of time as well. Damaged chunks are visited
+ * with `intact` false; other rows that are damaged are passed over as if they could not be read. A
+ * visitor returns a status: anything but WB_OK ends the walk and is returned. WB_ERR_DATA (told)
+ * when the database breaks off or rows cannot be read; everything else has been visited. */
 WB_MUST_CHECK enum wb_status
 wb_recording_each_chunk(struct wb_recording *recording,
                         enum wb_status (*visit)(void *context, const struct wb_chunk *chunk),

@@ -1,5 +1,6 @@
-/* Between the parts of the recording: recording_write.c, recording_read.c, recording_file.c. Only
- * these include sqlite3.h, zlib.h and zstd.h. */
+/* Between the parts of the recording, recording_*.c. Only these include sqlite3.h, zlib.h and
+ * zstd.h.
+ */
 #ifndef WB_DAQ_RECORDING_PRIVATE_H
 #define WB_DAQ_RECORDING_PRIVATE_H
 
@@ -8,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/hash.h"
 #include "daq/recording.h"
 
 /* "WBR1" */
@@ -16,15 +18,108 @@
 /* A read or datagram has at most 64 KiB; longer blobs are damage. */
 #define WB_RECORDING_LONGEST_VALUE (16 << 20)
 
+/* --- rows --- */
+
+enum wb_recording_kind {
+    WB_RECORDING_META,
+    WB_RECORDING_STREAM,
+    WB_RECORDING_CHUNK,
+    WB_RECORDING_EVENT,
+    WB_RECORDING_CLOCK,
+    WB_RECORDING_TABLES
+};
+
+/* The columns of a table, and of each its type: i integer, r real, t text, b blob. From schema 2 on
+ * the row's number `n` stands before them (SQLite's rowid; it counts the rows of all tables in
+ * order of writing, from 1), and behind them `crc32` and `chain`. */
+struct wb_recording_table {
+    const char *name, *columns, *types;
+};
+extern const struct wb_recording_table wb_recording_tables[WB_RECORDING_TABLES];
+
+/* The key of the last meta value, which closing writes. */
+#define WB_RECORDING_DIGEST "digest"
+
+#define WB_RECORDING_VALUES 5
+#define WB_RECORDING_CHUNK_BYTES 3 /* the place of a chunk's bytes among its values */
+
+struct wb_recording_value {
+    int64_t integer;
+    double real;
+    const void *bytes; /* text (not ended) or blob */
+    size_t n;
+};
+
+struct wb_recording_row {
+    enum wb_recording_kind kind;
+    int64_t number;                                        /* SQLite's rowid */
+    struct wb_recording_value values[WB_RECORDING_VALUES]; /* until the statement goes on */
+    int64_t crc32, chain;                                  /* as stored; -1: none */
+    bool intact;                                           /* of schema 1: as far as is known */
+    bool is_nothing; /* no column has its type: not a row that was written */
+};
+
+/* CRC-32 of a row with its number and the name of its table. */
+uint32_t wb_recording_row_crc32(enum wb_recording_kind kind, int64_t number,
+                                const struct wb_recording_value *values);
+/* The chain's value behind a row: CRC-32 of its value before (0 before the first row) and of the
+ * row's CRC-32, 4 bytes each, least significant first. */
+uint32_t wb_recording_chain(uint32_t before, uint32_t row_crc32);
+/* The digest is the SHA-256 of the CRC-32 of all rows before its own, 4 bytes each, least
+ * significant first. */
+void wb_recording_digest_add(struct wb_hash *digest, uint32_t row_crc32);
+
+/* What to select for wb_recording_read_row(). */
+void wb_recording_row_columns(const struct wb_recording *recording, enum wb_recording_kind kind,
+                              char *text, size_t size);
+void wb_recording_read_row(const struct wb_recording *recording, enum wb_recording_kind kind,
+                           sqlite3_stmt *statement, struct wb_recording_row *row);
+
+/* --- reading a table --- */
+
+/* Goes through a table in order of its row numbers and past damaged pages. */
+struct wb_recording_cursor {
+    struct wb_recording *recording;
+    sqlite3_stmt *statement;
+    int64_t last, before_last, n_steps, n_rows;
+    int code;              /* SQLITE_DONE, or why rows are missing */
+    int64_t n_rows_before; /* rows before the first damage */
+};
+
+/* `columns` begins with rowid. When this fails, with a message if `tell`, there is nothing to step,
+ * and closing is allowed. */
+WB_MUST_CHECK enum wb_status wb_recording_cursor_open(struct wb_recording_cursor *cursor,
+                                                      struct wb_recording *recording,
+                                                      const char *columns, const char *table,
+                                                      bool tell);
+/* False at the end. */
+bool wb_recording_cursor_step(struct wb_recording_cursor *cursor);
+/* Notes that rows are missing here. */
+void wb_recording_cursor_break(struct wb_recording_cursor *cursor, int code);
+void wb_recording_cursor_close(struct wb_recording_cursor *cursor);
+
+/* Visits the rows of all tables, damaged ones too, in order of writing; those of schema 1 table
+ * after table. *broken is true when rows cannot be read; everything else has been visited. */
+WB_MUST_CHECK enum wb_status
+wb_recording_scan(struct wb_recording *recording,
+                  enum wb_status (*visit)(void *context, const struct wb_recording_row *row),
+                  void *context, bool *broken);
+
+/* --- the recording --- */
+
 struct wb_recording {
     sqlite3 *db;
     char *path;
     struct wb_reason *why; /* of reading; NULL: it is logged */
     bool writing;
+    int schema;
     /* Writing. */
-    sqlite3_stmt *insert_chunk, *insert_event, *insert_clock, *insert_meta, *insert_stream;
+    sqlite3_stmt *insert[WB_RECORDING_TABLES];
     bool in_transaction;
     enum wb_status failed; /* latched: the first error of a write */
+    int64_t n_rows;        /* written so far */
+    uint32_t chain;        /* behind the last of them */
+    struct wb_hash *digest;
     /* Reading. */
     bool compressed; /* .zst */
     bool complete;   /* closed properly */
@@ -51,7 +146,7 @@ void wb_recording_release(struct wb_recording *recording);
 WB_MUST_CHECK enum wb_status wb_recording_fail(const struct wb_recording *recording, int code,
                                                const char *doing);
 
-/* zlib's CRC-32, that of `crc32` and gzip. */
+/* zlib's CRC-32, that of gzip. */
 uint32_t wb_recording_crc32(const void *bytes, size_t n);
 
 /* A new file in the temporary folder ($TMPDIR, else /tmp), open for reading and writing; `path`

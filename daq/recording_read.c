@@ -3,7 +3,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,13 +39,17 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
         return wb_fail_also(recording->why, WB_ERR_FORMAT,
                             "'%s' is not a recording: it is an SQLite database of another program",
                             recording->path);
-    uint32_t version = big_endian(header + 60);
+    const uint32_t version = big_endian(header + 60);
+    if (version == 0)
+        return wb_fail_also(recording->why, WB_ERR_DATA, "'%s' is damaged: it is of schema 0",
+                            recording->path);
     if (version > WB_RECORDING_SCHEMA)
         return wb_fail_also(
             recording->why, WB_ERR_UNSUPPORTED,
             "'%s' is of schema %u, and this program knows schemas up to %d only: use a newer "
             "wirebench",
             recording->path, version, WB_RECORDING_SCHEMA);
+    recording->schema = (int)version;
     int64_t page = (int64_t)header[16] << 8 | header[17];
     if (page == 1)
         page = 65536;
@@ -221,28 +224,25 @@ static bool is_news(struct wb_recording *recording, const char *table)
     return true;
 }
 
-/* The end of a walk: SQLite's last code, or a cycle in a damaged tree that would never end. */
-static enum wb_status end_walk(struct wb_recording *recording, int code, int64_t rows,
-                               const char *table)
+/* The end of a walk: WB_OK unless rows were missing on the way. */
+static enum wb_status end_walk(struct wb_recording *recording,
+                               const struct wb_recording_cursor *cursor, const char *table)
 {
-    if (code == SQLITE_DONE)
+    if (cursor->code == SQLITE_DONE)
         return WB_OK;
-    const char *why =
-        code == SQLITE_ROW ? "more rows than the file can hold" : sqlite3_errstr(code);
-    if ((code & 0xff) == SQLITE_NOMEM)
-        return wb_recording_fail(recording, code, "read");
+    if ((cursor->code & 0xff) == SQLITE_NOMEM)
+        return wb_recording_fail(recording, cursor->code, "read");
     /* That a file is cut short was said when it was opened, and every table is walked twice. */
     if (recording->shortened || !is_news(recording, table))
         return WB_ERR_DATA;
+    const int64_t after = cursor->n_rows - cursor->n_rows_before;
+    char behind[64] = "";
+    if (after > 0)
+        snprintf(behind, sizeof behind, "; behind the damage are %lld", (long long)after);
     return wb_fail_also(recording->why, WB_ERR_DATA,
-                        "'%s': table %s breaks off after %lld row%s: %s", recording->path, table,
-                        (long long)rows, rows == 1 ? "" : "s", why);
-}
-
-static const char *text_of(sqlite3_stmt *statement, int column)
-{
-    const char *text = (const char *)sqlite3_column_text(statement, column);
-    return text ? text : "";
+                        "'%s': table %s breaks off after %lld row%s: %s%s", recording->path, table,
+                        (long long)cursor->n_rows_before, cursor->n_rows_before == 1 ? "" : "s",
+                        sqlite3_errstr(cursor->code), behind);
 }
 
 static bool role_of(const char *name, enum wb_role *role)
@@ -257,34 +257,67 @@ static bool role_of(const char *name, enum wb_role *role)
     return false;
 }
 
-static enum wb_status read_stream_row(struct wb_recording *recording, sqlite3_stmt *statement)
+static const char *text_of(const struct wb_recording_value *value)
 {
-    struct wb_recording_stream stream = {.id = sqlite3_column_int(statement, 0)};
-    if (!role_of(text_of(statement, 1), &stream.role)) {
+    return value->bytes; /* SQLite ends texts with a NUL */
+}
+
+static enum wb_status read_stream_row(struct wb_recording *recording,
+                                      const struct wb_recording_row *row)
+{
+    const struct wb_recording_value *const v = row->values;
+    struct wb_recording_stream stream = {.id = (int)v[0].integer};
+    if (!row->intact && recording->schema >= 2)
+        return wb_fail_also(recording->why, WB_ERR_DATA,
+                            "'%s': the row of a stream is damaged: it is left out",
+                            recording->path);
+    if (!role_of(text_of(&v[1]), &stream.role)) {
         wb_warn("'%s': stream %d has the unknown role '%.40s' and is left out", recording->path,
-                stream.id, text_of(statement, 1));
+                stream.id, text_of(&v[1]));
         return WB_OK;
     }
-    snprintf(stream.address, sizeof stream.address, "%s", text_of(statement, 2));
-    snprintf(stream.protocol, sizeof stream.protocol, "%s", text_of(statement, 3));
-    return wb_recording_remember_stream(recording, &stream, text_of(statement, 4));
+    snprintf(stream.address, sizeof stream.address, "%s", text_of(&v[2]));
+    snprintf(stream.protocol, sizeof stream.protocol, "%s", text_of(&v[3]));
+    return wb_recording_remember_stream(recording, &stream, text_of(&v[4]));
+}
+
+/* Opens a cursor over whole rows of a table. */
+static enum wb_status open_rows(struct wb_recording_cursor *cursor, struct wb_recording *recording,
+                                enum wb_recording_kind kind)
+{
+    char columns[160];
+    wb_recording_row_columns(recording, kind, columns, sizeof columns);
+    return wb_recording_cursor_open(cursor, recording, columns, wb_recording_tables[kind].name,
+                                    true);
 }
 
 static enum wb_status read_streams(struct wb_recording *recording)
 {
-    sqlite3_stmt *statement = NULL;
-    WB_TRY(prepare(recording,
-                   "SELECT id, role, address, protocol, settings FROM stream ORDER BY id",
-                   &statement));
+    struct wb_recording_cursor cursor;
+    struct wb_recording_row row;
+    WB_TRY(open_rows(&cursor, recording, WB_RECORDING_STREAM));
     enum wb_status status = WB_OK;
-    int code = SQLITE_DONE;
-    int64_t rows = 0;
-    while (status == WB_OK && (code = sqlite3_step(statement)) == SQLITE_ROW && rows++ < 1000)
-        status = read_stream_row(recording, statement);
-    if (status == WB_OK && end_walk(recording, code, rows, "stream") == WB_ERR_MEMORY)
-        status = WB_ERR_MEMORY; /* otherwise said, and the rest may serve */
-    sqlite3_finalize(statement);
-    return status;
+    while (status != WB_ERR_MEMORY && cursor.n_rows < 1000 && wb_recording_cursor_step(&cursor)) {
+        wb_recording_read_row(recording, WB_RECORDING_STREAM, cursor.statement, &row);
+        status = read_stream_row(recording, &row); /* damage was told, and the rest may serve */
+    }
+    if (status != WB_ERR_MEMORY)
+        status = end_walk(recording, &cursor, "stream");
+    wb_recording_cursor_close(&cursor);
+    return status == WB_ERR_MEMORY ? status : WB_OK;
+}
+
+/* The tables say of which schema they are; the number in the header is under no checksum. */
+static void find_schema(struct wb_recording *recording)
+{
+    for (int i = 0; i < WB_RECORDING_TABLES; i++) {
+        char sql[64];
+        sqlite3_stmt *statement = NULL;
+        snprintf(sql, sizeof sql, "SELECT chain FROM %s", wb_recording_tables[i].name);
+        if (sqlite3_prepare_v2(recording->db, sql, -1, &statement, NULL) == SQLITE_OK)
+            recording->schema = WB_RECORDING_SCHEMA;
+        sqlite3_finalize(statement);
+    }
 }
 
 enum wb_status wb_recording_open_with_reason(struct wb_recording **out, const char *path,
@@ -309,16 +342,19 @@ enum wb_status wb_recording_open_with_reason(struct wb_recording **out, const ch
     if (status == WB_OK)
         status = open_any(recording, descriptor);
     close(descriptor);
-    if (status == WB_OK)
+    if (status == WB_OK) {
+        find_schema(recording);
         status = read_streams(recording);
+    }
     if (status != WB_OK) {
         if (recording)
             wb_recording_release(recording);
         return status;
     }
     char *closed = NULL;
+    const char *const last = recording->schema >= 2 ? WB_RECORDING_DIGEST : "closed";
     recording->complete =
-        wb_recording_meta(recording, "closed", &closed) == WB_OK && !recording->shortened;
+        wb_recording_meta(recording, last, &closed) == WB_OK && !recording->shortened;
     free(closed);
     *out = recording;
     return WB_OK;
@@ -368,56 +404,100 @@ const char *wb_recording_stream_settings(const struct wb_recording *recording, i
 
 /* --- meta --- */
 
-struct meta_search {
-    const char *key;
-    char *value;
-    struct wb_reason *why;
+struct meta {
+    char *key, *value;
 };
 
-static enum wb_status match_meta(void *context, const char *key, const char *value)
+struct metas {
+    struct meta *items;
+    size_t n;
+};
+
+static void release_metas(struct metas *metas)
 {
-    struct meta_search *search = context;
-    if (strcmp(key, search->key) != 0)
-        return WB_OK;
-    free(search->value);
-    search->value = strdup(value);
-    return search->value
-               ? WB_OK
-               : wb_fail_also(search->why, WB_ERR_MEMORY, "out of memory for meta '%s'", key);
+    for (size_t i = 0; i < metas->n; i++) {
+        free(metas->items[i].key);
+        free(metas->items[i].value);
+    }
+    free(metas->items);
 }
 
-/* Walks without the key's index: a damaged file has one table less to trust. */
-static enum wb_status walk_meta(struct wb_recording *recording, const char *sql,
-                                enum wb_status (*visit)(void *, const char *, const char *),
-                                void *context)
+static int compare_metas(const void *a, const void *b)
 {
-    sqlite3_stmt *statement = NULL;
-    WB_TRY(prepare(recording, sql, &statement));
+    return strcmp(((const struct meta *)a)->key, ((const struct meta *)b)->key);
+}
+
+/* A key that is set again has the later value. */
+static enum wb_status keep_meta(struct wb_recording *recording, struct metas *metas,
+                                const char *key, const char *value)
+{
+    struct meta *found = NULL;
+    for (size_t i = 0; i < metas->n && !found; i++)
+        found = strcmp(metas->items[i].key, key) == 0 ? &metas->items[i] : NULL;
+    char *const copy = strdup(value), *const name = found ? NULL : strdup(key);
+    struct meta *const larger =
+        found ? metas->items : realloc(metas->items, (metas->n + 1) * sizeof *larger);
+    if (larger)
+        metas->items = larger;
+    if (!copy || !larger || (!found && !name)) {
+        free(copy);
+        free(name);
+        return wb_fail_also(recording->why, WB_ERR_MEMORY, "out of memory for the meta of '%s'",
+                            recording->path);
+    }
+    if (found) {
+        free(found->value);
+        found->value = copy;
+    } else {
+        metas->items[metas->n++] = (struct meta){.key = name, .value = copy};
+    }
+    return WB_OK;
+}
+
+/* All of them, or only those of one key; in no order. WB_ERR_DATA when some cannot be read: the
+ * others are there. */
+static enum wb_status read_metas(struct wb_recording *recording, const char *key,
+                                 struct metas *metas)
+{
+    struct wb_recording_cursor cursor;
+    struct wb_recording_row row;
+    WB_TRY(open_rows(&cursor, recording, WB_RECORDING_META));
     enum wb_status status = WB_OK;
-    int code = SQLITE_DONE;
-    int64_t rows = 0;
-    while (status == WB_OK && (code = sqlite3_step(statement)) == SQLITE_ROW) {
-        if (recording->n_rows_max && rows++ >= recording->n_rows_max)
-            break;
-        status = visit(context, text_of(statement, 0), text_of(statement, 1));
+    uint64_t n_damaged = 0;
+    while (status == WB_OK && wb_recording_cursor_step(&cursor)) {
+        wb_recording_read_row(recording, WB_RECORDING_META, cursor.statement, &row);
+        const char *const name = text_of(&row.values[0]);
+        if (recording->schema >= 2 && !row.intact)
+            n_damaged++;
+        else if (!key || strcmp(name, key) == 0)
+            status = keep_meta(recording, metas, name, text_of(&row.values[1]));
     }
     if (status == WB_OK)
-        status = end_walk(recording, code, rows, "meta");
-    sqlite3_finalize(statement);
+        status = end_walk(recording, &cursor, "meta");
+    if (status == WB_OK && n_damaged > 0)
+        status = is_news(recording, "meta")
+                     ? wb_fail_also(recording->why, WB_ERR_DATA,
+                                    "'%s': %llu row%s of table meta %s damaged", recording->path,
+                                    (unsigned long long)n_damaged, n_damaged == 1 ? "" : "s",
+                                    n_damaged == 1 ? "is" : "are")
+                     : WB_ERR_DATA;
+    wb_recording_cursor_close(&cursor);
     return status;
 }
 
 enum wb_status wb_recording_meta(struct wb_recording *recording, const char *key, char **value)
 {
-    struct meta_search search = {.key = key, .why = recording->why};
-    enum wb_status status =
-        walk_meta(recording, "SELECT key, value FROM meta NOT INDEXED", match_meta, &search);
-    if (search.value && status != WB_ERR_MEMORY) {
-        *value = search.value;
-        return WB_OK;
+    struct metas metas = {0};
+    enum wb_status status = read_metas(recording, key, &metas);
+    if (status == WB_OK && metas.n == 0)
+        status = WB_ERR_NOT_FOUND;
+    if (metas.n > 0 && status != WB_ERR_MEMORY) {
+        *value = metas.items[0].value;
+        metas.items[0].value = NULL;
+        status = WB_OK;
     }
-    free(search.value);
-    return status == WB_OK ? WB_ERR_NOT_FOUND : status;
+    release_metas(&metas);
+    return status;
 }
 
 enum wb_status wb_recording_each_meta(struct wb_recording *recording,
@@ -425,8 +505,15 @@ enum wb_status wb_recording_each_meta(struct wb_recording *recording,
                                                               const char *value),
                                       void *context)
 {
-    return walk_meta(recording, "SELECT key, value FROM meta NOT INDEXED ORDER BY key", visit,
-                     context);
+    struct metas metas = {0};
+    const enum wb_status end = read_metas(recording, NULL, &metas);
+    enum wb_status status = end == WB_ERR_MEMORY ? end : WB_OK;
+    if (metas.n > 1)
+        qsort(metas.items, metas.n, sizeof metas.items[0], compare_metas);
+    for (size_t i = 0; i < metas.n && status == WB_OK; i++)
+        status = visit(context, metas.items[i].key, metas.items[i].value);
+    release_metas(&metas);
+    return status != WB_OK ? status : end;
 }
 
 /* --- rows in order of time --- */
@@ -469,58 +556,73 @@ static enum wb_status append_key(struct keys *keys, const struct key *key, struc
     return WB_OK;
 }
 
-/* Reads rowid, time, stream and seq of all rows as far as they go. *end is WB_OK or why the table
- * broke off. A page that is only partly there reads as rows of nothing: rows without a time, or
- * out of the order that SQLite keeps, are the end. */
-static enum wb_status read_keys(struct wb_recording *recording, const char *table, const char *sql,
-                                struct keys *keys, enum wb_status *end)
+/* Reads rowid, time, stream and seq of all rows that can be read. *end is WB_OK or why rows are
+ * missing. A page that is only partly there reads as rows of nothing, which have no time. */
+static enum wb_status read_keys(struct wb_recording *recording, const char *table,
+                                const char *columns, struct keys *keys, enum wb_status *end)
 {
-    sqlite3_stmt *statement = NULL;
-    WB_TRY(prepare(recording, sql, &statement));
+    struct wb_recording_cursor cursor;
+    WB_TRY(wb_recording_cursor_open(&cursor, recording, columns, table, true));
     enum wb_status status = WB_OK;
-    int code = SQLITE_DONE;
-    while (status == WB_OK && (code = sqlite3_step(statement)) == SQLITE_ROW) {
-        if (recording->n_rows_max && (int64_t)keys->n >= recording->n_rows_max)
-            break;
-        struct key key = {.rowid = sqlite3_column_int64(statement, 0),
-                          .t_ns = sqlite3_column_int64(statement, 1),
-                          .stream = sqlite3_column_int(statement, 2),
-                          .seq = sqlite3_column_int64(statement, 3)};
-        if (sqlite3_column_type(statement, 1) != SQLITE_INTEGER ||
-            (keys->n > 0 && key.rowid <= keys->items[keys->n - 1].rowid)) {
-            code = SQLITE_CORRUPT;
-            break;
-        }
-        status = append_key(keys, &key, recording->why);
+    while (status == WB_OK && wb_recording_cursor_step(&cursor)) {
+        sqlite3_stmt *const statement = cursor.statement;
+        const struct key key = {.rowid = sqlite3_column_int64(statement, 0),
+                                .t_ns = sqlite3_column_int64(statement, 1),
+                                .stream = sqlite3_column_int(statement, 2),
+                                .seq = sqlite3_column_int64(statement, 3)};
+        if (sqlite3_column_type(statement, 1) == SQLITE_INTEGER)
+            status = append_key(keys, &key, recording->why);
+        else
+            wb_recording_cursor_break(&cursor, SQLITE_CORRUPT);
     }
     if (status == WB_OK)
-        *end = end_walk(recording, code, (int64_t)keys->n, table);
-    sqlite3_finalize(statement);
+        *end = end_walk(recording, &cursor, table);
+    wb_recording_cursor_close(&cursor);
     return status;
 }
 
-/* One table to be walked: how to read its keys and one row, and what to do with the row. */
+/* One table to be walked: its keys, which of a row's values is its time, and what to do with the
+ * row.
+ */
 struct walk {
-    const char *table, *keys_sql, *row_sql;
-    enum wb_status (*row)(struct walk *walk, const struct key *key, sqlite3_stmt *statement);
+    enum wb_recording_kind kind;
+    const char *keys; /* rowid, time, stream, seq */
+    int time;
+    enum wb_status (*row)(struct walk *walk, const struct wb_recording_row *row);
     enum wb_status (*visit_chunk)(void *, const struct wb_chunk *);
     enum wb_status (*visit_event)(void *, const struct wb_event *);
     enum wb_status (*visit_clock)(void *, const struct wb_clock_row *);
     void *context;
 };
 
+/* Whether the row is to be visited. Chunks say themselves that they are damaged. Under a damaged
+ * number another row may be found. */
+static bool is_good(const struct walk *walk, const struct key *key,
+                    const struct wb_recording_row *row, int schema)
+{
+    return row->values[walk->time].integer == key->t_ns &&
+           (row->intact || walk->kind == WB_RECORDING_CHUNK || schema < 2);
+}
+
 /* Visits the rows. Those that cannot be read are counted in *n_lost and passed over. */
 static enum wb_status visit_rows(struct wb_recording *recording, struct walk *walk,
                                  const struct keys *keys, size_t *n_lost)
 {
+    char columns[160], sql[240];
     sqlite3_stmt *statement = NULL;
-    WB_TRY(prepare(recording, walk->row_sql, &statement));
+    wb_recording_row_columns(recording, walk->kind, columns, sizeof columns);
+    snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE rowid = ?", columns,
+             wb_recording_tables[walk->kind].name);
+    WB_TRY(prepare(recording, sql, &statement));
     enum wb_status status = WB_OK;
     for (size_t i = 0; i < keys->n && status == WB_OK; i++) {
+        struct wb_recording_row row;
         sqlite3_bind_int64(statement, 1, keys->items[i].rowid);
         int code = sqlite3_step(statement);
         if (code == SQLITE_ROW)
-            status = walk->row(walk, &keys->items[i], statement);
+            wb_recording_read_row(recording, walk->kind, statement, &row);
+        if (code == SQLITE_ROW && is_good(walk, &keys->items[i], &row, recording->schema))
+            status = walk->row(walk, &row);
         else if ((code & 0xff) == SQLITE_NOMEM)
             status = wb_recording_fail(recording, code, "read");
         else
@@ -535,7 +637,8 @@ static enum wb_status walk_table(struct wb_recording *recording, struct walk *wa
 {
     struct keys keys = {0};
     enum wb_status end = WB_OK;
-    enum wb_status status = read_keys(recording, walk->table, walk->keys_sql, &keys, &end);
+    const char *const table = wb_recording_tables[walk->kind].name;
+    enum wb_status status = read_keys(recording, table, walk->keys, &keys, &end);
     if (status == WB_OK) {
         bool sorted = true;
         for (size_t i = 1; i < keys.n && sorted; i++)
@@ -546,51 +649,46 @@ static enum wb_status walk_table(struct wb_recording *recording, struct walk *wa
         status = visit_rows(recording, walk, &keys, &n_lost);
         if (status == WB_OK && end == WB_OK && n_lost > 0) {
             end = WB_ERR_DATA;
-            if (!recording->shortened && is_news(recording, walk->table))
-                end = wb_fail_also(recording->why, WB_ERR_DATA,
-                                   "'%s': %zu row%s of table %s cannot be read", recording->path,
-                                   n_lost, n_lost == 1 ? "" : "s", walk->table);
+            if (!recording->shortened && is_news(recording, table))
+                end =
+                    wb_fail_also(recording->why, WB_ERR_DATA,
+                                 "'%s': %zu row%s of table %s %s damaged", recording->path, n_lost,
+                                 n_lost == 1 ? "" : "s", table, n_lost == 1 ? "is" : "are");
         }
     }
     free(keys.items);
     return status != WB_OK ? status : end;
 }
 
-static enum wb_status chunk_row(struct walk *walk, const struct key *key, sqlite3_stmt *statement)
+static enum wb_status chunk_row(struct walk *walk, const struct wb_recording_row *row)
 {
-    int64_t stored = sqlite3_column_int64(statement, 1);
-    struct wb_chunk chunk = {.stream = key->stream,
-                             .seq = key->seq,
-                             .t_ns = key->t_ns,
-                             .bytes = sqlite3_column_blob(statement, 0),
-                             .n = (size_t)sqlite3_column_bytes(statement, 0),
-                             .crc32 = (uint32_t)stored};
-    if (!chunk.bytes) {
-        chunk.bytes = (const uint8_t *)"";
-        chunk.n = 0;
-    }
-    chunk.intact = sqlite3_column_type(statement, 0) == SQLITE_BLOB && stored >= 0 &&
-                   stored == (int64_t)wb_recording_crc32(chunk.bytes, chunk.n);
+    const struct wb_recording_value *const v = row->values;
+    const struct wb_chunk chunk = {.stream = (int)v[0].integer,
+                                   .seq = v[1].integer,
+                                   .t_ns = v[2].integer,
+                                   .bytes = v[WB_RECORDING_CHUNK_BYTES].bytes,
+                                   .n = v[WB_RECORDING_CHUNK_BYTES].n,
+                                   .intact = row->intact};
     return walk->visit_chunk(walk->context, &chunk);
 }
 
-static enum wb_status event_row(struct walk *walk, const struct key *key, sqlite3_stmt *statement)
+static enum wb_status event_row(struct walk *walk, const struct wb_recording_row *row)
 {
-    struct wb_event event = {.t_ns = key->t_ns};
-    snprintf(event.kind, sizeof event.kind, "%s", text_of(statement, 0));
-    snprintf(event.text, sizeof event.text, "%s", text_of(statement, 1));
+    const struct wb_recording_value *const v = row->values;
+    struct wb_event event = {.t_ns = v[0].integer};
+    snprintf(event.kind, sizeof event.kind, "%s", text_of(&v[1]));
+    snprintf(event.text, sizeof event.text, "%s", text_of(&v[2]));
     return walk->visit_event(walk->context, &event);
 }
 
-static enum wb_status clock_row(struct walk *walk, const struct key *key, sqlite3_stmt *statement)
+static enum wb_status clock_row(struct walk *walk, const struct wb_recording_row *row)
 {
-    struct wb_clock_row row = {.stream = key->stream,
-                               .t_host_ns = key->t_ns,
-                               .rtt_ns = sqlite3_column_int64(statement, 1)};
-    row.t_device = sqlite3_column_type(statement, 0) == SQLITE_NULL
-                       ? (double)NAN
-                       : sqlite3_column_double(statement, 0);
-    return walk->visit_clock(walk->context, &row);
+    const struct wb_recording_value *const v = row->values;
+    const struct wb_clock_row clock = {.stream = (int)v[0].integer,
+                                       .t_host_ns = v[1].integer,
+                                       .t_device = v[2].real,
+                                       .rtt_ns = v[3].integer};
+    return walk->visit_clock(walk->context, &clock);
 }
 
 enum wb_status wb_recording_each_chunk(struct wb_recording *recording,
@@ -598,9 +696,9 @@ enum wb_status wb_recording_each_chunk(struct wb_recording *recording,
                                                                const struct wb_chunk *chunk),
                                        void *context)
 {
-    struct walk walk = {.table = "chunk",
-                        .keys_sql = "SELECT rowid, t_ns, stream, seq FROM chunk",
-                        .row_sql = "SELECT bytes, crc32 FROM chunk WHERE rowid = ?",
+    struct walk walk = {.kind = WB_RECORDING_CHUNK,
+                        .keys = "rowid, t_ns, stream, seq",
+                        .time = 2,
                         .row = chunk_row,
                         .visit_chunk = visit,
                         .context = context};
@@ -612,9 +710,9 @@ enum wb_status wb_recording_each_event(struct wb_recording *recording,
                                                                const struct wb_event *event),
                                        void *context)
 {
-    struct walk walk = {.table = "event",
-                        .keys_sql = "SELECT rowid, t_ns, 0, 0 FROM event",
-                        .row_sql = "SELECT kind, text FROM event WHERE rowid = ?",
+    struct walk walk = {.kind = WB_RECORDING_EVENT,
+                        .keys = "rowid, t_ns, 0, 0",
+                        .time = 0,
                         .row = event_row,
                         .visit_event = visit,
                         .context = context};
@@ -626,9 +724,9 @@ enum wb_status wb_recording_each_clock(struct wb_recording *recording,
                                                                const struct wb_clock_row *row),
                                        void *context)
 {
-    struct walk walk = {.table = "clock",
-                        .keys_sql = "SELECT rowid, t_host_ns, stream, 0 FROM clock",
-                        .row_sql = "SELECT t_device, rtt_ns FROM clock WHERE rowid = ?",
+    struct walk walk = {.kind = WB_RECORDING_CLOCK,
+                        .keys = "rowid, t_host_ns, stream, 0",
+                        .time = 1,
                         .row = clock_row,
                         .visit_clock = visit,
                         .context = context};

@@ -8,24 +8,28 @@
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include "base/file.h"
 #include "daq/recording_private.h"
 
 #define WB_LOG_DOMAIN "recording"
 
-/* A rowid table each: chunks are appended in order of arrival, so that the file is written and
- * read from front to back. `crc32` is zlib's CRC-32 of `bytes`. */
+/* Tables without any index: rows are appended in order of arrival, so that the file is written and
+ * read from front to back, and nothing stands in it twice. */
 static const char schema[] =
-    "CREATE TABLE meta(key TEXT PRIMARY KEY NOT NULL, value TEXT NOT NULL);"
-    "CREATE TABLE stream(id INTEGER PRIMARY KEY NOT NULL, role TEXT NOT NULL,"
-    " address TEXT NOT NULL, protocol TEXT NOT NULL, settings TEXT NOT NULL);"
-    "CREATE TABLE chunk(stream INTEGER NOT NULL REFERENCES stream(id), seq INTEGER NOT NULL,"
-    " t_ns INTEGER NOT NULL, bytes BLOB NOT NULL, crc32 INTEGER NOT NULL);"
-    "CREATE TABLE event(t_ns INTEGER NOT NULL, kind TEXT NOT NULL, text TEXT NOT NULL);"
-    "CREATE TABLE clock(stream INTEGER NOT NULL REFERENCES stream(id),"
-    " t_host_ns INTEGER NOT NULL, t_device REAL, rtt_ns INTEGER NOT NULL);";
+    "CREATE TABLE meta(n INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL,"
+    " crc32 INTEGER NOT NULL, chain INTEGER NOT NULL);"
+    "CREATE TABLE stream(n INTEGER PRIMARY KEY, id INTEGER NOT NULL, role TEXT NOT NULL,"
+    " address TEXT NOT NULL, protocol TEXT NOT NULL, settings TEXT NOT NULL,"
+    " crc32 INTEGER NOT NULL, chain INTEGER NOT NULL);"
+    "CREATE TABLE chunk(n INTEGER PRIMARY KEY, stream INTEGER NOT NULL, seq INTEGER NOT NULL,"
+    " t_ns INTEGER NOT NULL, bytes BLOB NOT NULL, crc32 INTEGER NOT NULL,"
+    " chain INTEGER NOT NULL);"
+    "CREATE TABLE event(n INTEGER PRIMARY KEY, t_ns INTEGER NOT NULL, kind TEXT NOT NULL,"
+    " text TEXT NOT NULL, crc32 INTEGER NOT NULL, chain INTEGER NOT NULL);"
+    "CREATE TABLE clock(n INTEGER PRIMARY KEY, stream INTEGER NOT NULL,"
+    " t_host_ns INTEGER NOT NULL, t_device REAL, rtt_ns INTEGER NOT NULL,"
+    " crc32 INTEGER NOT NULL, chain INTEGER NOT NULL);";
 
 enum wb_status wb_recording_fail(const struct wb_recording *recording, int code, const char *doing)
 {
@@ -65,11 +69,6 @@ enum wb_status wb_recording_fail(const struct wb_recording *recording, int code,
                         sqlite3_errstr(code), error ? ": " : "", error ? strerror(error) : "");
 }
 
-uint32_t wb_recording_crc32(const void *bytes, size_t n)
-{
-    return (uint32_t)crc32_z(crc32_z(0, NULL, 0), bytes, n);
-}
-
 enum wb_status wb_recording_remember_stream(struct wb_recording *recording,
                                             const struct wb_recording_stream *stream,
                                             const char *settings)
@@ -95,11 +94,9 @@ enum wb_status wb_recording_remember_stream(struct wb_recording *recording,
 
 void wb_recording_release(struct wb_recording *recording)
 {
-    sqlite3_finalize(recording->insert_chunk);
-    sqlite3_finalize(recording->insert_event);
-    sqlite3_finalize(recording->insert_clock);
-    sqlite3_finalize(recording->insert_meta);
-    sqlite3_finalize(recording->insert_stream);
+    for (int i = 0; i < WB_RECORDING_TABLES; i++)
+        sqlite3_finalize(recording->insert[i]);
+    wb_hash_destroy(recording->digest);
     sqlite3_close(recording->db);
     for (int i = 0; i < recording->n_streams; i++)
         free(recording->settings[i]);
@@ -148,20 +145,14 @@ static enum wb_status make_file(const char *path)
 
 static enum wb_status prepare(struct wb_recording *recording)
 {
-    static const struct {
-        size_t offset;
-        const char *sql;
-    } statements[] = {
-        {offsetof(struct wb_recording, insert_chunk), "INSERT INTO chunk VALUES(?,?,?,?,?)"},
-        {offsetof(struct wb_recording, insert_event), "INSERT INTO event VALUES(?,?,?)"},
-        {offsetof(struct wb_recording, insert_clock), "INSERT INTO clock VALUES(?,?,?,?)"},
-        {offsetof(struct wb_recording, insert_meta), "INSERT OR REPLACE INTO meta VALUES(?,?)"},
-        {offsetof(struct wb_recording, insert_stream), "INSERT INTO stream VALUES(?,?,?,?,?)"},
-    };
-    for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++) {
-        sqlite3_stmt **target = (sqlite3_stmt **)((char *)recording + statements[i].offset);
-        int code = sqlite3_prepare_v3(recording->db, statements[i].sql, -1,
-                                      SQLITE_PREPARE_PERSISTENT, target, NULL);
+    for (int i = 0; i < WB_RECORDING_TABLES; i++) {
+        const struct wb_recording_table *const table = &wb_recording_tables[i];
+        char sql[200];
+        /* Beside the row's values: its number, its checksum and the chain. */
+        snprintf(sql, sizeof sql, "INSERT INTO %s(n, %s, crc32, chain) VALUES(?, ?, ?%.*s)",
+                 table->name, table->columns, 3 * (int)strlen(table->types), ", ?, ?, ?, ?, ?");
+        const int code = sqlite3_prepare_v3(recording->db, sql, -1, SQLITE_PREPARE_PERSISTENT,
+                                            &recording->insert[i], NULL);
         if (code != SQLITE_OK)
             return wb_recording_fail(recording, code, "prepare the recording");
     }
@@ -201,6 +192,8 @@ enum wb_status wb_recording_create(struct wb_recording **out, const char *path)
         return wb_fail(WB_ERR_MEMORY, "out of memory for '%s'", path);
     }
     recording->writing = true;
+    recording->schema = WB_RECORDING_SCHEMA;
+    recording->digest = wb_hash_create();
     int code =
         sqlite3_open_v2(path, &recording->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL);
     enum wb_status status = WB_OK;
@@ -244,49 +237,85 @@ static enum wb_status begin(struct wb_recording *recording)
     return WB_OK;
 }
 
-/* Runs a prepared insert. A constraint is the caller's mistake (a stream declared twice) and spoils
- * nothing; everything else is latched. */
-static enum wb_status insert(struct wb_recording *recording, sqlite3_stmt *statement)
+static void bind(sqlite3_stmt *statement, int column, char type,
+                 const struct wb_recording_value *value)
 {
+    switch (type) {
+    case 'i':
+        sqlite3_bind_int64(statement, column, value->integer);
+        break;
+    case 'r':
+        sqlite3_bind_double(statement, column, value->real); /* NaN becomes NULL */
+        break;
+    case 't':
+        sqlite3_bind_text64(statement, column, value->bytes, value->n, SQLITE_STATIC, SQLITE_UTF8);
+        break;
+    default:
+        /* A NULL pointer would bind SQL NULL. */
+        sqlite3_bind_blob64(statement, column, value->n ? value->bytes : "", value->n,
+                            SQLITE_STATIC);
+        break;
+    }
+}
+
+/* Appends a row of any table. */
+static enum wb_status append_row(struct wb_recording *recording, enum wb_recording_kind kind,
+                                 const struct wb_recording_value *values)
+{
+    WB_TRY(begin(recording));
+    sqlite3_stmt *const statement = recording->insert[kind];
+    const char *const types = wb_recording_tables[kind].types;
+    const int n = (int)strlen(types);
+    const int64_t number = recording->n_rows + 1;
+    const uint32_t crc32 = wb_recording_row_crc32(kind, number, values);
+    const uint32_t chain = wb_recording_chain(recording->chain, crc32);
+    sqlite3_bind_int64(statement, 1, number);
+    for (int i = 0; i < n; i++)
+        bind(statement, 2 + i, types[i], &values[i]);
+    sqlite3_bind_int64(statement, n + 2, crc32);
+    sqlite3_bind_int64(statement, n + 3, chain);
     errno = 0;
-    int code = sqlite3_step(statement);
-    int error = errno;
+    const int code = sqlite3_step(statement);
+    const int error = errno;
     sqlite3_reset(statement);
     sqlite3_clear_bindings(statement);
     errno = error;
-    if (code == SQLITE_DONE)
-        return WB_OK;
-    if ((code & 0xff) == SQLITE_CONSTRAINT)
-        return wb_fail(WB_ERR_ARGUMENT, "'%s': a row breaks the schema: %s", recording->path,
-                       sqlite3_errmsg(recording->db));
-    return latch(recording, wb_recording_fail(recording, code, "write"));
+    if (code != SQLITE_DONE)
+        return latch(recording, wb_recording_fail(recording, code, "write"));
+    recording->n_rows = number;
+    recording->chain = chain;
+    wb_recording_digest_add(recording->digest, crc32);
+    return WB_OK;
+}
+
+static struct wb_recording_value integer(int64_t value)
+{
+    return (struct wb_recording_value){.integer = value, .bytes = ""};
+}
+
+static struct wb_recording_value text(const char *value)
+{
+    return (struct wb_recording_value){.bytes = value, .n = strlen(value)};
 }
 
 enum wb_status wb_recording_set_meta(struct wb_recording *recording, const char *key,
                                      const char *value)
 {
-    WB_TRY(begin(recording));
-    sqlite3_stmt *statement = recording->insert_meta;
-    sqlite3_bind_text(statement, 1, key, -1, SQLITE_STATIC);
-    sqlite3_bind_text(statement, 2, value, -1, SQLITE_STATIC);
-    return insert(recording, statement);
+    const struct wb_recording_value values[] = {text(key), text(value)};
+    return append_row(recording, WB_RECORDING_META, values);
 }
 
 enum wb_status wb_recording_add_stream(struct wb_recording *recording, enum wb_role role,
                                        const char *address, const char *protocol,
                                        const char *settings, int *id)
 {
-    WB_TRY(begin(recording));
     struct wb_recording_stream stream = {.id = recording->n_streams, .role = role};
     snprintf(stream.address, sizeof stream.address, "%s", address);
     snprintf(stream.protocol, sizeof stream.protocol, "%s", protocol);
-    sqlite3_stmt *statement = recording->insert_stream;
-    sqlite3_bind_int(statement, 1, stream.id);
-    sqlite3_bind_text(statement, 2, wb_role_name(role), -1, SQLITE_STATIC);
-    sqlite3_bind_text(statement, 3, stream.address, -1, SQLITE_STATIC);
-    sqlite3_bind_text(statement, 4, stream.protocol, -1, SQLITE_STATIC);
-    sqlite3_bind_text(statement, 5, settings ? settings : "", -1, SQLITE_STATIC);
-    WB_TRY(insert(recording, statement));
+    const struct wb_recording_value values[] = {integer(stream.id), text(wb_role_name(role)),
+                                                text(stream.address), text(stream.protocol),
+                                                text(settings ? settings : "")};
+    WB_TRY(append_row(recording, WB_RECORDING_STREAM, values));
     WB_TRY(wb_recording_remember_stream(recording, &stream, settings ? settings : ""));
     *id = stream.id;
     return WB_OK;
@@ -295,40 +324,26 @@ enum wb_status wb_recording_add_stream(struct wb_recording *recording, enum wb_r
 enum wb_status wb_recording_append_chunk(struct wb_recording *recording, int stream, int64_t seq,
                                          int64_t t_ns, const void *bytes, size_t n)
 {
-    WB_TRY(begin(recording));
     if (stream < 0 || stream >= recording->n_streams)
         return wb_fail(WB_ERR_ARGUMENT, "'%s' has no stream %d", recording->path, stream);
-    sqlite3_stmt *statement = recording->insert_chunk;
-    sqlite3_bind_int(statement, 1, stream);
-    sqlite3_bind_int64(statement, 2, seq);
-    sqlite3_bind_int64(statement, 3, t_ns);
-    /* A NULL pointer would bind SQL NULL. */
-    sqlite3_bind_blob64(statement, 4, n ? bytes : "", n, SQLITE_STATIC);
-    sqlite3_bind_int64(statement, 5, (sqlite3_int64)wb_recording_crc32(n ? bytes : "", n));
-    return insert(recording, statement);
+    const struct wb_recording_value values[] = {
+        integer(stream), integer(seq), integer(t_ns), {.bytes = n ? bytes : "", .n = n}};
+    return append_row(recording, WB_RECORDING_CHUNK, values);
 }
 
 enum wb_status wb_recording_append_event(struct wb_recording *recording, int64_t t_ns,
-                                         const char *kind, const char *text)
+                                         const char *kind, const char *what)
 {
-    WB_TRY(begin(recording));
-    sqlite3_stmt *statement = recording->insert_event;
-    sqlite3_bind_int64(statement, 1, t_ns);
-    sqlite3_bind_text(statement, 2, kind, -1, SQLITE_STATIC);
-    sqlite3_bind_text(statement, 3, text, -1, SQLITE_STATIC);
-    return insert(recording, statement);
+    const struct wb_recording_value values[] = {integer(t_ns), text(kind), text(what)};
+    return append_row(recording, WB_RECORDING_EVENT, values);
 }
 
 enum wb_status wb_recording_append_clock(struct wb_recording *recording, int stream,
                                          int64_t t_host_ns, double t_device, int64_t rtt_ns)
 {
-    WB_TRY(begin(recording));
-    sqlite3_stmt *statement = recording->insert_clock;
-    sqlite3_bind_int(statement, 1, stream);
-    sqlite3_bind_int64(statement, 2, t_host_ns);
-    sqlite3_bind_double(statement, 3, t_device); /* NaN becomes NULL */
-    sqlite3_bind_int64(statement, 4, rtt_ns);
-    return insert(recording, statement);
+    const struct wb_recording_value values[] = {
+        integer(stream), integer(t_host_ns), {.real = t_device, .bytes = ""}, integer(rtt_ns)};
+    return append_row(recording, WB_RECORDING_CLOCK, values);
 }
 
 enum wb_status wb_recording_flush(struct wb_recording *recording)
@@ -343,15 +358,18 @@ enum wb_status wb_recording_flush(struct wb_recording *recording)
     return WB_OK;
 }
 
-/* One plain file, readable from a read-only folder. */
+/* The last row is the digest of all before it: without it the end is missing. Then one plain file,
+ * readable from a read-only folder. */
 static enum wb_status finish_file(struct wb_recording *recording)
 {
-    char now[32];
+    char now[32], hex[WB_SHA256_TEXT];
     time_t seconds = time(NULL);
     struct tm utc;
     gmtime_r(&seconds, &utc);
     strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", &utc);
     WB_TRY(wb_recording_set_meta(recording, "closed", now));
+    wb_hash_so_far(recording->digest, hex);
+    WB_TRY(wb_recording_set_meta(recording, WB_RECORDING_DIGEST, hex));
     WB_TRY(wb_recording_flush(recording));
     int code =
         sqlite3_wal_checkpoint_v2(recording->db, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);

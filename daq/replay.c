@@ -262,7 +262,8 @@ static enum wb_status play_piece(struct replay *replay, struct file *file,
 static enum wb_status play_chunk(void *context, const struct wb_chunk *chunk)
 {
     struct replay *replay = context;
-    if (!wait_until_due(replay, chunk->t_ns)) {
+    /* The time of a damaged chunk is none to wait for. */
+    if (chunk->intact && !wait_until_due(replay, chunk->t_ns)) {
         replay->interrupted = true;
         return WB_ERR_TIMEOUT; /* ends the walk; wb_replay_run() turns it into WB_OK */
     }

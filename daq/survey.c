@@ -92,6 +92,11 @@ static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
         return WB_OK;
     }
     struct wb_survey_stream *stream = &survey->streams[i];
+    survey->damaged += !chunk->intact;
+    stream->damaged += !chunk->intact;
+    /* Of a damaged chunk only what was to be expected is believed. */
+    if (!chunk->intact && chunk->seq != looking->next_seq[i])
+        return WB_OK;
     check_order(stream, &looking->next_seq[i], chunk->seq);
     const double quiet = survey->chunks > 0 ? wb_survey_seconds(survey->last_ns, chunk->t_ns) : 0.0;
     if (survey->n_streams > 1 && quiet > wb_seconds_from_ns(SHORTEST_QUIET_NS) && quiet < 1e6)
@@ -101,10 +106,8 @@ static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
     check_time(survey, stream, chunk->t_ns);
     stream->chunks++;
     stream->bytes += chunk->n;
-    stream->damaged += !chunk->intact;
     survey->chunks++;
     survey->bytes += chunk->n;
-    survey->damaged += !chunk->intact;
     return WB_OK;
 }
 
@@ -235,6 +238,8 @@ enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct
     note_limit(recording, survey);
     WB_TRY(note_walk(survey, wb_recording_each_event(recording, look_at_event, &looking)));
     WB_TRY(note_walk(survey, wb_recording_each_clock(recording, look_at_clock, survey)));
+    WB_TRY(wb_recording_check(recording, &survey->check));
+    survey->broken |= survey->check.is_broken;
     return decode ? decode_all(recording, survey) : WB_OK;
 }
 
@@ -253,6 +258,7 @@ double wb_survey_seconds(int64_t from_ns, int64_t to_ns)
 /* --- what is wrong --- */
 
 #define FILE_PROBLEMS 9
+#define ROW_PROBLEMS 5
 #define STREAM_PROBLEMS 6
 
 static const char *plural(uint64_t n)
@@ -271,7 +277,7 @@ static bool stream_problem(const struct wb_survey *survey, int which, char *text
     case 1:
         snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s damaged (CRC-32)", role, stream->id,
                  stream->damaged, plural(stream->damaged));
-        return stream->damaged > 0;
+        return stream->damaged > 0 && !survey->check.is_protected; /* told with the other rows */
     case 2:
         snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s missing in %" PRIu64 " place%s",
                  role, stream->id, stream->missing, plural(stream->missing), stream->gaps,
@@ -297,6 +303,35 @@ static bool stream_problem(const struct wb_survey *survey, int which, char *text
     }
 }
 
+static bool row_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+{
+    const struct wb_recording_check *const check = &survey->check;
+    if (!check->is_protected)
+        return false;
+    switch (which) {
+    case 0:
+        snprintf(text, size, "%" PRIu64 " row%s damaged (CRC-32): %s", check->damaged,
+                 check->damaged == 1 ? " is" : "s are", check->damaged_where);
+        return check->damaged > 0;
+    case 1:
+        snprintf(text, size, "%" PRIu64 " row%s missing: %s", check->lost,
+                 check->lost == 1 ? " is" : "s are", check->lost_where);
+        return check->lost > 0;
+    case 2:
+        snprintf(text, size, "%" PRIu64 " row%s not in the place of writing: %s", check->displaced,
+                 check->displaced == 1 ? " is" : "s are", check->displaced_where);
+        return check->displaced > 0;
+    case 3:
+        snprintf(text, size, "%" PRIu64 " row%s behind the end that closing wrote",
+                 check->after_digest, check->after_digest == 1 ? " stands" : "s stand");
+        return check->after_digest > 0;
+    default:
+        snprintf(text, size, "the digest of all rows is not what closing wrote");
+        return check->is_closed && !check->digest_fits && check->damaged == 0 && check->lost == 0 &&
+               check->displaced == 0;
+    }
+}
+
 static bool file_problem(const struct wb_survey *survey, int which, char *text, size_t size)
 {
     switch (which) {
@@ -308,7 +343,9 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
         return !survey->closed;
     case 1:
         snprintf(text, size, "the database is damaged: not all rows can be read");
-        return survey->broken && !survey->cut_short;
+        /* Damaged rows are named one by one. */
+        return survey->broken && !survey->cut_short &&
+               (survey->check.is_broken || survey->check.damaged == 0);
     case 2:
         snprintf(text, size, "the recording lists no stream of any instrument");
         return survey->n_streams == 0;
@@ -341,15 +378,12 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
 
 bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size)
 {
-    while (*at < FILE_PROBLEMS + survey->n_streams * STREAM_PROBLEMS) {
-        int which = (*at)++;
-        if (which < FILE_PROBLEMS) {
-            if (file_problem(survey, which, text, size))
-                return true;
-            continue;
-        }
-        which -= FILE_PROBLEMS;
-        if (stream_problem(survey, which, text, size))
+    const int rows = FILE_PROBLEMS + ROW_PROBLEMS;
+    while (*at < rows + survey->n_streams * STREAM_PROBLEMS) {
+        const int which = (*at)++;
+        if (which < FILE_PROBLEMS ? file_problem(survey, which, text, size)
+            : which < rows        ? row_problem(survey, which - FILE_PROBLEMS, text, size)
+                                  : stream_problem(survey, which - rows, text, size))
             return true;
     }
     return false;

@@ -17,7 +17,7 @@ struct wb_survey_stream {
     enum wb_role role;
     bool is_file; /* a file of another program: its pieces come at times of no meaning */
     uint64_t chunks, bytes;
-    uint64_t damaged;  /* chunks whose CRC does not fit */
+    uint64_t damaged;  /* chunks whose CRC does not fit; their time and number do not count */
     uint64_t missing;  /* sequence numbers that are not there */
     uint64_t gaps;     /* places where they are missing */
     uint64_t repeated; /* sequence numbers that come twice or backwards */
@@ -32,7 +32,8 @@ struct wb_survey_stream {
 };
 
 struct wb_survey {
-    int n_streams; /* at most WB_SURVEY_STREAMS; further ones are not looked at */
+    struct wb_recording_check check; /* of every row */
+    int n_streams;                   /* at most WB_SURVEY_STREAMS; further ones are not looked at */
     struct wb_survey_stream streams[WB_SURVEY_STREAMS];
     uint64_t chunks, bytes, damaged, missing;
     uint64_t undeclared; /* chunks of streams that were never declared */
@@ -66,7 +67,8 @@ double wb_survey_duration(const struct wb_survey *survey);
 double wb_survey_seconds(int64_t from_ns, int64_t to_ns);
 
 /* Describes the next fault in one line, beginning with *at = 0; false when there is no further
- * one. `text` receives for example "mocap stream 1: 12 chunks missing in 2 places". */
+ * one. `text` receives for example "mocap stream 1: 12 chunks missing in 2 places"; 256 bytes hold
+ * it. */
 bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size);
 
 #endif

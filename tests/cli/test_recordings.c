@@ -111,7 +111,7 @@ static void verify_exits_3_when_something_is_missing_or_damaged(void **state)
     tool(bench, "verify $REC", &o);
     assert_int_equal(o.code, 3);
     assert_non_null(strstr(o.out, "NOT WHOLE"));
-    assert_non_null(strstr(o.out, "mocap stream 1: 1 chunk damaged"));
+    assert_non_null(strstr(o.out, "1 row is damaged (CRC-32): row "));
     assert_non_null(strstr(o.out, "load stream 0: 1 chunk missing in 1 place"));
     tool(bench, "verify --json $REC", &o);
     assert_int_equal(o.code, 3);
@@ -120,7 +120,9 @@ static void verify_exits_3_when_something_is_missing_or_damaged(void **state)
     const struct wb_json *first = wb_json_item(wb_json_get(root, "recordings"), 0);
     assert_int_equal(integer(first, "damaged_chunks"), 1);
     assert_int_equal(integer(first, "missing_chunks"), 1);
-    assert_int_equal(wb_json_length(wb_json_get(first, "problems")), 2);
+    assert_int_equal(integer(first, "damaged_rows"), 1);
+    assert_int_equal(integer(first, "missing_rows"), 1);
+    assert_int_equal(wb_json_length(wb_json_get(first, "problems")), 3);
     wb_json_destroy(root);
     tool(bench, "info $REC", &o);
     assert_int_equal(o.code, 3);

@@ -111,9 +111,9 @@ static inline void bench_make(const char *path, int64_t n)
 
 /* What a walk met. */
 struct bench_tally {
-    int64_t chunks, damaged, next[3];
+    int64_t chunks, damaged, missing, next[3];
     int64_t last_ns;
-    bool exact; /* every intact chunk was as written, in order, without a gap */
+    bool exact; /* every intact chunk was as written, and in order */
 };
 
 static inline enum wb_status bench_count(void *context, const struct wb_chunk *chunk)
@@ -123,17 +123,17 @@ static inline enum wb_status bench_count(void *context, const struct wb_chunk *c
     tally->chunks++;
     if (!chunk->intact) {
         tally->damaged++;
-        if (chunk->stream >= 0 && chunk->stream < 3)
-            tally->next[chunk->stream] = chunk->seq + 1;
         return WB_OK;
     }
-    if (chunk->stream < 0 || chunk->stream >= 3 || chunk->seq != tally->next[chunk->stream] ||
+    if (chunk->stream < 0 || chunk->stream >= 3 || chunk->seq < tally->next[chunk->stream] ||
         chunk->t_ns != bench_time(chunk->stream, chunk->seq) || chunk->t_ns < tally->last_ns ||
         chunk->n != bench_bytes(chunk->stream, chunk->seq, bytes) ||
-        memcmp(bytes, chunk->bytes, chunk->n) != 0)
+        memcmp(bytes, chunk->bytes, chunk->n) != 0) {
         tally->exact = false;
-    else
-        tally->next[chunk->stream]++;
+    } else {
+        tally->missing += chunk->seq - tally->next[chunk->stream];
+        tally->next[chunk->stream] = chunk->seq + 1;
+    }
     tally->last_ns = chunk->t_ns;
     return WB_OK;
 }
@@ -167,6 +167,7 @@ static inline struct wb_recording *bench_open(const char *path, bool complete, i
     assert_int_equal(wb_recording_is_complete(recording), complete);
     assert_int_equal(bench_walk(recording, &tally), WB_OK);
     assert_int_equal(tally.chunks, n_chunks);
+    assert_int_equal(tally.missing, 0);
     assert_true(tally.exact);
     return recording;
 }

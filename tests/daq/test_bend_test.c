@@ -119,7 +119,7 @@ static void meta_tells_who_what_and_how(void **state)
     assert_int_equal(wb_recording_open(&recording, fixture->output), WB_OK);
     static const struct {
         const char *key, *has;
-    } metas[] = {{"schema", "1"},
+    } metas[] = {{"schema", "2"},
                  {"tool_version", "."},
                  {"tool_revision", ""},
                  {"start_utc", "T"},

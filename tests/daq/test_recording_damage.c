@@ -207,7 +207,7 @@ static void what_is_no_recording_is_refused_with_the_reason(void **state)
     assert_non_null(strstr(bench->message, "is not a recording"));
 
     bench_make(bench->path, 1);
-    run_sql(bench->path, "PRAGMA user_version=2");
+    run_sql(bench->path, "PRAGMA user_version=3");
     assert_int_equal(wb_recording_open(&recording, bench->path), WB_ERR_UNSUPPORTED);
     assert_non_null(strstr(bench->message, "newer"));
     assert_int_equal(wb_recording_open(&recording, bench->folder), WB_ERR_IO);

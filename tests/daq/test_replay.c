@@ -1,10 +1,10 @@
 /* Replay: recorded bytes through the drivers give the samples that live bytes gave. */
-#include <sqlite3.h>
 
 #include "base/interrupt_private.h"
 #include "base/progress.h"
 #include "daq/drivers.h"
 #include "daq/replay.h"
+#include "tests/daq/old_recording.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
 
@@ -224,19 +224,12 @@ static void interrupt_ends_it_with_what_was_played(void **state)
     free(log);
 }
 
-static void run_sql(const char *path, const char *sql)
-{
-    sqlite3 *db = NULL;
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
-    sqlite3_close(db);
-}
-
 static void damaged_chunks_are_counted_remarked_and_left_out(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, true);
-    run_sql(bench->path, "UPDATE chunk SET crc32 = crc32 + 1 WHERE stream = 1 AND seq IN (5, 6)");
+    old_recording_run(bench->path,
+                      "UPDATE chunk SET crc32 = crc32 + 1 WHERE stream = 1 AND seq IN (5, 6)");
     struct wb_replay_counts counts;
     struct log *log = play(bench->path, 0.0, 0, &counts, WB_OK);
     assert_int_equal(counts.damaged_chunks, 2);
@@ -250,7 +243,8 @@ static void unknown_protocol_leaves_out_its_stream_only(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, true);
-    run_sql(bench->path, "UPDATE stream SET protocol = 'semaphore' WHERE id = 1");
+    old_recording_make(bench->path);
+    old_recording_run(bench->path, "UPDATE stream SET protocol = 'semaphore' WHERE id = 1");
     struct wb_replay_counts counts;
     free(play(bench->path, 0.0, 0, &counts, WB_OK));
     assert_non_null(strstr(bench->message, "semaphore"));

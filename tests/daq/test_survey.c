@@ -1,21 +1,12 @@
 /* The survey finds what is missing or damaged, and nothing else; the export writes what is there.
  */
-#include <sqlite3.h>
-
 #include "base/file.h"
 #include "daq/export.h"
 #include "daq/replay.h"
 #include "daq/survey.h"
+#include "tests/daq/old_recording.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
-
-static void run_sql(const char *path, const char *sql)
-{
-    sqlite3 *db = NULL;
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
-    sqlite3_close(db);
-}
 
 static void look(const char *path, bool decode, struct wb_survey *survey)
 {
@@ -58,7 +49,7 @@ static void whole_recording_has_no_problem(void **state)
     assert_close(wb_survey_duration(&survey), 1.0, 0.02);
 }
 
-static void each_kind_of_harm_is_found_and_named(void **state)
+static void each_kind_of_harm_to_an_old_recording_is_found_and_named(void **state)
 {
     static const struct {
         const char *sql, *words;
@@ -89,14 +80,86 @@ static void each_kind_of_harm_is_found_and_named(void **state)
     char good[128];
     snprintf(good, sizeof good, "%s/good.wbr", bench->folder);
     small_make(good, true);
+    old_recording_make(good);
     for (size_t i = 0; i < sizeof harms / sizeof harms[0]; i++) {
         bench_copy(good, bench->path);
-        run_sql(bench->path, harms[i].sql);
+        old_recording_run(bench->path, harms[i].sql);
         struct wb_survey survey;
         look(bench->path, false, &survey);
         expect_only(&survey, harms[i].words);
         unlink(bench->path);
     }
+}
+
+/* One of the problems found begins with these words. */
+static void expect_among(const struct wb_survey *survey, const char *words)
+{
+    char text[256], all[2048] = "";
+    for (int at = 0; wb_survey_problem(survey, &at, text, sizeof text);) {
+        if (strncmp(text, words, strlen(words)) == 0)
+            return;
+        snprintf(all + strlen(all), sizeof all - strlen(all), "\n%s", text);
+    }
+    fail_msg("found '%s', expected '%s'", all, words);
+}
+
+/* Rows 1 to 3 are the streams, 4 to 8 meta, then the chunks. */
+static void each_kind_of_harm_to_a_row_is_found_and_its_place_named(void **state)
+{
+    static const struct {
+        const char *sql, *words;
+    } harms[] = {
+        {"UPDATE chunk SET t_ns = t_ns + 1 WHERE n = 15",
+         "1 row is damaged (CRC-32): row 15 (stream 0, chunk 6)"},
+        {"UPDATE meta SET value = value || ' ' WHERE key = 'rig'",
+         "1 row is damaged (CRC-32): row 4 (meta 'rig')"},
+        {"UPDATE stream SET settings = 'x' WHERE id = 1",
+         "1 row is damaged (CRC-32): row 2 (stream)"},
+        {"UPDATE event SET text = 'x' WHERE kind = 'mark'", "1 row is damaged (CRC-32): row 136 "},
+        {"UPDATE clock SET rtt_ns = 0", "1 row is damaged (CRC-32): row 137 (clock)"},
+        {"UPDATE meta SET value = '0' WHERE key = 'digest'", "it was not closed properly"},
+        {"DELETE FROM event WHERE kind = 'mark'", "1 row is missing: row 136"},
+        {"DELETE FROM chunk WHERE n BETWEEN 20 AND 24 OR n = 40",
+         "6 rows are missing: rows 20 to 24, row 40"},
+        {"DELETE FROM meta WHERE key = 'digest'", "it was not closed properly"},
+        {"UPDATE chunk SET n = 1000 WHERE n = 50; UPDATE chunk SET n = 50 WHERE n = 51;"
+         "UPDATE chunk SET n = 51 WHERE n = 1000",
+         "2 rows are damaged (CRC-32): row 50 (stream 0, chunk 42)"},
+        {"UPDATE chunk SET chain = chain + 1 WHERE n = 60",
+         "2 rows are not in the place of writing: row 60 (stream "},
+        {"UPDATE chunk SET crc32 = crc32 + 1 WHERE n = 60", "1 row is damaged (CRC-32): row 60 "},
+        {"PRAGMA user_version = 1; UPDATE clock SET rtt_ns = 0", "1 row is damaged"},
+        {"DROP TABLE clock", "the database is damaged"},
+    };
+    struct bench *bench = *state;
+    char good[128];
+    snprintf(good, sizeof good, "%s/good.wbr", bench->folder);
+    small_make(good, true);
+    for (size_t i = 0; i < sizeof harms / sizeof harms[0]; i++) {
+        bench_copy(good, bench->path);
+        old_recording_run(bench->path, harms[i].sql);
+        struct wb_survey survey;
+        look(bench->path, false, &survey);
+        expect_among(&survey, harms[i].words);
+        assert_true(survey.check.is_protected);
+        unlink(bench->path);
+    }
+}
+
+static void old_recording_reads_the_same_and_is_partly_protected(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_survey survey, old;
+    small_make(bench->path, true);
+    look(bench->path, true, &survey);
+    old_recording_make(bench->path);
+    look(bench->path, true, &old);
+    assert_true(wb_survey_is_whole(&old));
+    assert_true(survey.check.is_protected);
+    assert_false(old.check.is_protected);
+    assert_int_equal(old.check.rows, survey.check.rows - 1); /* all but the digest */
+    assert_memory_equal(old.streams, survey.streams, sizeof old.streams);
+    assert_int_equal(old.events, survey.events);
 }
 
 /* The recording computer stood still, and all came later: nothing is lost. Refused lines before the
@@ -105,9 +168,11 @@ static void what_all_streams_share_is_no_harm(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, true);
-    run_sql(bench->path, "UPDATE chunk SET t_ns = t_ns + 5000000000 WHERE t_ns > "
-                         "(SELECT (min(t_ns) + max(t_ns)) / 2 FROM chunk);"
-                         "INSERT INTO event VALUES(1, 'refused', 'x'), (2, 'tare', '{}')");
+    old_recording_make(bench->path);
+    old_recording_run(bench->path,
+                      "UPDATE chunk SET t_ns = t_ns + 5000000000 WHERE t_ns > "
+                      "(SELECT (min(t_ns) + max(t_ns)) / 2 FROM chunk);"
+                      "INSERT INTO event VALUES(1, 'refused', 'x'), (2, 'tare', '{}')");
     struct wb_survey survey;
     look(bench->path, false, &survey);
     assert_true(survey.streams[1].longest_silence_ns > INT64_C(5000000000));
@@ -218,7 +283,9 @@ int main(void)
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
         FACT(whole_recording_has_no_problem),
         FACT(what_all_streams_share_is_no_harm),
-        FACT(each_kind_of_harm_is_found_and_named),
+        FACT(each_kind_of_harm_to_an_old_recording_is_found_and_named),
+        FACT(each_kind_of_harm_to_a_row_is_found_and_its_place_named),
+        FACT(old_recording_reads_the_same_and_is_partly_protected),
         FACT(export_writes_every_sample_with_units_and_says_virtual_rig),
         FACT(export_into_a_folder_that_is_not_there_fails_with_one_message),
     };
