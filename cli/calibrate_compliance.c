@@ -47,15 +47,6 @@ static const struct argp argp = {
            "Exit code 3: the bar is not stiff enough, or not known well enough, to tell.",
 };
 
-bool wb_calibrate_is_compliance(int argc, char **argv)
-{
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
-        if (strcmp(argv[i], "--compliance") == 0)
-            return true;
-    }
-    return false;
-}
-
 static void print_text(const struct wb_machine_compliance *c, const struct wb_test_info *info)
 {
     printf("%s, three-point bending, span %g mm, %d test%s\n", info->wire, info->length / WB_MM,

@@ -2,11 +2,6 @@
 #ifndef WB_CLI_CALIBRATE_COMPLIANCE_H
 #define WB_CLI_CALIBRATE_COMPLIANCE_H
 
-#include <stdbool.h>
-
-/* Whether --compliance is among the arguments. */
-bool wb_calibrate_is_compliance(int argc, char **argv);
-
 /* Runs the command; returns an exit code. */
 int wb_calibrate_compliance(int argc, char **argv);
 

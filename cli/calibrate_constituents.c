@@ -80,15 +80,6 @@ static const struct argp argp = {
            "friction.",
 };
 
-bool wb_calibrate_is_constituents(int argc, char **argv)
-{
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
-        if (strcmp(argv[i], "--constituents") == 0)
-            return true;
-    }
-    return false;
-}
-
 static enum wb_status read_material(const char *name, struct wb_material *material)
 {
     char path[WB_PATH];

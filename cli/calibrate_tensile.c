@@ -61,15 +61,6 @@ static const struct argp argp = {
            "needs --youngs-modulus-mpa. Exit code 3: Ludwik's law does not meet the curves.",
 };
 
-bool wb_calibrate_is_tensile(int argc, char **argv)
-{
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
-        if (strcmp(argv[i], "--tensile") == 0)
-            return true;
-    }
-    return false;
-}
-
 /* --- text --- */
 
 static void print_number(const char *name, const struct wb_tensile_number *number, double unit,

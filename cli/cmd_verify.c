@@ -18,10 +18,8 @@ static const struct argp argp = {
     .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr...",
     .doc = "Checks recordings (.wbr or .wbr.zst): the checksum and the place of every row, gaps in "
-           "the "
-           "sequence numbers, frames and lines that never came, drops noted while recording, "
-           "silent or "
-           "missing streams, and whether the file was closed properly.\v"
+           "the sequence numbers, frames and lines that never came, drops noted while recording, "
+           "silent or missing streams, and whether the file was closed properly.\v"
            "Exit codes: 0 all is there; 1 a file could not be opened; 3 something is missing or "
            "damaged, the rest is usable.",
 };
