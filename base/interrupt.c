@@ -4,12 +4,12 @@
 #include <signal.h>
 #include <stddef.h>
 
-static volatile sig_atomic_t flag;
+static volatile sig_atomic_t count;
 
 static void note_signal(int number)
 {
     (void)number;
-    flag = 1;
+    count = count + 1;
 }
 
 static void handle(const int *signals, size_t n, void (*handler)(int))
@@ -36,10 +36,15 @@ void wb_interrupt_guard(void)
 
 bool wb_interrupted(void)
 {
-    return flag != 0;
+    return count > 0;
+}
+
+int wb_interrupt_count(void)
+{
+    return count;
 }
 
 void wb_interrupt_set(bool interrupted)
 {
-    flag = interrupted;
+    count = interrupted;
 }

@@ -14,7 +14,8 @@ void wb_interrupt_install(void);
  * SIGINT does; SIGPIPE, SIGTSTP (Ctrl-Z), SIGTTIN and SIGTTOU are ignored. */
 void wb_interrupt_guard(void);
 
-/* True once a signal came. */
+/* True once a signal came; how many came. */
 bool wb_interrupted(void);
+int wb_interrupt_count(void);
 
 #endif

@@ -1,0 +1,73 @@
+/* Tables in memory as columns of one type each: what the library hands out and HDF5 files hold.
+ *
+ *     static const struct wb_column_kind kinds[] = {{"t_s", "s", WB_COLUMN_REAL}, ...};
+ *     wb_columns_init(&table, "load", kinds, 3);
+ *     wb_columns_add_row(&table, (union wb_cell[]){{.real = 0.1}, ...});
+ *
+ * Values are SI; a name ends in its unit.
+ */
+#ifndef WB_BASE_COLUMNS_H
+#define WB_BASE_COLUMNS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+enum wb_column_type {
+    WB_COLUMN_REAL,
+    WB_COLUMN_INTEGER,
+    WB_COLUMN_TEXT
+};
+
+struct wb_column_kind {
+    const char *name; /* "force_N" */
+    const char *unit; /* "N"; "1" of counts and flags; "" of a text */
+    enum wb_column_type type;
+};
+
+struct wb_column {
+    const struct wb_column_kind *kind;
+    union {
+        double *reals;     /* NaN: no value */
+        int64_t *integers; /* flags are 0 and 1 */
+        char **texts;
+    };
+};
+
+union wb_cell {
+    double real;
+    int64_t integer;
+    const char *text; /* copied */
+};
+
+enum {
+    WB_COLUMNS_MOST = 16
+};
+
+struct wb_columns {
+    const char *name; /* borrowed, as the kinds are */
+    int n;            /* columns, 1..WB_COLUMNS_MOST */
+    size_t n_rows, capacity;
+    bool failed; /* a row found no memory: no further row is added */
+    struct wb_column items[WB_COLUMNS_MOST];
+};
+
+/* An empty table. */
+void wb_columns_init(struct wb_columns *table, const char *name, const struct wb_column_kind *kinds,
+                     int n);
+
+/* Appends a row, a cell for each column. Without memory it sets `failed`, so that one check after
+ * the last row is enough. */
+void wb_columns_add_row(struct wb_columns *table, const union wb_cell *cells);
+
+/* WB_ERR_MEMORY with a message where a row found no memory. */
+WB_MUST_CHECK enum wb_status wb_columns_check(const struct wb_columns *table);
+
+/* The column of that name; NULL: there is none. */
+const struct wb_column *wb_columns_find(const struct wb_columns *table, const char *name);
+
+void wb_columns_release(struct wb_columns *table); /* accepts a zeroed one */
+
+#endif
