@@ -85,11 +85,6 @@ struct run {
 
 /* --- memory --- */
 
-int wb_bundle_run_planned_rows(const struct wb_bundle_model *model)
-{
-    return 1 + model->run.rows * (model->run.cycles == 0 ? 1 : 2 * model->run.cycles);
-}
-
 enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,
                                      const struct wb_bundle_model *model, int n_shape)
 {
@@ -98,7 +93,7 @@ enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
                        n_shape, MOST_SHAPE);
 
-    const size_t rows = (size_t)wb_bundle_run_planned_rows(model), n = (size_t)n_shape;
+    const size_t rows = (size_t)wb_bundle_model_rows(model), n = (size_t)n_shape;
     result->rows = calloc(rows, sizeof *result->rows);
     if (n_shape > 0) {
         result->shape_s = calloc(n, sizeof *result->shape_s);
@@ -859,10 +854,10 @@ enum wb_status wb_bundle_run(struct wb_bundle_result *result, const struct wb_bu
         r.options = *options;
     if (r.options.checkpoint_interval == 0.0)
         r.options.checkpoint_interval = usual_interval;
-    if (result->capacity < wb_bundle_run_planned_rows(model))
+    if (result->capacity < wb_bundle_model_rows(model))
         return wb_fail(WB_ERR_ARGUMENT,
                        "the result has room for %d rows: expected the %d of the test",
-                       result->capacity, wb_bundle_run_planned_rows(model));
+                       result->capacity, wb_bundle_model_rows(model));
     if (r.options.checkpoint)
         WB_TRY(wb_team_agree(wb_hash_file("/proc/self/exe", r.program)));
     begin_result(&r);

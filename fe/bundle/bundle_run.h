@@ -114,9 +114,6 @@ struct wb_bundle_observer {
     void *context;
 };
 
-/* The number of rows of a complete test. */
-int wb_bundle_run_planned_rows(const struct wb_bundle_model *model);
-
 /* Takes memory for a model's rows and n_shape equally spaced positions from 0 to its length (none,
  * or 2 to 1000). */
 WB_MUST_CHECK enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,

@@ -14,8 +14,6 @@
 #define WB_LOG_DOMAIN "bundle"
 
 static const double pi = 3.14159265358979323846;
-static const double n_mm2 = 1e-6;    /* N m2 of one N mm2 */
-static const double g_per_m = 1e-3;  /* kg/m of one g/m */
 static const double touching = 1e-9; /* m: wires so near to the tape touch it */
 static const double largest_poisson = 0.499;
 
@@ -235,25 +233,6 @@ static const char *const layouts[] = {"sleeve", "helix", NULL};
 static const char *const outlines[] = {"hull", "circle", NULL};
 static const char *const hands[] = {"right", "left", NULL};
 
-enum {
-    OUTLINE = 20000 /* places looked at round a tape */
-};
-
-static double circle_area(double diameter)
-{
-    return 0.25 * pi * diameter * diameter;
-}
-
-static double second_moment(double diameter)
-{
-    return pi / 64.0 * pow(diameter, 4.0);
-}
-
-static const struct wb_wire *wire_of(const struct wb_bundle_model *model, int wire)
-{
-    return &model->type[model->type_of[wire]];
-}
-
 const char *wb_bundle_model_arrangement(const struct wb_bundle_model *model)
 {
     return packings[model->arrangement];
@@ -268,6 +247,11 @@ int wb_bundle_model_count(const struct wb_bundle_model *model, int type)
 }
 
 /* --- meshes --- */
+
+int wb_bundle_model_rows(const struct wb_bundle_model *model)
+{
+    return 1 + model->run.rows * (model->run.cycles == 0 ? 1 : 2 * model->run.cycles);
+}
 
 const struct wb_bundle_mesh *wb_bundle_model_mesh(const struct wb_bundle_model *model,
                                                   const char *name)
@@ -304,244 +288,47 @@ int wb_bundle_model_tape_quads(const struct wb_bundle_model *model,
     return 6 * (int)ceil(model->tape.taping.circumference / (6.0 * width) - 1e-9);
 }
 
-/* --- homogenised --- */
+/* --- scaled --- */
 
-static double wires_circle(const struct wb_bundle_model *model)
+static void scale_circles(struct wb_packing *packing, double factor)
 {
-    return 2.0 * wb_packing_enclosing(model->packing.n, model->packing.wire).radius;
+    for (int i = 0; i < packing->n; i++) {
+        struct wb_packing_circle *const circle = &packing->wire[i];
+        circle->y *= factor;
+        circle->z *= factor;
+        circle->radius *= factor;
+    }
 }
 
-double wb_bundle_model_diameter(const struct wb_bundle_model *model)
+void wb_bundle_model_scale(struct wb_bundle_model *model, const struct wb_bundle_scales *scales)
 {
-    const double wires = wires_circle(model);
+    /* A pitch of its own makes circles as wide as the pitch, with wires of their own diameter in
+     * them: law and area are the wire's, levers and contacts the pitch's. */
+    const double factor = scales->diameter * scales->pitch;
+    struct wb_bundle_tape *const tape = &model->tape;
+
+    for (int i = 0; i < model->n_types; i++) {
+        model->type[i].conductor_diameter *= scales->diameter;
+        model->type[i].outer_diameter *= scales->diameter;
+    }
+    model->wire_gap *= factor;
+    scale_circles(&model->packing, factor);
     if (!model->has_tape)
-        return wires;
-    return wires + 2.0 * (model->tape.gap + wb_taping_thickness(&model->tape.taping));
-}
-
-double wb_bundle_model_wire_mass(const struct wb_bundle_model *model)
-{
-    double sum = 0.0;
-    for (int i = 0; i < model->packing.n; i++)
-        sum += wb_wire_mass_per_length(wire_of(model, i));
-    return sum;
-}
-
-double wb_bundle_model_tape_mass(const struct wb_bundle_model *model)
-{
-    if (!model->has_tape)
-        return 0.0;
-    const struct wb_taping *const taping = &model->tape.taping;
-    return model->tape.material.density * taping->layer_thickness * wb_taping_area(taping);
-}
-
-int wb_bundle_model_tape_wire(const struct wb_bundle_model *model, double y, double z,
-                              double offset)
-{
-    double least = model->tape.reach + touching;
-    int nearest = -1;
-
-    for (int w = 0; w < model->packing.n; w++) {
-        const struct wb_packing_circle *const wire = &model->packing.wire[w];
-        const double gap = hypot(y - wire->y, z - wire->z) - wire->radius - offset;
-        if (gap > least)
-            continue;
-        least = gap;
-        nearest = w;
-    }
-    return nearest;
-}
-
-double wb_bundle_model_density(const struct wb_bundle_model *model, double diameter)
-{
-    return (wb_bundle_model_wire_mass(model) + wb_bundle_model_tape_mass(model)) /
-           circle_area(diameter);
-}
-
-/* Sums of E A, and of E times the first and second moments about the axis, upwards and across. */
-struct stiffness {
-    double axial, first[2], second[2];
-};
-
-static struct stiffness tape_stiffness(const struct wb_bundle_tape *tape)
-{
-    const double thickness = wb_taping_thickness(&tape->taping);
-    const struct wb_hull_moments m = wb_hull_moments(&tape->hull, tape->gap + 0.5 * thickness);
-    const double E_t = tape->material.material.youngs_modulus * thickness;
-    return (struct stiffness){E_t * m.length, {E_t * m.y, E_t * m.z}, {E_t * m.yy, E_t * m.zz}};
-}
-
-static void add(struct stiffness *sum, const struct stiffness *part)
-{
-    sum->axial += part->axial;
-    for (int k = 0; k < 2; k++) {
-        sum->first[k] += part->first[k];
-        sum->second[k] += part->second[k];
-    }
-}
-
-/* About the line where bending makes no force along the bundle. */
-static double about_neutral(const struct stiffness *sum, int direction)
-{
-    return sum->second[direction] - sum->first[direction] * sum->first[direction] / sum->axial;
-}
-
-struct wb_bundle_rigidity wb_bundle_model_rigidity(const struct wb_bundle_model *model)
-{
-    struct wb_bundle_rigidity rigidity = {0};
-    struct stiffness all = {0};
-    for (int i = 0; i < model->packing.n; i++) {
-        const struct wb_wire *const wire = wire_of(model, i);
-        const double E = wire->material.youngs_modulus, A = circle_area(wire->outer_diameter);
-        const double own = E * second_moment(wire->outer_diameter);
-        const double y = model->packing.wire[i].y, z = model->packing.wire[i].z;
-        const struct stiffness part = {
-            E * A, {E * A * y, E * A * z}, {own + E * A * y * y, own + E * A * z * z}};
-        rigidity.wires += own;
-        add(&all, &part);
-    }
-    if (model->has_tape) {
-        const struct stiffness tape = tape_stiffness(&model->tape);
-        const bool is_tube = model->tape.taping.kind == WB_TAPING_SLEEVE;
-        for (int k = 0; k < 2 && is_tube; k++)
-            rigidity.tape[k] = about_neutral(&tape, k);
-        add(&all, &tape);
-    }
-    for (int k = 0; k < 2; k++) {
-        rigidity.sliding[k] = rigidity.wires + rigidity.tape[k];
-        rigidity.bonded[k] = about_neutral(&all, k);
-    }
-    return rigidity;
-}
-
-/* --- as a list --- */
-
-struct list {
-    struct wb_bundle_fact *facts;
-    int n;
-};
-
-static void tell(struct list *list, const char *key, const char *text, const char *unit,
-                 double value)
-{
-    if (list->n < WB_BUNDLE_MODEL_FACTS)
-        list->facts[list->n++] = (struct wb_bundle_fact){key, text, unit, value};
-}
-
-static void tell_packing(struct list *list, const struct wb_bundle_model *model)
-{
-    double area = 0.0;
-    for (int i = 0; i < model->packing.n; i++)
-        area += circle_area(wire_of(model, i)->outer_diameter);
-    tell(list, "outer_diameter_mm", "outer diameter", "mm",
-         wb_bundle_model_diameter(model) / WB_MM);
-    tell(list, "wires_circle_mm", "circle round the wires", "mm", wires_circle(model) / WB_MM);
-    tell(list, "filled_percent", "of that circle filled", "%",
-         area / circle_area(wires_circle(model)) / WB_PERCENT);
-    tell(list, "touching_pairs", "pairs of wires that touch", "",
-         wb_packing_pairs(&model->packing, touching, 0, NULL));
-}
-
-/* Wires that have a bond, and all bonds together round the outline, m. */
-static int find_bonds(const struct wb_bundle_model *model, double *length)
-{
-    const struct wb_hull *const hull = &model->tape.hull;
-    const double around = wb_hull_length(hull, 0.0);
-    bool bonded[WB_PACKING_MOST] = {false};
-    int n = 0, places = 0;
-
-    for (int i = 0; i < OUTLINE; i++) {
-        const struct wb_hull_point at = wb_hull_at(hull, 0.0, around * (i + 0.5) / OUTLINE);
-        const int wire = wb_bundle_model_tape_wire(model, at.y, at.z, 0.0);
-        if (wire < 0)
-            continue;
-        places++;
-        n += !bonded[wire];
-        bonded[wire] = true;
-    }
-    *length = around * places / OUTLINE;
-    return n;
-}
-
-static void tell_tape(struct list *list, const struct wb_bundle_model *model)
-{
-    const struct wb_bundle_tape *const tape = &model->tape;
-    const struct wb_taping *const taping = &tape->taping;
-    double bonded;
-    const int n = find_bonds(model, &bonded);
-    tell(list, "wires_at_tape", "wires that touch the tape", "", n);
-    tell(list, "bonded_length_mm", "of its outline bonded to them", "mm", bonded / WB_MM);
-    tell(list, "tape_length_round_mm", "round the middle of the tape", "mm",
-         taping->circumference / WB_MM);
-    tell(list, "tape_thickness_mm", "tape, all layers", "mm", wb_taping_thickness(taping) / WB_MM);
-    tell(list, "tape_layers", "layers on average", "", taping->layers);
-    if (taping->kind == WB_TAPING_SLEEVE)
         return;
-    tell(list, "tape_width_mm", "width of the tape", "mm", taping->helix.width / WB_MM);
-    tell(list, "tape_advance_mm", "advance in a turn", "mm", taping->advance / WB_MM);
-    tell(list, "tape_angle_degrees", "angle to the circumference", "degrees",
-         taping->angle / WB_DEGREE);
-}
-
-static void tell_mass(struct list *list, const struct wb_bundle_model *model)
-{
-    const double wires = wb_bundle_model_wire_mass(model), tape = wb_bundle_model_tape_mass(model);
-    tell(list, "mass_g_m", "mass per length", "g/m", (wires + tape) / g_per_m);
-    if (model->has_tape)
-        tell(list, "tape_mass_g_m", "of which tape", "g/m", tape / g_per_m);
-    tell(list, "density_g_cm3", "density, eq. 30", "g/cm3",
-         wb_bundle_model_density(model, wb_bundle_model_diameter(model)) / WB_G_PER_CM3);
-}
-
-static void tell_rigidity(struct list *list, const struct wb_bundle_model *model)
-{
-    const struct wb_bundle_rigidity r = wb_bundle_model_rigidity(model);
-    const double I = second_moment(wb_bundle_model_diameter(model));
-    tell(list, "wires_EI_N_mm2", "E I of the wires alone", "N mm2", r.wires / n_mm2);
-    tell(list, "sliding_EI_N_mm2", "E I, wires sliding", "N mm2", r.sliding[0] / n_mm2);
-    tell(list, "sliding_EI_across_N_mm2", "the same across", "N mm2", r.sliding[1] / n_mm2);
-    tell(list, "bonded_EI_N_mm2", "E I, wires bonded", "N mm2", r.bonded[0] / n_mm2);
-    tell(list, "bonded_EI_across_N_mm2", "the same across", "N mm2", r.bonded[1] / n_mm2);
-    tell(list, "sliding_youngs_modulus_MPa", "E over the outer diameter, wires sliding", "MPa",
-         r.sliding[0] / I / WB_MPA);
-    tell(list, "bonded_youngs_modulus_MPa", "E over the outer diameter, wires bonded", "MPa",
-         r.bonded[0] / I / WB_MPA);
-}
-
-static void tell_published(struct list *list, const struct wb_bundle_model *model)
-{
-    const struct wb_bundle_published *const p = &model->published;
-    tell(list, "published_outer_diameter_mm", "outer diameter, published", "mm",
-         p->outer_diameter / WB_MM);
-    tell(list, "published_density_g_cm3", "density, published", "g/cm3", p->density / WB_G_PER_CM3);
-    tell(list, "density_at_published_diameter_g_cm3", "density over the published diameter",
-         "g/cm3", wb_bundle_model_density(model, p->outer_diameter) / WB_G_PER_CM3);
-    if (!p->has_beam)
-        return;
-    const double E = p->beam.material.youngs_modulus;
-    tell(list, "published_youngs_modulus_MPa", "E, published", "MPa", E / WB_MPA);
-    tell(list, "published_EI_N_mm2", "E I, published", "N mm2",
-         E * wb_wire_second_moment(&p->beam) / n_mm2);
-}
-
-int wb_bundle_model_facts(const struct wb_bundle_model *model,
-                          struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS])
-{
-    struct list list = {facts, 0};
-    tell_packing(&list, model);
-    if (model->has_tape)
-        tell_tape(&list, model);
-    tell_mass(&list, model);
-    tell_rigidity(&list, model);
-    if (model->has_published)
-        tell_published(&list, model);
-    return list.n;
+    tape->gap *= factor;
+    scale_circles(&tape->hull.packing, factor);
+    for (int i = 0; i < tape->hull.n_arcs; i++)
+        tape->hull.arc[i].straight *= factor;
+    tape->taping.layer_thickness *= scales->thickness;
+    const double middle = tape->gap + 0.5 * wb_taping_thickness(&tape->taping);
+    tape->taping.circumference = wb_hull_length(&tape->hull, middle);
 }
 
 /* A model while it is read. */
 struct reader {
     struct wb_bundle_model *model;
     struct wb_model_file file;
+    const struct wb_bundle_variant *variant; /* NULL: none */
 };
 
 /* Values of a file's top level that the section is made of. */
@@ -619,6 +406,45 @@ static enum wb_status read_wires(struct reader *reader, const struct wb_config_n
         while (count-- > 0)
             m->type_of[m->packing.n++] = type;
     }
+    return WB_OK;
+}
+
+/* --- variants --- */
+
+/* The packing of so many wires where none is named. */
+static enum wb_bundle_packing natural_packing(int n)
+{
+    int less;
+    return wb_packing_whole(WB_PACKING_HEXAGON, n, &less) == n    ? WB_BUNDLE_HEXAGON
+           : wb_packing_whole(WB_PACKING_TRIANGLE, n, &less) == n ? WB_BUNDLE_TRIANGLE
+                                                                  : WB_BUNDLE_DENSEST;
+}
+
+/* Another number of wires, another packing. */
+static enum wb_status vary_wires(struct reader *reader, struct section_nodes *section)
+{
+    const struct wb_bundle_variant *const variant = reader->variant;
+    struct wb_bundle_model *const m = reader->model;
+    const bool is_repacked = variant && (variant->has_packing || variant->wires > 0);
+
+    if (!is_repacked)
+        return WB_OK;
+    if (variant->wires > 0 && m->n_types > 1)
+        return wb_config_refuse(reader->file.root, "wires",
+                                "variant %s: %d wires in place of these: of which kind? Only a "
+                                "file with wires of one kind has variants of their number",
+                                variant->name, variant->wires);
+    if (variant->wires > 0)
+        m->packing.n = variant->wires;
+    for (int i = 0; i < m->packing.n && variant->wires > 0; i++)
+        m->type_of[i] = 0;
+    m->arrangement = variant->has_packing ? (enum wb_bundle_packing)variant->packing
+                                          : natural_packing(m->packing.n);
+    m->settled = false;
+    section->has_settled = false;
+    section->places = NULL;
+    if (m->arrangement != WB_BUNDLE_DENSEST)
+        section->search = NULL;
     return WB_OK;
 }
 
@@ -817,6 +643,30 @@ static enum wb_status read_taping(const struct wb_config_node *map,
     return check_taping(map, settings);
 }
 
+static bool has_tape_of_its_own(const struct wb_bundle_variant *variant)
+{
+    return variant && (variant->layers > 0 || variant->lap > 0.0 || variant->has_outline);
+}
+
+static enum wb_status vary_taping(struct reader *reader, struct taping_settings *settings)
+{
+    const struct wb_bundle_variant *const variant = reader->variant;
+
+    if (!has_tape_of_its_own(variant))
+        return WB_OK;
+    if (settings->layout != 0)
+        return wb_config_refuse(reader->file.root, "taping",
+                                "variant %s: layers, overlap and outline vary of a sleeve only",
+                                variant->name);
+    if (variant->layers > 0)
+        settings->layers = variant->layers;
+    if (variant->has_outline) {
+        settings->outline = variant->outline;
+        settings->reach = variant->reach;
+    }
+    return WB_OK;
+}
+
 static enum wb_status read_tape_material(struct reader *reader, const char *name)
 {
     struct wb_material_file *const file = &reader->model->tape.material;
@@ -860,6 +710,10 @@ static enum wb_status read_tape(struct reader *reader, const char *name,
 {
     struct taping_settings settings = {.layers = 2, .lap = 0.5};
     if (*name == '\0') {
+        if (has_tape_of_its_own(reader->variant))
+            return wb_config_refuse(reader->file.root, "tape",
+                                    "variant %s is of a tape, and there is none",
+                                    reader->variant->name);
         if (map)
             return wb_config_refuse(reader->file.root, "taping", "there is no tape");
         return reader->model->tape.gap > 0.0
@@ -868,6 +722,7 @@ static enum wb_status read_tape(struct reader *reader, const char *name,
     }
     if (map)
         WB_TRY(read_taping(map, &settings));
+    WB_TRY(vary_taping(reader, &settings));
     WB_TRY(read_tape_material(reader, name));
     double *const poisson = &reader->model->tape.material.material.poissons_ratio;
     if (settings.has_poisson)
@@ -880,11 +735,17 @@ static enum wb_status read_tape(struct reader *reader, const char *name,
 
 /* --- section --- */
 
-static enum wb_status read_section(struct reader *reader, const struct section_nodes *section)
+static enum wb_status read_section(struct reader *reader, struct section_nodes *section)
 {
     WB_TRY(read_wires(reader, section->wires));
+    WB_TRY(vary_wires(reader, section));
     WB_TRY(read_packing(reader, section));
-    return read_tape(reader, section->tape, section->taping);
+    WB_TRY(read_tape(reader, section->tape, section->taping));
+    if (reader->variant && reader->variant->lap > 0.0) {
+        const struct wb_bundle_scales scales = {1.0, 1.0, 1.0 / (1.0 - reader->variant->lap)};
+        wb_bundle_model_scale(reader->model, &scales);
+    }
+    return WB_OK;
 }
 
 /* --- interface --- */
@@ -1035,7 +896,7 @@ static enum wb_status read_published(struct reader *reader, const struct wb_conf
 
 /* Values that are nodes until the others are known. */
 struct root_nodes {
-    const struct wb_config_node *interface, *ends, *meshes, *run, *loads, *published;
+    const struct wb_config_node *interface, *ends, *meshes, *run, *loads, *published, *uncertainty;
 };
 
 static enum wb_status read_nodes(struct reader *reader, const struct root_nodes *nodes)
@@ -1048,7 +909,12 @@ static enum wb_status read_nodes(struct reader *reader, const struct root_nodes 
         WB_TRY(read_meshes(reader, nodes->meshes));
     WB_TRY(read_run(reader, nodes->run));
     WB_TRY(read_loads(&m->loads, nodes->loads));
-    return nodes->published ? read_published(reader, nodes->published) : WB_OK;
+    if (nodes->published)
+        WB_TRY(read_published(reader, nodes->published));
+    m->has_uncertainty = nodes->uncertainty != NULL;
+    return m->has_uncertainty
+               ? wb_bundle_uncertainty_read(&m->uncertainty, nodes->uncertainty, outlines)
+               : WB_OK;
 }
 
 static enum wb_status read_root(struct reader *reader)
@@ -1077,6 +943,7 @@ static enum wb_status read_root(struct reader *reader)
         WB_CONFIG_OPTIONAL_NODE("run", &nodes.run),
         WB_CONFIG_NODE("loads", &nodes.loads),
         WB_CONFIG_OPTIONAL_NODE("published", &nodes.published),
+        WB_CONFIG_OPTIONAL_NODE("uncertainty", &nodes.uncertainty),
     };
     keys[0].present = &section.has_settled;
 
@@ -1108,10 +975,16 @@ static enum wb_status read_all(struct reader *reader, const char *path)
 
 enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *path)
 {
+    return wb_bundle_model_read_variant(model, path, NULL);
+}
+
+enum wb_status wb_bundle_model_read_variant(struct wb_bundle_model *model, const char *path,
+                                            const struct wb_bundle_variant *variant)
+{
     struct wb_bundle_model *const read = calloc(1, sizeof *read);
     if (!read)
         return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
-    struct reader reader = {.model = read};
+    struct reader reader = {.model = read, .variant = variant};
     const enum wb_status status = read_all(&reader, path);
     wb_model_file_close(&reader.file);
     if (status == WB_OK)

@@ -27,6 +27,7 @@
 #include "base/setting.h"
 #include "base/status.h"
 #include "fe/material/material_file.h"
+#include "fe/model/bundle_uncertainty.h"
 #include "fe/model/hull.h"
 #include "fe/model/packing.h"
 #include "fe/model/taping.h"
@@ -160,6 +161,8 @@ struct wb_bundle_model {
     struct wb_bundle_loads loads;
     bool has_published;
     struct wb_bundle_published published;
+    bool has_uncertainty;
+    struct wb_bundle_uncertainty uncertainty;
 };
 
 /* Rows of the settings of struct wb_bundle_run, in the order of this enumeration; of friction (a
@@ -186,6 +189,27 @@ void wb_bundle_model_identify(const struct wb_bundle_model *model, char sha256[W
 
 /* Reads a bundle with its wires and its tape. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *path);
+
+/* The same with what is another in a variant; NULL: nothing. A variant that the file cannot have (a
+ * number of wires of several kinds, layers without tape or of a helix) is refused. */
+WB_MUST_CHECK enum wb_status wb_bundle_model_read_variant(struct wb_bundle_model *model,
+                                                          const char *path,
+                                                          const struct wb_bundle_variant *variant);
+
+/* Factors on a section's lengths. */
+struct wb_bundle_scales {
+    double diameter; /* of the wires; places, gaps and tape go with it, but not the tape's thickness
+                      */
+    double pitch;    /* of places and tape alone: wires count as touching as before */
+    double thickness; /* of the tape */
+};
+
+/* Scales a model whose tape, if any, is a sleeve. */
+void wb_bundle_model_scale(struct wb_bundle_model *model, const struct wb_bundle_scales *scales);
+
+/* The number of rows of a complete test: the first, those of the loading, and with cycles those of
+ * each way. */
+int wb_bundle_model_rows(const struct wb_bundle_model *model);
 
 /* The mesh of that name; NULL when there is none (no message). */
 const struct wb_bundle_mesh *wb_bundle_model_mesh(const struct wb_bundle_model *model,

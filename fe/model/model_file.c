@@ -14,7 +14,7 @@ static const double largest_poisson = 0.499;
  * computed: a dataset stays that of its model when somebody writes it down. */
 static bool is_provenance(const char *line, size_t n)
 {
-    static const char *const keys[] = {"origin:", "intervals:"};
+    static const char *const keys[] = {"origin:", "intervals:", "uncertainty:"};
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         if (n >= strlen(keys[i]) && memcmp(line, keys[i], strlen(keys[i])) == 0)
             return true;

@@ -16,7 +16,7 @@ struct wb_model_file {
     const struct wb_config_node *root;
     const char *path;     /* borrowed */
     char folder[WB_PATH]; /* of `path`: files are looked for there, too */
-    struct wb_text texts; /* of all files so far, without `origin` and `intervals` */
+    struct wb_text texts; /* of all files so far, without `origin`, `intervals`, `uncertainty` */
 };
 
 /* Reads the model's file; wb_model_file_close() releases also one that could not be opened. */

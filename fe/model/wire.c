@@ -6,6 +6,11 @@
 #include "base/units.h"
 #include "fe/material/law_file.h"
 
+#define COPPER_MODULUS 120e9
+#define STIFFEST_JACKET                                                                            \
+    10e9 /* filled polymers; PVC and cross-linked polyethylene are below 3 GPa */
+#define FINEST_STRAND 0.05e-3
+
 static enum wb_status read_properties(const struct wb_config_node *node, struct wb_wire *wire)
 {
     struct wb_material *m = &wire->material;
@@ -72,12 +77,51 @@ enum wb_status wb_wire_parse(const char *text, const char *origin, struct wb_wir
     return take(config, wire);
 }
 
+/* pi d^4 / 64 */
+static double second_moment(double diameter)
+{
+    return M_PI * pow(diameter, 4.0) / 64.0;
+}
+
 double wb_wire_second_moment(const struct wb_wire *wire)
 {
-    return M_PI * pow(wire->outer_diameter, 4.0) / 64.0;
+    return second_moment(wire->outer_diameter);
 }
 
 double wb_wire_mass_per_length(const struct wb_wire *wire)
 {
     return wire->density * M_PI * wire->outer_diameter * wire->outer_diameter / 4.0;
+}
+
+/* E I of strands that slide freely, with the least metal that such wires have. */
+static double least_rigidity(const struct wb_wire *wire)
+{
+    const double conductor = wire->conductor_diameter, outer = wire->outer_diameter;
+    const double metal = conductor > 0.0 ? 0.75 * M_PI / 4.0 * conductor * conductor
+                                         : M_PI / 4.0 / 6.0 * outer * outer;
+    return COPPER_MODULUS * metal * FINEST_STRAND * FINEST_STRAND / 16.0;
+}
+
+static double largest_rigidity(const struct wb_wire *wire)
+{
+    /* A bundle has no single conductor: copper as far as it reaches. */
+    const double conductor =
+        wire->conductor_diameter > 0.0 ? wire->conductor_diameter : wire->outer_diameter;
+    const double inner = second_moment(conductor);
+    return COPPER_MODULUS * inner + STIFFEST_JACKET * (second_moment(wire->outer_diameter) - inner);
+}
+
+void wb_wire_stiffness_bounds(const struct wb_wire *wire, double length, double *lowest,
+                              double *highest)
+{
+    const double bending = 3.0 / pow(length, 3.0);
+    *lowest = bending * least_rigidity(wire);
+    *highest = bending * largest_rigidity(wire);
+    if (wire->has_properties) {
+        const double known = bending * wb_wire_second_moment(wire);
+        const double one = wire->material.youngs_modulus;
+        const double other = wire->law.material.youngs_modulus;
+        *lowest = known * fmin(one, other) / 3.0;
+        *highest = known * fmax(one, other) * 3.0;
+    }
 }

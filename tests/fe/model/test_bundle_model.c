@@ -653,7 +653,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    static const char *const names[] = {"model.yaml", "thin.yaml", "plain.yaml"};
+    static const char *const names[] = {"model.yaml", "thin.yaml", "plain.yaml", "thick.yaml"};
     (void)state;
     for (size_t i = 0; i < WB_COUNT(names); i++) {
         char path[128];
@@ -697,6 +697,164 @@ static void every_setting_is_part_of_the_identity(void **unused)
     }
 }
 
+/* --- what is uncertain, variants, scales --- */
+
+static const char known_badly[] = "name: b\n"
+                                  "wires: [{wire: type3, count: 7}]\n"
+                                  "packing: hexagon\n"
+                                  "tape: tape\n"
+                                  "length_mm: 114\n"
+                                  "interface: {cohesive_stiffness_N_mm3: 30, friction: 0.2}\n"
+                                  "loads: {weight: true}\n";
+static const char how_badly[] =
+    "uncertainty:\n"
+    "  wires:\n"
+    "    - {wire: type3, properties: p.yaml}\n"
+    "  diameter_percent: 1\n"
+    "  pitch_percent: 2\n"
+    "  length_percent: 3\n"
+    "  tape: {thickness_percent: 4, youngs_modulus_percent: 5, yield_stress_percent: 6}\n"
+    "  cohesive_stiffness_N_mm3: [10, 40]\n"
+    "  friction: [0.1, 0.4]\n"
+    "  scenarios:\n"
+    "    - {name: a, layers: 3, overlap_percent: 50}\n"
+    "    - {name: b, packing: densest, wires: 5, outline: circle, bond_reach_mm: 0.01}\n";
+
+static void every_key_of_uncertainty_is_read_and_changes_no_identity(void **unused)
+{
+    (void)unused;
+    char text[4096], path[WB_PATH], sha256[WB_SHA256_TEXT];
+    read_text(known_badly);
+    assert_false(model.has_uncertainty);
+    snprintf(sha256, sizeof sha256, "%s", model.sha256);
+    snprintf(text, sizeof text, "%s%s", known_badly, how_badly);
+    read_text(text);
+    assert_string_equal(model.sha256, sha256);
+    const struct wb_bundle_uncertainty *const u = &model.uncertainty;
+    assert_true(model.has_uncertainty && u->has_tape && u->has_cohesion && u->has_friction);
+    snprintf(path, sizeof path, "%s/p.yaml", folder);
+    assert_int_equal(u->n_wires, 1);
+    assert_string_equal(u->wire[0].properties, path);
+    assert_false(u->wire[0].has_tolerances);
+    assert_int_equal(u->wire[0].line, 10);
+    const double values[] = {u->diameter,       u->pitch,        u->length,
+                             u->tape_thickness, u->tape_modulus, u->tape_yield_stress};
+    for (int i = 0; i < 6; i++)
+        assert_close(values[i], 0.01 * (i + 1), 1e-15);
+    assert_close_relative(u->cohesion[0], 10e9, 1e-12);
+    assert_close_relative(u->cohesion[1], 40e9, 1e-12);
+    assert_close(u->friction[0], 0.1, 0.0);
+    assert_close(u->friction[1], 0.4, 0.0);
+    assert_int_equal(u->n_scenarios, 2);
+    assert_int_equal(u->scenario[0].layers, 3);
+    assert_close(u->scenario[0].lap, 0.5, 1e-15);
+    assert_int_equal(u->scenario[1].packing, WB_BUNDLE_DENSEST);
+    assert_int_equal(u->scenario[1].wires, 5);
+    assert_true(u->scenario[1].has_outline && u->scenario[1].outline == 1);
+    assert_close(u->scenario[1].reach, 1e-5, 1e-18);
+}
+
+static void wrong_uncertainties_are_refused(void **unused)
+{
+    (void)unused;
+    static const char *const wrong[][3] = {
+        {"pitch_percent: 2", "pitch_percent: 51", "model.yaml:12: pitch_percent"},
+        {"friction: [0.1, 0.4]", "friction: [0.4, 0.1]", "expected [least, largest]"},
+        {"friction: [0.1, 0.4]", "friction: [0, 0.1]", "friction"},
+        {"name: b, packing", "name: a, packing", "another scenario is called a"},
+        {", bond_reach_mm: 0.01", "", "belong together"},
+        {"packing: densest", "packing: places", "packing"},
+        {"- {wire: type3, properties: p.yaml}", "- {wire: type3}", "expected properties: FILE"},
+    };
+    char whole[4096], text[4096];
+    snprintf(whole, sizeof whole, "%s%s", known_badly, how_badly);
+    for (size_t i = 0; i < WB_COUNT(wrong); i++) {
+        replace(text, whole, wrong[i][0], wrong[i][1]);
+        assert_int_not_equal(try_text(text), WB_OK);
+        assert_message(wrong[i][2]);
+    }
+}
+
+static enum wb_status try_variant(const struct wb_bundle_variant *variant)
+{
+    keep_messages();
+    const enum wb_status status = wb_bundle_model_read_variant(&model, model_path, variant);
+    release_messages();
+    return status;
+}
+
+static void variants_are_read_as_if_the_file_said_so(void **unused)
+{
+    (void)unused;
+    const struct wb_bundle_variant more = {.name = "more", .wires = 12, .layers = 1};
+    const struct wb_bundle_variant round = {
+        .name = "round", .has_outline = true, .outline = 1, .reach = 1e-5};
+    char text[4096];
+    read_text(known_badly);
+    assert_int_equal(try_variant(&more), WB_OK);
+    const double diameter = wb_bundle_model_diameter(&model);
+    assert_int_equal(model.packing.n, 12);
+    assert_int_equal(model.arrangement, WB_BUNDLE_TRIANGLE);
+    replace(text, known_badly, "count: 7", "count: 12");
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "taping: {layout: sleeve, layers: 1}\n");
+    char own[4096];
+    replace(own, text, "packing: hexagon", "packing: triangle");
+    read_text(own);
+    assert_close(wb_bundle_model_diameter(&model), diameter, 0.0);
+    read_text(known_badly);
+    assert_int_equal(try_variant(&round), WB_OK);
+    assert_true(model.tape.round);
+    assert_close(model.tape.reach, 1e-5, 0.0);
+    /* What a variant cannot change. */
+    replace(text, known_badly, "tape: tape\n", "");
+    read_text(text);
+    assert_int_not_equal(try_variant(&round), WB_OK);
+    assert_message("variant round is of a tape");
+    replace(text, known_badly, "[{wire: type3, count: 7}]",
+            "[{wire: type3, count: 4}, {wire: type2, count: 3}]");
+    read_text(text);
+    assert_int_not_equal(try_variant(&more), WB_OK);
+    assert_message("of which kind");
+}
+
+/* The same as a file with thicker wires; a pitch of its own leaves the wires as they are. */
+static void a_scaled_model_is_that_of_a_file_with_other_lengths(void **unused)
+{
+    (void)unused;
+    const struct wb_bundle_scales wider = {1.1, 1.0, 1.5}, apart = {1.0, 1.02, 1.0};
+    static struct wb_bundle_model scaled;
+    char text[4096];
+    read_text(known_badly);
+    scaled = model;
+    wb_bundle_model_scale(&scaled, &wider);
+    write_beside("thick.yaml", "name: thick\nconductor_diameter_mm: 1.1\nouter_diameter_mm: 1.54\n"
+                               "density_g_cm3: 4.97\nproperties: {source: x, youngs_modulus_MPa: "
+                               "4528, poissons_ratio: 0.39, yield_stress_MPa: 4.52, "
+                               "strength_coefficient_MPa: 1327, hardening_exponent: 0.90}\n");
+    replace(text, known_badly, "wire: type3", "wire: thick.yaml");
+    char thicker[4096];
+    replace(thicker, text, "tape: tape\n", "tape: tape\ntaping: {layout: sleeve, layers: 3}\n");
+    read_text(thicker);
+    const struct wb_bundle_rigidity one = wb_bundle_model_rigidity(&scaled),
+                                    other = wb_bundle_model_rigidity(&model);
+    assert_close_relative(one.wires, other.wires, 1e-12);
+    assert_close_relative(one.bonded[0], other.bonded[0], 1e-12);
+    assert_close_relative(wb_bundle_model_tape_mass(&scaled), wb_bundle_model_tape_mass(&model),
+                          1e-12);
+    assert_close_relative(wb_bundle_model_diameter(&scaled), wb_bundle_model_diameter(&model),
+                          1e-12);
+    read_text(known_badly);
+    const double tape = wb_bundle_model_tape_mass(&model);
+    const struct wb_bundle_rigidity before = wb_bundle_model_rigidity(&model);
+    const double EA_y2 = before.bonded[0] - before.wires - before.tape[0];
+    wb_bundle_model_scale(&model, &apart);
+    const struct wb_bundle_rigidity after = wb_bundle_model_rigidity(&model);
+    assert_close_relative(after.wires, before.wires, 1e-12);
+    assert_close_relative(after.bonded[0] - after.wires - after.tape[0], 1.02 * 1.02 * EA_y2, 1e-9);
+    assert_true(wb_bundle_model_tape_mass(&model) > 1.018 * tape);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -725,6 +883,10 @@ int main(void)
         cmocka_unit_test(wrong_interfaces_are_refused),
         cmocka_unit_test(wrong_runs_are_refused),
         cmocka_unit_test(the_checksum_covers_the_files_it_names),
+        cmocka_unit_test(every_key_of_uncertainty_is_read_and_changes_no_identity),
+        cmocka_unit_test(wrong_uncertainties_are_refused),
+        cmocka_unit_test(variants_are_read_as_if_the_file_said_so),
+        cmocka_unit_test(a_scaled_model_is_that_of_a_file_with_other_lengths),
         cmocka_unit_test(every_setting_is_part_of_the_identity),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,0 +1,625 @@
+#include "fe/section/section_beam.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "section"
+
+enum {
+    DEFAULT_ELEMENTS = 24,
+    DEFAULT_FIBRES = 8
+};
+
+static const double default_slip_stiffness = 30.0 * WB_MPA; /* N/mm2 */
+
+int wb_section_beam_index(const struct wb_section_beam *beam, int station, int unknown)
+{
+    if (station == 0)
+        return -1;
+    const bool is_cap = station == beam->n_elements && beam->model->tip == WB_BUNDLE_TIP_CAPPED;
+    return (station - 1) * beam->per_station + (is_cap && unknown > 0 ? 1 : unknown);
+}
+
+static void add(const struct wb_section_beam *beam, double *to, int station, int unknown,
+                double amount)
+{
+    const int index = wb_section_beam_index(beam, station, unknown);
+    if (index >= 0)
+        to[index] += amount;
+}
+
+static double bend(const struct wb_section_beam *beam, int element)
+{
+    return (wb_section_beam_value(beam, beam->u, element + 1, 0) -
+            wb_section_beam_value(beam, beam->u, element, 0)) /
+           beam->h;
+}
+
+/* --- evaluation --- */
+
+static void evaluate_wire(struct wb_section_beam *beam, int element, int w)
+{
+    const struct wb_section_wire *const wire = &beam->layout.wires[w];
+    const size_t at = (size_t)element * (size_t)beam->layout.n_wires + (size_t)w;
+    const size_t history = at * (size_t)beam->history;
+    struct wb_fibres_response *const r = &beam->response[at];
+    const double kappa = bend(beam, element);
+    const double strain = (wb_section_beam_value(beam, beam->u, element + 1, wire->unknown) -
+                           wb_section_beam_value(beam, beam->u, element, wire->unknown)) /
+                          beam->h;
+
+    wb_fibres_respond(beam->fibres[wire->type], strain - wire->y * kappa, kappa,
+                      beam->wires_before + history, beam->wires_after + history, r);
+    const double moment = wire->weight * (r->M - wire->y * r->N);
+    add(beam, beam->residual, element + 1, wire->unknown, wire->weight * r->N);
+    add(beam, beam->residual, element, wire->unknown, -wire->weight * r->N);
+    add(beam, beam->residual, element + 1, 0, moment);
+    add(beam, beam->residual, element, 0, -moment);
+    beam->axial = fmax(beam->axial, fabs(r->N));
+}
+
+static struct wb_section_beam_wall find_wall(const struct wb_section_beam *beam, int element,
+                                             const struct wb_section_segment *segment)
+{
+    const double *const u = beam->u;
+    const double a0 = wb_section_beam_value(beam, u, element, segment->unknown[0]);
+    const double b0 = wb_section_beam_value(beam, u, element, segment->unknown[1]);
+    const double a1 = wb_section_beam_value(beam, u, element + 1, segment->unknown[0]);
+    const double b1 = wb_section_beam_value(beam, u, element + 1, segment->unknown[1]);
+    struct wb_section_beam_wall w = {
+        .e = 0.5 * (a1 + b1 - a0 - b0) / beam->h - segment->y * bend(beam, element),
+        .g = 0.5 * (b0 + b1 - a0 - a1) / segment->length,
+    };
+    const double e = w.e, g = w.g, g2 = g * g;
+
+    if (beam->sheet.is_tube) {
+        w.strain[0] = e;
+        w.strain[2] = g;
+        w.by_e[0] = w.by_g[2] = 1.0;
+        return w;
+    }
+    w.strain[0] = e - 0.5 * e * e - 0.25 * g2;
+    w.strain[1] = 0.25 * g2 - 0.25 * g2 * g2;
+    w.strain[2] = g * (1.0 - 0.5 * g2);
+    w.by_e[0] = 1.0 - e;
+    w.by_g[0] = -0.5 * g;
+    w.by_g[1] = 0.5 * g - g * g2;
+    w.by_g[2] = 1.0 - 1.5 * g2;
+    return w;
+}
+
+/* Places of a segment's unknowns (b_1, b_2 and theta at an element's first and second station), and
+ * derivatives of e and g by them. */
+enum {
+    SEGMENT = 6
+};
+
+struct segment_shape {
+    int station[SEGMENT], unknown[SEGMENT];
+    double e[SEGMENT], g[SEGMENT];
+};
+
+static struct segment_shape shape_of(const struct wb_section_beam *beam, int element,
+                                     const struct wb_section_segment *segment)
+{
+    const double along = 0.5 / beam->h, across = 0.5 / segment->length;
+    const double turn = segment->y / beam->h;
+    const int a = segment->unknown[0], b = segment->unknown[1], i = element, k = element + 1;
+    return (struct segment_shape){
+        .station = {i, i, i, k, k, k},
+        .unknown = {0, a, b, 0, a, b},
+        .e = {turn, -along, -along, -turn, along, along},
+        .g = {0.0, -across, across, 0.0, -across, across},
+    };
+}
+
+static void evaluate_segment(struct wb_section_beam *beam, int element, int s)
+{
+    const struct wb_section_segment *const segment = &beam->layout.segments[s];
+    const size_t at = (size_t)element * (size_t)beam->layout.n_segments + (size_t)s;
+    const struct wb_section_beam_wall wall = find_wall(beam, element, segment);
+    const struct segment_shape shape = shape_of(beam, element, segment);
+    const double volume = wb_section_beam_volume(beam, segment);
+    const double *const stress = beam->wall[at].stress;
+    double by_e = 0.0, by_g = 0.0;
+
+    beam->walls[at] = wall;
+    wb_section_sheet_respond(&beam->sheet, wall.strain, &beam->tape_before[at],
+                             &beam->tape_after[at], &beam->wall[at]);
+    for (int i = 0; i < 3; i++) {
+        by_e += stress[i] * wall.by_e[i];
+        by_g += stress[i] * wall.by_g[i];
+    }
+    for (int i = 0; i < SEGMENT; i++)
+        add(beam, beam->residual, shape.station[i], shape.unknown[i],
+            volume * (by_e * shape.e[i] + by_g * shape.g[i]));
+    beam->tape_plastic = fmax(beam->tape_plastic, beam->tape_after[at].accumulated);
+}
+
+/* Friction of a contact before its limit is looked at. */
+static double sticking(const struct wb_section_beam *beam, int station, int contact)
+{
+    const struct wb_section_contact *const c = &beam->layout.contacts[contact];
+    const size_t at = (size_t)(station - 1) * (size_t)beam->layout.n_contacts + (size_t)contact;
+    const double slip = wb_section_beam_value(beam, beam->u, station, c->unknown[0]) -
+                        wb_section_beam_value(beam, beam->u, station, c->unknown[1]);
+    const double slip_before =
+        wb_section_beam_value(beam, beam->committed, station, c->unknown[0]) -
+        wb_section_beam_value(beam, beam->committed, station, c->unknown[1]);
+    return beam->friction_before[at] + beam->settings.slip_stiffness *
+                                           wb_section_beam_share(beam, station) *
+                                           (slip - slip_before);
+}
+
+static double limit_of(const struct wb_section_beam *beam, size_t contact)
+{
+    return beam->settings.is_glued ? (double)INFINITY : beam->limit[contact];
+}
+
+/* Whether wires that touch hold each other at all. */
+static bool has_friction(const struct wb_section_beam *beam)
+{
+    return beam->friction > 0.0 || beam->settings.is_glued;
+}
+
+static void evaluate_station(struct wb_section_beam *beam, int station)
+{
+    const struct wb_section_layout *const layout = &beam->layout;
+
+    for (int i = 0; i < layout->n_bonds; i++) {
+        const struct wb_section_bond *const bond = &layout->bonds[i];
+        const double force = bond->stiffness * wb_section_beam_share(beam, station) *
+                             (wb_section_beam_value(beam, beam->u, station, bond->unknown[0]) -
+                              wb_section_beam_value(beam, beam->u, station, bond->unknown[1]));
+        add(beam, beam->residual, station, bond->unknown[0], force);
+        add(beam, beam->residual, station, bond->unknown[1], -force);
+    }
+    for (int i = 0; i < layout->n_contacts && has_friction(beam); i++) {
+        const struct wb_section_contact *const c = &layout->contacts[i];
+        const size_t at = (size_t)(station - 1) * (size_t)layout->n_contacts + (size_t)i;
+        if (c->unknown[0] == c->unknown[1])
+            continue;
+        const double trial = sticking(beam, station, i), limit = limit_of(beam, at);
+        const double force = fmax(-limit, fmin(limit, trial));
+        beam->friction_now[at] = force;
+        beam->n_slipping += force != trial;
+        add(beam, beam->residual, station, c->unknown[0], c->weight * force);
+        add(beam, beam->residual, station, c->unknown[1], -c->weight * force);
+    }
+}
+
+/* Places of the axis, and the direction of a strand. */
+static void find_tip(struct wb_section_beam *beam, const struct wb_section_beam_loads *loads)
+{
+    struct wb_section_beam_tip tip = {.vertical = loads->vertical, .weight = loads->weight};
+
+    for (int m = 0; m < beam->n_elements; m++) {
+        const double turned = 0.5 * (wb_section_beam_value(beam, beam->u, m, 0) +
+                                     wb_section_beam_value(beam, beam->u, m + 1, 0));
+        const double rise = beam->h * sin(turned);
+        tip.height += beam->h * (tip.y + 0.5 * rise);
+        tip.x += beam->h * cos(turned);
+        tip.y += rise;
+    }
+    const double sine = loads->strand > 0.0 ? (beam->model->length - tip.x) / loads->strand : 0.0;
+    tip.slope = sine / sqrt(1.0 - sine * sine);
+    beam->tip = tip;
+}
+
+/* The vertical force that acts through an element: the tip's less the weight beyond its middle. */
+static double vertical_through(const struct wb_section_beam *beam,
+                               const struct wb_section_beam_loads *loads, int element)
+{
+    return loads->vertical - loads->weight * beam->h * (beam->n_elements - element - 0.5);
+}
+
+static void evaluate_loads(struct wb_section_beam *beam, const struct wb_section_beam_loads *loads)
+{
+    for (int m = 0; m < beam->n_elements; m++) {
+        const double turned = 0.5 * (wb_section_beam_value(beam, beam->u, m, 0) +
+                                     wb_section_beam_value(beam, beam->u, m + 1, 0));
+        const double up = 0.5 * beam->h * cos(turned), in = -0.5 * beam->h * sin(turned);
+        const double lever = up + beam->tip.slope * in;
+        const double weight = vertical_through(beam, loads, m) - loads->vertical;
+        const double work = loads->vertical * lever + weight * up;
+        for (int end = 0; end < 2; end++) {
+            add(beam, beam->residual, m + end, 0, -work);
+            add(beam, beam->lever, m + end, 0, lever);
+            add(beam, beam->draw, m + end, 0, in);
+        }
+    }
+}
+
+/* --- pressure --- */
+
+/* What presses the wires of an element in the plane; the root of its sum of squares, N/m. */
+static double find_load(struct wb_section_beam *beam, int element)
+{
+    const struct wb_section_layout *const layout = &beam->layout;
+    const double kappa = bend(beam, element);
+    double mean[2] = {0.0, 0.0};
+
+    memset(beam->load, 0, 2 * (size_t)layout->n_wires * sizeof *beam->load);
+    for (int w = 0; w < layout->n_wires; w++)
+        beam->load[2 * w] =
+            kappa * beam->response[(size_t)element * (size_t)layout->n_wires + (size_t)w].N;
+    for (int i = 0; i < layout->n_pulls; i++) {
+        const struct wb_section_pull *const pull = &layout->pulls[i];
+        const struct wb_section_segment *const segment = &layout->segments[pull->segment];
+        const double *const stress =
+            beam->wall[(size_t)element * (size_t)layout->n_segments + (size_t)pull->segment].stress;
+        const double axial = stress[0] * segment->thickness * segment->length;
+        const double hoop = stress[1] * segment->thickness;
+        beam->load[2 * pull->wire] += pull->share * axial * kappa + hoop * pull->y;
+        beam->load[2 * pull->wire + 1] += hoop * pull->z;
+    }
+    for (int w = 0; w < layout->n_wires; w++)
+        for (int k = 0; k < 2; k++)
+            mean[k] += layout->wires[w].weight * beam->load[2 * w + k] / layout->n_packing;
+    if (layout->is_mirrored)
+        mean[1] = 0.0;
+    for (int w = 0; w < layout->n_wires; w++)
+        for (int k = 0; k < 2; k++)
+            beam->load[2 * w + k] -= mean[k];
+    double sum = 0.0;
+    for (int w = 0; w < layout->n_wires; w++)
+        for (int k = 0; k < 2; k++)
+            sum += layout->wires[w].weight * beam->load[2 * w + k] * beam->load[2 * w + k];
+    return sqrt(sum);
+}
+
+/* Limits of friction, from the pressure of the elements beside a station. */
+static void find_limits(struct wb_section_beam *beam)
+{
+    const int n = beam->layout.n_contacts;
+    double largest = 0.0;
+
+    beam->missing = 0.0;
+    if (!(beam->friction > 0.0) || n == 0)
+        return;
+    for (int m = 0; m < beam->n_elements; m++) {
+        largest = fmax(largest, find_load(beam, m));
+        beam->missing =
+            fmax(beam->missing, wb_section_pressure_solve(beam->pressure, m, beam->load,
+                                                          beam->force + (size_t)m * (size_t)n));
+    }
+    beam->missing = largest > 0.0 ? beam->missing / largest : 0.0;
+    for (int station = 1; station <= beam->n_elements; station++) {
+        const double *const here = beam->force + (size_t)(station - 1) * (size_t)n;
+        const double *const next = station < beam->n_elements ? here + n : here;
+        double *const limit = beam->limit + (size_t)(station - 1) * (size_t)n;
+        for (int i = 0; i < n; i++)
+            limit[i] =
+                beam->friction * wb_section_beam_share(beam, station) * 0.5 * (here[i] + next[i]);
+    }
+}
+
+/* --- whole --- */
+
+void wb_section_beam_evaluate(struct wb_section_beam *beam,
+                              const struct wb_section_beam_loads *loads, bool press)
+{
+    const size_t size = (size_t)beam->n_unknowns * sizeof(double);
+
+    memset(beam->residual, 0, size);
+    memset(beam->lever, 0, size);
+    memset(beam->draw, 0, size);
+    beam->axial = beam->tape_plastic = 0.0;
+    beam->n_slipping = 0;
+    find_tip(beam, loads);
+    for (int m = 0; m < beam->n_elements; m++) {
+        for (int w = 0; w < beam->layout.n_wires; w++)
+            evaluate_wire(beam, m, w);
+        for (int s = 0; s < beam->layout.n_segments; s++)
+            evaluate_segment(beam, m, s);
+    }
+    if (press)
+        find_limits(beam);
+    for (int station = 1; station <= beam->n_elements; station++)
+        evaluate_station(beam, station);
+    evaluate_loads(beam, loads);
+}
+
+/* --- tangent --- */
+
+enum {
+    MOST = SEGMENT
+};
+
+/* Adds a part's matrix (row-major, n x n) at unknowns of stations. Those that share an index (the
+ * cap's, or an image's) go together. */
+static void add_matrix(struct wb_section_beam *beam, int n, const int *station, const int *unknown,
+                       double matrix[MOST][MOST])
+{
+    int index[MOST];
+    double packed[MOST * MOST];
+
+    for (int i = 0; i < n; i++) {
+        index[i] = wb_section_beam_index(beam, station[i], unknown[i]);
+        for (int k = 0; k < i && index[i] >= 0; k++) {
+            if (index[k] != index[i])
+                continue;
+            for (int j = 0; j < n; j++)
+                matrix[k][j] += matrix[i][j];
+            for (int j = 0; j < n; j++)
+                matrix[j][k] += matrix[j][i];
+            index[i] = -1;
+        }
+    }
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++)
+            packed[i * n + k] = matrix[i][k];
+    wb_layered_add(beam->matrix, n, index, packed);
+}
+
+static void add_wire(struct wb_section_beam *beam, int element, int w)
+{
+    const struct wb_section_wire *const wire = &beam->layout.wires[w];
+    const struct wb_fibres_response *const r =
+        &beam->response[(size_t)element * (size_t)beam->layout.n_wires + (size_t)w];
+    const double scale = wire->weight / beam->h, y = wire->y;
+    const double axial = scale * r->D11, both = scale * (r->D12 - y * r->D11);
+    const double bending = scale * (r->D22 - 2.0 * y * r->D12 + y * y * r->D11);
+    const double block[2][2] = {{bending, both}, {both, axial}};
+    const int station[] = {element, element, element + 1, element + 1};
+    const int unknown[] = {0, wire->unknown, 0, wire->unknown};
+    double matrix[MOST][MOST];
+
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++)
+            matrix[i][k] = (i / 2 == k / 2 ? 1.0 : -1.0) * block[i % 2][k % 2];
+    add_matrix(beam, 4, station, unknown, matrix);
+}
+
+static void add_segment(struct wb_section_beam *beam, int element, int s)
+{
+    const struct wb_section_segment *const segment = &beam->layout.segments[s];
+    const size_t at = (size_t)element * (size_t)beam->layout.n_segments + (size_t)s;
+    const struct wb_section_sheet_response *const r = &beam->wall[at];
+    const struct wb_section_beam_wall wall = beam->walls[at];
+    const struct segment_shape shape = shape_of(beam, element, segment);
+    const double volume = wb_section_beam_volume(beam, segment);
+    double ee = 0.0, eg = 0.0, gg = 0.0;
+    double matrix[MOST][MOST];
+
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            ee += wall.by_e[i] * r->tangent[i][k] * wall.by_e[k];
+            eg += wall.by_e[i] * r->tangent[i][k] * wall.by_g[k];
+            gg += wall.by_g[i] * r->tangent[i][k] * wall.by_g[k];
+        }
+    if (!beam->sheet.is_tube) {
+        const double g = wall.g;
+        ee -= r->stress[0];
+        gg += -0.5 * r->stress[0] + (0.5 - 3.0 * g * g) * r->stress[1] - 3.0 * g * r->stress[2];
+    }
+    for (int i = 0; i < SEGMENT; i++)
+        for (int k = 0; k < SEGMENT; k++)
+            matrix[i][k] = volume * (ee * shape.e[i] * shape.e[k] + gg * shape.g[i] * shape.g[k] +
+                                     eg * (shape.e[i] * shape.g[k] + shape.g[i] * shape.e[k]));
+    add_matrix(beam, SEGMENT, shape.station, shape.unknown, matrix);
+}
+
+static void add_spring(struct wb_section_beam *beam, int station, const int unknown[2],
+                       double stiffness)
+{
+    const int stations[] = {station, station};
+    double matrix[MOST][MOST] = {{stiffness, -stiffness}, {-stiffness, stiffness}};
+    add_matrix(beam, 2, stations, unknown, matrix);
+}
+
+static void add_station(struct wb_section_beam *beam, int station)
+{
+    const struct wb_section_layout *const layout = &beam->layout;
+
+    for (int i = 0; i < layout->n_bonds; i++)
+        add_spring(beam, station, layout->bonds[i].unknown,
+                   layout->bonds[i].stiffness * wb_section_beam_share(beam, station));
+    for (int i = 0; i < layout->n_contacts && has_friction(beam); i++) {
+        const struct wb_section_contact *const c = &layout->contacts[i];
+        const size_t at = (size_t)(station - 1) * (size_t)layout->n_contacts + (size_t)i;
+        if (c->unknown[0] != c->unknown[1] &&
+            fabs(sticking(beam, station, i)) <= limit_of(beam, at))
+            add_spring(beam, station, c->unknown,
+                       c->weight * beam->settings.slip_stiffness *
+                           wb_section_beam_share(beam, station));
+    }
+}
+
+bool wb_section_beam_factor(struct wb_section_beam *beam, const struct wb_section_beam_loads *loads)
+{
+    struct wb_layered_pivots pivots;
+
+    wb_layered_clear(beam->matrix);
+    for (int m = 0; m < beam->n_elements; m++) {
+        const int station[] = {m, m + 1}, unknown[] = {0, 0};
+        const double turned = 0.5 * (wb_section_beam_value(beam, beam->u, m, 0) +
+                                     wb_section_beam_value(beam, beam->u, m + 1, 0));
+        const double bent = 0.25 * beam->h *
+                            (vertical_through(beam, loads, m) * sin(turned) +
+                             loads->vertical * beam->tip.slope * cos(turned));
+        double matrix[MOST][MOST] = {{bent, bent}, {bent, bent}};
+        for (int w = 0; w < beam->layout.n_wires; w++)
+            add_wire(beam, m, w);
+        for (int s = 0; s < beam->layout.n_segments; s++)
+            add_segment(beam, m, s);
+        add_matrix(beam, 2, station, unknown, matrix);
+        add_station(beam, m + 1);
+    }
+    wb_layered_factor(beam->matrix, &pivots);
+    return !pivots.singular;
+}
+
+/* --- states --- */
+
+void wb_section_beam_revert(struct wb_section_beam *beam)
+{
+    memcpy(beam->u, beam->committed, (size_t)beam->n_unknowns * sizeof(double));
+}
+
+void wb_section_beam_commit(struct wb_section_beam *beam)
+{
+    const size_t size = (size_t)beam->n_unknowns * sizeof(double);
+    const size_t m = (size_t)beam->n_elements, n = (size_t)beam->layout.n_contacts;
+    const size_t wires = m * (size_t)beam->layout.n_wires;
+    const size_t segments = m * (size_t)beam->layout.n_segments;
+
+    memcpy(beam->before, beam->committed, size);
+    memcpy(beam->committed, beam->u, size);
+    memcpy(beam->wires_before, beam->wires_after, wires * (size_t)beam->history * sizeof(double));
+    memcpy(beam->response_before, beam->response, wires * sizeof *beam->response);
+    memcpy(beam->tape_before, beam->tape_after, segments * sizeof *beam->tape_before);
+    memcpy(beam->friction_before, beam->friction_now, m * n * sizeof(double));
+    for (size_t i = 0; i < segments; i++) {
+        memcpy(beam->stress_before[i], beam->wall[i].stress, sizeof beam->stress_before[i]);
+        memcpy(beam->strain_before[i], beam->walls[i].strain, sizeof beam->strain_before[i]);
+    }
+    beam->tip_before = beam->tip;
+}
+
+void wb_section_beam_place(const struct wb_section_beam *beam, double s, double *x, double *y,
+                           double *angle)
+{
+    *x = *y = *angle = 0.0;
+    for (int m = 0; m < beam->n_elements; m++) {
+        const double from = wb_section_beam_value(beam, beam->u, m, 0),
+                     to = wb_section_beam_value(beam, beam->u, m + 1, 0);
+        const double part = fmin(fmax(s / beam->h - m, 0.0), 1.0);
+        *x += part * beam->h * cos(0.5 * (from + to));
+        *y += part * beam->h * sin(0.5 * (from + to));
+        *angle += part * (to - from);
+    }
+}
+
+/* --- creation --- */
+
+void wb_section_beam_destroy(struct wb_section_beam *beam)
+{
+    if (!beam)
+        return;
+    for (int i = 0; i < WB_BUNDLE_MODEL_TYPES; i++)
+        wb_fibres_destroy(beam->fibres[i]);
+    wb_section_pressure_destroy(beam->pressure);
+    wb_layered_destroy(beam->matrix);
+    wb_section_layout_release(&beam->layout);
+    wb_memory_release(&beam->memory);
+    free(beam);
+}
+
+static enum wb_status make_materials(struct wb_section_beam *beam)
+{
+    const struct wb_bundle_model *const model = beam->model;
+
+    for (int i = 0; i < model->n_types; i++) {
+        const struct wb_wire *const type = &model->type[i];
+        struct wb_section section;
+        struct wb_material elastic = type->material;
+        elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+        if (beam->settings.is_elastic)
+            WB_TRY(wb_section_init_circle(&section, type->outer_diameter, &elastic,
+                                          beam->settings.n_fibres));
+        else
+            WB_TRY(wb_section_init_law(&section, type->outer_diameter, &type->law,
+                                       beam->settings.n_fibres));
+        const enum wb_status status = wb_fibres_create(&beam->fibres[i], &section);
+        wb_section_release(&section);
+        WB_TRY(status);
+        const int size = (int)wb_fibres_history_size(beam->fibres[i]);
+        beam->history = size > beam->history ? size : beam->history;
+    }
+    if (!model->has_tape)
+        return WB_OK;
+    beam->tape_material = model->tape.material.material;
+    if (beam->settings.is_elastic)
+        beam->tape_material.hardening = WB_HARDENING_NONE_ELASTIC;
+    return wb_section_sheet_init(&beam->sheet, &beam->tape_material, model->tape.round);
+}
+
+static enum wb_status make_matrix(struct wb_section_beam *beam)
+{
+    const int n = beam->n_elements;
+    int *const first = calloc((size_t)n + 1, sizeof *first);
+    if (!first)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d elements", n);
+    for (int i = 0; i < n; i++)
+        first[i] = i * beam->per_station;
+    first[n] = beam->n_unknowns;
+    const enum wb_status status = wb_layered_create(&beam->matrix, n, first, first, true);
+    free(first);
+    return status;
+}
+
+static enum wb_status take_memory(struct wb_section_beam *beam)
+{
+    struct wb_memory *const memory = &beam->memory;
+    const size_t n = (size_t)beam->n_unknowns, m = (size_t)beam->n_elements;
+    const size_t wires = m * (size_t)beam->layout.n_wires;
+    const size_t segments = m * (size_t)beam->layout.n_segments;
+    const size_t contacts = m * (size_t)beam->layout.n_contacts;
+    const size_t history = wires * (size_t)beam->history;
+    double **const vectors[] = {&beam->u,        &beam->committed, &beam->before,
+                                &beam->residual, &beam->lever,     &beam->draw};
+    double **const lists[] = {&beam->force, &beam->limit, &beam->friction_before,
+                              &beam->friction_now};
+
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        *vectors[i] = wb_memory_take(memory, n, sizeof(double));
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+        *lists[i] = wb_memory_take(memory, contacts, sizeof(double));
+    beam->load = wb_memory_take(memory, 2 * (size_t)beam->layout.n_wires, sizeof(double));
+    beam->wires_before = wb_memory_take(memory, history, sizeof(double));
+    beam->wires_after = wb_memory_take(memory, history, sizeof(double));
+    beam->response = wb_memory_take(memory, wires, sizeof *beam->response);
+    beam->tape_before = wb_memory_take(memory, segments, sizeof *beam->tape_before);
+    beam->tape_after = wb_memory_take(memory, segments, sizeof *beam->tape_after);
+    beam->wall = wb_memory_take(memory, segments, sizeof *beam->wall);
+    beam->walls = wb_memory_take(memory, segments, sizeof *beam->walls);
+    beam->response_before = wb_memory_take(memory, wires, sizeof *beam->response_before);
+    beam->stress_before = wb_memory_take(memory, segments, sizeof *beam->stress_before);
+    beam->strain_before = wb_memory_take(memory, segments, sizeof *beam->strain_before);
+    return memory->failed ? wb_fail(WB_ERR_MEMORY, "no memory for %zu unknowns", n) : WB_OK;
+}
+
+static enum wb_status prepare(struct wb_section_beam *beam)
+{
+    WB_TRY(wb_section_layout_create(&beam->layout, beam->model, !beam->settings.is_whole));
+    beam->per_station = beam->layout.n_unknowns;
+    const bool is_capped = beam->model->tip == WB_BUNDLE_TIP_CAPPED;
+    beam->n_unknowns =
+        (beam->n_elements - 1) * beam->per_station + (is_capped ? 2 : beam->per_station);
+    WB_TRY(make_materials(beam));
+    WB_TRY(make_matrix(beam));
+    WB_TRY(wb_section_pressure_create(&beam->pressure, &beam->layout, beam->n_elements));
+    return take_memory(beam);
+}
+
+enum wb_status wb_section_beam_create(struct wb_section_beam **out,
+                                      const struct wb_bundle_model *model, double mu,
+                                      const struct wb_section_beam_settings *settings)
+{
+    *out = NULL;
+    struct wb_section_beam *const beam = calloc(1, sizeof *beam);
+    if (!beam)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle");
+    beam->model = model;
+    beam->friction = mu;
+    if (settings)
+        beam->settings = *settings;
+    if (beam->settings.n_elements == 0)
+        beam->settings.n_elements = DEFAULT_ELEMENTS;
+    if (beam->settings.n_fibres == 0)
+        beam->settings.n_fibres = DEFAULT_FIBRES;
+    if (!(beam->settings.slip_stiffness > 0.0))
+        beam->settings.slip_stiffness = default_slip_stiffness;
+    beam->n_elements = beam->settings.n_elements;
+    beam->h = model->length / beam->n_elements;
+    const enum wb_status status = prepare(beam);
+    if (status != WB_OK)
+        wb_section_beam_destroy(beam);
+    else
+        *out = beam;
+    return status;
+}

@@ -1,0 +1,268 @@
+#include "fe/section/section_run.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define WB_LOG_DOMAIN "section"
+
+enum {
+    MOST_SHAPE = 1000,
+    BISECTIONS = 100,
+    CURVE_POINTS = 18 /* of M over kappa at most: that of a row weighs with the square of its
+                         distance to the one before, so that many rows are noisy */
+};
+
+static const double small = 1e-5; /* of the length: a deflection at which the elastic bundle is
+                                     linear */
+
+/* --- memory --- */
+
+enum wb_status wb_section_run_init(struct wb_section_run *run, const struct wb_bundle_model *model,
+                                   int n_shape)
+{
+    *run = (struct wb_section_run){0};
+    if (n_shape < 2 || n_shape > MOST_SHAPE)
+        return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected 2 to %d", n_shape,
+                       MOST_SHAPE);
+    const size_t rows = (size_t)wb_bundle_model_rows(model), n = (size_t)n_shape;
+    run->rows = calloc(rows, sizeof *run->rows);
+    run->shape_s = calloc(n, sizeof *run->shape_s);
+    run->shape = calloc(rows * n, sizeof *run->shape);
+    run->curve = calloc((size_t)model->run.rows, sizeof *run->curve);
+    if (!run->rows || !run->shape_s || !run->shape || !run->curve) {
+        wb_section_run_release(run);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
+    }
+    run->capacity = (int)rows;
+    run->n_shape = n_shape;
+    for (int i = 0; i < n_shape; i++)
+        run->shape_s[i] = model->length * i / (n_shape - 1);
+    return WB_OK;
+}
+
+void wb_section_run_release(struct wb_section_run *run)
+{
+    free(run->rows);
+    free(run->shape_s);
+    free(run->shape);
+    free(run->curve);
+    *run = (struct wb_section_run){0};
+}
+
+/* mu between the wires of a model; *is_mean whether its friction decays. */
+static double find_friction(const struct wb_bundle_model *model, bool *is_mean)
+{
+    const struct wb_bundle_interface *const i = &model->interface;
+    *is_mean = i->friction_decay > 0.0 && i->friction_static != i->friction_kinetic;
+    return *is_mean ? sqrt(i->friction_static * i->friction_kinetic) : i->friction_static;
+}
+
+/* --- rigidities --- */
+
+/* The part of the loss by slip that Newmark's theory has at a = alpha L: of a cantilever whose
+ * clamp does not slip and whose tip is free to, or is not. 1 (capped: 1/4) at a = 0, and falls. */
+static double slipping_part(double a, bool is_capped)
+{
+    const double half = is_capped ? 0.5 * a : a;
+    return 3.0 / (a * a) * (1.0 - tanh(half) / half);
+}
+
+static double find_alpha(const struct wb_bundle_model *model, double rigidity)
+{
+    const struct wb_bundle_rigidity limit = wb_bundle_model_rigidity(model);
+    const double most = limit.bonded[0] / limit.sliding[0] - 1.0;
+    const double part = (limit.bonded[0] / rigidity - 1.0) / most;
+    const bool is_capped = model->tip == WB_BUNDLE_TIP_CAPPED;
+    double low = log(1e-2), high = log(1e4);
+
+    if (!(slipping_part(exp(low), is_capped) > part && slipping_part(exp(high), is_capped) < part))
+        return (double)NAN;
+    for (int i = 0; i < BISECTIONS; i++) {
+        const double middle = 0.5 * (low + high);
+        *(slipping_part(exp(middle), is_capped) > part ? &low : &high) = middle;
+    }
+    return exp(low);
+}
+
+static enum wb_status find_rigidity(struct wb_section_run_rigidity *out,
+                                    const struct wb_bundle_model *model, double length)
+{
+    const struct wb_section_solver_settings settings = {.beam = {.is_elastic = true}};
+    struct wb_section_solver *solver;
+    struct wb_section_solver_point point;
+    struct wb_bundle_model *const other = malloc(sizeof *other);
+
+    if (!other)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle");
+    *other = *model;
+    other->length = length;
+    other->loads = (struct wb_bundle_loads){0};
+    const enum wb_status status = wb_section_solver_create(&solver, other, &settings);
+    if (status == WB_OK) {
+        wb_section_solver_move(solver, small * length, &point);
+        const double force =
+            point.end == WB_SECTION_SOLVER_CONVERGED ? point.vertical : (double)NAN;
+        out->length = length;
+        out->rigidity = force * length * length / (3.0 * small);
+        out->alpha = model->has_tape ? find_alpha(model, out->rigidity) : (double)NAN;
+        wb_section_solver_destroy(solver);
+    }
+    free(other);
+    return status;
+}
+
+/* --- rows --- */
+
+static void add_row(struct wb_section_run *run, const struct wb_section_beam *beam,
+                    const struct wb_section_solver_point *point, int way)
+{
+    struct wb_section_run_row *const row = &run->rows[run->n_rows];
+    const struct wb_section_beam_energies e = beam->energies;
+
+    if (run->n_rows == 0)
+        run->zero_force = point->vertical;
+    *row = (struct wb_section_run_row){
+        .cycle = way / 2 + 1,
+        .phase = point->slack ? WB_PHASE_SLACK
+                 : way % 2    ? WB_PHASE_UNLOAD
+                              : WB_PHASE_LOAD,
+        .force = point->vertical - run->zero_force,
+        .point = *point,
+        .energies = e,
+    };
+    for (int i = 0; i < run->n_shape; i++) {
+        double *const place = run->shape[(size_t)run->n_rows * (size_t)run->n_shape + (size_t)i];
+        double angle;
+        wb_section_beam_place(beam, run->shape_s[i], &place[0], &place[1], &angle);
+        place[2] = 0.0;
+    }
+    run->n_rows++;
+    run->iterations += point->iterations;
+    run->increments += point->increments;
+    run->residual = fmax(run->residual, point->residual);
+    run->missing = fmax(run->missing, point->missing);
+    run->tape_plastic = fmax(run->tape_plastic, point->tape_plastic);
+}
+
+static void find_imbalance(struct wb_section_run *run)
+{
+    double most = 0.0;
+
+    for (int i = 0; i < run->n_rows; i++) {
+        const struct wb_section_beam_energies *const e = &run->rows[i].energies;
+        const double lost = e->external - e->wires - e->tape - e->bonds - e->friction;
+        most = fmax(most, fabs(e->external));
+        if (most > 0.0)
+            run->imbalance = fmax(run->imbalance, fabs(lost) / most);
+    }
+}
+
+static void make_rows(struct wb_section_run *run, const struct wb_bundle_model *model,
+                      struct wb_section_solver *solver,
+                      const struct wb_section_run_settings *wanted)
+{
+    const int rows = model->run.rows;
+
+    for (int i = 0; i < run->capacity; i++) {
+        /* Rows 1 to `rows` are the first way, and so on. */
+        const int way = i > 0 ? (i - 1) / rows : 0, step = i > 0 ? (i - 1) % rows + 1 : 0;
+        const double part = (double)(way % 2 ? rows - step : step) / rows;
+        struct wb_section_solver_point point;
+
+        run->stopped = wanted->stop && wanted->stop(wanted->context);
+        if (run->stopped)
+            return;
+        wb_section_solver_move(solver, part * model->run.deflection, &point);
+        if (point.end != WB_SECTION_SOLVER_CONVERGED) {
+            run->converged = false;
+            run->lost = point;
+            return;
+        }
+        add_row(run, wb_section_solver_beam(solver), &point, way);
+        if (wanted->until_free && way == 2 * model->run.cycles - 1 && !(run->rows[i].force > 0.0))
+            return;
+    }
+}
+
+double wb_section_run_springback(const struct wb_section_run *run)
+{
+    for (int i = 1; i < run->n_rows && run->rows[i].cycle == 1; i++) {
+        const struct wb_section_run_row *const row = &run->rows[i], *const before = row - 1;
+        const bool is_back = row->point.deflection < before->point.deflection;
+        if (!is_back || row->force > 0.0)
+            continue;
+        const double part = before->force / (before->force - row->force);
+        const double free =
+            before->point.deflection + part * (row->point.deflection - before->point.deflection);
+        double most = 0.0;
+        for (int k = 0; k < i; k++)
+            most = fmax(most, run->rows[k].point.deflection);
+        return 1.0 - free / most;
+    }
+    return (double)NAN;
+}
+
+/* --- the homogenised beam --- */
+
+/* Forces of a loading without weight by a vertical force: the run's own, or another one's. */
+static enum wb_status find_curve(struct wb_section_run *run, const struct wb_bundle_model *model,
+                                 const struct wb_section_solver_settings *settings)
+{
+    const bool is_own = !model->loads.weight && !(model->loads.strand_length > 0.0);
+    const int rows = is_own && run->n_rows <= model->run.rows ? run->n_rows - 1 : model->run.rows;
+    const int stride = (model->run.rows + CURVE_POINTS - 1) / CURVE_POINTS;
+    struct wb_bundle_model *const other = is_own ? NULL : malloc(sizeof *other);
+    struct wb_section_solver *solver = NULL;
+    int n = 0;
+
+    if (!is_own) {
+        if (!other)
+            return wb_fail(WB_ERR_MEMORY, "no memory for a bundle");
+        *other = *model;
+        other->loads = (struct wb_bundle_loads){0};
+        const enum wb_status status = wb_section_solver_create(&solver, other, settings);
+        if (status != WB_OK) {
+            free(other);
+            return status;
+        }
+    }
+    for (int i = 1; i <= rows; i++) {
+        struct wb_section_solver_point point = run->rows[is_own ? i : 0].point;
+        if (!is_own)
+            wb_section_solver_move(solver, model->run.deflection * i / model->run.rows, &point);
+        if (point.end != WB_SECTION_SOLVER_CONVERGED)
+            break;
+        if ((model->run.rows - i) % stride != 0)
+            continue;
+        run->curve[n].deflection = point.deflection;
+        run->curve[n++].force = point.vertical;
+    }
+    wb_section_solver_destroy(solver);
+    free(other);
+    run->n_curve = wb_section_homogenise(n, run->curve, model->length);
+    return WB_OK;
+}
+
+enum wb_status wb_section_run(struct wb_section_run *run, const struct wb_bundle_model *model,
+                              const struct wb_section_run_settings *wanted)
+{
+    static const struct wb_section_run_settings nothing = {0};
+    struct wb_section_solver *solver;
+    struct wb_section_solver_settings settings = {0};
+
+    run->friction = settings.friction = find_friction(model, &run->is_mean);
+    WB_TRY(wb_section_solver_create(&solver, model, &settings));
+    const struct wb_section_beam *const beam = wb_section_solver_beam(solver);
+    run->converged = true;
+    run->is_mirrored = beam->layout.is_mirrored;
+    run->elements = beam->n_elements;
+    run->unknowns = beam->n_unknowns;
+    make_rows(run, model, solver, wanted ? wanted : &nothing);
+    find_imbalance(run);
+    wb_section_solver_destroy(solver);
+    if (run->stopped || run->n_rows == 0)
+        return WB_OK;
+    for (int i = 0; i < WB_SECTION_RUN_LENGTHS && !(wanted && wanted->no_rigidities); i++)
+        WB_TRY(find_rigidity(&run->rigidity[i], model, model->length * ldexp(0.5, i)));
+    return find_curve(run, model, &settings);
+}
