@@ -28,7 +28,10 @@
 #define STALL_NS (30 * WB_NS_PER_MS)
 /* A stall that is told: the stage may have gone on for a whole second, unwatched. */
 #define TOLD_STALL_NS (1000 * WB_NS_PER_MS)
+#define LASTING_LOSS_NS (500 * WB_NS_PER_MS)
 #define RATE_PERIOD_NS (500 * WB_NS_PER_MS)
+/* Between two looks for a port that went away. */
+#define LOOK_AGAIN_NS (100 * WB_NS_PER_MS)
 
 /* One open stream with its driver. */
 struct line {
@@ -38,8 +41,11 @@ struct line {
     void *state;
     struct wb_stream *stream;
     int id; /* in the recording */
-    bool reported_lost;
+    bool reported_lost, told_loss;
+    int64_t losing_ns;      /* since then samples are missing; 0: none are */
     int64_t write_again_ns; /* after a port that took no bytes: not before */
+    int64_t gone_ns;        /* when its device went away, */
+    int64_t look_again_ns;  /* and when it is looked for again */
     uint64_t counted;       /* valid samples so far */
     uint64_t rate_from;     /* counted at rate_ns */
     int64_t rate_ns;
@@ -62,8 +68,9 @@ struct wb_acquisition {
     enum wb_stop_state reported_stop;
     struct wb_acquisition_latest latest;
     int64_t next_tick_ns;
-    int64_t woken_ns; /* end of the last wait for bytes */
-    int64_t deaf_ns;  /* of all time since the start: nobody listened */
+    int64_t woken_ns;   /* end of the last wait for bytes */
+    int64_t storage_ns; /* from then on what came was not on the disk */
+    int64_t deaf_ns;    /* of all time since the start: nobody listened */
     struct wb_outbox outbox;
     uint8_t buffer[WB_STREAM_READ_MAX];
 };
@@ -105,12 +112,16 @@ void wb_acquisition_event(struct wb_acquisition *a, const char *kind, const char
 
 /* --- sending --- */
 
-/* A device that went away is not asked again; its silence is then known, not waited for. */
+/* A stage that went away is not asked again; its silence is then known, not waited for. A load cell
+ * may come back: what its silence allows is left to it. */
 static void lose_device(struct line *line)
 {
     struct wb_acquisition *const a = line->owner;
     a->latest.stream[line->role].gone = true;
-    a->interlock.lost[line->role] = true;
+    line->gone_ns = wb_acquisition_now_ns();
+    line->look_again_ns = line->gone_ns + LOOK_AGAIN_NS;
+    if (line->role == WB_ROLE_STAGE)
+        a->interlock.lost[line->role] = true;
 }
 
 /* False when a write would have to wait: asked before all writes that are not urgent, because
@@ -463,17 +474,23 @@ static void note_kernel_drops(struct line *line, int64_t t_ns)
     wb_warn("%s", text);
 }
 
+static struct wb_sink sink_of(struct line *line)
+{
+    return (struct wb_sink){.context = line,
+                            .load = on_load,
+                            .mocap = on_mocap,
+                            .stage = on_stage,
+                            .settings = on_settings,
+                            .probe = on_probe,
+                            .remark = on_remark};
+}
+
 static void read_line(struct line *line)
 {
     struct wb_acquisition *const a = line->owner;
     struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
-    const struct wb_sink sink = {.context = line,
-                                 .load = on_load,
-                                 .mocap = on_mocap,
-                                 .stage = on_stage,
-                                 .settings = on_settings,
-                                 .probe = on_probe,
-                                 .remark = on_remark};
+    const struct wb_sink sink = sink_of(line);
+    a->latest.telling = line->role;
     for (int i = 0; i < READS_A_STEP && !state->gone; i++) {
         size_t n = 0;
         const enum wb_status status = wb_stream_read(line->stream, a->buffer, sizeof a->buffer, &n);
@@ -507,10 +524,51 @@ static void send_or_note(struct line *line)
         wb_debug("the %s took no bytes", wb_role_name(line->role));
 }
 
+/* What could not be set at the port. */
+static void tell_caution(const struct line *line, int64_t now_ns)
+{
+    const char *const caution = wb_stream_caution(line->stream);
+    if (!caution[0])
+        return;
+    wb_warn("%s: %s", wb_role_name(line->role), caution);
+    push_event(line->owner, now_ns, "latency", caution);
+}
+
+/* A load cell's port that went away may be plugged in again, and is greeted as at the start. A
+ * chunk without bytes tells every decoder that what follows does not belong to what came before. */
+static void look_again(struct line *line, int64_t now_ns)
+{
+    struct wb_acquisition *const a = line->owner;
+    const struct wb_sink sink = sink_of(line);
+    if (line->role != WB_ROLE_LOAD || now_ns < line->look_again_ns)
+        return;
+    line->look_again_ns = now_ns + LOOK_AGAIN_NS;
+    if (!wb_stream_reopen(line->stream))
+        return;
+    char text[240];
+    snprintf(text, sizeof text,
+             "the load cell's port came back after %.2f s: an indicator that was without power "
+             "has another zero, look at the force at the end of the test",
+             wb_seconds_from_ns(now_ns - line->gone_ns));
+    push_event(a, now_ns, "reconnected", text);
+    wb_warn("%s", text);
+    a->latest.stream[line->role].gone = false;
+    line->write_again_ns = 0;
+    tell_caution(line, now_ns);
+    if (a->writer)
+        (void)wb_writer_push_chunk(a->writer, line->id, now_ns, "", 0);
+    line->driver->receive(line->state, now_ns, NULL, 0, &sink);
+    wb_outbox_clear(&a->outbox);
+    line->driver->start(line->state, now_ns, &a->outbox);
+    send_or_note(line);
+}
+
 static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
+        if (a->latest.stream[line->role].gone)
+            look_again(line, now_ns);
         if (a->latest.stream[line->role].gone)
             continue;
         wb_outbox_clear(&a->outbox);
@@ -521,6 +579,26 @@ static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
     a->next_tick_ns += TICK_NS;
     if (a->next_tick_ns <= now_ns)
         a->next_tick_ns = now_ns + TICK_NS;
+}
+
+/* Once, where it lasts: a frame that is overtaken is missing only until it comes. */
+static void tell_loss(struct line *line, int64_t now_ns)
+{
+    const struct wb_acquisition_stream_state *const state = &line->owner->latest.stream[line->role];
+    const char *const name = wb_role_name(line->role);
+    char text[160];
+    if (!state->is_losing)
+        line->losing_ns = 0;
+    else if (line->losing_ns == 0)
+        line->losing_ns = now_ns;
+    if (line->losing_ns == 0 || now_ns - line->losing_ns < LASTING_LOSS_NS || line->told_loss)
+        return;
+    line->told_loss = true;
+    snprintf(text, sizeof text, "%s: of %" PRIu64 " samples %" PRIu64 " never came", name,
+             state->loss.received + state->loss.missing, state->loss.missing);
+    push_event(line->owner, now_ns, "loss", text);
+    wb_warn("samples of the %s stream are lost on the way: %" PRIu64 " so far", name,
+            state->loss.missing);
 }
 
 static void note_losses(struct wb_acquisition *a, int64_t now_ns)
@@ -541,16 +619,8 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
         }
         state->lost = lost;
         state->loss = wb_loss_counts(&line->loss);
-        if (wb_loss_is_told(&line->loss) && !state->is_losing) {
-            char text[160];
-            snprintf(text, sizeof text, "%s: of %" PRIu64 " samples %" PRIu64 " never came",
-                     wb_role_name(line->role), state->loss.received + state->loss.missing,
-                     state->loss.missing);
-            push_event(a, now_ns, "loss", text);
-            wb_warn("samples of the %s stream are lost on the way: %" PRIu64 " so far",
-                    wb_role_name(line->role), state->loss.missing);
-            state->is_losing = true;
-        }
+        state->is_losing = wb_loss_is_told(&line->loss);
+        tell_loss(line, now_ns);
         state->ready = !state->gone && line->driver->ready(line->state);
         state->drops = line->kernel_drops;
         if (a->writer)
@@ -575,6 +645,44 @@ static void note_rates(struct wb_acquisition *a, int64_t now_ns)
     }
 }
 
+/* Told from here on: flushes are due ten times a second. */
+#define STORAGE_LAG_NS (800 * WB_NS_PER_MS)
+
+/* A disk that takes nothing, or too slowly. The test goes on: what came is in memory. */
+static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
+{
+    if (!a->writer)
+        return;
+    struct wb_writer_state *const state = &a->latest.storage;
+    wb_writer_state(a->writer, state);
+    const bool late = state->failing != WB_OK || state->lag_ns > STORAGE_LAG_NS;
+    if (late && !a->latest.is_storage_late) {
+        a->storage_ns = now_ns - state->lag_ns;
+        push_event(a, now_ns, "storage",
+                   state->failing != WB_OK ? "the disk takes nothing; what comes is in memory"
+                                           : "the disk is late; what comes is in memory");
+        wb_warn("%s: what came in the last %.1f s is in memory only%s",
+                state->failing != WB_OK ? "the disk takes nothing" : "the disk is late",
+                wb_seconds_from_ns(state->lag_ns),
+                state->failing != WB_OK ? "; make room on it while the test goes on" : "");
+    } else if (!late && a->latest.is_storage_late) {
+        char text[120];
+        snprintf(text, sizeof text, "all is on the disk again, after %.1f s",
+                 wb_seconds_from_ns(now_ns - a->storage_ns));
+        push_event(a, now_ns, "storage", text);
+        wb_warn("%s", text);
+    }
+    a->latest.is_storage_late = late;
+}
+
+/* As long as its silence is allowed. */
+static bool may_come_back(const struct line *line)
+{
+    const struct wb_interlock *const interlock = &line->owner->interlock;
+    return line->role == WB_ROLE_LOAD && interlock->settings.stream_lost_ns[line->role] > 0 &&
+           !wb_interlock_expires(interlock, line->role, wb_acquisition_now_ns());
+}
+
 /* What no sample shows but silence: devices that went away, a full disk, Ctrl-C. */
 static void check_rest(struct wb_acquisition *a)
 {
@@ -585,17 +693,20 @@ static void check_rest(struct wb_acquisition *a)
         return;
     }
     for (int i = 0; i < a->n_lines; i++) {
-        if (!a->latest.stream[a->lines[i].role].gone)
+        struct line *const line = &a->lines[i];
+        if (!a->latest.stream[line->role].gone || may_come_back(line))
             continue;
         char text[WB_INTERLOCK_TEXT];
         snprintf(text, sizeof text, "the %s's port %s went away: check its cable and power",
-                 a->lines[i].role == WB_ROLE_LOAD ? "load cell" : "stage",
-                 wb_stream_address(a->lines[i].stream));
+                 line->role == WB_ROLE_LOAD ? "load cell" : "stage",
+                 wb_stream_address(line->stream));
         wb_acquisition_stop(a, WB_INTERLOCK_STREAM_LOST, text);
         return;
     }
     if (a->writer && wb_writer_status(a->writer) != WB_OK)
-        wb_acquisition_stop(a, WB_INTERLOCK_DISK, "the recording cannot be written any more");
+        wb_acquisition_stop(a, WB_INTERLOCK_DISK,
+                            "the recording cannot be written: the disk takes nothing, and the "
+                            "memory that keeps what comes is nearly full");
 }
 
 /* Silence up to `heard_ns`, which is a time before the streams were read: what comes later may wait
@@ -696,6 +807,7 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
         tick_lines(a, now_ns);
     note_losses(a, now_ns);
     note_rates(a, now_ns);
+    watch_storage(a, now_ns);
     for (int i = 0; i < a->n_lines; i++)
         if (!a->latest.stream[a->lines[i].role].gone)
             return WB_ACQUISITION_CONTINUE;
@@ -712,7 +824,7 @@ static bool must_keep_dtr(const char *address)
 }
 
 static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, const char *address,
-                                const char *protocol)
+                                const char *protocol, struct wb_reason *why)
 {
     struct line *const line = &a->lines[a->n_lines];
     line->owner = a;
@@ -721,24 +833,56 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
     line->id = a->n_lines;
     line->driver = wb_drivers_find(role, protocol);
     if (!line->driver)
-        return wb_fail(WB_ERR_UNSUPPORTED, "the %s protocol '%s' is not known", wb_role_name(role),
-                       protocol);
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED, "the %s protocol '%s' is not known",
+                          wb_role_name(role), protocol);
     line->state = calloc(1, line->driver->state_size);
     if (!line->state)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the %s driver", protocol);
-    a->n_lines++; /* from here on closing frees it */
-    WB_TRY(line->driver->init(line->state, &a->rig));
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for the %s driver", protocol);
+    enum wb_status status = line->driver->init(line->state, &a->rig);
     char kept[WB_RIG_TEXT + 16];
     snprintf(kept, sizeof kept, "%s%s", address,
              role == WB_ROLE_STAGE && must_keep_dtr(address) ? ",dtr=keep" : "");
-    WB_TRY(wb_stream_open(&line->stream, kept));
+    if (status == WB_OK)
+        status = wb_stream_open_with_reason(&line->stream, kept, why);
+    if (status != WB_OK) {
+        free(line->state);
+        memset(line, 0, sizeof *line);
+        return status;
+    }
+    a->n_lines++; /* from here on closing frees it */
     a->by_role[role] = line;
     a->latest.stream[role].open = true;
+    a->latest.stream[role].caution = wb_stream_caution(line->stream);
     return WB_OK;
 }
 
-enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_rig *rig,
-                                   unsigned roles, const struct wb_sink *sink)
+/* Opens what is wanted and can be opened; the status of the first that cannot. `why` by role, or
+ * NULL: the first failure is logged and ends it. */
+static enum wb_status open_lines(struct wb_acquisition *a, unsigned roles, struct wb_reason *why)
+{
+    const struct wb_rig *const rig = &a->rig;
+    const struct {
+        const char *address, *protocol;
+    } lines[WB_INTERLOCK_ROLES] = {
+        [WB_ROLE_LOAD] = {rig->load_cell.address, rig->load_cell.protocol},
+        [WB_ROLE_MOCAP] = {rig->mocap.address, rig->mocap.protocol},
+        [WB_ROLE_STAGE] = {rig->stage.address, rig->stage.protocol},
+    };
+    enum wb_status first = WB_OK;
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
+        if (!(roles & 1u << role))
+            continue;
+        const enum wb_status status = open_line(a, (enum wb_role)role, lines[role].address,
+                                                lines[role].protocol, why ? &why[role] : NULL);
+        first = first == WB_OK ? status : first;
+        if (status != WB_OK && !why)
+            break;
+    }
+    return first;
+}
+
+static enum wb_status create(struct wb_acquisition **out, const struct wb_rig *rig,
+                             const struct wb_sink *sink)
 {
     struct wb_acquisition *const a = calloc(1, sizeof *a);
     if (!a)
@@ -746,16 +890,33 @@ enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_
     a->rig = *rig;
     if (sink)
         a->sinks[0] = *sink;
-    enum wb_status status = WB_OK;
-    if (roles & WB_ACQUISITION_LOAD)
-        status = open_line(a, WB_ROLE_LOAD, rig->load_cell.address, rig->load_cell.protocol);
-    if (status == WB_OK && (roles & WB_ACQUISITION_MOCAP))
-        status = open_line(a, WB_ROLE_MOCAP, rig->mocap.address, rig->mocap.protocol);
-    if (status == WB_OK && (roles & WB_ACQUISITION_STAGE))
-        status = open_line(a, WB_ROLE_STAGE, rig->stage.address, rig->stage.protocol);
+    *out = a;
+    return WB_OK;
+}
+
+enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_rig *rig,
+                                   unsigned roles, const struct wb_sink *sink)
+{
+    struct wb_acquisition *a;
+    WB_TRY(create(&a, rig, sink));
+    const enum wb_status status = open_lines(a, roles, NULL);
     if (status != WB_OK) {
         wb_acquisition_close(a);
         return status;
+    }
+    *out = a;
+    return WB_OK;
+}
+
+enum wb_status wb_acquisition_open_each(struct wb_acquisition **out, const struct wb_rig *rig,
+                                        unsigned roles, const struct wb_sink *sink,
+                                        struct wb_reason why[WB_INTERLOCK_ROLES])
+{
+    struct wb_acquisition *a;
+    WB_TRY(create(&a, rig, sink));
+    if (open_lines(a, roles, why) == WB_ERR_MEMORY) {
+        wb_acquisition_close(a);
+        return wb_fail(WB_ERR_MEMORY, "no memory for the acquisition");
     }
     *out = a;
     return WB_OK;
@@ -784,6 +945,7 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
         line->rate_ns = now_ns;
+        tell_caution(line, now_ns);
         wb_outbox_clear(&a->outbox);
         line->driver->start(line->state, now_ns, &a->outbox);
         send_or_note(line);

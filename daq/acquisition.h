@@ -17,7 +17,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 #include "daq/diagnosis.h"
 #include "daq/driver.h"
 #include "daq/interlock.h"
@@ -46,6 +46,13 @@ enum wb_acquisition_end {
 WB_MUST_CHECK enum wb_status wb_acquisition_open(struct wb_acquisition **out,
                                                  const struct wb_rig *rig, unsigned roles,
                                                  const struct wb_sink *sink);
+
+/* The same for a bench that may not be whole: a stream that cannot be opened is left out (it is not
+ * `open` in the latest), and `why` has the reason by role. Fails without memory only. */
+WB_MUST_CHECK enum wb_status wb_acquisition_open_each(struct wb_acquisition **out,
+                                                      const struct wb_rig *rig, unsigned roles,
+                                                      const struct wb_sink *sink,
+                                                      struct wb_reason why[WB_INTERLOCK_ROLES]);
 
 /* A second sink, copied, that sees everything after the first one. */
 void wb_acquisition_also_tell(struct wb_acquisition *acquisition, const struct wb_sink *sink);
@@ -95,7 +102,7 @@ const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *acq
 /* --- the latest, for live lines and sequences --- */
 
 struct wb_acquisition_stream_state {
-    bool open, gone;  /* gone: the device went away and does not come back by itself */
+    bool open, gone;  /* gone: the device is not there; a load cell's is looked for again */
     bool ready, lost; /* lost: silent for longer than the interlock allows */
     double rate;      /* valid samples/s, smoothed over about a second */
     uint64_t samples; /* decoded, valid or not */
@@ -104,9 +111,11 @@ struct wb_acquisition_stream_state {
     uint64_t drops;             /* reads lost by the writer, and datagrams lost in the kernel */
     struct wb_loss_counts loss; /* samples that the instrument sent and that never came */
     bool is_losing;             /* and they are more than chance */
+    const char *caution;        /* see wb_stream_caution(); "" or, of no stream, NULL */
 };
 
 struct wb_acquisition_latest {
+    enum wb_role telling; /* whose bytes were decoded last: a remark in a sink is of this stream */
     struct wb_acquisition_stream_state stream[WB_INTERLOCK_ROLES]; /* by role */
     bool has_load, has_mocap, has_stage;
     struct wb_load_sample load; /* the last valid one */
@@ -117,6 +126,8 @@ struct wb_acquisition_latest {
     uint64_t stage_reports;
     bool has_settings;
     struct wb_stage_settings settings; /* of the stage's firmware */
+    struct wb_writer_state storage;    /* how far the disk is behind */
+    bool is_storage_late;              /* so far that it was told */
     char stage_error[160];             /* last complaint of the stage since the last command; "" */
 };
 

@@ -49,11 +49,8 @@ static enum wb_status set_text_file(struct wb_recording *recording, const char *
 static enum wb_status set_wire(struct wb_recording *recording,
                                const struct wb_bend_recording *description)
 {
-    char folder[WB_PATH], path[WB_PATH], named_in[WB_PATH + 32];
-    wb_file_folder(folder, description->specimen_path);
-    snprintf(named_in, sizeof named_in, "%s:%d: wire", description->specimen_path,
-             description->specimen->wire_line);
-    WB_TRY(wb_file_find_named(path, "wires", description->specimen->wire, folder, named_in, NULL));
+    char path[WB_PATH];
+    WB_TRY(wb_specimen_find_wire(description->specimen, description->specimen_path, path));
     return set_text_file(recording, "wire", path);
 }
 

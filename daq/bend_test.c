@@ -6,13 +6,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/file.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "daq/bend_recording.h"
+#include "daq/check_due.h"
+#include "daq/first_force.h"
 #include "daq/first_motion.h"
+#include "daq/force_drop.h"
+#include "daq/silence_check.h"
 #include "daq/stage_check.h"
 #include "daq/start_check.h"
 #include "daq/tip_watch.h"
@@ -20,6 +25,7 @@
 #define WB_LOG_DOMAIN "record"
 
 #define LEAST_READINGS 10 /* of a tare */
+#define MOST_CHECKS 3     /* a marker that cameras hide for a moment is looked for again */
 #define CHECK_TIMEOUT_NS (5 * WB_NS_PER_S)
 
 enum phase {
@@ -40,9 +46,15 @@ struct wb_bend_test {
     int64_t started_ns;
     int cycle; /* from 1 */
     struct wb_start_check check;
+    int n_checks;
     struct wb_average zero; /* N, of the tare */
     struct wb_tip_watch tip;
     bool motion_agrees; /* the first motion was seen as the stage reported it */
+    struct wb_first_force first_force;
+    enum wb_first_force_verdict force_verdict;
+    bool force_told;
+    struct wb_force_drop force_drop;      /* of this way down */
+    char force_text[WB_START_CHECK_TEXT]; /* why it is wrong */
     bool has_tare;
     double unloaded; /* N, reading without tension: the tare less what hung on the cell then */
     struct wb_bend_test_result result;
@@ -146,39 +158,18 @@ static void step_stop(struct wb_bend_test *test)
 
 static void complain_silence(struct wb_bend_test *test)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
-    const double waited = test->request.connect_timeout;
-    const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
-    const struct wb_acquisition_stream_state *const mocap = &latest->stream[WB_ROLE_MOCAP];
-    const struct wb_acquisition_stream_state *const stage = &latest->stream[WB_ROLE_STAGE];
-    char sent[96], cause[WB_DIAGNOSIS_TEXT];
-    if (!latest->has_load) {
-        snprintf(sent, sizeof sent, "nothing within %g s", waited);
-        if (load->bytes > 0)
-            snprintf(sent, sizeof sent, "%" PRIu64 " bytes, but no reading that can be decoded",
-                     load->bytes);
-        wb_diagnosis_load(&load->heard, &stage->heard, &test->run.rig, cause);
-        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST, "the load cell at %s sent %s: %s",
-                            test->run.rig.load_cell.address, sent, cause);
-    } else if (!stage->ready) {
-        wb_diagnosis_stage(&stage->heard, &test->run.rig, cause);
-        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
-                            "the stage at %s gave no status within %g s (%" PRIu64
-                            " bytes came): %s",
-                            test->run.rig.stage.address, waited, stage->bytes, cause);
-    } else if (mocap->bytes == 0)
-        wb_sequence_give_up(
-            &test->run, WB_INTERLOCK_STREAM_LOST,
-            "no NatNet answer from %s within %g s: check that the server streams, its address "
-            "and the firewall of its computer",
-            test->run.rig.mocap.address, waited);
-    else
-        wb_sequence_give_up(
-            &test->run, WB_INTERLOCK_STREAM_LOST,
-            "the NatNet server at %s answers but sent no frame within %g s: check that it "
-            "streams live frames with labelled markers%s",
-            test->run.rig.mocap.address, waited,
-            strstr(test->run.rig.mocap.address, "group=") ? ", and its multicast group" : "");
+    static const enum wb_role order[] = {WB_ROLE_LOAD, WB_ROLE_STAGE, WB_ROLE_MOCAP};
+    char text[WB_SILENCE_TEXT];
+    for (size_t i = 0; i < WB_COUNT(order); i++) {
+        if (wb_silence_check(order[i], wb_acquisition_latest(test->run.acquisition), &test->run.rig,
+                             test->request.connect_timeout, text))
+            continue;
+        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST, "%s", text);
+        return;
+    }
+    wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
+                        "the instruments answer, but not all are ready within %g s",
+                        test->request.connect_timeout);
 }
 
 static bool gone(const struct wb_bend_test *test, enum wb_role role)
@@ -221,7 +212,7 @@ static void step_connect(struct wb_bend_test *test)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
                             "the stage's port %s went away: check its cable and power",
                             test->run.rig.stage.address);
-    else if (wb_writer_status(test->writer) != WB_OK)
+    else if (latest->storage.failing != WB_OK)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_DISK,
                             "the recording cannot be written: the message before says why");
     else if (!wb_start_check_unit(latest->unit_contradicts, &test->run.rig, test->rig_path, text)) {
@@ -248,12 +239,9 @@ static void step_connect(struct wb_bend_test *test)
 static bool check_settings(const struct wb_bend_test *test, char text[WB_START_CHECK_TEXT])
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
-    const struct wb_rig *const rig = &test->run.rig;
-    const double from = latest->stage.position;
-    const struct wb_stage_motion motion = {.from = from,
-                                           .to = from + rig->stage.down * test->request.travel,
-                                           .speed = rig->stage.speed * rig->time_scale};
-    return !latest->has_settings || wb_stage_check(&latest->settings, rig, &motion, text);
+    return !latest->has_settings ||
+           wb_stage_check_test(&latest->settings, &test->run.rig, latest->stage.position,
+                               test->request.travel, text);
 }
 
 static void step_check(struct wb_bend_test *test)
@@ -272,11 +260,22 @@ static void step_check(struct wb_bend_test *test)
                  " readings of the load cell and %d frames of the cameras came in %.1f "
                  "s, at least 10 of each are needed",
                  check->load.n, check->n_frames, wb_seconds_from_ns(waited_ns));
+    if (enough && !wb_start_check_markers(check, &test->specimen, text) &&
+        ++test->n_checks < MOST_CHECKS) {
+        test->check = (struct wb_start_check){0};
+        wb_sequence_enter(&test->run, PHASE_CHECK);
+        return;
+    }
     if (!enough || !wb_start_check_stage(&latest->stage, test->rig_path, text) ||
         !check_settings(test, text) || !wb_start_check_markers(check, &test->specimen, text) ||
         !wb_start_check_chain(check, &test->specimen, &test->run.rig, text) ||
         !wb_start_check_zero(check, &test->run.rig, test->rig_path, text)) {
         refuse(test, text);
+        return;
+    }
+    /* Later it may come back; with nothing moved yet there is nothing to lose. */
+    if (latest->storage.failing != WB_OK) {
+        refuse(test, "the disk takes nothing: the message before says why");
         return;
     }
     test->run.start_position = latest->stage.position;
@@ -338,6 +337,8 @@ static void begin_cycle(struct wb_bend_test *test)
 {
     test->cycle++;
     test->result.started = true;
+    test->force_drop = (struct wb_force_drop){.noise = test->first_force.noise,
+                                              .share = test->run.rig.limits.force_drop};
     wb_acquisition_event(test->run.acquisition, "cycle_start", "%d", test->cycle);
     wb_sequence_jog_to(&test->run, test->request.travel, test->run.rig.stage.speed, PHASE_DOWN);
 }
@@ -354,6 +355,7 @@ static void step_tare(struct wb_bend_test *test)
                          "{\"force_N\": %.17g, \"samples\": %" PRId64 ", \"sd_N\": %.17g}",
                          test->result.tare, test->zero.n, wb_average_deviation(&test->zero));
     arm(test);
+    wb_first_force_begin(&test->first_force, wb_average_deviation(&test->zero), &test->run.rig);
     begin_cycle(test);
 }
 
@@ -381,9 +383,27 @@ static void check_motion(struct wb_bend_test *test)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_MOTION, "%s", text);
 }
 
+/* The first force is judged at the reading that completes it, and told here. */
+static void check_force(struct wb_bend_test *test)
+{
+    const enum wb_first_force_verdict verdict = test->force_verdict;
+    if (test->force_told || verdict == WB_FIRST_FORCE_OPEN)
+        return;
+    test->force_told = true;
+    if (verdict == WB_FIRST_FORCE_WRONG)
+        wb_sequence_give_up(&test->run, WB_INTERLOCK_MOTION, "%s", test->force_text);
+    else
+        wb_acquisition_event(test->run.acquisition, "first_force",
+                             "the force rises by %.4g mN per mm of deflection, taut at %.2f mm",
+                             wb_first_force_slope(&test->first_force) / (WB_MN / WB_MM),
+                             test->first_force.taut / WB_MM);
+}
+
 static void step_down(struct wb_bend_test *test)
 {
     check_motion(test);
+    if (test->run.phase == PHASE_DOWN)
+        check_force(test);
     if (test->run.phase != PHASE_DOWN || !arrived(test))
         return;
     wb_acquisition_event(test->run.acquisition, "turn", "%d", test->cycle);
@@ -398,6 +418,11 @@ static void step_up(struct wb_bend_test *test)
 
 static void step_rest(struct wb_bend_test *test)
 {
+    /* A cell that went away may come back; its silence ends the test otherwise. The rest begins
+     * again then: it is measured whole, and what waited in the port is read before the next way
+     * down, where a force of the way up would look like a break. */
+    if (gone(test, WB_ROLE_LOAD))
+        wb_sequence_enter(&test->run, PHASE_REST);
     if (wb_sequence_lasts_ns(&test->run) < host_ns(test, test->request.rest_time))
         return;
     wb_acquisition_event(test->run.acquisition, "cycle_end", "%d", test->cycle);
@@ -414,6 +439,14 @@ static void step_rest(struct wb_bend_test *test)
 
 /* --- the samples it sees --- */
 
+/* A specimen that breaks or slips: the stage is held by the reading that shows it. */
+static void watch_drop(struct wb_bend_test *test, const struct wb_load_sample *sample)
+{
+    char text[WB_START_CHECK_TEXT];
+    if (wb_force_drop_add(&test->force_drop, sample->force - test->unloaded, text))
+        wb_acquisition_stop(test->run.acquisition, WB_INTERLOCK_DROP, text);
+}
+
 static void on_load(void *context, const struct wb_load_sample *sample)
 {
     struct wb_bend_test *const test = context;
@@ -423,6 +456,13 @@ static void on_load(void *context, const struct wb_load_sample *sample)
         wb_average_add(&test->zero, sample->force);
     if (sample->valid && test->result.started && test->run.phase < WB_SEQUENCE_STOP)
         test->result.peak_tension = fmax(test->result.peak_tension, sample->force - test->unloaded);
+    if (sample->valid && test->run.phase == PHASE_DOWN)
+        watch_drop(test, sample);
+    if (sample->valid && test->run.phase == PHASE_DOWN && test->tip.settled &&
+        test->force_verdict == WB_FIRST_FORCE_OPEN)
+        test->force_verdict = wb_first_force_add(&test->first_force, test->tip.deflection,
+                                                 sample->force - test->zero.mean,
+                                                 &test->request.stiffness, test->force_text);
 }
 
 static void on_mocap(void *context, const struct wb_mocap_frame *frame)
@@ -438,27 +478,43 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
 
 /* --- opening --- */
 
-static enum wb_status check_request(const struct wb_bend_test *test)
+enum wb_status wb_bend_test_check_request(const struct wb_bend_test_request *request,
+                                          const struct wb_rig *rig, struct wb_reason *why)
 {
-    const struct wb_rig *const rig = &test->run.rig;
-    const double travel = test->request.travel;
+    const double travel = request->travel;
     const double limit = rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel;
-    if (test->request.cycles < 1)
-        return wb_fail(WB_ERR_ARGUMENT, "expected at least one cycle, not %d: see --cycles",
-                       test->request.cycles);
+    if (request->cycles < 1)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "expected at least one cycle, not %d: see --cycles",
+                          request->cycles);
     if (!(travel > 0.0) || !(travel <= limit))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "a travel of %g mm is not free: the rig file allows up to %g mm "
-                       "(stage.travel_mm, limits.travel_mm); choose less with --travel-mm",
-                       travel / WB_MM, limit / WB_MM);
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "a travel of %g mm is not free: the rig file allows up to %g mm "
+                          "(stage.travel_mm, limits.travel_mm); choose less with --travel-mm",
+                          travel / WB_MM, limit / WB_MM);
     return WB_OK;
+}
+
+/* When the load cell was last found right. */
+static enum wb_status check_cell(const struct wb_rig *rig, const char *rig_path)
+{
+    char text[WB_CHECK_DUE_TEXT];
+    switch (wb_check_due(&rig->load_cell, rig_path, (int64_t)time(NULL), text)) {
+    case WB_CHECK_DUE_TOO_LATE:
+        return wb_fail(WB_ERR_ARGUMENT, "%s", text);
+    case WB_CHECK_DUE_LATE:
+        wb_warn("%s", text);
+        return WB_OK;
+    default:
+        return WB_OK;
+    }
 }
 
 static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test_request *request)
 {
     WB_TRY(wb_rig_read(request->rig_path, &test->run.rig));
     WB_TRY(wb_specimen_read(request->specimen_path, &test->specimen));
-    WB_TRY(check_request(test));
+    WB_TRY(wb_bend_test_check_request(&test->request, &test->run.rig, NULL));
+    WB_TRY(check_cell(&test->run.rig, request->rig_path));
     if (wb_file_exists(request->output_path))
         return wb_fail(WB_ERR_EXISTS,
                        "'%s' exists: a recording is never overwritten, choose another name",
@@ -481,7 +537,7 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
     };
     struct wb_recording *recording;
     WB_TRY(wb_bend_recording_create(&recording, &description));
-    const enum wb_status status = wb_writer_start(&test->writer, recording, NULL);
+    const enum wb_status status = wb_writer_start(&test->writer, recording, request->writer);
     if (status != WB_OK) {
         if (wb_recording_close(recording) != WB_OK)
             wb_debug("the unused recording did not close cleanly");
@@ -508,6 +564,7 @@ enum wb_status wb_bend_test_open(struct wb_bend_test **out,
     const enum wb_status status = start(test, request);
     test->request.rig_path = test->request.specimen_path = test->request.output_path = NULL;
     test->request.operator_name = test->request.notes = NULL;
+    test->request.writer = NULL;
     if (status != WB_OK) {
         wb_acquisition_close(test->run.acquisition);
         free(test);
@@ -565,6 +622,30 @@ void wb_bend_test_stop(struct wb_bend_test *test)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
 }
 
+/* Rig time of what is left of this cycle, and of the cycles after it. Acceleration of the stage,
+ * some tenths of a second at each end, is not counted. */
+static double time_left(const struct wb_bend_test *test, double travel)
+{
+    const struct wb_bend_test_request *const request = &test->request;
+    const double way = request->travel / test->run.rig.stage.speed;
+    const double here = travel / test->run.rig.stage.speed;
+    const double spent = wb_seconds_from_ns(wb_sequence_lasts_ns(&test->run)) *
+                         test->run.rig.time_scale; /* in this phase */
+    const int cycles = request->cycles - (test->cycle > 0 ? test->cycle : 1);
+    double left = cycles * (2.0 * way + request->rest_time);
+    if (test->run.end != WB_SEQUENCE_RUNNING || test->run.phase == WB_SEQUENCE_OVER)
+        return 0.0;
+    if (test->run.phase == PHASE_UP)
+        left += fmax(here, 0.0) + request->rest_time;
+    else if (test->run.phase == PHASE_REST)
+        left += fmax(request->rest_time - spent, 0.0);
+    else
+        left += fmax(way - here, 0.0) + way + request->rest_time;
+    if (test->run.phase == PHASE_TARE)
+        left += fmax(request->tare_time - spent, 0.0);
+    return left / test->run.rig.time_scale;
+}
+
 void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_status *status)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
@@ -584,6 +665,12 @@ void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_st
     status->gravity = test->run.rig.gravity;
     status->markers_expected = test->specimen.n_markers;
     status->is_virtual = test->run.rig.is_virtual;
+    status->is_connected = test->result.recorded;
+    status->is_standing = test->run.phase != WB_SEQUENCE_OVER || test->result.standing;
+    status->end = test->run.end;
+    status->end_text = test->run.text;
+    status->peak_tension = test->result.peak_tension;
+    status->time_left = status->has_travel ? time_left(test, status->travel) : (double)NAN;
     status->latest = latest;
 }
 

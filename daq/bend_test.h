@@ -14,9 +14,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/reason.h"
 #include "base/setting.h"
-#include "base/status.h"
 #include "daq/acquisition.h"
+#include "daq/first_force.h"
 #include "daq/sequence.h"
 #include "daq/specimen.h"
 
@@ -27,12 +28,14 @@ struct wb_bend_test_request {
     const char *output_path;              /* the recording; must not exist */
     const char *operator_name, *notes;    /* may be NULL */
     int cycles;
-    double travel;          /* m down from the start position */
-    struct wb_sink sink;    /* sees every live sample; members may be NULL */
-    double connect_timeout; /* s of host time for all instruments to answer */
-    double check_time;      /* s of rig time the start check looks */
-    double tare_time;       /* s of rig time the tare averages */
-    double rest_time;       /* s of rig time at the end of each cycle: zero load */
+    double travel;                           /* m down from the start position */
+    const struct wb_writer_settings *writer; /* NULL: the defaults */
+    struct wb_sink sink;                     /* sees every live sample; members may be NULL */
+    double connect_timeout;                  /* s of host time for all instruments to answer */
+    double check_time;                       /* s of rig time the start check looks */
+    double tare_time;                        /* s of rig time the tare averages */
+    double rest_time;                        /* s of rig time at the end of each cycle: zero load */
+    struct wb_first_force_bounds stiffness;  /* of this wire at this length; all 0: not known */
 };
 
 /* Rows of its cycles and travel. */
@@ -40,6 +43,12 @@ extern const struct wb_setting_table wb_bend_test_table;
 
 /* 1 cycle, 53 mm, 6 s, 1 s, 2 s, 2 s; paths NULL. */
 void wb_bend_test_default_request(struct wb_bend_test_request *request);
+
+/* Whether the rig file allows the request's travel and cycles. Needs no port. `why` holds the
+ * message; NULL: it is logged. */
+WB_MUST_CHECK enum wb_status wb_bend_test_check_request(const struct wb_bend_test_request *request,
+                                                        const struct wb_rig *rig,
+                                                        struct wb_reason *why);
 
 /* Reads the files, refuses what the rig cannot do, opens the ports, creates the recording with its
  * meta values and starts the instruments. On failure nothing is left behind. */
@@ -65,6 +74,13 @@ struct wb_bend_test_status {
     double gravity;    /* m/s2, of the rig */
     int markers_expected;
     bool is_virtual;
+    bool is_connected;        /* all instruments have answered */
+    bool is_standing;         /* false after a stop that the stage did not confirm */
+    enum wb_sequence_end end; /* RUNNING until the test is stopped or done */
+    const char *end_text;     /* why it ended; "" while it runs; owned by the test */
+    double peak_tension;      /* N, largest of the cycles so far */
+    double time_left; /* s of host time to the end of the last cycle, at the commanded speed; NaN
+                         before the start position is known, 0 once the test ends */
     const struct wb_acquisition_latest *latest; /* owned by the test */
 };
 void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_status *status);

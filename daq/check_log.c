@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/number.h"
@@ -135,6 +136,13 @@ bool wb_check_log_parse(const char *line, struct wb_check_log_entry *entry)
     strcpy(read.serial_number, at);
     *entry = read;
     return true;
+}
+
+double wb_check_log_age(const struct wb_check_log_entry *entry)
+{
+    struct tm utc = {0};
+    const char *const end = strptime(entry->utc, "%Y-%m-%dT%H:%M:%S", &utc);
+    return end ? difftime(time(NULL), timegm(&utc)) : HUGE_VAL;
 }
 
 void wb_check_log_describe(const struct wb_check_log_entry *entry, char text[WB_CHECK_LOG_LINE])

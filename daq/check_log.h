@@ -40,6 +40,9 @@ void wb_check_log_last(const char *rig_path, char line[WB_CHECK_LOG_LINE]);
 /* One line to an entry; false when it is none. */
 bool wb_check_log_parse(const char *line, struct wb_check_log_entry *entry);
 
+/* s since the check; infinite where its time cannot be read. */
+double wb_check_log_age(const struct wb_check_log_entry *entry);
+
 /* "2026-01-15T10:00:00Z, 10 g read 10.002 g (+0.020 %), LS270-1, passed". */
 void wb_check_log_describe(const struct wb_check_log_entry *entry, char text[WB_CHECK_LOG_LINE]);
 

@@ -1,5 +1,4 @@
 #include "daq/diagnosis.h"
-#include "daq/diagnosis_private.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -103,11 +102,49 @@ static bool lacks_terminator(const struct wb_diagnosis *load, const struct wb_ri
     return strcmp(told, "lf") == 0 && !memchr(load->bytes, '\n', load->n);
 }
 
+/* The second whole line, if it is a number without a unit. */
+static bool is_bare_number(const struct wb_diagnosis *load, const struct wb_rig *rig,
+                           double *number)
+{
+    struct wb_line_reading reading;
+    size_t begin = 0;
+    for (size_t i = 0, lines = 0; i < load->n; i++) {
+        if (load->bytes[i] != '\n' && load->bytes[i] != '\r')
+            continue;
+        if (i > begin && ++lines == 2) {
+            wb_line_decode(load->bytes + begin, i - begin, &rig->load_cell, &reading);
+            *number = reading.value;
+            return reading.kind == WB_LINE_VALUE && reading.unit[0] == '\0';
+        }
+        begin = i + 1;
+    }
+    return false;
+}
+
+/* Numbers that are no forces yet. */
+static void diagnose_numbers(double number, const struct wb_rig *rig, char text[WB_DIAGNOSIS_TEXT])
+{
+    const char *const unit = rig->load_cell.unit;
+    if (unit[0])
+        snprintf(
+            text, WB_DIAGNOSIS_TEXT,
+            "its numbers, such as %g, are beyond the cell as %s: if they are a converter's raw "
+            "counts, set load_cell.scale (%s a count, by a known mass) and load_cell.offset",
+            number, unit, unit);
+    else
+        snprintf(
+            text, WB_DIAGNOSIS_TEXT,
+            "its lines are numbers without a unit, such as %g: set load_cell.unit and, if they "
+            "are a converter's raw counts, load_cell.scale and offset",
+            number);
+}
+
 void wb_diagnosis_load(const struct wb_diagnosis *load, const struct wb_diagnosis *stage,
                        const struct wb_rig *rig, char text[WB_DIAGNOSIS_TEXT])
 {
     const enum wb_diagnosis_kind kind = wb_diagnosis_kind(load);
     const bool is_grbl = kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL;
+    double number;
     if (is_grbl || wb_diagnosis_kind(stage) == WB_DIAGNOSIS_READINGS)
         snprintf(text, WB_DIAGNOSIS_TEXT, "%s: %s",
                  is_grbl ? "a stage answers there" : "a load cell answers at the stage's port",
@@ -124,16 +161,36 @@ void wb_diagnosis_load(const struct wb_diagnosis *load, const struct wb_diagnosi
         snprintf(text, WB_DIAGNOSIS_TEXT,
                  "its lines do not end as load_cell.terminator says: set it to any or, where there "
                  "are no line ends, to idle");
+    else if (is_bare_number(load, rig, &number))
+        diagnose_numbers(number, rig, text);
     else
         snprintf(text, WB_DIAGNOSIS_TEXT,
                  "check load_cell.protocol, its line settings (delimiter, column, decimal_comma) "
                  "and its unit");
 }
 
+static void diagnose_tic(enum wb_diagnosis_kind kind, char text[WB_DIAGNOSIS_TEXT])
+{
+    if (kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL)
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "it is a GRBL and no Tic: set stage.protocol: grbl, and stage.axis");
+    else
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "%s: check power and cable (TX, RX and ground), the baud rate in stage.address "
+                 "(Tic: 9600 unless changed), and in Tic Control Center that the control mode is "
+                 "Serial / I2C / USB and CRC and 7-bit responses are off",
+                 kind == WB_DIAGNOSIS_NOTHING ? "nothing came" : "what came is no answer of a Tic");
+}
+
 void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *rig,
                         char text[WB_DIAGNOSIS_TEXT])
 {
-    switch (wb_diagnosis_kind(stage)) {
+    const enum wb_diagnosis_kind kind = wb_diagnosis_kind(stage);
+    if (strcmp(rig->stage.protocol, "tic") == 0 && kind != WB_DIAGNOSIS_READINGS) {
+        diagnose_tic(kind, text);
+        return;
+    }
+    switch (kind) {
     case WB_DIAGNOSIS_NOTHING:
         snprintf(text, WB_DIAGNOSIS_TEXT,
                  "nothing came: check power and cable, the port and the baud rate in stage.address "

@@ -17,7 +17,21 @@ struct wb_diagnosis {
     char bytes[512];
 };
 
+enum wb_diagnosis_kind {
+    WB_DIAGNOSIS_NOTHING,  /* not a byte came */
+    WB_DIAGNOSIS_NOISE,    /* no text: another baud rate or frame */
+    WB_DIAGNOSIS_ENDLESS,  /* text without line ends */
+    WB_DIAGNOSIS_GRBL,     /* GRBL 1.1 */
+    WB_DIAGNOSIS_OLD_GRBL, /* GRBL before 1.1, which cannot jog */
+    WB_DIAGNOSIS_MARLIN,   /* a 3D printer's firmware */
+    WB_DIAGNOSIS_READINGS, /* lines of a load cell */
+    WB_DIAGNOSIS_OTHER     /* lines of something else */
+};
+
 void wb_diagnosis_add(struct wb_diagnosis *diagnosis, const void *bytes, size_t n);
+
+/* What the bytes look like. */
+enum wb_diagnosis_kind wb_diagnosis_kind(const struct wb_diagnosis *diagnosis);
 
 /* The likely cause and the key to change, "its bytes are no text: ...", for an instrument that gave
  * no reading, or no status. */

@@ -55,7 +55,8 @@ enum wb_stage_command {
 };
 
 struct wb_driver {
-    const char *name; /* protocol name in rig files: "generic", "mt-sics", "natnet", "grbl" */
+    const char
+        *name; /* protocol name in rig files: "generic", "mt-sics", "natnet", "grbl", "tic" */
     enum wb_role role;
     size_t state_size;
 
@@ -63,7 +64,9 @@ struct wb_driver {
     enum wb_status (*init)(void *state, const struct wb_rig *rig);
     /* What to send once the stream is open (connect, start streaming, wake up). */
     void (*start)(void *state, int64_t now_ns, struct wb_outbox *outbox);
-    /* Consumes one read or datagram that arrived at t_ns. Never fails: bad bytes become remarks. */
+    /* Consumes one read or datagram that arrived at t_ns. Never fails: bad bytes become remarks.
+     * None (n = 0): bytes before t_ns are missing, and what was begun is not what follows: two
+     * halves of lines would make a number that no instrument sent. */
     void (*receive)(void *state, int64_t t_ns, const uint8_t *bytes, size_t n,
                     const struct wb_sink *sink);
     /* Called at least every 20 ms: polls, keepalives, clock probes, retries of the handshake. */

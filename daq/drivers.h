@@ -9,7 +9,8 @@
     X(wb_loadcell_generic)                                                                         \
     X(wb_loadcell_mtsics)                                                                          \
     X(wb_natnet_client)                                                                            \
-    X(wb_stage_grbl)
+    X(wb_stage_grbl)                                                                               \
+    X(wb_stage_tic)
 
 #define WB_DRIVERS_DECLARE(driver) extern const struct wb_driver driver;
 WB_DRIVERS(WB_DRIVERS_DECLARE)

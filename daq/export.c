@@ -12,6 +12,7 @@
 #include "base/number.h"
 #include "base/units.h"
 #include "daq/replay.h"
+#include "daq/sample_columns.h"
 
 #define WB_LOG_DOMAIN "export"
 
@@ -35,7 +36,6 @@ enum {
 struct export
 {
     struct table tables[N_TABLES];
-    bool started; /* first_ns is known */
     int64_t first_ns;
 };
 
@@ -139,26 +139,20 @@ static void put_mocap(void *context, const struct wb_mocap_frame *frame)
     for (int i = 0; i < frame->n_markers; i++) {
         const struct wb_marker *m = &frame->markers[i];
         FILE *file = begin_row(context, TABLE_MOCAP, frame->t_ns);
-        fprintf(file, ",%" PRId32 ",%s,%" PRId32 ",%s,%s,%s,%s,%s,%d,%d,%d\n", frame->frame_number,
-                t_device, m->id, format_float(m->position[0], x), format_float(m->position[1], y),
-                format_float(m->position[2], z), format_float(m->size, size),
-                format_float(m->residual, residual), m->params,
-                (m->params & WB_MARKER_OCCLUDED) != 0, (m->params & WB_MARKER_MODEL_FILLED) != 0);
+        fprintf(file, ",%" PRId32 ",%s,%" PRId32 ",%s,%s,%s,%s,%s,%d,%d,%d,%d\n",
+                frame->frame_number, t_device, m->id, format_float(m->position[0], x),
+                format_float(m->position[1], y), format_float(m->position[2], z),
+                format_float(m->size, size), format_float(m->residual, residual), m->params,
+                (m->params & WB_MARKER_OCCLUDED) != 0, (m->params & WB_MARKER_MODEL_FILLED) != 0,
+                frame->segment);
     }
-}
-
-static const char *state_name(enum wb_stage_state state)
-{
-    static const char *const names[] = {"unknown", "idle", "run",   "jog",
-                                        "hold",    "home", "alarm", "other"};
-    return (size_t)state < sizeof names / sizeof names[0] ? names[state] : "unknown";
 }
 
 static void put_stage(void *context, const struct wb_stage_report *report)
 {
     char position[WB_NUMBER_TEXT];
     FILE *file = begin_row(context, TABLE_STAGE, report->t_ns);
-    fprintf(file, ",%s,%s,%d\n", state_name(report->state),
+    fprintf(file, ",%s,%s,%d\n", wb_sample_columns_state(report->state),
             number_or_empty(report->position / WB_MM, position), report->alarm);
 }
 
@@ -182,23 +176,13 @@ static enum wb_status put_clock(void *context, const struct wb_clock_row *row)
     return WB_OK;
 }
 
-static enum wb_status find_start(void *context, const struct wb_chunk *chunk)
-{
-    struct export *export = context;
-    if (!chunk->intact)
-        return WB_OK;
-    export->started = true;
-    export->first_ns = chunk->t_ns;
-    return WB_ERR_TIMEOUT; /* the first one is enough */
-}
-
 /* --- all of it --- */
 
 static enum wb_status write_tables(struct export *export, struct wb_recording *recording,
                                    const struct wb_rig *rig, struct wb_export_counts *counts)
 {
-    enum wb_status status = wb_recording_each_chunk(recording, find_start, export);
-    if (!export->started && status != WB_OK)
+    enum wb_status status = wb_sample_columns_start(recording, &export->first_ns);
+    if (status != WB_OK)
         return status;
     const struct wb_sink sink = {
         .context = export, .load = put_load, .mocap = put_mocap, .stage = put_stage};
@@ -219,12 +203,12 @@ enum wb_status wb_export_csv(struct wb_recording *recording, const struct wb_rig
     static const char *const names[][2] = {
         {"load.csv", "t_s,t_ns,index,force_N,valid,unstable,overload,unit_changed"},
         {"mocap.csv", "t_s,t_ns,frame,t_device_s,marker,x_m,y_m,z_m,size_m,residual_m,params,"
-                      "occluded,model_filled"},
+                      "occluded,model_filled,segment"},
         {"stage.csv", "t_s,t_ns,state,position_mm,alarm"},
         {"events.csv", "t_s,t_ns,kind,text"},
         {"clock.csv", "t_s,t_ns,stream,t_device_s,rtt_ns"},
     };
-    struct export export = {.started = false};
+    struct export export = {.first_ns = 0};
     struct wb_export_counts counted = {0};
     enum wb_status status = WB_OK;
     for (int i = 0; i < N_TABLES && status == WB_OK; i++) {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/units.h"
+#include "daq/tic.h"
 
 /* Questions for a report while the stop is not confirmed: often enough to see it well within the
  * deadline, and not more often than a controller answers. */
@@ -14,12 +15,12 @@
 const char *wb_interlock_reason_name(enum wb_interlock_reason reason)
 {
     static const char *const names[] = {
-        [WB_INTERLOCK_NONE] = "none",           [WB_INTERLOCK_FORCE] = "force",
-        [WB_INTERLOCK_OVERLOAD] = "overload",   [WB_INTERLOCK_UNIT] = "unit",
-        [WB_INTERLOCK_TRAVEL] = "travel",       [WB_INTERLOCK_ALARM] = "alarm",
-        [WB_INTERLOCK_STAGE] = "stage",         [WB_INTERLOCK_STREAM_LOST] = "stream_lost",
-        [WB_INTERLOCK_DISK] = "disk",           [WB_INTERLOCK_MOTION] = "motion",
-        [WB_INTERLOCK_INTERRUPT] = "interrupt",
+        [WB_INTERLOCK_NONE] = "none",         [WB_INTERLOCK_FORCE] = "force",
+        [WB_INTERLOCK_OVERLOAD] = "overload", [WB_INTERLOCK_UNIT] = "unit",
+        [WB_INTERLOCK_TRAVEL] = "travel",     [WB_INTERLOCK_ALARM] = "alarm",
+        [WB_INTERLOCK_STAGE] = "stage",       [WB_INTERLOCK_STREAM_LOST] = "stream_lost",
+        [WB_INTERLOCK_DISK] = "disk",         [WB_INTERLOCK_MOTION] = "motion",
+        [WB_INTERLOCK_DROP] = "force_drop",   [WB_INTERLOCK_INTERRUPT] = "interrupt",
     };
     return (size_t)reason < sizeof names / sizeof names[0] ? names[reason] : "unknown";
 }
@@ -130,6 +131,9 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
         return false;
     if (report->state == WB_STAGE_ALARM && limit->alarm_allowed)
         return false;
+    if (report->state == WB_STAGE_ALARM && report->alarm >= WB_TIC_ALARM)
+        return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns, "the stage is in alarm: %s",
+                    wb_tic_alarm_text(report->alarm));
     if (report->state == WB_STAGE_ALARM && report->alarm != 0)
         return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns,
                     "the stage raised ALARM:%d of its firmware", report->alarm);

@@ -40,7 +40,8 @@ enum wb_interlock_reason {
     WB_INTERLOCK_STAGE,       /* the stage does not obey a command */
     WB_INTERLOCK_STREAM_LOST, /* an instrument fell silent for too long or went away */
     WB_INTERLOCK_DISK,        /* the recording can no longer be written */
-    WB_INTERLOCK_MOTION,      /* stage and cameras tell different first motions */
+    WB_INTERLOCK_MOTION,      /* stage, cameras and force do not fit in the first millimetres */
+    WB_INTERLOCK_DROP,        /* the force fell while the wire was bent further */
     WB_INTERLOCK_INTERRUPT    /* Ctrl-C or the operator's stop key */
 };
 

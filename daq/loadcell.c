@@ -30,6 +30,19 @@ void wb_loadcell_poll(struct wb_loadcell *loadcell, int64_t now_ns, const char *
         loadcell->next_ask_ns = now_ns + period;
 }
 
+void wb_loadcell_keep_streaming(struct wb_loadcell *loadcell, int64_t now_ns, const char *question,
+                                struct wb_outbox *outbox)
+{
+    if (loadcell->n_lines != loadcell->lines_seen) {
+        loadcell->lines_seen = loadcell->n_lines;
+        loadcell->next_ask_ns = now_ns + WB_LOADCELL_SILENCE_NS;
+    }
+    if (now_ns < loadcell->next_ask_ns)
+        return;
+    wb_outbox_add_text(outbox, question);
+    loadcell->next_ask_ns = now_ns + WB_LOADCELL_SILENCE_NS;
+}
+
 char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_t size)
 {
     size_t n = 0;

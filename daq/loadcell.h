@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/units.h"
 #include "daq/driver.h"
 #include "daq/line_buffer.h"
 #include "daq/loadcell_line.h"
@@ -20,7 +21,9 @@ struct wb_loadcell {
     struct wb_line_buffer line; /* that is coming in */
     bool whole;                 /* a line's end has been seen: what follows are whole lines */
     int64_t next_ask_ns;
-    uint64_t n_samples; /* delivered: the next sample's index */
+    uint64_t n_lines;    /* that came, readings or not, */
+    uint64_t lines_seen; /* and when the stream was last found to be alive */
+    uint64_t n_samples;  /* delivered: the next sample's index */
     uint64_t n_refused, n_overloads;
     char first_unit[16], last_unit[16]; /* as printed */
     bool overloaded;                    /* the last sample was */
@@ -35,6 +38,12 @@ bool wb_loadcell_ready(const void *state);
  * not come in a rush after a pause. */
 void wb_loadcell_poll(struct wb_loadcell *loadcell, int64_t now_ns, const char *question,
                       struct wb_outbox *outbox);
+
+/* Asks for the stream again after a second without a line: the instrument was switched off and on,
+ * or missed the question. Begins to count at the first call after next_ask_ns. */
+#define WB_LOADCELL_SILENCE_NS (1000 * WB_NS_PER_MS)
+void wb_loadcell_keep_streaming(struct wb_loadcell *loadcell, int64_t now_ns, const char *question,
+                                struct wb_outbox *outbox);
 
 /* Delivers what the line in the buffer says: a value, an overload, or a remark that it was
  * refused. */

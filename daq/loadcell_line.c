@@ -165,25 +165,28 @@ static void refuse(struct cursor *cursor, const char *reason)
     cursor->reading->reason = reason;
 }
 
-/* `S` may be followed by one more sign: stable, dynamic, or over and under range. */
-static void take_second_status(struct cursor *cursor)
+/* One of these signs that stands alone: stable, dynamic, or over and under range. False when there
+ * is none. */
+static bool take_sign(struct cursor *cursor, const char *signs)
 {
     const char sign = *cursor->at;
-    if (sign == '\0' || !strchr("SD?^v", sign) || !isspace((unsigned char)cursor->at[1]))
-        return;
+    if (sign == '\0' || !strchr(signs, sign) || !isspace((unsigned char)cursor->at[1]))
+        return false;
     if (sign == 'D' || sign == '?')
         cursor->reading->unstable = true;
     if (sign == '^' || sign == 'v')
         cursor->reading->kind = WB_LINE_OVERLOAD;
     cursor->at++;
     skip_blanks(cursor);
+    return true;
 }
 
 /* One status word before the number: `ST`, `US`, `GS`, ..., delimited from what follows. Returns
  * false when there is none. */
 static bool take_status(struct cursor *cursor)
 {
-    static const char *const words[] = {"SD", "SI", "ST", "US", "GS", "NT", "S", "G", "N"};
+    static const char *const words[] = {"SUI", "SD", "SI", "SU", "ST", "US",
+                                        "GS",  "NT", "S",  "G",  "N"};
     const size_t n = strspn(cursor->at, "ABCDEFGHIJKLMNOPQRSTUVWXYZ");
     const char after = cursor->at[n];
     if (n == 0 || !(isspace((unsigned char)after) || after == ','))
@@ -193,28 +196,41 @@ static bool take_status(struct cursor *cursor)
             continue;
         if (strcmp(words[i], "US") == 0 || strcmp(words[i], "SD") == 0)
             cursor->reading->unstable = true;
-        const bool single = strcmp(words[i], "S") == 0;
+        /* Answers to S, SI, SU and SUI: MT-SICS, Radwag. */
+        const bool answers = strcmp(words[i], "S") == 0 || strcmp(words[i], "SI") == 0 ||
+                             strcmp(words[i], "SU") == 0 || strcmp(words[i], "SUI") == 0;
         cursor->at += n;
         while (isspace((unsigned char)*cursor->at) || *cursor->at == ',')
             cursor->at++;
-        if (single)
-            take_second_status(cursor);
+        if (answers)
+            take_sign(cursor, "SD?^v");
         return true;
     }
     return false;
 }
 
-/* A label before the number, letters and blanks up to a comma, colon or equals sign. */
+/* A label before the number, letters, blanks and underscores up to a comma, colon or equals sign.
+ */
 static bool take_label(struct cursor *cursor)
 {
     size_t n = 0;
-    while (isalpha((unsigned char)cursor->at[n]) || (n > 0 && cursor->at[n] == ' '))
+    while (isalpha((unsigned char)cursor->at[n]) ||
+           (n > 0 && (cursor->at[n] == ' ' || cursor->at[n] == '_')))
         n++;
     if (n == 0 || !cursor->at[n] || !strchr(",:=", cursor->at[n]))
         return false;
     cursor->at += n + 1;
     skip_blanks(cursor);
     return true;
+}
+
+/* A comma between the number and its unit, `0.000,kg`: it is no decimal sign. */
+static bool is_before_unit(const char *comma)
+{
+    if (*comma != ',')
+        return false;
+    comma += 1 + strspn(comma + 1, " ");
+    return isalpha((unsigned char)*comma);
 }
 
 /* The number, its sign possibly apart from it, into a text that wb_number_parse() reads. */
@@ -233,7 +249,7 @@ static bool take_number(struct cursor *cursor)
         if (isdigit((unsigned char)*c)) {
             digits++;
             text[n++] = *c;
-        } else if (!point && (*c == '.' || *c == ',')) {
+        } else if (!point && (*c == '.' || *c == ',') && !is_before_unit(c)) {
             const bool wanted = cursor->cell->decimal_comma ? *c == ',' : *c == '.';
             if (!wanted) {
                 refuse(cursor,
@@ -335,6 +351,8 @@ static bool take_word(struct cursor *cursor, const char *word, size_t n)
 /* Unit and marks, up to the end of the line. */
 static void take_rest(struct cursor *cursor)
 {
+    skip_blanks(cursor);
+    cursor->at += is_before_unit(cursor->at);
     for (int words = 0;; words++) {
         skip_blanks(cursor);
         if (*cursor->at == '\0')
@@ -427,6 +445,8 @@ void wb_line_decode(const char *bytes, size_t length, const struct wb_rig_load_c
     }
     cursor.at = text;
     skip_blanks(&cursor);
+    /* What Radwag prints by itself begins with the mark of stability. */
+    take_sign(&cursor, "?^v");
     while (take_status(&cursor) || take_label(&cursor))
         ;
     if (reading->kind == WB_LINE_OVERLOAD || !take_number(&cursor))

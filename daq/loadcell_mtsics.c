@@ -6,16 +6,7 @@
 #include <string.h>
 
 #include "base/number.h"
-#include "base/units.h"
 #include "daq/loadcell.h"
-
-#define RETRY_NS (1000 * WB_NS_PER_MS) /* of silence, then the stream is asked for again */
-
-struct mtsics_state {
-    struct wb_loadcell loadcell; /* comes first */
-    uint64_t n_lines;
-    uint64_t lines_seen; /* when the next question was last put off */
-};
 
 /* Splits a line at blanks into at most four words; returns how many there are. */
 static int split(char *text, char *words[4])
@@ -115,14 +106,18 @@ static void decode_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct
 static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
                     const struct wb_sink *sink)
 {
-    struct mtsics_state *const state = opaque;
+    struct wb_loadcell *const loadcell = opaque;
+    if (n == 0) {
+        wb_line_buffer_clear(&loadcell->line);
+        loadcell->whole = false;
+    }
     for (size_t i = 0; i < n; i++) {
-        if (!wb_line_buffer_push(&state->loadcell.line, bytes[i], "crlf"))
+        if (!wb_line_buffer_push(&loadcell->line, bytes[i], "crlf"))
             continue;
-        decode_line(&state->loadcell, t_ns, sink);
-        state->loadcell.whole = true;
-        state->n_lines++;
-        wb_line_buffer_clear(&state->loadcell.line);
+        decode_line(loadcell, t_ns, sink);
+        loadcell->whole = true;
+        loadcell->n_lines++;
+        wb_line_buffer_clear(&loadcell->line);
     }
 }
 
@@ -132,25 +127,16 @@ static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     const int64_t period = loadcell->rig.load_cell.poll_period_ns;
     wb_outbox_add_text(outbox, "I4\r\n");
     wb_outbox_add_text(outbox, period > 0 ? "SI\r\n" : "SIR\r\n");
-    loadcell->next_ask_ns = now_ns + (period > 0 ? period : RETRY_NS);
+    loadcell->next_ask_ns = now_ns + (period > 0 ? period : WB_LOADCELL_SILENCE_NS);
 }
 
 static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 {
-    struct mtsics_state *const state = opaque;
-    struct wb_loadcell *const loadcell = &state->loadcell;
-    if (loadcell->rig.load_cell.poll_period_ns > 0) {
+    struct wb_loadcell *const loadcell = opaque;
+    if (loadcell->rig.load_cell.poll_period_ns > 0)
         wb_loadcell_poll(loadcell, now_ns, "SI\r\n", outbox);
-        return;
-    }
-    if (state->n_lines != state->lines_seen) {
-        state->lines_seen = state->n_lines;
-        loadcell->next_ask_ns = now_ns + RETRY_NS;
-    }
-    if (now_ns >= loadcell->next_ask_ns) {
-        wb_outbox_add_text(outbox, "SIR\r\n");
-        loadcell->next_ask_ns = now_ns + RETRY_NS;
-    }
+    else
+        wb_loadcell_keep_streaming(loadcell, now_ns, "SIR\r\n", outbox);
 }
 
 static void stop(void *opaque, struct wb_outbox *outbox)
@@ -164,7 +150,7 @@ static void stop(void *opaque, struct wb_outbox *outbox)
 const struct wb_driver wb_loadcell_mtsics = {
     .name = "mt-sics",
     .role = WB_ROLE_LOAD,
-    .state_size = sizeof(struct mtsics_state),
+    .state_size = sizeof(struct wb_loadcell),
     .init = wb_loadcell_init,
     .start = start,
     .receive = receive,

@@ -14,6 +14,9 @@
 #define IN_RHYTHM 0.4 /* how far an interval may be off */
 /* Share of intervals in rhythm without which arrivals have none. */
 #define LEAST_RHYTHM 0.6
+/* Arrivals that are nearer to each other than their mean by more than this factor come in bundles:
+ * more than half of a stream that is watched is not lost. */
+#define MOST_OFTEN 2.5
 /* Regular intervals after which a late sample has nothing more to make up for. */
 #define SETTLED 8
 /* Share of arrivals that may seem to be missing on a busy computer. */
@@ -59,6 +62,9 @@ static double find_period(const struct wb_loss *loss)
         used++;
     }
     const double least = loss->stamped ? 0.1 : LEAST_RHYTHM;
+    const double mean = (loss->times[loss->n_times - 1] - loss->times[0]) / (loss->n_times - 1);
+    if (!loss->stamped && mean > MOST_OFTEN * typical)
+        return 0.0;
     return typical > 0.0 && used >= least * n ? sum / used : 0.0;
 }
 
@@ -205,6 +211,8 @@ double wb_loss_share(const struct wb_loss_counts *counts)
 
 bool wb_loss_is_told(const struct wb_loss *loss)
 {
-    const struct wb_loss_counts counts = wb_loss_counts(loss);
-    return counts.missing > 0 && (loss->stamped || wb_loss_share(&counts) > CHANCE);
+    /* Not what late arrivals may still make up for: asked while the stream goes on, that told of
+     * losses which were none a moment later. */
+    const struct wb_loss_counts *const counts = &loss->counts;
+    return counts->missing > 0 && (loss->stamped || wb_loss_share(counts) > CHANCE);
 }

@@ -111,3 +111,18 @@ void wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_s
         places->n_seen = 1;
     }
 }
+
+int wb_marker_check_nearest(const struct wb_mocap_frame *frame, const double at[3], double reach)
+{
+    double nearest = reach;
+    int found = -1;
+    for (int i = 0; i < frame->n_markers; i++) {
+        const float *const p = frame->markers[i].position;
+        const double off = distance((double[]){(double)p[0], (double)p[1], (double)p[2]}, at);
+        if (wb_acquisition_marker_measured(&frame->markers[i]) && off < nearest) {
+            nearest = off;
+            found = i;
+        }
+    }
+    return found;
+}

@@ -5,6 +5,7 @@
 #ifndef WB_DAQ_MARKER_CHECK_H
 #define WB_DAQ_MARKER_CHECK_H
 
+#include "base/units.h"
 #include "daq/sample.h"
 #include "daq/specimen.h"
 
@@ -21,5 +22,11 @@ struct wb_marker_places {
  * need it. Frames with more than 32 measured markers are searched among the first 32. */
 void wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_specimen *specimen,
                            struct wb_marker_places *places);
+
+/* The measured marker of a frame that is nearest to a place (m, server's frame) and less than
+ * `reach` (m) away: its index, -1 where there is none. From one frame to the next a marker moves
+ * far less than WB_MARKER_CHECK_REACH, and no other one is so near. */
+int wb_marker_check_nearest(const struct wb_mocap_frame *frame, const double at[3], double reach);
+#define WB_MARKER_CHECK_REACH (5.0 * WB_MM)
 
 #endif

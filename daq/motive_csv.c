@@ -69,18 +69,6 @@ static enum wb_status no_memory(const struct reading *reading)
     return wb_fail_to(reading->why, WB_ERR_MEMORY, "%s: out of memory", reading->name);
 }
 
-/* A cell in a message. */
-struct quoted {
-    char text[40];
-};
-
-static struct quoted quote(const char *cell, size_t n)
-{
-    struct quoted quoted;
-    wb_take_copy_name(quoted.text, sizeof quoted.text, cell, n);
-    return quoted;
-}
-
 static bool is_missing(const char *cell, size_t n)
 {
     /* Most cells are numbers. */
@@ -119,7 +107,7 @@ static enum wb_status read_rate(struct reading *reading, const char *line, size_
         if (!wb_cells_number(value, n_value, reading->comma, &rate) || !(rate > 0.0) ||
             !(rate < 1e6))
             return refuse(reading, column, "%s: expected a rate in frames a second, not '%s'",
-                          keys[i], quote(value, n_value).text);
+                          keys[i], wb_take_quote(value, n_value).text);
         reading->take->rate = rate;
     }
     return WB_OK;
@@ -143,7 +131,7 @@ static enum wb_status read_keys(struct reading *reading, const char *line, size_
     reading->unit = wb_take_length_unit(value, n_value);
     if (!(reading->unit > 0.0))
         return refuse(reading, column, "'%s' is no unit of length that is known",
-                      quote(value, n_value).text);
+                      wb_take_quote(value, n_value).text);
     if (find_value(reading, line, n, "Coordinate Space", &value, &n_value, &column) &&
         wb_cells_equal(value, n_value, "Local"))
         return refuse(reading, column, "%s",
@@ -264,7 +252,7 @@ static enum wb_status read_columns(struct reading *reading, const struct header 
 {
     struct wb_cells rows[4];
     const size_t which[4] = {header->type, header->name, header->kind, header->axis};
-    struct quoted last = {""};
+    struct wb_take_quoted last = {""};
     enum wb_take_kind last_kind = WB_TAKE_BODY;
     unsigned axes = 7;
     for (int r = 0; r < 4; r++)
@@ -296,7 +284,7 @@ static enum wb_status read_columns(struct reading *reading, const struct header 
         if (axis < 0 || axis > 2)
             return refuse(reading, reading->n_columns, "a position along '%c', expected X, Y or Z",
                           cell[3][0]);
-        const struct quoted name = quote(cell[1], n[1]);
+        const struct wb_take_quoted name = wb_take_quote(cell[1], n[1]);
         if (axes >> axis & 1 || kind != last_kind || strcmp(name.text, last.text) != 0) {
             if (wb_take_add_point(reading->take, kind, cell[1], n[1]) < 0)
                 return no_memory(reading);
@@ -320,7 +308,7 @@ static enum wb_status take_number(struct reading *reading, const struct wb_cells
     if (!wb_cells_number(cell, n, 0, &value) || value != floor(value) ||
         !(fabs(value) < (double)INT_MAX))
         return refuse(reading, cells->column, "expected a frame's number, not '%s'",
-                      quote(cell, n).text);
+                      wb_take_quote(cell, n).text);
     *number = (int32_t)value;
     return WB_OK;
 }
@@ -330,7 +318,7 @@ static enum wb_status take_time(struct reading *reading, const struct wb_cells *
 {
     if (!wb_cells_number(cell, n, reading->comma, t) || !(fabs(*t) < LARGEST_TIME))
         return refuse(reading, cells->column, "expected a time in seconds, not '%s'",
-                      quote(cell, n).text);
+                      wb_take_quote(cell, n).text);
     return WB_OK;
 }
 
@@ -343,7 +331,8 @@ static enum wb_status take_coordinate(struct reading *reading, const struct wb_c
         return WB_OK;
     }
     if (!wb_cells_number(cell, n, reading->comma, value))
-        return refuse(reading, cells->column, "expected a position, not '%s'", quote(cell, n).text);
+        return refuse(reading, cells->column, "expected a position, not '%s'",
+                      wb_take_quote(cell, n).text);
     *value *= reading->unit;
     if (!(fabs(*value) <= LARGEST_POSITION))
         return refuse(reading, cells->column, "a marker at %g m: is the unit of length right?",
@@ -503,7 +492,8 @@ static enum wb_status need_count(struct reading *reading, struct wb_cells *cells
         return refuse(reading, cells->column, "the row ends before %s", what);
     if (!wb_cells_number(cell, n, 0, &value) || value != floor(value) || !(value >= 0.0) ||
         !(value <= 1e6))
-        return refuse(reading, cells->column, "expected %s, not '%s'", what, quote(cell, n).text);
+        return refuse(reading, cells->column, "expected %s, not '%s'", what,
+                      wb_take_quote(cell, n).text);
     *count = (size_t)value;
     return WB_OK;
 }
@@ -597,7 +587,7 @@ static enum wb_status read_info(struct reading *reading, struct wb_cells *cells)
         return WB_OK;
     if (wb_cells_equal(key, n_key, "version"))
         snprintf(reading->take->format, sizeof reading->take->format, "Motive CSV %.16s",
-                 quote(value, n).text);
+                 wb_take_quote(value, n).text);
     else if (wb_cells_equal(key, n_key, "framecount") && wb_cells_number(value, n, 0, &count) &&
              count >= 0.0 && count < 1e9)
         reading->take->declared_frames = (size_t)count;
@@ -626,7 +616,7 @@ static enum wb_status read_line_by_word(struct reading *reading, const char *lin
         if (wb_cells_equal(word, n_word, ignored[i]))
             return WB_OK;
     return refuse(reading, 1, "a row begins with '%s', expected frame, info, rigidbody or comment",
-                  quote(word, n_word).text);
+                  wb_take_quote(word, n_word).text);
 }
 
 static enum wb_status read_with_rows(struct reading *reading, const char *line, size_t n)

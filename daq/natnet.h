@@ -1,4 +1,4 @@
-/* NatNet, the motion-capture server's protocol, 2.5 to 4.1: what its datagrams hold, and pure,
+/* NatNet, the motion-capture server's protocol, 2.5 to 4.4: what its datagrams hold, and pure,
  * bounds-checked decoders on (bytes, length).
  *
  * A datagram is `uint16 message, uint16 payload bytes`, then the payload; little-endian, unpadded.
@@ -7,7 +7,8 @@
  * result as it was, but for wb_natnet_decode_frame(), whose large result is overwritten in any
  * case. Decoding a hostile datagram reads nothing beyond it and ends in time proportional to it.
  *
- * The layout of versions above 4.1 is not verified: they are read as 4.1, and like every frame only
+ * The vendor's published clients read 4.2 to 4.4 as 4.1. No captured stream of them was seen: they,
+ * and later versions, are read as 4.1, and like every frame only
  * when sections, stamps and end mark fit to the last byte. Other layouts are refused.
  */
 #ifndef WB_DAQ_NATNET_H

@@ -14,6 +14,7 @@
 #include "base/units.h"
 #include "daq/natnet.h"
 #include "daq/natnet_encode.h"
+#include "daq/natnet_watch.h"
 
 #define CONNECT_PERIOD_NS (500 * WB_NS_PER_MS)
 #define QUERY_PERIOD_NS (1000 * WB_NS_PER_MS)
@@ -30,10 +31,16 @@
 enum query {
     QUERY_UNITS,
     QUERY_FRAME_RATE,
-    QUERY_BITSTREAM, /* of servers whose own layout is not verified, see n_queries() */
+    QUERY_BITSTREAM, /* of servers newer than the layout that was verified, */
+    QUERY_TAKE,      /* and where the rig file wants a take: see applies() */
     N_QUERIES
 };
-static const char *const queries[N_QUERIES] = {"UnitsToMillimeters", "FrameRate", "Bitstream,4.1"};
+static const char *const queries[N_QUERIES] = {"UnitsToMillimeters", "FrameRate", "Bitstream,4.1",
+                                               "StartRecording"};
+#define STOP_TAKE "StopRecording"
+
+/* s of the server's clock that a datagram may be overtaken by others on its way. */
+#define OVERTAKEN 1.0
 
 /* Frames in a row without a measured marker before it is told: somebody may walk by. */
 #define UNMEASURED_FRAMES 100
@@ -55,7 +62,9 @@ struct natnet_state {
     bool connected;
     struct wb_natnet_version version;
     struct wb_natnet_server server;
-    int n_answers;       /* to queries */
+    int n_answers;     /* to queries, of those that apply */
+    bool records_take; /* the server agreed to */
+    struct wb_natnet_watch watch;
     int n_strays;        /* answers that cannot be to the first query */
     double units_factor; /* server's length unit in m */
     uint64_t n_frames, n_refused;
@@ -79,16 +88,44 @@ static bool first_time(struct natnet_state *state, unsigned what)
 
 /* --- server info --- */
 
-/* NatNet 4.1 is the newest version whose layout is known. */
+/* NatNet 4.1 is the newest version whose layout was verified. */
 static bool is_unverified(const struct natnet_state *state)
 {
     return wb_natnet_version_at_least(state->version, 4, 2);
 }
 
-/* A unicast server streams the version that it is asked for; a multicast one serves many. */
-static int n_queries(const struct natnet_state *state)
+/* The vendor's published clients read 4.2 to 4.4 as they read 4.1; of what comes later nothing is
+ * known. */
+static bool is_unknown(const struct natnet_state *state)
 {
-    return is_unverified(state) && !state->server.multicast ? N_QUERIES : QUERY_BITSTREAM;
+    return wb_natnet_version_at_least(state->version, 4, 5);
+}
+
+static bool applies(const struct natnet_state *state, enum query query)
+{
+    /* A unicast server streams the version that it is asked for; a multicast one serves many. */
+    if (query == QUERY_BITSTREAM)
+        return is_unverified(state) && !state->server.multicast;
+    return query != QUERY_TAKE || state->rig.mocap.record_take;
+}
+
+/* The query that is the next to be answered; N_QUERIES: none. */
+static enum query next_query(const struct natnet_state *state)
+{
+    int left = state->n_answers;
+    for (int query = 0; query < N_QUERIES; query++)
+        if (applies(state, (enum query)query) && left-- == 0)
+            return (enum query)query;
+    return N_QUERIES;
+}
+
+/* The server is asked everything again: it was restarted, or announced itself anew. */
+static void forget_answers(struct natnet_state *state)
+{
+    /* Its own answers are waited for; those of before may still be under way. */
+    state->n_answers = state->n_asked = 0;
+    state->n_strays = 0;
+    state->records_take = false;
 }
 
 /* Compares where the server sends with where the rig file listens. */
@@ -142,10 +179,13 @@ static void remark_version(const struct natnet_state *state, int64_t t_ns,
                      "the server is '%s' %u.%u.%u.%u, NatNet %u.%u", name, app[0], app[1], app[2],
                      app[3], version.major, version.minor);
     if (is_unverified(state))
-        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "version",
-                         "the server speaks NatNet %u.%u: layout unverified. Its frames are read "
+        wb_driver_remark(sink, is_unknown(state) ? WB_LOG_WARNING : WB_LOG_INFO, t_ns, "version",
+                         "the server speaks NatNet %u.%u: layout %s. Its frames are read "
                          "as 4.1 and refused where they do not fit%s",
                          version.major, version.minor,
+                         is_unknown(state) ? "unknown"
+                                           : "as the vendor's clients have it, not seen on a "
+                                             "captured stream",
                          state->server.multicast ? "; a unicast server can be asked for 4.1: "
                                                    "set the server to unicast and remove the "
                                                    "group from mocap.address"
@@ -174,9 +214,7 @@ static void receive_server(struct natnet_state *state, int64_t t_ns,
     state->server = server;
     state->version = (struct wb_natnet_version){server.natnet_version[0], server.natnet_version[1]};
     state->connected = true;
-    /* Its own answers are waited for; those of before may still be under way. */
-    state->n_answers = state->n_asked = 0;
-    state->n_strays = 0;
+    forget_answers(state);
     state->units_factor = 1.0;
     state->said = 0;
     remark_version(state, t_ns, sink);
@@ -238,6 +276,19 @@ static void take_bitstream(const struct wb_natnet_response *response, int64_t t_
                          "unverified");
 }
 
+/* The answer is an integer, 0 when the server will do it. */
+static void take_take(struct natnet_state *state, const struct wb_natnet_response *response,
+                      int64_t t_ns, const struct wb_sink *sink)
+{
+    state->records_take = response->is_number && response->integer == 0;
+    if (state->records_take)
+        wb_natnet_watch_promise(&state->watch, t_ns);
+    else
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "take",
+                         "the server does not record a take of its own when asked: put Motive into "
+                         "live mode, or remove mocap.record_take from the rig file");
+}
+
 /* An answer does not repeat its question: they come one at a time, in the order asked. After the
  * server announced itself anew, answers to questions of before may come first. */
 static void receive_response(struct natnet_state *state, int64_t t_ns,
@@ -248,9 +299,10 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
     const bool unknown = packet->message == WB_NATNET_UNRECOGNIZED_REQUEST;
     if (!unknown && wb_natnet_decode_response(packet, &response, fault) != WB_OK)
         return;
-    if (!state->connected || state->n_answers == n_queries(state))
+    const enum query query = next_query(state);
+    if (!state->connected || query == N_QUERIES)
         return;
-    if (state->n_answers == QUERY_UNITS && response.is_number && !is_unit((double)response.real) &&
+    if (query == QUERY_UNITS && response.is_number && !is_unit((double)response.real) &&
         state->n_strays < STRAYS_MAX) {
         state->n_strays++;
         wb_driver_remark(
@@ -259,9 +311,11 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
             (double)response.real);
         return;
     }
-    const enum query query = (enum query)state->n_answers++;
+    state->n_answers++;
     if (query == QUERY_BITSTREAM)
         take_bitstream(&response, t_ns, sink);
+    else if (query == QUERY_TAKE)
+        take_take(state, &response, t_ns, sink);
     else if (unknown || !response.is_number)
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "query", "the server does not answer '%s'",
                          queries[query]);
@@ -388,6 +442,10 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
     if (state->server.clock_frequency > 0 && mocap->camera_data_received > 0)
         mocap->t_clock =
             seconds_of_ticks(mocap->camera_data_received, state->server.clock_frequency);
+    const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
+    if (wb_natnet_watch_frame(&state->watch, mocap, OVERTAKEN * scale, sink) == WB_NATNET_RESTARTED)
+        forget_answers(state);
+    mocap->segment = state->watch.segment;
     mend_markers(state, t_ns, sink);
     remark_frame(state, t_ns, sink);
     remark_unmeasured(state, t_ns, sink);
@@ -444,6 +502,8 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
     struct natnet_state *const state = opaque;
     struct wb_natnet_packet packet = {0};
     struct wb_natnet_fault fault = {0};
+    if (n == 0)
+        return; /* a datagram is whole */
     state->last_receive_ns = t_ns;
     if (wb_natnet_decode_packet(bytes, n, &packet, &fault) == WB_OK) {
         switch (packet.message) {
@@ -514,10 +574,11 @@ static void send_query(struct natnet_state *state, int64_t now_ns, struct wb_out
 {
     uint8_t buffer[64];
     const bool waits = state->n_asked > state->n_answers && now_ns < state->next_query_ns;
-    if (state->n_answers == n_queries(state) || waits)
+    const enum query query = next_query(state);
+    if (query == N_QUERIES || waits)
         return;
     const size_t n =
-        wb_natnet_encode_text(buffer, sizeof buffer, WB_NATNET_REQUEST, queries[state->n_answers]);
+        wb_natnet_encode_text(buffer, sizeof buffer, WB_NATNET_REQUEST, queries[query]);
     wb_outbox_add(outbox, buffer, n);
     state->n_asked = state->n_answers + 1;
     state->next_query_ns = now_ns + QUERY_PERIOD_NS;
@@ -554,7 +615,10 @@ static bool ready(const void *opaque)
 static void stop(void *opaque, struct wb_outbox *outbox)
 {
     const struct natnet_state *const state = opaque;
-    uint8_t buffer[16];
+    uint8_t buffer[32];
+    if (state->records_take)
+        wb_outbox_add(outbox, buffer,
+                      wb_natnet_encode_text(buffer, sizeof buffer, WB_NATNET_REQUEST, STOP_TAKE));
     if (state->connected)
         wb_outbox_add(outbox, buffer,
                       wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_DISCONNECT));

@@ -1,4 +1,4 @@
-/* NatNet datagrams, encoded: what a client sends, and what a server of any version from 2.5 to 4.1
+/* NatNet datagrams, encoded: what a client sends, and what a server of any version from 2.5 to 4.4
  * sends (for the virtual rig and the tests).
  *
  * Each function writes one whole datagram into `buffer` and returns its size, or 0 when it does not

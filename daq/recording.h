@@ -54,8 +54,10 @@ WB_MUST_CHECK enum wb_status wb_recording_append_event(struct wb_recording *reco
 WB_MUST_CHECK enum wb_status wb_recording_append_clock(struct wb_recording *recording, int stream,
                                                        int64_t t_host_ns, double t_device,
                                                        int64_t rtt_ns);
-/* Once a write failed, all further ones return the same status without another message, and the
- * recording counts as not closed properly. */
+/* Once a write or a flush failed, all that was appended since the last good flush is gone: the
+ * caller appends it again, or gives up. Appending goes on where the last good flush ended, so that
+ * the disk may come back. Failures after the first give no message until something could be
+ * flushed. A recording whose last flush failed is not closed properly. */
 WB_MUST_CHECK enum wb_status wb_recording_flush(struct wb_recording *recording);
 
 /* Flushes, checkpoints, leaves one plain file, and frees. Accepts NULL. For a recording opened for
@@ -73,12 +75,17 @@ WB_MUST_CHECK enum wb_status wb_recording_open(struct wb_recording **out, const 
  * them. NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_recording_open_with_reason(struct wb_recording **out,
                                                            const char *path, struct wb_reason *why);
-/* Logs that warning where it is due. */
+/* Logs that warning where it is due, and what is wrong with the log. */
 void wb_recording_warn_cut_short(const struct wb_recording *recording);
 /* True when the file is shorter than its own header says. This is logged once, on opening; tables
  * of such a file break off (WB_ERR_DATA) without further messages. For other files, each table that
  * breaks off is told once. */
 bool wb_recording_is_cut_short(const struct wb_recording *recording);
+
+/* What is wrong with the write-ahead log (`-wal`) of a recording that was not closed: it is not
+ * there, or damaged, and what is in it is not read. False when nothing is. 240 bytes hold the text.
+ */
+bool wb_recording_log_problem(const struct wb_recording *recording, char *text, size_t size);
 
 /* False when the recording was not closed properly (crash, full disk) or the file is cut short. */
 bool wb_recording_is_complete(const struct wb_recording *recording);

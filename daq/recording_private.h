@@ -18,6 +18,17 @@
 /* A read or datagram has at most 64 KiB; longer blobs are damage. */
 #define WB_RECORDING_LONGEST_VALUE (16 << 20)
 
+/* --- the write-ahead log --- */
+
+/* What SQLite reads of a log, and what is in it. */
+struct wb_recording_log {
+    uint64_t frames;   /* of this run of the log: those of an earlier one may stand behind it */
+    uint64_t readable; /* of them, up to the first that does not fit its checksum */
+};
+
+/* Looks at the bytes of a log. */
+void wb_recording_log_look(const uint8_t *bytes, size_t n, struct wb_recording_log *log);
+
 /* --- rows --- */
 
 enum wb_recording_kind {
@@ -116,15 +127,21 @@ struct wb_recording {
     /* Writing. */
     sqlite3_stmt *insert[WB_RECORDING_TABLES];
     bool in_transaction;
-    enum wb_status failed; /* latched: the first error of a write */
-    int64_t n_rows;        /* written so far */
-    uint32_t chain;        /* behind the last of them */
+    enum wb_status failed;  /* the first error since something was flushed */
+    int64_t n_rows;         /* written so far */
+    int64_t checkpoint_ns;  /* when what was flushed last went from the log into the file */
+    uint32_t chain;         /* behind the last of them, */
+    uint32_t flushed_chain; /* and behind the last that was flushed */
+    uint32_t *unflushed;    /* (n_unflushed) CRC-32 of the rows since */
+    size_t n_unflushed, capacity;
     struct wb_hash *digest;
     /* Reading. */
     bool compressed; /* .zst */
     bool complete;   /* closed properly */
     bool shortened;  /* the file is shorter than its own header says, or not all decompressed */
     int64_t bytes_there, bytes_expected; /* decompressed; as the file's own header counts them */
+    bool is_log_missing;                 /* it was not closed, and there is no log beside it */
+    struct wb_recording_log log;         /* beside it */
     const char *told[8];                 /* tables already reported as broken off; */
     size_t n_told;                       /* constants */
     int64_t n_rows_max;                  /* no table of a file of this size can hold more rows */
@@ -153,6 +170,14 @@ uint32_t wb_recording_crc32(const void *bytes, size_t n);
  * receives its name, and the caller unlinks it. */
 WB_MUST_CHECK enum wb_status wb_recording_temporary(char *path, size_t size, int *descriptor,
                                                     struct wb_reason *why);
+
+/* Appends a row as it stands. */
+WB_MUST_CHECK enum wb_status wb_recording_append_row(struct wb_recording *recording,
+                                                     enum wb_recording_kind kind,
+                                                     const struct wb_recording_value *values);
+
+/* Whether a file's header says that a write-ahead log belongs to it: it was not closed. */
+bool wb_recording_needs_log(const uint8_t *file, size_t n);
 
 /* True when the first bytes are those of zstd. */
 bool wb_recording_is_zstd(const uint8_t *bytes, size_t n);

@@ -23,6 +23,12 @@ static uint32_t big_endian(const uint8_t *p)
     return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
+bool wb_recording_needs_log(const uint8_t *file, size_t n)
+{
+    return n >= HEADER_BYTES && memcmp(file, "SQLite format 3", 16) == 0 &&
+           (file[18] == 2 || file[19] == 2);
+}
+
 /* Reads SQLite's file header (https://www.sqlite.org/fileformat.html, 1.3). */
 static enum wb_status check_header(struct wb_recording *recording, int descriptor)
 {
@@ -50,6 +56,7 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
             "wirebench",
             recording->path, version, WB_RECORDING_SCHEMA);
     recording->schema = (int)version;
+    recording->is_log_missing = wb_recording_needs_log(header, sizeof header);
     int64_t page = (int64_t)header[16] << 8 | header[17];
     if (page == 1)
         page = 65536;
@@ -149,6 +156,17 @@ static enum wb_status open_copy(struct wb_recording *recording)
     return status;
 }
 
+/* SQLite stops without a word where a frame of the log does not fit. */
+static void look_at_log(struct wb_recording *recording, const char *wal)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    struct wb_reason unread = {{0}}; /* then SQLite will say so */
+    if (wb_file_read_with_reason(wal, &bytes, &size, &unread) == WB_OK)
+        wb_recording_log_look((const uint8_t *)bytes, size, &recording->log);
+    free(bytes);
+}
+
 static enum wb_status open_plain(struct wb_recording *recording)
 {
     char wal[WB_PATH];
@@ -160,6 +178,8 @@ static enum wb_status open_plain(struct wb_recording *recording)
         return code == SQLITE_OK ? WB_OK : wb_recording_fail(recording, code, "open the recording");
     }
     recording->n_rows_max += there.st_size / 4;
+    recording->is_log_missing &= there.st_size == 0;
+    look_at_log(recording, wal);
     recording->shortened = false; /* the log may hold what the header counts */
     if (open_database(recording, recording->path, "mode=ro") == SQLITE_OK)
         return WB_OK;
@@ -360,8 +380,33 @@ enum wb_status wb_recording_open_with_reason(struct wb_recording **out, const ch
     return WB_OK;
 }
 
+bool wb_recording_log_problem(const struct wb_recording *recording, char *text, size_t size)
+{
+    const struct wb_recording_log *const log = &recording->log;
+    /* Between the steps of closing all is in the file. */
+    if (recording->is_log_missing && !recording->complete) {
+        snprintf(
+            text, size,
+            "it was not closed, and its write-ahead log '%.60s-wal' is not beside it: what was "
+            "recorded last, a second or more, is in that file; put it back",
+            wb_file_name(recording->path));
+        return true;
+    }
+    if (log->readable >= log->frames)
+        return false;
+    snprintf(text, size,
+             "its write-ahead log '%.60s-wal' is damaged: %llu of %llu pages in it are read; "
+             "`wirebench recover` reads what is left of the others",
+             wb_file_name(recording->path), (unsigned long long)log->readable,
+             (unsigned long long)log->frames);
+    return true;
+}
+
 void wb_recording_warn_cut_short(const struct wb_recording *recording)
 {
+    char problem[240];
+    if (wb_recording_log_problem(recording, problem, sizeof problem))
+        wb_warn("'%s': %s", recording->path, problem);
     if (recording->shortened)
         wb_warn("'%s' is cut short: %.1f of %.1f MB could be read; look for the original%s",
                 recording->path, (double)recording->bytes_there * 1e-6,

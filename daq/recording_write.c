@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/units.h"
 #include "daq/recording_private.h"
 
 #define WB_LOG_DOMAIN "recording"
@@ -102,6 +103,7 @@ void wb_recording_release(struct wb_recording *recording)
         free(recording->settings[i]);
     free(recording->settings);
     free(recording->streams);
+    free(recording->unflushed);
     free(recording->path);
     free(recording);
 }
@@ -214,25 +216,45 @@ enum wb_status wb_recording_create(struct wb_recording **out, const char *path)
     return WB_OK;
 }
 
-/* Remembers the first error of a write and gives up the open transaction. */
-static enum wb_status latch(struct wb_recording *recording, enum wb_status status)
+/* Gives up the open transaction: what was not flushed is as if it had never been appended. Only the
+ * first of several failures is told. */
+static enum wb_status take_back(struct wb_recording *recording, int code)
 {
-    recording->failed = status;
+    if (recording->failed == WB_OK)
+        recording->failed = wb_recording_fail(recording, code, "write");
     if (recording->in_transaction)
         sqlite3_exec(recording->db, "ROLLBACK", NULL, NULL, NULL);
     recording->in_transaction = false;
-    return status;
+    recording->n_rows -= (int64_t)recording->n_unflushed;
+    recording->chain = recording->flushed_chain;
+    recording->n_unflushed = 0;
+    return recording->failed;
+}
+
+/* Remembers a row until it is flushed, and with it counts for the digest. */
+static bool remember_row(struct wb_recording *recording, uint32_t crc32)
+{
+    if (recording->n_unflushed == recording->capacity) {
+        const size_t capacity = recording->capacity ? 2 * recording->capacity : 1024;
+        uint32_t *const larger = realloc(recording->unflushed, capacity * sizeof *larger);
+        if (!larger)
+            return false;
+        recording->unflushed = larger;
+        recording->capacity = capacity;
+    }
+    recording->unflushed[recording->n_unflushed++] = crc32;
+    return true;
 }
 
 static enum wb_status begin(struct wb_recording *recording)
 {
     if (!recording->writing)
         return wb_fail(WB_ERR_ARGUMENT, "'%s' is open for reading only", recording->path);
-    if (recording->failed != WB_OK || recording->in_transaction)
-        return recording->failed;
+    if (recording->in_transaction)
+        return WB_OK;
     int code = sqlite3_exec(recording->db, "BEGIN", NULL, NULL, NULL);
     if (code != SQLITE_OK)
-        return latch(recording, wb_recording_fail(recording, code, "write"));
+        return take_back(recording, code);
     recording->in_transaction = true;
     return WB_OK;
 }
@@ -259,8 +281,8 @@ static void bind(sqlite3_stmt *statement, int column, char type,
 }
 
 /* Appends a row of any table. */
-static enum wb_status append_row(struct wb_recording *recording, enum wb_recording_kind kind,
-                                 const struct wb_recording_value *values)
+enum wb_status wb_recording_append_row(struct wb_recording *recording, enum wb_recording_kind kind,
+                                       const struct wb_recording_value *values)
 {
     WB_TRY(begin(recording));
     sqlite3_stmt *const statement = recording->insert[kind];
@@ -280,11 +302,10 @@ static enum wb_status append_row(struct wb_recording *recording, enum wb_recordi
     sqlite3_reset(statement);
     sqlite3_clear_bindings(statement);
     errno = error;
-    if (code != SQLITE_DONE)
-        return latch(recording, wb_recording_fail(recording, code, "write"));
+    if (code != SQLITE_DONE || !remember_row(recording, crc32))
+        return take_back(recording, code != SQLITE_DONE ? code : SQLITE_NOMEM);
     recording->n_rows = number;
     recording->chain = chain;
-    wb_recording_digest_add(recording->digest, crc32);
     return WB_OK;
 }
 
@@ -302,7 +323,7 @@ enum wb_status wb_recording_set_meta(struct wb_recording *recording, const char 
                                      const char *value)
 {
     const struct wb_recording_value values[] = {text(key), text(value)};
-    return append_row(recording, WB_RECORDING_META, values);
+    return wb_recording_append_row(recording, WB_RECORDING_META, values);
 }
 
 enum wb_status wb_recording_add_stream(struct wb_recording *recording, enum wb_role role,
@@ -315,7 +336,7 @@ enum wb_status wb_recording_add_stream(struct wb_recording *recording, enum wb_r
     const struct wb_recording_value values[] = {integer(stream.id), text(wb_role_name(role)),
                                                 text(stream.address), text(stream.protocol),
                                                 text(settings ? settings : "")};
-    WB_TRY(append_row(recording, WB_RECORDING_STREAM, values));
+    WB_TRY(wb_recording_append_row(recording, WB_RECORDING_STREAM, values));
     WB_TRY(wb_recording_remember_stream(recording, &stream, settings ? settings : ""));
     *id = stream.id;
     return WB_OK;
@@ -328,14 +349,14 @@ enum wb_status wb_recording_append_chunk(struct wb_recording *recording, int str
         return wb_fail(WB_ERR_ARGUMENT, "'%s' has no stream %d", recording->path, stream);
     const struct wb_recording_value values[] = {
         integer(stream), integer(seq), integer(t_ns), {.bytes = n ? bytes : "", .n = n}};
-    return append_row(recording, WB_RECORDING_CHUNK, values);
+    return wb_recording_append_row(recording, WB_RECORDING_CHUNK, values);
 }
 
 enum wb_status wb_recording_append_event(struct wb_recording *recording, int64_t t_ns,
                                          const char *kind, const char *what)
 {
     const struct wb_recording_value values[] = {integer(t_ns), text(kind), text(what)};
-    return append_row(recording, WB_RECORDING_EVENT, values);
+    return wb_recording_append_row(recording, WB_RECORDING_EVENT, values);
 }
 
 enum wb_status wb_recording_append_clock(struct wb_recording *recording, int stream,
@@ -343,18 +364,39 @@ enum wb_status wb_recording_append_clock(struct wb_recording *recording, int str
 {
     const struct wb_recording_value values[] = {
         integer(stream), integer(t_host_ns), {.real = t_device, .bytes = ""}, integer(rtt_ns)};
-    return append_row(recording, WB_RECORDING_CLOCK, values);
+    return wb_recording_append_row(recording, WB_RECORDING_CLOCK, values);
+}
+
+static const int64_t checkpoint_interval_ns = WB_NS_PER_S;
+
+/* Little shall hang on the log beside the file, which gets lost when the file alone is copied: what
+ * is flushed goes into the file once a second. Where that fails the log still has it. */
+static void checkpoint_when_due(struct wb_recording *recording)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    const int64_t now = time.tv_sec * WB_NS_PER_S + time.tv_nsec;
+    if (now - recording->checkpoint_ns < checkpoint_interval_ns)
+        return;
+    sqlite3_wal_checkpoint_v2(recording->db, NULL, SQLITE_CHECKPOINT_PASSIVE, NULL, NULL);
+    recording->checkpoint_ns = now;
 }
 
 enum wb_status wb_recording_flush(struct wb_recording *recording)
 {
-    if (recording->failed != WB_OK || !recording->in_transaction)
+    if (!recording->in_transaction)
         return recording->failed;
     errno = 0;
     int code = sqlite3_exec(recording->db, "COMMIT", NULL, NULL, NULL);
     if (code != SQLITE_OK)
-        return latch(recording, wb_recording_fail(recording, code, "write"));
+        return take_back(recording, code);
     recording->in_transaction = false;
+    recording->failed = WB_OK;
+    for (size_t i = 0; i < recording->n_unflushed; i++)
+        wb_recording_digest_add(recording->digest, recording->unflushed[i]);
+    recording->n_unflushed = 0;
+    recording->flushed_chain = recording->chain;
+    checkpoint_when_due(recording);
     return WB_OK;
 }
 
@@ -368,6 +410,7 @@ static enum wb_status finish_file(struct wb_recording *recording)
     gmtime_r(&seconds, &utc);
     strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", &utc);
     WB_TRY(wb_recording_set_meta(recording, "closed", now));
+    WB_TRY(wb_recording_flush(recording));
     wb_hash_so_far(recording->digest, hex);
     WB_TRY(wb_recording_set_meta(recording, WB_RECORDING_DIGEST, hex));
     WB_TRY(wb_recording_flush(recording));
@@ -381,6 +424,14 @@ static enum wb_status finish_file(struct wb_recording *recording)
     return WB_OK;
 }
 
+/* One plain file where the disk still takes that. Else the log stays: SQLite would bring it into
+ * the file and delete it, and the header would go on to ask for it. */
+static void leave_unclosed(struct wb_recording *recording)
+{
+    sqlite3_db_config(recording->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
+    sqlite3_exec(recording->db, "PRAGMA journal_mode=DELETE", NULL, NULL, NULL);
+}
+
 enum wb_status wb_recording_close(struct wb_recording *recording)
 {
     if (!recording)
@@ -390,6 +441,8 @@ enum wb_status wb_recording_close(struct wb_recording *recording)
         status = recording->failed;
         if (status == WB_OK)
             status = finish_file(recording);
+        if (status != WB_OK)
+            leave_unclosed(recording);
     }
     wb_recording_release(recording);
     return status;

@@ -32,6 +32,7 @@ struct channel {
     const struct wb_driver *driver;
     void *state;
     struct wb_stream *stream;
+    int64_t next_seq; /* of its chunks; -1: one is missing */
     struct file *file;
 };
 
@@ -279,6 +280,12 @@ static enum wb_status play_chunk(void *context, const struct wb_chunk *chunk)
     if (channel && channel->file)
         return play_piece(replay, channel->file, chunk);
     if (!channel || !channel->driver)
+        return WB_OK;
+    /* Two halves of lines around what is missing would make one that no instrument sent. */
+    if (chunk->n == 0 || chunk->seq != channel->next_seq)
+        channel->driver->receive(channel->state, chunk->t_ns, NULL, 0, &replay->counting);
+    channel->next_seq = chunk->seq + 1;
+    if (chunk->n == 0)
         return WB_OK;
     WB_TRY(wb_stream_memory_push(channel->stream, chunk->bytes, chunk->n));
     for (;;) {

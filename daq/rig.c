@@ -7,14 +7,19 @@
 
 #include "base/config.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "base/units.h"
-#include "daq/loadcell_line.h"
+#include "daq/cell_calibration.h"
+#include "daq/loadcell_preset.h"
 
 #define WB_LOG_DOMAIN "rig"
 
+#define NOISE_TIMES 5.0
+#define NOISE_SHARE 0.01
+
 static const char *const load_protocols[] = {"generic", "mt-sics", NULL};
 static const char *const mocap_protocols[] = {"natnet", NULL};
-static const char *const stage_protocols[] = {"grbl", NULL};
+static const char *const stage_protocols[] = {"grbl", "tic", NULL};
 static const char *const terminators[] = {"any", "cr", "lf", "crlf", "idle", NULL};
 static const char *const tares[] = {"unloaded", "counterweight", NULL};
 static const char *const ups[] = {"y", "z", NULL};
@@ -133,8 +138,46 @@ struct line_keys {
     int terminator;
     double poll_period, idle_gap, settle; /* s */
     const struct wb_config_node *unstable, *overload;
-    bool has_column, has_decimal_comma, has_scale, has_offset, has_terminator, has_settle;
+    bool has_decimal_comma, has_scale, has_offset, has_terminator, has_settle;
+    bool has_poll_period, has_start;
 };
+
+/* The preset that the file names, whose settings then stand in `cell` until the file's own keys
+ * are read. NULL where it names none. */
+static enum wb_status read_preset(const struct wb_config_node *map,
+                                  const struct wb_loadcell_preset **preset,
+                                  struct wb_rig_load_cell *cell)
+{
+    const struct wb_config_node *const node = wb_config_find(map, "preset");
+    const char *const name = node ? wb_config_scalar(node) : NULL;
+    *preset = name ? wb_loadcell_preset_find(name) : NULL;
+    if (*preset)
+        wb_loadcell_preset_apply(*preset, cell);
+    if (*preset || !node)
+        return WB_OK;
+    struct wb_text known = {0};
+    for (size_t i = 0; wb_loadcell_preset_at(i); i++)
+        wb_text_append(&known, "%s%s", i ? ", " : "", wb_loadcell_preset_at(i)->name);
+    const enum wb_status status = wb_config_refuse(
+        map, "preset",
+        "expected one of %s, not '%s'; an instrument that is none of them needs no "
+        "preset but its own line settings",
+        wb_text_string(&known), name ? name : "");
+    wb_text_release(&known);
+    return status;
+}
+
+/* The keys as the preset's settings have them: what the file does not give stays so. */
+static void begin_line_keys(const struct wb_rig_load_cell *cell, struct line_keys *keys)
+{
+    keys->delimiter[0] = cell->delimiter;
+    for (int i = 0; terminators[i]; i++)
+        if (strcmp(terminators[i], cell->terminator) == 0)
+            keys->terminator = i;
+    keys->poll_period = wb_seconds_from_ns(cell->poll_period_ns);
+    keys->settle = wb_seconds_from_ns(cell->settle_ns);
+    keys->idle_gap = 0.02;
+}
 
 static enum wb_status read_delimiter(const struct wb_config_node *map, const char *text,
                                      char *delimiter)
@@ -155,11 +198,11 @@ static enum wb_status check_line_keys(const struct wb_config_node *map,
                                       const struct wb_rig_load_cell *cell)
 {
     if (strcmp(cell->protocol, "generic") != 0) {
-        const bool foreign = keys->has_column || keys->has_decimal_comma || keys->has_scale ||
-                             keys->has_offset || keys->has_terminator || keys->has_settle ||
-                             keys->delimiter[0] || cell->unit[0] || cell->poll_command[0] ||
-                             cell->start_command[0] || cell->tare_command[0] || keys->unstable ||
-                             keys->overload;
+        const bool foreign =
+            cell->column > 0 || keys->has_decimal_comma || keys->has_scale || keys->has_offset ||
+            keys->has_terminator || keys->has_settle || keys->delimiter[0] || cell->unit[0] ||
+            cell->poll_command[0] || cell->start_command[0] || cell->stop_command[0] ||
+            cell->tare_command[0] || cell->preset[0] || keys->unstable || keys->overload;
         if (foreign)
             return wb_config_refuse(map, NULL,
                                     "keys of the generic line protocol are given, but protocol is "
@@ -167,9 +210,9 @@ static enum wb_status check_line_keys(const struct wb_config_node *map,
                                     cell->protocol);
         return WB_OK;
     }
-    if (keys->has_column != (cell->delimiter != 0))
+    if ((cell->column > 0) != (cell->delimiter != 0))
         return wb_config_refuse(
-            map, keys->has_column ? "column" : "delimiter",
+            map, cell->column > 0 ? "column" : "delimiter",
             "delimiter and column belong together, and the other one is missing");
     if (cell->decimal_comma && cell->delimiter == ',')
         return wb_config_refuse(map, "decimal_comma",
@@ -187,6 +230,39 @@ static enum wb_status check_line_keys(const struct wb_config_node *map,
     return WB_OK;
 }
 
+/* A stream and questions exclude each other: what the file gives goes before the preset's. */
+static void choose_commands(const struct wb_loadcell_preset *preset, struct line_keys *keys,
+                            struct wb_rig_load_cell *cell)
+{
+    if (keys->has_poll_period && !cell->poll_command[0] && !keys->has_start)
+        wb_loadcell_preset_ask(preset, cell);
+    if (keys->has_start && !keys->has_poll_period) {
+        cell->poll_command[0] = '\0';
+        keys->poll_period = 0.0;
+    }
+}
+
+/* What a preset asks of the file, and adds to it. */
+static enum wb_status finish_preset(const struct wb_config_node *map,
+                                    const struct wb_loadcell_preset *preset,
+                                    struct wb_rig_load_cell *cell)
+{
+    if (preset->unit_rule == WB_UNIT_OF_RIG_FILE && cell->unit[0] == '\0')
+        return wb_config_refuse(map, "unit",
+                                "an instrument of the preset %s prints no unit: give the one that "
+                                "it is calibrated in, such as unit: g",
+                                preset->name);
+    if (!preset->line && strncmp(cell->address, "serial:", 7) == 0 && !strchr(cell->address, ','))
+        return wb_config_refuse(map, "address",
+                                "the preset %s knows no usual baud rate: give the instrument's "
+                                "own, such as %s,115200,8n1",
+                                preset->name, cell->address);
+    if (!wb_loadcell_preset_complete_address(preset, cell->address, sizeof cell->address))
+        return wb_config_refuse(map, "address", "expected an address of %d characters at most",
+                                WB_RIG_TEXT - 20);
+    return WB_OK;
+}
+
 static enum wb_status finish_line_keys(const struct wb_config_node *map, struct line_keys *keys,
                                        struct wb_rig_load_cell *cell)
 {
@@ -197,10 +273,27 @@ static enum wb_status finish_line_keys(const struct wb_config_node *map, struct 
     WB_TRY(read_delimiter(map, keys->delimiter, &cell->delimiter));
     WB_TRY(resolve_escapes(map, "poll_command", cell->poll_command));
     WB_TRY(resolve_escapes(map, "start_command", cell->start_command));
+    WB_TRY(resolve_escapes(map, "stop_command", cell->stop_command));
     WB_TRY(resolve_escapes(map, "tare_command", cell->tare_command));
     WB_TRY(read_tokens(keys->unstable, "unstable_tokens", cell->unstable_tokens));
     WB_TRY(read_tokens(keys->overload, "overload_tokens", cell->overload_tokens));
     return check_line_keys(map, keys, cell);
+}
+
+/* The series of a calibration. */
+static enum wb_status read_check_masses(const struct wb_config_node *list,
+                                        struct wb_rig_load_cell *cell)
+{
+    const struct wb_config_key mass = WB_CONFIG_NUMBER("check_masses_g", NULL, WB_G, 0.0, 1e6);
+    char problem[160];
+    if (!list)
+        return WB_OK;
+    WB_TRY(wb_config_numbers(list, &mass, 3, WB_RIG_MASSES, cell->check_masses,
+                             &cell->n_check_masses));
+    if (!wb_cell_calibration_check(cell->check_masses, cell->n_check_masses, problem,
+                                   sizeof problem))
+        return wb_config_refuse(list, "check_masses_g", "%s", problem);
+    return WB_OK;
 }
 
 static enum wb_status read_load_cell(const struct wb_config_node *map, double gravity,
@@ -209,9 +302,13 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
     int protocol = 0, tare = 0;
     double capacity_mass = 0.0, overload_fraction = 1.0, noise_mass = 0.0;
     bool has_grams, has_newtons;
-    struct line_keys keys = {.idle_gap = 0.02};
+    const struct wb_loadcell_preset *preset;
+    const struct wb_config_node *masses;
+    struct line_keys keys = {0};
     cell->scale = 1.0;
     cell->sign = 1;
+    WB_TRY(read_preset(map, &preset, cell));
+    begin_line_keys(cell, &keys);
     cell->check_tolerance = 0.01;
     const struct wb_config_key table[] = {
         WB_CONFIG_TEXT("address", cell->address),
@@ -231,12 +328,15 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
         WB_CONFIG_OPTIONAL_NUMBER("check_mass_g", &cell->check_mass, WB_G, 0.0, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("check_tolerance_percent", &cell->check_tolerance, WB_PERCENT,
                                   0.001, 50.0),
+        WB_CONFIG_OPTIONAL_NODE("check_masses_g", &masses),
+        WB_CONFIG_OPTIONAL_NUMBER("check_due_days", &cell->check_due, WB_DAY, 0.01, 3660.0),
         WB_CONFIG_OPTIONAL_CHOICE("tare", &tare, tares),
         WB_CONFIG_OPTIONAL_INTEGER("sign", &cell->sign, -1000, 1000),
-        WB_CONFIG_OPTIONAL_NUMBER("poll_period_ms", &keys.poll_period, 1e-3, 1.0, 10000.0),
+        {"poll_period_ms", WB_CONFIG_TYPE_NUMBER, true, &keys.poll_period, 0, 1e-3, 1.0, 10000.0,
+         NULL, &keys.has_poll_period},
+        WB_CONFIG_IGNORED("preset"),
         WB_CONFIG_OPTIONAL_TEXT("delimiter", keys.delimiter),
-        {"column", WB_CONFIG_TYPE_INTEGER, true, &cell->column, 0, 0.0, 1.0, 64.0, NULL,
-         &keys.has_column},
+        WB_CONFIG_OPTIONAL_INTEGER("column", &cell->column, 1, 64),
         WB_CONFIG_OPTIONAL_TEXT("unit", cell->unit),
         {"scale", WB_CONFIG_TYPE_NUMBER, true, &cell->scale, 0, 1.0, -1e12, 1e12, NULL,
          &keys.has_scale},
@@ -246,7 +346,9 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
          &keys.has_terminator},
         WB_CONFIG_OPTIONAL_NUMBER("idle_gap_ms", &keys.idle_gap, 1e-3, 1.0, 10000.0),
         WB_CONFIG_OPTIONAL_TEXT("poll_command", cell->poll_command),
-        WB_CONFIG_OPTIONAL_TEXT("start_command", cell->start_command),
+        {"start_command", WB_CONFIG_TYPE_TEXT, true, cell->start_command,
+         sizeof cell->start_command, 0.0, 0.0, 0.0, NULL, &keys.has_start},
+        WB_CONFIG_OPTIONAL_TEXT("stop_command", cell->stop_command),
         WB_CONFIG_OPTIONAL_TEXT("tare_command", cell->tare_command),
         WB_CONFIG_OPTIONAL_NODE("unstable_tokens", &keys.unstable),
         WB_CONFIG_OPTIONAL_NODE("overload_tokens", &keys.overload),
@@ -267,8 +369,12 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
     cell->tare = (enum wb_rig_tare)tare;
     WB_TRY(check_address(map, cell->address, wire_schemes));
     WB_TRY(check_date(map, "calibration_date", cell->calibration_date));
+    WB_TRY(read_check_masses(masses, cell));
     WB_TRY(check_sign(map, "sign", cell->sign));
-    return finish_line_keys(map, &keys, cell);
+    if (preset && strcmp(cell->protocol, "generic") == 0)
+        choose_commands(preset, &keys, cell);
+    WB_TRY(finish_line_keys(map, &keys, cell));
+    return preset ? finish_preset(map, preset, cell) : WB_OK;
 }
 
 static enum wb_status read_mocap(const struct wb_config_node *map, struct wb_rig_mocap *mocap)
@@ -280,6 +386,7 @@ static enum wb_status read_mocap(const struct wb_config_node *map, struct wb_rig
         WB_CONFIG_CHOICE("up", &up, ups),
         WB_CONFIG_OPTIONAL_NUMBER("marker_noise_mm", &mocap->marker_noise, WB_MM, 0.0, 100.0),
         WB_CONFIG_OPTIONAL_NUMBER("frame_rate_hz", &mocap->frame_rate, 1.0, 1.0, 10000.0),
+        WB_CONFIG_OPTIONAL_BOOLEAN("record_take", &mocap->record_take),
     };
     WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
     strcpy(mocap->protocol, mocap_protocols[protocol]);
@@ -290,10 +397,11 @@ static enum wb_status read_mocap(const struct wb_config_node *map, struct wb_rig
 static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig_stage *stage)
 {
     int protocol = 0, axis = 0;
+    bool has_axis;
     const struct wb_config_key table[] = {
         WB_CONFIG_TEXT("address", stage->address),
         WB_CONFIG_CHOICE("protocol", &protocol, stage_protocols),
-        WB_CONFIG_CHOICE("axis", &axis, axes),
+        {"axis", WB_CONFIG_TYPE_CHOICE, true, &axis, 0, 0.0, 0.0, 0.0, axes, &has_axis},
         WB_CONFIG_INTEGER("down", &stage->down, -1000, 1000),
         WB_CONFIG_NUMBER("travel_mm", &stage->travel, WB_MM, 0.1, 5000.0),
         WB_CONFIG_NUMBER("speed_mm_s", &stage->speed, WB_MM, 0.001, 1000.0),
@@ -302,6 +410,15 @@ static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig
     WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
     strcpy(stage->protocol, stage_protocols[protocol]);
     stage->axis = axes[axis][0];
+    const bool is_tic = strcmp(stage->protocol, "tic") == 0;
+    if (has_axis == is_tic)
+        return wb_config_refuse(map, "axis",
+                                is_tic ? "a Tic has one axis: remove this key"
+                                       : "this key is missing: expected X, Y or Z");
+    if (is_tic && !(stage->steps > 0.0))
+        return wb_config_refuse(map, "steps_per_mm",
+                                "this key is missing: a Tic counts microsteps, and only you know "
+                                "how many make a millimetre");
     WB_TRY(check_sign(map, "down", stage->down));
     return check_address(map, stage->address, wire_schemes);
 }
@@ -321,12 +438,15 @@ static enum wb_status read_limits(const struct wb_config_node *map, struct wb_ri
 {
     struct wb_rig_limits *const limits = &rig->limits;
     limits->stream_lost = 1.0;
+    limits->force_drop = 0.1;
     if (!map)
         return WB_OK;
     const struct wb_config_key table[] = {
         WB_CONFIG_OPTIONAL_NUMBER("force_mN", &limits->force, WB_MN, 0.001, 1e7),
         WB_CONFIG_OPTIONAL_NUMBER("travel_mm", &limits->travel, WB_MM, 0.1, 5000.0),
         WB_CONFIG_OPTIONAL_NUMBER("stream_lost_s", &limits->stream_lost, 1.0, 0.05, 60.0),
+        WB_CONFIG_OPTIONAL_NUMBER("force_drop_percent", &limits->force_drop, WB_PERCENT, 0.0,
+                                  100.0),
     };
     WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
     /* A limit beyond what the instrument can do would never stop anything. */
@@ -389,6 +509,11 @@ double wb_rig_tare_load(const struct wb_rig *rig)
     if (rig->load_cell.tare == WB_RIG_TARE_COUNTERWEIGHT)
         return rig->strand.counterweight * rig->gravity;
     return 0.0;
+}
+
+double wb_rig_noise_allowed(const struct wb_rig_load_cell *cell)
+{
+    return cell->noise > 0.0 ? NOISE_TIMES * cell->noise : NOISE_SHARE * cell->capacity;
 }
 
 /* A virtual rig that was killed leaves its file behind, and its ports are gone. */

@@ -52,6 +52,8 @@ struct wb_mocap_frame {
     uint64_t camera_data_received;
     uint64_t transmit;
     int16_t params; /* bit 0 recording, 1 models changed, 2 live, 3 bitstream changed */
+    int segment;    /* from 0: the next one begins when the server was restarted, or what it tracks
+                       was changed */
     int n_markers;
     struct wb_marker markers[WB_MAX_MARKERS];
 };
@@ -87,6 +89,7 @@ struct wb_stage_settings {
     bool soft_limits;
     bool inches;     /* positions are reported in inches */
     bool lets_go;    /* the motor is switched off when a motion has ended */
+    char fault[320]; /* why no motion may begin, and how to mend it; "": it may */
     char text[1280]; /* all of it as the firmware prints it, one setting a line */
 };
 

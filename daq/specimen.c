@@ -1,6 +1,7 @@
 #include "daq/specimen.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/config.h"
@@ -77,4 +78,13 @@ enum wb_status wb_specimen_parse(const char *text, const char *origin, struct wb
     struct wb_config *config;
     WB_TRY(wb_config_parse(&config, text, origin, why));
     return take(config, specimen);
+}
+
+enum wb_status wb_specimen_find_wire(const struct wb_specimen *specimen, const char *specimen_path,
+                                     char path[WB_PATH])
+{
+    char folder[WB_PATH], named_in[WB_PATH + 32];
+    wb_file_folder(folder, specimen_path);
+    snprintf(named_in, sizeof named_in, "%s:%d: wire", specimen_path, specimen->wire_line);
+    return wb_file_find_named(path, "wires", specimen->wire, folder, named_in, NULL);
 }

@@ -11,6 +11,7 @@
 #ifndef WB_DAQ_SPECIMEN_H
 #define WB_DAQ_SPECIMEN_H
 
+#include "base/file.h"
 #include "base/reason.h"
 
 #define WB_SPECIMEN_MAX_MARKERS 32
@@ -33,5 +34,10 @@ WB_MUST_CHECK enum wb_status wb_specimen_read(const char *path, struct wb_specim
  * to the log. */
 WB_MUST_CHECK enum wb_status wb_specimen_parse(const char *text, const char *origin,
                                                struct wb_specimen *specimen, struct wb_reason *why);
+
+/* The file of its wire: `wire` of the specimen file at `specimen_path`, a path beside that file or
+ * a name in fixtures/wires. WB_ERR_NOT_FOUND names the line. */
+WB_MUST_CHECK enum wb_status wb_specimen_find_wire(const struct wb_specimen *specimen,
+                                                   const char *specimen_path, char path[WB_PATH]);
 
 #endif

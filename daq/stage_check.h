@@ -1,4 +1,5 @@
-/* Whether the stage can do a motion as its firmware is set. GRBL says nothing of most of it: it
+/* Whether the stage can do a motion as its firmware is set, and may: a controller that would go on
+ * when this computer dies is not moved. GRBL says nothing of most of it: it
  * slows a jog down to its largest speed, and reports inches, without a word. Pure decisions; the
  * reason of a refusal is written for the operator. */
 #ifndef WB_DAQ_STAGE_CHECK_H
@@ -22,6 +23,11 @@ struct wb_stage_motion {
 /* True when all is well, or writes the reason. What the firmware did not tell is not checked. */
 bool wb_stage_check(const struct wb_stage_settings *settings, const struct wb_rig *rig,
                     const struct wb_stage_motion *motion, char text[WB_INTERLOCK_TEXT]);
+
+/* The same for a test: down by `travel` (m) from a machine position at the rig's speed, and back.
+ */
+bool wb_stage_check_test(const struct wb_stage_settings *settings, const struct wb_rig *rig,
+                         double position, double travel, char text[WB_INTERLOCK_TEXT]);
 
 /* m: how far the stage may go up from a machine position before its soft limit; infinite where it
  * has none. */

@@ -32,6 +32,7 @@ struct grbl_state {
     struct wb_rig rig;
     int axis;                   /* 0 to 2 */
     struct wb_line_buffer line; /* that is coming in */
+    bool amid;                  /* a line whose beginning is missing */
     /* What the firmware told. */
     bool answered;
     bool position_lost, limit_pressed;
@@ -327,6 +328,10 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
                     const struct wb_sink *sink)
 {
     struct grbl_state *const state = opaque;
+    if (n == 0) {
+        wb_line_buffer_clear(&state->line);
+        state->amid = true;
+    }
     for (size_t i = 0; i < n; i++) {
         if (!wb_line_buffer_push(&state->line, bytes[i], "lf"))
             continue;
@@ -335,8 +340,9 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
                              "the stage sent a line of more than %d bytes, which is dropped: check "
                              "the baud rate",
                              (int)sizeof state->line.bytes);
-        else
+        else if (!state->amid)
             receive_line(state, t_ns, sink);
+        state->amid = false;
         wb_line_buffer_clear(&state->line);
     }
 }

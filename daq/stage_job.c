@@ -8,8 +8,8 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
-#include "daq/grbl.h"
 #include "daq/release.h"
+#include "daq/stage_alarm.h"
 #include "daq/stage_check.h"
 
 #define WB_LOG_DOMAIN "stage"
@@ -230,7 +230,7 @@ static void begin_motion(struct wb_stage_job *job)
 static void give_up_in_alarm(struct wb_stage_job *job, const struct wb_stage_report *report)
 {
     char reason[256];
-    wb_grbl_alarm_reason(report, reason, sizeof reason);
+    wb_stage_alarm_reason(report, reason, sizeof reason);
     wb_sequence_give_up(&job->run, WB_INTERLOCK_ALARM,
                         "the stage is in alarm (%s): mend the cause, then run 'home', or 'unlock' "
                         "if it has no limit switch",

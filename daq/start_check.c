@@ -8,13 +8,12 @@
 #include "base/units.h"
 #include "base/vec3.h"
 #include "daq/acquisition.h"
-#include "daq/grbl.h"
 #include "daq/marker_check.h"
+#include "daq/stage_alarm.h"
 
 #define ZERO_SHARE 0.1
 #define COUNTERWEIGHT_SHARE 0.5
 #define NOISE_TIMES 5.0
-#define NOISE_SHARE 0.01
 #define SEEN_SHARE 0.5
 #define MARKER_NOISE (0.1 * WB_MM) /* where the rig file has none */
 #define LINK_TOLERANCE (1.3 * WB_MM)
@@ -116,7 +115,7 @@ bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_
                  rig_path);
         break;
     case WB_STAGE_ALARM:
-        wb_grbl_alarm_reason(report, reason, sizeof reason);
+        wb_stage_alarm_reason(report, reason, sizeof reason);
         snprintf(text, size,
                  "the stage is in alarm (%s): mend the cause, then run 'wirebench stage %s home', "
                  "or, if it has no limit switch, 'wirebench stage %s unlock'",
@@ -281,8 +280,7 @@ bool wb_start_check_zero(const struct wb_start_check *check, const struct wb_rig
     const struct wb_rig_load_cell *const cell = &rig->load_cell;
     const double zero = check->load.mean, expected = wb_rig_tare_load(rig);
     const double noise = wb_average_deviation(&check->load);
-    const double noise_allowed =
-        cell->noise > 0.0 ? NOISE_TIMES * cell->noise : NOISE_SHARE * cell->capacity;
+    const double noise_allowed = wb_rig_noise_allowed(cell);
     double allowed = ZERO_SHARE * cell->capacity;
     if (expected > 0.0)
         allowed = fmin(allowed, COUNTERWEIGHT_SHARE * expected);

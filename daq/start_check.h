@@ -40,10 +40,9 @@ bool wb_start_check_enough(const struct wb_start_check *check);
 /* Each returns true when all is well, or writes the reason of the refusal, with the command that
  * mends it for the rig file at `rig_path`.
  * A marker counts as seen when it is there in half of the frames: cameras lose one now and then. A
- * zero is within a tenth of the capacity, with noise up to 5 times the rig's own (up to 1 % of the
- * capacity if the rig file has no noise). If the tare is taken with the counterweight (rig.h), its
- * weight is expected instead of zero, within half of that weight. The load cell's unit may not
- * contradict the rig file's. */
+ * zero is within a tenth of the capacity, with noise up to wb_rig_noise_allowed(). If the tare is
+ * taken with the counterweight (rig.h), its weight is expected instead of zero, within half of that
+ * weight. The load cell's unit may not contradict the rig file's. */
 bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_path,
                           char text[WB_START_CHECK_TEXT]);
 bool wb_start_check_unit(bool contradicts, const struct wb_rig *rig, const char *rig_path,

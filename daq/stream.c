@@ -22,11 +22,17 @@ static const struct wb_stream_kind *find_kind(const char *address)
 
 enum wb_status wb_stream_open(struct wb_stream **out, const char *address)
 {
+    return wb_stream_open_with_reason(out, address, NULL);
+}
+
+enum wb_status wb_stream_open_with_reason(struct wb_stream **out, const char *address,
+                                          struct wb_reason *why)
+{
     *out = NULL;
     const struct wb_stream_kind *kind = find_kind(address);
     if (!kind)
-        return wb_fail(
-            WB_ERR_ARGUMENT,
+        return wb_fail_to(
+            why, WB_ERR_ARGUMENT,
             "address '%s' is not known: expected serial:PORT,BAUD,8n1 or pty:PATH or udp:HOST:PORT",
             address);
     struct wb_stream *stream = calloc(1, sizeof *stream);
@@ -34,9 +40,9 @@ enum wb_status wb_stream_open(struct wb_stream **out, const char *address)
     void *state = calloc(1, kind->state_size);
     enum wb_status status = WB_OK;
     if (!stream || !copy || !state)
-        status = wb_fail(WB_ERR_MEMORY, "out of memory opening '%s'", address);
+        status = wb_fail_to(why, WB_ERR_MEMORY, "out of memory opening '%s'", address);
     else
-        status = kind->open(state, address + strlen(kind->scheme) + 1);
+        status = kind->open(state, address + strlen(kind->scheme) + 1, why);
     if (status != WB_OK) {
         free(state);
         free(copy);
@@ -80,7 +86,17 @@ enum wb_status wb_stream_write(struct wb_stream *stream, const void *bytes, size
     return stream->kind->write(stream->state, bytes, n);
 }
 
+const char *wb_stream_caution(const struct wb_stream *stream)
+{
+    return stream->kind->caution ? stream->kind->caution(stream->state) : "";
+}
+
 uint64_t wb_stream_kernel_drops(const struct wb_stream *stream)
 {
     return stream->kind->kernel_drops ? stream->kind->kernel_drops(stream->state) : 0;
+}
+
+bool wb_stream_reopen(struct wb_stream *stream)
+{
+    return stream->kind->reopen && stream->kind->reopen(stream->state);
 }

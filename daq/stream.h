@@ -15,10 +15,11 @@
 #ifndef WB_DAQ_STREAM_H
 #define WB_DAQ_STREAM_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 
 struct wb_stream; /* opaque */
 
@@ -28,10 +29,18 @@ struct wb_stream; /* opaque */
 /* Opens the address. On failure *out is NULL and one message says what to do (for a permission
  * error, which group to join). */
 WB_MUST_CHECK enum wb_status wb_stream_open(struct wb_stream **out, const char *address);
+/* The same; `why` holds the message. NULL: that is logged. */
+WB_MUST_CHECK enum wb_status wb_stream_open_with_reason(struct wb_stream **out, const char *address,
+                                                        struct wb_reason *why);
 void wb_stream_close(struct wb_stream *stream); /* accepts NULL */
 
 /* The address it was opened with; owned by the stream. */
 const char *wb_stream_address(const struct wb_stream *stream);
+
+/* Opens the device of a stream again that went away (a read or write gave WB_ERR_IO): the one at
+ * the same address or, of a USB adapter, the same one under another number. False, without a
+ * message, while it is not there, and always where it cannot go away. */
+bool wb_stream_reopen(struct wb_stream *stream);
 
 /* Descriptors to poll for reading, at most two (UDP with a group has two); returns how many.
  * A memory stream has none. */
@@ -49,6 +58,10 @@ WB_MUST_CHECK enum wb_status wb_stream_write(struct wb_stream *stream, const voi
 /* Datagrams that the kernel threw away because they were not read in time, since opening; 0 for
  * streams that cannot tell. Known after the read that follows the loss. */
 uint64_t wb_stream_kernel_drops(const struct wb_stream *stream);
+
+/* What opening it could not set right and the operator should know, with how to mend it; "" when
+ * all is well. Owned by the stream. */
+const char *wb_stream_caution(const struct wb_stream *stream);
 
 /* Memory streams only: appends one block of bytes. wb_stream_read() reads one block a call, as it
  * does with datagrams. */

@@ -3,22 +3,25 @@
 #ifndef WB_DAQ_STREAM_KIND_H
 #define WB_DAQ_STREAM_KIND_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 
 /* One kind of stream. The core allocates `state_size` zeroed bytes for it. open() gets what
- * follows "scheme:"; when it fails it has released everything and logged why. */
+ * follows "scheme:"; when it fails it has released everything and said why. */
 struct wb_stream_kind {
     const char *scheme;
     size_t state_size;
-    enum wb_status (*open)(void *state, const char *rest);
+    enum wb_status (*open)(void *state, const char *rest, struct wb_reason *why);
     void (*close)(void *state);
     int (*descriptors)(const void *state, int descriptors[2]);
     enum wb_status (*read)(void *state, void *buffer, size_t size, size_t *n);
     enum wb_status (*write)(void *state, const void *bytes, size_t n);
+    bool (*reopen)(void *state);                 /* NULL: cannot go away */
     uint64_t (*kernel_drops)(const void *state); /* NULL: cannot tell */
+    const char *(*caution)(const void *state);   /* see wb_stream_caution(); NULL: never */
 };
 
 extern const struct wb_stream_kind wb_stream_serial;

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/progress.h"
+#include "daq/port_user.h"
 
 #define WB_LOG_DOMAIN "stream"
 
@@ -74,14 +75,15 @@ static bool parse_option(const char *text, struct wb_stream_line *line)
     return parse_baud(text, &line->baud);
 }
 
-enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line)
+enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line,
+                                    struct wb_reason *why)
 {
     *line = (struct wb_stream_line){.baud = 9600, .bits = 8, .parity = 'n', .stop = 1, .flow = 'n'};
     size_t n = strcspn(rest, ",");
     if (n == 0 || n >= sizeof line->path)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "'%s' names no device: expected PATH,BAUD,8n1 such as /dev/ttyUSB0,9600,8n1",
-                       rest);
+        return wb_fail_to(
+            why, WB_ERR_ARGUMENT,
+            "'%s' names no device: expected PATH,BAUD,8n1 such as /dev/ttyUSB0,9600,8n1", rest);
     memcpy(line->path, rest, n);
     line->path[n] = '\0';
     const char *at = rest + n;
@@ -89,51 +91,57 @@ enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *lin
         char option[32];
         n = strcspn(++at, ",");
         if (n >= sizeof option)
-            return wb_fail(WB_ERR_ARGUMENT, "line setting '%.*s' of '%s' is not known", (int)n, at,
-                           line->path);
+            return wb_fail_to(why, WB_ERR_ARGUMENT, "line setting '%.*s' of '%s' is not known",
+                              (int)n, at, line->path);
         memcpy(option, at, n);
         option[n] = '\0';
         if (!parse_option(option, line))
-            return wb_fail(WB_ERR_ARGUMENT,
-                           "line setting '%s' of '%s' is not known: expected a baud rate, bits "
-                           "parity and stop bits such as 8n1, dtr=on|off|keep, rts=on|off or "
-                           "flow=none|xonxoff|rtscts",
-                           option, line->path);
+            return wb_fail_to(why, WB_ERR_ARGUMENT,
+                              "line setting '%s' of '%s' is not known: expected a baud rate, bits "
+                              "parity and stop bits such as 8n1, dtr=on|off|keep, rts=on|off or "
+                              "flow=none|xonxoff|rtscts",
+                              option, line->path);
         at += n;
     }
     return WB_OK;
 }
 
-enum wb_status wb_stream_fail_open(const char *path, int error, const char *hint)
+enum wb_status wb_stream_fail_open(const char *path, int error, const char *hint,
+                                   struct wb_reason *why)
 {
+    char user[WB_PORT_USER_TEXT];
     switch (error) {
     case ENOENT:
     case ENODEV:
     case ENXIO:
     case ENOTDIR:
-        return wb_fail(WB_ERR_NOT_FOUND, "port '%s' does not exist%s", path, hint);
+        return wb_fail_to(why, WB_ERR_NOT_FOUND, "port '%s' does not exist%s", path, hint);
     case EACCES:
     case EPERM:
-        return wb_fail(WB_ERR_PERMISSION,
-                       "port '%s' may not be opened by you: join the group dialout with 'sudo "
-                       "usermod -aG dialout $USER' and log in again",
-                       path);
+        return wb_fail_to(why, WB_ERR_PERMISSION,
+                          "port '%s' may not be opened by you: join the group dialout with 'sudo "
+                          "usermod -aG dialout $USER' and log in again",
+                          path);
     case EBUSY:
     case EWOULDBLOCK:
-        return wb_fail(WB_ERR_BUSY,
-                       "port '%s' is in use by another program: close that one first ('fuser %s' "
-                       "names it)",
-                       path, path);
+        if (wb_port_user(path, user))
+            return wb_fail_to(why, WB_ERR_BUSY,
+                              "port '%s' is in use by another program (%s): close that one first",
+                              path, user);
+        return wb_fail_to(why, WB_ERR_BUSY,
+                          "port '%s' is in use by another program: close that one first ('sudo "
+                          "fuser %s' names it)",
+                          path, path);
     default:
-        return wb_fail(WB_ERR_IO, "port '%s' cannot be opened: %s", path, strerror(error));
+        return wb_fail_to(why, WB_ERR_IO, "port '%s' cannot be opened: %s", path, strerror(error));
     }
 }
 
-enum wb_status wb_stream_lock(int descriptor, const char *path)
+enum wb_status wb_stream_lock(int descriptor, const char *path, struct wb_reason *why)
 {
     if (flock(descriptor, LOCK_EX | LOCK_NB) == 0)
         return WB_OK;
-    return wb_stream_fail_open(path, errno == EWOULDBLOCK ? EBUSY : errno, "");
+    return wb_stream_fail_open(path, errno == EWOULDBLOCK ? EBUSY : errno, "", why);
 }
 
 /* After a read of 0 bytes: true when the device hung up or went away. */
@@ -181,9 +189,9 @@ enum wb_status wb_stream_port_read(void *state, void *buffer, size_t size, size_
     }
     const bool failed = got < 0 && errno != EAGAIN;
     if (failed && errno != EIO && errno != ENXIO && errno != ENODEV)
-        return wb_fail(WB_ERR_IO, "port '%s' cannot be read: %s", port->path, strerror(errno));
+        return wb_fail(WB_ERR_IO, "port '%s' cannot be read: %s", port->line.path, strerror(errno));
     if (failed || has_gone(port->descriptor))
-        return wb_fail(WB_ERR_IO, "port '%s' went away: %s", port->path, port->gone);
+        return wb_fail(WB_ERR_IO, "port '%s' went away: %s", port->line.path, port->gone);
     return WB_OK;
 }
 
@@ -201,13 +209,13 @@ enum wb_status wb_stream_port_write(void *state, const void *bytes, size_t n)
         if (put < 0 && errno == EINTR)
             continue;
         if (put < 0 && errno != EAGAIN)
-            return wb_fail(WB_ERR_IO, "port '%s' cannot be written to: %s", port->path,
+            return wb_fail(WB_ERR_IO, "port '%s' cannot be written to: %s", port->line.path,
                            strerror(errno));
         if (!wb_stream_wait_writable(port->descriptor, deadline_ns))
             return wb_fail(WB_ERR_TIMEOUT,
                            "port '%s' took only %zu of %zu bytes within 50 ms: is the instrument "
                            "on, and its flow control as in the rig file?",
-                           port->path, done, n);
+                           port->line.path, done, n);
     }
     return WB_OK;
 }

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 
 /* A write that takes longer fails. */
 #define WB_STREAM_WRITE_TIMEOUT_NS INT64_C(50000000)
@@ -26,20 +26,25 @@ struct wb_stream_line {
     char flow;      /* 'n' none, 'x' XON/XOFF, 'r' RTS/CTS */
 };
 
-WB_MUST_CHECK enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line);
+/* What fails here says why in `why`; NULL: in the log. */
+WB_MUST_CHECK enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line,
+                                                  struct wb_reason *why);
 
 /* Fails with the message for a device that cannot be opened with this errno; for a permission
- * error it says which group to join. `hint` (may be "") is appended to "not found". */
-WB_MUST_CHECK enum wb_status wb_stream_fail_open(const char *path, int error, const char *hint);
+ * error it says which group to join, for a busy one who has it. `hint` (may be "") is appended to
+ * "not found". */
+WB_MUST_CHECK enum wb_status wb_stream_fail_open(const char *path, int error, const char *hint,
+                                                 struct wb_reason *why);
 
 /* Takes the advisory lock that keeps a second wirebench off the device. */
-WB_MUST_CHECK enum wb_status wb_stream_lock(int descriptor, const char *path);
+WB_MUST_CHECK enum wb_status wb_stream_lock(int descriptor, const char *path,
+                                            struct wb_reason *why);
 
 /* An open device: the state of both kinds begins with one. */
 struct wb_stream_port {
-    int descriptor; /* non-blocking */
-    char path[256];
-    const char *gone; /* static text: how such a device goes away */
+    int descriptor;             /* non-blocking; -1: closed after it went away */
+    struct wb_stream_line line; /* as its address says */
+    const char *gone;           /* static text: how such a device goes away */
 };
 
 /* `descriptors`, `read` and `write` of both kinds; `state` points to a struct wb_stream_port. */

@@ -20,8 +20,9 @@ struct memory_state {
     size_t n_written, written_capacity;
 };
 
-static enum wb_status memory_open(void *state, const char *rest)
+static enum wb_status memory_open(void *state, const char *rest, struct wb_reason *why)
 {
+    (void)why;
     (void)state;
     if (rest[0])
         return wb_fail(WB_ERR_ARGUMENT, "'%s' follows memory:, where nothing is expected", rest);

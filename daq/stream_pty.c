@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -30,17 +31,19 @@ static speed_t find_speed(int baud)
     return 0;
 }
 
-static enum wb_status apply_line(int descriptor, const struct wb_stream_line *line)
+static enum wb_status apply_line(int descriptor, const struct wb_stream_line *line,
+                                 struct wb_reason *why)
 {
     struct termios settings;
     if (tcgetattr(descriptor, &settings) < 0)
-        return wb_fail(WB_ERR_IO, "'%s' is not a terminal: %s", line->path, strerror(errno));
+        return wb_fail_to(why, WB_ERR_IO, "'%s' is not a terminal: %s", line->path,
+                          strerror(errno));
     cfmakeraw(&settings);
     speed_t speed = find_speed(line->baud);
     if (speed == 0)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "baud rate %d of '%s' is not a standard one such as 9600 or 115200",
-                       line->baud, line->path);
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "baud rate %d of '%s' is not a standard one such as 9600 or 115200",
+                          line->baud, line->path);
     cfsetispeed(&settings, speed);
     cfsetospeed(&settings, speed);
     static const tcflag_t sizes[] = {CS5, CS6, CS7, CS8};
@@ -59,36 +62,60 @@ static enum wb_status apply_line(int descriptor, const struct wb_stream_line *li
     settings.c_cc[VMIN] = 0;
     settings.c_cc[VTIME] = 0;
     if (tcsetattr(descriptor, TCSANOW, &settings) < 0)
-        return wb_fail(WB_ERR_IO, "line settings of '%s' cannot be set: %s", line->path,
-                       strerror(errno));
+        return wb_fail_to(why, WB_ERR_IO, "line settings of '%s' cannot be set: %s", line->path,
+                          strerror(errno));
     return WB_OK;
 }
 
-static enum wb_status pty_open(void *state, const char *rest)
+static int open_terminal(const struct wb_stream_line *line)
+{
+    return open(line->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+}
+
+/* Takes the open terminal over, or closes it. */
+static enum wb_status prepare(struct wb_stream_port *pty, int descriptor, struct wb_reason *why)
+{
+    enum wb_status status = wb_stream_lock(descriptor, pty->line.path, why);
+    if (status == WB_OK)
+        status = apply_line(descriptor, &pty->line, why);
+    if (status == WB_OK)
+        pty->descriptor = descriptor;
+    else
+        close(descriptor);
+    return status;
+}
+
+static enum wb_status pty_open(void *state, const char *rest, struct wb_reason *why)
 {
     struct wb_stream_port *pty = state;
-    struct wb_stream_line line;
-    WB_TRY(wb_stream_parse_line(rest, &line));
-    int descriptor = open(line.path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    WB_TRY(wb_stream_parse_line(rest, &pty->line, why));
+    const int descriptor = open_terminal(&pty->line);
     if (descriptor < 0)
-        return wb_stream_fail_open(line.path, errno, "");
-    enum wb_status status = wb_stream_lock(descriptor, line.path);
-    if (status == WB_OK)
-        status = apply_line(descriptor, &line);
-    if (status != WB_OK) {
-        close(descriptor);
-        return status;
-    }
-    pty->descriptor = descriptor;
-    memcpy(pty->path, line.path, sizeof pty->path);
+        return wb_stream_fail_open(pty->line.path, errno, "", why);
     pty->gone = "its other side was closed";
-    return WB_OK;
+    return prepare(pty, descriptor, why);
+}
+
+/* The path may be a link that leads to another terminal now. A number by itself may by now be that
+ * of anybody's terminal. */
+static bool pty_reopen(void *state)
+{
+    struct wb_stream_port *pty = state;
+    struct stat found;
+    if (pty->descriptor >= 0)
+        close(pty->descriptor);
+    pty->descriptor = -1;
+    if (lstat(pty->line.path, &found) != 0 || !S_ISLNK(found.st_mode))
+        return false;
+    const int descriptor = open_terminal(&pty->line);
+    return descriptor >= 0 && prepare(pty, descriptor, NULL) == WB_OK;
 }
 
 static void pty_close(void *state)
 {
     struct wb_stream_port *pty = state;
-    close(pty->descriptor);
+    if (pty->descriptor >= 0)
+        close(pty->descriptor);
 }
 
 const struct wb_stream_kind wb_stream_pty = {
@@ -99,4 +126,5 @@ const struct wb_stream_kind wb_stream_pty = {
     .descriptors = wb_stream_port_descriptors,
     .read = wb_stream_port_read,
     .write = wb_stream_port_write,
+    .reopen = pty_reopen,
 };

@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <net/if.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +14,7 @@
 #include "base/progress.h"
 #include "daq/stream_kind.h"
 #include "daq/stream_line.h"
+#include "daq/udp_address.h"
 
 #define WB_LOG_DOMAIN "stream"
 
@@ -31,94 +31,11 @@ struct udp_state {
     char name[160];
 };
 
-struct udp_address {
-    char host[128];
-    int port;
-    bool has_group;
-    struct in_addr group;
-    int group_port;
-    char interface[64];
-};
-
-/* "HOST:PORT" */
-static bool split_host_port(const char *text, size_t n, char *host, size_t size, int *port)
-{
-    const char *colon = memrchr(text, ':', n);
-    if (!colon || colon == text || (size_t)(colon - text) >= size)
-        return false;
-    size_t digits = n - (size_t)(colon + 1 - text);
-    if (digits == 0 || digits > 5 || strspn(colon + 1, "0123456789") < digits)
-        return false;
-    *port = atoi(colon + 1);
-    if (*port < 1 || *port > 65535)
-        return false;
-    memcpy(host, text, (size_t)(colon - text));
-    host[colon - text] = '\0';
-    return true;
-}
-
-static bool parse_group(const char *text, size_t n, struct udp_address *address)
-{
-    char group[64];
-    if (!split_host_port(text, n, group, sizeof group, &address->group_port) ||
-        inet_pton(AF_INET, group, &address->group) != 1)
-        return false;
-    uint32_t bits = ntohl(address->group.s_addr);
-    address->has_group = true;
-    return IN_MULTICAST(bits) || bits == INADDR_BROADCAST;
-}
-
-static enum wb_status parse_address(const char *rest, struct udp_address *address)
-{
-    memset(address, 0, sizeof *address);
-    size_t n = strcspn(rest, ",");
-    if (!split_host_port(rest, n, address->host, sizeof address->host, &address->port))
-        return wb_fail(WB_ERR_ARGUMENT, "'udp:%s' names no host and port: expected udp:HOST:PORT",
-                       rest);
-    const char *at = rest + n;
-    while (*at == ',') {
-        n = strcspn(++at, ",");
-        if (strncmp(at, "group=", 6) == 0) {
-            if (!parse_group(at + 6, n - 6, address))
-                return wb_fail(WB_ERR_ARGUMENT,
-                               "'%.*s' is not a multicast group: expected group=ADDRESS:PORT such "
-                               "as group=239.255.42.99:1511",
-                               (int)n, at);
-        } else if (strncmp(at, "interface=", 10) == 0 && n > 10 &&
-                   n - 10 < sizeof address->interface) {
-            memcpy(address->interface, at + 10, n - 10);
-            address->interface[n - 10] = '\0';
-        } else {
-            return wb_fail(WB_ERR_ARGUMENT,
-                           "'%.*s' in 'udp:%s' is not known: expected group=ADDRESS:PORT or "
-                           "interface=ADDRESS",
-                           (int)n, at, rest);
-        }
-        at += n;
-    }
-    return WB_OK;
-}
-
-static enum wb_status resolve_host(const struct udp_address *address, struct sockaddr_in *host)
-{
-    struct addrinfo want = {.ai_family = AF_INET, .ai_socktype = SOCK_DGRAM};
-    struct addrinfo *found = NULL;
-    int code = getaddrinfo(address->host, NULL, &want, &found);
-    if (code != 0 || !found)
-        return wb_fail(WB_ERR_NOT_FOUND,
-                       "host '%s' is not known: %s: check mocap.address and the network",
-                       address->host, gai_strerror(code));
-    memcpy(host, found->ai_addr, sizeof *host);
-    host->sin_port = htons((uint16_t)address->port);
-    freeaddrinfo(found);
-    return WB_OK;
-}
-
-static enum wb_status open_socket(int *out)
+static enum wb_status open_socket(int *out, struct wb_reason *why)
 {
     int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (descriptor < 0)
-        return wb_fail(WB_ERR_IO, "no socket: %s", strerror(errno));
+        return wb_fail_to(why, WB_ERR_IO, "no socket: %s", strerror(errno));
     int on = 1, size = RECEIVE_BUFFER_BYTES;
     /* Beyond the system's limit only root may go; the plain option takes what is allowed. */
     if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
@@ -133,7 +50,8 @@ static enum wb_status open_socket(int *out)
 }
 
 /* Finds the interface by address or by name. */
-static enum wb_status find_interface(const struct udp_address *address, struct ip_mreqn *request)
+static enum wb_status find_interface(const struct wb_udp_address *address, struct ip_mreqn *request,
+                                     struct wb_reason *why)
 {
     memset(request, 0, sizeof *request);
     request->imr_multiaddr = address->group;
@@ -142,14 +60,16 @@ static enum wb_status find_interface(const struct udp_address *address, struct i
         return WB_OK;
     request->imr_ifindex = (int)if_nametoindex(address->interface);
     if (request->imr_ifindex == 0)
-        return wb_fail(WB_ERR_NOT_FOUND,
-                       "network interface '%s' does not exist: expected its address or a name as "
-                       "in 'ip address'",
-                       address->interface);
+        return wb_fail_to(
+            why, WB_ERR_NOT_FOUND,
+            "network interface '%s' does not exist: expected its address or a name as "
+            "in 'ip address'",
+            address->interface);
     return WB_OK;
 }
 
-static enum wb_status join_group(int descriptor, const struct udp_address *address)
+static enum wb_status join_group(int descriptor, const struct wb_udp_address *address,
+                                 struct wb_reason *why)
 {
     int on = 1, off = 0;
     bool multicast = IN_MULTICAST(ntohl(address->group.s_addr));
@@ -160,21 +80,21 @@ static enum wb_status join_group(int descriptor, const struct udp_address *addre
         bound.sin_addr = address->group;
     if (setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
         bind(descriptor, (struct sockaddr *)&bound, sizeof bound) != 0)
-        return wb_fail(
-            errno == EADDRINUSE ? WB_ERR_BUSY : WB_ERR_IO,
+        return wb_fail_to(
+            why, errno == EADDRINUSE ? WB_ERR_BUSY : WB_ERR_IO,
             "port %d of the data group cannot be used: %s: does another program listen there?",
             address->group_port, strerror(errno));
     if (!multicast)
         return WB_OK;
     struct ip_mreqn request;
-    WB_TRY(find_interface(address, &request));
+    WB_TRY(find_interface(address, &request, why));
     if (setsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off) != 0)
         wb_debug("other groups may be heard: %s", strerror(errno));
     if (setsockopt(descriptor, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request) != 0)
-        return wb_fail(WB_ERR_IO,
-                       "the multicast group cannot be joined%s%s: %s; name the network card "
-                       "towards the server with interface=ADDRESS",
-                       address->interface[0] ? " on " : "", address->interface, strerror(errno));
+        return wb_fail_to(why, WB_ERR_IO,
+                          "the multicast group cannot be joined%s%s: %s; name the network card "
+                          "towards the server with interface=ADDRESS",
+                          address->interface[0] ? " on " : "", address->interface, strerror(errno));
     return WB_OK;
 }
 
@@ -187,26 +107,26 @@ static void udp_close(void *state)
         close(udp->command);
 }
 
-static enum wb_status udp_open(void *state, const char *rest)
+static enum wb_status udp_open(void *state, const char *rest, struct wb_reason *why)
 {
     struct udp_state *udp = state;
-    struct udp_address address;
+    struct wb_udp_address address;
     udp->command = udp->data = -1;
-    WB_TRY(parse_address(rest, &address));
-    WB_TRY(resolve_host(&address, &udp->host));
+    WB_TRY(wb_udp_address_parse(rest, &address, why));
+    WB_TRY(wb_udp_address_resolve(&address, &udp->host, why));
     snprintf(udp->name, sizeof udp->name, "%s:%d", address.host, address.port);
     uint32_t bits = ntohl(udp->host.sin_addr.s_addr);
     udp->any_source = IN_MULTICAST(bits) || (bits & 0xff) == 0xff;
-    enum wb_status status = open_socket(&udp->command);
+    enum wb_status status = open_socket(&udp->command, why);
     if (status == WB_OK) {
         struct sockaddr_in any = {.sin_family = AF_INET};
         if (bind(udp->command, (struct sockaddr *)&any, sizeof any) != 0)
-            status = wb_fail(WB_ERR_IO, "no port for '%s': %s", udp->name, strerror(errno));
+            status = wb_fail_to(why, WB_ERR_IO, "no port for '%s': %s", udp->name, strerror(errno));
     }
     if (status == WB_OK && address.has_group)
-        status = open_socket(&udp->data);
+        status = open_socket(&udp->data, why);
     if (status == WB_OK && address.has_group)
-        status = join_group(udp->data, &address);
+        status = join_group(udp->data, &address, why);
     if (status != WB_OK)
         udp_close(udp);
     return status;

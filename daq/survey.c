@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "daq/recording_foreign.h"
+#include "daq/recover.h"
 #include "daq/replay.h"
 
 #define WB_LOG_DOMAIN "survey"
@@ -138,6 +139,10 @@ static enum wb_status look_at_meta(void *context, const char *key, const char *v
         survey->has_rig = true;
     else if (strcmp(key, "specimen") == 0)
         survey->has_specimen = true;
+    else if (strcmp(key, WB_RECOVER_META_FROM) == 0)
+        survey->is_recovered = true;
+    else if (strcmp(key, WB_RECOVER_META_MISSING) == 0)
+        snprintf(survey->recovered_missing, sizeof survey->recovered_missing, "%s", value);
     else if (strcmp(key, "virtual") == 0)
         survey->is_virtual = strcmp(value, "true") == 0;
     else if (strcmp(key, "dropped_chunks") == 0)
@@ -221,6 +226,7 @@ enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct
     survey->dropped_chunks = -1;
     survey->closed = wb_recording_is_complete(recording);
     survey->cut_short = wb_recording_is_cut_short(recording);
+    (void)wb_recording_log_problem(recording, survey->log_problem, sizeof survey->log_problem);
     int n = wb_recording_n_streams(recording);
     for (int i = 0; i < n && i < WB_SURVEY_STREAMS; i++) {
         const struct wb_recording_stream *stream = wb_recording_stream_at(recording, i);
@@ -257,7 +263,7 @@ double wb_survey_seconds(int64_t from_ns, int64_t to_ns)
 
 /* --- what is wrong --- */
 
-#define FILE_PROBLEMS 9
+#define FILE_PROBLEMS 11
 #define ROW_PROBLEMS 5
 #define STREAM_PROBLEMS 6
 
@@ -370,6 +376,13 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
     case 7:
         snprintf(text, size, "the rig's description is missing: nothing can be decoded");
         return !survey->has_rig;
+    case 8:
+        snprintf(text, size, "%s", survey->log_problem);
+        return survey->log_problem[0] != '\0';
+    case 9:
+        snprintf(text, size, "recovered from a damaged file; missing: %s",
+                 survey->recovered_missing);
+        return survey->is_recovered && survey->recovered_missing[0];
     default:
         snprintf(text, size, "the specimen's description is missing: it cannot be aligned");
         return !survey->has_specimen;

@@ -38,17 +38,20 @@ struct wb_survey {
     uint64_t chunks, bytes, damaged, missing;
     uint64_t undeclared; /* chunks of streams that were never declared */
     uint64_t events, drop_events, clock_rows;
-    uint64_t refused_events;    /* remarks on refused lines after the tare */
-    int64_t silence_limit_ns;   /* alone_silent_ns beyond it is a fault; of the rig; 0 unknown */
-    uint64_t lost_events;       /* times a stream fell silent for too long */
-    int64_t dropped_chunks;     /* what the writer counted; -1 when it was not written down */
-    int64_t first_ns, last_ns;  /* of all chunks; 0 without any */
-    bool closed;                /* closed properly and not cut short */
-    bool cut_short;             /* the file is shorter than its header says */
-    bool broken;                /* a table breaks off or cannot be read */
-    bool decoded;               /* samples were counted */
-    bool has_rig, has_specimen; /* meta values that replay and alignment need */
-    bool is_virtual;            /* recorded from a virtual rig */
+    uint64_t refused_events;     /* remarks on refused lines after the tare */
+    int64_t silence_limit_ns;    /* alone_silent_ns beyond it is a fault; of the rig; 0 unknown */
+    uint64_t lost_events;        /* times a stream fell silent for too long */
+    int64_t dropped_chunks;      /* what the writer counted; -1 when it was not written down */
+    int64_t first_ns, last_ns;   /* of all chunks; 0 without any */
+    bool closed;                 /* closed properly and not cut short */
+    bool cut_short;              /* the file is shorter than its header says */
+    char log_problem[240];       /* what is wrong with its write-ahead log; "" nothing */
+    bool is_recovered;           /* made from a damaged file, */
+    char recovered_missing[200]; /* of which this is missing; "" nothing */
+    bool broken;                 /* a table breaks off or cannot be read */
+    bool decoded;                /* samples were counted */
+    bool has_rig, has_specimen;  /* meta values that replay and alignment need */
+    bool is_virtual;             /* recorded from a virtual rig */
 };
 
 /* Reads all tables; with `decode` the bytes also go through the drivers, and samples are counted.

@@ -114,6 +114,13 @@ void wb_take_copy_name(char *to, size_t size, const char *from, size_t n)
     to[n] = '\0';
 }
 
+struct wb_take_quoted wb_take_quote(const char *cell, size_t n)
+{
+    struct wb_take_quoted quoted;
+    wb_take_copy_name(quoted.text, sizeof quoted.text, cell, n);
+    return quoted;
+}
+
 long wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n)
 {
     if (take->n_points >= UINT32_MAX ||

@@ -97,6 +97,11 @@ WB_MUST_CHECK enum wb_status wb_take_finish(struct wb_take *take, const char *na
                                             struct wb_reason *why);
 /* Copies a name: printable ASCII, anything else '?', blanks at its ends gone. */
 void wb_take_copy_name(char *to, size_t size, const char *from, size_t n);
+/* The beginning of a cell, for a message. */
+struct wb_take_quoted {
+    char text[40];
+};
+struct wb_take_quoted wb_take_quote(const char *cell, size_t n);
 /* m for the name of a unit of length in any spelling; 0: not known. */
 double wb_take_length_unit(const char *text, size_t n);
 

@@ -3,11 +3,8 @@
 #include <math.h>
 
 #include "base/units.h"
-#include "daq/acquisition.h"
 #include "daq/marker_check.h"
 
-/* An end moves far less than this from one frame to the next, and no other marker is so near. */
-#define REACH (5.0 * WB_MM)
 #define SMOOTHING 0.1
 
 /* Finds both ends anew near where they were; false when one is hidden (it keeps its place). */
@@ -16,17 +13,7 @@ static bool follow_ends(struct wb_tip_watch *watch, const struct wb_mocap_frame 
     bool both = true;
     for (int end = 0; end < 2; end++) {
         double *const at = watch->at[end];
-        double nearest = REACH;
-        int found = -1;
-        for (int i = 0; i < frame->n_markers; i++) {
-            const float *const p = frame->markers[i].position;
-            const double off = sqrt(pow((double)p[0] - at[0], 2) + pow((double)p[1] - at[1], 2) +
-                                    pow((double)p[2] - at[2], 2));
-            if (wb_acquisition_marker_measured(&frame->markers[i]) && off < nearest) {
-                nearest = off;
-                found = i;
-            }
-        }
+        const int found = wb_marker_check_nearest(frame, at, WB_MARKER_CHECK_REACH);
         both = both && found >= 0;
         for (int k = 0; found >= 0 && k < 3; k++)
             at[k] = (double)frame->markers[found].position[k];

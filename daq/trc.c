@@ -38,17 +38,6 @@ static enum wb_status no_memory(const struct reading *reading)
     return wb_fail_to(reading->why, WB_ERR_MEMORY, "%s: out of memory", reading->name);
 }
 
-struct quoted {
-    char text[40];
-};
-
-static struct quoted quote(const char *cell, size_t n)
-{
-    struct quoted quoted;
-    wb_take_copy_name(quoted.text, sizeof quoted.text, cell, n);
-    return quoted;
-}
-
 /* The next line that is not empty. */
 static enum wb_status need_line(struct reading *reading, const char *what, const char **line,
                                 size_t *n)
@@ -70,12 +59,12 @@ static enum wb_status read_value(struct reading *reading, const char *key, const
         reading->unit = wb_take_length_unit(value, n);
         if (!(reading->unit > 0.0))
             return refuse(reading, column, "'%s' is no unit of length that is known",
-                          quote(value, n).text);
+                          wb_take_quote(value, n).text);
         return WB_OK;
     }
     if (!wb_cells_number(value, n, ',', &number) || !(number >= 0.0) || !(number < 1e9))
         return refuse(reading, column, "%s: expected a number, not '%s'", key,
-                      quote(value, n).text);
+                      wb_take_quote(value, n).text);
     if (strcmp(key, "DataRate") == 0)
         reading->take->rate = number;
     else if (strcmp(key, "NumFrames") == 0)
@@ -102,7 +91,7 @@ static enum wb_status read_keys(struct reading *reading)
     while (wb_cells_next(&at_key, &key, &n_key)) {
         if (!wb_cells_next(&at_value, &value, &n_value) && n_key > 0)
             return refuse(reading, at_value.column, "the key '%s' has no value",
-                          quote(key, n_key).text);
+                          wb_take_quote(key, n_key).text);
         for (unsigned i = 0; i < 4; i++) {
             if (!wb_cells_equal(key, n_key, wanted[i]))
                 continue;
@@ -156,7 +145,7 @@ static enum wb_status read_axes(struct reading *reading)
     while (wb_cells_next(&cells, &cell, &n_cell)) {
         if ((cell[0] | 0x20) != "xyz"[count % 3])
             return refuse(reading, cells.column + 2, "expected an axis %c, not '%s'",
-                          "XYZ"[count % 3], quote(cell, n_cell).text);
+                          "XYZ"[count % 3], wb_take_quote(cell, n_cell).text);
         count++;
     }
     if (count != 3 * reading->n_markers)
@@ -175,12 +164,14 @@ static enum wb_status read_start(struct reading *reading, struct wb_cells *cells
     double value;
     if (!wb_cells_next(cells, &cell, &n) || !wb_cells_number(cell, n, 0, &value) ||
         value != floor(value) || !(fabs(value) < (double)INT_MAX))
-        return refuse(reading, 1, "expected a frame's number, not '%s'", quote(cell, n).text);
+        return refuse(reading, 1, "expected a frame's number, not '%s'",
+                      wb_take_quote(cell, n).text);
     *number = (int32_t)value;
     if (!wb_cells_next(cells, &cell, &n))
         return refuse(reading, 2, "%s", "the row ends before the time");
     if (!wb_cells_number(cell, n, ',', t) || !(fabs(*t) < LARGEST_TIME))
-        return refuse(reading, 2, "expected a time in seconds, not '%s'", quote(cell, n).text);
+        return refuse(reading, 2, "expected a time in seconds, not '%s'",
+                      wb_take_quote(cell, n).text);
     return WB_OK;
 }
 
@@ -201,7 +192,7 @@ static enum wb_status read_marker(struct reading *reading, struct wb_cells *cell
             continue;
         if (!wb_cells_number(cell, n, ',', &position[k]))
             return refuse(reading, cells->column, "expected a position, not '%s'",
-                          quote(cell, n).text);
+                          wb_take_quote(cell, n).text);
         position[k] *= reading->unit;
         if (!(fabs(position[k]) <= LARGEST_POSITION))
             return refuse(reading, cells->column, "a marker at %g m: is the unit of length right?",

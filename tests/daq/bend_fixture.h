@@ -101,4 +101,16 @@ static inline void read_events(struct fixture *fixture)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
+/* A new bench in the place of the one that was used; streams may be silent for so long. */
+static inline void renew(struct fixture *fixture, double stream_lost)
+{
+    fake_stop(fixture->bench);
+    sample_log_release(&fixture->log);
+    memset(&fixture->log, 0, sizeof fixture->log);
+    unlink(fixture->output);
+    wb_interrupt_set(false);
+    fixture->bench = fake_start();
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, stream_lost);
+}
+
 #endif

@@ -24,8 +24,10 @@
 #include "tests/check.h"
 #include "tests/daq/grbl_jog.h"
 
+#ifndef FAKE_LOAD_PERIOD_NS
 #define FAKE_LOAD_PERIOD_NS (5 * WB_NS_PER_MS)
 #define FAKE_FRAME_PERIOD_NS (8 * WB_NS_PER_MS)
+#endif
 #define FAKE_MARKERS 7
 
 struct fake_bench {
@@ -53,12 +55,17 @@ struct fake_bench {
     atomic_int reports_of_100;    /* how many questions for the state are answered; 0: all */
     atomic_int
         readings_at_once; /* the load cell's arrive so many in one piece; 0: each by itself */
-    atomic_bool overload, other_unit, garbage;
+    atomic_bool overload, other_unit, garbage, raw_counts;
+    atomic_uint load_speed; /* a speed_t at which the load cell prints text; 0: at any */
     atomic_bool raise_alarm;
+    atomic_bool
+        load_unplugged;      /* the load cell's cable comes out amid a line; in again when false */
     atomic_int markers;      /* how many are there */
     atomic_int force_mg;     /* added to the reading */
+    atomic_int swing_mg;     /* added and taken off from one reading to the next */
     atomic_int spring_mg_mm; /* per mm of travel beyond slack_mm */
     atomic_int slack_mm;
+    atomic_int breaks_mm;      /* no force from this travel on; 0: never */
     atomic_int markers_follow; /* percent of the stage's way, downwards, */
     atomic_bool markers_level; /* or sideways */
     atomic_int force_limit_mg; /* the first reading beyond it is timed */
@@ -67,9 +74,11 @@ struct fake_bench {
      * this thread may stand still as soon as it is gone, and nobody can have read it earlier. */
     atomic_llong limit_sent_ns, hold_ns, reset_ns, load_last_ns, frame_last_ns, report_last_ns;
     atomic_int holds;
+    atomic_int takes;          /* times it was asked to record a take of its own */
     atomic_llong worst_gap_ns; /* longest that this thread itself was kept from running */
 
     /* The thread's own. */
+    char load_link[96]; /* ""; or where a link leads to the load cell's terminal of the day */
     double position_mm, target_mm, feed_mm_s;
     const char *state; /* of the stage */
     int64_t moved_ns, next_load_ns, next_frame_ns;
@@ -80,6 +89,7 @@ struct fake_bench {
     char readings[4096]; /* that wait to be written together */
     size_t n_readings;
     int readings_held, questions;
+    int swing_side; /* of the next reading: +1, -1 */
     struct sockaddr_in client;
     bool has_client;
     struct wb_natnet_frame data;
@@ -239,12 +249,21 @@ static inline void fake_stage_bytes(struct fake_bench *bench, const char *bytes,
 static inline void fake_reading(struct fake_bench *bench)
 {
     char text[64];
-    const double stretch = fmax(bench->position_mm - bench->slack_mm, 0.0);
-    const double mg = bench->force_mg + bench->spring_mg_mm * stretch + 20.0 * fake_noise(bench);
-    if (bench->garbage)
+    const bool broken = bench->breaks_mm > 0 && bench->position_mm > bench->breaks_mm;
+    const double stretch = broken ? 0.0 : fmax(bench->position_mm - bench->slack_mm, 0.0);
+    bench->swing_side = bench->swing_side > 0 ? -1 : 1;
+    const double mg = bench->force_mg + bench->spring_mg_mm * stretch +
+                      bench->swing_side * bench->swing_mg + 20.0 * fake_noise(bench);
+    struct termios line;
+    if (bench->load_speed != 0 && tcgetattr(bench->load, &line) == 0 &&
+        cfgetospeed(&line) != bench->load_speed)
+        snprintf(text, sizeof text, "\x81\xfe\x90\xe3\xbf\x88");
+    else if (bench->garbage)
         snprintf(text, sizeof text, "####\r\n");
     else if (bench->overload)
         snprintf(text, sizeof text, "OL\r\n");
+    else if (bench->raw_counts)
+        snprintf(text, sizeof text, "%.0f\r\n", 84213.0 + 0.4 * mg);
     else
         snprintf(text, sizeof text, "%.3f %s\r\n", mg / 1e3, bench->other_unit ? "kg" : "g");
     if (bench->limit_sent_ns == 0 &&
@@ -289,7 +308,9 @@ static inline void fake_frame(struct fake_bench *bench)
         marker->id = 50000 + m;
         /* The eighth and later ones are strays. */
         marker->position[0] = (float)(m < FAKE_MARKERS ? 0.3 + 0.015 * m : 0.9 + 0.1 * m);
-        const double moved = 1e-5 * bench->markers_follow * bench->position_mm;
+        /* The strand holds the tip. */
+        const double part = fmax(0.0, 1.0 - m / (FAKE_MARKERS - 1.0));
+        const double moved = 1e-5 * bench->markers_follow * bench->position_mm * part;
         const bool level = bench->markers_level;
         marker->position[1] = (float)(1.2 - (level ? 0.0 : moved) + 1e-4 * fake_noise(bench));
         marker->position[2] = (float)(0.05 - (level ? moved : 0.0));
@@ -326,6 +347,7 @@ static inline void fake_datagram(struct fake_bench *bench)
         char text[64];
         if (wb_natnet_decode_text(&packet, text, sizeof text, &fault) != WB_OK)
             return;
+        bench->takes += strcmp(text, "StartRecording") == 0;
         const float value = strcmp(text, "FrameRate") == 0 ? 125.0F : 1000.0F;
         fake_send(bench, answer, wb_natnet_encode_response_real(answer, sizeof answer, value));
     } else if (packet.message == WB_NATNET_ECHOREQUEST) {
@@ -338,6 +360,24 @@ static inline void fake_datagram(struct fake_bench *bench)
 
 /* --- the thread --- */
 
+static inline void fake_open_terminal(int *ours, int *theirs, char path[64]);
+
+/* Under another number each time, because the old terminal is still open at its other side. */
+static inline void fake_replug(struct fake_bench *bench)
+{
+    if (bench->load_unplugged && bench->load >= 0) {
+        fake_write(bench->load, "1", 1);
+        close(bench->load);
+        close(bench->load_keep);
+        bench->load = bench->load_keep = -1;
+        unlink(bench->load_link);
+    } else if (!bench->load_unplugged && bench->load < 0) {
+        fake_open_terminal(&bench->load, &bench->load_keep, bench->load_path);
+        fake_write(bench->load, "0 g\r\n", 5); /* the end of a line */
+        assert_int_equal(symlink(bench->load_path, bench->load_link), 0);
+    }
+}
+
 static inline void *fake_run(void *context)
 {
     struct fake_bench *const bench = context;
@@ -345,12 +385,15 @@ static inline void *fake_run(void *context)
     while (!bench->quit) {
         struct pollfd polled[2] = {{.fd = bench->stage, .events = POLLIN},
                                    {.fd = bench->udp, .events = POLLIN}};
-        poll(polled, 2, 1);
+        const struct timespec wait = {
+            .tv_nsec = FAKE_FRAME_PERIOD_NS < 4 * WB_NS_PER_MS ? 100000 : WB_NS_PER_MS};
+        ppoll(polled, 2, &wait, NULL);
         const int64_t now_ns = wb_acquisition_now_ns();
         if (now_ns - before_ns > bench->worst_gap_ns)
             bench->worst_gap_ns = now_ns - before_ns;
         before_ns = now_ns;
         fake_move(bench, now_ns);
+        fake_replug(bench);
         char bytes[512];
         ssize_t n;
         while ((n = read(bench->stage, bytes, sizeof bytes)) > 0)
@@ -367,7 +410,7 @@ static inline void *fake_run(void *context)
         }
         if (now_ns >= bench->next_load_ns) {
             bench->next_load_ns += FAKE_LOAD_PERIOD_NS;
-            if (!bench->load_silent)
+            if (!bench->load_silent && bench->load >= 0)
                 fake_reading(bench);
         }
         if (now_ns >= bench->next_frame_ns) {

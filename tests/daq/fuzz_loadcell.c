@@ -1,11 +1,12 @@
 /* Any bytes from a load cell are readings or refused, and how they are cut into reads does not
- * matter. Input: a byte of settings, then the bytes of the line. */
+ * matter. Input: a byte of settings, then the bytes of the line. With bit 6 the settings are those
+ * of a preset. */
 #include "tests/daq/fuzz_driver.h"
 
 #include <math.h>
 
 #include "daq/drivers_private.h"
-#include "daq/loadcell_line.h"
+#include "daq/loadcell_preset.h"
 
 /* A hash of everything but the time, which the cuts do change. */
 static void take_load(void *context, const struct wb_load_sample *sample)
@@ -39,6 +40,13 @@ static struct wb_rig rig_of(uint8_t settings)
         strcpy(rig.load_cell.overload_tokens[1], "32767");
         strcpy(rig.load_cell.unstable_tokens[0], "moving");
     }
+    if (settings & 64) {
+        size_t n = 0;
+        while (wb_loadcell_preset_at(n))
+            n++;
+        wb_loadcell_preset_apply(wb_loadcell_preset_at((settings & 63) % n), &rig.load_cell);
+        rig.load_cell.settle_ns = 0;
+    }
     return rig;
 }
 
@@ -49,7 +57,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
     const struct wb_rig rig = rig_of(bytes[0]);
     struct wb_line_reading reading;
     double force;
-    wb_line_decode((const char *)bytes + 1, n - 1, &rig.load_cell, &reading);
+    const struct wb_loadcell_preset *const preset = wb_loadcell_preset_find(rig.load_cell.preset);
+    if (preset)
+        wb_loadcell_preset_decode(preset, (const char *)bytes + 1, n - 1, &rig.load_cell, &reading);
+    else
+        wb_line_decode((const char *)bytes + 1, n - 1, &rig.load_cell, &reading);
     FUZZ_REQUIRE(memchr(reading.unit, 0, sizeof reading.unit) != NULL);
     FUZZ_REQUIRE((reading.kind == WB_LINE_REFUSED) == (reading.reason != NULL));
     if (reading.kind == WB_LINE_VALUE)
@@ -75,6 +87,18 @@ int main(int argc, char **argv)
         "\x09\r1,234 g\r+  12,34 G S\r",
         "\x16\n12;0.5 g;3\n13;-0.25 g;4\n",
         "\x30HIGH\nmoving: 3 g\n32767\n3 g ?\n",
+        "@\nA\r\n0.021\r\n-1.5\r\n",
+        "B\n-18.78 lbF\r\n4.285 N\r\n*10\r\n",
+        "C\nA00\r\n+  12.34 G S\r\n-  12.34 GHU\r\n+ 999.99 G E\r\nE01\r\n",
+        "D\n        0.0 g  \r\n -     12.3    \r\n       Error\r\n",
+        "E\nLoad_cell output val: -3.25\r\n8388607\r\n",
+        "F\none reading:\t12.5\t| average:\t11.90000\r\n",
+        "H\n\x06\r\nUS,-0183.96  g\r\nOL,+9999999E+19\r\nEC,E01\r\n",
+        "I\nOK!\r\n      0.01 g ?\r\nErr 8.3\r\n",
+        "K\n+    12.34 g  \r\n-    12.34    \r\n      H       \r\nStat       C\r\n",
+        "L\nC1 A\r\nSI ?       18.5 kg \r\nSI ^     1234.5 g  \r\n? -    2.237 lb \r\n",
+        "N\nST,GS,     0.250,kg\r\nUS,NT,      -12, g\r\nERR04\r\n",
+        "O\r+0012.345\r?\r",
         "\x10S ? -  12.3 g\nS ^ 1 g\n+  12.34 GLE\n12.5E-3 kN\n3 \xC2\xB5N\n",
     };
     return fuzz_main_text(argc, argv, seeds, sizeof seeds / sizeof seeds[0], 100000);

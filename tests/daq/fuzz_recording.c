@@ -12,8 +12,11 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "daq/recording_private.h"
+#include "daq/recover.h"
 #include "daq/survey.h"
 #include "tests/daq/small_test.h"
+#include "tests/folder.h"
+#include "tests/trials.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n);
 
@@ -81,6 +84,24 @@ static uint64_t visit(const char *path)
     return chunks;
 }
 
+/* What is recovered, if anything is, opens without a word of damage. */
+static void recover(const char *path)
+{
+    char to[96];
+    struct wb_recover found;
+    struct wb_recording *recording = NULL;
+    struct wb_recording_check check;
+    struct wb_reason why;
+    snprintf(to, sizeof to, "%s.new", path);
+    if (wb_recover_run(path, to, &found, &why) != WB_OK)
+        return;
+    if (wb_recording_open(&recording, to) != WB_OK ||
+        wb_recording_check(recording, &check) != WB_OK || !check.digest_fits ||
+        wb_recording_close(recording) != WB_OK)
+        abort();
+    unlink(to);
+}
+
 static void write_file(const char *path, const void *bytes, size_t n)
 {
     int descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -92,15 +113,14 @@ static void write_file(const char *path, const void *bytes, size_t n)
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
 {
     wb_log_set_sink(be_silent, NULL);
-    char path[] = "/tmp/wb-fuzz-XXXXXX";
-    int descriptor = mkstemp(path);
-    if (descriptor < 0)
+    char folder[32], path[64];
+    if (!temporary_folder_make(folder))
         abort();
-    close(descriptor);
+    snprintf(path, sizeof path, "%s/case.wbr", folder);
     write_file(path, bytes, n);
     visit(path);
-    unlink(path);
-    return 0;
+    recover(path);
+    return temporary_folder_remove(folder) == 0 ? 0 : -1;
 }
 
 #ifndef WB_LIBFUZZER
@@ -158,8 +178,8 @@ int main(int argc, char **argv)
 {
     long cases = argc > 1 ? atol(argv[1]) : 600;
     random_state = argc > 2 ? strtoull(argv[2], NULL, 10) | 1 : 88172645463325252u;
-    char folder[] = "/tmp/wb-fuzz-XXXXXX", seed[64], packed[64], path[64];
-    if (!mkdtemp(folder))
+    char folder[32], seed[64], packed[64], path[64];
+    if (!temporary_folder_make(folder))
         return 1;
     snprintf(seed, sizeof seed, "%s/seed.wbr", folder);
     snprintf(packed, sizeof packed, "%s/seed.wbr.zst", folder);
@@ -185,6 +205,7 @@ int main(int argc, char **argv)
             n = damage(bytes, n);
         write_file(path, bytes, n);
         opened += visit(path) > 0;
+        recover(path);
         free(bytes);
     }
     wb_log_set_sink(NULL, NULL);
@@ -194,6 +215,8 @@ int main(int argc, char **argv)
     rmdir(folder);
     free(sources[0]);
     free(sources[1]);
+    count_trials("Damaged recordings opened, surveyed and recovered", (uint64_t)cases,
+                 "files: no crash, nothing that a checksum contradicts");
     printf("%ld damaged recordings, chunks read from %ld of them\n", cases, opened);
     /* If nothing could be opened, nothing was tested. */
     return whole && opened > cases / 4 ? 0 : 1;

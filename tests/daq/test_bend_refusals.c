@@ -1,5 +1,5 @@
-/* What keeps a bending test from starting, each with its one message, against a small bench in a
- * thread. */
+/* What keeps a bending test from starting, or ends it in its first millimetres, each with its one
+ * message, against a small bench in a thread. */
 #include "daq/stream.h"
 #include "tests/daq/bend_fixture.h"
 
@@ -100,6 +100,18 @@ static void a_unit_that_contradicts_the_rig_file_is_refused(void **state)
     /* Within the cell's range as well. */
     fixture->bench->force_mg = 0;
     assert_refused(fixture, "prints another unit than load_cell.unit: g", true);
+}
+
+/* A converter without a calibration, with and without a unit in the rig file. */
+static void raw_counts_are_told_with_the_keys_that_make_them_forces(void **state)
+{
+    struct fixture *const fixture = *state;
+    char command[256];
+    fixture->bench->raw_counts = true;
+    assert_refused(fixture, "load_cell.unit", false);
+    snprintf(command, sizeof command, "sed -i 's/^  noise_mg: 10/  unit: g\\n&/' %s", fixture->rig);
+    assert_int_equal(system(command), 0);
+    assert_refused(fixture, "load_cell.scale", false);
 }
 
 static void a_loaded_zero_is_refused(void **state)
@@ -213,6 +225,68 @@ static void a_folder_that_cannot_be_written_is_one_message(void **state)
     assert_non_null(strstr(fixture->errors, "/no/such/folder/test.wbr"));
 }
 
+/* --- what ends it while the specimen is whole --- */
+
+static void a_first_force_that_no_such_wire_has_ends_the_test(void **state)
+{
+    struct fixture *const fixture = *state;
+    static const struct {
+        int spring_mg_mm;
+        double lowest, highest; /* N/m; 500 mg/mm are 4.9 */
+        const char *word;       /* NULL: nothing is wrong */
+    } cases[] = {{500, 1.6, 15.0, NULL},
+                 {500, 0.0, 0.0, NULL},
+                 {-500, 0.0, 0.0, "load_cell.sign"},
+                 {500, 0.0016, 0.015, "a known wire gives 0.015 at the most"},
+                 {500, 50.0, 450.0, "a known wire gives 50 at the least"},
+                 {0, 1.6, 15.0, "reads no force"}};
+    fixture->request.travel = 20.0 * WB_MM;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct fake_bench *const bench = fixture->bench;
+        struct wb_bend_test *test;
+        struct wb_bend_test_result result;
+        unlink(fixture->output);
+        bench->spring_mg_mm = cases[i].spring_mg_mm;
+        fixture->request.stiffness =
+            (struct wb_first_force_bounds){cases[i].lowest, cases[i].highest, "a known wire"};
+        assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+        assert_false(run(test, NULL));
+        assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+        read_events(fixture);
+        if (!cases[i].word) {
+            assert_int_equal(result.end, WB_SEQUENCE_DONE);
+            assert_non_null(strstr(fixture->events, "first_force: the force rises by"));
+            continue;
+        }
+        if (result.end != WB_SEQUENCE_FAILED || !strstr(result.text, cases[i].word))
+            fail_msg("case %zu: ended with '%s'", i, result.text);
+        assert_true(result.standing);
+        /* The whole test goes farther. */
+        assert_in_range((int)bench->position_mm, 2, 17);
+        assert_null(strstr(fixture->events, "first_force"));
+        renew(fixture, 60.0);
+    }
+}
+
+static void a_specimen_that_breaks_ends_the_test_at_once(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    fixture->request.travel = 45.0 * WB_MM;
+    fixture->bench->spring_mg_mm = 100;
+    fixture->bench->breaks_mm = 20;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
+    assert_non_null(strstr(result.text, "while the wire was bent further"));
+    assert_true(result.standing && result.displaced);
+    assert_in_range((int)fixture->bench->position_mm, 20, 30);
+    read_events(fixture);
+    assert_non_null(strstr(fixture->events, "\"reason\": \"force_drop\""));
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -227,6 +301,7 @@ int main(void)
         TEST(a_missing_marker_is_named),
         TEST(a_stray_reflection_does_not_hurt),
         TEST(a_unit_that_contradicts_the_rig_file_is_refused),
+        TEST(raw_counts_are_told_with_the_keys_that_make_them_forces),
         TEST(a_loaded_zero_is_refused),
         TEST(a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out),
         TEST(a_tare_with_the_counterweight_adds_its_weight),
@@ -235,6 +310,8 @@ int main(void)
         TEST(an_existing_recording_is_never_overwritten),
         TEST(too_much_travel_is_refused_before_anything_is_opened),
         TEST(a_folder_that_cannot_be_written_is_one_message),
+        TEST(a_first_force_that_no_such_wire_has_ends_the_test),
+        TEST(a_specimen_that_breaks_ends_the_test_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

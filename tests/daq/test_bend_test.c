@@ -6,6 +6,7 @@
 
 #include "base/interrupt_private.h"
 #include "daq/bend_recording_private.h"
+#include "daq/writer_private.h"
 #include "tests/daq/bend_fixture.h"
 
 static bool well_down(const struct wb_bend_test_status *status)
@@ -40,18 +41,6 @@ static void note_hold(const struct fixture *fixture, struct fake_latency *latenc
     assert_true(fixture->bench->hold_ns != 0);
     assert_true(shown_ns != 0);
     fake_note_latency(latency, fixture->bench, "hold byte", fixture->bench->hold_ns - shown_ns);
-}
-
-/* A new bench in the place of the one that was used; streams may be silent for so long. */
-static void renew(struct fixture *fixture, double stream_lost)
-{
-    fake_stop(fixture->bench);
-    sample_log_release(&fixture->log);
-    memset(&fixture->log, 0, sizeof fixture->log);
-    unlink(fixture->output);
-    wb_interrupt_set(false);
-    fixture->bench = fake_start();
-    fake_write_rig(fixture->bench, fixture->rig, 40.0, stream_lost);
 }
 
 /* Latencies are measured up to three times. */
@@ -105,6 +94,46 @@ static void complete_test_goes_down_and_back_and_records_it(void **state)
     assert_true(fixture->log.n[WB_ROLE_LOAD] > 100);
     assert_true(fixture->log.n[WB_ROLE_MOCAP] > 50);
     assert_replay_identical(fixture->output, &fixture->log);
+}
+
+static bool is_coming_up(const struct wb_bend_test_status *status)
+{
+    return strcmp(status->phase, "up") == 0 && status->travel < 10.0 * WB_MM;
+}
+
+/* The stage of the fixture's rig moves at 1 mm/s, at 40 times its speed; 2 s of rest end a cycle.
+ */
+static void time_left_is_the_way_left_and_ends_at_zero(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_status status;
+    struct wb_bend_test_result result;
+    fixture->request.cycles = 2;
+    fixture->request.travel = 12.0 * WB_MM;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    wb_bend_test_status(test, &status);
+    assert_true(isnan(status.time_left));
+    assert_true(!status.is_connected && status.end == WB_SEQUENCE_RUNNING);
+    assert_true(run(test, well_down));
+    wb_bend_test_status(test, &status);
+    assert_true(status.is_connected);
+    assert_close(status.time_left, (48.0 - status.travel / WB_MM + 4.0) / 40.0, 1e-9);
+    assert_true(run(test, is_coming_up));
+    wb_bend_test_status(test, &status);
+    assert_close(status.time_left, (24.0 + status.travel / WB_MM + 4.0) / 40.0, 1e-9);
+    const double peak = status.peak_tension;
+    assert_true(peak > 0.0);
+    wb_bend_test_stop(test);
+    wb_bend_test_status(test, &status);
+    assert_close(status.time_left, 0.0, 0.0);
+    assert_int_equal(status.end, WB_SEQUENCE_INTERRUPTED);
+    assert_string_equal(status.end_text, "stopped by the operator");
+    assert_false(run(test, NULL));
+    wb_bend_test_status(test, &status);
+    assert_true(status.is_standing);
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_true(result.peak_tension >= peak);
 }
 
 static void meta_tells_who_what_and_how(void **state)
@@ -441,28 +470,66 @@ static void an_unplugged_bench_ends_the_test_and_keeps_the_recording(void **stat
     assert_replay_identical(fixture->output, &fixture->log);
 }
 
-static void a_full_disk_stops_the_stage_and_what_was_written_stays(void **state)
+/* Files may grow to this size from now on; 0: to any again. */
+static void limit_files(rlim_t size)
+{
+    struct rlimit limit;
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &limit);
+    limit.rlim_cur = size ? size : limit.rlim_max;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+}
+
+static bool storage_is_late(const struct wb_bend_test_status *status)
+{
+    return status->latest->is_storage_late;
+}
+
+/* The specimen is not spent for a disk that is full for a while. */
+static void a_full_disk_is_told_and_what_comes_is_kept_until_there_is_room(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
-    struct rlimit saved, small;
-    signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &saved);
+    fixture->request.cycles = 3;
+    fixture->request.travel = 8.0 * WB_MM;
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_true(run(test, well_down));
-    small = saved;
-    struct stat size;
-    assert_int_equal(stat(fixture->output, &size), 0);
-    small.rlim_cur = 64 * 1024;
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    limit_files(8 * 1024);
+    assert_true(run(test, storage_is_late));
+    limit_files(0);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
+    assert_int_equal(result.drops, 0);
+    assert_int_equal(fixture->bench->holds, 0);
+    read_events(fixture);
+    assert_non_null(strstr(fixture->events, "storage: the disk takes nothing"));
+    assert_replay_identical(fixture->output, &fixture->log);
+}
+
+static void a_disk_that_stays_full_stops_the_stage_before_memory_ends(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    struct wb_writer_settings writer;
+    wb_writer_default_settings(&writer);
+    writer.capacity_bytes = 20000;
+    writer.patience_ns = 0;
+    fixture->request.writer = &writer;
+    fixture->request.cycles = 50;
+    fixture->request.travel = 8.0 * WB_MM;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_true(run(test, well_down));
+    limit_files(8 * 1024);
     assert_false(run(test, NULL));
     assert_int_not_equal(wb_bend_test_close(test, &result), WB_OK);
-    setrlimit(RLIMIT_FSIZE, &saved);
+    limit_files(0);
+    assert_non_null(strstr(result.text, "cannot be written"));
     assert_int_equal(result.end, WB_SEQUENCE_FAILED);
     assert_true(result.started && result.standing);
-    assert_int_equal(fixture->bench->holds, 1);
-    assert_non_null(strstr(result.text, "cannot be written"));
+    assert_true(fixture->bench->holds <= 1); /* none where it stood at a turn */
     read_events(fixture);
     assert_non_null(strstr(fixture->events, "cycle_start: 1"));
 }
@@ -536,6 +603,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(complete_test_goes_down_and_back_and_records_it),
+        TEST(time_left_is_the_way_left_and_ends_at_zero),
         TEST(meta_tells_who_what_and_how),
         TEST(a_part_of_a_yaml_text_ends_at_the_next_key),
         TEST(force_limit_holds_within_20_ms_and_the_specimen_stays),
@@ -550,7 +618,8 @@ int main(void)
         TEST(closing_in_mid_test_stops_the_stage_first),
         TEST(ctrl_c_before_any_motion_sends_no_hold),
         TEST(an_unplugged_bench_ends_the_test_and_keeps_the_recording),
-        TEST(a_full_disk_stops_the_stage_and_what_was_written_stays),
+        TEST(a_full_disk_is_told_and_what_comes_is_kept_until_there_is_room),
+        TEST(a_disk_that_stays_full_stops_the_stage_before_memory_ends),
         TEST(a_first_motion_that_the_cameras_see_otherwise_ends_the_test),
         TEST(a_stage_that_refuses_to_move_is_told),
         TEST(a_lost_answer_of_the_stage_only_delays_the_next_motion),

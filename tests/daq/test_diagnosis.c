@@ -1,5 +1,5 @@
 /* What the first bytes of an instrument that is not understood tell about it. */
-#include "daq/diagnosis_private.h"
+#include "daq/diagnosis.h"
 
 #include "tests/check.h"
 
@@ -42,6 +42,26 @@ static void other_firmware_is_named(void **state)
     assert_stage("echo:Unknown command: \"????????\"\nok\n", "Marlin");
     assert_stage("\r\nGrbl 1.1h ['$' for help]\r\n", "does not answer '?'");
     assert_stage("hello\r\nhello\r\n", "stage.protocol");
+}
+
+static void a_tic_that_does_not_answer_is_told_of_in_its_own_words(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *bytes, *words;
+    } cases[] = {
+        {"", "nothing came: check power and cable (TX, RX and ground)"},
+        {noise, "no answer of a Tic: check"},
+        {"\r\nGrbl 1.1h ['$' for help]\r\n", "set stage.protocol: grbl"},
+        {readings, "swapped"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct wb_diagnosis stage = heard(cases[i].bytes);
+        strcpy(rig.stage.protocol, "tic");
+        wb_diagnosis_stage(&stage, &rig, text);
+        if (!strstr(text, cases[i].words))
+            fail_msg("of '%s': '%s'", cases[i].bytes, text);
+    }
 }
 
 static void a_wrong_baud_rate_is_told(void **state)
@@ -119,6 +139,7 @@ int main(void)
         cmocka_unit_test(a_wrong_baud_rate_is_told),
         cmocka_unit_test(swapped_ports_are_told),
         cmocka_unit_test(line_ends_of_another_kind_are_told),
+        cmocka_unit_test(a_tic_that_does_not_answer_is_told_of_in_its_own_words),
         cmocka_unit_test(only_the_beginning_is_kept),
         cmocka_unit_test(any_bytes_are_judged),
     };

@@ -2,6 +2,7 @@
 #include "daq/drivers.h"
 #include "tests/check.h"
 #include "tests/daq/collect.h"
+#include "tests/trials.h"
 
 #define MS WB_NS_PER_MS
 
@@ -142,6 +143,62 @@ static void garbage_is_counted_without_a_flood_of_remarks(void **state)
     free(driver);
 }
 
+/* What came of many lines. */
+struct tally {
+    int n, wrong, next;
+};
+
+/* Reading k is k + 1 thousandths of a gram. */
+static void tally_load(void *context, const struct wb_load_sample *sample)
+{
+    struct tally *const tally = context;
+    const double k = sample->force / 9.81e-6 - 1.0;
+    tally->n++;
+    tally->wrong += !sample->valid || fabs(k - round(k)) > 1e-6 || (int)round(k) < tally->next;
+    tally->next = (int)round(k) + 1;
+}
+
+/* Bytes as of a wrong baud rate or a bad contact, line ends and digits among them, at random places
+ * of a stream; each burst begins with one that no indicator prints. */
+static void noise_costs_two_readings_a_burst_and_makes_none(void **state)
+{
+    (void)state;
+    enum {
+        READINGS = 20000
+    };
+    struct tally tally = {0};
+    const struct wb_sink sink = {.context = &tally, .load = tally_load};
+    const struct wb_rig rig = rig_of("g");
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
+    uint32_t random = 4711;
+    int bursts = 0;
+    feed(driver, 0, "\r\n", &(struct collect){0});
+    for (int k = 0; k < READINGS; k++) {
+        uint8_t bytes[128];
+        int n = snprintf((char *)bytes, sizeof bytes, "%.3f g\r\n", 1e-3 * (k + 1));
+        random = random * 1664525u + 1013904223u;
+        if (random >> 24 < 40) {
+            const int at = (int)((random >> 8) % (uint32_t)(n - 1)), size = 1 + (random >> 3) % 40;
+            memmove(bytes + at + size, bytes + at, (size_t)(n - at));
+            for (int i = 0; i < size; i++) {
+                random = random * 1664525u + 1013904223u;
+                bytes[at + i] = (uint8_t)(random >> 24);
+            }
+            bytes[at] |= 0x80;
+            n += size;
+            bursts++;
+        }
+        wb_loadcell_generic.receive(driver, k * 12 * MS, bytes, (size_t)n, &sink);
+    }
+    free(driver);
+    assert_int_equal(tally.wrong, 0);
+    assert_true(bursts > 2000 && tally.n < READINGS);
+    assert_true(READINGS - tally.n <= 2 * bursts);
+    count_trials("Noise amid the lines of a load cell", (uint64_t)bursts,
+                 "bursts in %d lines: %.2f readings lost a burst, none made", READINGS,
+                 (double)(READINGS - tally.n) / bursts);
+}
+
 static void bytes_before_settling_are_ignored(void **state)
 {
     (void)state;
@@ -245,6 +302,7 @@ int main(void)
         cmocka_unit_test(a_unit_that_contradicts_the_rig_file_is_believed_and_told_once),
         cmocka_unit_test(readings_without_any_unit_are_refused),
         cmocka_unit_test(garbage_is_counted_without_a_flood_of_remarks),
+        cmocka_unit_test(noise_costs_two_readings_a_burst_and_makes_none),
         cmocka_unit_test(bytes_before_settling_are_ignored),
         cmocka_unit_test(silence_ends_a_line_where_the_rig_says_so),
         cmocka_unit_test(polls_keep_to_their_period),

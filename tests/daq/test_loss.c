@@ -212,6 +212,42 @@ static void no_times_do_harm(void **state)
     }
 }
 
+/* A computer that is late by 10 ms when the rhythm has just been learnt: eight lines come together.
+ */
+static void a_stall_that_is_made_up_for_is_never_told(void **state)
+{
+    (void)state;
+    const double period = 1.0 / 800.0;
+    for (int begin = 60; begin < 75; begin++) {
+        struct wb_loss loss;
+        wb_loss_init(&loss, false, 0.0);
+        for (int k = 0; k < 2000; k++) {
+            const double due = k * period, awake = (begin + 8) * period;
+            wb_loss_add(&loss, k >= begin && due < awake ? awake : due);
+            assert_false(wb_loss_is_told(&loss));
+        }
+        assert_int_equal(wb_loss_counts(&loss).missing, 0);
+    }
+}
+
+/* A busy computer that wakes each 5 ms and reads four lines a tenth of a millisecond apart, and
+ * gets time again later. */
+static void bundles_of_a_busy_computer_are_no_rhythm(void **state)
+{
+    (void)state;
+    struct wb_loss loss;
+    wb_loss_init(&loss, false, 0.0);
+    for (int k = 0; k < 4000; k++) {
+        const double due = k / 800.0;
+        const int in_bundle = k % 4;
+        wb_loss_add(&loss, k < 2000 ? due + (3 - in_bundle) / 800.0 + 1e-4 * in_bundle : due);
+        assert_false(wb_loss_is_told(&loss));
+    }
+    const struct wb_loss_counts counts = wb_loss_counts(&loss);
+    assert_close(counts.period, 1.0 / 800.0, 1e-5);
+    assert_int_equal(counts.missing, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -224,6 +260,8 @@ int main(void)
         cmocka_unit_test(lost_lines_are_counted),
         cmocka_unit_test(bundled_lines_have_no_rhythm_to_miss),
         cmocka_unit_test(no_times_do_harm),
+        cmocka_unit_test(a_stall_that_is_made_up_for_is_never_told),
+        cmocka_unit_test(bundles_of_a_busy_computer_are_no_rhythm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -143,22 +143,33 @@ static void every_version_from_2_5_to_4_1_is_decoded_by_its_announcement(void **
     }
 }
 
-static void newer_and_older_versions_come_with_a_warning(void **state)
+static void versions_that_are_not_known_come_with_a_warning(void **state)
 {
     (void)state;
+    static const struct {
+        int minor;
+        enum wb_log_level level;
+        const char *words;
+    } cases[] = {{2, WB_LOG_INFO, "NatNet 4.2: layout as the vendor's clients have it"},
+                 {4, WB_LOG_INFO, "NatNet 4.4: layout as the vendor's clients have it"},
+                 {5, WB_LOG_WARNING, "NatNet 4.5: layout unknown"}};
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     natnet_example(&frame, 7);
     memset(&collect, 0, sizeof collect);
-    void *driver = collect_open(&wb_natnet_client, &rig);
-    receive(driver, 0, server_info(4, 3, false));
-    receive(driver, 1, frame_of(4, 1));
-    receive(driver, 2, frame_of(4, 1));
-    assert_int_equal(collect.n_mocap, 2);
-    assert_int_equal(collect.mocap.n_markers, 7);
-    assert_int_equal(collect_count(&collect, "version"), 1);
-    assert_non_null(strstr(collect_text(&collect, "version"), "NatNet 4.3: layout unverified"));
-    assert_int_equal(collect.remarks[1].level, WB_LOG_WARNING);
-    free(driver);
+    void *driver;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        memset(&collect, 0, sizeof collect);
+        driver = collect_open(&wb_natnet_client, &rig);
+        receive(driver, 0, server_info(4, cases[i].minor, false));
+        receive(driver, 1, frame_of(4, cases[i].minor));
+        receive(driver, 2, frame_of(4, 1));
+        assert_int_equal(collect.n_mocap, 2);
+        assert_int_equal(collect.mocap.n_markers, 7);
+        assert_int_equal(collect_count(&collect, "version"), 1);
+        assert_non_null(strstr(collect_text(&collect, "version"), cases[i].words));
+        assert_int_equal(collect.remarks[1].level, cases[i].level);
+        free(driver);
+    }
     memset(&collect, 0, sizeof collect);
     driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(2, 2, false));
@@ -217,6 +228,143 @@ static void a_newer_unicast_server_is_asked_for_4_1(void **state)
     assert_int_equal(collect_count(&collect, "version"), 2);
     assert_int_equal(collect.remarks[collect.n_remarks - 1].level, WB_LOG_WARNING);
     free(driver);
+}
+
+/* Answers units and frame rate, so that only the take is left to ask for. */
+static void answer_first_queries(void *driver, int64_t t_ns)
+{
+    asked_in(driver, t_ns);
+    receive(driver, t_ns, answer_of(1000.0F));
+    asked_in(driver, t_ns);
+    receive(driver, t_ns, answer_of(120.0F));
+}
+
+static size_t yes(void)
+{
+    return wb_natnet_encode_integer(buffer, sizeof buffer, WB_NATNET_RESPONSE, 0);
+}
+
+/* The text of the goodbye's first message; "" when it is no request. */
+static const char *goodbye(void *driver)
+{
+    static char text[64];
+    struct wb_outbox outbox = {0};
+    size_t n;
+    wb_natnet_client.stop(driver, &outbox);
+    const uint8_t *const first = collect_entry(&outbox, 0, &n);
+    text[0] = '\0';
+    if (first[0] == WB_NATNET_REQUEST && n <= sizeof text)
+        memcpy(text, first + 4, n - 4);
+    return text;
+}
+
+static void a_take_is_recorded_only_when_the_rig_says_so(void **state)
+{
+    (void)state;
+    for (int wanted = 0; wanted < 2; wanted++) {
+        struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+        rig.mocap.record_take = wanted;
+        memset(&collect, 0, sizeof collect);
+        void *const driver = collect_open(&wb_natnet_client, &rig);
+        receive(driver, 0, server_info(3, 0, false));
+        answer_first_queries(driver, 1 * S);
+        assert_string_equal(asked_in(driver, 3 * S), wanted ? "StartRecording" : "");
+        receive(driver, 3 * S, yes());
+        assert_string_equal(goodbye(driver), wanted ? "StopRecording" : "");
+        free(driver);
+    }
+}
+
+static void a_take_that_is_refused_or_does_not_come_is_told(void **state)
+{
+    (void)state;
+    for (int refuses = 0; refuses < 2; refuses++) {
+        struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+        rig.mocap.record_take = true;
+        memset(&collect, 0, sizeof collect);
+        void *const driver = collect_open(&wb_natnet_client, &rig);
+        natnet_example(&frame, 7);
+        frame.mocap.params = 4;
+        receive(driver, 0, server_info(3, 0, false));
+        answer_first_queries(driver, 1 * S);
+        asked_in(driver, 3 * S);
+        receive(driver, 3 * S,
+                refuses
+                    ? wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_UNRECOGNIZED_REQUEST)
+                    : yes());
+        assert_int_equal(collect_count(&collect, "take"), refuses);
+        for (int i = 0; i < 10; i++)
+            receive(driver, (4 + i) * S, frame_of(3, 0));
+        assert_int_equal(collect_count(&collect, "take"), 1);
+        assert_string_equal(goodbye(driver), refuses ? "" : "StopRecording");
+        free(driver);
+    }
+}
+
+static void begin_and_end_of_a_take_are_told(void **state)
+{
+    void *const driver = *state;
+    static const int16_t params[] = {4, 5, 5, 5, 4, 4, 5};
+    receive(driver, 0, server_info(3, 0, false));
+    for (int i = 0; i < 7; i++) {
+        frame.mocap.params = params[i];
+        receive(driver, (1 + i) * S, frame_of(3, 0));
+    }
+    assert_int_equal(collect_count(&collect, "take"), 3);
+}
+
+/* Another segment, and all questions again; a datagram that was overtaken is no restart. */
+static void a_restarted_server_begins_a_segment_and_is_asked_again(void **state)
+{
+    void *const driver = *state;
+    receive(driver, 0, server_info(3, 0, false));
+    answer_first_queries(driver, 1 * S);
+    assert_string_equal(asked_in(driver, 3 * S), "");
+    const double stamps[] = {1000.0, 1000.5, 1000.2, 999.6, 1001.0};
+    for (int i = 0; i < 5; i++) {
+        frame.timestamp = stamps[i];
+        receive(driver, (4 + i) * S, frame_of(3, 0));
+        assert_int_equal(collect.mocap.segment, 0);
+    }
+    assert_string_equal(asked_in(driver, 9 * S), "");
+    frame.timestamp = 2.0;
+    receive(driver, 10 * S, frame_of(3, 0));
+    assert_int_equal(collect.mocap.segment, 1);
+    assert_int_equal(collect_count(&collect, "restart"), 1);
+    assert_non_null(strstr(collect_text(&collect, "restart"), "went back by 999.000 s"));
+    assert_string_equal(asked_in(driver, 11 * S), "UnitsToMillimeters");
+    frame.timestamp = 3.0;
+    receive(driver, 12 * S, frame_of(3, 0));
+    assert_int_equal(collect.mocap.segment, 1);
+    assert_int_equal(collect_count(&collect, "restart"), 1);
+}
+
+/* Counted from the newest frame, so that a clock that is set back does not hide behind others. */
+static void how_far_a_clock_went_back_counts_from_the_newest_frame(void **state)
+{
+    void *const driver = *state;
+    static const double stamps[] = {1000.0, 999.4, 998.9};
+    static const int segments[] = {0, 0, 1};
+    receive(driver, 0, server_info(3, 0, false));
+    for (int i = 0; i < 3; i++) {
+        frame.timestamp = stamps[i];
+        receive(driver, (1 + i) * S, frame_of(3, 0));
+        assert_int_equal(collect.mocap.segment, segments[i]);
+    }
+}
+
+static void changed_models_begin_a_segment(void **state)
+{
+    void *const driver = *state;
+    static const int16_t params[] = {6, 4, 6, 6, 4, 12, 4};
+    static const int segments[] = {0, 0, 1, 1, 1, 2, 2};
+    receive(driver, 0, server_info(3, 0, false));
+    for (int i = 0; i < 7; i++) {
+        frame.mocap.params = params[i];
+        receive(driver, (1 + i) * S, frame_of(3, 0));
+        assert_int_equal(collect.mocap.segment, segments[i]);
+    }
+    assert_int_equal(collect_count(&collect, "models"), 2);
 }
 
 static void refused_datagrams_name_the_likely_cause(void **state)
@@ -543,7 +691,7 @@ int main(void)
         DRIVER_TEST(connects_until_the_server_answers),
         DRIVER_TEST(frames_become_samples_with_their_stamps),
         cmocka_unit_test(every_version_from_2_5_to_4_1_is_decoded_by_its_announcement),
-        cmocka_unit_test(newer_and_older_versions_come_with_a_warning),
+        cmocka_unit_test(versions_that_are_not_known_come_with_a_warning),
         cmocka_unit_test(a_newer_unicast_server_is_asked_for_4_1),
         cmocka_unit_test(refused_datagrams_name_the_likely_cause),
         cmocka_unit_test(markers_that_are_never_measured_are_told_once),
@@ -560,6 +708,12 @@ int main(void)
         DRIVER_TEST(markers_without_position_count_as_occluded),
         DRIVER_TEST(missing_labelled_markers_are_told_once),
         DRIVER_TEST(a_silent_server_is_connected_to_anew),
+        DRIVER_TEST(begin_and_end_of_a_take_are_told),
+        DRIVER_TEST(a_restarted_server_begins_a_segment_and_is_asked_again),
+        DRIVER_TEST(how_far_a_clock_went_back_counts_from_the_newest_frame),
+        DRIVER_TEST(changed_models_begin_a_segment),
+        cmocka_unit_test(a_take_is_recorded_only_when_the_rig_says_so),
+        cmocka_unit_test(a_take_that_is_refused_or_does_not_come_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -267,8 +267,8 @@ static void wait_for_rounds(const struct wb_writer *writer, atomic_int *rounds)
         usleep(200);
 }
 
-/* Pushes chunks until the writer says that it cannot write, then reads what is there. 0 when all
- * is as promised. */
+/* Pushes chunks until the writer says that it cannot keep more, then reads what is there. 0 when
+ * all is as promised. */
 static int fill_until_full(struct bench *bench, const char *path, const char *reason)
 {
     struct wb_recording *recording = NULL;
@@ -283,6 +283,8 @@ static int fill_until_full(struct bench *bench, const char *path, const char *re
     struct wb_writer_settings settings;
     wb_writer_default_settings(&settings);
     settings.flush_interval_ns = 1000000;
+    settings.capacity_bytes = 40000;
+    settings.patience_ns = 0;
     atomic_int rounds = 0;
     settings.before_write = count_round;
     settings.context = &rounds;
@@ -291,22 +293,26 @@ static int fill_until_full(struct bench *bench, const char *path, const char *re
         return 12;
     bench->messages = 0;
     int64_t seq = 0;
+    char first[sizeof bench->message] = "";
     for (; seq < 200000 && wb_writer_status(writer) == WB_OK; seq++) {
         uint8_t bytes[300];
         int stream = (int)(seq % 3);
         size_t n = bench_bytes(stream, seq / 3, bytes);
         if (!wb_writer_push_chunk(writer, stream, bench_time(stream, seq / 3), bytes, n))
             break;
-        if (seq % 100 == 99)
+        if (seq % 50 == 49)
             wait_for_rounds(writer, &rounds);
     }
     if (wb_writer_status(writer) != WB_ERR_IO)
         return 13;
-    if (wb_writer_push_chunk(writer, 0, 0, "x", 1) || wb_writer_drops(writer, 0) == 0)
-        return 14; /* an honest writer refuses from now on */
+    static const uint8_t much[20000];
+    if (wb_writer_push_chunk(writer, 0, 0, much, sizeof much) || wb_writer_drops(writer, 0) == 0)
+        return 14; /* what there is no room for is refused */
+    snprintf(first, sizeof first, "%s", bench->message);
     if (wb_writer_finish(writer) != WB_ERR_IO)
         return 15;
-    if (bench->messages != 1 || !strstr(bench->message, reason))
+    /* Why, and at the end that something is lost. */
+    if (bench->messages != 2 || !strstr(first, reason) || !strstr(bench->message, "are lost"))
         return 16;
     if (wb_recording_open(&recording, path) != WB_OK)
         return 17;

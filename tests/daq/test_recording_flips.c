@@ -11,6 +11,7 @@
 #include "daq/survey.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
+#include "tests/trials.h"
 
 static size_t step = 97;
 
@@ -156,8 +157,9 @@ static void every_bit_is_noticed_or_without_effect(void **state)
     make(bench->path);
     assert_true(read_all(bench->path, expected));
     flip_all(bench->path, expected, &n_tried, &n_noticed);
-    print_message("%zu bits: %zu noticed, %zu change nothing that is read\n", n_tried, n_noticed,
-                  n_tried - n_noticed);
+    count_trials("Every bit of a recording flipped", n_tried,
+                 "bits: %zu noticed, %zu change nothing that is read", n_noticed,
+                 n_tried - n_noticed);
     /* A third of the file holds rows. */
     assert_true(n_noticed > n_tried / 4);
 }
@@ -172,8 +174,9 @@ static void every_bit_of_a_compressed_one_is_noticed_or_without_effect(void **st
     snprintf(packed, sizeof packed, "%s/test.wbr.zst", bench->folder);
     assert_int_equal(wb_recording_compress(bench->path, packed), WB_OK);
     flip_all(packed, expected, &n_tried, &n_noticed);
-    print_message("%zu bits: %zu noticed, %zu change nothing that is read\n", n_tried, n_noticed,
-                  n_tried - n_noticed);
+    count_trials("Every bit of a compressed recording flipped", n_tried,
+                 "bits: %zu noticed, %zu change nothing that is read", n_noticed,
+                 n_tried - n_noticed);
     assert_true(n_noticed > n_tried / 2);
 }
 
@@ -190,7 +193,7 @@ static void every_truncation_is_noticed(void **state)
         if (read_all(bench->path, hex))
             fail_msg("cut to %zu of %zu bytes, and nobody notices", n, size);
     }
-    print_message("%zu lengths, all noticed\n", n_tried);
+    count_trials("A recording cut to every length", n_tried, "lengths: all noticed");
     free(bytes);
 }
 

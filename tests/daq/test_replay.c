@@ -7,6 +7,7 @@
 #include "tests/daq/old_recording.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
+#include "tests/trials.h"
 
 struct log {
     int n_load, n_mocap, n_stage, n_remarks, n_damage;
@@ -239,6 +240,40 @@ static void damaged_chunks_are_counted_remarked_and_left_out(void **state)
     free(log);
 }
 
+/* Every chunk of the load cell ends amid a line; each is damaged once, and missing once. */
+static void no_halves_of_lines_around_a_gap_make_a_reading(void **state)
+{
+    struct bench *bench = *state;
+    static const char *const changes[] = {
+        "UPDATE chunk SET crc32 = crc32 + 1 WHERE stream = 0 AND seq = %d",
+        "DELETE FROM chunk WHERE stream = 0 AND seq = %d"};
+    int trials = 0;
+    for (int missing = 0; missing < 2; missing++) {
+        for (int seq = 1; seq < 30; seq++) {
+            char change[128];
+            struct wb_replay_counts counts;
+            unlink(bench->path);
+            small_make(bench->path, true);
+            snprintf(change, sizeof change, changes[missing], seq);
+            old_recording_run(bench->path, change);
+            struct log *log = play(bench->path, 0.0, 0, &counts, WB_OK);
+            assert_true(log->n_load < SMALL_READINGS && log->n_load > SMALL_READINGS - 5);
+            int reading = 0;
+            for (int i = 0; i < log->n_load; i++, reading++) {
+                while (reading < SMALL_READINGS &&
+                       fabs(log->load[i].force -
+                            small_reading_g(reading) * 1e-3 * WB_STANDARD_GRAVITY) > 1e-9)
+                    reading++;
+                assert_true(reading < SMALL_READINGS);
+            }
+            free(log);
+            trials++;
+        }
+    }
+    count_trials("A chunk damaged or missing amid a line", (uint64_t)trials,
+                 "chunks: no reading that was never sent");
+}
+
 static void unknown_protocol_leaves_out_its_stream_only(void **state)
 {
     struct bench *bench = *state;
@@ -274,6 +309,7 @@ int main(void)
         FACT(rate_sets_the_pace),
         FACT(interrupt_ends_it_with_what_was_played),
         FACT(damaged_chunks_are_counted_remarked_and_left_out),
+        FACT(no_halves_of_lines_around_a_gap_make_a_reading),
         FACT(unknown_protocol_leaves_out_its_stream_only),
         FACT(recording_without_its_rig_is_refused_with_the_reason),
     };

@@ -125,6 +125,8 @@ static void line_protocol_keys_are_read(void **state)
                                                            "  overload_tokens: [OL, 8388607]\n"
                                                            "  decimal_comma: true\n"
                                                            "  settle_ms: 2000\n"));
+    assert_false(rig.mocap.record_take);
+    assert_true(parse(edited("  up: y\n", "  up: y\n  record_take: true\n")).mocap.record_take);
     const struct wb_rig_load_cell *const cell = &rig.load_cell;
     assert_int_equal(cell->sign, -1);
     assert_int_equal(cell->delimiter, ';');
@@ -209,6 +211,8 @@ static void bad_files_are_refused_with_file_line_and_key(void **state)
         {"  capacity_g: 20\n", "  capacity_g: -20\n", "bench.yaml:6: capacity_g: -20 is out of"},
         {"  overload_percent: 150\n", "  overload_percent: 50\n", "bench.yaml:7: overload_percent"},
         {"  filter_delay_ms: 50\n", "", "filter_delay_ms: this key is missing"},
+        {"  sign: +1\n", "  check_masses_g: [5, 10, 0]\n",
+         "bench.yaml:14: check_masses_g: expected 0 first"},
         {"2026-01-15", "15.01.2026", "calibration_date: expected a date"},
         {"2026-01-15", "2026-13-15", "calibration_date: expected a date"},
         {"  protocol: generic\n", "  protocol: mettler\n", "bench.yaml:5: protocol: expected one"},
@@ -220,6 +224,9 @@ static void bad_files_are_refused_with_file_line_and_key(void **state)
         {"  axis: X\n", "  axis: A\n", "bench.yaml:22: axis: expected one of X, Y, Z, not A"},
         {"  up: y\n", "  up: x\n", "bench.yaml:18: up: expected one of y, z"},
         {"  travel_mm: 60\n", "", "travel_mm: this key is missing"},
+        {"  axis: X\n", "", "axis: this key is missing: expected X, Y or Z"},
+        {"  protocol: grbl\n", "  protocol: tic\n", "axis: a Tic has one axis: remove this key"},
+        {"  protocol: grbl\n  axis: X\n", "  protocol: tic\n", "steps_per_mm: this key is missing"},
         {"  speed_mm_s: 1\n", "  speed_mm_s: 0\n", "bench.yaml:25: speed_mm_s: 0 is out of range"},
         {"  counterweight_g: 2.7\n", "", "counterweight_g: this key is missing"},
         {"force_mN: 280", "force_mN: 295", "force_mN: 295 mN is more than the load cell reads"},
@@ -296,6 +303,19 @@ static void a_virtual_rig_that_is_gone_is_told(void **state)
     rmdir(folder);
 }
 
+static void a_series_of_masses_and_its_due_date_are_read(void **state)
+{
+    (void)state;
+    const struct wb_rig rig =
+        parse(edited("  sign: +1\n", "  sign: +1\n  check_masses_g: [0, 5, 10.5, 0]\n"
+                                     "  check_due_days: 30\n"));
+    assert_int_equal(rig.load_cell.n_check_masses, 4);
+    assert_close(rig.load_cell.check_masses[2], 10.5e-3, 1e-15);
+    assert_close(rig.load_cell.check_due, 30.0 * 86400.0, 1e-9);
+    assert_int_equal(parse(good).load_cell.n_check_masses, 0);
+    assert_close(parse(good).load_cell.check_due, 0.0, 1e-15);
+}
+
 static void checks_after_the_table_tell_the_line_of_their_key(void **state)
 {
     (void)state;
@@ -325,6 +345,8 @@ int main(void)
                                         tear_down),
         cmocka_unit_test_setup_teardown(balances_take_no_generic_keys, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_virtual_rig_that_is_gone_is_told, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_series_of_masses_and_its_due_date_are_read, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(checks_after_the_table_tell_the_line_of_their_key, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(missing_file_is_named, set_up, tear_down),

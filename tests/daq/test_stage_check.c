@@ -115,6 +115,34 @@ static void what_the_firmware_did_not_tell_is_not_checked(void **state)
 
 #define TEST(name) cmocka_unit_test_setup(name, set_up)
 
+/* In the words of the Tic Control Center. */
+static void a_tic_is_refused_in_its_own_units(void **state)
+{
+    (void)state;
+    strcpy(rig.stage.protocol, "tic");
+    rig.stage.steps = 3200.0 / WB_MM;
+    settings.steps = settings.travel = (double)NAN;
+    settings.soft_limits = false;
+    assert_true(wb_stage_check(&settings, &rig, &motion, text));
+    motion.speed = 12.0 * WB_MM;
+    assert_refused("(Max speed=320000000 pulses/10000 s), and 12 mm/s are wanted: set Max "
+                   "speed=384000000");
+    motion.speed = 16.0 * WB_MM;
+    assert_refused("makes 15.625 mm/s at most with 3200 steps/mm");
+    motion.speed = 10.0 * WB_MM;
+    settings.acceleration = 5.0 * WB_MM;
+    assert_refused("(Max acceleration=1600000 pulses/s/100 s), too long to stop it safely: set Max "
+                   "acceleration=3200000");
+}
+
+static void a_fault_of_the_controller_is_refused_first(void **state)
+{
+    (void)state;
+    strcpy(settings.fault, "the timeout is off: switch it on");
+    motion.speed = 100.0;
+    assert_refused("the timeout is off: switch it on");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -126,6 +154,8 @@ int main(void)
         TEST(a_move_beyond_the_soft_limits_is_refused),
         TEST(the_way_up_ends_at_the_soft_limit),
         TEST(what_the_firmware_did_not_tell_is_not_checked),
+        TEST(a_tic_is_refused_in_its_own_units),
+        TEST(a_fault_of_the_controller_is_refused_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

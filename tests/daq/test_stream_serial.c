@@ -11,8 +11,10 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/log.h"
 #include "daq/acquisition.h"
+#include "daq/recording.h"
 #include "daq/stream.h"
 #include "tests/check.h"
 
@@ -221,10 +223,10 @@ static void write_that_nobody_takes_times_out(void **state)
     wb_stream_close(stream);
 }
 
-static void unplugged_port_is_told(void **state)
+static void unplugged_port_is_told_and_found_again(void **state)
 {
     struct bench *bench = *state;
-    struct wb_stream *stream = open_stream("serial:" PORT);
+    struct wb_stream *stream = open_stream("serial:" PORT ",19200");
     assert_int_equal(write(bench->master, "12.5\n", 5), 5);
     close(bench->master);
     bench->master = -1;
@@ -237,11 +239,24 @@ static void unplugged_port_is_told(void **state)
     assert_int_equal(status, WB_ERR_IO);
     assert_non_null(strstr(bench->message, PORT));
     assert_non_null(strstr(bench->message, "went away"));
-    wb_stream_close(stream);
+    /* It is looked for without a word. */
+    bench->message[0] = '\0';
+    unsetenv("WB_SHIM_DEVICE");
+    for (int i = 0; i < 3; i++)
+        assert_false(wb_stream_reopen(stream));
+    assert_string_equal(bench->message, "");
 
-    /* Plugged in again, it opens again. */
+    /* Plugged in again, the same stream goes on, with its line settings. */
     lend_device(bench);
-    stream = open_stream("serial:" PORT);
+    assert_true(wb_stream_reopen(stream));
+    assert_int_equal(write(bench->master, "0.25\n", 5), 5);
+    wait_readable(stream);
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 5);
+    assert_memory_equal(got, "0.25\n", 5);
+    struct termios set;
+    assert_int_equal(tcgetattr(bench->master, &set), 0);
+    assert_int_equal(cfgetispeed(&set), B19200);
     wb_stream_close(stream);
 }
 
@@ -298,6 +313,88 @@ static void pseudo_terminal_is_sent_to_its_own_scheme(void **state)
     assert_non_null(strstr(bench->message, "pty:"));
 }
 
+/* The sysfs folder of an FTDI port, with a latency timer of so many ms; "" takes all away. */
+static void set_latency(const struct bench *bench, const char *text)
+{
+    static const char *const folders[] = {"/port", "/port/device"};
+    char path[160], link[128];
+    snprintf(link, sizeof link, "%s/ttyWB0", bench->folder);
+    for (int i = 0; i < 2 && text[0]; i++) {
+        snprintf(path, sizeof path, "%s%s", bench->folder, folders[i]);
+        mkdir(path, 0700);
+    }
+    snprintf(path, sizeof path, "%s/port/device/latency_timer", bench->folder);
+    unlink(path);
+    if (text[0]) {
+        unlink(link);
+        assert_int_equal(symlink("port", link), 0);
+        assert_int_equal(wb_file_write(path, text, strlen(text)), WB_OK);
+    }
+    for (int i = 1; i >= 0 && !text[0]; i--) {
+        snprintf(path, sizeof path, "%s%s", bench->folder, folders[i]);
+        rmdir(path);
+    }
+}
+
+static void a_latency_timer_that_stays_high_is_told(void **state)
+{
+    const struct bench *bench = *state;
+    static const struct {
+        const char *timer, *words;
+    } cases[] = {{"16\n", "for up to 16 ms"}, {"2\n", "for up to 2 ms"}, {"1\n", ""}};
+    struct wb_stream *stream = open_stream("serial:" PORT);
+    assert_string_equal(wb_stream_caution(stream), ""); /* no FTDI adapter */
+    wb_stream_close(stream);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        set_latency(bench, cases[i].timer);
+        stream = open_stream("serial:" PORT);
+        const char *const caution = wb_stream_caution(stream);
+        if ((caution[0] == '\0') != (cases[i].words[0] == '\0') || !strstr(caution, cases[i].words))
+            fail_msg("case %zu: '%s'", i, caution);
+        assert_true(caution[0] == '\0' || strstr(caution, "tee /sys/class/tty/ttyWB0/device/"));
+        wb_stream_close(stream);
+    }
+    set_latency(bench, "");
+}
+
+static enum wb_status count_latency(void *context, const struct wb_event *event)
+{
+    int *const n = context;
+    *n += strcmp(event->kind, "latency") == 0 && strstr(event->text, "for up to 16 ms");
+    return WB_OK;
+}
+
+/* A line for the operator at the start, and an event of the recording. */
+static void the_latency_is_told_at_the_start_and_recorded(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_acquisition *acquisition;
+    struct wb_recording *recording;
+    struct wb_writer *writer;
+    struct wb_rig rig = {.gravity = 9.81, .time_scale = 1.0};
+    char path[96];
+    int id, n = 0;
+    strcpy(rig.load_cell.protocol, "generic");
+    strcpy(rig.load_cell.address, "serial:" PORT);
+    set_latency(bench, "16\n");
+    snprintf(path, sizeof path, "%s/a.wbr", bench->folder);
+    assert_int_equal(wb_recording_create(&recording, path), WB_OK);
+    assert_int_equal(wb_recording_add_stream(recording, WB_ROLE_LOAD, "a", "generic", "", &id),
+                     WB_OK);
+    assert_int_equal(wb_writer_start(&writer, recording, NULL), WB_OK);
+    assert_int_equal(wb_acquisition_open(&acquisition, &rig, WB_ACQUISITION_LOAD, NULL), WB_OK);
+    wb_acquisition_start(acquisition, writer);
+    assert_non_null(strstr(bench->message, "load: the adapter at '" PORT "' keeps bytes back"));
+    wb_acquisition_close(acquisition);
+    assert_int_equal(wb_writer_finish(writer), WB_OK);
+    assert_int_equal(wb_recording_open(&recording, path), WB_OK);
+    assert_int_equal(wb_recording_each_event(recording, count_latency, &n), WB_OK);
+    assert_int_equal(n, 1);
+    assert_int_equal(wb_recording_close(recording), WB_OK);
+    unlink(path);
+    set_latency(bench, "");
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -308,11 +405,13 @@ int main(void)
         FACT(a_stages_port_keeps_dtr_by_default),
         FACT(bytes_pass_unchanged_both_ways),
         FACT(write_that_nobody_takes_times_out),
-        FACT(unplugged_port_is_told),
+        FACT(unplugged_port_is_told_and_found_again),
         FACT(busy_port_says_so),
         FACT(forbidden_port_names_the_group_to_join),
         FACT(missing_port_lists_those_that_exist),
         FACT(pseudo_terminal_is_sent_to_its_own_scheme),
+        FACT(a_latency_timer_that_stays_high_is_told),
+        FACT(the_latency_is_told_at_the_start_and_recorded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

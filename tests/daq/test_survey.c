@@ -242,7 +242,7 @@ static void export_writes_every_sample_with_units_and_says_virtual_rig(void **st
     char *mocap = NULL;
     read_table(bench->folder, "mocap.csv", &mocap);
     /* The shortest texts that read back as the same floats. */
-    assert_non_null(strstr(mocap, ",1000,50,50008,0.014,1.499,-0.8858,0.021,0.000207,18,0,0\n"));
+    assert_non_null(strstr(mocap, ",1000,50,50008,0.014,1.499,-0.8858,0.021,0.000207,18,0,0,0\n"));
     free(mocap);
     char *events = NULL;
     read_table(bench->folder, "events.csv", &events);

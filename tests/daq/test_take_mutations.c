@@ -8,6 +8,7 @@
 #include "daq/take_reader.h"
 #include "tests/daq/take_example.h"
 #include "tests/messages.h"
+#include "tests/trials.h"
 
 #define FRAMES 12
 #define MUTATIONS 500
@@ -28,7 +29,7 @@ struct text {
 };
 
 /* Replaces bytes from..to by others. */
-static void splice(struct text *text, size_t from, size_t to, const void *by, size_t n)
+static void replace_bytes(struct text *text, size_t from, size_t to, const void *by, size_t n)
 {
     char *const made = malloc(text->n - (to - from) + n + 1);
     char *const copy = malloc(n + 1);
@@ -83,10 +84,10 @@ static void mutate_text(struct text *text, char separator)
     part(text, separator, &c, &d);
     switch (below(12)) {
     case 0: /* a line goes */
-        splice(text, a, b, "", 0);
+        replace_bytes(text, a, b, "", 0);
         break;
     case 1: /* a line twice */
-        splice(text, b, b, text->bytes + a, b - a);
+        replace_bytes(text, b, b, text->bytes + a, b - a);
         break;
     case 2: { /* two lines change places */
         size_t e = b, f = b;
@@ -96,20 +97,20 @@ static void mutate_text(struct text *text, char separator)
         char *const first = malloc(b - a + 1);
         memcpy(first, text->bytes + a, b - a);
         const size_t n = b - a;
-        splice(text, f, f, first, n);
-        splice(text, a, b, "", 0);
+        replace_bytes(text, f, f, first, n);
+        replace_bytes(text, a, b, "", 0);
         free(first);
         (void)e;
         break;
     }
     case 3: /* a cell goes */
-        splice(text, c, d, "", 0);
+        replace_bytes(text, c, d, "", 0);
         break;
     case 4: /* a cell twice */
-        splice(text, d, d, text->bytes + c, d - c);
+        replace_bytes(text, d, d, text->bytes + c, d - c);
         break;
     case 5: /* a cell is another thing */
-        splice(text, c, d > c ? d - 1 : c, word, strlen(word));
+        replace_bytes(text, c, d > c ? d - 1 : c, word, strlen(word));
         break;
     case 6: /* all separators are others */
         replace_all(text, separator, "\t;, |"[below(5)]);
@@ -127,7 +128,7 @@ static void mutate_text(struct text *text, char separator)
         replace_all(text, '.', ',');
         break;
     default: /* an empty line, or one of separators */
-        splice(text, a, a, below(2) ? ",,,,\n" : "\n", below(2) ? 1 : 0);
+        replace_bytes(text, a, a, below(2) ? ",,,,\n" : "\n", below(2) ? 1 : 0);
         break;
     }
 }
@@ -180,6 +181,8 @@ static void mutate_format(const struct wb_text *seed, char separator, const char
         n_read += read_and_check(&text, &n_frames, &strange);
         free(text.bytes);
     }
+    count_trials("Takes of motion capture with rows, columns, separators and encodings changed",
+                 MUTATIONS, "%s files: refused, or what is missing counted", name);
     printf("%s: %zu of %d changed files are read, %zu strange places\n", name, n_read, MUTATIONS,
            strange);
     assert_true(n_read > 0 && n_read < MUTATIONS);
@@ -245,7 +248,7 @@ static void changed_c3d_files_are_refused_or_counted(void **state)
             text.n = below(text.n);
             break;
         default:
-            splice(&text, at, at + 1 + below(4), "", 0);
+            replace_bytes(&text, at, at + 1 + below(4), "", 0);
         }
         size_t ignored = 0;
         n_read += read_and_check(&text, &n_frames, &ignored);
@@ -253,6 +256,8 @@ static void changed_c3d_files_are_refused_or_counted(void **state)
         free(text.bytes);
     }
     /* A changed scale or rate is another file that is right in itself: no reader can tell. */
+    count_trials("Takes of motion capture with changed bytes", MUTATIONS,
+                 "C3D files: refused, or what is missing counted");
     printf("C3D: %zu of %d changed files are read, %zu of them otherwise\n", n_read, MUTATIONS,
            strange);
     assert_true(n_read > 0 && n_read < MUTATIONS);

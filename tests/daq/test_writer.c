@@ -13,16 +13,27 @@ struct gate {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool shut;
-    int passed;
+    int arrived, passed;
 };
 
 static void pass_gate(void *context)
 {
     struct gate *gate = context;
     pthread_mutex_lock(&gate->lock);
+    gate->arrived++;
+    pthread_cond_broadcast(&gate->changed);
     while (gate->shut)
         pthread_cond_wait(&gate->changed, &gate->lock);
     gate->passed++;
+    pthread_mutex_unlock(&gate->lock);
+}
+
+/* The thread has taken what waited and is held up. */
+static void wait_at_gate(struct gate *gate)
+{
+    pthread_mutex_lock(&gate->lock);
+    while (gate->arrived == 0)
+        pthread_cond_wait(&gate->changed, &gate->lock);
     pthread_mutex_unlock(&gate->lock);
 }
 
@@ -149,6 +160,8 @@ static void full_queue_drops_counts_and_records_every_chunk_and_no_event(void **
     settings.before_write = pass_gate;
     settings.context = &gate;
     struct wb_writer *writer = start(bench->path, &settings);
+    /* Else its first round may come amid the pushes and tell of their losses in two parts. */
+    wait_at_gate(&gate);
     uint64_t refused[2] = {0};
     int64_t first_refused[2] = {-1, -1}, slowest_ns = 0;
     for (int64_t seq = 0; seq < 400; seq++) {

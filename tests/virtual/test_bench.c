@@ -347,7 +347,7 @@ static void bad_settings_give_one_message(void **state)
         {.rig = specimen, .specimen = specimen},
         {.rig = rig, .specimen = rig},
         {.rig = rig, .specimen = specimen, .composites = wires},
-        {.rig = rig, .specimen = specimen, .natnet = {4, 4}},
+        {.rig = rig, .specimen = specimen, .natnet = {4, 5}},
     };
     wb_log_set_sink(count_refusals, NULL);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -6,10 +6,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "base/random.h"
 #include "daq/drivers.h"
 #include "daq/natnet_encode.h"
 #include "daq/stream.h"
-#include "fixtures/virtual/random.h"
 #include "fixtures/virtual/sim_mocap_private.h"
 #include "tests/virtual/setup.h"
 
@@ -320,7 +320,7 @@ static void several_servers_have_ports_of_their_own(void **state)
     struct wb_sim_mocap mocap;
     struct wb_mocap_server *servers[4];
     const struct wb_mocap_server_settings settings = {.version = {3, 0}};
-    const struct wb_mocap_server_settings wrong = {.version = {4, 2}};
+    const struct wb_mocap_server_settings wrong = {.version = {4, 5}};
     setup_bench(&setup, "type1-L85-1", 4);
     wb_sim_mocap_init(&mocap, &setup.truth, 'y', 7, settings.version);
     for (int i = 0; i < 4; i++)

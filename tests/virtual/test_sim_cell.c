@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "daq/drivers.h"
+#include "daq/loadcell_preset.h"
 #include "tests/virtual/setup.h"
 
 struct heard {
@@ -308,6 +309,61 @@ static void all_line_settings_read_back(void **state)
     }
 }
 
+/* The presets' lines, answers and commands, spoken from the manuals and read by the driver. */
+static void every_preset_reads_back(void **state)
+{
+    (void)state;
+    for (size_t i = 0; wb_loadcell_preset_at(i); i++) {
+        const struct wb_loadcell_preset *const preset = wb_loadcell_preset_at(i);
+        struct scene scene;
+        make_scene(&scene);
+        struct wb_rig_load_cell *const cell = &scene.setup.rig.load_cell;
+        wb_loadcell_preset_apply(preset, cell);
+        if (preset->unit_rule == WB_UNIT_OF_RIG_FILE && !preset->unit)
+            strcpy(cell->unit, "g");
+        scene.setup.truth.cell_drift = 0.0;
+        open_scene(&scene);
+        for (int k = 0; k < 600; k++)
+            weigh(&scene, 0.06);
+        const double mean = scene.heard.n > 0 ? scene.heard.sum / scene.heard.n : 0.0;
+        /* Commands must be obeyed, and answers to them must not be taken amiss. The scales with
+         * slow questions give ten readings. */
+        if (scene.heard.n < 10 || scene.heard.remarks > 0)
+            fail_msg("%s: %d readings, %d remarks", preset->name, scene.heard.n,
+                     scene.heard.remarks);
+        /* The iLoad prints whole thousandths of a pound. */
+        const double step =
+            strcmp(preset->name, "loadstar-iload") == 0 ? scene.cell.unit * 1e-3 : 0.0;
+        assert_close(mean, 0.06 + scene.setup.truth.cell_offset,
+                     scene.setup.truth.cell_noise + 0.5 * step);
+        for (int k = 0; k < 200; k++)
+            weigh(&scene, 1.6 * cell->capacity);
+        if (scene.heard.overloads < 3)
+            fail_msg("%s: %d overloads", preset->name, scene.heard.overloads);
+        close_scene(&scene);
+    }
+}
+
+static void the_end_of_a_session_ends_the_stream(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct wb_outbox outbox = {0};
+    make_scene(&scene);
+    wb_loadcell_preset_apply(wb_loadcell_preset_find("kern"), &scene.setup.rig.load_cell);
+    open_scene(&scene);
+    for (int k = 0; k < 50; k++)
+        weigh(&scene, 0.06);
+    const int so_far = scene.heard.n;
+    assert_true(so_far > 40);
+    scene.driver->stop(scene.state, &outbox);
+    wb_sim_cell_receive(&scene.cell, outbox.bytes, outbox.n_bytes);
+    for (int k = 0; k < 50; k++)
+        weigh(&scene, 0.06);
+    assert_int_equal(scene.heard.n, so_far);
+    close_scene(&scene);
+}
+
 static void mtsics_says_dynamic_while_the_load_changes(void **state)
 {
     (void)state;
@@ -411,6 +467,8 @@ int main(void)
         cmocka_unit_test(beyond_its_overload_it_says_so),
         cmocka_unit_test(taring_zeroes_the_reading),
         cmocka_unit_test(all_line_settings_read_back),
+        cmocka_unit_test(every_preset_reads_back),
+        cmocka_unit_test(the_end_of_a_session_ends_the_stream),
         cmocka_unit_test(mtsics_says_dynamic_while_the_load_changes),
         cmocka_unit_test(mtsics_answers_questions),
         cmocka_unit_test(an_unread_port_costs_lines_not_memory),

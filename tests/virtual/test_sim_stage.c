@@ -1,8 +1,8 @@
 /* The simulated GRBL stage: against GRBL's documented answers. */
 #include "fixtures/virtual/sim_stage.h"
 
+#include "base/random.h"
 #include "base/units.h"
-#include "fixtures/virtual/random.h"
 #include "tests/check.h"
 
 struct scene {
@@ -12,7 +12,7 @@ struct scene {
 };
 
 static const struct wb_sim_stage_settings plain = {
-    .axis = 'X', .down = 1, .travel = 60.0 * WB_MM, .time_scale = 1.0};
+    .axis = 'X', .down = 1, .clamp.travel = 60.0 * WB_MM, .time_scale = 1.0};
 
 static void open_scene(struct scene *scene, const struct wb_sim_stage_settings *settings)
 {
@@ -343,8 +343,8 @@ static void lost_steps_stay_until_homed(void **state)
     (void)state;
     struct scene scene;
     struct wb_sim_stage_settings settings = plain;
-    settings.lost_steps = 0.8 * WB_MM;
-    settings.lost_at = 20.0 * WB_MM;
+    settings.clamp.lost_steps = 0.8 * WB_MM;
+    settings.clamp.lost_at = 20.0 * WB_MM;
     open_scene(&scene, &settings);
     tell(&scene, "$J=G91 G21 X30 F600\n");
     double before = 0.0;
@@ -462,7 +462,7 @@ static void a_clamp_that_jams_stays_until_the_stage_is_homed(void **state)
     (void)state;
     static struct scene scene;
     struct wb_sim_stage_settings settings = plain;
-    settings.stuck_at = 7.0 * WB_MM;
+    settings.clamp.stuck_at = 7.0 * WB_MM;
     open_scene(&scene, &settings);
     tell(&scene, "$J=G91 X20 F600\n");
     wait(&scene, 10.0);

@@ -1,0 +1,303 @@
+/* The bench is looked at while one thing after another is wrong with it: doctor names the thing and
+ * the rest is still told. */
+#include "daq/doctor.h"
+
+#include "base/interrupt_private.h"
+#include "base/log.h"
+#include "daq/check_log.h"
+#include "tests/daq/fake_bench.h"
+#include "tests/folder.h"
+
+struct fixture {
+    struct fake_bench *bench;
+    char folder[32], rig_path[64], specimen_path[64];
+    struct wb_doctor_request request;
+    struct wb_doctor_report report;
+};
+
+static void drop(void *context, enum wb_log_level level, const char *domain, const char *message)
+{
+    (void)context;
+    (void)level;
+    (void)domain;
+    (void)message;
+}
+
+static int set_up(void **state)
+{
+    struct fixture *const fixture = calloc(1, sizeof *fixture);
+    assert_non_null(fixture);
+    assert_true(temporary_folder_make(fixture->folder));
+    snprintf(fixture->rig_path, sizeof fixture->rig_path, "%s/rig.yaml", fixture->folder);
+    snprintf(fixture->specimen_path, sizeof fixture->specimen_path, "%s/s.yaml", fixture->folder);
+    fixture->bench = fake_start();
+    fake_write_rig(fixture->bench, fixture->rig_path, 1.0, 1.0);
+    fake_write_specimen(fixture->specimen_path);
+    wb_doctor_default_request(&fixture->request);
+    fixture->request.test.rig_path = fixture->rig_path;
+    fixture->request.test.specimen_path = fixture->specimen_path;
+    fixture->request.test.connect_timeout = 2.0;
+    fixture->request.folder = fixture->folder;
+    fixture->request.seconds = 0.6;
+    wb_interrupt_set(false);
+    wb_log_set_sink(drop, NULL);
+    *state = fixture;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *const fixture = *state;
+    wb_log_set_sink(NULL, NULL);
+    wb_interrupt_set(false);
+    fake_stop(fixture->bench);
+    const int code = temporary_folder_remove(fixture->folder);
+    free(fixture);
+    return code;
+}
+
+static void look(struct fixture *fixture)
+{
+    struct wb_doctor *doctor;
+    assert_int_equal(wb_doctor_open(&doctor, &fixture->request), WB_OK);
+    while (wb_doctor_step(doctor, 20 * WB_NS_PER_MS)) {
+    }
+    wb_doctor_close(doctor, &fixture->report);
+}
+
+/* Whether an item of this name and verdict says these words. */
+static bool has(const struct fixture *fixture, const char *name, enum wb_doctor_verdict verdict,
+                const char *words)
+{
+    for (int i = 0; i < fixture->report.n; i++) {
+        const struct wb_doctor_item *const item = &fixture->report.items[i];
+        if (strcmp(item->name, name) == 0 && item->verdict == verdict && strstr(item->text, words))
+            return true;
+    }
+    return false;
+}
+
+static void expect(const struct fixture *fixture, const char *name, enum wb_doctor_verdict verdict,
+                   const char *words)
+{
+    if (has(fixture, name, verdict, words))
+        return;
+    for (int i = 0; i < fixture->report.n; i++)
+        print_message("%s: %s: %s\n", fixture->report.items[i].name,
+                      wb_doctor_verdict_name(fixture->report.items[i].verdict),
+                      fixture->report.items[i].text);
+    fail_msg("no '%s' is %s and says '%s'", name, wb_doctor_verdict_name(verdict), words);
+}
+
+/* The machine may have lost readings or time of its own; nothing else may be wrong. */
+static void expect_ready(const struct fixture *fixture)
+{
+    for (int i = 0; i < fixture->report.n; i++) {
+        const struct wb_doctor_item *const item = &fixture->report.items[i];
+        const bool by_machine = strcmp(item->name, "load cell") == 0 ||
+                                strcmp(item->name, "frames") == 0 ||
+                                strcmp(item->name, "disk") == 0;
+        if (item->verdict == WB_DOCTOR_NOT_READY && !by_machine)
+            fail_msg("%s: %s", item->name, item->text);
+    }
+    assert_int_equal(wb_doctor_is_ready(&fixture->report),
+                     !has(fixture, "load cell", WB_DOCTOR_NOT_READY, "") &&
+                         !has(fixture, "frames", WB_DOCTOR_NOT_READY, "") &&
+                         !has(fixture, "disk", WB_DOCTOR_NOT_READY, ""));
+}
+
+static void a_bench_that_is_well_is_ready_and_stays_where_it_is(void **state)
+{
+    struct fixture *const fixture = *state;
+    look(fixture);
+    expect_ready(fixture);
+    expect(fixture, "zero", WB_DOCTOR_READY, "mN, noise");
+    expect(fixture, "markers", WB_DOCTOR_READY, "all 7");
+    expect(fixture, "scale", WB_DOCTOR_READY, "90 mm");
+    expect(fixture, "stage", WB_DOCTOR_READY, "0.000 mm");
+    expect(fixture, "travel", WB_DOCTOR_READY, "53 mm at 1 mm/s");
+    expect(fixture, "clock", WB_DOCTOR_READY, "probes");
+    expect(fixture, "last check", WB_DOCTOR_NOTE, "never");
+    expect(fixture, "live", WB_DOCTOR_NOTE, "playing back");
+    assert_non_null(strstr(fixture->report.picture, "|   1 "));
+    assert_string_equal(fixture->bench->state, "Idle");
+    assert_close(fixture->bench->position_mm, 0.0, 0.0);
+    assert_int_equal(fixture->bench->holds, 0);
+}
+
+static void silent_instruments_are_named_and_the_others_still_judged(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->load_silent = true;
+    fixture->bench->mocap_dead = true;
+    look(fixture);
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "nothing within");
+    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "no NatNet answer");
+    expect(fixture, "stage", WB_DOCTOR_READY, "idle");
+    assert_false(wb_doctor_is_ready(&fixture->report));
+    assert_string_equal(fixture->report.picture, "");
+}
+
+static void answers_without_frames_are_told_from_no_answers(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->mocap_silent = true;
+    fixture->bench->stage_silent = true;
+    look(fixture);
+    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "answers but sent no frame");
+    expect(fixture, "stage", WB_DOCTOR_NOT_READY, "gave no status");
+    expect(fixture, "zero", WB_DOCTOR_READY, "mN");
+}
+
+static void a_load_cell_out_of_range_or_not_understood_is_not_ready(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->force_mg = 5000;
+    look(fixture);
+    expect(fixture, "zero", WB_DOCTOR_NOT_READY, "unloaded load cell reads");
+    fixture->bench->force_mg = 150;
+    fixture->bench->garbage = true;
+    look(fixture);
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "no reading that can be decoded");
+    expect(fixture, "load cell", WB_DOCTOR_NOTE, "####");
+}
+
+static void a_load_cell_of_another_baud_rate_is_found_at_it(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->load_speed = B38400;
+    look(fixture);
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "no text");
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "with 38400,8n1 it prints readings");
+    assert_true(has(fixture, "load cell", WB_DOCTOR_NOT_READY, fixture->bench->load_path));
+}
+
+static void a_stage_in_alarm_or_too_slow_is_not_ready(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->fastest_mm_min = 30;
+    look(fixture);
+    expect(fixture, "travel", WB_DOCTOR_NOT_READY, "$110");
+    fixture->bench->raise_alarm = true;
+    look(fixture);
+    expect(fixture, "stage", WB_DOCTOR_NOT_READY, "in alarm");
+    assert_false(has(fixture, "travel", WB_DOCTOR_READY, ""));
+}
+
+static void a_travel_that_the_rig_file_forbids_is_not_ready(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->request.test.travel = 59.0 * WB_MM;
+    look(fixture);
+    expect(fixture, "travel", WB_DOCTOR_NOT_READY, "--travel-mm");
+}
+
+static void a_marker_that_is_missing_is_named_and_asked_for_in_the_picture(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->markers = FAKE_MARKERS - 1;
+    look(fixture);
+    expect(fixture, "markers", WB_DOCTOR_NOT_READY, "6 of 7 markers seen");
+    expect(fixture, "up axis", WB_DOCTOR_UNKNOWN, "");
+    assert_non_null(strstr(fixture->report.picture, "?\n"));
+}
+
+/* A take is the test's, not that of a look at the bench. */
+static void the_server_is_not_asked_to_record(void **state)
+{
+    struct fixture *const fixture = *state;
+    char command[160];
+    snprintf(command, sizeof command, "sed -i 's/^  up: y/  up: y\\n  record_take: true/' '%s'",
+             fixture->rig_path);
+    assert_int_equal(system(command), 0);
+    look(fixture);
+    expect(fixture, "cameras", WB_DOCTOR_READY, "fake");
+    assert_int_equal(fixture->bench->takes, 0);
+}
+
+static void without_a_specimen_markers_are_counted_and_the_bench_may_be_ready(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->request.test.specimen_path = NULL;
+    look(fixture);
+    expect_ready(fixture);
+    expect(fixture, "markers", WB_DOCTOR_UNKNOWN, "7 are seen");
+    assert_non_null(strstr(fixture->report.picture, "*"));
+}
+
+static void log_check(const struct fixture *fixture, const char *utc, const char *serial,
+                      bool passed)
+{
+    struct wb_check_log_entry entry = {
+        .known = 10.0 * WB_G, .read = 10.0 * WB_G, .tolerance = 0.01, .passed = passed};
+    snprintf(entry.utc, sizeof entry.utc, "%s", utc);
+    snprintf(entry.serial_number, sizeof entry.serial_number, "%s", serial);
+    assert_int_equal(wb_check_log_append(fixture->rig_path, &entry), WB_OK);
+}
+
+static void the_last_check_of_the_load_cell_counts(void **state)
+{
+    struct fixture *const fixture = *state;
+    char now[32];
+    const time_t today = time(NULL);
+    strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", gmtime(&today));
+    log_check(fixture, "2020-01-01T00:00:00Z", "T-1", true);
+    look(fixture);
+    expect(fixture, "last check", WB_DOCTOR_NOTE, "days ago");
+    log_check(fixture, now, "T-2", true);
+    look(fixture);
+    expect(fixture, "last check", WB_DOCTOR_NOTE, "load_cell.serial_number is T-1");
+    log_check(fixture, now, "T-1", true);
+    look(fixture);
+    expect(fixture, "last check", WB_DOCTOR_READY, "passed");
+    log_check(fixture, now, "T-1", false);
+    look(fixture);
+    expect(fixture, "last check", WB_DOCTOR_NOT_READY, "NOT PASSED");
+}
+
+static void ports_that_are_not_there_or_taken_are_told_with_who_has_them(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_doctor *holder;
+    assert_int_equal(wb_doctor_open(&holder, &fixture->request), WB_OK);
+    look(fixture);
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "in use by another program");
+    expect(fixture, "stage", WB_DOCTOR_NOT_READY, "in use by another program");
+    wb_doctor_close(holder, NULL);
+    fake_unplug(fixture->bench);
+    look(fixture);
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "does not exist");
+    expect(fixture, "stage", WB_DOCTOR_NOT_READY, "does not exist");
+    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "no NatNet answer");
+    expect(fixture, "disk", WB_DOCTOR_READY, "data are safe after");
+}
+
+static void a_folder_that_is_not_there_cannot_take_a_recording(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->request.folder = "/nonexistent";
+    fixture->request.seconds = 0.1;
+    look(fixture);
+    expect(fixture, "disk", WB_DOCTOR_NOT_READY, "--folder");
+}
+
+int main(void)
+{
+#define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest facts[] = {
+        FACT(a_bench_that_is_well_is_ready_and_stays_where_it_is),
+        FACT(silent_instruments_are_named_and_the_others_still_judged),
+        FACT(answers_without_frames_are_told_from_no_answers),
+        FACT(a_load_cell_out_of_range_or_not_understood_is_not_ready),
+        FACT(a_load_cell_of_another_baud_rate_is_found_at_it),
+        FACT(a_stage_in_alarm_or_too_slow_is_not_ready),
+        FACT(a_travel_that_the_rig_file_forbids_is_not_ready),
+        FACT(a_marker_that_is_missing_is_named_and_asked_for_in_the_picture),
+        FACT(the_server_is_not_asked_to_record),
+        FACT(without_a_specimen_markers_are_counted_and_the_bench_may_be_ready),
+        FACT(the_last_check_of_the_load_cell_counts),
+        FACT(ports_that_are_not_there_or_taken_are_told_with_who_has_them),
+        FACT(a_folder_that_is_not_there_cannot_take_a_recording),
+    };
+    return cmocka_run_group_tests(facts, NULL, NULL);
+}

@@ -1,0 +1,121 @@
+/* A load cell whose cable comes out and in again, against a small bench in a thread: the test goes
+ * on, the gap is told, and no two halves of lines make a reading that was never sent. */
+#include "daq/usb_identity.h"
+#include "tests/daq/bend_fixture.h"
+#include "tests/trials.h"
+
+/* The cell's terminal is found through a link, as /dev/serial/by-id leads to a USB adapter. */
+static void link_the_cell(struct fixture *fixture, double stream_lost)
+{
+    struct fake_bench *const bench = fixture->bench;
+    char path[64];
+    memcpy(path, bench->load_path, sizeof path);
+    snprintf(bench->load_link, sizeof bench->load_link, "%s/cell", fixture->folder);
+    assert_int_equal(symlink(path, bench->load_link), 0);
+    snprintf(bench->load_path, sizeof bench->load_path, "%.63s", bench->load_link);
+    fake_write_rig(bench, fixture->rig, 40.0, stream_lost);
+    memcpy(bench->load_path, path, sizeof path);
+}
+
+static int count_events(const struct fixture *fixture, const char *kind)
+{
+    int n = 0;
+    for (const char *at = fixture->events; (at = strstr(at, kind)); at++)
+        n++;
+    return n;
+}
+
+static void a_cell_that_comes_back_goes_on_and_no_halves_of_lines_join(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    enum {
+        TRIALS = 40
+    };
+    link_the_cell(fixture, 60.0);
+    fixture->request.travel = 8.0 * WB_MM;
+    fixture->request.cycles = 1000;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    int64_t change_ns = wb_acquisition_now_ns() + WB_NS_PER_S;
+    int plugged = 0;
+    while (wb_bend_test_step(test, MS) == WB_SEQUENCE_RUNNING && plugged < TRIALS) {
+        const int64_t now_ns = wb_acquisition_now_ns();
+        struct wb_bend_test_status status;
+        wb_bend_test_status(test, &status);
+        const bool gone = status.latest->stream[WB_ROLE_LOAD].gone;
+        if (now_ns < change_ns || gone != fixture->bench->load_unplugged)
+            continue;
+        plugged += gone;
+        fixture->bench->load_unplugged = !gone;
+        change_ns = now_ns + (20 + 7 * plugged % 50) * MS;
+    }
+    wb_bend_test_stop(test);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_string_equal(result.text, "stopped by the operator"); /* first: it says what went wrong */
+    assert_int_equal(plugged, TRIALS);
+    /* 7 mm beyond the slack pull by 3.5 g; two halves would make 10 g and more. */
+    assert_true(result.peak_tension < 45.0 * WB_MN);
+    read_events(fixture);
+    assert_true(count_events(fixture, "reconnected: the load cell's port came back") >= TRIALS - 1);
+    assert_true(result.loss[WB_ROLE_LOAD].missing > 0);
+    assert_replay_identical(fixture->output, &fixture->log);
+    count_trials("A load cell's cable out amid a line, and in again under another number", TRIALS,
+                 "times in one test: it went on, each gap told, no reading that was never sent");
+}
+
+static void a_cell_that_stays_away_ends_the_test(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    link_the_cell(fixture, 20.0); /* half a second on this bench */
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    bool cut = false;
+    while (wb_bend_test_step(test, MS) == WB_SEQUENCE_RUNNING) {
+        struct wb_bend_test_status status;
+        wb_bend_test_status(test, &status);
+        if (cut || !status.has_travel || status.travel < 10.0 * WB_MM)
+            continue;
+        fixture->bench->load_unplugged = true;
+        cut = true;
+    }
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_true(cut && result.standing);
+    assert_non_null(strstr(result.text, "went away: check its cable and power"));
+    assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
+}
+
+static void an_adapter_is_known_by_what_it_is_not_by_its_number(void **state)
+{
+    (void)state;
+    static const struct wb_usb_identity cell = {"/dev/ttyUSB0", true, 0x0403, 0x6001, "A50285BI"};
+    static const struct wb_usb_identity plain = {"/dev/ttyUSB0", true, 0x1a86, 0x7523, ""};
+    static const struct wb_usb_identity board = {.port = "/dev/ttyS0"};
+    const struct wb_usb_identity there[] = {
+        {"/dev/ttyUSB0", true, 0x0403, 0x6001, "OTHER"},
+        {"/dev/ttyUSB1", true, 0x0403, 0x6001, "A50285BI"},
+        {"/dev/ttyUSB2", true, 0x1a86, 0x7523, ""},
+        {"/dev/ttyUSB3", true, 0x1a86, 0x7523, ""},
+        {.port = "/dev/ttyS0"},
+    };
+    assert_int_equal(wb_usb_identity_find(&cell, there, 5), 1);
+    assert_int_equal(wb_usb_identity_find(&cell, there, 1), -1);
+    assert_int_equal(wb_usb_identity_find(&plain, there, 3), 2);
+    assert_int_equal(wb_usb_identity_find(&plain, there, 4), -1); /* either may be it */
+    assert_int_equal(wb_usb_identity_find(&board, there, 5), 4);
+    assert_int_equal(wb_usb_identity_find(&there[3], there, 5), 3);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(a_cell_that_comes_back_goes_on_and_no_halves_of_lines_join),
+        TEST(a_cell_that_stays_away_ends_the_test),
+        cmocka_unit_test(an_adapter_is_known_by_what_it_is_not_by_its_number),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Tries the promises of the recorder and writes docs/reliability.md: which promise, how often it was
+# tried, what came of it. The slow tests and ten minutes at ten times a bench's rates are among them;
+# all takes half an hour. Usage: reliability.sh BUILD [quick]; quick leaves out the slow ones and
+# writes to standard output.
+set -eu
+build=$(realpath "$1")
+quick=${2:-}
+root=$(cd "$(dirname "$0")/.." && pwd)
+trials=$(mktemp)
+trap 'rm -f "$trials"' EXIT
+export WIREBENCH_TRIALS=$trials
+
+# The tests that count, by the files that do.
+names() {
+    (cd "$root" && git grep -l 'count_trials(' -- 'tests/**/test_*.c' 'tests/**/fuzz_*.c') |
+        sed 's|.*/||; s|^test_||; s|\.c$||'
+    (cd "$root" && git grep -l 'include "tests/daq/fuzz.*\.h"' -- 'tests/daq/fuzz_*.c') |
+        sed 's|.*/||; s|\.c$||'
+    echo record
+    [ "$quick" = quick ] || printf '%s\n' storage_slow recording_flips_all
+}
+
+known=$(meson test -C "$build" --list 2>/dev/null | sed 's/^[^/]*\/ *//' | sort -u)
+# Where a slow test is the same with more trials, only that one.
+wanted=$(names | sort -u | grep -Fx "$known" || true)
+[ "$quick" = quick ] || wanted=$(printf '%s\n' "$wanted" | grep -vx -e storage -e recording_flips)
+
+# shellcheck disable=SC2086 # names of tests are words
+meson test -C "$build" $wanted >&2
+[ "$quick" = quick ] || "$build/tests/bench/bench_acquisition" 600 >&2
+
+table() {
+    echo '| what happens | tried | what came of it | test |'
+    echo '| --- | --- | --- | --- |'
+    sort -t "$(printf '\t')" -k1,1 -k3,3 "$trials" |
+        awk -F '\t' '
+            { key = $1 FS $3 }
+            !(key in tried) { order[++n] = key }
+            { tried[key] += $2 }
+            index(tests[key], "`" $4 "`") == 0 {
+                tests[key] = tests[key] (tests[key] == "" ? "" : ", ") "`" $4 "`"
+            }
+            END {
+                for (i = 1; i <= n; i++) {
+                    split(order[i], part, FS)
+                    printf "| %s | %d | %s | %s |\n", part[1], tried[order[i]], part[2],
+                        tests[order[i]]
+                }
+            }'
+}
+
+if [ "$quick" = quick ]; then
+    table
+    exit
+fi
+page=$root/docs/reliability.md
+{
+    sed '/^<!-- counts -->$/q' "$page"
+    echo
+    table
+} >"$page.new"
+mv "$page.new" "$page"
