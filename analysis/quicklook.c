@@ -376,6 +376,16 @@ static enum wb_status write_drawing(const struct wb_dataset *dataset, const char
     return status;
 }
 
+enum wb_status wb_quicklook_draw(const struct wb_dataset *dataset, const char *path)
+{
+    struct wb_figure *figure = NULL;
+    enum wb_status status = draw_curve(&figure, dataset);
+    if (status == WB_OK)
+        status = wb_figure_write_file(figure, PNG_SCALE, path);
+    wb_figure_destroy(figure);
+    return status;
+}
+
 static enum wb_status write_summary(const struct wb_dataset *dataset, const char *folder)
 {
     struct wb_text text = {0};

@@ -15,6 +15,10 @@ WB_MUST_CHECK enum wb_status wb_quicklook_summary(const struct wb_dataset *datas
 /* Sets the same in an object, with units in the keys. */
 void wb_quicklook_describe(const struct wb_dataset *dataset, struct wb_json *object);
 
+/* Writes the curve alone, as an SVG, PNG or PDF by the ending of its name; its footer says where
+ * the data come from. An existing file is replaced. */
+WB_MUST_CHECK enum wb_status wb_quicklook_draw(const struct wb_dataset *dataset, const char *path);
+
 /* Writes the dataset's files and beside them force_deflection.svg, .png and .pdf, shapes.svg and
  * .png (where there are shapes), and summary.txt. WB_ERR_EXISTS when the folder already holds
  * anything, unless `force`. */

@@ -13,8 +13,9 @@ struct wb_stage_options {
     struct wb_command_common common;
     const char *rig_path, *action, *value;
     struct wb_stage_job_request job;
-    double seconds;   /* of a check */
-    double tolerance; /* fraction; 0: the rig's */
+    double seconds;     /* of a check */
+    double tolerance;   /* fraction; 0: the rig's */
+    const char *masses; /* of a check's series, in g between commas; NULL: the rig's */
 };
 
 struct wb_rig_options {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/method.h"
 #include "analysis/calibration/properties.h"
 #include "base/file.h"
 #include "base/interrupt.h"
@@ -22,22 +23,13 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-enum method {
-    CYCLE,
-    PAPER,
-    THREE_POINT, /* chosen by the datasets' kind alone */
-    METHODS
-};
-
-static const char *const methods[] = {"cycle", "paper", "three-point"};
-
 struct options {
     struct wb_command_common common;
     struct wb_datasets datasets;
-    enum method method;
-    bool names_method;                     /* it was given */
-    const struct wb_setting *of[METHODS];  /* the first option of either method that was given */
-    struct wb_calibrate_settings settings; /* of the paper's method */
+    enum wb_method method;
+    bool names_method;                       /* it was given */
+    const struct wb_setting *of[WB_METHODS]; /* the first option of either method that was given */
+    struct wb_calibrate_settings settings;   /* of the paper's method */
     struct wb_calibrate_cycle cycle;
     struct wb_three_point_calibrate_settings three_point;
 };
@@ -91,8 +83,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct options *const o = state->input;
     if (key != KEY_METHOD)
         return wb_command_parse_common(key, argument, state, &o->common);
-    for (int m = 0; m < THREE_POINT; m++) {
-        if (strcmp(argument, methods[m]) == 0) {
+    for (int m = 0; m < WB_METHOD_THREE_POINT; m++) {
+        if (strcmp(argument, wb_method_name(m)) == 0) {
             o->method = m;
             o->names_method = true;
             return 0;
@@ -115,7 +107,9 @@ static void note_option(void *input, const struct wb_setting *row)
     /* --threads serves all but the paper's, which has one. */
     if (strcmp(row->option, "threads") == 0)
         return;
-    const enum method method = is_three_point ? THREE_POINT : is_papers ? PAPER : CYCLE;
+    const enum wb_method method = is_three_point ? WB_METHOD_THREE_POINT
+                                  : is_papers    ? WB_METHOD_PAPER
+                                                 : WB_METHOD_CYCLE;
     if (!o->of[method])
         o->of[method] = row;
 }
@@ -386,33 +380,32 @@ static int run_cycle(struct options *o)
 
 /* --- which of them --- */
 
-static void choose_method(struct options *o)
+static enum wb_status choose_method(struct options *o)
 {
-    if (o->datasets.items[0].info.kind == WB_TEST_THREE_POINT) {
-        o->method = THREE_POINT;
-        return;
-    }
-    for (int i = 0; i < o->datasets.n && !o->names_method; i++) {
-        if (!o->datasets.items[i].info.is_follower)
-            continue;
-        o->method = PAPER;
+    enum wb_method chosen;
+    WB_TRY(wb_method_choose(&chosen, o->datasets.pointers, o->common.inputs, o->datasets.n, NULL));
+    if (chosen == WB_METHOD_PAPER && !o->names_method)
         wb_info("a follower force: calibrated by the paper's method");
-        return;
-    }
+    if (chosen == WB_METHOD_THREE_POINT && o->names_method)
+        wb_info("three-point bending: --method is for tests of cantilevers");
+    if (chosen == WB_METHOD_THREE_POINT || !o->names_method)
+        o->method = chosen;
+    return WB_OK;
 }
 
 /* Options of the other method would do nothing. */
 static bool has_foreign_option(const struct options *o)
 {
-    for (int m = 0; m < METHODS; m++) {
-        if (!o->of[m] || (enum method)m == o->method)
+    for (int m = 0; m < WB_METHODS; m++) {
+        if (!o->of[m] || (enum wb_method)m == o->method)
             continue;
-        if (m == THREE_POINT)
+        if (m == WB_METHOD_THREE_POINT)
             wb_error("--%s is for datasets of three-point bending", o->of[m]->option);
         else
             wb_error("--%s is for --method %s: these datasets are calibrated by %s%s",
-                     o->of[m]->option, methods[m], o->method == THREE_POINT ? "" : "--method ",
-                     methods[o->method]);
+                     o->of[m]->option, wb_method_name(m),
+                     o->method == WB_METHOD_THREE_POINT ? "" : "--method ",
+                     wb_method_name(o->method));
         return true;
     }
     return false;
@@ -434,14 +427,7 @@ static enum wb_status begin(struct options *o)
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
     WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs, o->common.n,
                             WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
-    for (int i = 1; i < o->datasets.n; i++) {
-        if (o->datasets.items[i].info.kind != o->datasets.items[0].info.kind)
-            return wb_fail(
-                WB_ERR_DATA, "'%s' is a %s test and '%s' a %s test: calibrate them by themselves",
-                o->common.inputs[0], wb_machine_kind_name(o->datasets.items[0].info.kind),
-                o->common.inputs[i], wb_machine_kind_name(o->datasets.items[i].info.kind));
-    }
-    return WB_OK;
+    return choose_method(o);
 }
 
 static int run(struct options *o)
@@ -449,15 +435,12 @@ static int run(struct options *o)
     const enum wb_status status = begin(o);
     if (status != WB_OK)
         return wb_command_exit(status);
-    choose_method(o);
     if (has_foreign_option(o) || has_half_a_pool(o))
         return WB_EXIT_USAGE;
-    if (o->names_method && o->method == THREE_POINT)
-        wb_info("three-point bending: --method is for tests of cantilevers");
     o->three_point.threads = o->cycle.settings.threads;
-    if (o->method == THREE_POINT)
+    if (o->method == WB_METHOD_THREE_POINT)
         return wb_calibrate_three_point(&o->three_point, &o->datasets, &o->common);
-    return o->method == PAPER ? run_paper(o) : run_cycle(o);
+    return o->method == WB_METHOD_PAPER ? run_paper(o) : run_cycle(o);
 }
 
 /* Whether an argument before "--" is this one: other tests have options of their own. */

@@ -1,18 +1,30 @@
-/* wirebench export: a recording's samples as CSV. */
+/* wirebench export: a recording's samples as CSV; a recording's or dataset's tables as HDF5; with
+ * --to, a wire's law as a card. */
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "base/version.h"
 #include "cli/command.h"
+#include "cli/export_card.h"
+#include "cli/export_hdf5.h"
 #include "daq/export.h"
 #include "daq/replay.h"
 
 #define WB_LOG_DOMAIN "export"
 
+/* In the help only: cli/export_card.c takes it. */
+#define KEY_TO WB_KEY_OWN
+
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Folder to write into", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Write into a folder that holds files already", 0},
+    {"to", KEY_TO, "KIND", 0,
+     "Of a wire or properties file: a card for another program; see `wirebench export --to KIND "
+     "--help`",
+     0},
+    {"output", 'o', "DIR|FILE.h5", 0, "Folder to write CSV files into, or file to write", 0},
+    {"force", WB_KEY_FORCE, NULL, 0,
+     "Write into a folder that holds files already, or overwrite the file", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -20,9 +32,10 @@ static const struct argp_option option_table[] = {
 static const struct argp argp = {
     .options = option_table,
     .parser = wb_command_parse_only_common,
-    .args_doc = "REC.wbr -o DIR",
+    .args_doc = "REC.wbr -o DIR\nREC.wbr|DATASET -o FILE.h5\nWIRE|FILE --to KIND",
     .doc = "Decodes a recording (.wbr or .wbr.zst) and writes load.csv, mocap.csv, stage.csv, "
-           "events.csv and clock.csv.\v"
+           "events.csv and clock.csv. With -o FILE.h5 it writes the tables of a recording or a "
+           "dataset into one HDF5 file, lengths in metres.\v"
            "The numbers are what the instruments said: not tared, aligned or filtered; "
            "'wirebench align' does that. Exit code 3: parts of the recording are missing or "
            "damaged and left out.",
@@ -63,12 +76,29 @@ static int print(const struct wb_command_common *options, const struct wb_export
     return wb_command_print_json(root);
 }
 
+static bool is_to(const char *argument)
+{
+    return strcmp(argument, "--to") == 0 || strncmp(argument, "--to=", 5) == 0;
+}
+
 int wb_cmd_export(int argc, char **argv)
 {
-    struct wb_command_common options = {.noun = "recording", .destination = "files go: -o DIR"};
+    for (int i = 1; i < argc; i++) {
+        if (is_to(argv[i]))
+            return wb_export_card(argc, argv);
+    }
+    struct wb_command_common options = {.noun = "recording or dataset",
+                                        .destination = "files go: -o DIR or -o FILE.h5"};
     struct wb_recording *recording = NULL;
     struct wb_export_counts counts = {0};
     wb_command_parse(&argp, argc, argv, &options);
+    if (wb_export_hdf5_is(options.output))
+        return wb_export_hdf5(&options);
+    if (wb_file_is_folder(options.input))
+        return wb_command_exit(wb_fail(WB_ERR_UNSUPPORTED,
+                                       "'%s' is a folder: a dataset has its tables as CSV in it "
+                                       "already; -o FILE.h5 makes one HDF5 file of them",
+                                       options.input));
     enum wb_status status = wb_recording_open(&recording, options.input);
     bool complete = status == WB_OK && wb_recording_is_complete(recording);
     if (status == WB_OK)

@@ -4,10 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/plot/figure.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/info.h"
 #include "daq/check_log.h"
+#include "daq/recover.h"
 #include "daq/replay.h"
 #include "daq/specimen.h"
 #include "daq/survey.h"
@@ -32,7 +34,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct wb_info_options *const options = state->input;
     switch (key) {
     case KEY_FIGURE:
-        if (!wb_info_is_figure(argument))
+        if (!wb_figure_is_file(argument))
             argp_error(state, "--figure: expected a file that ends in .svg, .png or .pdf, not '%s'",
                        argument);
         options->figure = argument;
@@ -111,6 +113,27 @@ static void print_meta(struct facts *facts, const char *label, const char *key)
     free(value);
 }
 
+#define SETTINGS_COLUMNS 86 /* of text behind its label, in a terminal of 100 */
+
+/* What the stage's firmware was set to, as it printed it: settings side by side. */
+static void print_settings(struct facts *facts)
+{
+    char *const value = meta(facts, "stage_settings"), *rest = NULL;
+    size_t used = 0;
+    for (char *word = value ? strtok_r(value, "\n", &rest) : NULL; word;
+         word = strtok_r(NULL, "\n", &rest)) {
+        const size_t n = strlen(word) + 1;
+        if (used == 0 || used + n > SETTINGS_COLUMNS) {
+            printf("%s  %-10s", used ? "\n" : "", used ? "" : "settings");
+            used = 0;
+        }
+        used += (size_t)printf(" %s", word);
+    }
+    if (used)
+        printf("\n");
+    free(value);
+}
+
 /* The load cell's last check before the test. */
 static void print_check(struct facts *facts)
 {
@@ -156,6 +179,7 @@ static enum wb_status print_text(struct facts *facts, const char *path)
     print_meta(facts, "started", "start_utc");
     print_meta(facts, "ended", "ended");
     print_meta(facts, "host", "host");
+    print_meta(facts, "recovered", WB_RECOVER_META_FROM);
     print_meta(facts, "operator", "operator");
     print_meta(facts, "notes", "notes");
     if (facts->has_specimen)
@@ -167,6 +191,7 @@ static enum wb_status print_text(struct facts *facts, const char *path)
                                                                              : "");
     print_check(facts);
     print_meta(facts, "cycles", "cycles");
+    print_settings(facts);
     print_meta(facts, "tool", "tool_version");
     print_meta(facts, "revision", "tool_revision");
     printf("  %-10s %.3f s\n", "duration", wb_survey_duration(survey));
@@ -243,9 +268,20 @@ static void add_streams(const struct facts *facts, struct wb_json *root)
 
 static int print_json(struct facts *facts, const char *path)
 {
-    static const char *const keys[] = {"start_utc",    "ended",         "host",
-                                       "operator",     "notes",         "cycles",
-                                       "tool_version", "tool_revision", "closed"};
+    static const char *const keys[] = {"start_utc",
+                                       "ended",
+                                       "host",
+                                       "operator",
+                                       "notes",
+                                       "cycles",
+                                       "stage_settings",
+                                       "tool_version",
+                                       "tool_revision",
+                                       "closed",
+                                       WB_RECOVER_META_FROM,
+                                       WB_RECOVER_META_SHA256,
+                                       WB_RECOVER_META_TOOL,
+                                       WB_RECOVER_META_MISSING};
     const struct wb_survey *survey = &facts->survey;
     struct wb_json *root = wb_json_create();
     wb_json_set_text(root, "recording", path);

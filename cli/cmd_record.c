@@ -3,25 +3,37 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "analysis/align/align.h"
+#include "analysis/plot/figure.h"
+#include "analysis/quicklook.h"
+#include "base/file.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/live_line.h"
+#include "cli/record_views.h"
 #include "cli/settings.h"
 #include "daq/acquisition.h"
 #include "daq/bend_test.h"
+#include "daq/specimen.h"
+#include "fe/model/wire.h"
 
 #define WB_LOG_DOMAIN "record"
 
 struct options {
     struct wb_command_common common;
     struct wb_bend_test_request request;
+    struct wb_record_views_options views;
+    const char *figure; /* the curve's file; NULL: not wanted */
 };
 
 enum {
     OPTION_SPECIMEN = WB_KEY_OWN,
     OPTION_OPERATOR,
-    OPTION_NOTES
+    OPTION_NOTES,
+    OPTION_LIVE,
+    OPTION_SERVE,
+    OPTION_FIGURE
 };
 
 static const struct argp_option argp_options[] = {
@@ -29,6 +41,12 @@ static const struct argp_option argp_options[] = {
     {"output", 'o', "REC.wbr", 0, "The recording to write; it must not exist", 0},
     {"operator", OPTION_OPERATOR, "NAME", 0, "Who runs the test, for the recording", 0},
     {"notes", OPTION_NOTES, "TEXT", 0, "Anything worth knowing later, for the recording", 0},
+    {"live", OPTION_LIVE, NULL, 0,
+     "Show the test on the whole terminal: curve, wire, large figures, instruments", 0},
+    {"serve", OPTION_SERVE, "PORT", 0,
+     "Show it as a web page at http://127.0.0.1:PORT/; 0 takes a free port", 0},
+    {"figure", OPTION_FIGURE, "FILE", 0,
+     "Draw force over deflection at the end, as SVG, PNG or PDF; the file must not exist", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
     {0},
 };
@@ -46,6 +64,19 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case OPTION_NOTES:
         request->notes = argument;
+        return 0;
+    case OPTION_LIVE:
+        options->views.live = true;
+        return 0;
+    case OPTION_SERVE:
+        options->views.serve = true;
+        options->views.port = wb_command_integer(state, "--serve", argument, 0, 65535);
+        return 0;
+    case OPTION_FIGURE:
+        options->figure = argument;
+        if (!wb_figure_is_file(argument))
+            argp_error(state, "a figure is written as NAME.svg, NAME.png or NAME.pdf, not '%s'",
+                       argument);
         return 0;
     case ARGP_KEY_END:
         if (!request->specimen_path)
@@ -118,6 +149,9 @@ static void fill_fields(const struct wb_bend_test_status *status, struct fields 
     snprintf(f->drops, sizeof f->drops, "%" PRIu64,
              stream[WB_ROLE_LOAD].drops + stream[WB_ROLE_MOCAP].drops +
                  stream[WB_ROLE_STAGE].drops);
+    if (status->latest->is_storage_late)
+        snprintf(f->drops, sizeof f->drops, "0, DISK %.1f s LATE",
+                 wb_seconds_from_ns(status->latest->storage.lag_ns));
     snprintf(f->rates, sizeof f->rates, "%.0f/%.0f/%.0f Hz", stream[WB_ROLE_LOAD].rate,
              stream[WB_ROLE_MOCAP].rate, stream[WB_ROLE_STAGE].rate);
 }
@@ -155,13 +189,14 @@ static void obey(struct wb_bend_test *test, int key)
     }
 }
 
-static void run(struct wb_bend_test *test)
+static void run(struct wb_bend_test *test, struct wb_record_views *views)
 {
     while (wb_bend_test_step(test, 20 * WB_NS_PER_MS) == WB_SEQUENCE_RUNNING) {
-        if (wb_live_line_due())
+        if (wb_record_views_tell(views, false) && wb_live_line_due())
             show(test);
-        obey(test, wb_live_line_key());
+        obey(test, wb_record_views_key(views));
     }
+    (void)wb_record_views_tell(views, true);
 }
 
 static const char *end_name(enum wb_sequence_end end)
@@ -195,6 +230,21 @@ static void tell_stop(const struct wb_bend_test_result *result, const char *rig_
                 result->travel / WB_MM, rig_path, ceil(fabs(result->travel) / WB_MM) + 1.0);
     else if (result->displaced)
         wb_warn("the specimen stays as it is; free it with 'wirebench stage %s release'", rig_path);
+}
+
+static void tell_losses(const struct wb_bend_test_result *result)
+{
+    if (result->drops > 0)
+        wb_warn("%" PRIu64 " reads are missing from the recording", result->drops);
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
+        if (result->is_losing[role])
+            wb_warn("%.2g %% of what the %s sent never came: %" PRIu64 " in %" PRIu64
+                    " places, the longest of %.3g s: look at its cable or network, and at what "
+                    "else this computer does",
+                    wb_loss_share(&result->loss[role]) / WB_PERCENT,
+                    wb_role_name((enum wb_role)role), result->loss[role].missing,
+                    result->loss[role].gaps, result->loss[role].longest_gap);
+    }
 }
 
 static int print_json(const struct wb_bend_test_result *result, const char *output)
@@ -241,43 +291,80 @@ static int exit_code(const struct wb_bend_test_result *result, enum wb_status st
     return result->started ? WB_EXIT_INCOMPLETE : WB_EXIT_FAILED;
 }
 
+/* The specimen's wire, and what its file says of the first force. */
+static enum wb_status find_wire(struct wb_bend_test_request *request, struct wb_wire *wire)
+{
+    struct wb_first_force_bounds *const bounds = &request->stiffness;
+    char path[WB_PATH];
+    struct wb_specimen specimen;
+    WB_TRY(wb_specimen_read(request->specimen_path, &specimen));
+    WB_TRY(wb_specimen_find_wire(&specimen, request->specimen_path, path));
+    WB_TRY(wb_wire_read(path, wire, NULL));
+    wb_wire_stiffness_bounds(wire, specimen.length, &bounds->lowest, &bounds->highest);
+    snprintf(bounds->of, sizeof bounds->of,
+             wire->has_properties ? "%s (a third to three times the properties in its file)"
+                                  : "%s (between free strands and solid copper)",
+             wire->name);
+    return WB_OK;
+}
+
+/* The curve of the test just recorded. */
+static enum wb_status draw_figure(const char *recording, const char *path)
+{
+    struct wb_align_settings settings;
+    struct wb_dataset dataset;
+    wb_align_default_settings(&settings);
+    WB_TRY(wb_align_run(&dataset, recording, &settings, NULL));
+    const enum wb_status status = wb_quicklook_draw(&dataset, path);
+    wb_dataset_release(&dataset);
+    return status;
+}
+
 int wb_cmd_record(int argc, char **argv)
 {
     struct options options = {
         .common = {.noun = "rig file", .destination = "recording goes: -o REC.wbr"}};
+    static struct wb_record_views views;
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
+    struct wb_wire wire;
     char specimen[WB_PATH];
     wb_bend_test_default_request(&options.request);
     wb_settings_parse_table(&argp, &wb_bend_test_table, &options.request, 1, argc, argv, &options);
     options.request.rig_path = options.common.input;
     options.request.output_path = options.common.output;
     options.request.specimen_path = wb_command_find(options.request.specimen_path, specimen);
+    if (find_wire(&options.request, &wire) != WB_OK)
+        return WB_EXIT_FAILED;
+    if (options.figure && wb_file_exists(options.figure)) {
+        wb_error("'%s' exists: choose another name with --figure", options.figure);
+        return WB_EXIT_FAILED;
+    }
     wb_interrupt_install();
     wb_interrupt_guard();
-    wb_acquisition_raise_priority();
-    if (wb_bend_test_open(&test, &options.request) != WB_OK)
+    if (wb_record_views_open(&views, &options.views, &options.request, &wire) != WB_OK)
         return WB_EXIT_FAILED;
-    wb_live_line_open();
-    run(test);
+    wb_acquisition_raise_priority();
+    if (wb_bend_test_open(&test, &options.request) != WB_OK) {
+        wb_record_views_close(&views);
+        return WB_EXIT_FAILED;
+    }
+    wb_record_views_begin(&views, test);
+    run(test, &views);
     const enum wb_status status = wb_bend_test_close(test, &result);
-    wb_live_line_close();
+    wb_record_views_close(&views);
     if (result.end != WB_SEQUENCE_DONE)
         tell_stop(&result, options.request.rig_path);
-    if (result.drops > 0)
-        wb_warn("%" PRIu64 " reads are missing from the recording", result.drops);
-    for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
-        if (result.is_losing[role])
-            wb_warn("%.2g %% of what the %s sent never came: %" PRIu64 " in %" PRIu64
-                    " places, the longest of %.3g s: look at its cable or network, and at what "
-                    "else this computer does",
-                    wb_loss_share(&result.loss[role]) / WB_PERCENT,
-                    wb_role_name((enum wb_role)role), result.loss[role].missing,
-                    result.loss[role].gaps, result.loss[role].longest_gap);
-    }
+    tell_losses(&result);
     if (!result.recorded)
         wb_info("nothing was recorded: '%s' was not kept", options.request.output_path);
-    const int code = exit_code(&result, status);
+    int code = exit_code(&result, status);
+    if (options.figure && result.started &&
+        draw_figure(options.request.output_path, options.figure) != WB_OK) {
+        wb_error("'%s' was not drawn: the message before says why; the recording is not affected",
+                 options.figure);
+        code = code == WB_EXIT_OK ? WB_EXIT_INCOMPLETE : code;
+    }
     if (options.common.json && print_json(&result, options.request.output_path) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     if (!options.common.json && result.recorded)

@@ -73,41 +73,6 @@ static bool is_same_file(const char *path, const struct stat *before)
            now.st_mtim.tv_nsec == before->st_mtim.tv_nsec;
 }
 
-/* Serial ports by names that stay: a rig file of one's own can name them. */
-static const struct {
-    enum wb_role role;
-    const char *name;
-} links[] = {{WB_ROLE_LOAD, "load-cell"}, {WB_ROLE_STAGE, "stage"}};
-
-static bool is_link(const char *path)
-{
-    struct stat found;
-    return lstat(path, &found) == 0 && S_ISLNK(found.st_mode);
-}
-
-/* Only links are replaced, those of a rig that was killed. */
-static enum wb_status link_ports(const struct wb_bench *bench, const char *folder)
-{
-    for (size_t i = 0; i < WB_COUNT(links); i++) {
-        char path[WB_PATH];
-        const char *const address = wb_bench_address(bench, links[i].role);
-        WB_TRY(wb_file_join(path, folder, links[i].name));
-        if (is_link(path))
-            unlink(path);
-        if (symlink(address + strlen("pty:"), path) != 0)
-            return wb_fail(WB_ERR_IO, "no link '%s' to the port: %s", path, strerror(errno));
-    }
-    return WB_OK;
-}
-
-static void unlink_ports(const char *folder)
-{
-    char path[WB_PATH];
-    for (size_t i = 0; i < WB_COUNT(links); i++)
-        if (wb_file_join(path, folder, links[i].name) == WB_OK && is_link(path))
-            unlink(path);
-}
-
 int wb_cmd_rig(int argc, char **argv)
 {
     struct wb_rig_options options = {.common = {.noun = "rig file"}};
@@ -117,6 +82,7 @@ int wb_cmd_rig(int argc, char **argv)
     static const volatile bool never = false;
     parse_options(argc, argv, &options);
     options.bench.rig = wb_command_find(options.common.input, rig);
+    options.bench.folder = options.run;
     options.bench.specimen = wb_command_find(options.bench.specimen, specimen);
     wb_interrupt_install();
     wb_acquisition_raise_priority();
@@ -129,9 +95,7 @@ int wb_cmd_rig(int argc, char **argv)
         return WB_EXIT_FAILED;
     }
     struct stat written;
-    enum wb_status status = link_ports(bench, options.run);
-    if (status == WB_OK)
-        status = wb_bench_write_rig(bench, path);
+    const enum wb_status status = wb_bench_write_rig(bench, path);
     if (status == WB_OK) {
         wb_info("virtual rig: load cell %s, motion capture %s, stage %s; rig file '%s'",
                 wb_bench_address(bench, WB_ROLE_LOAD), wb_bench_address(bench, WB_ROLE_MOCAP),
@@ -144,7 +108,6 @@ int wb_cmd_rig(int argc, char **argv)
             remove(path);
     }
     wb_bench_close(bench);
-    unlink_ports(options.run);
     wb_file_unlock(&lock);
     return wb_command_exit(status);
 }

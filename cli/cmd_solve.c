@@ -82,6 +82,8 @@ static void check(struct argp_state *state, const struct wb_solve_settings *s)
         argp_error(state, "name the model: cantilever, wire3d, wire1d, bundle or bending3p");
     if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every is for --vtk");
+    if (s->sweep && !s->uncertain)
+        argp_error(state, "--sweep is for --uncertain");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
         argp_error(state, "--checkpoint-minutes is for --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)
@@ -275,8 +277,12 @@ static enum wb_status show(void *context, const struct wb_solve *solve)
     const struct wb_command_common *const common = context;
     if (common->json)
         return print_json(solve) == WB_EXIT_OK ? WB_OK : WB_ERR_MEMORY;
-    if (!common->output)
+    struct wb_text text = {0};
+    if (wb_solve_summarise(solve, &text))
+        fputs(wb_text_string(&text), stdout);
+    else if (!common->output)
         print_csv(solve);
+    wb_text_release(&text);
     return WB_OK;
 }
 

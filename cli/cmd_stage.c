@@ -1,26 +1,23 @@
 /* wirebench stage: set the bench, free a specimen, check the load cell. */
-#include <errno.h>
 #include <math.h>
-#include <poll.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "base/interrupt.h"
 #include "base/number.h"
 #include "base/units.h"
 #include "cli/bench_options.h"
+#include "cli/check_cell.h"
 #include "cli/live_line.h"
 #include "cli/settings.h"
 #include "daq/acquisition.h"
-#include "daq/check_log.h"
-#include "daq/mass_check.h"
 #include "daq/rig.h"
 
 #define WB_LOG_DOMAIN "stage"
 
 static const struct argp_option other_options[] = {
+    {"output", 'o', "CERTIFICATE.pdf", 0, "Write check's series as a page", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Replace that file", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
     {0},
 };
@@ -51,6 +48,12 @@ static void check_words(const struct wb_stage_options *options, struct argp_stat
                    options->action);
     if (action == WB_STAGE_JOB_JOG && !options->value)
         argp_error(state, "jog needs a distance in mm, down positive: jog 2.5");
+    if (action != ACTION_CHECK && (options->masses || options->common.output))
+        argp_error(state, "%s takes neither masses nor a certificate, check does", options->action);
+    if (options->masses && options->value)
+        argp_error(state, "check takes one mass or --masses, not both");
+    if (options->common.output && !wb_command_ends_in(options->common.output, ".pdf"))
+        argp_error(state, "a certificate is written as NAME.pdf, not '%s'", options->common.output);
     if (options->value && action != WB_STAGE_JOB_JOG && action != WB_STAGE_JOB_RELEASE &&
         action != ACTION_CHECK)
         argp_error(state, "%s takes no number", options->action);
@@ -82,7 +85,7 @@ static const struct argp argp = {
     .options = other_options,
     .parser = parse,
     .args_doc = "RIG.yaml home\nRIG.yaml jog MM\nRIG.yaml unlock\nRIG.yaml release [MM]\n"
-                "RIG.yaml check [MASS_G]",
+                "RIG.yaml check [MASS_G | --masses LIST]",
     .doc =
         "Sets the bench by hand.\n\n"
         "home     runs the stage's own homing cycle. Take the specimen off first.\n"
@@ -91,8 +94,9 @@ static const struct argp argp = {
         "release  frees a specimen after a stop: brings the stage out of hold or alarm and goes "
         "slowly up until the strand is slack (the reading stays level over 0.75 mm), at most by "
         "MM (default: limits.travel_mm of the rig file).\n"
-        "check    compares the load cell with a known mass (default: the rig's "
-        "check_mass_g), and adds the outcome to the log beside the rig file (RIG.checks.csv).\v"
+        "check    compares the load cell with a known mass, or with a series of masses up and "
+        "down (default: the rig's check_masses_g, else its check_mass_g), and adds the outcome to "
+        "the log beside the rig file (RIG.checks.csv).\v"
         "While the stage moves the load cell is watched: force limit, overload, a change of "
         "unit, silence and alarms stop it, and so does Ctrl-C. Its reading is not tared here. "
         "A release may begin beyond the limits, because that is what it mends; it stops when "
@@ -174,135 +178,6 @@ static int run_job(const struct wb_stage_options *options, const struct wb_rig *
     return result.end == WB_SEQUENCE_FAILED ? WB_EXIT_FAILED : WB_EXIT_INCOMPLETE;
 }
 
-/* --- check --- */
-
-/* True once a whole line, empty or not, was read from stdin; *ended when there is no more. Reads
- * byte by byte: what follows the line is not ours. */
-static bool line_came(bool *ended)
-{
-    struct pollfd polled = {.fd = STDIN_FILENO, .events = POLLIN};
-    char byte;
-    while (poll(&polled, 1, 0) > 0) {
-        const ssize_t n = read(STDIN_FILENO, &byte, 1);
-        if (n == 1 && byte == '\n')
-            return true;
-        if (n < 0 && errno == EINTR)
-            return false;
-        if (n <= 0) {
-            *ended = true;
-            return false;
-        }
-    }
-    return false;
-}
-
-static bool measure(struct wb_mass_check *check, double known)
-{
-    enum wb_mass_check_phase phase, before = WB_MASS_CHECK_CONNECTING;
-    bool ended = false;
-    while ((phase = wb_mass_check_step(check, 20 * WB_NS_PER_MS)) < WB_MASS_CHECK_DONE) {
-        if (phase != before && phase == WB_MASS_CHECK_ZERO)
-            fprintf(stderr, "reading without the mass...\n");
-        else if (phase != before && phase == WB_MASS_CHECK_WAITING)
-            fprintf(stderr, "hang %g g on the load cell, then press Enter: ", known / WB_G);
-        else if (phase != before && phase == WB_MASS_CHECK_SETTLING)
-            fprintf(stderr, "reading with the mass...\n");
-        before = phase;
-        if (phase == WB_MASS_CHECK_WAITING && line_came(&ended))
-            wb_mass_check_hung(check);
-        if (ended) {
-            wb_error("nobody pressed Enter: standard input has ended");
-            return false;
-        }
-    }
-    return phase == WB_MASS_CHECK_DONE;
-}
-
-static int print_check(const struct wb_stage_options *options, const struct wb_rig *rig,
-                       double known, double tolerance, const struct wb_mass_check_result *result)
-{
-    const struct wb_rig_load_cell *const cell = &rig->load_cell;
-    const char *const serial = cell->serial_number[0] ? cell->serial_number : "not given";
-    const char *const date = cell->calibration_date[0] ? cell->calibration_date : "not given";
-    if (options->common.json) {
-        struct wb_json *const root = wb_json_create();
-        wb_json_set_boolean(root, "virtual_rig", rig->is_virtual);
-        wb_json_set_text(root, "serial_number", serial);
-        wb_json_set_text(root, "calibration_date", date);
-        wb_json_set_number(root, "capacity_g", cell->capacity / rig->gravity / WB_G);
-        wb_json_set_number(root, "known_mass_g", known / WB_G);
-        wb_json_set_number(root, "read_mass_g", result->mass / WB_G);
-        wb_json_set_number(root, "deviation_mg", result->deviation / WB_MG);
-        wb_json_set_number(root, "deviation_percent", result->relative / WB_PERCENT);
-        wb_json_set_number(root, "standard_error_mg", result->uncertainty / WB_MG);
-        wb_json_set_number(root, "tolerance_percent", tolerance / WB_PERCENT);
-        wb_json_set_boolean(root, "passed", result->passed);
-        return wb_command_print_json(root);
-    }
-    printf("%sload cell %s, capacity %g g, calibrated %s\n", rig->is_virtual ? "virtual rig: " : "",
-           serial, cell->capacity / rig->gravity / WB_G, date);
-    printf("known %.4f g, read %.4f g: deviation %+.2f mg (%+.3f %%), standard error %.2f mg\n",
-           known / WB_G, result->mass / WB_G, result->deviation / WB_MG,
-           result->relative / WB_PERCENT, result->uncertainty / WB_MG);
-    printf("%s: tolerance %g %%\n", result->passed ? "passed" : "NOT PASSED",
-           tolerance / WB_PERCENT);
-    return WB_EXIT_OK;
-}
-
-/* Adds the outcome to the log beside the rig file; a log that cannot be written is told, and does
- * not change the outcome. */
-static void log_check(const struct wb_stage_options *options, const struct wb_rig *rig,
-                      double known, double tolerance, const struct wb_mass_check_result *result)
-{
-    struct wb_check_log_entry entry = {
-        .known = known, .read = result->mass, .tolerance = tolerance, .passed = result->passed};
-    const time_t now = time(NULL);
-    struct tm utc;
-    char path[WB_PATH];
-    gmtime_r(&now, &utc);
-    strftime(entry.utc, sizeof entry.utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    snprintf(entry.serial_number, sizeof entry.serial_number, "%s", rig->load_cell.serial_number);
-    if (wb_check_log_append(options->rig_path, &entry) == WB_OK &&
-        wb_check_log_path(path, options->rig_path) == WB_OK)
-        wb_info("added to '%s'", path);
-}
-
-static int run_check(const struct wb_stage_options *options, const struct wb_rig *rig)
-{
-    const struct wb_rig_load_cell *const cell = &rig->load_cell;
-    double known = cell->check_mass;
-    if (options->value) {
-        if (!wb_number_parse(options->value, &known) || !(known > 0.0)) {
-            wb_error("check: expected a mass in grams, not '%s'", options->value);
-            return WB_EXIT_USAGE;
-        }
-        known *= WB_G;
-    }
-    if (!(known > 0.0)) {
-        wb_error("check: no mass given, and the rig file has no load_cell.check_mass_g");
-        return WB_EXIT_USAGE;
-    }
-    if (known * rig->gravity > cell->overload) {
-        wb_error("check: %g g is more than the load cell reads (%g g)", known / WB_G,
-                 cell->overload / rig->gravity / WB_G);
-        return WB_EXIT_USAGE;
-    }
-    const double tolerance = options->tolerance > 0.0 ? options->tolerance : cell->check_tolerance;
-    struct wb_mass_check *check;
-    struct wb_mass_check_result result;
-    if (wb_mass_check_open(&check, rig, options->seconds) != WB_OK)
-        return WB_EXIT_FAILED;
-    const bool measured = measure(check, known);
-    if (measured)
-        wb_mass_check_result(check, known, tolerance, &result);
-    wb_mass_check_close(check);
-    if (measured)
-        log_check(options, rig, known, tolerance, &result);
-    if (!measured || print_check(options, rig, known, tolerance, &result) != WB_EXIT_OK)
-        return WB_EXIT_FAILED;
-    return result.passed ? WB_EXIT_OK : WB_EXIT_FAILED;
-}
-
 /* `jog -2`: a negative number is no option. It is moved behind a "--". */
 static int shield_number(int argc, char **argv, char **shielded)
 {
@@ -341,7 +216,7 @@ int wb_cmd_stage(int argc, char **argv)
         return WB_EXIT_FAILED;
     const int action = find_action(options.action);
     if (action == ACTION_CHECK)
-        return run_check(&options, &rig);
+        return wb_check_cell_run(&options, &rig);
     options.job.kind = (enum wb_stage_job_kind)action;
     if (options.value) {
         if (!wb_number_parse(options.value, &options.job.distance)) {

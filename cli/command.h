@@ -20,7 +20,8 @@ enum {
     WB_EXIT_USAGE = 2,
     WB_EXIT_INCOMPLETE = 3, /* usable but incomplete: data lost, stopped by a limit or Ctrl-C,
                                cut short by non-convergence */
-    WB_EXIT_LIMIT = 4       /* all written, but a limit of the campaign was exceeded */
+    WB_EXIT_LIMIT = 4       /* all written, but a limit of the campaign was exceeded; the bench was
+                               looked at, and is not ready */
 };
 
 /* -h, --help and --usage, which every command has. */
@@ -83,11 +84,14 @@ int wb_command_print_json(struct wb_json *root);
 
 int wb_cmd_align(int argc, char **argv);
 int wb_cmd_calibrate(int argc, char **argv);
+int wb_cmd_clock(int argc, char **argv);
+int wb_cmd_doctor(int argc, char **argv);
 int wb_cmd_export(int argc, char **argv);
 int wb_cmd_import(int argc, char **argv);
 int wb_cmd_info(int argc, char **argv);
 int wb_cmd_quicklook(int argc, char **argv);
 int wb_cmd_record(int argc, char **argv);
+int wb_cmd_recover(int argc, char **argv);
 int wb_cmd_replay(int argc, char **argv);
 int wb_cmd_report(int argc, char **argv);
 int wb_cmd_rig(int argc, char **argv);

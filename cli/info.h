@@ -16,9 +16,6 @@ struct wb_info_options {
 /* Whether a file's name says that it is a bundle's. */
 bool wb_info_is_bundle(const char *name);
 
-/* Whether it is one that a drawing can be written to. */
-bool wb_info_is_figure(const char *name);
-
 /* Returns an exit code. */
 int wb_info_bundle(const struct wb_info_options *options);
 

@@ -22,12 +22,6 @@ bool wb_info_is_bundle(const char *name)
     return wb_command_ends_in(name, ".yaml") || wb_command_ends_in(name, ".yml");
 }
 
-bool wb_info_is_figure(const char *name)
-{
-    return wb_command_ends_in(name, ".svg") || wb_command_ends_in(name, ".png") ||
-           wb_command_ends_in(name, ".pdf");
-}
-
 static const char *length_source(const struct wb_bundle_model *model)
 {
     static const char *const names[] = {"own", "printed", "inferred"};
@@ -197,15 +191,6 @@ static int print_json(const struct wb_bundle_model *model, const char *figure)
 
 /* --- as a drawing --- */
 
-static enum wb_status write_figure(const struct wb_figure *figure, const char *path)
-{
-    if (wb_command_ends_in(path, ".svg"))
-        return wb_figure_write_svg(figure, path);
-    if (wb_command_ends_in(path, ".pdf"))
-        return wb_figure_write_pdf(figure, NULL, path);
-    return wb_figure_write_png(figure, pixels_of_a_point, path);
-}
-
 static enum wb_status draw(const struct wb_info_options *options,
                            const struct wb_bundle_model *model)
 {
@@ -214,7 +199,7 @@ static enum wb_status draw(const struct wb_info_options *options,
     if (!options->common.force && wb_file_exists(options->figure))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", options->figure);
     WB_TRY(wb_figures_bundle_draw(&figure, "section", 1, &model, mesh));
-    const enum wb_status status = write_figure(figure, options->figure);
+    const enum wb_status status = wb_figure_write_file(figure, pixels_of_a_point, options->figure);
     wb_figure_destroy(figure);
     return status;
 }

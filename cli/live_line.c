@@ -31,17 +31,39 @@ static struct {
     char text[512];
 } live;
 
-static void log_above(void *context, enum wb_log_level level, const char *domain,
-                      const char *message)
+const char *wb_live_line_level(enum wb_log_level level)
 {
     static const char *const levels[] = {"error: ", "warning: ", "", "debug: "};
+    return levels[level];
+}
+
+void wb_live_line_log(void *context, enum wb_log_level level, const char *domain,
+                      const char *message)
+{
     char text[3072];
     (void)context;
     pthread_mutex_lock(&lock);
-    snprintf(text, sizeof text, "%swirebench: %s%s%s%s\n%s", live.drawn ? ERASE : "", levels[level],
-             level == WB_LOG_DEBUG ? domain : "", level == WB_LOG_DEBUG ? ": " : "", message,
-             live.drawn ? live.text : "");
+    snprintf(text, sizeof text, "%swirebench: %s%s%s%s\n%s", live.drawn ? ERASE : "",
+             wb_live_line_level(level), level == WB_LOG_DEBUG ? domain : "",
+             level == WB_LOG_DEBUG ? ": " : "", message, live.drawn ? live.text : "");
     (void)wb_talk_say(text);
+    pthread_mutex_unlock(&lock);
+}
+
+void wb_live_line_say(const char *text)
+{
+    pthread_mutex_lock(&lock);
+    if (live.drawn)
+        (void)wb_talk_say(ERASE);
+    live.drawn = false;
+    /* Line by line: a text that is longer than what may wait would be dropped whole. */
+    while (*text) {
+        char line[3072];
+        const size_t n = strcspn(text, "\n") + (strchr(text, '\n') != NULL);
+        snprintf(line, sizeof line, "%.*s", (int)n, text);
+        (void)wb_talk_say(line);
+        text += n;
+    }
     pthread_mutex_unlock(&lock);
 }
 
@@ -78,6 +100,14 @@ int wb_live_line_key(void)
     return key;
 }
 
+void wb_live_line_restore(const struct termios *modes, const char *sequence)
+{
+    wb_live_line_say(sequence);
+    live.has_keys = false;
+    if (in_foreground() && tcsetattr(STDIN_FILENO, TCSANOW, modes) == 0)
+        take_keys();
+}
+
 /* --- the line --- */
 
 void wb_live_line_open(void)
@@ -88,7 +118,7 @@ void wb_live_line_open(void)
     live.may_have_keys = live.draws && isatty(STDIN_FILENO);
     wb_talk_open();
     take_keys();
-    wb_log_set_sink(log_above, NULL);
+    wb_log_set_sink(wb_live_line_log, NULL);
     if (!registered)
         atexit(wb_live_line_close);
     registered = true;

@@ -23,7 +23,7 @@ alone=$(nm -A --extern-only $objects | awk '
                 print symbol
     }' | LC_ALL=C sort)
 [ -n "$alone" ] || exit 0
-private=$(find base daq fe fixtures analysis cli -name '*_private.h')
+private=$(find base daq fe fixtures analysis live library include cli -name '*_private.h')
 bad=0
 for symbol in $alone; do
     if ! grep -rqw --include='*.[ch]' "$symbol" tests; then

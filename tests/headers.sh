@@ -6,7 +6,7 @@ cd "$1"
 shift
 flags=$(pkg-config --cflags cairo pangocairo gsl)
 bad=0
-for header in $(find base daq fe fixtures analysis cli tests -name '*.h' | LC_ALL=C sort); do
+for header in $(find base daq fe fixtures analysis live library include cli tests -name '*.h' | LC_ALL=C sort); do
     # shellcheck disable=SC2086 # the flags are words
     printf '#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' "$header" "$header" |
         "$@" -x c -std=c11 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Werror -I. $flags \

@@ -203,16 +203,61 @@ static enum wb_status load_recording(struct wb_align *align, const void *path)
     return wb_align_load(align, path);
 }
 
-enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_path,
-                            const struct wb_align_settings *settings, struct wb_reason *why)
+/* --- signals --- */
+
+void wb_align_signals_release(struct wb_align_signals *signals)
 {
-    return wb_align_run_from(dataset, settings, load_recording, recording_path, why);
+    free(signals->motion_t);
+    free(signals->motion);
+    free(signals->force_t);
+    free(signals->force);
+    memset(signals, 0, sizeof *signals);
 }
 
-enum wb_status wb_align_run_from(struct wb_dataset *dataset,
-                                 const struct wb_align_settings *settings,
-                                 enum wb_status (*load)(struct wb_align *, const void *),
-                                 const void *context, struct wb_reason *why)
+static void copy_signals(const struct wb_align *align, struct wb_align_signals *signals)
+{
+    const struct wb_align_reading *const readings = wb_align_readings(align);
+    const int up = align->rig.mocap.up == 'z' ? 2 : 1;
+    for (size_t i = 0; i < align->cloud.n_frames; i++) {
+        const double *const clamp = wb_markers_position(&align->tracks, i, 0);
+        if (!clamp)
+            continue;
+        signals->motion_t[signals->n_motion] = align->frame_t[i];
+        signals->motion[signals->n_motion++] = -clamp[up];
+    }
+    for (size_t i = 0; i < align->readings.n; i++) {
+        signals->force_t[i] = readings[i].t;
+        signals->force[i] = readings[i].force;
+    }
+    signals->n_force = align->readings.n;
+    signals->filter_delay = align->filter_delay;
+    signals->filter_delay_uncertainty = align->filter_delay_uncertainty;
+    signals->camera_uncertainty = align->camera_uncertainty;
+    signals->time_scale = align->rig.time_scale;
+}
+
+static enum wb_status keep_signals(const struct wb_align *align, struct wb_align_signals *signals)
+{
+    const size_t n = align->cloud.n_frames + 1, m = align->readings.n + 1;
+    *signals = (struct wb_align_signals){
+        .motion_t = malloc(n * sizeof *signals->motion_t),
+        .motion = malloc(n * sizeof *signals->motion),
+        .force_t = malloc(m * sizeof *signals->force_t),
+        .force = malloc(m * sizeof *signals->force),
+    };
+    if (!signals->motion_t || !signals->motion || !signals->force_t || !signals->force) {
+        wb_align_signals_release(signals);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu frames", n - 1);
+    }
+    copy_signals(align, signals);
+    return WB_OK;
+}
+
+/* wb_align_run_from(); `signals` may be NULL. */
+static enum wb_status run_all(struct wb_dataset *dataset, struct wb_align_signals *signals,
+                              const struct wb_align_settings *settings,
+                              enum wb_status (*load)(struct wb_align *, const void *),
+                              const void *context, struct wb_reason *why)
 {
     struct wb_reason lost = {.text = ""};
     memset(dataset, 0, sizeof *dataset);
@@ -233,6 +278,8 @@ enum wb_status wb_align_run_from(struct wb_dataset *dataset,
         if (align->settings.row_rate == 0.0)
             align->settings.row_rate = DEFAULT_ROW_RATE;
         status = run(align, load, context);
+        if (status == WB_OK && signals)
+            status = keep_signals(align, signals);
         release(align);
     }
     free(align);
@@ -243,4 +290,26 @@ enum wb_status wb_align_run_from(struct wb_dataset *dataset,
     else if (lost.text[0])
         wb_error("%s", lost.text);
     return status;
+}
+
+enum wb_status wb_align_run_from(struct wb_dataset *dataset,
+                                 const struct wb_align_settings *settings,
+                                 enum wb_status (*load)(struct wb_align *, const void *),
+                                 const void *context, struct wb_reason *why)
+{
+    return run_all(dataset, NULL, settings, load, context, why);
+}
+
+enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_path,
+                            const struct wb_align_settings *settings, struct wb_reason *why)
+{
+    return run_all(dataset, NULL, settings, load_recording, recording_path, why);
+}
+
+enum wb_status wb_align_run_signals(struct wb_dataset *dataset, struct wb_align_signals *signals,
+                                    const char *recording_path,
+                                    const struct wb_align_settings *settings, struct wb_reason *why)
+{
+    memset(signals, 0, sizeof *signals);
+    return run_all(dataset, signals, settings, load_recording, recording_path, why);
 }

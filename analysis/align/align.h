@@ -55,4 +55,24 @@ WB_MUST_CHECK enum wb_status wb_align_run(struct wb_dataset *dataset, const char
                                           const struct wb_align_settings *settings,
                                           struct wb_reason *why);
 
+/* What the alignment makes its rows of: both signals on the bench's clock, not yet thinned. All
+ * arrays are owned. */
+struct wb_align_signals {
+    size_t n_motion, n_force;
+    double *motion_t, *motion; /* s, m: how far down the clamp's marker is, in each frame that shows
+                                  it, from an unknown zero */
+    double *force_t, *force;   /* s, N: each reading, as read; the filter's delay is taken off */
+    double filter_delay, filter_delay_uncertainty; /* s, of bench time, of the rig file */
+    double camera_uncertainty;                     /* s, of bench time; NaN unknown */
+    double time_scale;                             /* bench seconds in one of the host's */
+};
+void wb_align_signals_release(struct wb_align_signals *signals); /* accepts a zeroed one */
+
+/* wb_align_run(), which also keeps the signals; on a failure there are none. */
+WB_MUST_CHECK enum wb_status wb_align_run_signals(struct wb_dataset *dataset,
+                                                  struct wb_align_signals *signals,
+                                                  const char *recording_path,
+                                                  const struct wb_align_settings *settings,
+                                                  struct wb_reason *why);
+
 #endif

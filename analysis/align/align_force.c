@@ -472,6 +472,7 @@ static void describe_timing(struct wb_align *align)
     wb_align_set(object, "force_error_mN", align->stiffness * align->speed * lag / WB_MN);
     wb_align_set(object, "loop_width_error_mm", 2.0 * align->speed * lag / WB_MM);
     wb_align_set(object, "loop_area_mJ", area * 1e3);
+    wb_align_set(object, "loop_area_per_delay_mJ_per_s", -per_second * 1e3);
     wb_align_set(object, "loop_area_error_mJ", fabs(per_second) * lag * 1e3);
     wb_json_set_text(object, "note",
                      "a lag between force and deflection moves a loading curve by speed times lag "

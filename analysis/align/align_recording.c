@@ -12,6 +12,7 @@
 #include "daq/foreign.h"
 #include "daq/loss.h"
 #include "daq/recording_foreign.h"
+#include "daq/recover.h"
 
 #define WB_LOG_DOMAIN "align"
 
@@ -210,7 +211,7 @@ static enum wb_status take_event(void *context, const struct wb_event *event)
         align->n_lost++;
     } else if (strcmp(event->kind, "drop") == 0) {
         align->n_drops++;
-    } else if (strcmp(event->kind, "stall") == 0) {
+    } else if (strcmp(event->kind, "stall") == 0 || strcmp(event->kind, "reconnected") == 0) {
         wb_align_warn(align, "%.200s", event->text);
     }
     return WB_OK;
@@ -368,6 +369,22 @@ static void copy_import(struct wb_align *align, struct wb_recording *recording)
     free(text);
 }
 
+/* What `wirebench recover` could not bring back. */
+static enum wb_status note_recovery(struct wb_align *align, struct wb_recording *recording)
+{
+    char *missing = NULL;
+    const enum wb_status status = wb_recording_meta(recording, WB_RECOVER_META_MISSING, &missing);
+    if (status == WB_ERR_MEMORY)
+        return status;
+    if (missing && *missing) {
+        align->is_cut_short = true;
+        wb_align_warn(align, "the recording was recovered from a damaged file; missing: %s",
+                      missing);
+    }
+    free(missing);
+    return WB_OK;
+}
+
 static enum wb_status load_all(struct wb_align *align, struct wb_recording *recording)
 {
     WB_TRY(load_rig_and_specimen(align, recording));
@@ -394,6 +411,7 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
         wb_align_warn(align, "the recording was not closed or is not all there: its end is "
                              "missing");
     }
+    WB_TRY(note_recovery(align, recording));
     WB_TRY(decode(align, recording));
     note_losses(align);
     if (align->settings.rig_path)
@@ -521,8 +539,9 @@ static enum wb_status fit_segment(struct wb_align *align, const struct stamps *s
                                  last - first, nominal, LEAST_SPAN);
 }
 
+/* A segment of so many frames, `span` seconds of the server's clock. */
 static void describe_segment(struct wb_align *align, struct wb_json *list, size_t n_frames,
-                             const struct wb_clock_line *line)
+                             double span, const struct wb_clock_line *line)
 {
     const bool probed = isfinite(line->uncertainty);
     struct wb_json *const entry = wb_json_append_object(list);
@@ -530,6 +549,10 @@ static void describe_segment(struct wb_align *align, struct wb_json *list, size_
     wb_json_set_integer(entry, "frames", (int64_t)n_frames);
     wb_json_set_integer(entry, "points", (int64_t)line->n_points);
     wb_json_set_integer(entry, "points_used", (int64_t)line->n_used);
+    wb_json_set_number(entry, "offset_s",
+                       round((wb_seconds_from_ns(line->host_zero_ns) - line->device_zero) * 1e6) /
+                           1e6);
+    wb_json_set_number(entry, "span_s", round(span * 1e3) / 1e3);
     wb_align_set(entry, "skew_ppm", (line->slope * align->rig.time_scale - 1.0) / WB_PPM);
     wb_align_set(entry, "skew_uncertainty_ppm",
                  line->slope_uncertainty * align->rig.time_scale / WB_PPM);
@@ -559,7 +582,8 @@ static enum wb_status map_segments(struct wb_align *align, const struct stamps *
             return wb_fail_to(align->why, status, "out of memory for %zu stamps", last - first);
         for (size_t k = first; k < last; k++)
             align->frame_t[k] = bench_time(align, wb_clock_line_host_ns(&line, stamps->device[k]));
-        describe_segment(align, list, last - first, &line);
+        describe_segment(align, list, last - first,
+                         stamps->device[last - 1] - stamps->device[first], &line);
         const double uncertainty = line.uncertainty * align->rig.time_scale;
         if (!(uncertainty <= align->camera_uncertainty))
             align->camera_uncertainty = uncertainty;

@@ -33,6 +33,10 @@ static const double at_bound = 4.6; /* 1 % of the range */
 static const double kinematic_start = -3.0, isotropic_start = 1.5;
 /* Weak prior of logistic numbers, so that one that the data do not know stays finite. */
 static const double logistic_prior = 4.0;
+/* Weak prior of ln(yield stress) beside that of the hardening stress: a step of the search that
+ * takes the yield stress to nothing is none that it comes back from, as all slopes are zero there.
+ */
+static const double yield_prior = 4.0;
 /* Steps of the differences that give the slopes, in units of the free numbers' scales. */
 static const double difference = 1e-3;
 /* Slopes are carried on over a step (Broyden 1965) where they foretold the change of the residuals
@@ -385,6 +389,7 @@ static int prior_residuals(const struct problem *p, const double *free, const st
         at += wb_least_squares_smooth_parts(law->parts, WB_FIT_PARTS, p->settings->modulus_prior,
                                             r + at);
     } else {
+        r[at++] = (free[1] - free[2]) / yield_prior;
         r[at++] = free[3] / logistic_prior;
     }
     if (c->is_mixed)
@@ -870,7 +875,7 @@ static int count_residuals(const struct problem *p)
 {
     const struct candidate *const c = p->candidate;
     return p->data->n_points + p->data->n_places + p->data->n_markers + 2 +
-           (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS - 3 : 1) + c->is_mixed;
+           (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS - 3 : 2) + c->is_mixed;
 }
 
 /* The last run, with more elements. */

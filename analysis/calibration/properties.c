@@ -41,6 +41,24 @@ static void make_unknown(struct wb_properties *properties)
     properties->rigidity = properties->springback = unknown_estimate;
 }
 
+/* As the key `method` has them. */
+enum {
+    METHOD_CYCLE,
+    METHOD_PAPER,
+    METHOD_THREE_POINT
+};
+static const char *const methods[] = {"cycle", "paper", "three-point", NULL};
+
+static void set_origin(struct wb_properties *properties, const struct wb_test_info *info,
+                       int method)
+{
+    properties->is_virtual = info->is_virtual;
+    properties->is_simulation = info->is_simulation;
+    snprintf(properties->method, sizeof properties->method, "%s", methods[method]);
+    snprintf(properties->tool, sizeof properties->tool, "wirebench %s (%s)", wb_version(),
+             wb_version_revision());
+}
+
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties)
 {
@@ -56,8 +74,18 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
     properties->residual_scatter_rms =
         result->n_samples > 1 ? result->residual_scatter_rms : (double)NAN;
     properties->n_samples = result->n_samples;
-    properties->is_virtual = result->info.is_virtual;
+    set_origin(properties, &result->info, METHOD_PAPER);
     wb_law_init_ludwik(&properties->law, &result->material);
+}
+
+void wb_properties_from_wire(const struct wb_wire *wire, struct wb_properties *properties)
+{
+    make_unknown(properties);
+    snprintf(properties->wire, sizeof properties->wire, "%s", wire->name);
+    properties->outer_diameter = wire->outer_diameter;
+    properties->mass_per_length = wb_wire_mass_per_length(wire);
+    properties->material = wire->material;
+    properties->law = wire->law;
 }
 
 /* Where the data refute the rule, only the range over the candidates is known. */
@@ -135,7 +163,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
     properties->calibration_length = wb_cycle_calibrate_length(calibration);
     properties->rms = misfit_of_chosen(calibration);
     properties->n_samples = calibration->n_members;
-    properties->is_virtual = info->is_virtual;
+    set_origin(properties, info, METHOD_CYCLE);
     properties->law = calibration->law;
     properties->ludwik_misfit = calibration->ludwik_misfit;
     properties->largest_curvature = calibration->largest_curvature;
@@ -190,6 +218,23 @@ static void put_datasets(struct wb_text *text, const char *const *names, int n)
         if (wb_file_join(path, names[i], "force_deflection.csv") == WB_OK && wb_file_exists(path) &&
             wb_hash_file(path, hex) == WB_OK)
             wb_text_append(text, "      force_deflection_sha256: %s\n", hex);
+    }
+}
+
+/* Of datasets that are in no folder of their own. */
+static void put_known_datasets(struct wb_text *text, const struct wb_properties_dataset *datasets,
+                               int n)
+{
+    wb_text_append(text, n > 0 ? "  datasets:\n" : "  datasets: []\n");
+    for (int i = 0; i < n; i++) {
+        const struct wb_properties_dataset *const d = &datasets[i];
+        wb_text_append(text, d->is_recording ? "    - recording: " : "    - folder: ");
+        put_quoted(text, d->name);
+        wb_text_append(text, "\n");
+        if (d->sha256[0])
+            wb_text_append(text, "      %s: %s\n",
+                           d->is_recording ? "recording_sha256" : "force_deflection_sha256",
+                           d->sha256);
     }
 }
 
@@ -251,8 +296,7 @@ static void put_wire(struct wb_text *text, const struct wb_test_info *info)
 }
 
 static void format(struct wb_text *text, const struct wb_calibrate_result *result,
-                   const struct wb_calibrate_settings *settings, const char *const *names,
-                   int n_names)
+                   const struct wb_calibrate_settings *settings)
 {
     const struct wb_material *const material = &result->material;
     if (result->info.is_virtual)
@@ -270,7 +314,14 @@ static void format(struct wb_text *text, const struct wb_calibrate_result *resul
         put_number(text, "  ", "hardening_exponent", result->deviation[3]);
     }
     put_calibration(text, result, settings);
-    put_datasets(text, names, n_names);
+}
+
+void wb_properties_format(struct wb_text *text, const struct wb_calibrate_result *result,
+                          const struct wb_calibrate_settings *settings,
+                          const struct wb_properties_dataset *datasets, int n_datasets)
+{
+    format(text, result, settings);
+    put_known_datasets(text, datasets, n_datasets);
 }
 
 /* --- calibrations on whole cycles --- */
@@ -432,6 +483,17 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
     put_settings(text, settings);
 }
 
+void wb_properties_format_cycle(struct wb_text *text,
+                                const struct wb_cycle_calibration *calibration,
+                                const struct wb_cycle_calibrate_settings *settings,
+                                const struct wb_properties_dataset *datasets, int n_datasets)
+{
+    struct wb_properties properties;
+    wb_properties_from_cycle(calibration, &properties);
+    format_cycle(text, calibration, &properties, settings);
+    put_known_datasets(text, datasets, n_datasets);
+}
+
 enum wb_status wb_properties_write_cycle(const char *path,
                                          const struct wb_cycle_calibration *calibration,
                                          const struct wb_cycle_calibrate_settings *settings,
@@ -459,7 +521,8 @@ enum wb_status wb_properties_write(const char *path, const struct wb_calibrate_r
     struct wb_text text = {0};
     if (!force && wb_file_exists(path))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
-    format(&text, result, settings, names, n_names);
+    format(&text, result, settings);
+    put_datasets(&text, names, n_names);
     const enum wb_status status = wb_file_write_text(path, &text);
     wb_text_release(&text);
     return status;
@@ -485,7 +548,7 @@ static void from_three_point(const struct wb_three_point_calibration *c,
     properties->rms = c->misfit;
     properties->n_samples = c->n_fitted;
     properties->n_series = c->n_series;
-    properties->is_virtual = info->is_virtual;
+    set_origin(properties, info, METHOD_THREE_POINT);
     properties->law = c->law;
     properties->ludwik_misfit = c->ludwik_misfit;
     properties->largest_curvature = c->largest_curvature;
@@ -587,6 +650,14 @@ static void format_three_point(struct wb_text *text, const struct wb_three_point
     wb_text_append(text, "  tool: \"wirebench %s (%s)\"\n", wb_version(), wb_version_revision());
 }
 
+void wb_properties_format_three_point(struct wb_text *text,
+                                      const struct wb_three_point_calibration *calibration,
+                                      const struct wb_properties_dataset *datasets, int n_datasets)
+{
+    format_three_point(text, calibration);
+    put_known_datasets(text, datasets, n_datasets);
+}
+
 enum wb_status wb_properties_write_three_point(const char *path,
                                                const struct wb_three_point_calibration *calibration,
                                                const char *const *names, int n_names, bool force)
@@ -615,9 +686,37 @@ static enum wb_status read_deviations(const struct wb_config_node *node, double 
     return WB_OK;
 }
 
+/* A scalar of a map as text; "" where there is none. What is too long is cut. */
+static void keep_scalar(const struct wb_config_node *map, const char *key, char *text, size_t size)
+{
+    const struct wb_config_node *const node = wb_config_find(map, key);
+    const char *const scalar = node ? wb_config_scalar(node) : NULL;
+    snprintf(text, size, "%s", scalar ? scalar : "");
+}
+
+/* Names and checksums, for those who cite them; a file by hand may have them in any shape. */
+static void read_datasets(const struct wb_config_node *node, struct wb_properties *properties)
+{
+    const int n = node ? wb_config_length(node) : 0;
+    properties->n_datasets = n > 0 ? n : 0;
+    for (int i = 0; i < n && i < WB_PROPERTIES_MOST_DATASETS; i++) {
+        struct wb_properties_dataset *const d = &properties->datasets[i];
+        const struct wb_config_node *const item = wb_config_item(node, i);
+        char path[WB_PATH];
+        d->is_recording = wb_config_find(item, "recording") != NULL;
+        keep_scalar(item, d->is_recording ? "recording" : "folder", path, sizeof path);
+        for (size_t end = strlen(path); end > 1 && path[end - 1] == '/'; end--)
+            path[end - 1] = '\0';
+        snprintf(d->name, sizeof d->name, "%.95s", wb_file_name(path));
+        keep_scalar(item, d->is_recording ? "recording_sha256" : "force_deflection_sha256",
+                    d->sha256, sizeof d->sha256);
+    }
+}
+
 static enum wb_status read_calibration(const struct wb_config_node *node,
                                        struct wb_properties *properties)
 {
+    const struct wb_config_node *datasets = NULL;
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_NUMBER("length_mm", &properties->calibration_length, WB_MM, 1.0, 1e4),
         WB_CONFIG_OPTIONAL_NUMBER("rms", &properties->rms, 1.0, 0.0, 1e6),
@@ -641,12 +740,15 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
         WB_CONFIG_IGNORED("max_force_N"),
         WB_CONFIG_IGNORED("max_deflection_mm"),
         WB_CONFIG_IGNORED("max_error"),
-        WB_CONFIG_IGNORED("simulation"),
+        WB_CONFIG_OPTIONAL_BOOLEAN("simulation", &properties->is_simulation),
         WB_CONFIG_IGNORED("tool"),
         WB_CONFIG_IGNORED("settings"),
-        WB_CONFIG_IGNORED("datasets"),
+        WB_CONFIG_OPTIONAL_NODE("datasets", &datasets),
     };
-    return wb_config_map(node, keys, WB_COUNT(keys));
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    keep_scalar(node, "tool", properties->tool, sizeof properties->tool);
+    read_datasets(datasets, properties);
+    return WB_OK;
 }
 
 static enum wb_status read_estimate(const struct wb_config_node *node, double unit, double largest,
@@ -758,11 +860,10 @@ static enum wb_status read_specimens(const struct wb_config_node *node,
 
 static enum wb_status read_root(const struct wb_config_node *root, struct wb_properties *properties)
 {
-    static const char *const methods[] = {"cycle", "paper", "three-point", NULL};
     const struct wb_config_node *deviations = NULL, *calibration = NULL, *law = NULL;
     const struct wb_config_node *rigidity = NULL, *springback = NULL, *moments = NULL;
     const struct wb_config_node *rule = NULL, *specimens = NULL, *three_point = NULL;
-    int method = 0;
+    int method = -1;
     struct wb_material *const material = &properties->material;
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("wire", properties->wire),
@@ -792,6 +893,10 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
     };
     material->hardening = WB_HARDENING_ISOTROPIC_POWER;
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
+    if (method < 0 && calibration)
+        method = METHOD_PAPER; /* which does not write the key */
+    if (method >= 0)
+        snprintf(properties->method, sizeof properties->method, "%s", methods[method]);
     if (deviations)
         WB_TRY(read_deviations(deviations, properties->deviation));
     if (calibration)
@@ -808,16 +913,29 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
     return specimens ? read_specimens(specimens, properties) : WB_OK;
 }
 
-enum wb_status wb_properties_read(const char *path, struct wb_properties *properties)
+static enum wb_status take(struct wb_config *config, struct wb_properties *properties)
 {
-    struct wb_config *config;
     struct wb_properties read;
     make_unknown(&read);
-    WB_TRY(wb_config_read(&config, path, NULL));
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);
     find_deviation(&read);
     if (status == WB_OK)
         *properties = read;
     return status;
+}
+
+enum wb_status wb_properties_read(const char *path, struct wb_properties *properties)
+{
+    struct wb_config *config;
+    WB_TRY(wb_config_read(&config, path, NULL));
+    return take(config, properties);
+}
+
+enum wb_status wb_properties_parse(const char *text, const char *origin,
+                                   struct wb_properties *properties, struct wb_reason *why)
+{
+    struct wb_config *config;
+    WB_TRY(wb_config_parse(&config, text, origin, why));
+    return take(config, properties);
 }

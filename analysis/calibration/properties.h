@@ -34,12 +34,23 @@
 #include "analysis/calibration/calibrate.h"
 #include "analysis/calibration/cycle_calibrate.h"
 #include "analysis/calibration/three_point_calibrate.h"
+#include "base/hash.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "fe/material/law.h"
+#include "fe/model/wire.h"
 
 enum {
     WB_PROPERTIES_MOST_SPECIMENS = 100,
-    WB_PROPERTIES_MOST_MOMENTS = 20
+    WB_PROPERTIES_MOST_MOMENTS = 20,
+    WB_PROPERTIES_MOST_DATASETS = 100
+};
+
+/* A dataset or a recording that a calibration was made of. */
+struct wb_properties_dataset {
+    char name[96];               /* last part of its folder or path */
+    char sha256[WB_SHA256_TEXT]; /* of its force_deflection.csv, or of the recording; "": unknown */
+    bool is_recording;           /* or file of a machine, read in memory, as reports do */
 };
 
 /* A specimen by itself. */
@@ -69,7 +80,12 @@ struct wb_properties {
                                    unknown */
     int n_samples;              /* of the calibration; 0 unknown */
     int n_series;               /* that they belong to, of three-point tests; 0 unknown */
-    bool is_virtual;
+    bool is_virtual;            /* from the virtual rig */
+    bool is_simulation;         /* from a computation */
+    char method[16];            /* "cycle", "paper", "three-point"; "" of a file by hand */
+    char tool[96];              /* that calibrated; "" unknown */
+    int n_datasets;             /* all of them */
+    struct wb_properties_dataset datasets[WB_PROPERTIES_MOST_DATASETS]; /* the first ones */
     /* The law, of which `material` is the Ludwik equivalent; of files without one Ludwik's,
      * isotropic, of `material`. */
     struct wb_law law;
@@ -106,10 +122,29 @@ WB_MUST_CHECK enum wb_status
 wb_properties_write_three_point(const char *path,
                                 const struct wb_three_point_calibration *calibration,
                                 const char *const *names, int n_names, bool force);
+/* What a report writes: the text of the same file, of datasets whose names and checksums the caller
+ * knows. */
+void wb_properties_format(struct wb_text *text, const struct wb_calibrate_result *result,
+                          const struct wb_calibrate_settings *settings,
+                          const struct wb_properties_dataset *datasets, int n_datasets);
+void wb_properties_format_cycle(struct wb_text *text,
+                                const struct wb_cycle_calibration *calibration,
+                                const struct wb_cycle_calibrate_settings *settings,
+                                const struct wb_properties_dataset *datasets, int n_datasets);
+void wb_properties_format_three_point(struct wb_text *text,
+                                      const struct wb_three_point_calibration *calibration,
+                                      const struct wb_properties_dataset *datasets, int n_datasets);
+/* Reads such a text; `origin` stands for the file in messages. `why` receives the reason; NULL: it
+ * is logged. */
+WB_MUST_CHECK enum wb_status wb_properties_parse(const char *text, const char *origin,
+                                                 struct wb_properties *properties,
+                                                 struct wb_reason *why);
 /* The same properties without a file in between. */
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties);
+/* Those of a wire's own file, of which nothing but the law is known. The wire has properties. */
+void wb_properties_from_wire(const struct wb_wire *wire, struct wb_properties *properties);
 
 #endif

@@ -171,18 +171,20 @@ static void describe_override(struct wb_json *simulation, const struct wb_bundle
     }
 }
 
-static void describe(struct wb_json *document, const struct wb_simulated_bundle *bundle)
+struct wb_json *wb_simulated_bundle_begin(struct wb_dataset *dataset,
+                                          const struct wb_simulated_bundle_head *head)
 {
-    const struct wb_bundle_model *model = bundle->model;
+    const struct wb_bundle_model *const model = head->model;
+    struct wb_json *const document = dataset->document;
     char name[128];
 
-    snprintf(name, sizeof name, "%s, simulated bundle", model->name);
+    set_info(&dataset->info, model);
+    snprintf(name, sizeof name, "%s, %s", model->name, head->name);
     wb_json_set_text(document, "name", name);
-    wb_json_set_boolean(document, "complete",
-                        bundle->result->converged && !bundle->result->stopped);
+    wb_json_set_boolean(document, "complete", head->is_complete);
 
     struct wb_json *const simulation = wb_json_set_object(document, "simulation");
-    wb_json_set_text(simulation, "model", "bundle");
+    wb_json_set_text(simulation, "model", head->solver);
     wb_json_set_text(simulation, "name", model->name);
     wb_json_set_text(simulation, "title", model->title);
     if (model->notes[0] != '\0')
@@ -193,21 +195,27 @@ static void describe(struct wb_json *document, const struct wb_simulated_bundle 
     wb_json_set_integer(simulation, "wires", model->packing.n);
     wb_json_set_boolean(simulation, "tape", model->has_tape);
     describe_interface(simulation, model);
-    describe_override(simulation, bundle->override);
-    if (bundle->surface_deflection > 0.0)
-        wb_json_set_number(simulation, "surface_deflection_mm", bundle->surface_deflection / WB_MM);
-    wb_simulated_bundle_describe(simulation, bundle);
-
-    wb_simulated_describe_tool(document);
+    describe_override(simulation, head->override);
+    return simulation;
 }
 
 enum wb_status wb_simulated_bundle_fill(struct wb_dataset *dataset,
                                         const struct wb_simulated_bundle *bundle)
 {
-    set_info(&dataset->info, bundle->model);
-    WB_TRY(add_rows(dataset, bundle->result));
-    describe(dataset->document, bundle);
-    return WB_OK;
+    const struct wb_simulated_bundle_head head = {
+        .solver = "bundle",
+        .name = "simulated bundle",
+        .model = bundle->model,
+        .override = bundle->override,
+        .is_complete = bundle->result->converged && !bundle->result->stopped,
+    };
+    struct wb_json *const simulation = wb_simulated_bundle_begin(dataset, &head);
+
+    if (bundle->surface_deflection > 0.0)
+        wb_json_set_number(simulation, "surface_deflection_mm", bundle->surface_deflection / WB_MM);
+    wb_simulated_bundle_describe(simulation, bundle);
+    wb_simulated_describe_tool(dataset->document);
+    return add_rows(dataset, bundle->result);
 }
 
 /* --- energies.csv --- */

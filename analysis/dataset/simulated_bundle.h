@@ -26,6 +26,19 @@ struct wb_simulated_bundle {
     double wall, cpu;                          /* s */
 };
 
+/* What a dataset says of a bundle whichever model computed it. */
+struct wb_simulated_bundle_head {
+    const char *solver;                        /* "bundle" */
+    const char *name;                          /* after the bundle's: "simulated bundle" */
+    const struct wb_bundle_model *model;       /* as it was run */
+    const struct wb_bundle_override *override; /* NULL: nothing */
+    bool is_complete;
+};
+
+/* Sets what was tested, and begins dataset.json; returns its `simulation`, to go on with. */
+struct wb_json *wb_simulated_bundle_begin(struct wb_dataset *dataset,
+                                          const struct wb_simulated_bundle_head *head);
+
 /* Fills an initialised dataset. It is the homogenised beam's test: the outer diameter is the
  * published one where the model has it, otherwise its own, and Poisson's ratio 0.3. Bench time goes
  * on with the tip's way at 1 mm/s, at least 1 ms a row. */

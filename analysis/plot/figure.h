@@ -154,4 +154,10 @@ WB_MUST_CHECK enum wb_status wb_figure_write_png(const struct wb_figure *figure,
 WB_MUST_CHECK enum wb_status wb_figure_write_pdf(const struct wb_figure *figure,
                                                  const char *date_utc, const char *path);
 
+/* Whether a file's name ends in .svg, .png or .pdf, and the figure written as that ending says (PNG
+ * where it is another one); a PDF has the fixed date. */
+bool wb_figure_is_file(const char *path);
+WB_MUST_CHECK enum wb_status wb_figure_write_file(const struct wb_figure *figure, double scale,
+                                                  const char *path);
+
 #endif

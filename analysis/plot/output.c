@@ -197,3 +197,23 @@ enum wb_status wb_figure_write_pdf(const struct wb_figure *figure, const char *d
     struct wb_text text = {0};
     return write_text(wb_figure_pdf(figure, date_utc, &text), &text, path);
 }
+
+static bool ends_in(const char *path, const char *ending)
+{
+    const size_t n = strlen(path), n_ending = strlen(ending);
+    return n > n_ending && strcmp(path + n - n_ending, ending) == 0;
+}
+
+bool wb_figure_is_file(const char *path)
+{
+    return ends_in(path, ".svg") || ends_in(path, ".png") || ends_in(path, ".pdf");
+}
+
+enum wb_status wb_figure_write_file(const struct wb_figure *figure, double scale, const char *path)
+{
+    if (ends_in(path, ".svg"))
+        return wb_figure_write_svg(figure, path);
+    if (ends_in(path, ".pdf"))
+        return wb_figure_write_pdf(figure, NULL, path);
+    return wb_figure_write_png(figure, scale, path);
+}

@@ -1,6 +1,7 @@
 #include "analysis/report/files.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 
 #include "analysis/report/html.h"
 #include "analysis/report/pdf.h"
+#include "base/config.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/text.h"
@@ -51,9 +53,11 @@ static enum wb_status draw_json(struct outputs *outputs, struct wb_json *numbers
 }
 
 static enum wb_status draw(struct outputs *outputs, const struct wb_document *document,
-                           const struct wb_figures *figures, struct wb_json *numbers)
+                           const struct wb_figures *figures, const struct wb_cards *cards,
+                           struct wb_json *numbers)
 {
-    outputs->items = calloc(2 * (size_t)figures->n + 3, sizeof *outputs->items);
+    const size_t most = 2 * (size_t)figures->n + (size_t)cards->n + 3;
+    outputs->items = calloc(most, sizeof *outputs->items);
     if (!outputs->items)
         return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
     WB_TRY(wb_pdf_render(document, add_output(outputs, "", "report", "pdf")));
@@ -63,6 +67,12 @@ static enum wb_status draw(struct outputs *outputs, const struct wb_document *do
         const char *const name = wb_figure_name(figure);
         WB_TRY(wb_figure_svg(figure, add_output(outputs, "figures/", name, "svg")));
         WB_TRY(wb_figure_png(figure, png_scale, add_output(outputs, "figures/", name, "png")));
+    }
+    for (int i = 0; i < cards->n; i++) {
+        struct output *const output = &outputs->items[outputs->n++];
+        snprintf(output->name, sizeof output->name, "%s", cards->files[i].name);
+        wb_text_append_bytes(&output->bytes, cards->files[i].bytes.bytes,
+                             cards->files[i].bytes.length);
     }
     WB_TRY(draw_json(outputs, numbers));
     for (int i = 0; i < outputs->n; i++) {
@@ -87,12 +97,46 @@ static enum wb_status fail_errno(const char *what, const char *path)
     return wb_fail(WB_ERR_IO, "cannot %s '%s': %s", what, path, strerror(error));
 }
 
+/* Folders that a report may have. */
+static const char *const subfolders[] = {"figures", "cards"};
+
+static bool is_within(const char *name, const char *subfolder)
+{
+    const size_t n = strlen(subfolder);
+    return strncmp(name, subfolder, n) == 0 && name[n] == '/' && !strchr(name + n + 1, '/');
+}
+
+/* Those that the outputs lie in. */
+static enum wb_status make_folders(const struct outputs *outputs, const char *folder)
+{
+    char path[WB_PATH];
+    for (size_t k = 0; k < WB_COUNT(subfolders); k++) {
+        bool is_used = false;
+        for (int i = 0; i < outputs->n; i++)
+            is_used = is_used || is_within(outputs->items[i].name, subfolders[k]);
+        if (!is_used)
+            continue;
+        WB_TRY(wb_file_join(path, folder, subfolders[k]));
+        WB_TRY(wb_file_make_folder(path));
+    }
+    return WB_OK;
+}
+
+/* Only those that are empty. */
+static void remove_folders(const char *folder)
+{
+    char path[WB_PATH];
+    for (size_t k = 0; k < WB_COUNT(subfolders); k++) {
+        if (wb_file_join(path, folder, subfolders[k]) == WB_OK)
+            rmdir(path);
+    }
+}
+
 /* Writes all into a new folder within the report's, from where it is moved when all is there. */
 static enum wb_status write_all(const struct outputs *outputs, const char *folder)
 {
     char path[WB_PATH];
-    WB_TRY(wb_file_join(path, folder, "figures"));
-    WB_TRY(wb_file_make_folder(path));
+    WB_TRY(make_folders(outputs, folder));
     for (int i = 0; i < outputs->n; i++) {
         const struct output *const output = &outputs->items[i];
         WB_TRY(wb_file_join(path, folder, output->name));
@@ -108,8 +152,7 @@ static void remove_all(const struct outputs *outputs, const char *folder)
         if (wb_file_join(path, folder, outputs->items[i].name) == WB_OK)
             unlink(path);
     }
-    if (wb_file_join(path, folder, "figures") == WB_OK)
-        rmdir(path);
+    remove_folders(folder);
     rmdir(folder);
 }
 
@@ -120,6 +163,15 @@ static bool is_made(const struct outputs *outputs, const char *name)
             return true;
     }
     return false;
+}
+
+/* Only names that this program gives: nothing outside of the folder. */
+static bool is_ours(const char *name)
+{
+    bool is_in_place = !strchr(name, '/');
+    for (size_t k = 0; k < WB_COUNT(subfolders); k++)
+        is_in_place = is_in_place || is_within(name, subfolders[k]);
+    return is_in_place && !strstr(name, "..");
 }
 
 /* Files that the report before made and this one does not, as its report.json lists them. */
@@ -133,12 +185,11 @@ static void remove_stale(const struct outputs *outputs, const char *folder)
     const struct wb_json *const files = wb_json_get(before, "files");
     for (size_t i = 0; i < wb_json_length(files); i++) {
         const char *name;
-        /* Only names that this program gives: nothing outside of the folder. */
-        if (wb_json_text(wb_json_item(files, i), &name) && !strstr(name, "..") && name[0] != '/' &&
-            (strncmp(name, "figures/", 8) == 0 || !strchr(name, '/')) && !is_made(outputs, name) &&
-            wb_file_join(path, folder, name) == WB_OK)
+        if (wb_json_text(wb_json_item(files, i), &name) && is_ours(name) &&
+            !is_made(outputs, name) && wb_file_join(path, folder, name) == WB_OK)
             unlink(path);
     }
+    remove_folders(folder);
     wb_json_destroy(before);
 }
 
@@ -146,9 +197,8 @@ static void remove_stale(const struct outputs *outputs, const char *folder)
 static enum wb_status move_all(const struct outputs *outputs, const char *from, const char *to)
 {
     char source[WB_PATH], target[WB_PATH];
-    WB_TRY(wb_file_join(target, to, "figures"));
-    WB_TRY(wb_file_make_folder(target));
     remove_stale(outputs, to);
+    WB_TRY(make_folders(outputs, to));
     for (int i = 0; i < outputs->n; i++) {
         WB_TRY(wb_file_join(source, from, outputs->items[i].name));
         WB_TRY(wb_file_join(target, to, outputs->items[i].name));
@@ -175,10 +225,11 @@ static enum wb_status write_folder(const struct outputs *outputs, const char *fo
 }
 
 enum wb_status wb_files_write(const struct wb_document *document, const struct wb_figures *figures,
-                              struct wb_json *numbers, const char *folder, bool force)
+                              const struct wb_cards *cards, struct wb_json *numbers,
+                              const char *folder, bool force)
 {
     struct outputs outputs = {0};
-    enum wb_status status = draw(&outputs, document, figures, numbers);
+    enum wb_status status = draw(&outputs, document, figures, cards, numbers);
     if (status == WB_OK)
         status = write_folder(&outputs, folder, force);
     release(&outputs);

@@ -1,11 +1,12 @@
 /* The files of a report, whatever it is about: report.pdf and report.html of its document,
- * report.json of its numbers, figures/ as SVG and PNG.
+ * report.json of its numbers, figures/ as SVG and PNG, cards/ for other programs.
  */
 #ifndef WB_ANALYSIS_REPORT_FILES_H
 #define WB_ANALYSIS_REPORT_FILES_H
 
 #include <stdbool.h>
 
+#include "analysis/report/cards.h"
 #include "analysis/report/document.h"
 #include "analysis/report/figures.h"
 #include "base/json.h"
@@ -18,7 +19,7 @@
  * that on a failure the old report stays and nothing half-written is left behind. */
 WB_MUST_CHECK enum wb_status wb_files_write(const struct wb_document *document,
                                             const struct wb_figures *figures,
-                                            struct wb_json *numbers, const char *folder,
-                                            bool force);
+                                            const struct wb_cards *cards, struct wb_json *numbers,
+                                            const char *folder, bool force);
 
 #endif

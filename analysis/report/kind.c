@@ -24,10 +24,14 @@ enum wb_status wb_kind_write(const struct wb_kind *kind, const void *results, co
 {
     struct wb_figures figures;
     struct wb_document document;
+    struct wb_cards cards = {0};
     WB_TRY(wb_figures_create(&figures, kind->figures, kind->n_figures, results));
     kind->pages(&document, results, &figures);
     struct wb_json *const numbers = kind->json(results);
-    const enum wb_status status = wb_files_write(&document, &figures, numbers, folder, force);
+    enum wb_status status = kind->cards ? kind->cards(&cards, results) : WB_OK;
+    if (status == WB_OK)
+        status = wb_files_write(&document, &figures, &cards, numbers, folder, force);
+    wb_cards_release(&cards);
     wb_json_destroy(numbers);
     wb_document_release(&document);
     wb_figures_release(&figures);

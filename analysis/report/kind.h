@@ -13,6 +13,7 @@
 #include <stdio.h>
 
 #include "analysis/report/campaign.h"
+#include "analysis/report/cards.h"
 #include "analysis/report/document.h"
 #include "analysis/report/figures.h"
 #include "analysis/report/simulation.h"
@@ -46,6 +47,8 @@ typedef enum wb_status wb_kind_compute(void *results, int n_threads, wb_kind_pro
 /* Builds the document, which is released before the figures. */
 typedef void wb_kind_pages(struct wb_document *document, const void *results,
                            const struct wb_figures *figures);
+/* Adds the laws that were calibrated (wb_cards_add()). */
+typedef enum wb_status wb_kind_cards(struct wb_cards *cards, const void *results);
 /* All numbers, with units in the keys; NULL when out of memory. */
 typedef struct wb_json *wb_kind_json(const void *results);
 /* Of a campaign or of results; accepts zeroed ones. */
@@ -64,6 +67,7 @@ struct wb_kind {
     const struct wb_figures_row *figures; /* (n_figures) */
     size_t n_figures;
     wb_kind_pages *pages;
+    wb_kind_cards *cards; /* NULL: it calibrates nothing */
     wb_kind_json *json;
     void (*print)(FILE *out, const void *results); /* a summary */
 

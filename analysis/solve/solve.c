@@ -12,8 +12,17 @@
 
 #define WB_LOG_DOMAIN "solve"
 
-static const struct wb_solve_kind *find_kind(unsigned bit)
+static bool is_explicit_bundle(const struct wb_solve_settings *settings)
 {
+    return settings->kind == WB_SOLVE_BUNDLE && settings->bundle_model == WB_SOLVE_EXPLICIT &&
+           !settings->uncertain;
+}
+
+static const struct wb_solve_kind *find_kind(const struct wb_solve_settings *settings)
+{
+    const unsigned bit = settings->kind;
+    if (bit == WB_SOLVE_BUNDLE && !is_explicit_bundle(settings))
+        return &wb_solve_section;
     return bit == WB_SOLVE_CANTILEVER    ? &wb_solve_cantilever
            : bit == WB_SOLVE_BUNDLE      ? &wb_solve_bundle
            : bit == WB_SOLVE_THREE_POINT ? &wb_solve_three_point
@@ -141,6 +150,11 @@ void wb_solve_describe(const struct wb_solve *solve, struct wb_json *object)
     solve->kind->describe(solve, object);
 }
 
+bool wb_solve_summarise(const struct wb_solve *solve, struct wb_text *text)
+{
+    return solve->kind->summarise && solve->kind->summarise(solve, text);
+}
+
 /* --- a run --- */
 
 /* How it went, on all ranks as on the first. */
@@ -172,7 +186,7 @@ static struct outcome run(struct wb_solve *solve, wb_solve_show *show, void *con
 static enum wb_status run_in_team(const struct wb_solve_settings *settings, wb_solve_show *show,
                                   void *context, bool *complete)
 {
-    const struct wb_solve_kind *const kind = find_kind(settings->kind);
+    const struct wb_solve_kind *const kind = find_kind(settings);
     struct wb_solve *const solve = calloc(1, kind->size);
     if (!solve)
         return wb_fail(WB_ERR_MEMORY, "out of memory");
@@ -188,8 +202,9 @@ enum wb_status wb_solve_run(const struct wb_solve_settings *settings, wb_solve_s
                             void *context, bool *complete)
 {
     *complete = false;
-    /* Ranks share the work of a bundle; of other kinds each computes all, as if it were alone. */
-    if (settings->kind != WB_SOLVE_BUNDLE)
+    /* Ranks share the work of an explicit bundle; of other kinds each computes all, as if it were
+     * alone. */
+    if (!is_explicit_bundle(settings))
         return run_in_team(settings, show, context, complete);
     WB_TRY(wb_team_start());
     if (!is_first())

@@ -16,6 +16,7 @@
 #include "analysis/solve/solve_settings.h"
 #include "base/json.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "fe/linear/trial.h"
 #include "fe/trial/three_point_bending.h"
 
@@ -39,6 +40,9 @@ void wb_solve_row(const struct wb_solve *solve, int index, struct wb_solve_row *
 
 /* How it was computed, as members of an object. */
 void wb_solve_describe(const struct wb_solve *solve, struct wb_json *object);
+
+/* What it comes to, as text for a terminal; false: nothing but its rows. */
+bool wb_solve_summarise(const struct wb_solve *solve, struct wb_text *text);
 
 /* Shows a computed test, after its dataset was written. */
 typedef enum wb_status wb_solve_show(void *context, const struct wb_solve *solve);

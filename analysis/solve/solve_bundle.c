@@ -66,7 +66,7 @@ static enum wb_status prepare(void *context)
 static bool report_progress(void *context, const struct wb_bundle_progress *now)
 {
     struct run *run = context;
-    const double rows = wb_bundle_run_planned_rows(&run->model);
+    const double rows = wb_bundle_model_rows(&run->model);
     char note[160];
 
     if (!is_first())

@@ -38,12 +38,14 @@ struct wb_solve_kind {
     enum wb_status (*write)(const void *run, const struct wb_dataset *dataset, const char *folder);
     void (*row)(const void *run, int index, struct wb_solve_row *row);
     void (*describe)(const void *run, struct wb_json *object);
+    /* What it comes to besides its rows; false: nothing. NULL: never anything. */
+    bool (*summarise)(const void *run, struct wb_text *text);
     void (*tell_lost)(const void *run); /* says why it did not converge */
     void (*warn)(const void *run);      /* of what else a reader of the curve must know; or NULL */
     void (*release)(void *run);         /* accepts one that was prepared in part */
 };
 
 extern const struct wb_solve_kind wb_solve_cantilever, wb_solve_wire, wb_solve_bundle,
-    wb_solve_three_point;
+    wb_solve_section, wb_solve_three_point;
 
 #endif

@@ -13,6 +13,9 @@ const char *const wb_solve_settings_kinds[WB_SOLVE_KINDS + 1] = {
 static const char *const laws[] = {
     [WB_SOLVE_ELASTOPLASTIC] = "elastoplastic", [WB_SOLVE_ELASTIC] = "elastic", NULL};
 
+static const char *const bundle_models[] = {
+    [WB_SOLVE_EXPLICIT] = "explicit", [WB_SOLVE_SECTION] = "section", NULL};
+
 static const struct wb_setting rows[] = {
     {.name = "wire",
      .type = WB_SETTING_TEXT,
@@ -178,6 +181,15 @@ static const struct wb_setting rows[] = {
      .argument = "DIR",
      .help = "Write every row's stress field for ParaView",
      .applies = WB_SOLVE_WIRE3D | WB_SOLVE_BUNDLE},
+    {.name = "model",
+     .type = WB_SETTING_CHOICE,
+     .offset = offsetof(struct wb_solve_settings, bundle_model),
+     .choices = bundle_models,
+     .option = "model",
+     .argument = "MODEL",
+     .help = "Compute hexahedra in explicit dynamics, in minutes, or a beam whose wires slip on "
+             "each other, in a fraction of a second",
+     .applies = WB_SOLVE_BUNDLE},
     {.name = "vtk_every",
      .type = WB_SETTING_INTEGER,
      .offset = offsetof(struct wb_solve_settings, vtk_every),
@@ -217,6 +229,40 @@ static const struct wb_setting rows[] = {
      .option = "checkpoint-minutes",
      .argument = "M",
      .help = "With --checkpoint, time between checkpoints",
+     .applies = WB_SOLVE_BUNDLE},
+    {.name = "uncertain",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_solve_settings, uncertain),
+     .option = "uncertain",
+     .help = "Bands of 90 % from what the file's `uncertainty` states, by the section model",
+     .applies = WB_SOLVE_BUNDLE},
+    {.name = "runs",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_solve_settings, runs),
+     .least = 20,
+     .largest = 100000,
+     .fallback = 500,
+     .option = "runs",
+     .argument = "N",
+     .help = "With --uncertain, runs of each case",
+     .applies = WB_SOLVE_BUNDLE},
+    {.name = "seed",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_solve_settings, seed),
+     .least = 0,
+     .largest = 1000000000,
+     .fallback = 1,
+     .option = "seed",
+     .argument = "N",
+     .help = "With --uncertain, seed of the runs: the same one gives the same bytes",
+     .applies = WB_SOLVE_BUNDLE},
+    {.name = "sweep",
+     .type = WB_SETTING_TEXT,
+     .offset = offsetof(struct wb_solve_settings, sweep),
+     .option = "sweep",
+     .argument = "KEY=A,B[:KEY=...]",
+     .help = "With --uncertain, cases in place of the file's scenarios: all combinations of "
+             "layers, overlap (percent) and wires",
      .applies = WB_SOLVE_BUNDLE},
 };
 

@@ -22,6 +22,12 @@ enum {
  * "bending3p". */
 extern const char *const wb_solve_settings_kinds[WB_SOLVE_KINDS + 1];
 
+/* How a bundle is computed. */
+enum {
+    WB_SOLVE_EXPLICIT, /* in explicit dynamics */
+    WB_SOLVE_SECTION   /* by fe/section/section_run.h */
+};
+
 enum {
     WB_SOLVE_ELASTOPLASTIC,
     WB_SOLVE_ELASTIC
@@ -48,11 +54,16 @@ struct wb_solve_settings {
     const char *model; /* name or file */
     const char *vtk;   /* folder; NULL: none; not of wire1d */
     /* Of bundles. */
+    int bundle_model; /* WB_SOLVE_EXPLICIT or WB_SOLVE_SECTION */
     struct wb_bundle_override override;
     int vtk_every; /* rows; 0: 1 */
     int threads;
     const char *checkpoint;     /* file; NULL: none */
     double checkpoint_interval; /* s; 0: 10 minutes */
+    /* Of the section model. */
+    bool uncertain;    /* bands, by analysis/predict/bands.h */
+    int runs, seed;    /* of them */
+    const char *sweep; /* cases in place of the file's scenarios; NULL: none */
 };
 
 extern const struct wb_setting_table wb_solve_settings_table;

@@ -59,10 +59,14 @@ struct syn {
     double sign;                              /* of the load cell; 0 means 1 */
     /* The bench. */
     double time_scale; /* 0 means 1 */
+    double skew;       /* the cameras' clock runs so much slower */
     int version_major, version_minor;
     double plane_angle; /* rad */
     bool z_up, no_motion;
-    bool polled; /* the load cell is asked for each reading */
+    bool only_down;   /* the clamp goes down and stays there */
+    double late;      /* s: the force is so much later than its filter makes it */
+    uint64_t another; /* another draw of all noise; 0: the first */
+    bool polled;      /* the load cell is asked for each reading */
     /* What the recording says wrongly. */
     double scale;         /* of readings in the rig; 0: none, which is right */
     const char *specimen; /* NULL: the right one */
@@ -126,7 +130,7 @@ static inline void syn_prepare(struct syn *syn)
         syn->table_g[i] = syn->table_y[i] - syn_lean(syn->table_x[i]);
     }
     syn->largest_y = SYN_REST;
-    syn->seed = 77;
+    syn->seed = 77 + syn->another * UINT64_C(0x9e3779b97f4a7c15);
     syn->server_zero = 7200.0;
     if (syn->time_scale == 0.0)
         syn->time_scale = 1.0;
@@ -160,6 +164,8 @@ static inline double syn_commanded(const struct syn *syn, double t)
     if (t < 0.0 || syn->no_motion || t >= syn->cycles * syn_cycle_time(syn))
         return 0.0;
     const double down = syn->travel / SYN_SPEED, in = fmod(t, syn_cycle_time(syn));
+    if (syn->only_down)
+        return fmin(SYN_SPEED * in, syn->travel);
     return in < down ? SYN_SPEED * in : fmax(0.0, syn->travel - SYN_SPEED * (in - down));
 }
 
@@ -205,7 +211,7 @@ static inline int64_t syn_host(const struct syn *syn, double t)
 static inline double syn_server(const struct syn *syn, double t)
 {
     const double since = syn->restart_at > 0.0 && t > syn->restart_at ? -5000.0 : 0.0;
-    return syn->server_zero + since + (t + 100.0) * (1.0 - 50e-6);
+    return syn->server_zero + since + (t + 100.0) * (1.0 - syn->skew);
 }
 
 static inline void syn_chunk(struct syn *syn, struct wb_recording *recording, int stream,
@@ -331,7 +337,7 @@ static inline void syn_write_mocap(struct syn *syn, struct wb_recording *recordi
 static inline void syn_write_load(struct syn *syn, struct wb_recording *recording, int stream,
                                   double begin, double end)
 {
-    int64_t seq = 0;
+    int64_t seq = 0, read_ns = INT64_MIN;
     double filtered = 0.0, last = 0.0;
     syn->largest_y = SYN_REST;
     const int n = (int)((end - begin) * 80.0), sub = 8;
@@ -339,7 +345,7 @@ static inline void syn_write_load(struct syn *syn, struct wb_recording *recordin
         char line[48];
         const double t = begin + i / 80.0;
         for (int k = 1; k <= sub; k++) {
-            const double tension = syn_move(syn, t - (sub - k) / (80.0 * sub)).tension;
+            const double tension = syn_move(syn, t - syn->late - (sub - k) / (80.0 * sub)).tension;
             /* First order, the input straight between samples. */
             const double decay = exp(-1.0 / (80.0 * sub) / SYN_FILTER);
             filtered = decay * filtered + (1.0 - decay) * 0.5 * (last + tension);
@@ -353,8 +359,10 @@ static inline void syn_write_load(struct syn *syn, struct wb_recording *recordin
             continue;
         if (i > 0 && i < n - 1 && syn_vanishes(syn, &syn->vanished_lines))
             continue;
-        syn_chunk(syn, recording, stream, &seq, syn_host(syn, t) + (int64_t)(2e6 * u * u), line,
-                  (size_t)length);
+        /* A later one is not read earlier. */
+        const int64_t arrival_ns = syn_host(syn, t) + (int64_t)(2e6 * u * u);
+        read_ns = arrival_ns > read_ns ? arrival_ns : read_ns;
+        syn_chunk(syn, recording, stream, &seq, read_ns, line, (size_t)length);
     }
 }
 
@@ -506,6 +514,7 @@ static inline void syn_default(struct syn *syn)
     syn->busy_from = syn->busy_until = -1e3;
     syn->version_major = 3;
     syn->plane_angle = 2.1;
+    syn->skew = 50e-6;
 }
 
 #endif

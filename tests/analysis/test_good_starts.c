@@ -1,14 +1,17 @@
 /* The start check against wires of the virtual rig on which nothing is wrong: all types, lengths of
  * 60 to 150 mm, bows as they are drawn. What stops such a start stops people at work. */
+#include "daq/first_force.h"
 #include "daq/start_check.h"
 
 #include <string.h>
 
 #include "base/units.h"
 #include "fixtures/virtual/live_wire.h"
+#include "fixtures/virtual/sim_cell.h"
 #include "fixtures/virtual/sim_mocap.h"
 #include "tests/analysis/fast_rig.h"
 #include "tests/check.h"
+#include "tests/trials.h"
 
 enum {
     STARTS = 500,
@@ -63,6 +66,9 @@ static void no_good_start_is_stopped(void **state)
     print_message("    %d of %d good starts stopped, bows up to %.1f mm\n", stopped, STARTS,
                   largest_bow / WB_MM);
     assert_int_equal(stopped, 0);
+    count_trials("The start check stops no good start", STARTS,
+                 "starts of all types, 60 to 150 mm, bows up to %.0f mm: none stopped",
+                 largest_bow / WB_MM);
 }
 
 /* The same wires, with a file or cameras that are wrong by little. */
@@ -100,7 +106,111 @@ static void no_wrong_start_gets_through(void **state)
         }
         print_message("    %s: %d of %d stopped\n", names[fault], stopped, n);
         assert_int_equal(stopped, n);
+        count_trials("A start that is wrong by little is refused", (uint64_t)n,
+                     "starts with %s: all refused", names[fault]);
     }
+}
+
+/* What is wrong with the cell, or with what is known of the wire. */
+struct force_fault {
+    const char *name;
+    double factor; /* on the reading */
+    double length; /* on the specimen's length, as its file says it */
+    bool is_known; /* the wire has properties */
+};
+
+/* The first force of a test whose deflection is the wire's own: the cell's readings from the tare
+ * to 53 mm at 1 mm/s. */
+static enum wb_first_force_verdict
+pull(const struct fast_rig *fast, const struct force_fault *fault, char text[WB_START_CHECK_TEXT])
+{
+    const double tare_time = 2.0;
+    double rest = 0.0;
+    struct wb_wire wire = fast->wire;
+    struct wb_first_force force;
+    struct wb_first_force_bounds bounds = {.of = "the wire"};
+    struct wb_live_wire *live;
+    struct wb_live_wire_view view;
+    static struct wb_sim_cell cell;
+    struct wb_average zero = {0};
+    const struct wb_live_wire_parts parts = {&fast->truth, &fast->composite, &fast->wire,
+                                             &fast->rig, &fast->specimen};
+    wire.has_properties = fault->is_known;
+    wb_wire_stiffness_bounds(&wire, fault->length * fast->specimen.length, &bounds.lowest,
+                             &bounds.highest);
+    assert_int_equal(wb_live_wire_create(&live, &parts, NULL), WB_OK);
+    assert_int_equal(wb_sim_cell_init(&cell, &fast->truth, &fast->rig), WB_OK);
+    enum wb_first_force_verdict verdict = WB_FIRST_FORCE_OPEN;
+    for (uint64_t k = 0; verdict == WB_FIRST_FORCE_OPEN; k++) {
+        const double t = wb_sim_cell_time(&cell, k), travel = 1e-3 * fmax(0.0, t - tare_time);
+        if (travel > 0.053)
+            break;
+        wb_live_wire_move(live, travel, &view);
+        if (k == 0)
+            rest = view.deflection;
+        wb_sim_cell_read(&cell, k, t, view.tension);
+        cell.out.n = 0;
+        if (t < tare_time) {
+            wb_average_add(&zero, fault->factor * cell.reading);
+            wb_first_force_begin(&force, wb_average_deviation(&zero), &fast->rig);
+            continue;
+        }
+        verdict = wb_first_force_add(&force, view.deflection - rest,
+                                     fault->factor * cell.reading - zero.mean, &bounds, text);
+    }
+    wb_live_wire_destroy(live);
+    return verdict;
+}
+
+static int count_stopped(const struct force_fault *fault, int n, uint64_t seed)
+{
+    int stopped = 0;
+    for (int i = 0; i < n; i++) {
+        struct fast_rig fast;
+        char text[WB_START_CHECK_TEXT] = "";
+        const double length = (60.0 + 90.0 * i / (n - 1)) * WB_MM;
+        fast_rig_init(&fast, 1 + i % 3, length, seed + (uint64_t)i);
+        const enum wb_first_force_verdict verdict = pull(&fast, fault, text);
+        if (verdict == WB_FIRST_FORCE_WRONG && ++stopped == 1)
+            print_message("    %s: type %d, %.0f mm: %s\n", fault->name, 1 + i % 3, length / WB_MM,
+                          text);
+        if (verdict == WB_FIRST_FORCE_OPEN)
+            print_message("    %s: type %d, %.0f mm: never judged\n", fault->name, 1 + i % 3,
+                          length / WB_MM);
+    }
+    return stopped;
+}
+
+static void no_good_first_force_is_stopped(void **state)
+{
+    (void)state;
+    for (int known = 0; known < 2; known++) {
+        const struct force_fault good = {"nothing wrong", 1.0, 1.0, known};
+        assert_int_equal(count_stopped(&good, STARTS, 7000), 0);
+    }
+    count_trials("The first force stops no good test", 2 * STARTS,
+                 "starts of all types, 60 to 150 mm, with and without known properties: none "
+                 "stopped");
+}
+
+static void no_wrong_first_force_gets_through(void **state)
+{
+    (void)state;
+    static const struct force_fault faults[] = {
+        {"sign turned round", -1.0, 1.0, false},
+        {"sign turned round", -1.0, 1.0, true},
+        {"kg for g", 1000.0, 1.0, false},
+        {"mg for g", 0.001, 1.0, true},
+        {"N for kg", 1.0 / 9.80665, 1.0, true},
+        {"a specimen half as long", 1.0, 0.5, true},
+        {"a specimen twice as long", 1.0, 2.0, true},
+        {"a dead cell", 0.0, 1.0, true},
+    };
+    int n = 0;
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++, n += 60)
+        assert_int_equal(count_stopped(&faults[i], 60, 8000), 60);
+    count_trials("A wrong first force stops the test", (uint64_t)n,
+                 "starts with a sign, unit or specimen that is wrong: all stopped");
 }
 
 int main(void)
@@ -108,6 +218,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_good_start_is_stopped),
         cmocka_unit_test(no_wrong_start_gets_through),
+        cmocka_unit_test(no_good_first_force_is_stopped),
+        cmocka_unit_test(no_wrong_first_force_gets_through),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

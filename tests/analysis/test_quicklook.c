@@ -1,5 +1,6 @@
 /* One dataset at a glance: figures and summary are there, say where they come from, and are the
  * same every time. */
+#include "analysis/plot/figure.h"
 #include "analysis/quicklook.h"
 
 #include <stdlib.h>
@@ -124,6 +125,29 @@ static void all_files_are_written_and_say_virtual_rig(void **state)
     wb_dataset_release(&dataset);
 }
 
+static void the_curve_alone_is_written_as_its_name_ends(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *begins;
+    } files[] = {{"curve.svg", "<?xml"}, {"curve.png", "\x89PNG"}, {"curve.pdf", "%PDF"}};
+    struct wb_dataset dataset;
+    char path[WB_PATH];
+    size_t size;
+    fill(&dataset);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        assert_true(wb_figure_is_file(files[i].name));
+        assert_int_equal(wb_file_join(path, folder, files[i].name), WB_OK);
+        assert_int_equal(wb_quicklook_draw(&dataset, path), WB_OK);
+        char *const bytes = read_whole(folder, files[i].name, &size);
+        assert_memory_equal(bytes, files[i].begins, strlen(files[i].begins));
+        free(bytes);
+    }
+    assert_says(folder, "curve.svg", "measured on a virtual rig");
+    assert_false(wb_figure_is_file("curve.jpg") || wb_figure_is_file(".png"));
+    wb_dataset_release(&dataset);
+}
+
 static void the_same_dataset_gives_the_same_bytes(void **state)
 {
     (void)state;
@@ -191,6 +215,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_files_are_written_and_say_virtual_rig),
+        cmocka_unit_test(the_curve_alone_is_written_as_its_name_ends),
         cmocka_unit_test(the_same_dataset_gives_the_same_bytes),
         cmocka_unit_test(a_dataset_without_shapes_or_rows_has_a_summary),
         cmocka_unit_test(summary_says_what_deflection_is_left),

@@ -28,6 +28,7 @@ done
 for kind in force mocap; do
     check import "$kind"
 done
+check export --to mujoco
 for other in --tensile --constituents --compliance; do
     check calibrate "$other"
 done

@@ -1,26 +1,36 @@
 #!/bin/bash
 # `wirebench record` and `stage` against the virtual rig, as a user meets them: a whole test, and
 # everything that goes wrong, each with its message, its exit code and a recording that can be read.
-# Usage: record.sh WIREBENCH SOURCE_ROOT
+# Usage: record.sh WIREBENCH SOURCE_ROOT [CLOCK_SHIM]
 set -u
 . "$(dirname "$0")/wait.sh"
 
 wirebench=$(realpath "$1")
 root=$2
+clock_shim=${3:-}
 specimen=$root/fixtures/specimens/type1-L85-1.yaml
 folder=$(mktemp -d /tmp/wb-record-XXXXXX)
 rigs=()
 failures=0
+
+# PROMISE TRIALS OUTCOME: as tests/trials.h does.
+count_trials() {
+    printf '%s\t%s\t%s\trecord.sh\n' "$1" "$2" "$3" | tee -a "${WIREBENCH_TRIALS:-/dev/null}"
+}
 
 end_rig() {
     kill -INT "$1" 2>/dev/null
     wait "$1" 2>/dev/null
 }
 
-clean_up() {
+leave_lane() {
     for rig in "${rigs[@]}"; do
         end_rig "$rig"
     done
+}
+
+clean_up() {
+    leave_lane
     rm -rf "$folder"
 }
 trap clean_up EXIT
@@ -33,10 +43,10 @@ fail() {
     failures=$((failures + 1))
 }
 
-# start_rig NAME [RIG.yaml]: a virtual rig of its own in $folder/NAME; its process in $rig.
+# start_rig NAME [RIG.yaml OPTIONS...]: a virtual rig of its own in $folder/NAME; its process in $rig.
 start_rig() {
     "$wirebench" rig "${2:-$folder/bench.yaml}" --specimen "$specimen" \
-        --run "$folder/$1" --time-scale 20 2>"$folder/$1.log" &
+        --run "$folder/$1" --time-scale 20 "${@:3}" 2>"$folder/$1.log" &
     rig=$!
     rigs+=("$rig")
     wait_until "$rig" grep -qs '^ready' "$folder/$1.log" && return
@@ -94,6 +104,9 @@ whole_test() {
     record whole --travel-mm 10 --cycles 2 --operator 'A. Tester' --notes 'a note'
     expect whole 0 'virtual rig, 2 cycles'
     readable whole cycle_end
+    grep -rqs first_force "$folder/whole.csv" || fail "whole: the first force was not judged"
+    "$wirebench" info "$folder/whole.wbr" | grep -q 'settings  *\$1=255 \$10=1' ||
+        fail 'whole: info does not show how the stage was set'
     record whole --travel-mm 10
     expect whole 1 'never overwritten'
     end_rig "$rig"
@@ -138,6 +151,48 @@ ctrl_c_too_early() {
     end_rig "$rig"
 }
 
+# A cell that is wired the other way round, and one whose scale is off by ten: the test ends in its
+# first millimetres. A scale of ten times too much is refused as noise.
+first_force() {
+    local change expected name
+    for change in 'sign: -1' 'scale: 0.1'; do
+        name=force-${change%%:*}
+        start_rig "$name"
+        sed -i "/sign:/d; /scale:/{/time_scale/!d}; s/^  filter_delay_ms:/  $change\n&/" "$folder/$name/rig.yaml"
+        case $change in
+        sign*) expected='turn load_cell.sign of the rig file round' ;;
+        *) expected='mN per mm of deflection\|reads no force' ;;
+        esac
+        record "$name"
+        expect "$name" 3 "$expected"
+        grep -q 'the stage stands at [0-9]*\.[0-9]* mm' "$folder/$name.err" ||
+            fail "$name: $(cat "$folder/$name.err")"
+        end_rig "$rig"
+    done
+}
+
+# The wall clock jumps by a day, forward and back, whenever it is read.
+wall_clock_jumps() {
+    [ -n "$clock_shim" ] || return
+    start_rig clock
+    WB_CLOCK_SHIM=$folder/jumps LD_PRELOAD=$clock_shim "$wirebench" record \
+        "$folder/clock/rig.yaml" --specimen "$specimen" -o "$folder/clock.wbr" --travel-mm 10 \
+        --cycles 2 >"$folder/clock.out" 2>"$folder/clock.err" </dev/null
+    code=$?
+    expect clock 0 'virtual rig, 2 cycles, [1-9][0-9]\? s'
+    local jumps
+    jumps=$(cat "$folder/jumps")
+    [ "$jumps" -gt 0 ] || fail 'clock: it never jumped'
+    "$wirebench" verify "$folder/clock.wbr" >"$folder/clock.verify" 2>&1 ||
+        fail "clock: $(cat "$folder/clock.verify")"
+    "$wirebench" align "$folder/clock.wbr" -o "$folder/clock.data" >"$folder/clock.align" 2>&1
+    grep -q 'largest deflection' "$folder/clock.align" ||
+        grep -q 'stood still' "$folder/clock.err" || fail "clock: $(cat "$folder/clock.align")"
+    count_trials 'The wall clock jumps while a test is recorded' "$jumps" \
+        'jumps of up to 28 hours: the recording is whole, no stamp moves'
+    end_rig "$rig"
+}
+
 force_limit() {
     sed 's/force_mN: 275/force_mN: 45/' "$folder/bench.yaml" >"$folder/limit.yaml"
     start_rig limit "$folder/limit.yaml"
@@ -175,6 +230,49 @@ recorder_killed() {
         fail "alone: $(cat "$folder/alone.out")"
     "$wirebench" stage "$folder/alone/rig.yaml" release >"$folder/alone.out" 2>&1 ||
         fail "alone: $(cat "$folder/alone.out")"
+    end_rig "$rig"
+}
+
+# The same of a Tic, which knows by its command timeout that nobody is there: 1 s, of the host.
+tic_recorder_killed() {
+    sed 's/protocol: grbl/protocol: tic/; s/axis: X/steps_per_mm: 400/; s/speed_mm_s: 1/speed_mm_s: 0.2/' \
+        "$folder/bench.yaml" >"$folder/tic-alone.yaml"
+    start_rig tic "$folder/tic-alone.yaml"
+    begin tic
+    wait_for_motion tic $recorder
+    kill -KILL $recorder
+    wait $recorder 2>/dev/null
+    sleep 2.5
+    "$wirebench" stage "$folder/tic/rig.yaml" jog 0.1 >"$folder/tic.out" 2>&1 ||
+        fail "tic: $(cat "$folder/tic.out")"
+    grep -q 'the stage stands at [0-9]' "$folder/tic.out" || fail "tic: $(cat "$folder/tic.out")"
+    "$wirebench" stage "$folder/tic/rig.yaml" release >"$folder/tic.out" 2>&1 ||
+        fail "tic: $(cat "$folder/tic.out")"
+    "$wirebench" stage "$folder/tic/rig.yaml" home >"$folder/tic.out" 2>&1 ||
+        fail "tic: $(cat "$folder/tic.out")"
+    end_rig "$rig"
+}
+
+tic_whole_test() {
+    sed 's/protocol: grbl/protocol: tic/; s/axis: X/steps_per_mm: 400/' "$folder/bench.yaml" \
+        >"$folder/tic-whole.yaml"
+    start_rig tic-whole "$folder/tic-whole.yaml"
+    record tic-whole
+    [ "$code" = 0 ] || fail "tic-whole: exit code $code: $(cat "$folder/tic-whole.err")"
+    readable tic-whole 'command timeout 1000 ms'
+    end_rig "$rig"
+}
+
+# The newest NatNet there is, and a take of the server's own.
+newest_natnet() {
+    sed 's/^  protocol: natnet/&\n  record_take: true/' "$folder/bench.yaml" >"$folder/take.yaml"
+    start_rig take "$folder/take.yaml" --natnet-version 4.4
+    record take
+    [ "$code" = 0 ] || fail "take: exit code $code: $(cat "$folder/take.err")"
+    readable take 'NatNet 4.4'
+    for words in 'agrees to stream NatNet 4.1' 'the server records a take of its own'; do
+        grep -rqs "$words" "$folder/take.csv" || fail "take: no event '$words'"
+    done
     end_rig "$rig"
 }
 
@@ -264,9 +362,14 @@ full_disk() {
         ulimit -f 3072
         exec "$wirebench" record "$folder/full/rig.yaml" --specimen "$specimen" \
             -o "$folder/full.wbr" >"$folder/full.out" 2>"$folder/full.err" </dev/null
-    )
+    ) &
+    local recorder=$!
+    # The test goes on in memory, and at its end the tool waits for room, until Ctrl-C.
+    wait_until $recorder grep -q 'Ctrl-C gives it up' "$folder/full.err"
+    kill -INT $recorder
+    wait $recorder
     code=$?
-    expect full 3 'cannot be written'
+    expect full 3 'the disk takes nothing'
     # It could not be closed properly, so info may say 3, but it reads what was written.
     "$wirebench" info "$folder/full.wbr" >"$folder/full.info" 2>&1
     code=$?
@@ -332,6 +435,77 @@ cell_check() {
     end_rig "$rig"
 }
 
+# Answers check's questions as an operator does: each mass hangs before Enter is pressed.
+hang_in_turn() { # LOG FOLDER MASS...
+    local log=$1 hung=$2/hung_mass_g asked=0
+    shift 2
+    for mass; do
+        asked=$((asked + 1))
+        wait_until $$ has_asked "$log" $asked || return
+        echo "$mass" >"$hung.new"
+        mv "$hung.new" "$hung"
+        echo
+    done
+}
+
+has_asked() { # LOG TIMES
+    [ "$(grep -o 'press Enter' "$1" 2>/dev/null | wc -l)" -ge "$2" ]
+}
+
+# check_series NAME HUNG OPTIONS...: masses that hang after the first zero, in one word.
+check_series() {
+    local name=$1 hung=$2
+    shift 2
+    : >"$folder/$name.ask"
+    # shellcheck disable=SC2086 # one word a mass
+    hang_in_turn "$folder/$name.ask" "$folder/$name" $hung |
+        "$wirebench" stage "$folder/$name/rig.yaml" check --seconds 0.3 "$@" \
+            >"$folder/$name.json" 2>"$folder/$name.ask"
+    code=$?
+    rm -f "$folder/$name/hung_mass_g"
+}
+
+cell_series() {
+    sed 's/^  sign: +1/  check_masses_g: [0, 5, 10, 20, 10, 5, 0]\n  check_due_days: 30\n&/' \
+        "$folder/bench.yaml" >"$folder/series.yaml"
+    start_rig series "$folder/series.yaml"
+    record series --travel-mm 2
+    expect series 1 'stage .*/series/rig.yaml check'
+    check_series series '5 10 20 10 5 0' --json -o "$folder/series.pdf"
+    [ $code = 0 ] || fail "series: exit code $code: $(cat "$folder/series.ask")"
+    [ "$(grep -c '"known": true' "$folder/series.json")" = 4 ] &&
+        [ "$(grep -c '"known_mass_g"' "$folder/series.json")" = 7 ] &&
+        [ "$(grep -c '"down": true' "$folder/series.json")" = 3 ] &&
+        grep -q '"read_mass_g": \(19.99\|20.00\)' "$folder/series.json" ||
+        fail "series: $(cat "$folder/series.json")"
+    head -c 5 "$folder/series.pdf" | grep -q '%PDF-' || fail 'series: no certificate'
+    if command -v pdftotext >/dev/null; then
+        pdftotext -layout "$folder/series.pdf" - | tr -s ' \n' ' ' >"$folder/series.txt"
+        for words in 'Certificate' 'virtual rig' 'LC20G-0001' 'relates only to the item tested' \
+            'hysteresis' 'not shown by these masses' 'Passed'; do
+            grep -q -- "$words" "$folder/series.txt" || fail "certificate: no '$words'"
+        done
+    fi
+    [ "$(wc -l <"$folder/series/rig.checks.csv")" = 2 ] || fail 'series: not one line in the log'
+    record series --travel-mm 2
+    [ "$code" = 0 ] || fail "series: no test after its check: $(cat "$folder/series.err")"
+    # A cell that reads 4 % too little at its upper end.
+    check_series series '5 10 19.2 10 5 0' --masses 0,5,10,20,10,5,0
+    [ $code = 1 ] || fail "series: exit code $code for a bad cell"
+    grep -q 'linearity .*EXCEEDED' "$folder/series.json" || fail "$(cat "$folder/series.json")"
+    end_rig "$rig"
+}
+
+series_are_refused() {
+    local masses
+    for masses in 5,10 0,10 0,10,x 0,5,400 ''; do
+        "$wirebench" stage "$folder/bench.yaml" check --masses "$masses" >"$folder/refused" 2>&1
+        [ $? = 2 ] || fail "masses '$masses' are not refused: $(cat "$folder/refused")"
+    done
+    "$wirebench" stage "$folder/bench.yaml" check 10 -o "$folder/x.pdf" >/dev/null 2>&1
+    [ $? = 2 ] || fail 'a certificate of one mass is not a usage error'
+}
+
 wrong_usage() {
     "$wirebench" record >/dev/null 2>&1
     [ $? = 2 ] || fail "record without a rig is not a usage error"
@@ -343,25 +517,7 @@ wrong_usage() {
     [ $? = 2 ] || fail "an unknown action is not a usage error"
 }
 
-# Side by side, as rigs may run.
-cases=(whole_test ctrl_c ctrl_c_too_early force_limit rig_killed recorder_killed rig_stalls dead_reader hung_reader
-    keys_of_the_terminal full_disk bad_ports cell_check wrong_usage)
-pids=()
-for case in "${cases[@]}"; do
-    (
-        rigs=()
-        trap 'for rig in "${rigs[@]}"; do end_rig "$rig"; done' EXIT
-        "$case"
-        exit $failures
-    ) &
-    pids+=($!)
-done
-for i in "${!cases[@]}"; do
-    if wait "${pids[$i]}"; then
-        echo "ok: ${cases[$i]}"
-    else
-        echo "not ok: ${cases[$i]}"
-        failures=$((failures + 1))
-    fi
-done
-exit $((failures > 0))
+cases=(whole_test ctrl_c ctrl_c_too_early first_force wall_clock_jumps force_limit rig_killed
+    recorder_killed rig_stalls dead_reader hung_reader keys_of_the_terminal full_disk bad_ports
+    cell_check cell_series series_are_refused wrong_usage tic_recorder_killed tic_whole_test newest_natnet)
+run_in_lanes 5 "${cases[@]}"

@@ -45,6 +45,15 @@ awk -v v="$(number early_rigidity_deviation_Nmm2)" 'BEGIN { exit !(v > 0.9 && v 
     fail "s is $(number early_rigidity_deviation_Nmm2)"
 [ -e "$folder/r/figures/group-1.svg" ] || fail "no figure"
 
+# Calibrated, the law has cards, which name the machine's files by their checksums.
+[ -e "$folder/r/cards" ] && fail "cards without a calibration"
+sed 's/^groups:/calibrate: true\ngroups:/; s/travel_mm: 1/travel_mm: 1.9/; s/zero_force_mN/wire: mine\n    zero_force_mN/' "$folder/c.yaml" >"$folder/fit.yaml"
+run 0 "$folder/fit.yaml" -o "$folder/fit"
+"$wirebench" export "$folder/fit/cards/mine.yaml" --to calculix >"$folder/card" || fail "no card of mine.yaml"
+cmp -s "$folder/card" "$folder/fit/cards/mine.calculix.inp" || fail "the card is not that of the properties beside it"
+grep -q "$(sha256sum "$folder/data/test-3.txt" | cut -d ' ' -f 1)" "$folder/card" || fail "no checksum of test-3.txt"
+grep -q 'Recording: test-3.txt' "$folder/card" || fail "test-3.txt is not named"
+
 rm "$folder/data/test-2.txt"
 run 3 "$folder/c.yaml" -o "$folder/r" --force
 [ "$(number tests_missing)" = 1 ] || fail "the missing file is not counted"

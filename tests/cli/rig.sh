@@ -124,7 +124,7 @@ refused 2 'MM@MM' "$rig" --specimen "$specimen" --run "$folder/refused" --lost-s
 refused 2 'time-scale' "$rig" --specimen "$specimen" --run "$folder/refused" --time-scale 0
 refused 1 'rubber.*expected some of loss' "$rig" --specimen "$specimen" \
     --run "$folder/refused" --faults rubber
-refused 1 '2.5 to 4.1' "$rig" --specimen "$specimen" --run "$folder/refused" --natnet-version 4.2
+refused 1 '2.5 to 4.4' "$rig" --specimen "$specimen" --run "$folder/refused" --natnet-version 4.5
 refused 1 'nowhere.yaml' "$folder/nowhere.yaml" --specimen "$specimen" --run "$folder/refused"
 refused 1 'nowhere.yaml' "$rig" --specimen "$folder/nowhere.yaml" --run "$folder/refused"
 sed 's/^wire: .*/wire: 8awg/' "$specimen" >"$folder/thick.yaml"

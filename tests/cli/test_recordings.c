@@ -133,6 +133,33 @@ static void verify_exits_3_when_something_is_missing_or_damaged(void **state)
     assert_int_equal(o.code, 3);
 }
 
+static void recover_exits_3_when_something_is_missing(void **state)
+{
+    struct bench *bench = *state;
+    small_make(bench->path, true);
+    tool(bench, "recover $REC -o $DIR/whole.wbr", &o);
+    assert_int_equal(o.code, 0);
+    assert_non_null(strstr(o.out, "nothing is missing"));
+    tool(bench, "recover $REC -o $DIR/whole.wbr", &o);
+    assert_int_equal(o.code, 1);
+    assert_non_null(strstr(o.err, "never overwritten"));
+    tool(bench, "verify $DIR/whole.wbr", &o);
+    assert_int_equal(o.code, 0);
+    run_sql(bench->path, "DELETE FROM chunk WHERE stream = 1 AND seq BETWEEN 10 AND 12");
+    tool(bench, "recover $REC -o $DIR/less.wbr --json", &o);
+    assert_int_equal(o.code, 3);
+    assert_non_null(strstr(o.out, "\"missing_rows\": 3"));
+    assert_non_null(strstr(o.out, "of stream 1 3 of 49 chunks"));
+    tool(bench, "verify $DIR/less.wbr", &o);
+    assert_int_equal(o.code, 3);
+    assert_non_null(strstr(o.out, "recovered from a damaged file; missing: 3 rows"));
+    tool(bench, "info $DIR/less.wbr", &o);
+    assert_int_equal(o.code, 3);
+    tool(bench, "recover /bin/ls -o $DIR/no.wbr", &o);
+    assert_int_equal(o.code, 1);
+    assert_non_null(strstr(o.err, "it is not a recording"));
+}
+
 static void compressed_recordings_are_taken_everywhere(void **state)
 {
     struct bench *bench = *state;
@@ -289,6 +316,7 @@ int main(void)
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
         FACT(info_tells_what_it_is_and_that_the_rig_is_virtual),
         FACT(verify_exits_3_when_something_is_missing_or_damaged),
+        FACT(recover_exits_3_when_something_is_missing),
         FACT(compressed_recordings_are_taken_everywhere),
         FACT(export_writes_tables_and_overwrites_only_with_force),
         FACT(replay_counts_at_max_and_keeps_pace_otherwise),

@@ -14,6 +14,7 @@
 #include "analysis/calibration/tensile.h"
 #include "analysis/calibration/tensile_material.h"
 #include "analysis/calibration/three_point_calibrate.h"
+#include "analysis/cards/card.h"
 #include "analysis/import/mocap_import.h"
 #include "analysis/report/campaign.h"
 #include "analysis/solve/solve_settings.h"
@@ -51,6 +52,7 @@ static const struct command {
      "calibrate --constituents", &wb_layers_table, 1, 1},
     {"calibrate", "none", "calibrate", wb_three_point_calibrate_tables,
      WB_THREE_POINT_CALIBRATE_TABLES, 0},
+    {"export --to mujoco", "none.yaml", "export --to", &wb_card_table, 1, 0},
     {"validate", "none.yaml none", "validate", &wb_calibrate_table, 1, WB_CALIBRATE_VALIDATE},
     {"solve cantilever", "--wire ./none --length-mm 1 --deflection-mm 1", "solve",
      &wb_solve_settings_table, 1, WB_SOLVE_CANTILEVER},

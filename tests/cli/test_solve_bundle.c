@@ -256,6 +256,110 @@ static void options_of_others_are_refused(void **unused)
     assert_int_not_equal(solve("--friction 11"), 0);
 }
 
+/* --- the section model --- */
+
+static void the_section_model_names_itself_in_a_dataset_of_the_same_shape(void **unused)
+{
+    (void)unused;
+    struct wb_dataset dataset;
+    struct wb_json *root = NULL;
+    char path[128];
+    const char *solver = NULL;
+    tool("solve bundle 7-type3 --model section --friction 0.4 -o section");
+    assert_int_equal(o.code, 0);
+    assert_string_equal(o.err, "");
+    snprintf(path, sizeof path, "%s/section", folder);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
+    assert_int_equal(dataset.n_rows, 54);
+    assert_int_equal(dataset.n_shape_rows, 54 * 26);
+    assert_true(dataset.info.is_simulation);
+    assert_close(dataset.info.outer_diameter, 4.6e-3, 1e-12);
+    assert_close(dataset.info.strand_length, 0.76, 1e-12);
+    assert_close(dataset.rows[0].force, 0.0, 0.0);
+    assert_true(dataset.rows[0].tension > 0.02); /* the weight */
+    assert_close(dataset.rows[53].deflection, 53e-3, 1e-9);
+    /* The last marker is the tip. */
+    const struct wb_shape_row *const tip = &dataset.shape_rows[dataset.n_shape_rows - 1];
+    assert_close(tip->x, dataset.rows[53].tip_x, 1e-9);
+    assert_close(tip->y, 53e-3, 1e-9);
+    wb_dataset_release(&dataset);
+
+    read_all("section/energies.csv", o.out, sizeof o.out);
+    assert_non_null(strstr(o.out, "t_s,deflection_mm,external_J,wires_J,tape_J,cohesive_J,"
+                                  "friction_J,imbalance_J\n"));
+    read_all("section/dataset.json", o.out, sizeof o.out);
+    assert_int_equal(wb_json_parse(&root, o.out, "dataset.json"), WB_OK);
+    const struct wb_json *const simulation = wb_json_get(root, "simulation");
+    assert_true(wb_json_get_text(simulation, "model", &solver));
+    assert_string_equal(solver, "section");
+    assert_close(number(simulation, "friction_used"), 0.4, 0.0);
+    assert_true(number(wb_json_get(simulation, "largest"), "residual") <= 1e-6);
+    assert_true(number(wb_json_get(simulation, "largest"), "imbalance_over_external") < 1e-3);
+    const struct wb_json *const beam =
+        wb_json_get(simulation, "homogenised_beam_of_this_length_and_these_ends");
+    const struct wb_json *const elastic = wb_json_get(beam, "elastic");
+    assert_int_equal(wb_json_length(elastic), 3);
+    static const double length[] = {57.0, 114.0, 228.0};
+    double first = 0.0;
+    for (int i = 0; i < 3; i++) {
+        const struct wb_json *const item = wb_json_item(elastic, i);
+        const double alpha = number(item, "newmark_alpha_L") / length[i];
+        assert_close(number(item, "length_mm"), length[i], 1e-9);
+        /* Newmark's alpha is one of the section. */
+        first = i > 0 ? first : alpha;
+        assert_close_relative(alpha, first, 0.03);
+    }
+    const struct wb_json *const curve = wb_json_get(beam, "moment_curvature");
+    assert_int_equal(wb_json_length(curve), 18);
+    assert_close_relative(number(wb_json_item(curve, 0), "secant_rigidity_N_mm2"),
+                          number(wb_json_item(elastic, 1), "flexural_rigidity_N_mm2"), 0.03);
+    wb_json_destroy(root);
+}
+
+static void the_section_model_says_which_friction_it_takes_for_one_that_decays(void **unused)
+{
+    (void)unused;
+    tool("solve bundle 7-type3 --model section --json");
+    assert_int_equal(o.code, 0);
+    assert_non_null(strstr(o.err, "mu = 0.2, the geometric mean"));
+}
+
+static void the_section_model_refuses_what_it_cannot_do_and_names_the_explicit_one(void **unused)
+{
+    (void)unused;
+    static const char *const explicit_options[] = {
+        "--vtk states",   "--checkpoint kept", "--threads 2",   "--mesh paper",
+        "--duration-s 1", "--mass-scaling 4",  "--selective 10"};
+    char line[128], option[32];
+
+    for (size_t i = 0; i < sizeof explicit_options / sizeof explicit_options[0]; i++) {
+        snprintf(line, sizeof line, "solve bundle 7-type3 --model section %s", explicit_options[i]);
+        tool(line);
+        assert_int_equal(o.code, 2);
+        snprintf(option, sizeof option, "%.*s is of the explicit model",
+                 (int)strcspn(explicit_options[i], " "), explicit_options[i]);
+        if (!strstr(o.err, option))
+            fail_msg("'%s' does not say '%s'", o.err, option);
+    }
+    tool("solve bundle 7-type3-helix --model section -o helix");
+    assert_int_equal(o.code, 1);
+    assert_non_null(strstr(o.err, "--model explicit"));
+    assert_false(is_there("helix"));
+}
+
+static void the_section_model_tells_from_where_a_circle_lets_go(void **unused)
+{
+    (void)unused;
+    tool("solve bundle 12-type3-circle --model section --friction 0.2 --json");
+    assert_int_equal(o.code, 0);
+    assert_non_null(strstr(o.err, "from 4"));
+    assert_non_null(strstr(o.err, "beyond 0.01"));
+    tool("solve bundle 7-type3-circle --model section --friction 0.2 --dead-force --no-weight "
+         "--json");
+    assert_int_equal(o.code, 0);
+    assert_string_equal(o.err, "");
+}
+
 /* The last one: it changes the model. */
 static void cycles_have_rows_up_and_down(void **unused)
 {
@@ -274,6 +378,73 @@ static void cycles_have_rows_up_and_down(void **unused)
     wb_dataset_release(&dataset);
 }
 
+static double json_number(const struct wb_json *object, const char *key)
+{
+    double value = (double)NAN;
+    assert_true(wb_json_get_number(object, key, &value));
+    return value;
+}
+
+/* Of the template that users copy: bands, table, figure, ranking, and none of it left behind by a
+ * run without. */
+static void bands_are_written_beside_the_curve_and_summarised(void **unused)
+{
+    (void)unused;
+    char path[WB_PATH];
+    struct wb_json *document;
+    tool("solve bundle template --uncertain --runs 30 --sweep layers=1,2 -o bands");
+    assert_int_equal(o.code, 0);
+    assert_non_null(strstr(o.out, "90 % bands of 30 runs a case"));
+    assert_non_null(strstr(o.out, "\nlayers=2 "));
+    read_all("bands/bands.csv", o.out, sizeof o.out);
+    assert_non_null(strstr(o.out, "\nfile,force_N,53,"));
+    assert_non_null(strstr(o.out, "\nlayers=1,springback,53,"));
+    assert_non_null(strstr(o.out, "\nlayers=2,moment_N_mm,"));
+    read_all("bands/cases.csv", o.out, sizeof o.out);
+    assert_non_null(strstr(o.out, "\nlayers=1,7,hexagon,1,hull,30,0,0,53,"));
+    snprintf(path, sizeof path, "%s/bands/bands.svg", folder);
+    assert_true(wb_file_exists(path));
+    snprintf(path, sizeof path, "%s/bands/dataset.json", folder);
+    assert_int_equal(wb_json_read(&document, path), WB_OK);
+    const struct wb_json *const member =
+        wb_json_get(wb_json_get(document, "simulation"), "uncertainty");
+    assert_close(json_number(member, "model_error"), 0.02, 0.0);
+    assert_int_equal(wb_json_length(wb_json_get(member, "cases")), 3);
+    const struct wb_json *const file = wb_json_item(wb_json_get(member, "cases"), 0);
+    const struct wb_json *const force = wb_json_get(file, "force_N");
+    assert_true(json_number(force, "low") < json_number(force, "runs_low"));
+    assert_true(json_number(force, "runs_low") < json_number(force, "median"));
+    assert_int_equal(wb_json_length(wb_json_get(file, "ranking")), 3);
+    wb_json_destroy(document);
+    tool("solve bundle 7-type3 --model section -o bands --force");
+    assert_int_equal(o.code, 0);
+    static const char *const gone[] = {"bands.csv", "cases.csv", "bands.svg"};
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/bands/%s", folder, gone[i]);
+        assert_false(wb_file_exists(path));
+    }
+}
+
+static void bands_of_what_nobody_stated_are_refused(void **unused)
+{
+    (void)unused;
+    tool("solve bundle 7-type3 --uncertain");
+    assert_int_equal(o.code, 2);
+    assert_non_null(strstr(o.err, "uncertainty: this section is missing"));
+    tool("solve bundle template --uncertain --friction 0.2");
+    assert_int_equal(o.code, 2);
+    assert_non_null(strstr(o.err, "--friction: bands take it from its range"));
+    tool("solve bundle template --uncertain --cohesive-stiffness 20");
+    assert_int_equal(o.code, 2);
+    assert_non_null(strstr(o.err, "--cohesive-stiffness: bands take it"));
+    tool("solve bundle template --sweep layers=1");
+    assert_int_not_equal(o.code, 0);
+    assert_non_null(strstr(o.err, "--sweep is for --uncertain"));
+    tool("solve bundle template --uncertain --runs 30 --sweep colour=1");
+    assert_int_equal(o.code, 2);
+    assert_non_null(strstr(o.err, "--sweep: 'colour=1'"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -284,6 +455,12 @@ int main(void)
         cmocka_unit_test(vtk_files_are_written_for_every_row_or_some),
         cmocka_unit_test(what_was_overridden_is_told),
         cmocka_unit_test(options_of_others_are_refused),
+        cmocka_unit_test(the_section_model_names_itself_in_a_dataset_of_the_same_shape),
+        cmocka_unit_test(the_section_model_says_which_friction_it_takes_for_one_that_decays),
+        cmocka_unit_test(the_section_model_refuses_what_it_cannot_do_and_names_the_explicit_one),
+        cmocka_unit_test(the_section_model_tells_from_where_a_circle_lets_go),
+        cmocka_unit_test(bands_are_written_beside_the_curve_and_summarised),
+        cmocka_unit_test(bands_of_what_nobody_stated_are_refused),
         cmocka_unit_test(cycles_have_rows_up_and_down),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);

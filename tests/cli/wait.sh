@@ -11,3 +11,30 @@ wait_until() { # PROCESS COMMAND...: true once the command succeeds
         sleep 0.02
     done
 }
+
+# run_in_lanes LANES CASE...: the cases side by side in so many lanes, each lane one after the other;
+# more virtual rigs at many times their speed would starve each other. A case is a function with its
+# arguments, and failed where it counted up `failures`. A lane ends with leave_lane, if there is one.
+run_in_lanes() {
+    local lanes=$1 lane i before process pids=()
+    shift
+    local cases=("$@")
+    for ((lane = 0; lane < lanes; lane++)); do
+        (
+            trap - EXIT
+            ! declare -F leave_lane >/dev/null || trap leave_lane EXIT
+            for ((i = lane; i < ${#cases[@]}; i += lanes)); do
+                before=$failures
+                # shellcheck disable=SC2086 # a case is words
+                ${cases[$i]}
+                [ $failures = $before ] && echo "ok: ${cases[$i]}" || echo "not ok: ${cases[$i]}"
+            done
+            [ $failures = 0 ]
+        ) &
+        pids+=($!)
+    done
+    for process in "${pids[@]}"; do
+        wait "$process" || failures=$((failures + 1))
+    done
+    [ $failures = 0 ]
+}

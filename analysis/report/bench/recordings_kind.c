@@ -74,6 +74,49 @@ static void print(FILE *out, const void *context)
     }
 }
 
+/* Recordings that a wire was calibrated on; returns how many. */
+static int list_recordings(const struct wb_recordings_results_tests *tests,
+                           struct wb_properties_dataset list[WB_PROPERTIES_MOST_DATASETS])
+{
+    int n = 0;
+    for (int i = 0; i < tests->n && n < WB_PROPERTIES_MOST_DATASETS; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        if (!test->usable)
+            continue;
+        struct wb_properties_dataset *const entry = &list[n++];
+        *entry = (struct wb_properties_dataset){.is_recording = true};
+        snprintf(entry->name, sizeof entry->name, "%.95s", test->wanted->name);
+        snprintf(entry->sha256, sizeof entry->sha256, "%s", test->sha256);
+    }
+    return n;
+}
+
+/* Of each wire the law of the whole cycles, or where there is none that of the paper's route. */
+static enum wb_status add_cards(struct wb_cards *cards, const void *context)
+{
+    const struct wb_recordings_results *const results = context;
+    struct wb_properties_dataset list[WB_PROPERTIES_MOST_DATASETS];
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_results_step *const step =
+            &wire->steps[WB_RECORDINGS_CALIBRATION];
+        const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+        const int n = list_recordings(&step->tests, list);
+        struct wb_text text = {0};
+        if (cycle) {
+            struct wb_cycle_calibrate_settings settings;
+            wb_cycle_calibrate_default_settings(&settings);
+            wb_properties_format_cycle(&text, &cycle->calibration, &settings, list, n);
+        } else if (step->state == WB_RECORDINGS_DONE) {
+            wb_properties_format(&text, &wire->calibration, &results->campaign->head.fit, list, n);
+        } else {
+            continue;
+        }
+        WB_TRY(wb_cards_add(cards, wire->wanted->product.name, &text));
+    }
+    return WB_OK;
+}
+
 const struct wb_kind wb_recordings_kind = {
     .name = "recordings",
     .data = "recordings",
@@ -85,6 +128,7 @@ const struct wb_kind wb_recordings_kind = {
     .figures = wb_recordings_figures,
     .n_figures = WB_RECORDINGS_FIGURES,
     .pages = wb_recordings_pages_build,
+    .cards = add_cards,
     .json = wb_recordings_json_build,
     .print = print,
     .release = wb_recordings_results_release,

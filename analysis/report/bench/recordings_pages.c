@@ -535,7 +535,7 @@ static void put_pair(struct wb_document_table *table, const char *name, const ch
 static const char *protocol_name(const char *protocol)
 {
     static const char *const names[][2] = {
-        {"natnet", "NatNet"}, {"grbl", "GRBL"}, {"mt-sics", "MT-SICS"}};
+        {"natnet", "NatNet"}, {"grbl", "GRBL"}, {"tic", "Tic"}, {"mt-sics", "MT-SICS"}};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strcmp(protocol, names[i][0]) == 0)
             return names[i][1];

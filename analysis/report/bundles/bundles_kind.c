@@ -46,6 +46,22 @@ static void print(FILE *out, const void *context)
     }
 }
 
+/* The beams fitted to the bundles' datasets. */
+static enum wb_status add_cards(struct wb_cards *cards, const void *context)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        const int dynamic = campaign->bundles[i].dynamic;
+        const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, i);
+        const struct wb_bundles_result *const run = wb_bundles_results_usable(results, dynamic);
+        if (fit && run)
+            WB_TRY(wb_cards_add_fit(cards, &fit->result, &campaign->head.fit,
+                                    campaign->runs[dynamic].dataset.name, run->simulation.sha256));
+    }
+    return WB_OK;
+}
+
 const struct wb_kind wb_bundles_kind = {
     .name = "bundles",
     .data = "datasets",
@@ -58,6 +74,7 @@ const struct wb_kind wb_bundles_kind = {
     .figures = wb_bundles_figures,
     .n_figures = WB_BUNDLES_FIGURE_ROWS,
     .pages = wb_bundles_pages_build,
+    .cards = add_cards,
     .json = wb_bundles_json_build,
     .print = print,
     .release = wb_bundles_results_release,

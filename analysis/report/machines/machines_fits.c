@@ -1,8 +1,10 @@
 #include "analysis/report/machines/machines_fits.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/interrupt.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -91,6 +93,25 @@ enum wb_status wb_machines_fits_compute(struct wb_machines_fits *fits,
             order->told(order->context, fits->n, campaign->groups[g].piece.wire);
     }
     return WB_OK;
+}
+
+int wb_machines_fits_list(const struct wb_machines_fit *fit, const struct wb_machines *campaign,
+                          const struct wb_machines_group_results *groups,
+                          struct wb_properties_dataset *list)
+{
+    int n = 0;
+    for (int g = fit->first; g < campaign->n_groups; g++) {
+        for (int i = 0; i < campaign->groups[g].n_tests && is_of(campaign, fit, g); i++) {
+            if (!groups[g].tests[i].is_usable || n == WB_PROPERTIES_MOST_DATASETS)
+                continue;
+            struct wb_properties_dataset *const entry = &list[n++];
+            *entry = (struct wb_properties_dataset){.is_recording = true};
+            snprintf(entry->name, sizeof entry->name, "%.95s",
+                     wb_file_name(campaign->groups[g].tests[i]));
+            snprintf(entry->sha256, sizeof entry->sha256, "%s", groups[g].tests[i].sha256);
+        }
+    }
+    return n;
 }
 
 void wb_machines_fits_release(struct wb_machines_fits *fits)

@@ -3,6 +3,7 @@
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
 
+#include "analysis/calibration/properties.h"
 #include "analysis/report/machines/machines.h"
 #include "analysis/report/machines/machines_test.h"
 #include "analysis/validation/left_out.h"
@@ -35,6 +36,13 @@ WB_MUST_CHECK enum wb_status
 wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
                          const struct wb_machines_group_results *groups,
                          const struct wb_machines_fits_order *order);
+
+/* The files of the tests that a fit is made of, the first WB_PROPERTIES_MOST_DATASETS; returns how
+ * many. */
+int wb_machines_fits_list(const struct wb_machines_fit *fit, const struct wb_machines *campaign,
+                          const struct wb_machines_group_results *groups,
+                          struct wb_properties_dataset *list);
+
 void wb_machines_fits_release(struct wb_machines_fits *fits); /* accepts a zeroed one */
 
 #endif

@@ -293,6 +293,22 @@ static void print(FILE *out, const void *context)
     wb_machines_cable_print(out, results);
 }
 
+static enum wb_status add_cards(struct wb_cards *cards, const void *context)
+{
+    const struct wb_machines_results *const results = context;
+    struct wb_properties_dataset list[WB_PROPERTIES_MOST_DATASETS];
+    for (int i = 0; i < results->fits.n; i++) {
+        const struct wb_machines_fit *const fit = &results->fits.fits[i];
+        struct wb_text text = {0};
+        if (!fit->is_fitted)
+            continue;
+        const int n = wb_machines_fits_list(fit, results->campaign, results->groups, list);
+        wb_properties_format_three_point(&text, &fit->calibration, list, n);
+        WB_TRY(wb_cards_add(cards, results->campaign->groups[fit->first].piece.wire, &text));
+    }
+    return WB_OK;
+}
+
 const struct wb_kind wb_machines_kind = {
     .name = "machine",
     .data = "tests of a machine",
@@ -304,6 +320,7 @@ const struct wb_kind wb_machines_kind = {
     .figures = figures,
     .n_figures = WB_COUNT(figures),
     .pages = build_pages,
+    .cards = add_cards,
     .json = build_json,
     .print = print,
     .release = wb_machines_results_release,

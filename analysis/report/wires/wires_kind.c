@@ -24,6 +24,19 @@ static void print(FILE *out, const void *context)
         fprintf(out, "  a limit of the campaign is exceeded\n");
 }
 
+/* The law fitted to the solid's dataset. */
+static enum wb_status add_cards(struct wb_cards *cards, const void *context)
+{
+    const struct wb_wires_results *const results = context;
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    if (results->fit_state != WB_SIMULATION_USABLE || !run)
+        return WB_OK;
+    return wb_cards_add_fit(
+        cards, &results->fit, &results->comparison->head.fit,
+        results->comparison->cases[WB_WIRES_ELASTOPLASTIC].datasets[WB_WIRES_SOLID].name,
+        run->simulation.sha256);
+}
+
 const struct wb_kind wb_wires_kind = {
     .name = "comparison",
     .data = "datasets",
@@ -36,6 +49,7 @@ const struct wb_kind wb_wires_kind = {
     .figures = wb_wires_figures,
     .n_figures = WB_WIRES_FIGURES,
     .pages = wb_wires_pages_build,
+    .cards = add_cards,
     .json = wb_wires_json_build,
     .print = print,
     .release = wb_wires_results_release,

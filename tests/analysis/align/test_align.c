@@ -7,6 +7,7 @@
 #include "tests/analysis/synthetic.h"
 #include "tests/messages.h"
 #include "tests/own_folder.h"
+#include "tests/trials.h"
 
 static int n_recordings;
 
@@ -472,6 +473,31 @@ static void overtaken_and_repeated_frames_are_put_in_order(void **state)
     assert_true_to_bench();
 }
 
+/* Streams as bad as a network and a clock can make them, all at once. */
+static void force_and_deflection_hold_under_loss_disorder_and_drift(void **state)
+{
+    (void)state;
+    static const double shares[] = {0.05, 0.2, 0.5}, skews[] = {-200e-6, 0.0, 200e-6};
+    int n = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            for (int way = 0; way < 4; way++, n++) {
+                syn_default(&syn);
+                syn.vanish = shares[i];
+                syn.skew = skews[k];
+                syn.overtaken = way & 1;
+                syn.restart_at = way & 2 ? 17.0 : 0.0;
+                align();
+                assert_true_to_bench();
+                assert_true(warns("% of the frames never came"));
+            }
+        }
+    }
+    count_trials(
+        "Frames and lines lost to 50 %, overtaken, repeated; clocks restarted, 200 ppm off",
+        (uint64_t)n, "tests: force and deflection as without, the loss told");
+}
+
 static void servers_without_echo_and_restarted_ones_serve(void **state)
 {
     (void)state;
@@ -769,6 +795,7 @@ int main(void)
         TEST(overtaken_and_repeated_frames_are_put_in_order),
         TEST(servers_without_echo_and_restarted_ones_serve),
         TEST(the_clock_is_mapped_by_the_probes),
+        TEST(force_and_deflection_hold_under_loss_disorder_and_drift),
         TEST(a_scaled_bench_keeps_its_own_time),
         TEST(cameras_may_stand_anyhow),
         TEST(a_busy_host_does_no_harm),

@@ -64,6 +64,10 @@ static void what_was_written_is_read(void **state)
     assert_close_relative(read.residual_scatter_rms, 0.018, tiny);
     assert_int_equal(read.n_samples, 3);
     assert_true(read.is_virtual);
+    assert_false(read.is_simulation);
+    assert_string_equal(read.method, "paper");
+    assert_non_null(strstr(read.tool, "wirebench "));
+    assert_string_equal(read.tool, written.tool);
     assert_true(wb_law_is_plain(&read.law) && wb_law_is_plain(&written.law));
     assert_close_relative(read.law.material.youngs_modulus, written.law.material.youngs_modulus,
                           tiny);
@@ -123,6 +127,37 @@ static void a_file_by_hand_needs_the_properties_only(void **state)
     assert_false(read.is_rule_tested || read.is_rule_supported);
 }
 
+static void datasets_are_read_with_their_checksums(void **state)
+{
+    (void)state;
+    struct wb_calibrate_result result = some_result();
+    struct wb_calibrate_settings settings;
+    struct wb_properties read;
+    struct wb_text text = {0};
+    struct wb_properties_dataset datasets[2] = {{.name = "type2-L85-S1.wbr", .is_recording = true},
+                                                {.name = "computed"}};
+    memset(datasets[0].sha256, 'a', WB_SHA256_TEXT - 1);
+    memset(datasets[1].sha256, '0', WB_SHA256_TEXT - 1);
+    wb_calibrate_default_settings(&settings);
+    result.info.is_simulation = true;
+    wb_properties_format(&text, &result, &settings, datasets, 2);
+    assert_int_equal(wb_properties_parse(wb_text_string(&text), "origin", &read, NULL), WB_OK);
+    wb_text_release(&text);
+    assert_true(read.is_simulation);
+    assert_int_equal(read.n_datasets, 2);
+    for (int i = 0; i < 2; i++) {
+        assert_string_equal(read.datasets[i].name, datasets[i].name);
+        assert_string_equal(read.datasets[i].sha256, datasets[i].sha256);
+        assert_int_equal(read.datasets[i].is_recording, datasets[i].is_recording);
+    }
+    /* Of a folder the last part is kept, and a checksum that is not there is unknown. */
+    write_some(&result);
+    assert_int_equal(wb_properties_read(path, &read), WB_OK);
+    assert_int_equal(read.n_datasets, 2);
+    assert_string_equal(read.datasets[0].name, "type2 \"a\"");
+    assert_string_equal(read.datasets[0].sha256, "");
+}
+
 static void an_existing_file_is_kept_without_force(void **state)
 {
     (void)state;
@@ -158,6 +193,7 @@ int main(void)
         cmocka_unit_test(the_file_says_virtual_rig_and_how_it_was_made),
         cmocka_unit_test(what_is_not_known_stays_unknown),
         cmocka_unit_test(a_file_by_hand_needs_the_properties_only),
+        cmocka_unit_test(datasets_are_read_with_their_checksums),
         cmocka_unit_test(an_existing_file_is_kept_without_force),
         cmocka_unit_test(errors_name_file_line_and_key),
     };

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "tests/check.h"
 #include "tests/own_folder.h"
+#include "tests/trials.h"
 
 static struct wb_machine machine;
 static struct wb_test_piece piece;
@@ -414,6 +415,8 @@ static void mutations_end_in_a_refusal_or_in_rows_that_are_sound_and_counted(voi
     }
     /* Both happen often. */
     assert_true(refused > 150 && taken > 150);
+    count_trials("Curves of testing machines with rows, columns, separators and encodings changed",
+                 1000, "files: %d refused, %d taken with every line accounted for", refused, taken);
 }
 
 static int finish(void **state)

@@ -8,6 +8,7 @@
 
 #include "analysis/align/align.h"
 #include "analysis/calibration/cycle_model.h"
+#include "analysis/cards/card.h"
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_kind.h"
 #include "analysis/report/bench/recordings_results_private.h"
@@ -81,6 +82,7 @@ static void fill_tests(struct wb_recordings_results_tests *tests, double length,
         struct wb_test_info info = beam_info(0, length, i == 0 ? 3e-3 : -2e-3);
         info.sample = i + 1;
         info.is_simulation = false;
+        info.is_virtual = true;
         beam_dataset(&test->dataset, &info, &truth, 2e-4, 50e-3, factor * (i == 0 ? 0.97 : 1.03));
         fill_tensions(&test->dataset, &truth);
         test->usable = true;
@@ -209,8 +211,9 @@ static void the_same_results_give_the_same_bytes_in_all_files(void **state)
         free(twice);
     }
     /* All there is, and nothing left over from writing. */
-    assert_int_equal(count_files("once"), 4);
+    assert_int_equal(count_files("once"), 5);
     assert_int_equal(count_files("once/figures"), 36);
+    assert_int_equal(count_files("once/cards"), 1 + WB_CARD_KINDS);
 }
 
 static void every_output_says_virtual_rig_and_none_says_experiment(void **state)
@@ -237,6 +240,41 @@ static void every_output_says_virtual_rig_and_none_says_experiment(void **state)
     assert_true(n_figures >= 8);
     assert_false(says("once/report.html", "xperiment"));
     assert_false(says("once/report.json", "xperiment"));
+}
+
+/* What a wire's card is made of lies beside it, and both name the recordings by their checksums. */
+static void cards_are_those_of_the_properties_beside_them(void **state)
+{
+    const struct good *const good = *state;
+    const struct wb_recordings_results_wire *const wire = &good->results.wires[0];
+    const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+    const struct wb_recordings_results_tests *const tests =
+        &wire->steps[WB_RECORDINGS_CALIBRATION].tests;
+    struct wb_card_source source;
+    struct wb_card_settings settings;
+    char name[160];
+    assert_non_null(cycle);
+    snprintf(name, sizeof name, "once/cards/%s.yaml", wire->wanted->product.name);
+    assert_int_equal(wb_card_source_read(&source, in_folder(name)), WB_OK);
+    assert_close_relative(source.properties.law.material.youngs_modulus,
+                          cycle->calibration.law.material.youngs_modulus, 1e-12);
+    assert_int_equal(source.properties.n_datasets, tests->n_usable);
+    assert_true(source.properties.datasets[0].is_recording && source.properties.is_virtual);
+    assert_string_equal(source.properties.datasets[0].sha256, tests->items[0].sha256);
+    wb_setting_fill(&wb_card_table, &settings);
+    for (int k = 0; k < WB_CARD_KINDS; k++) {
+        struct wb_text card = {0};
+        snprintf(name, sizeof name, "once/cards/%s.%s", wire->wanted->product.name,
+                 wb_card_kinds[k].ending);
+        assert_int_equal(wb_card_write(&wb_card_kinds[k], &source, &settings, &card, NULL), WB_OK);
+        char *const written = read_text(name, NULL);
+        assert_string_equal(written, wb_text_string(&card));
+        assert_true(strstr(written, "MADE OF VIRTUAL DATA") < strchr(written, '\n'));
+        assert_non_null(strstr(written, tests->items[0].sha256));
+        assert_non_null(strstr(written, source.sha256));
+        free(written);
+        wb_text_release(&card);
+    }
 }
 
 static void the_html_page_needs_no_other_file_and_escapes_what_comes_from_files(void **state)
@@ -351,7 +389,7 @@ static void the_json_file_holds_the_computed_numbers(void **state)
     assert_close_relative(value * WB_MN,
                           wire->steps[WB_RECORDINGS_VALIDATION].result.curve.max_force, 1e-12);
     assert_int_equal(wb_json_length(wb_json_get(root, "recordings")), 4);
-    assert_int_equal(wb_json_length(wb_json_get(root, "files")), 39);
+    assert_int_equal(wb_json_length(wb_json_get(root, "files")), 45);
     wb_json_destroy(root);
 }
 
@@ -638,6 +676,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_same_results_give_the_same_bytes_in_all_files),
         cmocka_unit_test(every_output_says_virtual_rig_and_none_says_experiment),
+        cmocka_unit_test(cards_are_those_of_the_properties_beside_them),
         cmocka_unit_test(the_html_page_needs_no_other_file_and_escapes_what_comes_from_files),
         cmocka_unit_test(recordings_with_gaps_are_counted_in_one_line),
         cmocka_unit_test(the_capacity_is_what_weighs_so_much_on_that_bench),

@@ -561,7 +561,7 @@ static void report_json_has_what_the_pages_tell(void **state)
     assert_close(value, wb_bundles_results_usable(whole_report(), 4)->rms, 1e-15);
     assert_int_equal((int)wb_json_length(wb_json_get(run, "force_N")), 107);
     assert_int_equal((int)wb_json_length(wb_json_get(root, "limits")), 7);
-    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 19);
+    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 31);
     wb_json_destroy(root);
 }
 

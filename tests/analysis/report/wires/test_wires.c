@@ -498,7 +498,7 @@ static void report_json_has_what_the_pages_tell(void **state)
     const struct wb_json *const first = wb_json_item(wb_json_get(root, "cases"), 0);
     assert_true(wb_json_get_number(first, "cpu_of_rod_over_solid", &value));
     assert_close(value, 0.015, 1e-12);
-    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 21);
+    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 27);
     assert_non_null(wb_json_get(wb_json_get(root, "fit"), "properties"));
     wb_json_destroy(root);
 }

@@ -1,0 +1,108 @@
+#include "analysis/cards/card.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "analysis/cards/card_mujoco.h"
+#include "analysis/cards/card_solid.h"
+#include "analysis/cards/card_table.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "card"
+
+/* Bits of wb_card_kind.place. */
+enum {
+    PLACE_SOLID = 1,
+    PLACE_CHAIN = 2,
+    PLACE_TABLE = 4
+};
+
+const struct wb_card_kind wb_card_kinds[WB_CARD_KINDS] = {
+    {"calculix", "material of solid elements for CalculiX", "calculix.inp", PLACE_SOLID,
+     wb_card_solid_calculix},
+    {"abaqus", "material of solid elements for Abaqus", "abaqus.inp", PLACE_SOLID,
+     wb_card_solid_abaqus},
+    {"mujoco", "chain of hinges for MuJoCo, of one secant stiffness", "mujoco.xml", PLACE_CHAIN,
+     wb_card_mujoco},
+    {"table", "EI, moment over curvature, springback as JSON", "json", PLACE_TABLE,
+     wb_card_table_json},
+    {"table-csv", "moment over curvature as CSV", "csv", PLACE_TABLE, wb_card_table_csv},
+};
+
+const char *const wb_card_places[] = {"--to calculix and abaqus", "--to mujoco",
+                                      "--to table and table-csv", NULL};
+
+static const struct wb_setting rows[] = {
+    {.name = "curvature_1_m",
+     .title = "curvature",
+     .unit = "1/m",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_card_settings, curvature),
+     .least = 0.0,
+     .largest = 1e4,
+     .otherwise = "0: the virgin wire",
+     .option = "curvature",
+     .argument = "K",
+     .help = "Curvature at which the stiffness is taken as the secant",
+     .applies = PLACE_CHAIN},
+    {.name = "length_mm",
+     .title = "length",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_card_settings, length),
+     .scale = WB_MM,
+     .least = 1.0,
+     .largest = 1e5,
+     .otherwise = "the specimens', else 100",
+     .option = "length-mm",
+     .argument = "L",
+     .help = "Length of the wire",
+     .applies = PLACE_CHAIN},
+    {.name = "segments",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_card_settings, segments),
+     .least = 2,
+     .largest = 200,
+     .fallback = 10,
+     .option = "segments",
+     .argument = "N",
+     .help = "Joints of the chain",
+     .applies = PLACE_CHAIN},
+    {.name = "damping_ratio",
+     .title = "damping ratio",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_card_settings, damping_ratio),
+     .least = 0.0,
+     .largest = 10.0,
+     .fallback = 0.05,
+     .option = "damping-ratio",
+     .argument = "Z",
+     .help = "Damping ratio of the first bending mode, which is assumed",
+     .applies = PLACE_CHAIN},
+};
+
+const struct wb_setting_table wb_card_table = {.rows = rows, .n = WB_COUNT(rows)};
+
+const struct wb_card_kind *wb_card_find(const char *name)
+{
+    struct wb_text names = {0};
+    for (int i = 0; i < WB_CARD_KINDS; i++) {
+        if (strcmp(wb_card_kinds[i].name, name) == 0)
+            return &wb_card_kinds[i];
+    }
+    for (int i = 0; i < WB_CARD_KINDS; i++)
+        wb_text_append(&names, "%s%s", i == 0 ? "" : ", ", wb_card_kinds[i].name);
+    wb_error("no card '%s': expected one of %s", name, wb_text_string(&names));
+    wb_text_release(&names);
+    return NULL;
+}
+
+enum wb_status wb_card_write(const struct wb_card_kind *kind, const struct wb_card_source *source,
+                             const struct wb_card_settings *settings, struct wb_text *text,
+                             struct wb_reason *why)
+{
+    WB_TRY(wb_setting_check(&wb_card_table, settings, why));
+    WB_TRY(kind->write(source, settings, text, why));
+    return text->failed ? wb_fail_to(why, WB_ERR_MEMORY, "no memory for the card %s", kind->name)
+                        : WB_OK;
+}

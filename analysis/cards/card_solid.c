@@ -1,0 +1,237 @@
+#include "analysis/cards/card_solid.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+
+#define WB_LOG_DOMAIN "card"
+
+enum {
+    MOST_POINTS = 120, /* of a table; CalculiX takes 200 */
+    NAME = 72          /* bytes of a material's name, both programs take 80 characters */
+};
+
+/* Total strain at which tables end; overlaid parts' Poisson's ratio; the largest that elements of
+ * displacements alone bear. */
+static const double last_strain = 0.1, overlay_poisson = 0.49, largest_poisson = 0.499;
+
+struct dialect {
+    const char *kind, *density, *elastic, *plastic;
+    const char *advice; /* on elements, after the common one */
+};
+
+/* Plastic table of a virgin curve; n 0: elastic. */
+struct table {
+    int n;
+    double stress[MOST_POINTS]; /* Pa */
+    double strain[MOST_POINTS]; /* plastic, 1 */
+    double error;               /* of its chords, over the stress */
+};
+
+struct material {
+    char name[NAME + 16];
+    double density, modulus, poisson;
+    const struct table *table; /* its stresses are multiplied by `share` */
+    double share;
+};
+
+/* --- tables --- */
+
+/* sigma_Y + K p^n at plastic strains whose neighbours' chord leaves the curve by `error` of the
+ * stress at most: in terms of x = ln p the power's chord errs by n |1 - n| dx^2 / 8 of it. False
+ * where that takes too many points. */
+static bool try_ludwik(const struct wb_material *m, double error, struct table *table)
+{
+    const double n = m->hardening_exponent, K = m->strength_coefficient;
+    const double first = pow(error * m->yield_stress / K, 1.0 / n);
+    const double step = fmin(log(2.0), sqrt(8.0 * error / (n * fabs(1.0 - n) + error)));
+    *table = (struct table){.n = 1, .stress = {m->yield_stress}, .error = error};
+    for (double p = first; table->n < MOST_POINTS; p *= exp(step)) {
+        const bool is_last = p >= last_strain;
+        if (is_last)
+            p = last_strain;
+        table->stress[table->n] = m->yield_stress + K * pow(p, n);
+        table->strain[table->n++] = p;
+        if (is_last)
+            return true;
+    }
+    return false;
+}
+
+static void tabulate_ludwik(const struct wb_material *m, struct table *table)
+{
+    *table = (struct table){.n = 1, .stress = {m->yield_stress}};
+    if (m->strength_coefficient <= 0.0)
+        return;
+    for (double error = 2e-4; !try_ludwik(m, error, table); error *= 1.25) {
+    }
+}
+
+/* The curve of parallel parts has corners where they yield, and chords between: it is its table. */
+static void tabulate_parallel(const struct wb_law *law, struct table *table)
+{
+    const double E = law->material.youngs_modulus;
+    *table = (struct table){.n = 0};
+    for (int i = 0; i < law->n_parts && isfinite(law->parts[i].yield_strain); i++) {
+        const double e = law->parts[i].yield_strain;
+        const double stress = wb_law_virgin_stress(law, e, NULL);
+        table->stress[table->n] = stress;
+        table->strain[table->n++] = i == 0 ? 0.0 : e - stress / E;
+    }
+    const double end = wb_law_virgin_stress(law, last_strain, NULL);
+    if (table->n > 0 && end > table->stress[table->n - 1]) {
+        table->stress[table->n] = end;
+        table->strain[table->n++] = last_strain - end / E;
+    }
+}
+
+static void tabulate(const struct wb_law *law, struct table *table)
+{
+    if (law->form == WB_LAW_LUDWIK)
+        tabulate_ludwik(&law->material, table);
+    else
+        tabulate_parallel(law, table);
+}
+
+/* --- keywords --- */
+
+static void put_material(struct wb_text *text, const struct dialect *dialect,
+                         const struct material *m)
+{
+    /* CalculiX reads 20 characters of a number. */
+    wb_text_append(text, "*MATERIAL, NAME=%s\n", m->name);
+    if (m->density > 0.0)
+        wb_text_append(text, "%s\n%.8e\n", dialect->density, m->density);
+    wb_text_append(text, "%s\n%.10e, %.6f\n", dialect->elastic, m->modulus, m->poisson);
+    if (m->table->n > 0)
+        wb_text_append(text, "%s\n", dialect->plastic);
+    for (int i = 0; i < m->table->n; i++)
+        wb_text_append(text, "%.10e, %.10e\n", m->share * m->table->stress[i], m->table->strain[i]);
+}
+
+/* The wire's name as a material's: letters, digits and underscores, behind a letter. */
+static void make_name(char name[NAME], const char *wire)
+{
+    snprintf(name, NAME, "WIRE_%.60s", wire);
+    for (char *c = name; *c; c++)
+        *c = (char)(isalnum((unsigned char)*c) ? toupper((unsigned char)*c) : '_');
+}
+
+static int count_sets(const struct wb_overlay *overlay)
+{
+    return (overlay->isotropic_share < 1.0 ? overlay->n : 0) +
+           (overlay->isotropic_share > 0.0 ? 1 : 0);
+}
+
+static void put_overlay(struct wb_text *text, const struct dialect *dialect,
+                        const struct wb_law *law, const char *name, double density)
+{
+    struct wb_overlay overlay;
+    wb_law_overlay(law, &overlay);
+    const double kinematic = 1.0 - overlay.isotropic_share;
+    const int n = count_sets(&overlay);
+    struct table table;
+    struct material m = {
+        .density = density / n, .poisson = overlay_poisson, .table = &table, .share = 1.0};
+    wb_text_append(text,
+                   "** %d coincident sets of elements: copy the wire's elements %d times, on the "
+                   "same nodes,\n"
+                   "** and give each copy one of the %d materials below; their stresses add. "
+                   "Poisson's ratio is %g,\n"
+                   "** not that of the law, so that the parts do not press upon each other.\n",
+                   n, n, n, overlay_poisson);
+    for (int i = 0; i < overlay.n && kinematic > 0.0; i++) {
+        const double E = kinematic * overlay.modulus[i], e = overlay.yield_strain[i];
+        table = (struct table){.n = isfinite(e), .stress = {E * e}};
+        m.modulus = E;
+        snprintf(m.name, sizeof m.name, "%s_PART%d", name, i + 1);
+        put_material(text, dialect, &m);
+    }
+    if (overlay.isotropic_share > 0.0) {
+        tabulate(law, &table);
+        m.share = overlay.isotropic_share;
+        m.modulus = m.share * law->material.youngs_modulus;
+        snprintf(m.name, sizeof m.name, "%s_ISOTROPIC", name);
+        put_material(text, dialect, &m);
+    }
+}
+
+static void put_plain(struct wb_text *text, const struct dialect *dialect, const struct wb_law *law,
+                      const char *name, double density)
+{
+    struct table table;
+    struct material m = {.density = density,
+                         .modulus = law->material.youngs_modulus,
+                         .poisson = law->material.poissons_ratio,
+                         .table = &table,
+                         .share = 1.0};
+    tabulate(law, &table);
+    snprintf(m.name, sizeof m.name, "%s", name);
+    if (table.error > 0.0)
+        wb_text_append(text,
+                       "** Chords of the table lie at most %.2g of the stress beside the "
+                       "curve.\n",
+                       table.error);
+    put_material(text, dialect, &m);
+}
+
+static enum wb_status write(const struct dialect *dialect, const struct wb_card_source *source,
+                            struct wb_text *text, struct wb_reason *why)
+{
+    const struct wb_properties *const p = &source->properties;
+    const double area = 0.25 * M_PI * p->outer_diameter * p->outer_diameter;
+    char name[NAME];
+    if (p->law.material.poissons_ratio > largest_poisson)
+        return wb_fail_to(
+            why, WB_ERR_UNSUPPORTED,
+            "%s: poissons_ratio is %g, expected at most %g: solid elements lock on what "
+            "is as good as incompressible",
+            source->file, p->law.material.poissons_ratio, largest_poisson);
+    make_name(name, p->wire);
+    wb_card_source_append(source, dialect->kind, "** ", text);
+    wb_text_append(text,
+                   "** Plastic tables: true stress, logarithmic plastic strain; the first at zero "
+                   "plastic strain. They end\n"
+                   "** at a strain of %g, beyond which the stress stays. Use steps with NLGEOM.\n"
+                   "** %s\n",
+                   last_strain, dialect->advice);
+    if (!(p->mass_per_length > 0.0))
+        wb_text_append(text, "** The wire's mass is not known: without density, for static steps "
+                             "alone.\n");
+    if (p->law.isotropic_share >= 1.0)
+        put_plain(text, dialect, &p->law, name, p->mass_per_length / area);
+    else
+        put_overlay(text, dialect, &p->law, name, p->mass_per_length / area);
+    return WB_OK;
+}
+
+enum wb_status wb_card_solid_calculix(const struct wb_card_source *source,
+                                      const struct wb_card_settings *settings, struct wb_text *text,
+                                      struct wb_reason *why)
+{
+    static const struct dialect dialect = {
+        .kind = "CalculiX card",
+        .density = "*DENSITY",
+        .elastic = "*ELASTIC",
+        .plastic = "*PLASTIC",
+        .advice = "Elements: C3D20R. Include with *INCLUDE, INPUT=FILE; the density is in kg/m3.",
+    };
+    (void)settings;
+    return write(&dialect, source, text, why);
+}
+
+enum wb_status wb_card_solid_abaqus(const struct wb_card_source *source,
+                                    const struct wb_card_settings *settings, struct wb_text *text,
+                                    struct wb_reason *why)
+{
+    static const struct dialect dialect = {
+        .kind = "Abaqus card (NOT RUN: written by the manual's keywords and never tried in Abaqus)",
+        .density = "*DENSITY",
+        .elastic = "*ELASTIC, TYPE=ISOTROPIC",
+        .plastic = "*PLASTIC, HARDENING=ISOTROPIC",
+        .advice = "Elements: C3D20R, or C3D20RH where Poisson's ratio is close to 0.5. Include "
+                  "with *INCLUDE, INPUT=FILE.",
+    };
+    (void)settings;
+    return write(&dialect, source, text, why);
+}

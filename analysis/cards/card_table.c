@@ -1,0 +1,200 @@
+#include "analysis/cards/card_table.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/calibration/bending.h"
+#include "analysis/cards/card_curve.h"
+#include "base/json.h"
+#include "base/number.h"
+#include "base/version.h"
+
+#define WB_LOG_DOMAIN "card"
+
+/* Springback as calibrated; where that is unknown, what the law says, which then has no interval.
+ */
+static enum wb_status find_springback(const struct wb_card_source *source,
+                                      struct wb_estimate *springback)
+{
+    const struct wb_properties *const p = &source->properties;
+    struct wb_bending bending;
+    *springback = p->springback;
+    if (isfinite(springback->value) || isfinite(springback->candidates_low))
+        return WB_OK;
+    WB_TRY(wb_bending_describe(&p->law, p->outer_diameter, wb_card_source_curvature(source),
+                               &bending));
+    springback->value = bending.springback;
+    return WB_OK;
+}
+
+/* --- JSON --- */
+
+static void set_estimate(struct wb_json *object, const char *key, const struct wb_estimate *e)
+{
+    struct wb_json *const entry = wb_json_set_object(object, key);
+    wb_json_set_number(entry, "value", e->value);
+    wb_json_set_number(entry, "low", e->low);
+    wb_json_set_number(entry, "high", e->high);
+    wb_json_set_number(entry, "candidates_low", e->candidates_low);
+    wb_json_set_number(entry, "candidates_high", e->candidates_high);
+}
+
+static void set_law(struct wb_json *object, const struct wb_law *law)
+{
+    struct wb_json *const entry = wb_json_set_object(object, "law");
+    const struct wb_material *const m = &law->material;
+    wb_json_set_text(entry, "form", wb_law_form_name(law->form));
+    wb_json_set_text(entry, "hardening", wb_law_rule_name(law));
+    wb_json_set_number(entry, "isotropic_share", law->isotropic_share);
+    wb_json_set_number(entry, "youngs_modulus_Pa", m->youngs_modulus);
+    wb_json_set_number(entry, "poissons_ratio", m->poissons_ratio);
+    if (law->form == WB_LAW_LUDWIK) {
+        wb_json_set_number(entry, "yield_stress_Pa", m->yield_stress);
+        wb_json_set_number(entry, "strength_coefficient_Pa", m->strength_coefficient);
+        wb_json_set_number(entry, "hardening_exponent", m->hardening_exponent);
+        return;
+    }
+    struct wb_json *const parts = wb_json_set_array(entry, "parts");
+    for (int i = 0; i < law->n_parts; i++) {
+        struct wb_json *const part = wb_json_append_object(parts);
+        wb_json_set_number(part, "modulus_Pa", law->parts[i].modulus);
+        wb_json_set_number(part, "yield_strain", law->parts[i].yield_strain);
+    }
+}
+
+static void set_curve(struct wb_json *object, const struct wb_card_curve *curve)
+{
+    struct wb_json *const entry = wb_json_set_object(object, "moment_curvature");
+    const struct {
+        const char *key;
+        const double *values;
+    } columns[] = {
+        {"curvature_1_m", curve->curvature},
+        {"moment_N_m", curve->moment},
+        {"low_N_m", curve->low},
+        {"high_N_m", curve->high},
+        {"candidates_low_N_m", curve->candidates_low},
+        {"candidates_high_N_m", curve->candidates_high},
+    };
+    for (size_t c = 0; c < WB_COUNT(columns); c++) {
+        struct wb_json *const array = wb_json_set_array(entry, columns[c].key);
+        for (int k = 0; k < WB_CARD_CURVE; k++)
+            wb_json_append_number(array, columns[c].values[k]);
+    }
+    struct wb_json *const secant = wb_json_set_array(entry, "secant_flexural_rigidity_N_m2");
+    for (int k = 0; k < WB_CARD_CURVE; k++)
+        wb_json_append_number(secant, curve->moment[k] / curve->curvature[k]);
+}
+
+static void set_origin(struct wb_json *root, const struct wb_card_source *source)
+{
+    const struct wb_properties *const p = &source->properties;
+    struct wb_json *const test = wb_json_set_object(root, "test");
+    wb_json_set_text(test, "method", p->method[0] ? p->method : NULL);
+    wb_json_set_number(test, "length_m", p->calibration_length);
+    wb_json_set_integer(test, "samples", p->n_samples);
+    wb_json_set_boolean(test, "virtual_rig", p->is_virtual);
+    wb_json_set_boolean(test, "simulation", p->is_simulation);
+    wb_json_set_text(test, "tool", p->tool[0] ? p->tool : NULL);
+    struct wb_json *const file = wb_json_set_object(root, "source");
+    wb_json_set_text(file, "kind", source->is_wire_file ? "wire file" : "properties file");
+    wb_json_set_text(file, "file", source->file);
+    wb_json_set_text(file, "sha256", source->sha256);
+    wb_json_set_text(file, "stated", source->stated[0] ? source->stated : NULL);
+    struct wb_json *const datasets = wb_json_set_array(root, "datasets");
+    for (int i = 0; i < p->n_datasets && i < WB_PROPERTIES_MOST_DATASETS; i++) {
+        const struct wb_properties_dataset *const d = &p->datasets[i];
+        struct wb_json *const entry = wb_json_append_object(datasets);
+        wb_json_set_text(entry, "name", d->name);
+        wb_json_set_text(entry, "of", d->is_recording ? "recording" : "force_deflection.csv");
+        wb_json_set_text(entry, "sha256", d->sha256[0] ? d->sha256 : NULL);
+    }
+    wb_json_set_integer(root, "datasets_in_all", p->n_datasets);
+}
+
+static struct wb_json *make_json(const struct wb_card_source *source,
+                                 const struct wb_card_curve *curve,
+                                 const struct wb_estimate *springback)
+{
+    const struct wb_properties *const p = &source->properties;
+    const struct wb_estimate rigidity = wb_card_source_rigidity(source);
+    const char *const warning = wb_card_source_warning(source);
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "card", warning ? warning : "wirebench table");
+    struct wb_json *const tool = wb_json_set_object(root, "tool");
+    wb_json_set_text(tool, "name", "wirebench");
+    wb_json_set_text(tool, "version", wb_version());
+    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_json_set_text(root, "units", "SI: m, kg, s, N, Pa, rad; as the keys say");
+    wb_json_set_text(root, "wire", p->wire);
+    wb_json_set_number(root, "outer_diameter_m", p->outer_diameter);
+    wb_json_set_number(root, "mass_per_length_kg_m", p->mass_per_length);
+    set_law(root, &p->law);
+    wb_json_set_boolean(root, "loading_only", !wb_card_source_has_way_back(source));
+    set_estimate(root, "flexural_rigidity_N_m2", &rigidity);
+    set_estimate(root, "springback_ratio", springback);
+    wb_json_set_number(root, "largest_curvature_1_m", wb_card_source_curvature(source));
+    wb_json_set_boolean(root, "largest_curvature_tested", isfinite(p->largest_curvature));
+    set_curve(root, curve);
+    set_origin(root, source);
+    return root;
+}
+
+enum wb_status wb_card_table_json(const struct wb_card_source *source,
+                                  const struct wb_card_settings *settings, struct wb_text *text,
+                                  struct wb_reason *why)
+{
+    struct wb_card_curve curve;
+    struct wb_estimate springback;
+    char *formatted;
+    (void)settings, (void)why;
+    WB_TRY(wb_card_curve_init(&curve, source));
+    WB_TRY(find_springback(source, &springback));
+    struct wb_json *const root = make_json(source, &curve, &springback);
+    const enum wb_status status = wb_json_format(root, &formatted);
+    wb_json_destroy(root);
+    WB_TRY(status);
+    /* What it is made of stands in the first line, behind the bracket. */
+    const char *const first = strchr(formatted, '"');
+    wb_text_append(text, "{ %s", first ? first : "");
+    free(formatted);
+    return WB_OK;
+}
+
+/* --- CSV --- */
+
+static void put_cell(struct wb_text *text, const char *before, double value)
+{
+    char number[WB_NUMBER_TEXT];
+    wb_text_append(text, "%s%s", before, isfinite(value) ? wb_number_format(value, number) : "");
+}
+
+enum wb_status wb_card_table_csv(const struct wb_card_source *source,
+                                 const struct wb_card_settings *settings, struct wb_text *text,
+                                 struct wb_reason *why)
+{
+    struct wb_card_curve curve;
+    struct wb_estimate springback;
+    (void)settings, (void)why;
+    WB_TRY(wb_card_curve_init(&curve, source));
+    WB_TRY(find_springback(source, &springback));
+    wb_card_source_append(source, "Table", "# ", text);
+    wb_text_append(text,
+                   "# Springback, residual over largest curvature: %.6g. Empty cells are not "
+                   "known.\n",
+                   springback.value);
+    wb_text_append(text, "curvature_1_m,moment_N_m,low_N_m,high_N_m,candidates_low_N_m,"
+                         "candidates_high_N_m,secant_flexural_rigidity_N_m2\n");
+    for (int k = 0; k < WB_CARD_CURVE; k++) {
+        put_cell(text, "", curve.curvature[k]);
+        put_cell(text, ",", curve.moment[k]);
+        put_cell(text, ",", curve.low[k]);
+        put_cell(text, ",", curve.high[k]);
+        put_cell(text, ",", curve.candidates_low[k]);
+        put_cell(text, ",", curve.candidates_high[k]);
+        put_cell(text, ",", curve.moment[k] / curve.curvature[k]);
+        wb_text_append(text, "\n");
+    }
+    return WB_OK;
+}

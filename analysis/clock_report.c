@@ -1,0 +1,280 @@
+#include "analysis/clock_report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/align/align.h"
+#include "analysis/import/sync.h"
+#include "analysis/reversal_lag.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "clock"
+
+#define MS 1e-3
+/* Two-sided 95 % of a normal distribution, in standard deviations. */
+#define COVERAGE 1.96
+/* s: a lag that is known worse is not given. */
+#define MOST_UNCERTAINTY 0.1
+
+/* --- making --- */
+
+/* The next reversal of the dataset's rows from *at on: the last row of a cycle's way there that is
+ * followed by its way back. */
+static bool next_reversal(const struct wb_dataset *dataset, size_t *at,
+                          struct wb_reversal *reversal)
+{
+    const struct wb_row *const rows = dataset->rows;
+    double from = (double)NAN;
+    for (size_t i = *at; i + 1 < dataset->n_rows; i++) {
+        if (rows[i].phase != WB_PHASE_LOAD)
+            continue;
+        if (!isfinite(from) || i == 0 || rows[i - 1].cycle != rows[i].cycle)
+            from = rows[i].t;
+        if (rows[i + 1].phase != WB_PHASE_UNLOAD || rows[i + 1].cycle != rows[i].cycle)
+            continue;
+        reversal->from = from;
+        reversal->at = rows[i].t;
+        for (i++; i < dataset->n_rows && rows[i].phase == WB_PHASE_UNLOAD; i++)
+            reversal->until = rows[i].t;
+        *at = i;
+        return true;
+    }
+    return false;
+}
+
+/* Weighted sums of what the reversals say, s. */
+struct lags {
+    int n_reversals, n;
+    double weights, sum, squares;
+};
+
+static void add_lag(struct lags *lags, const struct wb_reversal_lag *one)
+{
+    const double weight = 1.0 / (one->uncertainty * one->uncertainty);
+    lags->n++;
+    lags->weights += weight;
+    lags->sum += weight * one->lag;
+    lags->squares += weight * one->lag * one->lag;
+}
+
+/* The mean, and its uncertainty, enlarged where the reversals differ by more than theirs. */
+static void average(const struct lags *lags, double *mean, double *uncertainty)
+{
+    *mean = lags->sum / lags->weights;
+    const double chi = fmax(0.0, lags->squares - lags->weights * *mean * *mean);
+    const double enlarged = lags->n > 1 ? fmax(1.0, chi / (lags->n - 1)) : 1.0;
+    *uncertainty = sqrt(enlarged / lags->weights);
+}
+
+static void refuse_lag(struct wb_clock_report *report, const struct lags *lags, double uncertainty)
+{
+    const double nan = (double)NAN;
+    if (lags->n_reversals == 0)
+        snprintf(report->reason, sizeof report->reason, "no reversal of the motion in it");
+    else if (lags->n == 0)
+        snprintf(report->reason, sizeof report->reason,
+                 "no reversal has a force that stands out of its noise on both sides");
+    else
+        snprintf(report->reason, sizeof report->reason,
+                 "%d reversal%s leave %.0f ms of uncertainty", lags->n, lags->n == 1 ? "" : "s",
+                 uncertainty / MS);
+    report->lag = report->uncertainty = report->interval[0] = report->interval[1] = nan;
+}
+
+/* The delay of the rig file is taken off the force's times: what is left of a lag is by how much
+ * that delay is too small. */
+static void find_lag(struct wb_clock_report *report, const struct wb_align_signals *signals)
+{
+    const struct wb_sync_signal motion = {signals->motion_t, signals->motion, signals->n_motion};
+    const struct wb_sync_signal force = {signals->force_t, signals->force, signals->n_force};
+    struct lags lags = {0};
+    struct wb_reversal reversal;
+    struct wb_reversal_lag one;
+    double left, uncertainty;
+    for (size_t at = 0; next_reversal(&report->dataset, &at, &reversal);) {
+        lags.n_reversals++;
+        if (wb_reversal_lag_find(&one, &motion, &force, &reversal, signals->filter_delay))
+            add_lag(&lags, &one);
+    }
+    report->expected = signals->filter_delay;
+    report->expected_uncertainty = signals->filter_delay_uncertainty;
+    report->n_reversals = lags.n;
+    average(&lags, &left, &uncertainty);
+    report->identifiable = lags.n > 0 && uncertainty < MOST_UNCERTAINTY;
+    if (!report->identifiable) {
+        refuse_lag(report, &lags, uncertainty);
+        return;
+    }
+    report->lag = signals->filter_delay + left;
+    report->uncertainty = uncertainty;
+    for (int i = 0; i < 2; i++)
+        report->interval[i] = report->lag + (i ? COVERAGE : -COVERAGE) * uncertainty;
+    report->agrees = fabs(left) < COVERAGE * hypot(uncertainty, report->expected_uncertainty);
+}
+
+static const struct wb_json *checks_of(const struct wb_clock_report *report, const char *key)
+{
+    return wb_json_get(wb_json_get(report->dataset.document, "checks"), key);
+}
+
+/* A number of an object; NaN where it is null or missing. */
+static double number_of(const struct wb_json *object, const char *key)
+{
+    double value;
+    return wb_json_get_number(object, key, &value) ? value : (double)NAN;
+}
+
+static void find_area(struct wb_clock_report *report)
+{
+    const struct wb_json *const timing = checks_of(report, "timing");
+    report->area = number_of(timing, "loop_area_mJ") * WB_MJ;
+    report->area_per_delay = number_of(timing, "loop_area_per_delay_mJ_per_s") * WB_MJ;
+    for (int i = 0; i < 2; i++)
+        report->area_interval[i] =
+            report->area + report->area_per_delay * (report->interval[i] - report->expected);
+}
+
+enum wb_status wb_clock_report_make(struct wb_clock_report *report, const char *recording_path,
+                                    struct wb_reason *why)
+{
+    struct wb_align_settings settings;
+    struct wb_align_signals signals;
+    memset(report, 0, sizeof *report);
+    wb_align_default_settings(&settings);
+    WB_TRY(wb_align_run_signals(&report->dataset, &signals, recording_path, &settings, why));
+    find_lag(report, &signals);
+    wb_align_signals_release(&signals);
+    find_area(report);
+    return WB_OK;
+}
+
+void wb_clock_report_release(struct wb_clock_report *report)
+{
+    wb_dataset_release(&report->dataset);
+}
+
+/* --- telling --- */
+
+static const char *text_of(const struct wb_json *object, const char *key)
+{
+    const char *text;
+    return wb_json_get_text(object, key, &text) ? text : "unknown";
+}
+
+/* "0.42 ms", or "not known". */
+static void append_value(struct wb_text *text, double value, const char *unit)
+{
+    if (isfinite(value))
+        wb_text_append(text, "%.4g %s", value, unit);
+    else
+        wb_text_append(text, "not known");
+}
+
+static void append_cameras(const struct wb_clock_report *report, struct wb_text *text)
+{
+    const struct wb_json *const list = checks_of(report, "camera_clock");
+    if (wb_json_length(list) == 0)
+        wb_text_append(text, "cameras             no clock of their own is used: %s\n",
+                       text_of(checks_of(report, "timing"), "camera_clock"));
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const struct wb_json *const entry = wb_json_item(list, i);
+        const double skew = number_of(entry, "skew_ppm"), span = number_of(entry, "span_s");
+        wb_text_append(text, "cameras             %s, over %.0f s\n", text_of(entry, "method"),
+                       span);
+        wb_text_append(text, "  offset            %.6f s, the host's clock less the server's\n",
+                       number_of(entry, "offset_s"));
+        wb_text_append(text, "  drift             %.4g +- ", skew);
+        append_value(text, number_of(entry, "skew_uncertainty_ppm"), "ppm");
+        wb_text_append(text, ": %.4g ms over the recording\n", skew * WB_PPM * span / MS);
+        wb_text_append(text, "  scatter           ");
+        append_value(text, number_of(entry, "scatter_ms"), "ms");
+        wb_text_append(text, "\n  uncertainty       ");
+        append_value(text, number_of(entry, "uncertainty_ms"), "ms");
+        wb_text_append(text, "\n");
+    }
+}
+
+static void append_load(const struct wb_clock_report *report, struct wb_text *text)
+{
+    const struct wb_json *const load = checks_of(report, "load_cell_stream");
+    wb_text_append(text, "load cell           %s, ", text_of(load, "method"));
+    append_value(text, number_of(load, "rate_per_s"), "readings/s");
+    wb_text_append(text, "\n  arrival scatter   ");
+    append_value(text, number_of(load, "arrival_scatter_ms"), "ms");
+    wb_text_append(text, "\n");
+}
+
+static void append_lag(const struct wb_clock_report *report, struct wb_text *text)
+{
+    wb_text_append(text,
+                   "force behind markers\n  expected          %.4g +- %.2g ms (the rig file's "
+                   "filter delay)\n",
+                   report->expected / MS, report->expected_uncertainty / MS);
+    if (!report->identifiable) {
+        wb_text_append(text, "  measured          not identifiable: %s\n", report->reason);
+        return;
+    }
+    wb_text_append(
+        text, "  measured          %.1f +- %.1f ms at %d reversal%s, 95 %%: %.1f to %.1f ms\n",
+        report->lag / MS, report->uncertainty / MS, report->n_reversals,
+        report->n_reversals == 1 ? "" : "s", report->interval[0] / MS, report->interval[1] / MS);
+    if (!report->agrees)
+        wb_text_append(text, "  NOT AS EXPECTED: measure the cell's filter and set "
+                             "load_cell.filter_delay_ms, or look at what else delays a stream\n");
+}
+
+static void append_area(const struct wb_clock_report *report, struct wb_text *text)
+{
+    if (!isfinite(report->area))
+        return;
+    wb_text_append(text,
+                   "loop of cycle 1     %.4g mJ, %+.3g mJ for each ms of delay that is taken off\n",
+                   report->area / WB_MJ, report->area_per_delay / WB_MJ * MS);
+    if (report->identifiable)
+        wb_text_append(text, "  at the lag's ends %.4g and %.4g mJ\n",
+                       report->area_interval[0] / WB_MJ, report->area_interval[1] / WB_MJ);
+}
+
+enum wb_status wb_clock_report_format(const struct wb_clock_report *report, struct wb_text *text)
+{
+    append_cameras(report, text);
+    append_load(report, text);
+    append_lag(report, text);
+    append_area(report, text);
+    if (text->failed)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for a report of clocks");
+    return WB_OK;
+}
+
+static void copy(const struct wb_clock_report *report, const char *key, struct wb_json *object)
+{
+    const struct wb_json *const found = checks_of(report, key);
+    if (found)
+        wb_json_set_copy(object, key, found);
+}
+
+void wb_clock_report_describe(const struct wb_clock_report *report, struct wb_json *object)
+{
+    const bool known = report->identifiable;
+    wb_json_set_boolean(object, "virtual_rig", report->dataset.info.is_virtual);
+    copy(report, "camera_clock", object);
+    copy(report, "load_cell_stream", object);
+    struct wb_json *const lag = wb_json_set_object(object, "lag");
+    wb_json_set_number(lag, "expected_ms", report->expected / MS);
+    wb_json_set_number(lag, "expected_uncertainty_ms", report->expected_uncertainty / MS);
+    wb_json_set_boolean(lag, "identifiable", known);
+    wb_json_set_text(lag, "reason", known ? NULL : report->reason);
+    wb_json_set_integer(lag, "reversals", report->n_reversals);
+    wb_json_set_number(lag, "measured_ms", report->lag / MS);
+    wb_json_set_number(lag, "uncertainty_ms", report->uncertainty / MS);
+    wb_json_set_number(lag, "low_ms", report->interval[0] / MS);
+    wb_json_set_number(lag, "high_ms", report->interval[1] / MS);
+    if (known)
+        wb_json_set_boolean(lag, "as_expected", report->agrees);
+    struct wb_json *const loop = wb_json_set_object(object, "loop");
+    wb_json_set_number(loop, "area_mJ", report->area / WB_MJ);
+    wb_json_set_number(loop, "area_per_delay_mJ_per_s", report->area_per_delay / WB_MJ);
+    wb_json_set_number(loop, "area_low_mJ", report->area_interval[0] / WB_MJ);
+    wb_json_set_number(loop, "area_high_mJ", report->area_interval[1] / WB_MJ);
+}

@@ -1,0 +1,304 @@
+#include "analysis/predict/bands_output.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "analysis/dataset/csv_table.h"
+#include "analysis/plot/figure.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "bands"
+
+enum {
+    DRAWN = 4 /* cases in a panel at most */
+};
+
+static const double width = 560.0, height = 250.0; /* points */
+
+static const struct wb_bands_place *last_force(const struct wb_bands_case *c)
+{
+    return c->n_force > 0 ? &c->force[c->n_force - 1] : NULL;
+}
+
+static const char *outline(const struct wb_bands_case *c)
+{
+    return c->layers == 0.0 ? "none" : c->is_round ? "circle" : "hull";
+}
+
+/* --- CSV --- */
+
+static void put(struct wb_text *text, double value, double unit)
+{
+    char number[WB_NUMBER_TEXT];
+    wb_text_append(text, ",%s", isfinite(value) ? wb_number_format(value / unit, number) : "");
+}
+
+static void put_band(struct wb_text *text, const struct wb_bands_interval *band, double unit)
+{
+    put(text, band->median, unit);
+    put(text, band->wide_low, unit);
+    put(text, band->wide_high, unit);
+    put(text, band->low, unit);
+    put(text, band->high, unit);
+}
+
+static void put_bands(struct wb_text *text, const struct wb_bands_case *c)
+{
+    const char *const name = c->variant.name;
+    for (int i = 0; i < c->n_force; i++) {
+        wb_text_append(text, "%s,force_N", name);
+        put(text, c->force[i].at, WB_MM);
+        put_band(text, &c->force[i].band, 1.0);
+        wb_text_append(text, "\n");
+    }
+    for (int i = 0; i < c->n_moment; i++) {
+        wb_text_append(text, "%s,moment_N_mm", name);
+        put(text, c->moment[i].at, 1.0);
+        put_band(text, &c->moment[i].band, WB_MM);
+        wb_text_append(text, "\n");
+    }
+    if (!isfinite(c->springback.median) || !last_force(c))
+        return;
+    wb_text_append(text, "%s,springback", name);
+    put(text, last_force(c)->at, WB_MM);
+    put_band(text, &c->springback, 1.0);
+    wb_text_append(text, "\n");
+}
+
+static enum wb_status write_bands(const struct wb_bands *bands, const char *folder)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text, "case,quantity,at,median,low,high,runs_low,runs_high\n");
+    for (int i = 0; i < bands->n_cases; i++)
+        put_bands(&text, &bands->cases[i]);
+    const enum wb_status status = wb_csv_table_write(folder, "bands.csv", &text);
+    wb_text_release(&text);
+    return status;
+}
+
+static enum wb_status write_cases(const struct wb_bands *bands, const char *folder)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text, "case,wires,packing,layers,outline,runs,lost,limited,deflection_mm,"
+                          "force_N,force_low_N,force_high_N,force_runs_low_N,force_runs_high_N,"
+                          "springback,springback_low,springback_high,springback_runs_low,"
+                          "springback_runs_high\n");
+    for (int i = 0; i < bands->n_cases; i++) {
+        const struct wb_bands_case *const c = &bands->cases[i];
+        const struct wb_bands_place *const last = last_force(c);
+        const double none = (double)NAN;
+        const struct wb_bands_interval nothing = {none, none, none, none, none};
+        wb_text_append(&text, "%s,%d,%s", c->variant.name, c->n_wires, c->packing);
+        put(&text, c->layers, 1.0);
+        wb_text_append(&text, ",%s,%d,%d,%d", outline(c), c->n_runs, c->n_lost, c->n_limited);
+        put(&text, last ? last->at : none, WB_MM);
+        put_band(&text, last ? &last->band : &nothing, 1.0);
+        put_band(&text, &c->springback, 1.0);
+        wb_text_append(&text, "\n");
+    }
+    const enum wb_status status = wb_csv_table_write(folder, "cases.csv", &text);
+    wb_text_release(&text);
+    return status;
+}
+
+/* --- figure --- */
+
+static void draw_case(struct wb_panel *panel, const struct wb_bands_case *c, int index,
+                      const struct wb_bands_place *places, int n, double x_unit, double y_unit)
+{
+    double x[WB_BANDS_ROWS + 1], y[WB_BANDS_ROWS + 1], low[WB_BANDS_ROWS + 1],
+        high[WB_BANDS_ROWS + 1];
+    const double *const edges[2] = {low, high};
+    const struct wb_colour colour = wb_palette_sample(index);
+    const struct wb_figure_style style = {.colour = colour, .width = 1.4};
+
+    for (int i = 0; i < n; i++) {
+        const struct wb_bands_interval *const band = &places[i].band;
+        x[i] = places[i].at / x_unit;
+        y[i] = band->median / y_unit;
+        low[i] = band->wide_low / y_unit;
+        high[i] = band->wide_high / y_unit;
+    }
+    if (n < 2)
+        return;
+    wb_figure_add_band(panel, NULL, (size_t)n, x, edges, wb_palette_fade(colour, 0.25));
+    wb_figure_add_line(panel, c->variant.name, (size_t)n, x, y, &style);
+}
+
+static enum wb_status write_figure(const struct wb_bands *bands, const char *folder)
+{
+    const int n = bands->n_cases < DRAWN ? bands->n_cases : DRAWN;
+    struct wb_figure *figure;
+    char path[WB_PATH];
+
+    WB_TRY(wb_file_join(path, folder, "bands.svg"));
+    WB_TRY(wb_figure_create(&figure, "bands", width, height));
+    struct wb_panel *const force = wb_figure_add_panel(figure);
+    struct wb_panel *const moment = wb_figure_add_panel(figure);
+    wb_figure_set_axes(force, "Deflection (mm)", "Force (N)");
+    wb_figure_set_axes(moment, "Curvature (1/m)", "Moment (N mm)");
+    for (int i = 0; i < n; i++) {
+        const struct wb_bands_case *const c = &bands->cases[i];
+        draw_case(force, c, i, c->force, c->n_force, WB_MM, 1.0);
+        draw_case(moment, c, i, c->moment, c->n_moment, 1.0, WB_MM);
+    }
+    wb_figure_set_footer(figure, "predicted by the section model; lines: medians, bands: 90 % with "
+                                 "the model's error");
+    const enum wb_status status = wb_figure_write_svg(figure, path);
+    wb_figure_destroy(figure);
+    return status;
+}
+
+static enum wb_status remove_file(const char *folder, const char *name)
+{
+    char path[WB_PATH];
+    WB_TRY(wb_file_join(path, folder, name));
+    if (unlink(path) == 0 || errno == ENOENT)
+        return WB_OK;
+    return wb_fail(WB_ERR_IO, "'%s' cannot be removed: %s", path, strerror(errno));
+}
+
+enum wb_status wb_bands_output_write(const struct wb_bands *bands, const char *folder)
+{
+    if (!bands) {
+        WB_TRY(wb_csv_table_write(folder, "bands.csv", NULL));
+        WB_TRY(wb_csv_table_write(folder, "cases.csv", NULL));
+        return remove_file(folder, "bands.svg");
+    }
+    WB_TRY(write_bands(bands, folder));
+    WB_TRY(write_cases(bands, folder));
+    return write_figure(bands, folder);
+}
+
+/* --- JSON --- */
+
+static void set_band(struct wb_json *object, const char *key, const struct wb_bands_interval *band)
+{
+    struct wb_json *const member = wb_json_set_object(object, key);
+    wb_json_set_number(member, "median", band->median);
+    wb_json_set_number(member, "low", band->wide_low);
+    wb_json_set_number(member, "high", band->wide_high);
+    wb_json_set_number(member, "runs_low", band->low);
+    wb_json_set_number(member, "runs_high", band->high);
+}
+
+/* Below R2 = 0.9 there are no shares, but R2 itself says so. */
+static void append_ranking(struct wb_json *array, const struct wb_bands *bands,
+                           const struct wb_bands_ranking *of)
+{
+    const struct wb_ranking *const ranking = &of->ranking;
+    struct wb_json *const object = wb_json_append_object(array);
+    wb_json_set_text(object, "of", of->of);
+    wb_json_set_number(object, "deflection_mm", of->at / WB_MM);
+    wb_json_set_number(object, "R2", ranking->r2);
+    wb_json_set_number(object, "R2_low", ranking->low);
+    wb_json_set_number(object, "R2_high", ranking->high);
+    if (!ranking->is_valid)
+        return;
+    struct wb_json *const groups = wb_json_set_array(object, "groups");
+    for (int g = 0; g < ranking->n_groups; g++) {
+        const struct wb_ranking_share *const share = &ranking->group[g];
+        struct wb_json *const item = wb_json_append_object(groups);
+        wb_json_set_text(item, "group", bands->inputs.group_name[share->group]);
+        wb_json_set_number(item, "share", share->share);
+        wb_json_set_number(item, "share_low", share->low);
+        wb_json_set_number(item, "share_high", share->high);
+    }
+}
+
+static void append_case(struct wb_json *array, const struct wb_bands *bands,
+                        const struct wb_bands_case *c)
+{
+    struct wb_json *const object = wb_json_append_object(array);
+    wb_json_set_text(object, "case", c->variant.name);
+    wb_json_set_integer(object, "wires", c->n_wires);
+    wb_json_set_text(object, "packing", c->packing);
+    wb_json_set_number(object, "tape_layers", c->layers);
+    wb_json_set_text(object, "tape_outline", outline(c));
+    wb_json_set_integer(object, "runs_not_converged", c->n_lost);
+    wb_json_set_integer(object, "draws_limited", c->n_limited);
+    if (last_force(c)) {
+        wb_json_set_number(object, "deflection_mm", last_force(c)->at / WB_MM);
+        set_band(object, "force_N", &last_force(c)->band);
+    }
+    set_band(object, "springback", &c->springback);
+    struct wb_json *const rankings = wb_json_set_array(object, "ranking");
+    for (int i = 0; i < c->n_rankings; i++)
+        append_ranking(rankings, bands, &c->ranking[i]);
+}
+
+void wb_bands_output_describe(const struct wb_bands *bands, struct wb_json *object)
+{
+    struct wb_json *const member = wb_json_set_object(object, "uncertainty");
+    wb_json_set_number(member, "confidence", 0.9);
+    wb_json_set_number(member, "model_error", wb_bands_model_error());
+    wb_json_set_integer(member, "runs", bands->runs);
+    wb_json_set_integer(member, "seed", (int64_t)bands->seed);
+    wb_json_set_boolean(member, "stopped", bands->stopped);
+    struct wb_json *const wires = wb_json_set_array(member, "laws_of_wires");
+    for (int i = 0; i < bands->inputs.n_types; i++)
+        wb_json_append_text(wires, bands->inputs.wires[i].source);
+    struct wb_json *const cases = wb_json_set_array(member, "cases");
+    for (int i = 0; i < bands->n_cases; i++)
+        append_case(cases, bands, &bands->cases[i]);
+}
+
+/* --- text --- */
+
+static void tell_case(struct wb_text *text, const struct wb_bands_case *c, int name_width)
+{
+    const struct wb_bands_place *const last = last_force(c);
+    const struct wb_bands_interval *const s = &c->springback;
+    char range[40] = "";
+
+    wb_text_append(text, "%-*s %5d %-9s %6.3g %-7s", name_width, c->variant.name, c->n_wires,
+                   c->packing, c->layers, outline(c));
+    if (last) {
+        snprintf(range, sizeof range, "(%.4g to %.4g)", last->band.wide_low, last->band.wide_high);
+        wb_text_append(text, " %6.4g  %-6.4g %-19s", last->at / WB_MM, last->band.median, range);
+    }
+    if (last && isfinite(s->median))
+        wb_text_append(text, " %.3f (%.3f to %.3f)", s->median, s->wide_low, s->wide_high);
+    wb_text_append(text, "\n");
+}
+
+static void tell_ranking(struct wb_text *text, const struct wb_bands *bands,
+                         const struct wb_bands_ranking *of)
+{
+    const struct wb_ranking *const ranking = &of->ranking;
+    wb_text_append(text, "\n%s at %.3g mm hangs on (R2 %.3f, %.3f to %.3f)%s\n", of->of,
+                   of->at / WB_MM, ranking->r2, ranking->low, ranking->high,
+                   ranking->is_valid ? ":"
+                                     : ": no ranking, ranks of the inputs do not explain it (R2 "
+                                       "below 0.9)");
+    for (int g = 0; ranking->is_valid && g < ranking->n_groups; g++) {
+        const struct wb_ranking_share *const share = &ranking->group[g];
+        wb_text_append(text, "    %5.1f %%  (%.1f to %.1f)  %s\n", share->share / WB_PERCENT,
+                       share->low / WB_PERCENT, share->high / WB_PERCENT,
+                       bands->inputs.group_name[share->group]);
+    }
+}
+
+void wb_bands_output_summarise(const struct wb_bands *bands, struct wb_text *text)
+{
+    int name_width = (int)strlen("case");
+    for (int i = 0; i < bands->n_cases; i++) {
+        const int length = (int)strlen(bands->cases[i].variant.name);
+        name_width = length > name_width ? length : name_width;
+    }
+    wb_text_append(text, "90 %% bands of %d runs a case, with the model's %g %%\n\n", bands->runs,
+                   wb_bands_model_error() / WB_PERCENT);
+    wb_text_append(text,
+                   "%-*s wires packing   layers outline     mm  force N (low to high)      "
+                   "springback (low to high)\n",
+                   name_width, "case");
+    for (int i = 0; i < bands->n_cases; i++)
+        tell_case(text, &bands->cases[i], name_width);
+    for (int i = 0; bands->n_cases > 0 && i < bands->cases[0].n_rankings; i++)
+        tell_ranking(text, bands, &bands->cases[0].ranking[i]);
+}

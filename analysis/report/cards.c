@@ -1,0 +1,120 @@
+#include "analysis/report/cards.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/cards/card.h"
+
+#define WB_LOG_DOMAIN "report"
+
+enum {
+    STEM = 72 /* bytes of a wire's name in file names */
+};
+
+static bool is_taken(const struct wb_cards *cards, const char *stem)
+{
+    char name[STEM + 16];
+    snprintf(name, sizeof name, "cards/%s.yaml", stem);
+    for (int i = 0; i < cards->n; i++) {
+        if (strcmp(cards->files[i].name, name) == 0)
+            return true;
+    }
+    return false;
+}
+
+static void make_stem(const struct wb_cards *cards, const char *wire, char stem[STEM])
+{
+    char first[STEM - 8];
+    snprintf(first, sizeof first, "%.60s", wire[0] ? wire : "wire");
+    for (char *c = first; *c; c++) {
+        if (!isalnum((unsigned char)*c) && !strchr("_-.", *c))
+            *c = '-';
+    }
+    if (first[0] == '.')
+        first[0] = '-';
+    snprintf(stem, STEM, "%s", first);
+    for (int i = 2; is_taken(cards, stem) && i < 1000; i++)
+        snprintf(stem, STEM, "%s-%d", first, i);
+}
+
+/* The text becomes the list's. */
+static enum wb_status add_file(struct wb_cards *cards, const char *stem, const char *ending,
+                               struct wb_text *text)
+{
+    if (cards->n == cards->capacity) {
+        const int capacity = cards->capacity > 0 ? 2 * cards->capacity : 16;
+        struct wb_cards_file *const files = realloc(cards->files, (size_t)capacity * sizeof *files);
+        if (!files)
+            return wb_fail(WB_ERR_MEMORY, "no memory for the report's cards");
+        cards->files = files;
+        cards->capacity = capacity;
+    }
+    struct wb_cards_file *const file = &cards->files[cards->n++];
+    snprintf(file->name, sizeof file->name, "cards/%s.%s", stem, ending);
+    file->bytes = *text;
+    *text = (struct wb_text){.length = 0};
+    return WB_OK;
+}
+
+static enum wb_status add_cards(struct wb_cards *cards, const char *stem,
+                                const struct wb_card_source *source)
+{
+    struct wb_card_settings settings;
+    wb_setting_fill(&wb_card_table, &settings);
+    for (int k = 0; k < WB_CARD_KINDS; k++) {
+        const struct wb_card_kind *const kind = &wb_card_kinds[k];
+        struct wb_text text = {0};
+        struct wb_reason why = {.text = ""};
+        enum wb_status status = wb_card_write(kind, source, &settings, &text, &why);
+        if (status == WB_OK)
+            status = add_file(cards, stem, kind->ending, &text);
+        wb_text_release(&text);
+        if (status == WB_ERR_UNSUPPORTED)
+            wb_warn("no card %s: %s", kind->name, why.text);
+        else
+            WB_TRY(status);
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_cards_add(struct wb_cards *cards, const char *wire, struct wb_text *properties)
+{
+    struct wb_card_source source;
+    char stem[STEM], name[STEM + 8];
+    struct wb_reason why = {.text = ""};
+    make_stem(cards, wire, stem);
+    snprintf(name, sizeof name, "%s.yaml", stem);
+    if (properties->failed)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the report's cards");
+    if (wb_card_source_parse(&source, wb_text_string(properties), name, &why) != WB_OK) {
+        wb_warn("no cards of %s: %s", wire, why.text);
+        wb_text_release(properties);
+        return WB_OK;
+    }
+    enum wb_status status = add_file(cards, stem, "yaml", properties);
+    wb_text_release(properties);
+    return status == WB_OK ? add_cards(cards, stem, &source) : status;
+}
+
+enum wb_status wb_cards_add_fit(struct wb_cards *cards, const struct wb_calibrate_result *result,
+                                const struct wb_calibrate_settings *settings, const char *dataset,
+                                const char *sha256)
+{
+    struct wb_properties_dataset of = {.is_recording = false};
+    struct wb_text text = {0};
+    snprintf(of.name, sizeof of.name, "%.95s", dataset);
+    snprintf(of.sha256, sizeof of.sha256, "%s", sha256);
+    wb_properties_format(&text, result, settings, &of, 1);
+    return wb_cards_add(cards, result->info.wire, &text);
+}
+
+void wb_cards_release(struct wb_cards *cards)
+{
+    for (int i = 0; i < cards->n; i++)
+        wb_text_release(&cards->files[i].bytes);
+    free(cards->files);
+    *cards = (struct wb_cards){.n = 0};
+}

@@ -1,0 +1,270 @@
+#include "analysis/reversal_lag.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "analysis/calibration/least_squares.h"
+#include "analysis/dataset/fit.h"
+
+/* Windows on each side, s, and at most this part of a way. */
+#define MOTION_WINDOW 6.0
+#define FORCE_WINDOW 3.0
+#define WINDOW_PART 0.4
+#define SHORTER 0.6
+/* s of the force left out before the turn, and the filter's delays behind it. */
+#define GUARD 0.05
+#define FILTER_TIMES 3.0
+/* Samples that each signal must have on each side. */
+#define LEAST 12
+#define MOST_ITERATIONS 100
+#define MOST_LAG 0.5 /* s: a search that ends farther off went astray */
+#define TIMES 10.0   /* free numbers in 1 s */
+/* Lengths of the rest that are tried, s apart; those less probable than this part of the best are
+ * left out. */
+#define N_RESTS 51
+#define REST_STEP 0.02
+#define LEAST_WEIGHT 0.01
+
+enum {
+    P_REST_BEGINS,
+    P_HEIGHT,
+    P_SPEED_THERE,
+    P_SPEED_BACK,
+    N_MOTION,
+    P_LAG = N_MOTION,
+    P_FORCE,
+    P_RISE,
+    P_RISE_BENT,
+    P_FALL,
+    P_FALL_BENT,
+    N_ALL
+};
+
+/* Samples of one signal in the window, about the turn and the signal's value there. */
+struct part {
+    const struct wb_sync_signal *signal;
+    size_t first, last;           /* last is behind the end */
+    double skip_from, skip_until; /* s: left out between */
+    double zero, scale;           /* of the values: the noise is 1 in scaled ones */
+};
+
+struct problem {
+    double turn, rest; /* s */
+    struct part motion, force;
+    bool with_force;
+    enum wb_status status;
+};
+
+static struct part take_part(const struct wb_sync_signal *signal, double from, double at,
+                             double until)
+{
+    const size_t middle = wb_fit_first_at(signal->t, sizeof *signal->t, signal->n, at);
+    struct part part = {
+        .signal = signal,
+        .first = wb_fit_first_at(signal->t, sizeof *signal->t, signal->n, from),
+        .last = wb_fit_first_at(signal->t, sizeof *signal->t, signal->n, until),
+        .skip_from = at,
+        .skip_until = at,
+        .scale = wb_sync_noise(signal),
+    };
+    part.zero = signal->n > 0 ? signal->x[middle < signal->n ? middle : signal->n - 1] : 0.0;
+    return part;
+}
+
+static bool is_left_out(const struct part *part, double t)
+{
+    return t > part->skip_from && t < part->skip_until;
+}
+
+/* Whether both sides have samples enough. */
+static bool is_enough(const struct part *part)
+{
+    size_t before = 0, behind = 0;
+    for (size_t i = part->first; i < part->last; i++) {
+        before += part->signal->t[i] <= part->skip_from;
+        behind += part->signal->t[i] >= part->skip_until;
+    }
+    return part->scale > 0.0 && before >= LEAST && behind >= LEAST;
+}
+
+/* Times of the free numbers are in tenths of a second, to be of the size of the others. */
+static double seconds_of(double free_number)
+{
+    return free_number / TIMES;
+}
+
+static double seconds(const gsl_vector *x, int index)
+{
+    return seconds_of(gsl_vector_get(x, (size_t)index));
+}
+
+static int residuals(const gsl_vector *x, void *context, gsl_vector *f)
+{
+    const struct problem *const p = context;
+    const double begins = p->turn + seconds(x, P_REST_BEGINS), ends = begins + p->rest;
+    size_t row = 0;
+    for (size_t i = p->motion.first; i < p->motion.last; i++) {
+        const double t = p->motion.signal->t[i];
+        const double model = gsl_vector_get(x, P_HEIGHT) +
+                             gsl_vector_get(x, P_SPEED_THERE) * fmin(0.0, t - begins) +
+                             gsl_vector_get(x, P_SPEED_BACK) * fmax(0.0, t - ends);
+        gsl_vector_set(f, row++,
+                       (p->motion.signal->x[i] - p->motion.zero) / p->motion.scale - model);
+    }
+    const double lag = p->with_force ? seconds(x, P_LAG) : 0.0;
+    for (size_t i = p->force.first; p->with_force && i < p->force.last; i++) {
+        const double t = p->force.signal->t[i];
+        const double there = fmin(0.0, t - begins - lag), back = fmax(0.0, t - ends - lag);
+        const double model = gsl_vector_get(x, P_FORCE) + gsl_vector_get(x, P_RISE) * there +
+                             gsl_vector_get(x, P_RISE_BENT) * there * there +
+                             gsl_vector_get(x, P_FALL) * back +
+                             gsl_vector_get(x, P_FALL_BENT) * back * back;
+        const double residual = (p->force.signal->x[i] - p->force.zero) / p->force.scale - model;
+        gsl_vector_set(f, row++, is_left_out(&p->force, t) ? 0.0 : residual);
+    }
+    return GSL_SUCCESS;
+}
+
+static size_t count(const struct problem *p)
+{
+    return p->motion.last - p->motion.first + (p->with_force ? p->force.last - p->force.first : 0);
+}
+
+/* Finds the free numbers from where they are, with the sum of squares; `deviations` are standard
+ * (NULL: not wanted). */
+static bool solve(struct problem *p, double free_numbers[N_ALL], double *deviations,
+                  double *squares)
+{
+    const size_t n_free = p->with_force ? N_ALL : N_MOTION, n = count(p);
+    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create((int)n, (int)n_free);
+    gsl_matrix *const covariance = gsl_matrix_alloc(n_free, n_free);
+    bool found = false;
+    if (w && covariance) {
+        gsl_multifit_nlinear_fdf fdf = {.f = residuals, .n = n, .p = n_free, .params = p};
+        const gsl_vector_const_view start = gsl_vector_const_view_array(free_numbers, n_free);
+        const struct wb_least_squares_search search = {.max_iterations = MOST_ITERATIONS,
+                                                       .smallest_step = 1e-5,
+                                                       .smallest_gain = 1e-10,
+                                                       .patience = 2,
+                                                       .status = &p->status};
+        *squares = 0.0;
+        found =
+            gsl_multifit_nlinear_init(&start.vector, &fdf, w) == GSL_SUCCESS &&
+            wb_least_squares_iterate(w, &search, NULL) &&
+            gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), 0.0, covariance) == GSL_SUCCESS;
+        for (size_t i = 0; i < n; i++)
+            *squares += pow(gsl_vector_get(gsl_multifit_nlinear_residual(w), i), 2);
+        const double enlarged = fmax(1.0, *squares / (double)(n - n_free));
+        for (size_t i = 0; found && i < n_free; i++) {
+            free_numbers[i] = gsl_vector_get(gsl_multifit_nlinear_position(w), i);
+            if (deviations)
+                deviations[i] = sqrt(enlarged * gsl_matrix_get(covariance, i, i));
+        }
+    }
+    gsl_multifit_nlinear_free(w);
+    gsl_matrix_free(covariance);
+    return found;
+}
+
+/* How probable each length of the rest is, by the motion alone, relative to the most probable one;
+ * where the way there ends with it, in s after the turn. */
+struct rests {
+    double weight[N_RESTS], begins[N_RESTS];
+};
+
+static double rest_of(int index)
+{
+    return REST_STEP * index;
+}
+
+static bool find_rests(struct problem *p, struct rests *rests)
+{
+    double squares[N_RESTS], least = HUGE_VAL;
+    for (int i = 0; i < N_RESTS; i++) {
+        double x[N_ALL] = {0.0};
+        p->rest = rest_of(i);
+        x[P_SPEED_THERE] = 1e-3 / p->motion.scale;
+        x[P_SPEED_BACK] = -x[P_SPEED_THERE];
+        if (!solve(p, x, NULL, &squares[i]))
+            squares[i] = HUGE_VAL;
+        rests->begins[i] = seconds_of(x[P_REST_BEGINS]);
+        least = fmin(least, squares[i]);
+    }
+    for (int i = 0; i < N_RESTS; i++)
+        rests->weight[i] = exp(-0.5 * (squares[i] - least));
+    return isfinite(least);
+}
+
+/* The lag with one length of the rest. */
+static bool find_with_rest(struct problem *p, int index, const struct rests *rests,
+                           double filter_delay, struct wb_reversal_lag *result)
+{
+    double x[N_ALL] = {0.0}, deviations[N_ALL], squares;
+    const double begins = p->turn + rests->begins[index];
+    p->rest = rest_of(index);
+    p->force.skip_from = begins - GUARD;
+    p->force.skip_until = begins + p->rest + GUARD + FILTER_TIMES * filter_delay;
+    x[P_REST_BEGINS] = TIMES * rests->begins[index];
+    x[P_SPEED_THERE] = 1e-3 / p->motion.scale;
+    x[P_SPEED_BACK] = -x[P_SPEED_THERE];
+    if (!is_enough(&p->force) || !solve(p, x, deviations, &squares))
+        return false;
+    result->lag = seconds_of(x[P_LAG]);
+    result->uncertainty = seconds_of(deviations[P_LAG]);
+    result->rest = p->rest;
+    return fabs(result->lag) < MOST_LAG && result->uncertainty < MOST_LAG;
+}
+
+/* Both signals with windows of this part of the whole ones; the mean over all lengths of the rest,
+ * each by its probability. */
+static bool find_with(struct wb_reversal_lag *result, const struct wb_sync_signal *motion,
+                      const struct wb_sync_signal *force, const struct wb_reversal *reversal,
+                      double filter_delay, double window)
+{
+    const double there = WINDOW_PART * (reversal->at - reversal->from), at = reversal->at;
+    const double back = WINDOW_PART * (reversal->until - reversal->at);
+    struct problem p = {
+        .turn = at,
+        .motion = take_part(motion, at - window * fmin(MOTION_WINDOW, there), at,
+                            at + window * fmin(MOTION_WINDOW, back)),
+        .force = take_part(force, at - window * fmin(FORCE_WINDOW, there), at,
+                           at + window * fmin(FORCE_WINDOW, back)),
+        .status = WB_OK,
+    };
+    struct rests rests;
+    double weights = 0.0, lag = 0.0, squares = 0.0, rest = 0.0;
+    if (!is_enough(&p.motion) || !find_rests(&p, &rests))
+        return false;
+    p.with_force = true;
+    for (int i = 0; i < N_RESTS; i++) {
+        struct wb_reversal_lag one;
+        if (rests.weight[i] < LEAST_WEIGHT || !find_with_rest(&p, i, &rests, filter_delay, &one))
+            continue;
+        weights += rests.weight[i];
+        lag += rests.weight[i] * one.lag;
+        rest += rests.weight[i] * one.rest;
+        squares += rests.weight[i] * (one.lag * one.lag + one.uncertainty * one.uncertainty);
+    }
+    if (!(weights > 0.0))
+        return false;
+    result->lag = lag / weights;
+    result->rest = rest / weights;
+    result->uncertainty = sqrt(squares / weights - result->lag * result->lag);
+    return true;
+}
+
+bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_sync_signal *motion,
+                          const struct wb_sync_signal *force, const struct wb_reversal *reversal,
+                          double filter_delay)
+{
+    struct wb_reversal_lag shorter;
+    if (!find_with(result, motion, force, reversal, filter_delay, 1.0) ||
+        !find_with(&shorter, motion, force, reversal, filter_delay, SHORTER))
+        return false;
+    /* A shorter window also has more noise: what that explains is no fault of the model. */
+    const double noise = sqrt(fmax(0.0, shorter.uncertainty * shorter.uncertainty -
+                                            result->uncertainty * result->uncertainty));
+    const double moved = fabs(shorter.lag - result->lag);
+    result->uncertainty = hypot(result->uncertainty, fmax(0.0, moved - noise));
+    return true;
+}

@@ -1,0 +1,55 @@
+/* wirebench clock: how well the times of a recording are known. */
+#include <stdio.h>
+
+#include "analysis/clock_report.h"
+#include "cli/command.h"
+
+#define WB_LOG_DOMAIN "clock"
+
+static const struct argp_option option_table[] = {
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = wb_command_parse_only_common,
+    .args_doc = "REC.wbr",
+    .doc = "Tells how well the times of a recording (.wbr or .wbr.zst) are known: offset and drift "
+           "of the cameras' clock against the host's, scatter of the load cell's arrivals, the lag "
+           "of the force behind the markers, measured where the motion is reversed, and what that "
+           "lag does to the area of the loop.\v"
+           "Exit codes: 0 the lag is as the rig file has it; 1 the recording could not be aligned; "
+           "3 the lag is not identifiable, or another than the rig file's.",
+};
+
+static int print(const struct wb_clock_report *report, const struct wb_command_common *options)
+{
+    struct wb_text text = {0};
+    if (options->json) {
+        struct wb_json *const root = wb_json_create();
+        wb_json_set_text(root, "recording", options->input);
+        wb_clock_report_describe(report, root);
+        return wb_command_print_json(root);
+    }
+    const enum wb_status status = wb_clock_report_format(report, &text);
+    if (status == WB_OK)
+        printf("%s%s\n%s", options->input, report->dataset.info.is_virtual ? " (virtual rig)" : "",
+               wb_text_string(&text));
+    wb_text_release(&text);
+    return wb_command_exit(status);
+}
+
+int wb_cmd_clock(int argc, char **argv)
+{
+    struct wb_command_common options = {.noun = "recording"};
+    struct wb_clock_report report;
+    wb_command_parse(&argp, argc, argv, &options);
+    if (wb_clock_report_make(&report, options.input, NULL) != WB_OK)
+        return WB_EXIT_FAILED;
+    int code = print(&report, &options);
+    if (code == WB_EXIT_OK && !(report.identifiable && report.agrees))
+        code = WB_EXIT_INCOMPLETE;
+    wb_clock_report_release(&report);
+    return code;
+}

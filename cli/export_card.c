@@ -1,0 +1,105 @@
+#include "cli/export_card.h"
+
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/cards/card.h"
+#include "cli/command.h"
+#include "cli/settings.h"
+
+#define WB_LOG_DOMAIN "export"
+
+struct options {
+    struct wb_command_common common;
+    const struct wb_card_kind *kind;
+    struct wb_card_settings settings;
+};
+
+enum {
+    KEY_TO = WB_KEY_OWN
+};
+
+static const struct argp_option other_options[] = {
+    {"to", KEY_TO, "KIND", 0, "Kind of card: calculix, abaqus, mujoco, table, table-csv", 0},
+    {"output", 'o', "FILE", 0, "Write the card here; by default it is printed", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the file", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+    if (key != KEY_TO)
+        return wb_command_parse_common(key, argument, state, &o->common);
+    return 0; /* read before, for it says which options there are */
+}
+
+static const struct argp argp = {
+    .options = other_options,
+    .parser = parse,
+    .args_doc = "WIRE|FILE --to KIND",
+    .doc = "Writes the law of a wire as a card, an input of another program, from a wire file with "
+           "properties (a shipped one by its name) or from a properties file that `wirebench "
+           "calibrate` wrote. The card says "
+           "units, law, interval, range of curvature, test conditions and checksums, and in its "
+           "first line whether virtual or simulated data are behind it.",
+};
+
+static const struct wb_settings_source sources[] = {
+    {.tables = &wb_card_table, .n_tables = 1, .offset = offsetof(struct options, settings)},
+};
+
+/* The argument of the last --to; NULL: there is none. */
+static const char *find_kind(int argc, char **argv)
+{
+    const char *name = NULL;
+    for (int i = 1; i < argc; i++) {
+        if (strncmp(argv[i], "--to=", 5) == 0)
+            name = argv[i] + 5;
+        else if (strcmp(argv[i], "--to") == 0 && i + 1 < argc)
+            name = argv[i + 1];
+    }
+    return name;
+}
+
+static enum wb_status put_out(const struct options *o, const struct wb_text *card)
+{
+    if (o->common.output) {
+        if (!o->common.force && wb_file_exists(o->common.output))
+            return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
+        return wb_file_write_text(o->common.output, card);
+    }
+    if (fwrite(card->bytes, 1, card->length, stdout) != card->length || fflush(stdout) != 0)
+        return wb_fail(WB_ERR_IO, "the card cannot be written to standard output");
+    return WB_OK;
+}
+
+int wb_export_card(int argc, char **argv)
+{
+    struct options o = {.common = {.noun = "wire or properties file"}};
+    struct wb_card_source source;
+    struct wb_text card = {0};
+    const char *const name = find_kind(argc, argv);
+    if (name && !(o.kind = wb_card_find(name)))
+        return WB_EXIT_USAGE;
+    const struct wb_settings_command command = {
+        .argp = &argp,
+        .sources = sources,
+        .n_sources = 1,
+        .place = o.kind ? o.kind->place : 0,
+        .places = wb_card_places,
+    };
+    wb_setting_fill(&wb_card_table, &o.settings);
+    wb_settings_parse(&command, argc, argv, &o);
+    char path[WB_PATH];
+    enum wb_status status = wb_card_source_find(path, o.common.input);
+    if (status == WB_OK)
+        status = wb_card_source_read(&source, path);
+    if (status == WB_OK)
+        status = wb_card_write(o.kind, &source, &o.settings, &card, NULL);
+    if (status == WB_OK)
+        status = put_out(&o, &card);
+    wb_text_release(&card);
+    return wb_command_exit(status);
+}

@@ -1,0 +1,171 @@
+#include "cli/record_views.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/progress.h"
+#include "base/units.h"
+#include "cli/live_line.h"
+#include "live/live_terminal.h"
+
+#define WB_LOG_DOMAIN "live"
+
+#define TELL_NS (50 * WB_NS_PER_MS)
+/* How long views may take to end by themselves. */
+#define PATIENCE_MS 1000
+/* Messages that are kept for the end while a view has the terminal. */
+#define MOST_UNSAID 65536
+
+/* --- messages --- */
+
+/* Sinks are called under the log's lock, by any thread. */
+static void tell_and_keep(void *context, enum wb_log_level level, const char *domain,
+                          const char *message)
+{
+    struct wb_record_views *const views = context;
+    wb_live_feed_tell(&views->feed, level, message);
+    if (views->unsaid.length >= MOST_UNSAID)
+        views->n_lost++;
+    else
+        wb_text_append(&views->unsaid, "wirebench: %s%s\n", wb_live_line_level(level), message);
+    (void)domain;
+}
+
+static void tell_and_say(void *context, enum wb_log_level level, const char *domain,
+                         const char *message)
+{
+    struct wb_record_views *const views = context;
+    wb_live_feed_tell(&views->feed, level, message);
+    wb_live_line_log(NULL, level, domain, message);
+}
+
+static void open_line(struct wb_record_views *views)
+{
+    wb_live_line_open();
+    if (views->feed.n_views > 0)
+        wb_log_set_sink(tell_and_say, views);
+}
+
+/* --- opening --- */
+
+static enum wb_status make_plan(struct wb_record_views *views,
+                                const struct wb_bend_test_request *request,
+                                const struct wb_wire *wire)
+{
+    struct wb_rig rig;
+    struct wb_specimen specimen;
+    WB_TRY(wb_rig_read(request->rig_path, &rig));
+    WB_TRY(wb_specimen_read(request->specimen_path, &specimen));
+    if (wb_live_plan_make(&views->plan, &rig, &specimen, wire, request->travel) != WB_OK)
+        wb_warn("the views show no predicted curve: the message before says why");
+    snprintf(views->title, sizeof views->title, "%s, %g mm, sample %d on %s", wire->name,
+             specimen.length / WB_MM, specimen.sample, rig.name);
+    views->plan.title = views->title;
+    views->plan.recording = request->output_path;
+    wb_live_source_init(&views->source, &views->feed, &rig, &specimen);
+    return WB_OK;
+}
+
+static enum wb_status open_terminal(struct wb_record_views *views)
+{
+    if (!wb_live_terminal_is_there() || tcgetattr(STDIN_FILENO, &views->modes) != 0) {
+        wb_info("--live needs a terminal in the foreground: one line is shown instead");
+        return WB_OK;
+    }
+    WB_TRY(wb_live_feed_start(&views->feed, wb_live_terminal_run, &views->plan, &views->terminal));
+    /* From here on what is said to the terminal would be lost with the view's screen. */
+    wb_log_set_sink(tell_and_keep, views);
+    return WB_OK;
+}
+
+/* Before the view on the terminal: its address is a message for people. */
+static enum wb_status open_page(struct wb_record_views *views, int port)
+{
+    int taken, index;
+    WB_TRY(wb_live_page_listen(port, &views->page.listener, &taken));
+    views->page.plan = &views->plan;
+    const enum wb_status status =
+        wb_live_feed_start(&views->feed, wb_live_page_run, &views->page, &index);
+    close(views->page.listener);
+    if (status == WB_OK)
+        snprintf(views->address, sizeof views->address,
+                 "the test can be watched at http://127.0.0.1:%d/", taken);
+    return status;
+}
+
+enum wb_status wb_record_views_open(struct wb_record_views *views,
+                                    const struct wb_record_views_options *options,
+                                    struct wb_bend_test_request *request,
+                                    const struct wb_wire *wire)
+{
+    memset(views, 0, sizeof *views);
+    views->terminal = -1;
+    if (!options->live && !options->serve)
+        return WB_OK;
+    WB_TRY(make_plan(views, request, wire));
+    request->sink = wb_live_source_sink(&views->source);
+    if (options->serve)
+        WB_TRY(open_page(views, options->port));
+    const enum wb_status status = options->live ? open_terminal(views) : WB_OK;
+    if (status != WB_OK)
+        wb_live_feed_stop(&views->feed, PATIENCE_MS);
+    return status;
+}
+
+/* --- the test --- */
+
+void wb_record_views_begin(struct wb_record_views *views, const struct wb_bend_test *test)
+{
+    views->source.test = test;
+    if (views->terminal < 0)
+        open_line(views);
+    if (views->address[0])
+        wb_info("%s", views->address);
+}
+
+/* Gives the terminal back to the live line: the view's process may have left it in any state. */
+static void take_terminal_back(struct wb_record_views *views)
+{
+    const bool is_sane = views->feed.view[views->terminal].ended_well;
+    views->terminal = -1;
+    open_line(views); /* first: from here on nothing waits for the terminal */
+    if (!is_sane)
+        wb_live_line_restore(&views->modes, WB_LIVE_TERMINAL_RESTORE);
+    wb_live_line_say(wb_text_string(&views->unsaid));
+    if (views->n_lost > 0)
+        wb_warn("%d more messages came meanwhile and were not kept", views->n_lost);
+    wb_text_release(&views->unsaid);
+}
+
+bool wb_record_views_tell(struct wb_record_views *views, bool now)
+{
+    struct wb_live_frame frame;
+    const int64_t now_ns = wb_progress_now_ns();
+    if (views->terminal >= 0 && atomic_load(&views->feed.view[views->terminal].is_gone) &&
+        wb_live_feed_has_ended(&views->feed, views->terminal)) {
+        take_terminal_back(views);
+        wb_warn("the live view has ended; the recording goes on");
+    }
+    if (views->feed.n_views > 0 && (now || now_ns - views->told_ns >= TELL_NS)) {
+        views->told_ns = now_ns;
+        wb_live_source_fill(&views->source, &frame);
+        wb_live_feed_push(&views->feed, &frame);
+    }
+    return views->terminal < 0;
+}
+
+int wb_record_views_key(struct wb_record_views *views)
+{
+    const int key = wb_live_feed_key(&views->feed);
+    return key == 0 && views->terminal < 0 ? wb_live_line_key() : key;
+}
+
+void wb_record_views_close(struct wb_record_views *views)
+{
+    wb_log_set_sink(NULL, NULL); /* no thread tells a feed that is being closed */
+    wb_live_feed_stop(&views->feed, PATIENCE_MS);
+    if (views->terminal >= 0)
+        take_terminal_back(views);
+    wb_live_line_close();
+}

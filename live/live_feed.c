@@ -1,0 +1,183 @@
+#include "live/live_feed.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/progress.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "live"
+
+/* What may wait for a view, bytes as the kernel counts them: about a second of frames. A view that
+ * was stopped has that much to catch up with. */
+#define SOCKET_BYTES 65536
+#define LOW_PRIORITY 5
+
+/* --- the child --- */
+
+static void become_a_view(const struct wb_live_feed *feed)
+{
+    static const int ignored[] = {SIGINT, SIGQUIT, SIGTSTP, SIGTTIN, SIGTTOU, SIGPIPE};
+    static const int usual[] = {SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof ignored / sizeof ignored[0]; i++)
+        signal(ignored[i], SIG_IGN);
+    for (size_t i = 0; i < sizeof usual / sizeof usual[0]; i++)
+        signal(usual[i], SIG_DFL);
+    /* With an end of the recorder's open here, an earlier view would not see the recorder go. */
+    for (int i = 0; i < feed->n_views; i++)
+        close(feed->view[i].socket);
+    /* Of no use where it is refused: then the view is as important as others. */
+    (void)setpriority(PRIO_PROCESS, 0, LOW_PRIORITY);
+}
+
+enum wb_status wb_live_feed_start(struct wb_live_feed *feed, int (*run)(int socket, void *context),
+                                  void *context, int *index)
+{
+    int ends[2];
+    const int bytes = SOCKET_BYTES;
+    if (feed->n_views == WB_LIVE_FEED_VIEWS)
+        return wb_fail(WB_ERR_ARGUMENT, "expected at most %d live views", WB_LIVE_FEED_VIEWS);
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+        return wb_fail(WB_ERR_IO, "no socket for a live view: %s", strerror(errno));
+    (void)setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+    fflush(NULL); /* or the child would write what waits in stdout a second time */
+    const pid_t process = fork();
+    if (process == 0) {
+        close(ends[0]);
+        become_a_view(feed);
+        _exit(run(ends[1], context));
+    }
+    close(ends[1]);
+    if (process < 0) {
+        close(ends[0]);
+        return wb_fail(WB_ERR_IO, "no process for a live view: %s", strerror(errno));
+    }
+    struct wb_live_feed_view *const view = &feed->view[feed->n_views];
+    view->socket = ends[0];
+    view->process = process;
+    view->has_ended = view->ended_well = false;
+    view->sent_points = feed->n_points;
+    *index = feed->n_views++;
+    return WB_OK;
+}
+
+/* --- sending --- */
+
+/* True when the view's socket took it. */
+static bool put(struct wb_live_feed_view *view, const void *packet, size_t size)
+{
+    if (atomic_load(&view->is_gone))
+        return false;
+    const ssize_t sent = send(view->socket, packet, size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR && errno != ENOBUFS)
+        atomic_store(&view->is_gone, true);
+    return sent == (ssize_t)size;
+}
+
+void wb_live_feed_add_point(struct wb_live_feed *feed, const struct wb_live_frame_point *point)
+{
+    feed->ring[feed->n_points++ % WB_LIVE_FEED_RING] = *point;
+}
+
+/* The first points that this view has not had, as many as a frame holds. */
+static void fill_points(const struct wb_live_feed *feed, struct wb_live_feed_view *view,
+                        struct wb_live_frame *frame)
+{
+    const uint64_t waiting = feed->n_points - view->sent_points;
+    if (waiting > WB_LIVE_FEED_RING) {
+        view->points_dropped += waiting - WB_LIVE_FEED_RING;
+        view->sent_points = feed->n_points - WB_LIVE_FEED_RING;
+    }
+    frame->n_points = 0;
+    for (uint64_t i = view->sent_points;
+         i < feed->n_points && frame->n_points < WB_LIVE_FRAME_POINTS; i++)
+        frame->point[frame->n_points++] = feed->ring[i % WB_LIVE_FEED_RING];
+}
+
+void wb_live_feed_push(struct wb_live_feed *feed, struct wb_live_frame *frame)
+{
+    frame->header = wb_live_frame_header(WB_LIVE_FRAME_STATE, sizeof *frame);
+    frame->number = ++feed->n_frames;
+    for (int i = 0; i < feed->n_views; i++) {
+        struct wb_live_feed_view *const view = &feed->view[i];
+        fill_points(feed, view, frame);
+        frame->frames_dropped = view->frames_dropped;
+        frame->points_dropped = view->points_dropped;
+        if (put(view, frame, sizeof *frame))
+            view->sent_points += (uint64_t)frame->n_points;
+        else
+            view->frames_dropped++;
+    }
+}
+
+void wb_live_feed_tell(struct wb_live_feed *feed, enum wb_log_level level, const char *text)
+{
+    struct wb_live_frame_message message = {
+        .header = wb_live_frame_header(WB_LIVE_FRAME_MESSAGE, sizeof message), .level = level};
+    snprintf(message.text, sizeof message.text, "%s", text);
+    for (int i = 0; i < feed->n_views; i++)
+        (void)put(&feed->view[i], &message, sizeof message);
+}
+
+int wb_live_feed_key(struct wb_live_feed *feed)
+{
+    struct wb_live_frame_key key;
+    for (int i = 0; i < feed->n_views; i++) {
+        struct wb_live_feed_view *const view = &feed->view[i];
+        if (atomic_load(&view->is_gone))
+            continue;
+        const ssize_t n = recv(view->socket, &key, sizeof key, MSG_DONTWAIT);
+        if (n == 0)
+            atomic_store(&view->is_gone, true);
+        else if (wb_live_frame_is(&key.header, n, WB_LIVE_FRAME_KEY, sizeof key))
+            return key.key;
+    }
+    return 0;
+}
+
+/* --- the end --- */
+
+bool wb_live_feed_has_ended(struct wb_live_feed *feed, int index)
+{
+    struct wb_live_feed_view *const view = &feed->view[index];
+    int status;
+    if (view->has_ended)
+        return true;
+    const pid_t ended = waitpid(view->process, &status, WNOHANG);
+    view->has_ended = ended == view->process || (ended < 0 && errno == ECHILD);
+    view->ended_well = ended == view->process && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    return view->has_ended;
+}
+
+/* Waits for a view until a deadline; true when it has ended. */
+static bool ends_until(struct wb_live_feed *feed, int index, int64_t deadline_ns)
+{
+    while (!wb_live_feed_has_ended(feed, index)) {
+        if (wb_progress_now_ns() >= deadline_ns)
+            return false;
+        (void)poll(NULL, 0, 10);
+    }
+    return true;
+}
+
+void wb_live_feed_stop(struct wb_live_feed *feed, int patience_ms)
+{
+    const int64_t deadline_ns = wb_progress_now_ns() + patience_ms * WB_NS_PER_MS;
+    for (int i = 0; i < feed->n_views; i++)
+        close(feed->view[i].socket);
+    for (int i = 0; i < feed->n_views; i++) {
+        if (ends_until(feed, i, deadline_ns))
+            continue;
+        kill(feed->view[i].process, SIGKILL); /* ends a stopped process as well */
+        /* But not one that waits for a dead network drive: that is left behind. */
+        (void)ends_until(feed, i, wb_progress_now_ns() + WB_NS_PER_S);
+    }
+    feed->n_views = 0;
+}

@@ -1,0 +1,113 @@
+/* What the recorder tells its live views: packets of fixed layout through a socket between two
+ * processes of one program. Each begins with a header whose version and size a reader checks.
+ *
+ * Units are SI. A number that is not known is NaN.
+ */
+#ifndef WB_LIVE_LIVE_FRAME_H
+#define WB_LIVE_LIVE_FRAME_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "daq/interlock.h"
+#include "daq/specimen.h"
+
+#define WB_LIVE_FRAME_VERSION 1
+#define WB_LIVE_FRAME_POINTS 64 /* of the curve, in one frame */
+#define WB_LIVE_FRAME_TEXT 256
+
+enum wb_live_frame_kind {
+    WB_LIVE_FRAME_STATE = 1, /* struct wb_live_frame */
+    WB_LIVE_FRAME_MESSAGE,   /* struct wb_live_frame_message */
+    WB_LIVE_FRAME_KEY        /* struct wb_live_frame_key, from the view to the recorder */
+};
+
+struct wb_live_frame_header {
+    uint32_t kind, version, size; /* size: of the whole packet, bytes */
+};
+
+/* The test in a word. */
+enum wb_live_frame_word {
+    WB_LIVE_FRAME_CONNECTING, /* instruments are waited for */
+    WB_LIVE_FRAME_READY,      /* they answer; start check and tare */
+    WB_LIVE_FRAME_TESTING,
+    WB_LIVE_FRAME_HELD,    /* stopped by a limit or the operator; the stage stands */
+    WB_LIVE_FRAME_FAULTED, /* it failed, or the stage did not confirm that it stands */
+    WB_LIVE_FRAME_DONE
+};
+
+/* One point of the curve; 0 < cycle. */
+struct wb_live_frame_point {
+    float deflection, force; /* m, N */
+    int32_t cycle;
+};
+
+struct wb_live_frame_stream {
+    double rate;        /* valid samples/s */
+    double longest_gap; /* s */
+    uint64_t samples, missing, gaps, drops;
+    bool is_ready, is_lost, is_gone, is_losing;
+};
+
+struct wb_live_frame {
+    struct wb_live_frame_header header;
+    uint64_t number;         /* of the frame, from 1; those that were dropped count */
+    uint64_t frames_dropped; /* that this view did not take in time */
+    uint64_t points_dropped; /* of the curve, for the same reason */
+    enum wb_live_frame_word word;
+    char phase[16];                /* as in struct wb_bend_test_status */
+    char text[WB_LIVE_FRAME_TEXT]; /* why the test ended; "" while it runs */
+    int32_t cycle, cycles;
+    double elapsed, time_left; /* s of host time */
+    double force, peak, deflection, travel;
+    struct wb_live_frame_stream stream[WB_INTERLOCK_ROLES]; /* by role */
+    double disk_lag;  /* s: age of the oldest that is not on the disk */
+    double disk_fill; /* of the memory for what waits, 0 to 1 */
+    bool is_disk_failing, is_disk_late;
+    uint64_t bytes; /* that came from the instruments */
+    int32_t n_markers;
+    bool are_markers_found; /* they were all seen at once, and are followed since */
+    uint32_t seen;          /* bit i: marker i was measured in the last frame of the cameras */
+    float marker[WB_SPECIMEN_MAX_MARKERS][2]; /* m, from the clamp's marker: along the wire at rest,
+                                                 and up; where it was seen last */
+    int32_t n_points;
+    struct wb_live_frame_point point[WB_LIVE_FRAME_POINTS]; /* since the last frame taken */
+};
+
+/* A message of the log. */
+struct wb_live_frame_message {
+    struct wb_live_frame_header header;
+    int32_t level; /* enum wb_log_level */
+    char text[WB_LIVE_FRAME_TEXT];
+};
+
+struct wb_live_frame_key {
+    struct wb_live_frame_header header;
+    int32_t key; /* 'm' or 'q' */
+};
+
+/* A header for a packet of this kind. */
+static inline struct wb_live_frame_header wb_live_frame_header(enum wb_live_frame_kind kind,
+                                                               uint32_t size)
+{
+    return (struct wb_live_frame_header){(uint32_t)kind, WB_LIVE_FRAME_VERSION, size};
+}
+
+/* Whether `n` bytes are a whole packet of this kind. */
+static inline bool wb_live_frame_is(const struct wb_live_frame_header *header, long n,
+                                    enum wb_live_frame_kind kind, uint32_t size)
+{
+    return n == (long)size && header->kind == (uint32_t)kind &&
+           header->version == WB_LIVE_FRAME_VERSION && header->size == size;
+}
+
+/* The word as people read it: "connecting", "ready", "test in progress", "held", "faulted",
+ * "done". */
+static inline const char *wb_live_frame_word(enum wb_live_frame_word word)
+{
+    static const char *const words[] = {"connecting", "ready",   "test in progress",
+                                        "held",       "faulted", "done"};
+    return words[word];
+}
+
+#endif

@@ -1,0 +1,87 @@
+#include "live/live_history.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+
+#include "base/progress.h"
+
+static void thin(struct wb_live_history *history)
+{
+    for (size_t i = 0; i < history->n_points / 2; i++)
+        history->points[i] = history->points[2 * i];
+    history->n_points /= 2;
+    history->n_thinned++;
+}
+
+static bool take_frame(struct wb_live_history *history, const struct wb_live_frame *frame)
+{
+    if (!history->points)
+        history->points = malloc(WB_LIVE_HISTORY_POINTS * sizeof *history->points);
+    if (!history->points || frame->n_points < 0 || frame->n_points > WB_LIVE_FRAME_POINTS ||
+        frame->n_markers < 0 || frame->n_markers > WB_SPECIMEN_MAX_MARKERS)
+        return false;
+    if (history->n_points + WB_LIVE_FRAME_POINTS > WB_LIVE_HISTORY_POINTS)
+        thin(history);
+    for (int i = 0; i < frame->n_points; i++)
+        history->points[history->n_points++] = frame->point[i];
+    history->frame = *frame;
+    history->frame_ns = wb_progress_now_ns();
+    history->has_frame = true;
+    return true;
+}
+
+/* True when it was understood. */
+static bool take(struct wb_live_history *history, const void *packet, ssize_t n)
+{
+    struct wb_live_frame_header header;
+    struct wb_live_frame frame;
+    struct wb_live_frame_message message;
+    if (n < (ssize_t)sizeof header)
+        return false;
+    memcpy(&header, packet, sizeof header);
+    if (wb_live_frame_is(&header, n, WB_LIVE_FRAME_STATE, sizeof frame)) {
+        memcpy(&frame, packet, sizeof frame);
+        return take_frame(history, &frame);
+    }
+    if (!wb_live_frame_is(&header, n, WB_LIVE_FRAME_MESSAGE, sizeof message))
+        return false;
+    memcpy(&message, packet, sizeof message);
+    message.text[sizeof message.text - 1] = '\0';
+    history->message[history->n_messages++ % WB_LIVE_HISTORY_MESSAGES] = message;
+    return true;
+}
+
+bool wb_live_history_receive(struct wb_live_history *history, int socket)
+{
+    unsigned char packet[sizeof(struct wb_live_frame) + 1];
+    while (!history->is_bad) {
+        const ssize_t n = recv(socket, packet, sizeof packet, MSG_DONTWAIT);
+        if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+            return true;
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        history->is_bad = !take(history, packet, n);
+    }
+    return false;
+}
+
+void wb_live_history_largest(const struct wb_live_history *history, double *deflection,
+                             double *force)
+{
+    *deflection = *force = 0.0;
+    for (size_t i = 0; i < history->n_points; i++) {
+        *deflection = fmax(*deflection, (double)history->points[i].deflection);
+        *force = fmax(*force, (double)history->points[i].force);
+    }
+}
+
+void wb_live_history_release(struct wb_live_history *history)
+{
+    free(history->points);
+    memset(history, 0, sizeof *history);
+}

@@ -1,0 +1,120 @@
+#include "live/live_terminal.h"
+
+#include <curses.h>
+#include <errno.h>
+#include <langinfo.h>
+#include <locale.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include "base/progress.h"
+#include "base/units.h"
+#include "live/live_history.h"
+#include "live/live_plan.h"
+#include "live/live_screen.h"
+
+#define DRAW_NS (100 * WB_NS_PER_MS)
+#define DISK_NS (2 * WB_NS_PER_S)
+
+static volatile sig_atomic_t told_to_end;
+
+static void note_end(int number)
+{
+    (void)number;
+    told_to_end = 1;
+}
+
+bool wb_live_terminal_is_there(void)
+{
+    return isatty(STDIN_FILENO) && isatty(STDERR_FILENO) && tcgetpgrp(STDIN_FILENO) == getpgrp();
+}
+
+/* A key for the recorder; where the socket is full it is lost, and is pressed again. */
+static void send_key(int socket, int key)
+{
+    const struct wb_live_frame_key packet = {
+        .header = wb_live_frame_header(WB_LIVE_FRAME_KEY, sizeof packet), .key = key};
+    (void)send(socket, &packet, sizeof packet, MSG_DONTWAIT | MSG_NOSIGNAL);
+}
+
+/* Room on the recording's disk. Asking may take long on a network drive; only the view waits. */
+static void look_at_disk(struct wb_live_screen *screen, int64_t *due_ns)
+{
+    struct statvfs status;
+    const struct wb_live_frame *const frame = &screen->history->frame;
+    if (wb_progress_now_ns() < *due_ns)
+        return;
+    *due_ns = wb_progress_now_ns() + DISK_NS;
+    screen->disk_free = statvfs(screen->plan->recording, &status) == 0
+                            ? (double)status.f_bavail * (double)status.f_frsize
+                            : (double)NAN;
+    screen->bytes_per_s = frame->elapsed > 1.0 ? (double)frame->bytes / frame->elapsed : 0.0;
+}
+
+static void handle_keys(int socket)
+{
+    for (int key = getch(); key != ERR; key = getch()) {
+        if (key == 'm' || key == 'q')
+            send_key(socket, key);
+        else if (key == KEY_RESIZE)
+            clear();
+    }
+}
+
+static void follow(int socket, struct wb_live_screen *screen, struct wb_live_history *history)
+{
+    int64_t disk_ns = 0, drawn_ns = 0;
+    bool goes_on = true;
+    while (goes_on && !told_to_end) {
+        struct pollfd polled[] = {{.fd = socket, .events = POLLIN},
+                                  {.fd = STDIN_FILENO, .events = POLLIN}};
+        if (poll(polled, 2, 200) < 0 && errno != EINTR)
+            return;
+        /* A terminal that was hung up is readable for ever. */
+        if (polled[1].revents & (POLLHUP | POLLERR | POLLNVAL))
+            return;
+        goes_on = wb_live_history_receive(history, socket);
+        handle_keys(socket);
+        if (wb_progress_now_ns() - drawn_ns < DRAW_NS)
+            continue;
+        look_at_disk(screen, &disk_ns);
+        wb_live_screen_draw(screen);
+        drawn_ns = wb_progress_now_ns();
+    }
+}
+
+int wb_live_terminal_run(int socket, void *context)
+{
+    const struct wb_live_plan *const plan = context;
+    struct wb_live_history history = {0};
+    struct wb_live_screen screen = {.plan = plan, .history = &history, .disk_free = (double)NAN};
+    struct sigaction action = {.sa_handler = note_end};
+    setlocale(LC_CTYPE, "");
+    screen.is_unicode = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+    SCREEN *const terminal = newterm(NULL, stderr, stdin);
+    if (!terminal)
+        return 1;
+    /* ncurses has handlers of its own that end the process. */
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGHUP, &action, NULL);
+    signal(SIGINT, SIG_IGN);
+    signal(SIGTSTP, SIG_IGN);
+    cbreak();
+    noecho();
+    nodelay(stdscr, TRUE);
+    keypad(stdscr, TRUE);
+    curs_set(0);
+    wb_live_screen_prepare();
+    follow(socket, &screen, &history);
+    endwin();
+    delscreen(terminal);
+    wb_live_history_release(&history);
+    return 0;
+}
