@@ -1,0 +1,30 @@
+"""Calibrates a wire on datasets and prints what is known of it, and its bending moments.
+
+    wirebench align recordings/type1-L85-1.wbr.zst -o type1-L85-1
+    python3 calibrate_dataset.py type1-L85-1
+"""
+
+import sys
+import warnings
+
+import numpy as np
+import wirebench
+
+
+def main(folders):
+    warnings.simplefilter("ignore", wirebench.Remark)
+    properties = wirebench.calibrate([wirebench.Dataset(folder) for folder in folders])
+    info = properties.info
+    print("wire %s, method %s, %d sample%s" %
+          (info.wire, info.method, info.n_samples, "" if info.n_samples == 1 else "s"))
+    print("EI %.9g N m2, candidates %.9g to %.9g" %
+          (info.rigidity.value, info.rigidity.candidates_low, info.rigidity.candidates_high))
+    curvature = info.largest_curvature * np.arange(1, 5) / 4
+    for at, moment in zip(curvature, properties.moments(curvature)):
+        print("M at %.4g 1/m: %.9g N m" % (at, moment))
+    print("springback %.9g of a curvature of %.4g 1/m" %
+          (properties.bend(info.largest_curvature).springback, info.largest_curvature))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

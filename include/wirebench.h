@@ -1,0 +1,403 @@
+/* libwirebench: recordings, datasets, simulated tests and calibration of wirebench, for other
+ * programs.
+ *
+ * Units are SI in every double: m, kg, s, N, Pa, rad. NaN is a number that is not known.
+ *
+ * Failures. A function that can fail returns an enum wirebench_status: 0, a negative code, or
+ * WIREBENCH_INCOMPLETE, with which results were delivered and something of them is missing.
+ * wirebench_message() says in words what was wrong in the last call of the same thread and, where a
+ * file is at fault, names file, line and key. Nothing is printed, and the library never ends the
+ * process.
+ *
+ * Handles. A `struct wirebench_...` without members here is a handle: the function with `out` makes
+ * it, one of the functions without a status frees it and accepts NULL. Texts, tables and columns
+ * are borrowed from the handle they were asked of and live as long as it does. Results are written
+ * on success (0 or WIREBENCH_INCOMPLETE) only, unless a function says otherwise.
+ *
+ * Threads. Two threads may use two handles at the same time; a handle is used by one thread at a
+ * time. Handles that are const in a call may be used by several.
+ *
+ * Structs. Each begins with its size, so that a program built with this header works with later
+ * releases: struct wirebench_law law = {.size = sizeof law}. In structs that the caller fills in,
+ * 0 means the default that stands beside the member.
+ *
+ * The process. No locale, signal handler, environment variable or standard stream is changed. GSL's
+ * error handler, which belongs to the process, is off during wirebench_calibrate() and put back
+ * after the last such call has ended.
+ *
+ * A recording is the bytes of the instruments with their times; a dataset is a test as a table of
+ * force over deflection; properties are what is known of a wire. `wirebench align` makes datasets
+ * of recordings. docs/library.md shows the use from C and Python.
+ */
+#ifndef WIREBENCH_H
+#define WIREBENCH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* --- status and messages --- */
+
+enum wirebench_status {
+    WIREBENCH_INCOMPLETE = 1, /* delivered; wirebench_message() says what is missing or doubtful */
+    WIREBENCH_OK = 0,
+    WIREBENCH_ERR_ARGUMENT = -1,  /* the caller misused the function, or a number is out of range */
+    WIREBENCH_ERR_MEMORY = -2,    /* out of memory */
+    WIREBENCH_ERR_IO = -3,        /* a file could not be read */
+    WIREBENCH_ERR_NOT_FOUND = -4, /* a file, key or name does not exist */
+    WIREBENCH_ERR_FORMAT = -5,    /* bytes or text that do not follow their format */
+    WIREBENCH_ERR_BUSY = -6,      /* somebody else holds the file */
+    WIREBENCH_ERR_PERMISSION = -7, /* not allowed to open it */
+    WIREBENCH_ERR_TIMEOUT = -8, /* stopped by the caller's `progress` before there was a result */
+    WIREBENCH_ERR_UNSUPPORTED = -9, /* of a kind that the function does not serve */
+    WIREBENCH_ERR_EXISTS = -10,     /* it would overwrite something */
+    WIREBENCH_ERR_DATA = -11,       /* the data cannot serve the purpose */
+    WIREBENCH_ERR_CONVERGENCE = -12 /* an iteration did not converge where there is no going on */
+};
+
+/* The release, "0.1.0", and the source revision it was built from. */
+const char *wirebench_version(void);
+const char *wirebench_revision(void);
+
+/* Short text of a status, "no such file or name"; never NULL. */
+const char *wirebench_status_text(enum wirebench_status status);
+
+/* What went wrong in this thread's last call that returned a status; "" after a success. Valid
+ * until this thread's next such call. */
+const char *wirebench_message(void);
+
+/* Warnings and remarks of this thread's last call that returned a status, one a line; "" none.
+ * Valid as the message is. */
+const char *wirebench_warnings(void);
+
+/* --- tables --- */
+
+enum wirebench_column_type {
+    WIREBENCH_REAL,
+    WIREBENCH_INTEGER,
+    WIREBENCH_TEXT
+};
+
+/* A column. Of the three arrays (n) the one of its type is there, the others are NULL. */
+struct wirebench_column {
+    size_t size;
+    const char *name; /* with its unit: "force_N" */
+    const char *unit; /* "N"; "1" of counts and flags; "" of texts */
+    enum wirebench_column_type type;
+    size_t n;
+    const double *reals;      /* NaN: no value */
+    const int64_t *integers;  /* flags are 0 and 1 */
+    const char *const *texts; /* UTF-8 */
+};
+
+struct wirebench_table;
+
+size_t wirebench_table_rows(const struct wirebench_table *table);
+int wirebench_table_columns(const struct wirebench_table *table);
+
+/* A column by its index from 0, or by its name; WIREBENCH_ERR_NOT_FOUND. */
+enum wirebench_status wirebench_table_column(const struct wirebench_table *table, int index,
+                                             struct wirebench_column *column);
+enum wirebench_status wirebench_table_find(const struct wirebench_table *table, const char *name,
+                                           struct wirebench_column *column);
+
+/* --- recordings --- */
+
+struct wirebench_recording;
+
+enum wirebench_role {
+    WIREBENCH_LOAD,
+    WIREBENCH_MOCAP,
+    WIREBENCH_STAGE
+};
+
+/* What a recording holds and whether all of it is there. */
+struct wirebench_recording_info {
+    size_t size;
+    char sha256[65]; /* of the uncompressed file, in hex; "" unknown */
+    int is_virtual;  /* from the virtual rig */
+    int is_whole;    /* nothing is missing, damaged, dropped or cut short */
+    int n_problems;  /* wirebench_recording_problem() describes each */
+    int n_streams;
+    int64_t first_ns; /* arrival of the first bytes, ns of the host's monotonic clock */
+    double duration;  /* s, from the first to the last bytes */
+    uint64_t chunks, damaged_chunks, events;
+};
+
+/* What one instrument sent. */
+struct wirebench_stream {
+    size_t size;
+    int id;
+    enum wirebench_role role;
+    char address[160];
+    char protocol[32];
+    uint64_t chunks, bytes; /* reads or datagrams, and their bytes */
+    uint64_t samples;       /* decoded: readings, frames or reports */
+    double rate;            /* 1/s; 0 unknown */
+    double longest_silence; /* s */
+};
+
+/* Opens a recording, NAME.wbr or NAME.wbr.zst, for reading. A damaged one is opened as far as it
+ * can be read. */
+enum wirebench_status wirebench_recording_open(struct wirebench_recording **out, const char *path);
+void wirebench_recording_close(struct wirebench_recording *recording);
+
+/* Verifies the recording as `wirebench verify` does: reads all of it, decodes it, compares the
+ * checksums. The first of these calls takes that time. That it is damaged is a result: is_whole. */
+enum wirebench_status wirebench_recording_describe(struct wirebench_recording *recording,
+                                                   struct wirebench_recording_info *info);
+enum wirebench_status wirebench_recording_stream(struct wirebench_recording *recording, int index,
+                                                 struct wirebench_stream *stream);
+/* Fault `index` from 0 in a sentence: "mocap stream 1: 12 chunks missing in 2 places". NULL: there
+ * are not so many, or the recording was not described. */
+const char *wirebench_recording_problem(const struct wirebench_recording *recording, int index);
+
+/* A text that was recorded beside the bytes, by its key: "specimen" and "rig" (YAML), "start_utc",
+ * "operator", "notes", ... NULL: there is none. */
+const char *wirebench_recording_meta(const struct wirebench_recording *recording, const char *key);
+
+/* The decoded samples as the instruments said them, neither tared nor aligned: table "load",
+ * "mocap" (a row for each marker of a frame), "stage", "events" or "clock". docs/library.md has the
+ * columns. The first of these calls decodes the recording. WIREBENCH_INCOMPLETE: the table is
+ * there, and parts of the recording are missing or damaged and left out. */
+enum wirebench_status wirebench_recording_table(struct wirebench_recording *recording,
+                                                const char *name,
+                                                const struct wirebench_table **table);
+
+/* --- datasets --- */
+
+struct wirebench_dataset;
+
+enum wirebench_kind {
+    WIREBENCH_CANTILEVER,
+    WIREBENCH_THREE_POINT,
+    WIREBENCH_TENSILE
+};
+
+enum {
+    WIREBENCH_MOST_SHAPE = 4
+};
+
+struct wirebench_dataset_info {
+    size_t size;
+    const char *wire; /* name of the product */
+    enum wirebench_kind kind;
+    int sample;             /* 0: an average, or a simulation */
+    double length;          /* m: free length; span between rollers; gauge length */
+    double outer_diameter;  /* m */
+    double mass_per_length; /* kg/m; 0: not known */
+    double strand_length;   /* m; 0: a vertical force, no strand */
+    double counterweight;   /* kg at the tip */
+    double gravity;         /* m/s2; 0: no weight in the data */
+    /* The stress-free angle over arc length, rad: theta0(s) = sum_i b_i (s/L)^(i+1). 0: straight */
+    int n_natural_shape;
+    double natural_shape[WIREBENCH_MOST_SHAPE];
+    int is_follower; /* the tip force stays normal to the wire */
+    int is_virtual, is_simulation;
+    int is_complete; /* nothing was missing or cut short */
+};
+
+/* Reads the dataset's folder. */
+enum wirebench_status wirebench_dataset_read(struct wirebench_dataset **out, const char *folder);
+void wirebench_dataset_close(struct wirebench_dataset *dataset);
+
+enum wirebench_status wirebench_dataset_describe(const struct wirebench_dataset *dataset,
+                                                 struct wirebench_dataset_info *info);
+/* Table "force_deflection" or "shape". docs/library.md has the columns. */
+enum wirebench_status wirebench_dataset_table(const struct wirebench_dataset *dataset,
+                                              const char *name,
+                                              const struct wirebench_table **table);
+/* The whole dataset.json: where the data come from, what was corrected and by how much. */
+const char *wirebench_dataset_json(const struct wirebench_dataset *dataset);
+
+/* --- properties of a wire --- */
+
+struct wirebench_properties;
+
+/* One of several elastic-plastic parts that share the strain. */
+struct wirebench_part {
+    double modulus; /* Pa */
+    double
+        yield_strain; /* 1, ascending from part to part; INFINITY: stays elastic, the last only */
+};
+
+enum {
+    WIREBENCH_MOST_PARTS = 12
+};
+
+/* The stress-strain law of the homogenised wire, over its outer diameter. */
+struct wirebench_law {
+    size_t size;
+    double outer_diameter;  /* m */
+    double mass_per_length; /* kg/m; 0: no weight */
+    double poissons_ratio;  /* 1, of the shear stiffness */
+    /* Ludwik's law, stress = E e up to sigma_Y, then sigma_Y + K ep^n; where n_parts is 0. */
+    double youngs_modulus;       /* E, Pa */
+    double yield_stress;         /* sigma_Y, Pa; 0: never yields */
+    double strength_coefficient; /* K, Pa; 0: perfectly plastic */
+    double hardening_exponent;   /* n, 1 */
+    /* Or parallel parts. */
+    int n_parts;
+    struct wirebench_part parts[WIREBENCH_MOST_PARTS];
+    /* Share of kinematic hardening, 0 (isotropic) to 1; how the wire yields on the way back. */
+    double kinematic_share;
+};
+
+/* A number with its interval of 95 % over specimens, and its range over the laws that the data do
+ * not exclude. */
+struct wirebench_estimate {
+    double value, low, high, candidates_low, candidates_high;
+};
+
+struct wirebench_properties_info {
+    size_t size;
+    const char *wire;                       /* name of the product; "" unknown */
+    const char *method;                     /* "cycle", "paper", "three-point"; "" not calibrated */
+    double outer_diameter, mass_per_length; /* m, kg/m */
+    double poissons_ratio;
+    /* E, sigma_Y, K and n of Ludwik's law; where n_parts is not 0, of the isotropic one that bends
+     * alike on a first loading. Standard uncertainties of E, sigma_Y, ln K and n. */
+    double youngs_modulus, yield_stress, strength_coefficient, hardening_exponent;
+    double deviation[4];
+    int n_parts;
+    struct wirebench_part parts[WIREBENCH_MOST_PARTS];
+    double kinematic_share;
+    double rms;                                     /* misfit of the calibration, over F_max */
+    double largest_curvature;                       /* 1/m, that the tests reached */
+    struct wirebench_estimate rigidity, springback; /* EI, N m2; 1 */
+    int n_samples;
+    int is_rule_supported; /* the data support the hardening rule */
+    int is_virtual, is_simulation;
+};
+
+/* Properties of a law that the caller gives. */
+enum wirebench_status wirebench_properties_create(struct wirebench_properties **out,
+                                                  const struct wirebench_law *law);
+/* Reads a properties file of `wirebench calibrate`, a wire file, or a shipped wire by its name:
+ * "type1". */
+enum wirebench_status wirebench_properties_read(struct wirebench_properties **out,
+                                                const char *path_or_name);
+void wirebench_properties_destroy(struct wirebench_properties *properties);
+
+enum wirebench_status wirebench_properties_describe(const struct wirebench_properties *properties,
+                                                    struct wirebench_properties_info *info);
+/* Of calibrated properties, the text of a properties file as `wirebench calibrate -o` writes it;
+ * NULL of others. */
+const char *wirebench_properties_text(const struct wirebench_properties *properties);
+
+/* Bending moments (N m) of a first loading at n curvatures (1/m, 0 or more). */
+enum wirebench_status wirebench_moments(const struct wirebench_properties *properties, size_t n,
+                                        const double *curvature, double *moment);
+
+struct wirebench_bending {
+    size_t size;
+    double rigidity;    /* EI of the virgin wire, N m2 */
+    double springback;  /* residual over largest curvature: bent to the largest and let go, 1 */
+    double loop_energy; /* J/m lost each time: from the largest curvature straight and back */
+};
+
+/* What the law says of bending up to `largest` (1/m, above 0). */
+enum wirebench_status wirebench_bend(const struct wirebench_properties *properties, double largest,
+                                     struct wirebench_bending *bending);
+
+/* --- simulated tests --- */
+
+/* Cantilever: clamp at the origin, x along the straight wire, y up; the tip is raised. */
+struct wirebench_cantilever {
+    size_t size;
+    double length;        /* m */
+    double strand_length; /* m, of the strand that pulls the tip; 0: a vertical force */
+    double counterweight; /* kg at the tip; has weight where gravity is not 0 */
+    double gravity;       /* m/s2 towards -y; 0: no weight */
+    int n_natural_shape;  /* of the stress-free angle, as in wirebench_dataset_info */
+    double natural_shape[WIREBENCH_MOST_SHAPE];
+    int n_elements; /* 0: 50 */
+    /* Shapes: positions at these arc lengths (m, n_positions of them, from 0 to length). */
+    size_t n_positions;
+    const double *positions;
+};
+
+/* Arrays of the caller, each (n) for n deflections, or NULL where it is not wanted. */
+struct wirebench_cantilever_result {
+    size_t size;
+    double *force;       /* N: vertical, less its value at deflection 0 before the first row */
+    double *tension;     /* N, of the strand, or vertical; not zeroed */
+    double *tip_x;       /* m */
+    double *tip_angle;   /* rad */
+    double *root_moment; /* N m, at the clamp */
+    int *slack;          /* the strand carries nothing */
+    double *shape_x, *shape_y; /* (n, n_positions), m */
+    size_t n_done;             /* set: rows that were computed; later ones are NaN */
+};
+
+/* Takes a virgin wire through n deflections of its tip (m), in their order. WIREBENCH_INCOMPLETE
+ * where the solver does not converge beyond row n_done. */
+enum wirebench_status wirebench_solve_cantilever(const struct wirebench_properties *properties,
+                                                 const struct wirebench_cantilever *test, size_t n,
+                                                 const double *deflection,
+                                                 struct wirebench_cantilever_result *result);
+
+/* Three-point bending: two rollers, a nose between them that presses the wire down. */
+struct wirebench_three_point {
+    size_t size;
+    double span;                       /* m, between the rollers' axes */
+    double overhang;                   /* m, beyond each roller; 0: 0.3 span */
+    double roller_radius, nose_radius; /* m; 0: a knife's edge */
+    double friction;                   /* on the rollers, 1 */
+    double compliance;                 /* m/N of the machine */
+    int n_elements;                    /* of half the wire; 0: 80 */
+};
+
+struct wirebench_three_point_result {
+    size_t size;
+    double *force;            /* N, of the nose */
+    double *travel;           /* m, deflection and what the machine gives way */
+    double *middle_moment;    /* N m */
+    double *middle_curvature; /* 1/m */
+    int *slack;               /* the nose does not touch */
+    size_t n_done;
+};
+
+/* The same for deflections of the nose since it touched the straight wire. */
+enum wirebench_status wirebench_solve_three_point(const struct wirebench_properties *properties,
+                                                  const struct wirebench_three_point *test,
+                                                  size_t n, const double *deflection,
+                                                  struct wirebench_three_point_result *result);
+
+/* --- calibration --- */
+
+enum wirebench_method {
+    WIREBENCH_METHOD_DEFAULT, /* as `wirebench calibrate` without --method */
+    WIREBENCH_METHOD_CYCLE,   /* a law and its hardening rule on loading and unloading */
+    WIREBENCH_METHOD_PAPER    /* E, sigma_Y, K and n on the averaged first loading */
+};
+
+struct wirebench_calibration {
+    size_t size;
+    enum wirebench_method method;
+    int threads; /* 0: as many as there are processors */
+    /* Options of `wirebench calibrate` by their names, "data-step-mm=2"; NULL or NULL-terminated.
+     */
+    const char *const *options;
+    /* Called now and then, not always by the calling thread, one call at a time; 0 stops. `all` is
+     * 0 where it is not known. NULL: none. */
+    int (*progress)(void *context, int done, int all);
+    void *context;
+};
+
+/* Calibrates on n datasets of one wire. `calibration` may be NULL: the default. Datasets of
+ * three-point bending have a method of their own. wirebench_warnings() has the remarks on data and
+ * result. WIREBENCH_INCOMPLETE: the data do not support the hardening rule, a search did not come
+ * to its end, or progress stopped it; the properties are there. */
+enum wirebench_status wirebench_calibrate(struct wirebench_properties **out,
+                                          const struct wirebench_dataset *const *datasets, size_t n,
+                                          const struct wirebench_calibration *calibration);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

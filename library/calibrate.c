@@ -1,0 +1,290 @@
+/* Calibration of the library: the methods of `wirebench calibrate`. Whatever the method, its result
+ * is written as a properties file in memory and read again, so that a caller gets the same as one
+ * who reads the command's file. */
+#include <gsl/gsl_errno.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/calibration/cycle_check.h"
+#include "analysis/calibration/method.h"
+#include "library/handles.h"
+
+#define WB_LOG_DOMAIN "library"
+
+/* --- GSL's error handler, which belongs to the process --- */
+
+static pthread_mutex_t handler_lock = PTHREAD_MUTEX_INITIALIZER;
+static gsl_error_handler_t *handler; /* the caller's, while calibrations run */
+static int n_running;
+
+static void begin_gsl(void)
+{
+    pthread_mutex_lock(&handler_lock);
+    if (n_running++ == 0)
+        handler = gsl_set_error_handler_off();
+    pthread_mutex_unlock(&handler_lock);
+}
+
+static void end_gsl(void)
+{
+    pthread_mutex_lock(&handler_lock);
+    if (--n_running == 0)
+        gsl_set_error_handler(handler);
+    pthread_mutex_unlock(&handler_lock);
+}
+
+/* --- what is asked for --- */
+
+struct job {
+    struct wirebench_calibration given;
+    enum wb_method method;
+    int n;
+    const struct wb_dataset **datasets;    /* (n) owned, the datasets themselves borrowed */
+    struct wb_properties_dataset *origins; /* (n) owned */
+    const char **names;                    /* (n) owned */
+    struct wb_calibrate_settings paper;
+    struct wb_cycle_calibrate_settings cycle;
+    struct wb_three_point_calibrate_settings three_point;
+    char missing[256]; /* what the result lacks; "" nothing */
+};
+
+static bool report(void *context, int done, int all)
+{
+    struct job *const job = context;
+    return !job->given.progress || job->given.progress(job->given.context, done, all) != 0;
+}
+
+static bool report_evaluation(void *context, int evaluation, double error, double size)
+{
+    (void)error, (void)size;
+    return report(context, evaluation, 0);
+}
+
+/* Tables of settings of a method, and the struct that they fill. */
+struct target {
+    const struct wb_setting_table *tables;
+    int n;
+    void *settings;
+};
+
+static struct target find_target(struct job *job)
+{
+    switch (job->method) {
+    case WB_METHOD_PAPER:
+        return (struct target){&wb_calibrate_table, 1, &job->paper};
+    case WB_METHOD_THREE_POINT:
+        return (struct target){wb_three_point_calibrate_tables, WB_THREE_POINT_CALIBRATE_TABLES,
+                               &job->three_point};
+    default:
+        return (struct target){wb_cycle_calibrate_tables, WB_CYCLE_CALIBRATE_TABLES, &job->cycle};
+    }
+}
+
+static enum wb_status set_option(const struct target *target, const char *option)
+{
+    const char *const equals = strchr(option, '=');
+    const size_t length = equals ? (size_t)(equals - option) : strlen(option);
+    for (int t = 0; t < target->n; t++) {
+        const struct wb_setting_table *const table = &target->tables[t];
+        for (size_t i = 0; i < table->n; i++) {
+            const struct wb_setting *const row = &table->rows[i];
+            char problem[WB_SETTING_PROBLEM];
+            if (!row->option || strlen(row->option) != length ||
+                strncmp(row->option, option, length) != 0)
+                continue;
+            if (row->type != WB_SETTING_BOOLEAN && !equals)
+                return wb_fail(WB_ERR_ARGUMENT, "option '%s': expected %s=%s", option, option,
+                               row->argument);
+            if (row->type == WB_SETTING_BOOLEAN && equals)
+                return wb_fail(WB_ERR_ARGUMENT, "option '%s': expected no value", option);
+            if (!wb_setting_parse(row, equals ? equals + 1 : NULL,
+                                  (char *)target->settings + table->offset, problem))
+                return wb_fail(WB_ERR_ARGUMENT, "option '%s': %s", option, problem);
+            return WB_OK;
+        }
+    }
+    return wb_fail(WB_ERR_NOT_FOUND,
+                   "option '%s': `wirebench calibrate --help` has those of this method", option);
+}
+
+static enum wb_status choose_method(struct job *job)
+{
+    WB_TRY(wb_method_choose(&job->method, job->datasets, job->names, job->n, NULL));
+    if (job->method == WB_METHOD_THREE_POINT)
+        return WB_OK;
+    switch (job->given.method) {
+    case WIREBENCH_METHOD_DEFAULT:
+        return WB_OK;
+    case WIREBENCH_METHOD_CYCLE:
+        job->method = WB_METHOD_CYCLE;
+        return WB_OK;
+    case WIREBENCH_METHOD_PAPER:
+        job->method = WB_METHOD_PAPER;
+        return WB_OK;
+    }
+    return wb_fail(WB_ERR_ARGUMENT, "method %d: expected one of enum wirebench_method",
+                   (int)job->given.method);
+}
+
+static enum wb_status prepare(struct job *job)
+{
+    WB_TRY(choose_method(job));
+    wb_calibrate_default_settings(&job->paper);
+    wb_cycle_calibrate_default_settings(&job->cycle);
+    for (int i = 0; i < WB_THREE_POINT_CALIBRATE_TABLES; i++)
+        wb_setting_fill(&wb_three_point_calibrate_tables[i],
+                        (char *)&job->three_point + wb_three_point_calibrate_tables[i].offset);
+    if (job->given.threads < 0)
+        return wb_fail(WB_ERR_ARGUMENT, "threads: %d: expected 0 (all) or more",
+                       job->given.threads);
+    const struct target target = find_target(job);
+    for (int i = 0; job->given.options && job->given.options[i]; i++)
+        WB_TRY(set_option(&target, job->given.options[i]));
+    job->cycle.threads = job->given.threads;
+    job->three_point.threads = job->given.threads;
+    job->paper.progress = report_evaluation;
+    job->cycle.progress = job->three_point.progress = report;
+    job->paper.progress_context = job->cycle.progress_context = job->three_point.progress_context =
+        job;
+    return WB_OK;
+}
+
+/* --- the methods --- */
+
+static void lack(struct job *job, const char *text)
+{
+    snprintf(job->missing, sizeof job->missing, "%s", text);
+}
+
+static enum wb_status run_paper(struct job *job, struct wb_text *text)
+{
+    struct wb_calibrate_result result = {0};
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    WB_TRY(wb_calibrate_run(&result, job->datasets, job->n, &job->paper, NULL));
+    wb_properties_format(text, &result, &job->paper, job->origins, job->n);
+    const int n = wb_calibrate_remarks(&result, remarks);
+    for (int i = 0; i < n; i++)
+        wb_call_warn(remarks[i]);
+    if (result.end != WB_CALIBRATE_SIZE && result.end != WB_CALIBRATE_ERROR)
+        lack(job, wb_calibrate_end_text(result.end));
+    wb_calibrate_result_release(&result);
+    return WB_OK;
+}
+
+static enum wb_status run_cycle(struct job *job, struct wb_text *text)
+{
+    struct wb_cycle_calibration calibration = {0};
+    struct wb_cycle_remarks *const remarks = calloc(1, sizeof *remarks);
+    if (!remarks)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the remarks of a calibration");
+    const enum wb_status status =
+        wb_cycle_check_calibrate(&calibration, remarks, job->datasets, job->n, &job->cycle, NULL);
+    for (int i = 0; i < remarks->n; i++)
+        wb_call_warn(remarks->items[i].text);
+    free(remarks);
+    if (status == WB_OK) {
+        wb_properties_format_cycle(text, &calibration, &job->cycle, job->origins, job->n);
+        if (calibration.is_stopped)
+            lack(job, "stopped before all laws were fitted: the hardening rule is undecided");
+        else if (!wb_cycle_calibrate_is_converged(&calibration))
+            lack(job, "the iterations ran out for a specimen (option fit-iterations)");
+        else if (calibration.has_unloading && !calibration.is_supported)
+            lack(job, "hardening rule not supported by the data: no candidate follows loading and "
+                      "unloading within 0.5 % of F_max");
+    }
+    wb_cycle_calibrate_release(&calibration);
+    return status;
+}
+
+static enum wb_status run_three_point(struct job *job, struct wb_text *text)
+{
+    struct wb_three_point_calibration calibration = {0};
+    const enum wb_status status =
+        wb_three_point_calibrate_run(&calibration, job->datasets, job->n, &job->three_point, NULL);
+    if (status == WB_OK) {
+        wb_properties_format_three_point(text, &calibration, job->origins, job->n);
+        for (int i = 0; i < calibration.n_members; i++) {
+            if (!calibration.members[i].is_fitted)
+                lack(job, "not every test could be fitted");
+            else if (!calibration.members[i].fit.is_converged)
+                lack(job, "the iterations ran out for a test (option curve-iterations)");
+        }
+    }
+    wb_three_point_calibrate_release(&calibration);
+    return status;
+}
+
+static enum wb_status calibrate(struct job *job, struct wirebench_properties *properties)
+{
+    static enum wb_status (*const run[WB_METHODS])(struct job *, struct wb_text *) = {
+        [WB_METHOD_CYCLE] = run_cycle,
+        [WB_METHOD_PAPER] = run_paper,
+        [WB_METHOD_THREE_POINT] = run_three_point,
+    };
+    struct wb_text *const text = &properties->text;
+    WB_TRY(prepare(job));
+    begin_gsl();
+    const enum wb_status status = run[job->method](job, text);
+    end_gsl();
+    WB_TRY(status);
+    if (text->failed)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the properties");
+    return wb_card_source_parse(&properties->source, wb_text_string(text),
+                                "the calibrated properties", NULL);
+}
+
+/* --- the function --- */
+
+static enum wb_status take_datasets(struct job *job,
+                                    const struct wirebench_dataset *const *datasets, size_t n)
+{
+    if (n < 1 || n > INT32_MAX)
+        return wb_fail(WB_ERR_ARGUMENT, "%zu datasets: expected 1 or more", n);
+    WB_TRY(wb_call_need(datasets, "datasets"));
+    job->n = (int)n;
+    job->datasets = calloc(n, sizeof(struct wb_dataset *));
+    job->origins = calloc(n, sizeof *job->origins);
+    job->names = calloc(n, sizeof *job->names);
+    if (!job->datasets || !job->origins || !job->names)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %zu datasets", n);
+    for (size_t i = 0; i < n; i++) {
+        WB_TRY(wb_call_need(datasets[i], "a dataset"));
+        if (datasets[i]->dataset.info.kind == WB_TEST_TENSILE)
+            return wb_fail(WB_ERR_UNSUPPORTED, "'%s' is a tensile test: expected tests of bending",
+                           datasets[i]->origin.name);
+        job->datasets[i] = &datasets[i]->dataset;
+        job->origins[i] = datasets[i]->origin;
+        job->names[i] = datasets[i]->origin.name;
+    }
+    return WB_OK;
+}
+
+enum wirebench_status wirebench_calibrate(struct wirebench_properties **out,
+                                          const struct wirebench_dataset *const *datasets, size_t n,
+                                          const struct wirebench_calibration *calibration)
+{
+    struct job job = {0};
+    wb_call_begin();
+    enum wb_status status = wb_call_need(out, "out");
+    if (status == WB_OK && calibration)
+        status = wb_call_take(&job.given, sizeof job.given, calibration, "wirebench_calibration");
+    if (status == WB_OK)
+        status = take_datasets(&job, datasets, n);
+    struct wirebench_properties *const properties =
+        status == WB_OK ? calloc(1, sizeof *properties) : NULL;
+    if (status == WB_OK && !properties)
+        status = wb_fail(WB_ERR_MEMORY, "no memory for properties");
+    if (status == WB_OK)
+        status = calibrate(&job, properties);
+    free(job.datasets);
+    free(job.origins);
+    free(job.names);
+    if (status == WB_OK)
+        *out = properties;
+    else
+        wirebench_properties_destroy(properties);
+    return status == WB_OK && job.missing[0] ? wb_call_end_incomplete("%s", job.missing)
+                                             : wb_call_end(status);
+}

@@ -1,0 +1,391 @@
+"""Recordings, datasets, simulated tests and calibration of wirebench.
+
+A thin module over libwirebench, whose header, wirebench.h, documents each number. Everything is in
+SI units; NaN is a number that is not known. Tables are dictionaries of NumPy arrays:
+
+    import wirebench
+    with wirebench.Recording("type1-L85-1.wbr.zst") as recording:
+        force = recording.table("load")["force_N"]
+    dataset = wirebench.Dataset("type1-L85-1")
+    wire = wirebench.calibrate([dataset])
+    print(wire.info.rigidity.value, wire.bend(20.0).springback)
+    frame = dataset.table("shape").frame()   # with pandas
+
+A failure raises wirebench.Error with the library's message. Where results are there but something
+of them is missing or doubtful, wirebench.Incomplete is given as a warning; what the tool prints as
+warnings is a wirebench.Remark.
+"""
+
+import ctypes as _c
+import json as _json
+import os as _os
+import types as _types
+import warnings as _warnings
+from collections.abc import Mapping as _Mapping
+
+import numpy as _np
+
+from . import _structs as _s
+
+__all__ = ["Dataset", "Error", "Incomplete", "Properties", "Recording", "Remark", "Table",
+           "calibrate", "revision", "solve_cantilever", "solve_three_point", "version"]
+
+
+class Error(Exception):
+    """What the library refused or could not do; `status` is the code of enum wirebench_status."""
+
+    def __init__(self, status, message):
+        super().__init__(message)
+        self.status = status
+
+
+class Incomplete(UserWarning):
+    """Results were delivered, and something of them is missing or doubtful."""
+
+
+class Remark(UserWarning):
+    """What the tool would have printed as a warning."""
+
+
+# WIREBENCH_LIBRARY names another file, for one that is not installed.
+_lib = _c.CDLL(_os.environ.get("WIREBENCH_LIBRARY", "libwirebench.so.0"))
+_s.declare(_lib)
+
+
+def _text(value):
+    return None if value is None else value.decode("utf-8", "replace")
+
+
+def _path(path):
+    return _os.fsencode(_os.fspath(path))
+
+
+def _check(status):
+    """Raises or warns, as the status of the call before says."""
+    message = _text(_lib.wirebench_message())
+    remarks = _text(_lib.wirebench_warnings())
+    if status < 0:
+        raise Error(status, message)
+    for remark in remarks.splitlines():
+        _warnings.warn(remark, Remark, stacklevel=3)
+    if status > 0:
+        _warnings.warn(message, Incomplete, stacklevel=3)
+
+
+def _plain(value):
+    """A struct as a namespace, without its size; arrays by how many they hold."""
+    if isinstance(value, bytes):
+        return _text(value)
+    if isinstance(value, _c.Array):
+        return [_plain(item) for item in value]
+    if not isinstance(value, _c.Structure):
+        return value
+    fields = {name: _plain(getattr(value, name)) for name, *_ in value._fields_ if name != "size"}
+    for name in ("natural_shape", "parts"):
+        if "n_" + name in fields:
+            fields[name] = fields[name][:fields.pop("n_" + name)]
+    return _types.SimpleNamespace(**fields)
+
+
+def _described(struct, call, *arguments):
+    filled = struct(size=_c.sizeof(struct))
+    _check(call(*arguments, _c.byref(filled)))
+    return _plain(filled)
+
+
+def _array(pointer, n):
+    if n == 0:
+        return _np.empty(0, dtype=pointer._type_)
+    return _np.ctypeslib.as_array(pointer, shape=(n,)).copy()
+
+
+class Table(_Mapping):
+    """Columns by name, NumPy arrays: float64, int64, or of str. `units` has each column's unit."""
+
+    def __init__(self, handle):
+        self._columns, self.units = {}, {}
+        for index in range(_lib.wirebench_table_columns(handle)):
+            column = _s.Column(size=_c.sizeof(_s.Column))
+            _check(_lib.wirebench_table_column(handle, index, _c.byref(column)))
+            if column.type == _s.REAL:
+                values = _array(column.reals, column.n)
+            elif column.type == _s.INTEGER:
+                values = _array(column.integers, column.n)
+            else:
+                values = _np.array([_text(column.texts[i]) for i in range(column.n)], dtype=object)
+            self._columns[_text(column.name)] = values
+            self.units[_text(column.name)] = _text(column.unit)
+        self.rows = _lib.wirebench_table_rows(handle)
+
+    def __getitem__(self, name):
+        return self._columns[name]
+
+    def __iter__(self):
+        return iter(self._columns)
+
+    def __len__(self):
+        return len(self._columns)
+
+    def frame(self):
+        """The table as a pandas DataFrame."""
+        import pandas
+        return pandas.DataFrame(self._columns)
+
+
+class _Handle:
+    """What a handle of the library lives in; freed with the object."""
+
+    _free = None
+
+    def __init__(self, make, *arguments):
+        self._handle = _c.c_void_p()
+        _check(make(_c.byref(self._handle), *arguments))
+
+    def close(self):
+        handle, self._handle = getattr(self, "_handle", None), None
+        if handle:
+            type(self)._free(handle)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.close()
+
+    def __del__(self):
+        self.close()
+
+    @property
+    def _open(self):
+        if not self._handle:
+            raise ValueError(type(self).__name__ + " was closed")
+        return self._handle
+
+
+class Recording(_Handle):
+    """A recording, NAME.wbr or NAME.wbr.zst."""
+
+    _free = _lib.wirebench_recording_close
+
+    def __init__(self, path):
+        super().__init__(_lib.wirebench_recording_open, _path(path))
+
+    @property
+    def info(self):
+        """What it holds and whether all of it is there: struct wirebench_recording_info."""
+        return _described(_s.RecordingInfo, _lib.wirebench_recording_describe, self._open)
+
+    @property
+    def streams(self):
+        """Of each instrument, struct wirebench_stream; role is "load", "mocap" or "stage"."""
+        found = []
+        for index in range(self.info.n_streams):
+            stream = _described(_s.Stream, _lib.wirebench_recording_stream, self._open, index)
+            stream.role = ("load", "mocap", "stage")[stream.role]
+            found.append(stream)
+        return found
+
+    @property
+    def problems(self):
+        """What is missing or damaged, in sentences; empty where nothing is."""
+        return [_text(_lib.wirebench_recording_problem(self._open, index))
+                for index in range(self.info.n_problems)]
+
+    def meta(self, key):
+        """A text recorded beside the bytes, "specimen" or "rig"; None: there is none."""
+        return _text(_lib.wirebench_recording_meta(self._open, key.encode()))
+
+    def table(self, name):
+        """Table "load", "mocap", "stage", "events" or "clock"."""
+        table = _c.c_void_p()
+        _check(_lib.wirebench_recording_table(self._open, name.encode(), _c.byref(table)))
+        return Table(table)
+
+
+class Dataset(_Handle):
+    """A test as force over deflection and shapes: the folder that `wirebench align` wrote."""
+
+    _free = _lib.wirebench_dataset_close
+
+    def __init__(self, folder):
+        super().__init__(_lib.wirebench_dataset_read, _path(folder))
+
+    @property
+    def info(self):
+        """struct wirebench_dataset_info; kind is "cantilever", "three-point" or "tensile"."""
+        info = _described(_s.DatasetInfo, _lib.wirebench_dataset_describe, self._open)
+        info.kind = ("cantilever", "three-point", "tensile")[info.kind]
+        return info
+
+    def table(self, name="force_deflection"):
+        """Table "force_deflection" or "shape"."""
+        table = _c.c_void_p()
+        _check(_lib.wirebench_dataset_table(self._open, name.encode(), _c.byref(table)))
+        return Table(table)
+
+    @property
+    def document(self):
+        """dataset.json: where the data come from, what was corrected and by how much."""
+        return _json.loads(_text(_lib.wirebench_dataset_json(self._open)))
+
+
+class Properties(_Handle):
+    """What is known of a wire: made of a law's numbers, read, or calibrated."""
+
+    _free = _lib.wirebench_properties_destroy
+
+    def __init__(self, outer_diameter, youngs_modulus=0.0, yield_stress=0.0,
+                 strength_coefficient=0.0, hardening_exponent=0.0, *, parts=(), kinematic_share=0.0,
+                 poissons_ratio=0.0, mass_per_length=0.0):
+        """Ludwik's law, or parallel parts [(modulus, yield strain), ...]: struct wirebench_law."""
+        if len(parts) > _s.MOST_PARTS:
+            raise ValueError("at most %d parts, not %d" % (_s.MOST_PARTS, len(parts)))
+        law = _s.Law(size=_c.sizeof(_s.Law), outer_diameter=outer_diameter,
+                     youngs_modulus=youngs_modulus, yield_stress=yield_stress,
+                     strength_coefficient=strength_coefficient,
+                     hardening_exponent=hardening_exponent, n_parts=len(parts),
+                     kinematic_share=kinematic_share, poissons_ratio=poissons_ratio,
+                     mass_per_length=mass_per_length)
+        for i, (modulus, yield_strain) in enumerate(parts):
+            law.parts[i] = _s.Part(modulus, yield_strain)
+        super().__init__(_lib.wirebench_properties_create, _c.byref(law))
+
+    @classmethod
+    def _made(cls, make, *arguments):
+        made = cls.__new__(cls)
+        _Handle.__init__(made, make, *arguments)
+        return made
+
+    @classmethod
+    def read(cls, path_or_name):
+        """A properties file, a wire file, or a shipped wire by its name, "type1"."""
+        return cls._made(_lib.wirebench_properties_read, _path(path_or_name))
+
+    @property
+    def info(self):
+        """struct wirebench_properties_info"""
+        return _described(_s.PropertiesInfo, _lib.wirebench_properties_describe, self._open)
+
+    @property
+    def text(self):
+        """Of calibrated properties, the text of PROPERTIES.yaml; None of others."""
+        return _text(_lib.wirebench_properties_text(self._open))
+
+    def moments(self, curvature):
+        """Bending moments (N m) of a first loading at these curvatures (1/m)."""
+        curvature = _np.asarray(curvature, dtype=_np.float64)
+        given = _np.ascontiguousarray(curvature).ravel()
+        found = _np.empty_like(given)
+        _check(_lib.wirebench_moments(self._open, given.size, _s.pointer(given),
+                                      _s.pointer(found)))
+        return found.reshape(curvature.shape)
+
+    def bend(self, largest):
+        """rigidity, springback and loop_energy of bending to `largest` (1/m)."""
+        return _described(_s.Bending, _lib.wirebench_bend, self._open, largest)
+
+
+def version():
+    """The library's release."""
+    return _text(_lib.wirebench_version())
+
+
+def revision():
+    """The source revision that the library was built from."""
+    return _text(_lib.wirebench_revision())
+
+
+def _solve(call, properties, test, deflection, result, shapes=0):
+    """Fills all arrays of the result's struct, and gives them with the deflections."""
+    deflection = _np.ascontiguousarray(deflection, dtype=_np.float64).ravel()
+    arrays = {"deflection": deflection}
+    for name, kind in result._fields_:
+        if name in ("size", "n_done") or (name.startswith("shape_") and shapes == 0):
+            continue
+        kind = _np.intc if kind is _s.INTS else _np.float64
+        shape = (deflection.size, shapes) if name.startswith("shape_") else deflection.size
+        arrays[name] = _np.empty(shape, dtype=kind)
+        setattr(result, name, _s.pointer(arrays[name]))
+    _check(call(properties._open, _c.byref(test), deflection.size, _s.pointer(deflection),
+                _c.byref(result)))
+    arrays["slack"] = arrays["slack"].astype(bool)
+    return _types.SimpleNamespace(n_done=result.n_done, **arrays)
+
+
+def solve_cantilever(properties, length, deflection, *, strand_length=0.0, counterweight=0.0,
+                     gravity=0.0, natural_shape=(), n_elements=0, positions=()):
+    """Takes a virgin wire through deflections of its tip (m), in their order.
+
+    Gives arrays: deflection, force, tension, tip_x, tip_angle, root_moment, slack, and with
+    `positions` (arc lengths, m) shape_x and shape_y, a row for each deflection; n_done rows were
+    computed, later ones are NaN. See struct wirebench_cantilever.
+    """
+    if len(natural_shape) > _s.MOST_SHAPE:
+        raise ValueError("at most %d numbers of a natural shape" % _s.MOST_SHAPE)
+    positions = _np.ascontiguousarray(positions, dtype=_np.float64).ravel()
+    test = _s.Cantilever(size=_c.sizeof(_s.Cantilever), length=length, strand_length=strand_length,
+                         counterweight=counterweight, gravity=gravity,
+                         n_natural_shape=len(natural_shape), n_elements=n_elements,
+                         n_positions=positions.size, positions=_s.pointer(positions))
+    for i, number in enumerate(natural_shape):
+        test.natural_shape[i] = number
+    result = _s.CantileverResult(size=_c.sizeof(_s.CantileverResult))
+    return _solve(_lib.wirebench_solve_cantilever, properties, test, deflection, result,
+                  positions.size)
+
+
+def solve_three_point(properties, span, deflection, *, overhang=0.0, roller_radius=0.0,
+                      nose_radius=0.0, friction=0.0, compliance=0.0, n_elements=0):
+    """The same for three-point bending, by the nose's way since it touched the wire (m).
+
+    Gives arrays: deflection, force, travel, middle_moment, middle_curvature, slack; and n_done. See
+    struct wirebench_three_point.
+    """
+    test = _s.ThreePoint(size=_c.sizeof(_s.ThreePoint), span=span, overhang=overhang,
+                         roller_radius=roller_radius, nose_radius=nose_radius, friction=friction,
+                         compliance=compliance, n_elements=n_elements)
+    result = _s.ThreePointResult(size=_c.sizeof(_s.ThreePointResult))
+    return _solve(_lib.wirebench_solve_three_point, properties, test, deflection, result)
+
+
+def calibrate(datasets, method=None, *, threads=0, options=None, progress=None):
+    """Calibrates on datasets of one wire, as `wirebench calibrate` does, and gives Properties.
+
+    method: "cycle", "paper" or None, the default. options: those of the command by their names,
+    {"data-step-mm": 2}; True for one without a value. progress(done, all) is called now and then;
+    False stops.
+    """
+    methods = {None: 0, "cycle": 1, "paper": 2}
+    if method not in methods:
+        raise ValueError("method: expected cycle, paper or None, not %r" % (method,))
+    datasets = list(datasets)
+    handles = (_c.c_void_p * len(datasets))(*[dataset._open.value for dataset in datasets])
+    given = [name if value is True else "%s=%s" % (name, value)
+             for name, value in (options or {}).items()]
+    texts = (_c.c_char_p * (len(given) + 1))(*[text.encode() for text in given], None)
+    raised = []
+
+    def report(_context, done, all_):
+        try:
+            return 0 if progress(done, all_) is False else 1
+        except BaseException as exception:  # it cannot pass through C
+            raised.append(exception)
+            return 0
+
+    calibration = _s.Calibration(size=_c.sizeof(_s.Calibration), method=methods[method],
+                                 threads=threads, options=texts,
+                                 progress=_s.PROGRESS(report) if progress else _s.PROGRESS())
+    with _warnings.catch_warnings(record=True) as given_warnings:
+        _warnings.simplefilter("always")
+        try:
+            made = Properties._made(_lib.wirebench_calibrate, handles, len(datasets),
+                                    _c.byref(calibration))
+        except Error:
+            if raised:
+                raise raised[0] from None
+            raise
+    if raised:
+        raise raised[0]
+    for warning in given_warnings:
+        _warnings.warn(str(warning.message), warning.category, stacklevel=2)
+    return made

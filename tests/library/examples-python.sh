@@ -1,0 +1,17 @@
+#!/bin/sh
+# The examples in Python print what those in C do. Usage:
+#     examples-python.sh PYTHON EXAMPLES_FOLDER SOURCE_ROOT RECORDING DATASET
+set -eu
+python=$1 examples=$2 source=$3 recording=$4 dataset=$5
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+compare() { # EXAMPLE ARGUMENTS...
+    name=$1
+    shift
+    "$examples/$name" "$@" >"$folder/c"
+    "$python" "$source/examples/$name.py" "$@" >"$folder/python"
+    [ -s "$folder/c" ] && cmp "$folder/c" "$folder/python" || { echo "$name differs"; exit 1; }
+}
+compare read_recording "$recording"
+compare calibrate_dataset "$dataset"
+compare solve_cantilever type1 0.085 0.05

@@ -1,0 +1,49 @@
+#!/bin/sh
+# The examples in C print what the tool prints of the same input. Usage:
+#     examples.sh WIREBENCH EXAMPLES_FOLDER RECORDING
+set -eu
+tool=$1 examples=$2 recording=$3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+fail() {
+    echo "$*"
+    exit 1
+}
+close() { # WHAT A B: equal to 8 digits
+    awk -v a="$2" -v b="$3" 'BEGIN { d = a - b; if (d < 0) d = -d; s = b < 0 ? -b : b
+        exit !(a != "" && b != "" && d <= 1e-8 * s + 1e-12) }' || fail "$1: '$2' and '$3'"
+}
+
+"$examples/read_recording" "$recording" >"$folder/read"
+grep -q '^virtual rig, .* whole$' "$folder/read" || fail "$(cat "$folder/read")"
+"$tool" export "$recording" -o "$folder/csv" >/dev/null
+awk -F, '!/^[#t]/ { n++; if ($4 != "") { if (least == "" || $4 + 0 < least) least = $4 + 0
+        if (most == "" || $4 + 0 > most) most = $4 + 0 } }
+    END { printf "load: %d readings, %.9g to %.9g N\n", n, least, most }' \
+    "$folder/csv/load.csv" >"$folder/expected"
+grep '^load:' "$folder/read" | cmp -s - "$folder/expected" ||
+    fail "read_recording: $(cat "$folder/read") instead of $(cat "$folder/expected")"
+
+"$tool" align "$recording" -o "$folder/dataset" >/dev/null 2>&1 || [ $? = 3 ]
+"$tool" calibrate "$folder/dataset" --json >"$folder/calibrate.json" 2>/dev/null
+"$examples/calibrate_dataset" "$folder/dataset" >"$folder/calibrated"
+rigidity=$(sed -n '/"flexural_rigidity_N_mm2"/,/}/s/.*"value": *\([0-9.e+-]*\).*/\1/p' \
+    "$folder/calibrate.json")
+[ -n "$rigidity" ] || fail "no rigidity in $(head -c 500 "$folder/calibrate.json")"
+close rigidity "$(sed -n 's/^EI \([^ ]*\) N m2.*/\1/p' "$folder/calibrated")" \
+    "$(awk -v r="$rigidity" 'BEGIN { printf "%.17g", r * 1e-6 }')"
+springback=$(sed -n '/"springback_ratio"/,/}/s/.*"value": *\([0-9.e+-]*\).*/\1/p' \
+    "$folder/calibrate.json")
+close springback "$(sed -n 's/^springback \([^ ]*\) .*/\1/p' "$folder/calibrated")" "$springback"
+
+"$examples/solve_cantilever" type1 0.085 0.05 >"$folder/solved"
+"$tool" solve cantilever --wire type1 --length-mm 85 --deflection-mm 50 --points 10 --cycles 1 |
+    awk -F, 'NR > 1 { print $5 }' >"$folder/forces"
+awk -F, 'NR > 1 { print $2 }' "$folder/solved" >"$folder/library-forces"
+[ "$(wc -l <"$folder/forces")" = 21 ] || fail "not 21 rows of the tool"
+paste "$folder/library-forces" "$folder/forces" | awk '{ d = $1 - $2; if (d < 0) d = -d
+    if (d > 1e-8) { print "row " NR ": " $0; bad = 1 } n++ } END { exit bad || n != 21 }' ||
+    fail "solve_cantilever differs from the tool"
+
+! "$examples/solve_cantilever" none 0.085 0.05 2>"$folder/err" || fail "a wire that is not there"
+grep -q "^solve_cantilever: .*'none'" "$folder/err" || fail "$(cat "$folder/err")"

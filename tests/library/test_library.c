@@ -1,0 +1,606 @@
+/* libwirebench as a program uses it: through its header alone. Numbers are held against closed
+ * forms, against each other, and against the file's bytes; tests/library/examples.sh compares with
+ * the tool. */
+#include <fcntl.h>
+#include <locale.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "include/wirebench.h"
+#include "tests/own_folder.h"
+
+static const double DIAMETER = 1.1e-3, MODULUS = 5e9, LENGTH = 0.085;
+
+static char dataset_folder[4096], recording_path[4096];
+
+static double rigidity(void)
+{
+    return MODULUS * M_PI * pow(DIAMETER, 4) / 64.0;
+}
+
+/* Fails with the library's own words. */
+static void succeed(enum wirebench_status status)
+{
+    if (status != WIREBENCH_OK)
+        fail_msg("status %d: %s", (int)status, wirebench_message());
+}
+
+static void assert_says(const char *part)
+{
+    if (!strstr(wirebench_message(), part))
+        fail_msg("'%s' does not say '%s'", wirebench_message(), part);
+}
+
+static struct wirebench_properties *elastic_wire(void)
+{
+    const struct wirebench_law law = {.size = sizeof law,
+                                      .outer_diameter = DIAMETER,
+                                      .poissons_ratio = 0.3,
+                                      .youngs_modulus = MODULUS};
+    struct wirebench_properties *properties = NULL;
+    succeed(wirebench_properties_create(&properties, &law));
+    return properties;
+}
+
+static struct wirebench_properties *plastic_wire(double kinematic_share)
+{
+    const struct wirebench_law law = {.size = sizeof law,
+                                      .outer_diameter = DIAMETER,
+                                      .poissons_ratio = 0.3,
+                                      .youngs_modulus = MODULUS,
+                                      .yield_stress = 4e6,
+                                      .strength_coefficient = 1.3e9,
+                                      .hardening_exponent = 0.9,
+                                      .kinematic_share = kinematic_share};
+    struct wirebench_properties *properties = NULL;
+    succeed(wirebench_properties_create(&properties, &law));
+    return properties;
+}
+
+/* --- laws and solutions --- */
+
+static void an_elastic_wire_bends_by_its_rigidity_and_springs_back(void **state)
+{
+    (void)state;
+    struct wirebench_properties *const wire = elastic_wire();
+    const double curvature[] = {0.0, 3.0, 30.0};
+    double moment[3];
+    struct wirebench_bending bending = {.size = sizeof bending};
+    succeed(wirebench_moments(wire, 3, curvature, moment));
+    for (int i = 0; i < 3; i++)
+        assert_close(moment[i], rigidity() * curvature[i], 1e-6 * rigidity() * 30.0);
+    succeed(wirebench_bend(wire, 30.0, &bending));
+    assert_close_relative(bending.rigidity, rigidity(), 1e-9);
+    assert_close(bending.springback, 0.0, 1e-9);
+    wirebench_properties_destroy(wire);
+}
+
+static void an_elastic_cantilever_follows_the_cubic_formula(void **state)
+{
+    (void)state;
+    struct wirebench_properties *const wire = elastic_wire();
+    const double deflection[] = {0.0, 1e-4, -1e-4}, positions[] = {0.0, 0.5 * LENGTH, LENGTH};
+    double force[3], moment[3], x[9], y[9];
+    const struct wirebench_cantilever test = {
+        .size = sizeof test, .length = LENGTH, .n_positions = 3, .positions = positions};
+    struct wirebench_cantilever_result result = {
+        .size = sizeof result, .force = force, .root_moment = moment, .shape_x = x, .shape_y = y};
+    succeed(wirebench_solve_cantilever(wire, &test, 3, deflection, &result));
+    assert_int_equal(result.n_done, 3);
+    const double expected = 3.0 * rigidity() * 1e-4 / pow(LENGTH, 3);
+    assert_close(force[0], 0.0, 1e-12);
+    assert_close_relative(force[1], expected, 1e-3);
+    assert_close_relative(force[2], -expected, 1e-3);
+    assert_close_relative(moment[1], expected * LENGTH, 1e-3);
+    /* Deflection in the middle: 5/16 of the tip's. */
+    assert_close(y[3], 0.0, 1e-12);
+    assert_close_relative(y[4], 0.3125e-4, 1e-3);
+    assert_close_relative(y[5], 1e-4, 1e-6);
+    assert_close_relative(x[5], LENGTH, 1e-5);
+    wirebench_properties_destroy(wire);
+}
+
+static void elastic_three_point_bending_follows_the_cubic_formula(void **state)
+{
+    (void)state;
+    struct wirebench_properties *const wire = elastic_wire();
+    const double deflection[] = {5e-5}, span = 0.04, compliance = 1e-4;
+    double force, travel, moment;
+    const struct wirebench_three_point test = {
+        .size = sizeof test, .span = span, .compliance = compliance};
+    struct wirebench_three_point_result result = {
+        .size = sizeof result, .force = &force, .travel = &travel, .middle_moment = &moment};
+    succeed(wirebench_solve_three_point(wire, &test, 1, deflection, &result));
+    assert_int_equal(result.n_done, 1);
+    assert_close_relative(force, 48.0 * rigidity() * 5e-5 / pow(span, 3), 5e-3);
+    assert_close_relative(moment, force * span / 4.0, 2e-2);
+    assert_close_relative(travel, 5e-5 + compliance * force, 1e-9);
+    wirebench_properties_destroy(wire);
+}
+
+static void kinematic_hardening_springs_back_less_and_loads_alike(void **state)
+{
+    (void)state;
+    struct wirebench_properties *const isotropic = plastic_wire(0.0), *const kinematic =
+                                                                          plastic_wire(1.0);
+    struct wirebench_bending one = {.size = sizeof one}, other = {.size = sizeof other};
+    const double curvature = 25.0;
+    double moments[2];
+    succeed(wirebench_moments(isotropic, 1, &curvature, &moments[0]));
+    succeed(wirebench_moments(kinematic, 1, &curvature, &moments[1]));
+    assert_close_relative(moments[0], moments[1], 5e-3);
+    succeed(wirebench_bend(isotropic, curvature, &one));
+    succeed(wirebench_bend(kinematic, curvature, &other));
+    assert_true(one.springback > 1.2 * other.springback);
+    wirebench_properties_destroy(isotropic);
+    wirebench_properties_destroy(kinematic);
+}
+
+static void a_natural_shape_and_weight_change_the_force_alone(void **state)
+{
+    (void)state;
+    struct wirebench_law law = {.size = sizeof law,
+                                .outer_diameter = DIAMETER,
+                                .mass_per_length = 4e-3,
+                                .youngs_modulus = MODULUS};
+    struct wirebench_properties *wire = NULL;
+    succeed(wirebench_properties_create(&wire, &law));
+    const double deflection[] = {0.0, 0.01};
+    double tension[2], force[2];
+    const struct wirebench_cantilever heavy = {
+        .size = sizeof heavy, .length = LENGTH, .gravity = 9.80665};
+    struct wirebench_cantilever bowed = {.size = sizeof bowed, .length = LENGTH};
+    bowed.n_natural_shape = 1;
+    bowed.natural_shape[0] = 0.1;
+    struct wirebench_cantilever_result result = {
+        .size = sizeof result, .force = force, .tension = tension};
+    succeed(wirebench_solve_cantilever(wire, &heavy, 2, deflection, &result));
+    /* Held level, an end of a clamped and propped beam carries 3/8 of the weight. */
+    assert_close_relative(tension[0], 0.375 * 4e-3 * LENGTH * 9.80665, 2e-3);
+    assert_close(force[0], 0.0, 1e-12);
+    succeed(wirebench_solve_cantilever(wire, &bowed, 2, deflection, &result));
+    /* Held down to y = 0 from its natural offset, 0.1 L / 2. */
+    assert_close_relative(tension[0], -3.0 * rigidity() * 0.05 * LENGTH / pow(LENGTH, 3), 2e-2);
+    wirebench_properties_destroy(wire);
+}
+
+/* --- structs of other releases, and misuse --- */
+
+static void a_shorter_struct_is_filled_as_far_as_it_reaches(void **state)
+{
+    (void)state;
+    struct wirebench_properties *const wire = elastic_wire();
+    struct wirebench_bending bending;
+    memset(&bending, 0x5a, sizeof bending);
+    bending.size = offsetof(struct wirebench_bending, loop_energy);
+    double untouched;
+    memset(&untouched, 0x5a, sizeof untouched);
+    succeed(wirebench_bend(wire, 30.0, &bending));
+    assert_close(bending.springback, 0.0, 1e-9);
+    assert_memory_equal(&bending.loop_energy, &untouched, sizeof untouched);
+    assert_int_equal(bending.size, offsetof(struct wirebench_bending, loop_energy));
+    wirebench_properties_destroy(wire);
+}
+
+static void a_longer_struct_is_taken_where_its_new_members_are_zero(void **state)
+{
+    (void)state;
+    struct {
+        struct wirebench_law law;
+        double future;
+    } longer = {.law = {.size = sizeof longer, .outer_diameter = DIAMETER, .youngs_modulus = 1e9}};
+    struct wirebench_properties *wire = NULL;
+    succeed(wirebench_properties_create(&wire, &longer.law));
+    wirebench_properties_destroy(wire);
+    wire = NULL;
+    longer.future = 1.0;
+    assert_int_equal(wirebench_properties_create(&wire, &longer.law), WIREBENCH_ERR_ARGUMENT);
+    assert_says("does not know");
+    assert_null(wire);
+}
+
+static void misuse_is_refused_with_what_was_expected(void **state)
+{
+    (void)state;
+    struct wirebench_properties *wire = NULL, *const elastic = elastic_wire();
+    struct wirebench_law law = {.size = 0, .outer_diameter = DIAMETER, .youngs_modulus = 1e9};
+    assert_int_equal(wirebench_properties_create(&wire, &law), WIREBENCH_ERR_ARGUMENT);
+    assert_says("size");
+    law.size = sizeof law;
+    law.outer_diameter = -1.0;
+    assert_int_equal(wirebench_properties_create(&wire, &law), WIREBENCH_ERR_ARGUMENT);
+    assert_says("outer_diameter: -1: expected metres, above 0");
+    assert_int_equal(wirebench_properties_create(&wire, NULL), WIREBENCH_ERR_ARGUMENT);
+    assert_int_equal(wirebench_properties_read(&wire, "no-such-wire"), WIREBENCH_ERR_NOT_FOUND);
+    assert_says("no-such-wire");
+    assert_null(wire);
+    const double bad = (double)NAN, at = 0.1;
+    double moment;
+    assert_int_equal(wirebench_moments(elastic, 1, &bad, &moment), WIREBENCH_ERR_ARGUMENT);
+    const struct wirebench_cantilever test = {
+        .size = sizeof test, .length = LENGTH, .n_positions = 1, .positions = &at};
+    struct wirebench_cantilever_result result = {.size = sizeof result};
+    assert_int_equal(wirebench_solve_cantilever(elastic, &test, 1, &at, &result),
+                     WIREBENCH_ERR_ARGUMENT);
+    assert_says("position 0: 0.1");
+    assert_int_equal(wirebench_calibrate(&wire, NULL, 0, NULL), WIREBENCH_ERR_ARGUMENT);
+    wirebench_properties_destroy(elastic);
+}
+
+static void rows_beyond_the_solvers_reach_are_nan_and_counted(void **state)
+{
+    (void)state;
+    struct wirebench_properties *const wire = elastic_wire();
+    /* The wire's end comes to the rollers. */
+    const double deflection[] = {1e-3, 0.5};
+    double force[2];
+    const struct wirebench_three_point test = {.size = sizeof test, .span = 0.04, .overhang = 1e-3};
+    struct wirebench_three_point_result result = {.size = sizeof result, .force = force};
+    assert_int_equal(wirebench_solve_three_point(wire, &test, 2, deflection, &result),
+                     WIREBENCH_INCOMPLETE);
+    assert_int_equal(result.n_done, 1);
+    assert_true(isfinite(force[0]) && isnan(force[1]));
+    assert_says("row 1 of 2");
+    wirebench_properties_destroy(wire);
+}
+
+/* --- recordings and datasets --- */
+
+static void a_recordings_tables_have_as_many_rows_as_its_streams_samples(void **state)
+{
+    (void)state;
+    struct wirebench_recording *recording = NULL;
+    struct wirebench_recording_info info = {.size = sizeof info};
+    const struct wirebench_table *load, *stage, *events;
+    succeed(wirebench_recording_open(&recording, recording_path));
+    succeed(wirebench_recording_describe(recording, &info));
+    assert_true(info.is_whole && info.is_virtual && info.n_problems == 0);
+    assert_int_equal(info.n_streams, 3);
+    succeed(wirebench_recording_table(recording, "load", &load));
+    succeed(wirebench_recording_table(recording, "stage", &stage));
+    succeed(wirebench_recording_table(recording, "events", &events));
+    uint64_t samples[3] = {0};
+    for (int i = 0; i < 3; i++) {
+        struct wirebench_stream stream = {.size = sizeof stream};
+        succeed(wirebench_recording_stream(recording, i, &stream));
+        samples[stream.role] += stream.samples;
+    }
+    assert_int_equal(wirebench_table_rows(load), samples[WIREBENCH_LOAD]);
+    assert_int_equal(wirebench_table_rows(stage), samples[WIREBENCH_STAGE]);
+    assert_int_equal(wirebench_table_rows(events), info.events);
+    assert_true(samples[WIREBENCH_LOAD] > 1000);
+    assert_non_null(strstr(wirebench_recording_meta(recording, "specimen"), "wire: type1"));
+    assert_null(wirebench_recording_meta(recording, "no such key"));
+    wirebench_recording_close(recording);
+}
+
+static void columns_have_one_array_and_times_that_agree(void **state)
+{
+    (void)state;
+    struct wirebench_recording *recording = NULL;
+    const struct wirebench_table *table;
+    struct wirebench_recording_info info = {.size = sizeof info};
+    struct wirebench_column t = {.size = sizeof t}, t_ns = {.size = sizeof t_ns},
+                            text = {.size = sizeof text};
+    succeed(wirebench_recording_open(&recording, recording_path));
+    succeed(wirebench_recording_describe(recording, &info));
+    succeed(wirebench_recording_table(recording, "events", &table));
+    succeed(wirebench_table_find(table, "t_s", &t));
+    succeed(wirebench_table_find(table, "t_ns", &t_ns));
+    succeed(wirebench_table_column(table, 3, &text));
+    assert_int_equal(wirebench_table_columns(table), 4);
+    assert_true(t.reals && !t.integers && !t.texts && t_ns.integers && text.texts);
+    assert_string_equal(t.unit, "s");
+    for (size_t i = 0; i < t.n; i++) {
+        assert_close(t.reals[i], (double)(t_ns.integers[i] - info.first_ns) * 1e-9, 1e-9);
+        assert_true(strlen(text.texts[i]) > 0);
+    }
+    assert_int_equal(wirebench_table_find(table, "force_N", &t), WIREBENCH_ERR_NOT_FOUND);
+    assert_says("table 'events' has no column 'force_N'");
+    assert_int_equal(wirebench_recording_table(recording, "forces", &table),
+                     WIREBENCH_ERR_NOT_FOUND);
+    wirebench_recording_close(recording);
+}
+
+static void a_recording_cut_short_is_incomplete_and_says_so(void **state)
+{
+    (void)state;
+    char command[10000], path[64];
+    snprintf(path, sizeof path, "%s/short.wbr", folder);
+    snprintf(command, sizeof command, "zstd -dqf '%s' -o '%s' && truncate -s 3000000 '%s'",
+             recording_path, path, path);
+    assert_int_equal(system(command), 0);
+    struct wirebench_recording *recording = NULL;
+    struct wirebench_recording_info info = {.size = sizeof info};
+    const struct wirebench_table *load;
+    enum wirebench_status status = wirebench_recording_open(&recording, path);
+    succeed(status);
+    assert_non_null(strstr(wirebench_warnings(), "short.wbr"));
+    succeed(wirebench_recording_describe(recording, &info));
+    assert_false(info.is_whole);
+    assert_true(info.n_problems > 0 && wirebench_recording_problem(recording, 0));
+    assert_null(wirebench_recording_problem(recording, info.n_problems));
+    status = wirebench_recording_table(recording, "load", &load);
+    assert_int_equal(status, WIREBENCH_INCOMPLETE);
+    assert_says("short.wbr");
+    assert_true(wirebench_table_rows(load) > 100);
+    wirebench_recording_close(recording);
+}
+
+static struct wirebench_dataset *read_dataset(void)
+{
+    struct wirebench_dataset *dataset = NULL;
+    succeed(wirebench_dataset_read(&dataset, dataset_folder));
+    return dataset;
+}
+
+/* The first data line of the dataset's CSV, as the C library reads it. */
+static void a_dataset_is_its_csv_in_si(void **state)
+{
+    (void)state;
+    struct wirebench_dataset *const dataset = read_dataset();
+    const struct wirebench_table *rows;
+    struct wirebench_column deflection = {.size = sizeof deflection},
+                            force = {.size = sizeof force}, phase = {.size = sizeof phase};
+    struct wirebench_dataset_info info = {.size = sizeof info};
+    succeed(wirebench_dataset_describe(dataset, &info));
+    assert_string_equal(info.wire, "type1");
+    assert_close(info.length, 0.085, 1e-12);
+    assert_true(info.kind == WIREBENCH_CANTILEVER && info.is_virtual && info.strand_length > 0.1);
+    succeed(wirebench_dataset_table(dataset, "force_deflection", &rows));
+    succeed(wirebench_table_find(rows, "deflection_m", &deflection));
+    succeed(wirebench_table_find(rows, "force_N", &force));
+    succeed(wirebench_table_find(rows, "phase", &phase));
+    char path[5000], line[1000], name[16];
+    snprintf(path, sizeof path, "%s/force_deflection.csv", dataset_folder);
+    FILE *const file = fopen(path, "r");
+    assert_non_null(file);
+    size_t n = 0;
+    while (fgets(line, sizeof line, file)) {
+        double mm, newtons;
+        if (sscanf(line, "%*[^,],%*d,%15[a-z],%lf,%*[^,],%lf", name, &mm, &newtons) != 3)
+            continue;
+        assert_true(n < deflection.n);
+        assert_close(deflection.reals[n], mm * 1e-3, 1e-15);
+        assert_close(force.reals[n], newtons, 0.0);
+        assert_string_equal(phase.texts[n], name);
+        n++;
+    }
+    fclose(file);
+    assert_int_equal(n, deflection.n);
+    assert_true(n > 100);
+    assert_non_null(strstr(wirebench_dataset_json(dataset), "\"sha256\""));
+    wirebench_dataset_close(dataset);
+}
+
+static void a_missing_file_is_named_and_nothing_is_printed(void **state)
+{
+    (void)state;
+    char path[64];
+    snprintf(path, sizeof path, "%s/printed", folder);
+    fflush(stdout);
+    fflush(stderr);
+    const int kept[2] = {dup(1), dup(2)}, file = open(path, O_CREAT | O_RDWR, 0600);
+    assert_true(file >= 0 && dup2(file, 1) == 1 && dup2(file, 2) == 2);
+    struct wirebench_recording *recording = NULL;
+    struct wirebench_dataset *dataset = NULL;
+    const enum wirebench_status one = wirebench_recording_open(&recording, "/no/such.wbr");
+    const bool names_it = strstr(wirebench_message(), "/no/such.wbr") != NULL;
+    const enum wirebench_status other = wirebench_dataset_read(&dataset, "/no/such");
+    fflush(stdout);
+    fflush(stderr);
+    assert_true(dup2(kept[0], 1) == 1 && dup2(kept[1], 2) == 2);
+    struct stat found;
+    assert_int_equal(fstat(file, &found), 0);
+    close(file);
+    assert_int_equal(found.st_size, 0);
+    assert_int_equal(one, WIREBENCH_ERR_NOT_FOUND);
+    assert_true(names_it);
+    assert_true(other < 0 && !recording && !dataset);
+    assert_says("/no/such");
+    succeed(wirebench_dataset_read(&dataset, dataset_folder));
+    assert_string_equal(wirebench_message(), "");
+    wirebench_dataset_close(dataset);
+}
+
+/* --- calibration --- */
+
+static void both_methods_calibrate_and_their_text_reads_back(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"cycle", "paper"};
+    const enum wirebench_method methods[] = {WIREBENCH_METHOD_DEFAULT, WIREBENCH_METHOD_PAPER};
+    const struct wirebench_dataset *const dataset = read_dataset();
+    for (int i = 0; i < 2; i++) {
+        struct wirebench_properties *calibrated = NULL, *again = NULL;
+        struct wirebench_properties_info a = {.size = sizeof a}, b = {.size = sizeof b};
+        const struct wirebench_calibration calibration = {.size = sizeof calibration,
+                                                          .method = methods[i]};
+        succeed(wirebench_calibrate(&calibrated, &dataset, 1, &calibration));
+        succeed(wirebench_properties_describe(calibrated, &a));
+        assert_string_equal(a.method, names[i]);
+        char path[64];
+        snprintf(path, sizeof path, "%s/%s.yaml", folder, names[i]);
+        FILE *const file = fopen(path, "w");
+        fputs(wirebench_properties_text(calibrated), file);
+        fclose(file);
+        succeed(wirebench_properties_read(&again, path));
+        succeed(wirebench_properties_describe(again, &b));
+        assert_close(a.youngs_modulus, b.youngs_modulus, 0.0);
+        assert_close(a.rigidity.value, b.rigidity.value, 0.0);
+        assert_int_equal(a.n_parts, b.n_parts);
+        assert_int_equal(a.n_samples, 1);
+        assert_true(a.rigidity.value > 1e-4 && a.rigidity.value < 1e-3);
+        wirebench_properties_destroy(calibrated);
+        wirebench_properties_destroy(again);
+    }
+    wirebench_dataset_close((struct wirebench_dataset *)dataset);
+}
+
+static int count_and_stop(void *context, int done, int all)
+{
+    (void)done, (void)all;
+    ++*(int *)context;
+    return 0;
+}
+
+static void progress_stops_a_calibration(void **state)
+{
+    (void)state;
+    const struct wirebench_dataset *const dataset = read_dataset();
+    struct wirebench_properties *properties = NULL;
+    int calls = 0;
+    const struct wirebench_calibration calibration = {.size = sizeof calibration,
+                                                      .method = WIREBENCH_METHOD_PAPER,
+                                                      .progress = count_and_stop,
+                                                      .context = &calls};
+    assert_int_equal(wirebench_calibrate(&properties, &dataset, 1, &calibration),
+                     WIREBENCH_INCOMPLETE);
+    assert_int_equal(calls, 1);
+    assert_non_null(properties);
+    wirebench_properties_destroy(properties);
+    wirebench_dataset_close((struct wirebench_dataset *)dataset);
+}
+
+static void options_are_those_of_the_command(void **state)
+{
+    (void)state;
+    static const char *const given[] = {"elastic-zone=0.1", NULL};
+    static const char *const bad[][3] = {{"elastic-zone=much", "expected a number", NULL},
+                                         {"no-such-option=1", "wirebench calibrate --help", NULL},
+                                         {"elastic-zone", "elastic-zone=", NULL}};
+    const struct wirebench_dataset *const dataset = read_dataset();
+    struct wirebench_properties *properties = NULL;
+    struct wirebench_calibration calibration = {
+        .size = sizeof calibration, .method = WIREBENCH_METHOD_PAPER, .options = given};
+    succeed(wirebench_calibrate(&properties, &dataset, 1, &calibration));
+    assert_non_null(strstr(wirebench_properties_text(properties), "elastic_zone: 0.1\n"));
+    wirebench_properties_destroy(properties);
+    for (int i = 0; i < 3; i++) {
+        const char *const options[] = {bad[i][0], NULL};
+        calibration.options = options;
+        assert_true(wirebench_calibrate(&properties, &dataset, 1, &calibration) < 0);
+        assert_says(bad[i][1]);
+    }
+    wirebench_dataset_close((struct wirebench_dataset *)dataset);
+}
+
+static void own_handler(const char *reason, const char *file, int line, int number)
+{
+    (void)reason, (void)file, (void)line, (void)number;
+}
+
+static void the_process_is_left_as_it_was(void **state)
+{
+    (void)state;
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD, SIGFPE};
+    struct sigaction before[6], after;
+    char locale[64];
+    snprintf(locale, sizeof locale, "%s", setlocale(LC_ALL, NULL));
+    for (int i = 0; i < 6; i++)
+        sigaction(signals[i], NULL, &before[i]);
+    gsl_error_handler_t *const kept = gsl_set_error_handler(own_handler);
+    const struct wirebench_dataset *const dataset = read_dataset();
+    struct wirebench_properties *properties = NULL;
+    succeed(wirebench_calibrate(&properties, &dataset, 1, NULL));
+    wirebench_properties_destroy(properties);
+    assert_ptr_equal(gsl_set_error_handler(kept), own_handler);
+    assert_string_equal(setlocale(LC_ALL, NULL), locale);
+    for (int i = 0; i < 6; i++) {
+        sigaction(signals[i], NULL, &after);
+        assert_ptr_equal(after.sa_handler, before[i].sa_handler);
+    }
+    wirebench_dataset_close((struct wirebench_dataset *)dataset);
+}
+
+/* --- threads --- */
+
+struct thread {
+    pthread_t id;
+    pthread_barrier_t *barrier;
+    int number;
+    int wrong;
+};
+
+static void *fail_and_solve(void *context)
+{
+    struct thread *const thread = context;
+    char path[32];
+    snprintf(path, sizeof path, "/no/such-%d.wbr", thread->number);
+    struct wirebench_recording *recording = NULL;
+    const enum wirebench_status status = wirebench_recording_open(&recording, path);
+    /* All have failed before any looks at its message. */
+    pthread_barrier_wait(thread->barrier);
+    if (status != WIREBENCH_ERR_NOT_FOUND || !strstr(wirebench_message(), path))
+        thread->wrong++;
+    const struct wirebench_law law = {.size = sizeof law,
+                                      .outer_diameter = DIAMETER,
+                                      .youngs_modulus = MODULUS * (1 + thread->number)};
+    struct wirebench_properties *wire = NULL;
+    const struct wirebench_cantilever test = {.size = sizeof test, .length = LENGTH};
+    const double deflection = 1e-4;
+    double force = 0.0;
+    struct wirebench_cantilever_result result = {.size = sizeof result, .force = &force};
+    const double expected = 3.0 * rigidity() * (1 + thread->number) * 1e-4 / pow(LENGTH, 3);
+    if (wirebench_properties_create(&wire, &law) != 0 ||
+        wirebench_solve_cantilever(wire, &test, 1, &deflection, &result) != 0 ||
+        !(fabs(force - expected) < 2e-3 * expected))
+        thread->wrong++;
+    wirebench_properties_destroy(wire);
+    return NULL;
+}
+
+static void threads_have_messages_of_their_own(void **state)
+{
+    (void)state;
+    struct thread threads[4];
+    pthread_barrier_t barrier;
+    assert_int_equal(pthread_barrier_init(&barrier, NULL, 4), 0);
+    for (int i = 0; i < 4; i++) {
+        threads[i] = (struct thread){.barrier = &barrier, .number = i};
+        assert_int_equal(pthread_create(&threads[i].id, NULL, fail_and_solve, &threads[i]), 0);
+    }
+    for (int i = 0; i < 4; i++) {
+        pthread_join(threads[i].id, NULL);
+        assert_int_equal(threads[i].wrong, 0);
+    }
+    pthread_barrier_destroy(&barrier);
+}
+
+#define FACT(name) cmocka_unit_test(name)
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        FACT(an_elastic_wire_bends_by_its_rigidity_and_springs_back),
+        FACT(an_elastic_cantilever_follows_the_cubic_formula),
+        FACT(elastic_three_point_bending_follows_the_cubic_formula),
+        FACT(kinematic_hardening_springs_back_less_and_loads_alike),
+        FACT(a_natural_shape_and_weight_change_the_force_alone),
+        FACT(a_shorter_struct_is_filled_as_far_as_it_reaches),
+        FACT(a_longer_struct_is_taken_where_its_new_members_are_zero),
+        FACT(misuse_is_refused_with_what_was_expected),
+        FACT(rows_beyond_the_solvers_reach_are_nan_and_counted),
+        FACT(a_recordings_tables_have_as_many_rows_as_its_streams_samples),
+        FACT(columns_have_one_array_and_times_that_agree),
+        FACT(a_recording_cut_short_is_incomplete_and_says_so),
+        FACT(a_dataset_is_its_csv_in_si),
+        FACT(a_missing_file_is_named_and_nothing_is_printed),
+        FACT(both_methods_calibrate_and_their_text_reads_back),
+        FACT(progress_stops_a_calibration),
+        FACT(options_are_those_of_the_command),
+        FACT(the_process_is_left_as_it_was),
+        FACT(threads_have_messages_of_their_own),
+    };
+    if (argc != 3) {
+        fprintf(stderr, "usage: test_library RECORDING DATASET\n");
+        return 2;
+    }
+    snprintf(recording_path, sizeof recording_path, "%s", argv[1]);
+    snprintf(dataset_folder, sizeof dataset_folder, "%s", argv[2]);
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
