@@ -17,6 +17,10 @@
 /* Arrivals that are nearer to each other than their mean by more than this factor come in bundles:
  * more than half of a stream that is watched is not lost. */
 #define MOST_OFTEN 2.5
+/* Stamps in order after which a gap grows old, and then is one: more than a network turns round. As
+ * many at the beginning of a stream tell of none, because the first one may have been overtaken by
+ * what was sent before this end listened. */
+#define TURNED_ROUND 8
 /* Regular intervals after which a late sample has nothing more to make up for. */
 #define SETTLED 8
 /* Share of arrivals that may seem to be missing on a busy computer. */
@@ -87,27 +91,55 @@ static void remember(struct wb_loss *loss, double t)
         loss->n_times++;
 }
 
-static void take_stamp(struct wb_loss *loss, double t)
+static void open_gap(struct wb_loss *loss, double step)
+{
+    loss->young.missing += (uint64_t)(round(step / loss->counts.period) - 1.0);
+    loss->young.gaps++;
+    loss->young.longest_gap = fmax(loss->young.longest_gap, step - loss->counts.period);
+}
+
+/* What is passed over for long enough is missing. */
+static void grow_old(struct wb_loss *loss)
 {
     struct wb_loss_counts *const counts = &loss->counts;
-    const double period = counts->period, step = loss->has_last ? t - loss->last : period;
+    if (++loss->n_passed < TURNED_ROUND)
+        return;
+    loss->has_begun = true;
+    counts->missing += loss->old.missing;
+    counts->gaps += loss->old.gaps;
+    counts->longest_gap = fmax(counts->longest_gap, loss->old.longest_gap);
+    loss->old = loss->young;
+    memset(&loss->young, 0, sizeof loss->young);
+    loss->n_passed = 0;
+}
+
+/* An overtaken one makes up for a gap, most likely for one of the latest. */
+static void make_up(struct wb_loss *loss)
+{
+    struct wb_loss_open *const open = loss->young.missing > 0 ? &loss->young : &loss->old;
+    loss->counts.overtaken++;
+    if (open->missing == 0)
+        loss->counts.missing -= loss->counts.missing > 0;
+    else if (--open->missing == 0)
+        memset(open, 0, sizeof *open);
+}
+
+static void take_stamp(struct wb_loss *loss, double t)
+{
+    const double period = loss->counts.period, step = loss->has_last ? t - loss->last : period;
     if (is_recent(loss, t)) {
-        counts->repeated++;
+        loss->counts.repeated++;
         return;
     }
-    counts->received++;
+    loss->counts.received++;
     remember(loss, t);
     if (step < 0.0 && step > -RESTART) {
-        /* It was counted as missing when the later one came. */
-        counts->overtaken++;
-        counts->missing -= counts->missing > 0;
+        make_up(loss);
         return;
     }
-    if (step > 1.5 * period && step < LONGEST) {
-        counts->missing += (uint64_t)(round(step / period) - 1.0);
-        counts->gaps++;
-        counts->longest_gap = fmax(counts->longest_gap, step - period);
-    }
+    grow_old(loss);
+    if (loss->has_begun && step > 1.5 * period && step < LONGEST)
+        open_gap(loss, step);
     loss->last = t;
     loss->has_last = true;
 }

@@ -30,8 +30,16 @@ struct wb_loss_counts {
     double period;      /* s; 0: no rhythm, and nothing is known to be missing */
 };
 
+/* Stamps that were passed over a moment ago: overtaken ones may still come. */
+struct wb_loss_open {
+    uint64_t missing, gaps;
+    double longest_gap; /* s */
+};
+
 struct wb_loss {
     struct wb_loss_counts counts;
+    struct wb_loss_open young, old;   /* of stamps: gaps of the latest ones, and of those before */
+    int n_passed;                     /* stamps in order since the young ones began */
     bool stamped;                     /* times are the device's stamps, not arrivals */
     double times[WB_LOSS_LEARNT + 1]; /* s, until the period is known; then the recent stamps */
     int n_times, next;
@@ -39,7 +47,7 @@ struct wb_loss {
     double debt;   /* s that arrivals are behind; what they do not make up for is missing */
     double widest; /* s, longest interval of the debt */
     int n_regular; /* intervals in rhythm since the debt was made or paid */
-    bool has_last;
+    bool has_last, has_begun; /* begun: gaps between stamps count */
 };
 
 /* Begins to count. `stamped`: times are stamps of the device's clock; else arrivals. `period` (s):
@@ -49,7 +57,8 @@ void wb_loss_init(struct wb_loss *loss, bool stamped, double period);
 /* A sample came, with this time in s. Not finite: it counts as received. */
 void wb_loss_add(struct wb_loss *loss, double t);
 
-/* The counts so far. At the end of a stream a gap that was not yet judged counts. */
+/* The counts so far. Of arrivals, a gap at the end of a stream counts; of stamps it does only
+ * between some earlier and some later ones, because overtaken ones may be on their way. */
 struct wb_loss_counts wb_loss_counts(const struct wb_loss *loss);
 
 /* The share of samples that are missing, 0 to 1, and whether that is more than chance: one stamped

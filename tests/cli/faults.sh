@@ -69,6 +69,15 @@ late() {
         fail "late: frames are said to be lost: $(cat "$folder/late.align")"
 }
 
+# Frames of another order are all there, also those still on their way at the end.
+disorder() {
+    run disorder 0 duplicates=10,reorder=20
+    steady disorder || return
+    said disorder align 'largest deflection'
+    grep -q 'never came' "$folder/disorder".{record,align,verify} &&
+        fail "disorder: frames are said to be lost: $(cat "$folder/disorder.align")"
+}
+
 garbage() {
     run garbage 0 garbage=10
     said garbage record 'datagram of 200 bytes .* refused .*mocap.address'
@@ -146,6 +155,6 @@ documented() {
     done
 }
 
-cases=(unplugged_mocap loss late garbage wrong_up clock_restart stuck_stage unit_change replugged broken
+cases=(unplugged_mocap loss late disorder garbage wrong_up clock_restart stuck_stage unit_change replugged broken
     'unplugged cell load.cell.s.port.*went.away' 'unplugged stage switch.off.its.power' documented)
 run_in_lanes 3 "${cases[@]}"

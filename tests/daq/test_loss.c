@@ -6,7 +6,8 @@
 #include "tests/check.h"
 
 enum {
-    N = 6000
+    N = 6000,
+    LATEST = 17 /* stamps about a gap, and itself, that make it one */
 };
 
 static uint64_t state_of_noise;
@@ -31,8 +32,8 @@ static void frames(struct wb_loss *loss, double share, uint64_t *lost)
     seed();
     *lost = 0;
     for (int i = 0; i < N; i++) {
-        /* What is lost before the first or after the last nobody can know. */
-        if (i > 0 && i < N - 1 && uniform() < share)
+        /* The first and the last ones may have been overtaken. */
+        if (i >= LATEST && i < N - LATEST && uniform() < share)
             ++*lost;
         else
             wb_loss_add(loss, 1e4 + i * 1.0002 / 120.0);
@@ -76,9 +77,10 @@ static void an_announced_rate_is_taken_from_the_start(void **state)
     (void)state;
     struct wb_loss loss;
     wb_loss_init(&loss, true, 0.01);
-    wb_loss_add(&loss, 5.00);
-    wb_loss_add(&loss, 5.01);
-    wb_loss_add(&loss, 5.04);
+    for (int i = 0; i < 10; i++)
+        wb_loss_add(&loss, 5.0 + 0.01 * i);
+    for (int i = 12; i < 11 + LATEST; i++)
+        wb_loss_add(&loss, 5.0 + 0.01 * i);
     const struct wb_loss_counts counts = wb_loss_counts(&loss);
     assert_int_equal(counts.missing, 2);
     assert_int_equal(counts.gaps, 1);
@@ -98,6 +100,27 @@ static void repeated_and_overtaken_frames_are_not_missing(void **state)
     assert_int_equal(counts.repeated, 4);
     assert_int_equal(counts.overtaken, 3);
     assert_int_equal(counts.received, 12);
+}
+
+/* A stream out of order that this end begins and ceases to hear anywhere: what was on its way then
+ * is not lost. */
+static void frames_on_their_way_at_either_end_are_not_missing(void **state)
+{
+    (void)state;
+    static const int order[] = {0, 1, 3, 4, 2, 5, 8, 7, 6, 10, 9, 12, 13, 14, 11, 16, 15};
+    const size_t n = sizeof order / sizeof *order;
+    for (size_t first = 0; first < n; first++) {
+        struct wb_loss loss;
+        wb_loss_init(&loss, true, 0.01);
+        for (size_t i = first; i < 3 * n; i++) {
+            wb_loss_add(&loss, 3.0 + 0.01 * (order[i % n] + 17 * (int)(i / n)));
+            assert_false(wb_loss_is_told(&loss));
+        }
+        const struct wb_loss_counts counts = wb_loss_counts(&loss);
+        assert_int_equal(counts.missing, 0);
+        assert_int_equal(counts.gaps, 0);
+        assert_close(counts.longest_gap, 0.0, 0.0);
+    }
 }
 
 static void a_server_that_begins_anew_loses_nothing_by_it(void **state)
@@ -255,6 +278,7 @@ int main(void)
         cmocka_unit_test(lost_frames_are_counted_to_the_last_one),
         cmocka_unit_test(an_announced_rate_is_taken_from_the_start),
         cmocka_unit_test(repeated_and_overtaken_frames_are_not_missing),
+        cmocka_unit_test(frames_on_their_way_at_either_end_are_not_missing),
         cmocka_unit_test(a_server_that_begins_anew_loses_nothing_by_it),
         cmocka_unit_test(late_lines_and_a_stalled_computer_lose_nothing),
         cmocka_unit_test(lost_lines_are_counted),
