@@ -16,9 +16,6 @@ enum {
     MARKERS = 26
 };
 
-/* On a circle nothing but the tape's stretch holds wires together: beyond this plastic strain of it
- * the curve is too stiff, by 14 to 35 % at the end of the explicit runs. */
-static const double circle_limit = 0.010;
 static const double allowed_imbalance = 0.01;
 
 struct run {
@@ -202,31 +199,23 @@ static void tell_lost(const void *context)
         run->result.capacity);
 }
 
-/* The deflection from which on the tape's plastic strain is beyond the limit, m. */
-static double find_limit(const struct wb_section_run *run)
-{
-    int i = 0;
-    while (i + 1 < run->n_rows && !(run->rows[i].point.tape_plastic > circle_limit))
-        i++;
-    return run->rows[i].point.deflection;
-}
-
 static void warn(const void *context)
 {
     const struct run *const run = context;
     const struct wb_section_run *const r = &run->result;
     const char *const name = run->model.name;
+    const double loosens = wb_section_run_loosens(r, &run->model);
 
     if (r->is_mean && run->model.packing.n > 1)
         wb_warn("%s: friction decays with the slip rate, which a static model does not know: mu = "
                 "%.4g, the geometric mean of both, is taken; --friction sets another one",
                 name, r->friction);
-    if (run->model.has_tape && run->model.tape.round && r->tape_plastic > circle_limit)
+    if (isfinite(loosens))
         wb_warn(
-            "%s: from %.3g mm on the tape on its circle has a plastic strain beyond %.3g, where "
-            "its outline lets go of the wires: the section model is too stiff there; compute it "
-            "with --model explicit",
-            name, find_limit(r) / WB_MM, circle_limit);
+            "%s: from %.3g mm on the tape on its circle has a plastic strain beyond 0.01, where "
+            "its outline lets go of the wires: the section model is too stiff there; compute "
+            "it with --model explicit",
+            name, loosens / WB_MM);
     if (r->imbalance > allowed_imbalance)
         wb_warn("%s: energies differ from the work by up to %.3g of it: more rows (run: rows) make "
                 "the increments smaller",

@@ -60,7 +60,7 @@ struct layout_work {
 
 static const char way_out[] = "compute it with --model explicit";
 
-static enum wb_status check_wires(const struct wb_bundle_model *model)
+static enum wb_status check_wires(const struct wb_bundle_model *model, struct wb_reason *why)
 {
     const struct wb_packing *const packing = &model->packing;
     struct wb_packing_pair pair[MOST_CONTACTS];
@@ -68,47 +68,49 @@ static enum wb_status check_wires(const struct wb_bundle_model *model)
     for (int i = 1; i < packing->n; i++) {
         const double a = packing->wire[0].radius, b = packing->wire[i].radius;
         if (fabs(a - b) > same_diameter * fmax(a, b))
-            return wb_fail(WB_ERR_UNSUPPORTED,
-                           "%s: wires of %g and %g mm: the section model is made for wires of one "
-                           "diameter, in mixtures thin ones are loose; %s",
-                           model->path, 2.0 * a / WB_MM, 2.0 * b / WB_MM, way_out);
+            return wb_fail_to(
+                why, WB_ERR_UNSUPPORTED,
+                "%s: wires of %g and %g mm: the section model is made for wires of one "
+                "diameter, in mixtures thin ones are loose; %s",
+                model->path, 2.0 * a / WB_MM, 2.0 * b / WB_MM, way_out);
     }
     if (model->wire_gap > most_gap)
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "%s: gaps: wires_mm: %g between wires: the section model is made for wires "
-                       "that touch (at most %g mm); %s",
-                       model->path, model->wire_gap / WB_MM, most_gap / WB_MM, way_out);
+        return wb_fail_to(
+            why, WB_ERR_UNSUPPORTED,
+            "%s: gaps: wires_mm: %g between wires: the section model is made for wires "
+            "that touch (at most %g mm); %s",
+            model->path, model->wire_gap / WB_MM, most_gap / WB_MM, way_out);
     const double reach = neighbour * packing->wire[0].radius;
     const int n = wb_packing_pairs(packing, reach, MOST_CONTACTS, pair);
     for (int i = 0; i < n && i < MOST_CONTACTS; i++)
         if (pair[i].gap > most_gap)
-            return wb_fail(WB_ERR_UNSUPPORTED,
-                           "%s: the neighbours %d and %d of the packing are %.3g mm apart: the "
-                           "section model is made for wires that touch (at most %g mm); %s",
-                           model->path, pair[i].a + 1, pair[i].b + 1, pair[i].gap / WB_MM,
-                           most_gap / WB_MM, way_out);
+            return wb_fail_to(why, WB_ERR_UNSUPPORTED,
+                              "%s: the neighbours %d and %d of the packing are %.3g mm apart: the "
+                              "section model is made for wires that touch (at most %g mm); %s",
+                              model->path, pair[i].a + 1, pair[i].b + 1, pair[i].gap / WB_MM,
+                              most_gap / WB_MM, way_out);
     return WB_OK;
 }
 
-static enum wb_status check_model(const struct wb_bundle_model *model)
+enum wb_status wb_section_layout_check(const struct wb_bundle_model *model, struct wb_reason *why)
 {
-    WB_TRY(check_wires(model));
+    WB_TRY(check_wires(model, why));
     if (model->potted_length > 0.0)
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "%s: ends: a potted length: the section model knows none; %s", model->path,
-                       way_out);
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED,
+                          "%s: ends: a potted length: the section model knows none; %s",
+                          model->path, way_out);
     if (!model->has_tape)
         return WB_OK;
     if (model->tape.taping.kind != WB_TAPING_SLEEVE)
-        return wb_fail(
-            WB_ERR_UNSUPPORTED,
+        return wb_fail_to(
+            why, WB_ERR_UNSUPPORTED,
             "%s: taping: layout: helix: the section model knows the sleeve only, because "
             "the windings of a helix slide on each other; %s",
             model->path, way_out);
     if (model->interface.has_damage)
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "%s: interface: damage: bonds of the section model do not break; %s",
-                       model->path, way_out);
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED,
+                          "%s: interface: damage: bonds of the section model do not break; %s",
+                          model->path, way_out);
     return WB_OK;
 }
 
@@ -490,7 +492,7 @@ enum wb_status wb_section_layout_create(struct wb_section_layout *layout,
                                         const struct wb_bundle_model *model, bool may_mirror)
 {
     *layout = (struct wb_section_layout){.n_unknowns = 1};
-    WB_TRY(check_model(model));
+    WB_TRY(wb_section_layout_check(model, NULL));
     struct layout_work *const work = calloc(1, sizeof *work);
     enum wb_status status =
         work ? take_memory(layout) : wb_fail(WB_ERR_MEMORY, "no memory for a section");

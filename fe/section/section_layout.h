@@ -14,6 +14,7 @@
 #include <stdbool.h>
 
 #include "base/memory.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/model/bundle_model.h"
 
@@ -76,10 +77,14 @@ enum {
     WB_SECTION_LAYOUT_MOST_NODES = 4 * WB_HULL_MOST /* of the tape */
 };
 
-/* Lays out a model's section; without `may_mirror` images have unknowns of their own.
- * WB_ERR_UNSUPPORTED, with the reason, for what the model cannot compute: tape wound as a helix,
- * wires of several diameters, gaps between neighbours above wb_section_layout_most_gap, bonds that
- * may break, a potted length. */
+/* Whether the section model is made for this bundle. WB_ERR_UNSUPPORTED, with the reason, for what
+ * it cannot compute: tape wound as a helix, wires of several diameters, gaps between neighbours
+ * above 0.01 mm, bonds that may break, a potted length. */
+WB_MUST_CHECK enum wb_status wb_section_layout_check(const struct wb_bundle_model *model,
+                                                     struct wb_reason *why);
+
+/* Lays out the section of a model that passes the check; without `may_mirror` images have unknowns
+ * of their own. */
 WB_MUST_CHECK enum wb_status wb_section_layout_create(struct wb_section_layout *layout,
                                                       const struct wb_bundle_model *model,
                                                       bool may_mirror);

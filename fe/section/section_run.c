@@ -12,6 +12,8 @@ enum {
                          distance to the one before, so that many rows are noisy */
 };
 
+/* Plastic strain of a tape on a circle, where nothing but its stretch holds wires together. */
+static const double circle_limit = 0.010;
 static const double small = 1e-5; /* of the length: a deflection at which the elastic bundle is
                                      linear */
 
@@ -199,6 +201,16 @@ double wb_section_run_springback(const struct wb_section_run *run)
             most = fmax(most, run->rows[k].point.deflection);
         return 1.0 - free / most;
     }
+    return (double)NAN;
+}
+
+double wb_section_run_loosens(const struct wb_section_run *run, const struct wb_bundle_model *model)
+{
+    if (!model->has_tape || !model->tape.round)
+        return (double)NAN;
+    for (int i = 0; i < run->n_rows; i++)
+        if (run->rows[i].point.tape_plastic > circle_limit)
+            return run->rows[i].point.deflection;
     return (double)NAN;
 }
 

@@ -86,4 +86,10 @@ WB_MUST_CHECK enum wb_status wb_section_run(struct wb_section_run *run,
  * NaN: there is no way back, or it ends before. */
 double wb_section_run_springback(const struct wb_section_run *run);
 
+/* The deflection (m) from which on the section model is too stiff, by 14 to 35 % at the end of the
+ * explicit runs: there the tape on its circle has a plastic strain beyond 0.010, and its outline
+ * lets go of the wires. NaN: it stays below, or the tape lies taut on the wires. */
+double wb_section_run_loosens(const struct wb_section_run *run,
+                              const struct wb_bundle_model *model);
+
 #endif

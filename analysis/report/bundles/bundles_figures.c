@@ -547,5 +547,6 @@ const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS] = {
     {"curves", count_groups, draw_errors, false},
     {"energies", count_groups, draw_energies, false},
     {"shapes", count_bundles, draw_shape, false},
+    {"section-model", count_groups, wb_bundles_section_draw, false},
     {"fit", NULL, draw_fit, false},
 };

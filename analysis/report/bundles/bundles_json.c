@@ -61,6 +61,30 @@ static void put_curves(struct wb_json *entry, const struct wb_bundles_result *ru
     wb_json_set_number(entry, "largest_error", run->max_error);
 }
 
+static void put_section(struct wb_json *entry, const struct wb_bundles_section *section)
+{
+    if (section->state == WB_SIMULATION_NOT_WANTED)
+        return;
+    struct wb_json *const object = wb_json_set_object(entry, "section_model");
+    if (section->state != WB_SIMULATION_USABLE) {
+        wb_json_set_text(object, "problem", wb_text_string(&section->problem));
+        return;
+    }
+    wb_json_set_number(object, "friction_used", section->friction);
+    wb_json_set_boolean(object, "friction_is_mean_of_decay", section->is_mean);
+    wb_json_set_number(object, "rms", section->rms);
+    wb_json_set_number(object, "largest_error", section->largest);
+    wb_json_set_number(object, "tape_loosens_mm", section->loosens / WB_MM);
+    struct wb_json *const lengths = wb_json_set_array(object, "elastic");
+    for (int i = 0; i < WB_SECTION_RUN_LENGTHS; i++) {
+        struct wb_json *const item = wb_json_append_object(lengths);
+        wb_json_set_number(item, "length_mm", section->rigidity[i].length / WB_MM);
+        wb_json_set_number(item, "EI_N_mm2", section->rigidity[i].rigidity / n_mm2);
+        wb_json_set_number(item, "newmark_alpha_L", section->rigidity[i].alpha);
+    }
+    wb_numbers_put_list(object, "force_N", section->curve.force, section->curve.n, 1.0);
+}
+
 static void put_run(struct wb_json *list, const struct wb_bundles_results *results, int index)
 {
     const struct wb_bundles_run *const wanted = &results->campaign->runs[index];
@@ -79,6 +103,7 @@ static void put_run(struct wb_json *list, const struct wb_bundles_results *resul
     wb_setting_set_json(&rows[WB_BUNDLE_MODEL_MASS_SCALING], &m->run, entry);
     wb_setting_set_json(&rows[WB_BUNDLE_MODEL_SELECTIVE], &m->run, entry);
     put_state(entry, &wanted->dataset, run);
+    put_section(entry, &results->sections[index]);
     if (run->simulation.state != WB_SIMULATION_USABLE)
         return;
     put_numbers(entry, run);

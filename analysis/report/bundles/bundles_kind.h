@@ -11,13 +11,19 @@ extern const struct wb_kind wb_bundles_kind;
 /* --- its parts --- */
 
 enum {
-    WB_BUNDLES_FIGURE_ROWS = 7
+    WB_BUNDLES_FIGURE_ROWS = 8
 };
 
 /* After the paper's Figs. 17 to 26. Places: of each group "sections", "curves" and "energies", of
- * each pair of studies "studies", of each bundle "shapes", and "fit". */
+ * each pair of studies "studies", of each bundle "shapes", and "fit"; and of each group
+ * "section-model". */
 extern const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS];
 wb_kind_pages wb_bundles_pages_build;
 wb_kind_json wb_bundles_json_build;
+
+/* The chapter on the section model beside the explicit one, and its figures, one a group. */
+void wb_bundles_section_put(struct wb_document *document, const struct wb_bundles_results *results,
+                            const struct wb_figures *figures);
+enum wb_status wb_bundles_section_draw(struct wb_figures_item *item);
 
 #endif

@@ -1,5 +1,5 @@
-/* The report of bundles, in order: summary, bundles, studies, groups, 1D properties, cost, runs,
- * provenance. */
+/* The report of bundles, in order: summary, bundles, studies, groups, section model, 1D properties,
+ * cost, runs, provenance. */
 #include "analysis/report/bundles/bundles_kind.h"
 
 #include <math.h>
@@ -489,6 +489,7 @@ void wb_bundles_pages_build(struct wb_document *document, const void *context,
     put_sections(document, results, figures);
     put_studies(document, results, figures);
     put_groups(document, results, figures);
+    wb_bundles_section_put(document, results, figures);
     put_fit(document, results, figures);
     put_cost(document, results);
     put_all_runs(document, results);

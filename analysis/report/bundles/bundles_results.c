@@ -44,6 +44,14 @@ const struct wb_bundles_fit *wb_bundles_results_fit(const struct wb_bundles_resu
     return fit->state == WB_SIMULATION_USABLE ? fit : NULL;
 }
 
+const struct wb_bundles_section *
+wb_bundles_results_section(const struct wb_bundles_results *results, int run)
+{
+    return run >= 0 && results->sections[run].state == WB_SIMULATION_USABLE
+               ? &results->sections[run]
+               : NULL;
+}
+
 double wb_bundles_results_rigidity(double youngs_modulus, double diameter)
 {
     return youngs_modulus * pi / 64.0 * pow(diameter, 4.0);
@@ -231,6 +239,16 @@ static void compare_run(struct wb_bundles_result *result, const struct wb_bundle
     wb_reasons_fail(&reasons, status, &why);
 }
 
+/* The section model of a bundle's run, where it was not computed yet. */
+static void add_section(struct wb_bundles_results *results, int run)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_result *const explicit = wb_bundles_results_usable(results, run);
+    if (run >= 0 && results->sections[run].state == WB_SIMULATION_NOT_WANTED)
+        wb_bundles_section_compute(&results->sections[run], &campaign->runs[run],
+                                   explicit ? &explicit->curve : NULL, campaign->head.fit.step);
+}
+
 /* --- all of it --- */
 
 bool wb_bundles_results_list(const void *context, int index, struct wb_simulation_entry *entry)
@@ -280,6 +298,8 @@ enum wb_status wb_bundles_results_compute(void *of, int n_threads, wb_kind_progr
     }
     for (int i = 0; i < campaign->n_bundles && !wb_interrupted(); i++) {
         fit_bundle(results, i);
+        add_section(results, campaign->bundles[i].dynamic);
+        add_section(results, campaign->bundles[i].constant);
         if (progress)
             progress(context, i + 1, campaign->bundles[i].label);
     }
@@ -291,8 +311,10 @@ enum wb_status wb_bundles_results_compute(void *of, int n_threads, wb_kind_progr
 void wb_bundles_results_release(void *context)
 {
     struct wb_bundles_results *const results = context;
-    for (int i = 0; i < WB_BUNDLES_RUNS; i++)
+    for (int i = 0; i < WB_BUNDLES_RUNS; i++) {
         wb_bundles_run_release(&results->runs[i]);
+        wb_bundles_section_release(&results->sections[i]);
+    }
     for (int i = 0; i < WB_BUNDLES_BUNDLES; i++) {
         struct wb_bundles_fit *const fit = &results->fits[i];
         wb_bundles_run_release(&results->rods[i]);

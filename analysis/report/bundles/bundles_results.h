@@ -9,6 +9,7 @@
 #include "analysis/calibration/calibrate.h"
 #include "analysis/report/bundles/bundles.h"
 #include "analysis/report/bundles/bundles_run.h"
+#include "analysis/report/bundles/bundles_section.h"
 #include "analysis/report/kind.h"
 #include "analysis/report/verdict.h"
 #include "base/status.h"
@@ -29,6 +30,7 @@ struct wb_bundles_results {
     struct wb_bundles_result runs[WB_BUNDLES_RUNS];
     struct wb_bundles_result rods[WB_BUNDLES_BUNDLES];
     struct wb_bundles_fit fits[WB_BUNDLES_BUNDLES];
+    struct wb_bundles_section sections[WB_BUNDLES_RUNS]; /* of the bundles' runs */
 };
 
 /* Reads and checks the datasets; then compares and fits the usable ones, with progress after each
@@ -51,6 +53,10 @@ bool wb_bundles_results_any(const struct wb_bundles_results *results,
 /* The fit of a bundle that is usable, else NULL. */
 const struct wb_bundles_fit *wb_bundles_results_fit(const struct wb_bundles_results *results,
                                                     int bundle);
+
+/* The section model of a run (index -1: none) that was computed, else NULL. */
+const struct wb_bundles_section *
+wb_bundles_results_section(const struct wb_bundles_results *results, int run);
 
 /* CPU seconds of the 1D beam over those of the bundle's run; NaN unless both are used and known. */
 double wb_bundles_results_cost(const struct wb_bundles_results *results, int bundle);

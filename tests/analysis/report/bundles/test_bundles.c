@@ -297,6 +297,50 @@ static void published_properties_come_back_from_their_own_curve(void **state)
     assert_close_relative(twelve->result.material.youngs_modulus, 0.9 * 1022e6, 0.03);
 }
 
+/* The made-up run 0 lies on the published curve: the model's distance from it, by hand. */
+static void the_section_model_stands_beside_the_bundles_runs(void **state)
+{
+    (void)state;
+    const struct wb_bundles_results *const all = whole_report();
+    const struct wb_bundles_result *const run = wb_bundles_results_usable(all, 0);
+    const struct wb_bundles_section *const section = wb_bundles_results_section(all, 0);
+    struct wb_section_run computed;
+    const struct wb_bundle_model *const model = whole_campaign.runs[0].model;
+    assert_non_null(section);
+    assert_int_equal(wb_section_run_init(&computed, model, 2), WB_OK);
+    assert_int_equal(wb_section_run(&computed, model, NULL), WB_OK);
+    const double end = computed.rows[computed.n_rows - 1].force;
+    assert_close_relative(section->curve.force[section->curve.n - 1], end, 1e-3);
+    assert_close_relative(section->rigidity[1].rigidity, computed.rigidity[1].rigidity, 1e-12);
+    wb_section_run_release(&computed);
+    assert_true(section->is_mean && isnan(section->loosens));
+    double largest = 0.0;
+    for (int i = 0; i < run->curve.n; i++)
+        largest = fmax(largest, fabs(section->curve.force[i] - run->curve.force[i]));
+    assert_close_relative(section->largest, largest / run->curve.max_force, 1e-9);
+    assert_true(section->rms > 0.2 * section->largest && section->rms < section->largest);
+    /* Only bundles' runs are computed; of one whose dataset is not there, too, but not compared. */
+    assert_false(wb_bundles_results_section(all, 1)->is_mean);
+    assert_null(wb_bundles_results_section(all, 2));
+}
+
+static void a_bundle_that_the_section_model_refuses_says_why(void **state)
+{
+    (void)state;
+    struct wb_bundles_section section = {0};
+    struct wb_bundles_run run = whole_campaign.runs[0];
+    struct wb_bundle_model *const gaps = malloc(sizeof *gaps);
+    assert_non_null(gaps);
+    *gaps = *run.model;
+    gaps->wire_gap = 0.05e-3;
+    run.model = gaps;
+    wb_bundles_section_compute(&section, &run, NULL, 0.5e-3);
+    assert_int_equal(section.state, WB_SIMULATION_REFUSED);
+    assert_memory_equal(wb_text_string(&section.problem), "gaps: wires_mm: 0.05 between", 28);
+    wb_bundles_section_release(&section);
+    free(gaps);
+}
+
 static void cost_is_that_which_the_datasets_store(void **state)
 {
     (void)state;
@@ -520,7 +564,8 @@ static void write_report(void)
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
 {
     (void)state;
-    static const char *const figures[] = {"forces-1", "errors-1", "energies-1", "study-1", "fit"};
+    static const char *const figures[] = {"forces-1", "errors-1",        "energies-1",
+                                          "study-1",  "section-model-1", "fit"};
     write_report();
     assert_simulated_figures(figures, sizeof figures / sizeof figures[0]);
     assert_true(wb_file_exists(in_folder("report/figures/sections-1.svg")));
@@ -539,6 +584,8 @@ static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
         "RMS from the published curve, over its largest force, 12 wires",
         "1114",
         "0.200",
+        "Section model beside the explicit one",
+        "0.2 (mean)",
     };
     assert_says_all("report/report.html", texts, sizeof texts / sizeof texts[0]);
     assert_clean_report();
@@ -560,8 +607,10 @@ static void report_json_has_what_the_pages_tell(void **state)
     assert_true(wb_json_get_number(run, "rms", &value));
     assert_close(value, wb_bundles_results_usable(whole_report(), 4)->rms, 1e-15);
     assert_int_equal((int)wb_json_length(wb_json_get(run, "force_N")), 107);
+    assert_true(wb_json_get_number(wb_json_get(run, "section_model"), "rms", &value));
+    assert_close(value, wb_bundles_results_section(whole_report(), 4)->rms, 1e-15);
     assert_int_equal((int)wb_json_length(wb_json_get(root, "limits")), 7);
-    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 31);
+    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 33);
     wb_json_destroy(root);
 }
 
@@ -599,6 +648,8 @@ int main(void)
         cmocka_unit_test(a_campaign_that_makes_no_sense_is_refused_with_its_line),
         cmocka_unit_test(errors_are_over_the_published_curves_largest_force),
         cmocka_unit_test(published_properties_come_back_from_their_own_curve),
+        cmocka_unit_test(the_section_model_stands_beside_the_bundles_runs),
+        cmocka_unit_test(a_bundle_that_the_section_model_refuses_says_why),
         cmocka_unit_test(cost_is_that_which_the_datasets_store),
         cmocka_unit_test(energies_are_read_row_by_row),
         cmocka_unit_test(a_missing_dataset_is_told_with_the_command_that_makes_it),

@@ -1,0 +1,148 @@
+/* The section model beside the explicit one: a table of the bundles' runs, and their curves. */
+#include <math.h>
+#include <stdio.h>
+
+#include "analysis/report/bundles/bundles_kind.h"
+#include "analysis/report/pages.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
+
+/* --- curves --- */
+
+static const struct wb_figure_style explicit_style = {.colour = {0.34, 0.71, 0.91, 0.75},
+                                                      .width = 3.6};
+static const struct wb_figure_style section_style = {.colour = {0.114, 0.153, 0.2, 1.0},
+                                                     .width = 1.3};
+
+/* Of the run with constant friction, where both models have the same one, else of the other. */
+static int shown_run(const struct wb_bundles_results *results,
+                     const struct wb_bundles_bundle *bundle)
+{
+    return wb_bundles_results_usable(results, bundle->constant) &&
+                   wb_bundles_results_section(results, bundle->constant)
+               ? bundle->constant
+               : bundle->dynamic;
+}
+
+static enum wb_status add_bundle(struct wb_figure *figure, const struct wb_bundles_results *results,
+                                 const struct wb_bundles_bundle *bundle, bool first)
+{
+    const int run = shown_run(results, bundle);
+    const struct wb_bundles_result *const explicit = wb_bundles_results_usable(results, run);
+    const struct wb_bundles_section *const section = wb_bundles_results_section(results, run);
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    double largest = section->curve.max_force;
+    wb_figures_set_title(panel, bundle->label);
+    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", first ? "Force (N)" : "");
+    if (explicit) {
+        largest = fmax(largest, explicit->curve.max_force);
+        WB_TRY(wb_figures_add_curve(panel, "explicit 3D", &explicit->curve, explicit->curve.force,
+                                    1.0, &explicit_style));
+    }
+    /* Room above for the legend, so that the panels are alike. */
+    wb_figure_set_y_range(panel, 0.0, 1.25 * largest);
+    return wb_figures_add_curve(panel, "section model", &section->curve, section->curve.force, 1.0,
+                                &section_style);
+}
+
+enum wb_status wb_bundles_section_draw(struct wb_figures_item *item)
+{
+    const struct wb_bundles_results *const results = item->results;
+    const struct wb_bundles_group *const group = &results->campaign->groups[item->index];
+    char name[64];
+    snprintf(name, sizeof name, "section-model-%d", item->index + 1);
+    for (int i = group->first; i < group->first + group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        if (!wb_bundles_results_section(results, shown_run(results, bundle)))
+            continue;
+        const bool first = !item->figure;
+        if (first) {
+            WB_TRY(wb_figures_start_simulation(&item->figure, name, 190.0));
+            wb_text_append(&item->caption,
+                           "Force over deflection of the section model and of the explicit one, "
+                           "with the same constant friction where there is such a run.");
+        }
+        WB_TRY(add_bundle(item->figure, results, bundle, first));
+    }
+    return WB_OK;
+}
+
+/* --- the table --- */
+
+static void put_row(struct wb_document_table *table, const struct wb_bundles_results *results,
+                    int run)
+{
+    const struct wb_bundles_section *const section = wb_bundles_results_section(results, run);
+    const struct wb_bundles_result *const explicit = wb_bundles_results_usable(results, run);
+    const double none = (double)NAN;
+    if (run < 0)
+        return;
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, results->campaign->runs[run].name);
+    if (section)
+        wb_pages_cell(table, WB_TONE_PLAIN, "%.3g%s", section->friction,
+                      section->is_mean ? " (mean)" : "");
+    else
+        wb_pages_cell_number(table, none, 2);
+    wb_pages_cell_number(table, explicit ? explicit->curve.max_force : none, 3);
+    wb_pages_cell_number(table, section ? section->curve.max_force : none, 3);
+    wb_pages_cell_number(table, section ? section->rms : none, 4);
+    for (int i = 0; i < WB_SECTION_RUN_LENGTHS; i++)
+        wb_pages_cell_number(table, section ? section->rigidity[i].rigidity / n_mm2 : none, 0);
+    if (section && isfinite(section->loosens))
+        wb_pages_cell(table, WB_TONE_WARNING, "%.3g mm", section->loosens / WB_MM);
+    else
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, section ? "holds" : "");
+}
+
+static void put_refused(struct wb_document *document, const struct wb_bundles_results *results,
+                        int run)
+{
+    if (run >= 0 && results->sections[run].state == WB_SIMULATION_REFUSED)
+        wb_pages_item(document, WB_TONE_PLAIN, "<b>", results->campaign->runs[run].name,
+                      "</b>: ", wb_text_string(&results->sections[run].problem));
+}
+
+void wb_bundles_section_put(struct wb_document *document, const struct wb_bundles_results *results,
+                            const struct wb_figures *figures)
+{
+    static const struct wb_document_column columns[] = {
+        {"Run"},
+        {.heading = "Friction used", .right = true, .wraps = true},
+        {.heading = "<i>F</i><sub>max</sub>, explicit (N)", .right = true, .wraps = true},
+        {.heading = "<i>F</i><sub>max</sub>, section (N)", .right = true, .wraps = true},
+        {.heading = "RMS", .right = true},
+        {.heading = "<i>EI</i> at <i>L</i>/2 (N mm<sup>2</sup>)", .right = true, .wraps = true},
+        {.heading = "<i>EI</i> at <i>L</i> (N mm<sup>2</sup>)", .right = true, .wraps = true},
+        {.heading = "<i>EI</i> at 2 <i>L</i> (N mm<sup>2</sup>)", .right = true, .wraps = true},
+        {.heading = "Tape lets go from", .right = true, .wraps = true},
+    };
+    const struct wb_bundles *const campaign = results->campaign;
+    wb_document_heading(document, 1, "section-model", "Section model beside the explicit one");
+    wb_document_paragraph(
+        document,
+        "The section model takes a tenth of a second: wires share the rotation of their section "
+        "and slip along their axis, and the tape carries shear between them. It is computed for "
+        "this report. It holds while the tape holds the section together.");
+    for (int i = 0; i < campaign->n_groups; i++)
+        wb_figures_put(figures, document, "section-model", i);
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "RMS: from the explicit curve, over its largest force. Friction: a static model has no "
+        "rate; of a friction that decays it takes the geometric mean. <i>EI</i>: of the elastic "
+        "bundle as a beam of this length <i>L</i> and these ends, <i>F L</i><sup>3</sup>/3<i>\xce"
+        "\xb4</i>; a short one shears. Where a tape on a circle lets go of the wires, the section "
+        "model is too stiff.",
+        9, columns);
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        put_row(table, results, campaign->bundles[i].dynamic);
+        put_row(table, results, campaign->bundles[i].constant);
+    }
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        put_refused(document, results, campaign->bundles[i].dynamic);
+        put_refused(document, results, campaign->bundles[i].constant);
+    }
+}
