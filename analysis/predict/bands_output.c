@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "analysis/dataset/csv_table.h"
-#include "analysis/plot/figure.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/units.h"
@@ -130,23 +129,30 @@ static void draw_case(struct wb_panel *panel, const struct wb_bands_case *c, int
     wb_figure_add_line(panel, c->variant.name, (size_t)n, x, y, &style);
 }
 
-static enum wb_status write_figure(const struct wb_bands *bands, const char *folder)
+void wb_bands_output_draw(const struct wb_bands *bands, struct wb_figure *figure,
+                          struct wb_panel *panels[WB_BANDS_OUTPUT_PANELS])
 {
     const int n = bands->n_cases < DRAWN ? bands->n_cases : DRAWN;
+    for (int i = 0; i < WB_BANDS_OUTPUT_PANELS; i++)
+        panels[i] = wb_figure_add_panel(figure);
+    wb_figure_set_axes(panels[0], "Deflection (mm)", "Force (N)");
+    wb_figure_set_axes(panels[1], "Curvature (1/m)", "Moment (N mm)");
+    for (int i = 0; i < n; i++) {
+        const struct wb_bands_case *const c = &bands->cases[i];
+        draw_case(panels[0], c, i, c->force, c->n_force, WB_MM, 1.0);
+        draw_case(panels[1], c, i, c->moment, c->n_moment, 1.0, WB_MM);
+    }
+}
+
+static enum wb_status write_figure(const struct wb_bands *bands, const char *folder)
+{
+    struct wb_panel *panels[WB_BANDS_OUTPUT_PANELS];
     struct wb_figure *figure;
     char path[WB_PATH];
 
     WB_TRY(wb_file_join(path, folder, "bands.svg"));
     WB_TRY(wb_figure_create(&figure, "bands", width, height));
-    struct wb_panel *const force = wb_figure_add_panel(figure);
-    struct wb_panel *const moment = wb_figure_add_panel(figure);
-    wb_figure_set_axes(force, "Deflection (mm)", "Force (N)");
-    wb_figure_set_axes(moment, "Curvature (1/m)", "Moment (N mm)");
-    for (int i = 0; i < n; i++) {
-        const struct wb_bands_case *const c = &bands->cases[i];
-        draw_case(force, c, i, c->force, c->n_force, WB_MM, 1.0);
-        draw_case(moment, c, i, c->moment, c->n_moment, 1.0, WB_MM);
-    }
+    wb_bands_output_draw(bands, figure, panels);
     wb_figure_set_footer(figure, "predicted by the section model; lines: medians, bands: 90 % with "
                                  "the model's error");
     const enum wb_status status = wb_figure_write_svg(figure, path);

@@ -8,6 +8,7 @@
 #ifndef WB_ANALYSIS_PREDICT_BANDS_OUTPUT_H
 #define WB_ANALYSIS_PREDICT_BANDS_OUTPUT_H
 
+#include "analysis/plot/figure.h"
 #include "analysis/predict/bands.h"
 #include "base/json.h"
 #include "base/status.h"
@@ -16,6 +17,15 @@
 /* Writes the files; of `bands` NULL it removes those of an earlier run. */
 WB_MUST_CHECK enum wb_status wb_bands_output_write(const struct wb_bands *bands,
                                                    const char *folder);
+
+enum {
+    WB_BANDS_OUTPUT_PANELS = 2 /* force over deflection, moment over curvature */
+};
+
+/* Adds the two panels to a figure, with the first cases: lines of medians, in the bands with the
+ * model's error. */
+void wb_bands_output_draw(const struct wb_bands *bands, struct wb_figure *figure,
+                          struct wb_panel *panels[WB_BANDS_OUTPUT_PANELS]);
 
 /* Sets `uncertainty` in an object. */
 void wb_bands_output_describe(const struct wb_bands *bands, struct wb_json *object);

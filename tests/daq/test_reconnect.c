@@ -53,7 +53,8 @@ static void a_cell_that_comes_back_goes_on_and_no_halves_of_lines_join(void **st
     wb_bend_test_stop(test);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_string_equal(result.text, "stopped by the operator"); /* first: it says what went wrong */
+    /* First, because it says what went wrong. */
+    assert_string_equal(result.text, "stopped by the operator");
     assert_int_equal(plugged, TRIALS);
     /* 7 mm beyond the slack pull by 3.5 g; two halves would make 10 g and more. */
     assert_true(result.peak_tension < 45.0 * WB_MN);

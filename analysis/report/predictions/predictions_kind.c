@@ -1,0 +1,425 @@
+#include "analysis/report/predictions/predictions_kind.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/predict/bands_output.h"
+#include "analysis/report/draw/figures_bundle.h"
+#include "analysis/report/numbers.h"
+#include "analysis/report/pages.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const char *const side_names[] = {"below", "within", "above", "not reached"};
+
+static const char *side_of(const struct wb_predictions_place *place)
+{
+    return side_names[place->side - WB_PREDICTIONS_BELOW];
+}
+
+static const char *origin_of(const struct wb_dataset *dataset)
+{
+    return dataset->info.is_simulation ? "a simulation, no test"
+           : dataset->info.is_virtual  ? "measured on a virtual rig"
+                                       : "measured";
+}
+
+/* --- figures --- */
+
+static int count_bundles(const void *context)
+{
+    const struct wb_predictions_results *const results = context;
+    return results->campaign->n_bundles;
+}
+
+static enum wb_status draw_section(struct wb_figures_item *item)
+{
+    const struct wb_predictions_results *const results = item->results;
+    const struct wb_predictions_bundle *const bundle = &results->campaign->bundles[item->index];
+    const struct wb_bundle_model *const models[] = {bundle->model};
+    char name[64];
+    snprintf(name, sizeof name, "section-%d", item->index + 1);
+    wb_text_append(&item->caption, "Section of ");
+    wb_text_append_escaped(&item->caption, bundle->label);
+    wb_text_append(&item->caption, ", as its file has it, and the homogenised cylinder.");
+    return wb_figures_bundle_draw(&item->figure, name, 1, models, bundle->model->run.mesh);
+}
+
+/* The rows of a test, over the bands. */
+static enum wb_status add_test(struct wb_panel *panel, const char *label,
+                               const struct wb_predictions_verdict *verdict)
+{
+    static const struct wb_figure_style style = {.colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.0};
+    const size_t n = verdict->dataset.n_rows;
+    struct wb_text escaped = {0};
+    double *const x = malloc(2 * (n > 0 ? n : 1) * sizeof *x);
+    size_t used = 0;
+    if (!x)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for a figure");
+    for (size_t i = 0; i < n; i++) {
+        if (verdict->dataset.rows[i].phase == WB_PHASE_SLACK)
+            continue;
+        x[used] = verdict->dataset.rows[i].deflection / WB_MM;
+        x[n + used++] = verdict->dataset.rows[i].force;
+    }
+    wb_text_append_escaped(&escaped, label);
+    if (verdict->dataset.info.is_simulation || verdict->dataset.info.is_virtual)
+        wb_text_append(&escaped, " (%s)", origin_of(&verdict->dataset));
+    wb_figure_add_line(panel, wb_text_string(&escaped), used, x, x + n, &style);
+    wb_text_release(&escaped);
+    free(x);
+    return WB_OK;
+}
+
+static enum wb_status draw_bands(struct wb_figures_item *item)
+{
+    const struct wb_predictions_results *const results = item->results;
+    const struct wb_predictions_bundle *const bundle = &results->campaign->bundles[item->index];
+    const struct wb_predictions_prediction *const of = &results->bundles[item->index];
+    struct wb_panel *panels[WB_BANDS_OUTPUT_PANELS];
+    char name[64];
+    int n_tests = 0;
+    if (!of->bands)
+        return WB_OK;
+    snprintf(name, sizeof name, "bands-%d", item->index + 1);
+    WB_TRY(wb_figures_start_simulation(&item->figure, name, 250.0));
+    wb_bands_output_draw(of->bands, item->figure, panels);
+    wb_figure_set_y_range(panels[0], 0.0, (double)NAN);
+    wb_figure_set_y_range(panels[1], 0.0, (double)NAN);
+    for (int i = 0; i < bundle->n_tests; i++) {
+        if (of->tests[i].state != WB_SIMULATION_USABLE)
+            continue;
+        WB_TRY(add_test(panels[0], bundle->tests[i].label, &of->tests[i]));
+        n_tests++;
+    }
+    if (n_tests > 0)
+        wb_figure_set_footer(item->figure, "bands and medians: simulation");
+    wb_text_append(&item->caption,
+                   "Predicted force and, of the homogenised beam of this length and these ends, "
+                   "moment over curvature: median and band of 90 %%, with the model's error.%s%s",
+                   of->bands->n_cases > 1 ? " A colour for each case." : "",
+                   n_tests > 0 ? " Black: tests, with their way back." : "");
+    return WB_OK;
+}
+
+static const struct wb_figures_row figures[] = {
+    {.place = "bundle", .count = count_bundles, .draw = draw_section},
+    {.place = "bundle", .count = count_bundles, .draw = draw_bands},
+};
+
+/* --- pages --- */
+
+static void put_interval(struct wb_document_table *table, const struct wb_bands_interval *band,
+                         int decimals)
+{
+    if (isfinite(band->median))
+        wb_pages_cell(table, WB_TONE_PLAIN, "%.*f (%.*f to %.*f)", decimals, band->median, decimals,
+                      band->wide_low, decimals, band->wide_high);
+    else
+        wb_pages_cell_number(table, (double)NAN, 0);
+}
+
+static void put_cases(struct wb_document *document, const struct wb_bands *bands)
+{
+    static const struct wb_document_column columns[] = {
+        {"Case"},
+        {.heading = "Wires", .right = true},
+        {"Packing"},
+        {.heading = "Tape layers", .right = true, .wraps = true},
+        {"Outline"},
+        {.heading = "<i>\xce\xb4</i> (mm)", .right = true},
+        {.heading = "Force there (N)", .right = true},
+        {.heading = "Springs back", .right = true},
+        {.heading = "Runs lost", .right = true, .wraps = true},
+    };
+    struct wb_text caption = {0};
+    wb_text_append(&caption,
+                   "Median and band of 90 %% of %d runs a case, widened by the model's own error "
+                   "of %g %%. Cases are choices, not chances: the photograph of a cut says which "
+                   "one holds. Springs back: the part of the largest deflection that the bundle "
+                   "goes back by when it is let go.",
+                   bands->runs, wb_bands_model_error() / WB_PERCENT);
+    struct wb_document_table *const table =
+        wb_pages_start_table(document, &caption, (int)WB_COUNT(columns), columns);
+    for (int i = 0; i < bands->n_cases; i++) {
+        const struct wb_bands_case *const c = &bands->cases[i];
+        const struct wb_bands_place *const last = c->n_force > 0 ? &c->force[c->n_force - 1] : NULL;
+        const double none = (double)NAN;
+        const struct wb_bands_interval nothing = {none, none, none, none, none};
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, c->variant.name);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", c->n_wires);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, c->packing);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%.3g", c->layers);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN,
+                            !(c->layers > 0.0) ? "none"
+                            : c->is_round      ? "circle"
+                                               : "hull");
+        wb_pages_cell_number(table, last ? last->at / WB_MM : none, 1);
+        put_interval(table, last ? &last->band : &nothing, 3);
+        put_interval(table, &c->springback, 3);
+        wb_pages_cell(table, c->n_lost > 0 ? WB_TONE_WARNING : WB_TONE_PLAIN, "%d", c->n_lost);
+    }
+}
+
+static void put_ranking(struct wb_document *document, const struct wb_bands *bands)
+{
+    static const struct wb_document_column columns[] = {
+        {"Of"},
+        {.heading = "at (mm)", .right = true},
+        {"hangs on"},
+        {.heading = "Share (%)", .right = true},
+        {.heading = "90 % (%)", .right = true},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "What makes the band wide, the largest share first: the part of the ranks' variance that "
+        "goes with a group of inputs. No shares where ranks do not explain the result "
+        "(R<sup>2</sup> below 0.9).",
+        (int)WB_COUNT(columns), columns);
+    for (int i = 0; i < bands->cases[0].n_rankings; i++) {
+        const struct wb_bands_ranking *const of = &bands->cases[0].ranking[i];
+        if (!of->ranking.is_valid) {
+            wb_document_row(table, false);
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, of->of);
+            wb_pages_cell_number(table, of->at / WB_MM, 1);
+            wb_pages_cell(table, WB_TONE_WARNING, "no ranking, R<sup>2</sup> %.2f", of->ranking.r2);
+            wb_pages_cell_number(table, (double)NAN, 0);
+            wb_pages_cell_number(table, (double)NAN, 0);
+        }
+        for (int g = 0; of->ranking.is_valid && g < of->ranking.n_groups; g++) {
+            const struct wb_ranking_share *const share = &of->ranking.group[g];
+            wb_document_row(table, g > 0);
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, g == 0 ? of->of : "");
+            if (g == 0)
+                wb_pages_cell_number(table, of->at / WB_MM, 1);
+            else
+                wb_pages_cell_plain(table, WB_TONE_PLAIN, "");
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, bands->inputs.group_name[share->group]);
+            wb_pages_cell_number(table, share->share / WB_PERCENT, 1);
+            wb_pages_cell(table, WB_TONE_PLAIN, "%.1f to %.1f", share->low / WB_PERCENT,
+                          share->high / WB_PERCENT);
+        }
+    }
+}
+
+static void put_place(struct wb_document_table *table, const struct wb_predictions_test *test,
+                      const struct wb_predictions_place *place, bool is_first)
+{
+    const bool is_outside =
+        place->side == WB_PREDICTIONS_BELOW || place->side == WB_PREDICTIONS_ABOVE;
+    wb_document_row(table, !is_first);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, is_first ? test->label : "");
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, is_first ? test->case_name : "");
+    if (isfinite(place->at))
+        wb_pages_cell(table, WB_TONE_PLAIN, "force at %.1f mm (N)", place->at / WB_MM);
+    else
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, "springs back");
+    wb_pages_cell_number(table, place->measured, 3);
+    put_interval(table, &place->band, 3);
+    wb_pages_cell_plain(table,
+                        is_outside                             ? WB_TONE_WARNING
+                        : place->side == WB_PREDICTIONS_WITHIN ? WB_TONE_GOOD
+                                                               : WB_TONE_PLAIN,
+                        side_of(place));
+}
+
+static void put_tests(struct wb_document *document, const struct wb_predictions_bundle *bundle,
+                      const struct wb_predictions_prediction *of)
+{
+    static const struct wb_document_column columns[] = {
+        {"Test"},
+        {"Case"},
+        {"Number"},
+        {.heading = "Test", .right = true},
+        {.heading = "Predicted (90 %)", .right = true},
+        {"It lies"},
+    };
+    struct wb_document_table *table = NULL;
+    for (int i = 0; i < bundle->n_tests; i++) {
+        const struct wb_predictions_verdict *const verdict = &of->tests[i];
+        if (!verdict->against)
+            continue;
+        if (!table)
+            table = wb_document_table(
+                document,
+                "Tests beside the band. It is for one further bundle of the same wires: of ten "
+                "such numbers one is expected outside.",
+                (int)WB_COUNT(columns), columns);
+        for (int k = 0; k < WB_PREDICTIONS_PLACES; k++)
+            put_place(table, &bundle->tests[i], &verdict->places[k], k == 0);
+    }
+    for (int i = 0; i < bundle->n_tests; i++) {
+        const struct wb_predictions_verdict *const verdict = &of->tests[i];
+        char words[300];
+        if (verdict->against) {
+            snprintf(words, sizeof words, "%s (%s)", verdict->words, origin_of(&verdict->dataset));
+            wb_pages_item(document, WB_TONE_PLAIN, "<b>", bundle->tests[i].label, "</b>: ", words);
+        } else {
+            wb_pages_item(document, WB_TONE_WARNING, "<b>", bundle->tests[i].given,
+                          "</b>: ", wb_text_string(&verdict->problem));
+        }
+    }
+}
+
+static void put_bundle(struct wb_document *document, const struct wb_predictions_results *results,
+                       int index, const struct wb_figures *drawn)
+{
+    const struct wb_predictions_bundle *const bundle = &results->campaign->bundles[index];
+    const struct wb_predictions_prediction *const of = &results->bundles[index];
+    char anchor[32];
+    snprintf(anchor, sizeof anchor, "bundle-%d", index + 1);
+    wb_document_heading(document, 1, anchor, bundle->label);
+    if (!of->bands) {
+        wb_pages_item(document, WB_TONE_WARNING, "", "No bands: ", "",
+                      wb_text_string(&of->problem));
+        return;
+    }
+    put_cases(document, of->bands);
+    wb_figures_put(drawn, document, "bundle", index);
+    put_tests(document, bundle, of);
+    put_ranking(document, of->bands);
+    for (int i = 0; i < of->bands->inputs.n_types; i++)
+        wb_pages_item(document, WB_TONE_PLAIN, "", "Law of the wires: ", "",
+                      of->bands->inputs.wires[i].source);
+}
+
+static void put_models(struct wb_document *document, const struct wb_predictions_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"What", .wraps = true},
+        {.heading = "SHA-256", .monospace = true},
+    };
+    struct wb_document_table *const table =
+        wb_document_table(document,
+                          "Of bundles: with their wires and materials; of tests: of "
+                          "<tt>force_deflection.csv</tt>.",
+                          (int)WB_COUNT(columns), columns);
+    for (int b = 0; b < results->campaign->n_bundles; b++) {
+        const struct wb_predictions_bundle *const bundle = &results->campaign->bundles[b];
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->model_name);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->model->sha256);
+        for (int i = 0; i < bundle->n_tests; i++) {
+            if (results->bundles[b].tests[i].state != WB_SIMULATION_USABLE)
+                continue;
+            wb_document_row(table, false);
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->tests[i].given);
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, results->bundles[b].tests[i].sha256);
+        }
+    }
+}
+
+static void build_pages(struct wb_document *document, const void *context,
+                        const struct wb_figures *drawn)
+{
+    const struct wb_predictions_results *const results = context;
+    const struct wb_predictions *const campaign = results->campaign;
+    char subtitle[200], footer[300];
+    snprintf(subtitle, sizeof subtitle, "%d %s with bands", campaign->n_bundles,
+             wb_pages_plural(campaign->n_bundles, "bundle", "bundles"));
+    snprintf(footer, sizeof footer, "%.200s", campaign->head.title);
+    wb_document_init(document, "Prediction", campaign->head.title, subtitle, footer, "");
+    wb_document_notice(document, WB_TONE_ORIGIN,
+                       "<b>Simulations.</b> The bands are computed by the section model from what "
+                       "the bundles' files state. Tests are named where there are any.");
+    for (int i = 0; i < campaign->n_bundles; i++)
+        put_bundle(document, results, i, drawn);
+    wb_pages_put_origin(document, &campaign->head, "files");
+    put_models(document, results);
+}
+
+/* --- numbers --- */
+
+static void put_test_numbers(struct wb_json *list, const struct wb_predictions_test *test,
+                             const struct wb_predictions_verdict *verdict)
+{
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_text(entry, "label", test->label);
+    wb_json_set_text(entry, "dataset", test->given);
+    if (!verdict->against) {
+        wb_json_set_text(entry, "problem", wb_text_string(&verdict->problem));
+        return;
+    }
+    wb_json_set_text(entry, "sha256", verdict->sha256);
+    wb_json_set_text(entry, "origin", origin_of(&verdict->dataset));
+    wb_json_set_text(entry, "case", verdict->against->variant.name);
+    wb_json_set_text(entry, "verdict", verdict->words);
+    struct wb_json *const places = wb_json_set_array(entry, "places");
+    for (int k = 0; k < WB_PREDICTIONS_PLACES; k++) {
+        const struct wb_predictions_place *const place = &verdict->places[k];
+        struct wb_json *const item = wb_json_append_object(places);
+        const bool is_force = isfinite(place->at);
+        wb_json_set_text(item, "of", is_force ? "force_N" : "springback");
+        if (is_force)
+            wb_json_set_number(item, "deflection_mm", place->at / WB_MM);
+        wb_json_set_number(item, "test", place->measured);
+        wb_json_set_number(item, "median", place->band.median);
+        wb_json_set_number(item, "low", place->band.wide_low);
+        wb_json_set_number(item, "high", place->band.wide_high);
+        wb_json_set_text(item, "it_lies", side_of(place));
+    }
+}
+
+static struct wb_json *build_json(const void *context)
+{
+    const struct wb_predictions_results *const results = context;
+    const struct wb_predictions *const campaign = results->campaign;
+    struct wb_json *const root = wb_numbers_create(&campaign->head, &results->outcome);
+    struct wb_json *const list = wb_json_set_array(root, "bundles");
+    for (int b = 0; b < campaign->n_bundles; b++) {
+        const struct wb_predictions_bundle *const bundle = &campaign->bundles[b];
+        const struct wb_predictions_prediction *const of = &results->bundles[b];
+        struct wb_json *const entry = wb_json_append_object(list);
+        wb_json_set_text(entry, "label", bundle->label);
+        wb_json_set_text(entry, "bundle", bundle->model_name);
+        wb_json_set_text(entry, "bundle_sha256", bundle->model->sha256);
+        if (of->bands)
+            wb_bands_output_describe(of->bands, entry);
+        else
+            wb_json_set_text(entry, "problem", wb_text_string(&of->problem));
+        struct wb_json *const tests = wb_json_set_array(entry, "tests");
+        for (int i = 0; i < bundle->n_tests; i++)
+            put_test_numbers(tests, &bundle->tests[i], &of->tests[i]);
+    }
+    return root;
+}
+
+static void print(FILE *out, const void *context)
+{
+    const struct wb_predictions_results *const results = context;
+    const struct wb_predictions *const campaign = results->campaign;
+    fprintf(out, "%s (simulations)\n", campaign->head.title);
+    for (int b = 0; b < campaign->n_bundles; b++) {
+        const struct wb_predictions_bundle *const bundle = &campaign->bundles[b];
+        const struct wb_predictions_prediction *const of = &results->bundles[b];
+        struct wb_text text = {0};
+        if (of->bands)
+            wb_bands_output_summarise(of->bands, &text);
+        fprintf(out, "\n%s\n%s", bundle->label, of->bands ? wb_text_string(&text) : "no bands\n");
+        wb_text_release(&text);
+        for (int i = 0; i < bundle->n_tests; i++)
+            fprintf(out, "test %s: %s\n", bundle->tests[i].label,
+                    of->tests[i].against ? of->tests[i].words
+                                         : wb_text_string(&of->tests[i].problem));
+    }
+}
+
+const struct wb_kind wb_predictions_kind = {
+    .name = "prediction",
+    .data = "datasets",
+    .campaign_size = sizeof(struct wb_predictions),
+    .results_size = sizeof(struct wb_predictions_results),
+    .keys = wb_predictions_keys,
+    .load = wb_predictions_results_load,
+    .compute = wb_predictions_results_compute,
+    .figures = figures,
+    .n_figures = WB_COUNT(figures),
+    .pages = build_pages,
+    .json = build_json,
+    .print = print,
+    .release = wb_predictions_results_release,
+    .release_campaign = wb_predictions_release,
+};

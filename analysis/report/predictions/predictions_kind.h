@@ -1,0 +1,11 @@
+/* The report of predictions of bundles with bands. */
+#ifndef WB_ANALYSIS_REPORT_PREDICTIONS_PREDICTIONS_KIND_H
+#define WB_ANALYSIS_REPORT_PREDICTIONS_PREDICTIONS_KIND_H
+
+#include "analysis/report/kind.h"
+#include "analysis/report/predictions/predictions.h"
+
+/* Campaign and results: struct wb_predictions, struct wb_predictions_results. */
+extern const struct wb_kind wb_predictions_kind;
+
+#endif
