@@ -103,8 +103,4 @@ wb_kind_load wb_predictions_results_load;
 wb_kind_compute wb_predictions_results_compute;
 wb_kind_release wb_predictions_results_release;
 
-/* What a test's places say together, as docs/manual.md has it ('Judging a test of the bundle'). A
- * text that is static. */
-const char *wb_predictions_judge(const struct wb_predictions_place places[WB_PREDICTIONS_PLACES]);
-
 #endif

@@ -1,4 +1,4 @@
-#include "analysis/report/predictions/predictions.h"
+#include "analysis/report/predictions/predictions_private.h"
 
 #include <math.h>
 #include <stdlib.h>

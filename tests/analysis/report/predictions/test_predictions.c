@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "analysis/report/predictions/predictions_kind.h"
+#include "analysis/report/predictions/predictions_private.h"
 #include "base/json.h"
 #include "base/units.h"
 #include "tests/check.h"
@@ -186,9 +187,14 @@ static void the_report_says_what_is_predicted_and_what_was_tested(void **state)
     assert_int_equal(wb_kind_write(&wb_predictions_kind, whole_report(), in_folder("report"), true),
                      WB_OK);
     static const char *const texts[] = {
-        "<b>Simulations.</b>", "Seven &lt;wires&gt;",       "one-layer",
-        "stiff &amp; short",   "measured on a virtual rig", "there is no such dataset",
-        "diameter with pitch", "Law of the wires: tolerances about",
+        "<b>Simulations.</b>",
+        "Seven &lt;wires&gt;",
+        "one-layer",
+        "stiff &amp; short",
+        "measured on a virtual rig",
+        "there is no such dataset",
+        "diameter with pitch",
+        "Law of the wires: tolerances about",
     };
     assert_says_all("report/report.html", texts, sizeof texts / sizeof texts[0]);
     assert_clean_report();
