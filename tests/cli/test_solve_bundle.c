@@ -440,6 +440,9 @@ static void bands_of_what_nobody_stated_are_refused(void **unused)
     tool("solve bundle template --sweep layers=1");
     assert_int_not_equal(o.code, 0);
     assert_non_null(strstr(o.err, "--sweep is for --uncertain"));
+    tool("solve bundle template --model section --runs 30");
+    assert_int_equal(o.code, 2);
+    assert_non_null(strstr(o.err, "--runs and --seed are for --uncertain"));
     tool("solve bundle template --uncertain --runs 30 --sweep colour=1");
     assert_int_equal(o.code, 2);
     assert_non_null(strstr(o.err, "--sweep: 'colour=1'"));
