@@ -175,7 +175,10 @@ first_force() {
 wall_clock_jumps() {
     [ -n "$clock_shim" ] || return
     start_rig clock
-    WB_CLOCK_SHIM=$folder/jumps LD_PRELOAD=$clock_shim "$wirebench" record \
+    # The runtime of a sanitizer wants to be the first of all libraries.
+    local runtime
+    runtime=$(ldd "$wirebench" | awk '/lib[at]san/ {print $3}')
+    WB_CLOCK_SHIM=$folder/jumps LD_PRELOAD="$runtime $clock_shim" "$wirebench" record \
         "$folder/clock/rig.yaml" --specimen "$specimen" -o "$folder/clock.wbr" --travel-mm 10 \
         --cycles 2 >"$folder/clock.out" 2>"$folder/clock.err" </dev/null
     code=$?
