@@ -221,7 +221,13 @@ const char *wb_file_name(const char *path)
 enum wb_status wb_file_find_data(char path[WB_PATH], const char *name)
 {
     const char *const given = getenv("WIREBENCH_DATA");
-    const char *const places[] = {given ? given : "", WB_SOURCE_ROOT, WB_DATA_FOLDER};
+    const char *const places[] = {
+        given ? given : "",
+#ifdef WB_SOURCE_ROOT
+        WB_SOURCE_ROOT,
+#endif
+        WB_DATA_FOLDER,
+    };
     for (size_t i = given ? 0 : 1; i < sizeof places / sizeof places[0]; i++) {
         char candidate[WB_PATH];
         WB_TRY(wb_file_join(candidate, places[i], name));

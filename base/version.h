@@ -5,8 +5,8 @@
 /* The release, "0.1.0". */
 const char *wb_version(void);
 
-/* The source revision it was built from, "4e3cfe61a0b2" or "4e3cfe61a0b2-dirty"; the release when
- * built outside a checkout. */
+/* The source revision it was built from, "4e3cfe61a0b2" or "4e3cfe61a0b2-dirty"; built
+ * outside a checkout, the version in debian/changelog, "0.1.0-1". */
 const char *wb_version_revision(void);
 
 #endif

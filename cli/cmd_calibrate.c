@@ -18,6 +18,7 @@
 #include "cli/calibrate_tensile.h"
 #include "cli/calibrate_three_point.h"
 #include "cli/command.h"
+#include "cli/complete.h"
 #include "cli/datasets.h"
 #include "cli/settings.h"
 
@@ -469,6 +470,8 @@ int wb_cmd_calibrate(int argc, char **argv)
         return wb_calibrate_compliance(argc, argv);
     if (has_argument(argc, argv, "--constituents"))
         return wb_calibrate_constituents(argc, argv);
+    for (int m = 0; m < WB_METHOD_THREE_POINT; m++)
+        wb_complete_value("method", wb_method_name(m));
     wb_calibrate_default_settings(&options.settings);
     wb_cycle_calibrate_default_settings(&options.cycle.settings);
     wb_setting_fill(&wb_three_point_calibrate_tables[0], &options.three_point.data);

@@ -4,9 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/cards/card.h"
 #include "base/file.h"
 #include "base/version.h"
 #include "cli/command.h"
+#include "cli/complete.h"
 #include "cli/export_card.h"
 #include "cli/export_hdf5.h"
 #include "daq/export.h"
@@ -83,6 +85,8 @@ static bool is_to(const char *argument)
 
 int wb_cmd_export(int argc, char **argv)
 {
+    for (int i = 0; i < WB_CARD_KINDS; i++)
+        wb_complete_value("to", wb_card_kinds[i].name);
     for (int i = 1; i < argc; i++) {
         if (is_to(argv[i]))
             return wb_export_card(argc, argv);

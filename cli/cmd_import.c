@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/complete.h"
 #include "cli/import.h"
 
 #define WB_LOG_DOMAIN "import"
@@ -40,6 +41,12 @@ int wb_cmd_import(int argc, char **argv)
         snprintf(both, sizeof both, "import %s", name);
         argv[1] = both;
         return kinds[i].run(argc - 1, argv + 1);
+    }
+    if (wb_complete_is_on()) {
+        if (argc == 1)
+            for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+                wb_complete_print(kinds[i].name, kinds[i].summary);
+        return WB_EXIT_OK;
     }
     if (argc > 1)
         wb_error("import: '%s' is not known; expected one of the kinds below", name);

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/complete.h"
 #include "cli/settings.h"
 
 struct options {
@@ -19,16 +20,22 @@ struct options {
 /* What --help says of the kinds, in the order of their bits. */
 static const struct kind {
     const char *arguments, *summary;
+    const char *folder; /* of fixtures/ where its models ship; NULL: its options say what it is */
 } kinds[WB_SOLVE_KINDS] = {
     {"--wire=NAME --length-mm=L --deflection-mm=D",
-     "Computes a bending test with the 1D beam model of a homogenised wire, described by options."},
-    {"MODEL.yaml", "Computes a model file (fixtures/models, by name or path) as a 3D solid."},
-    {"MODEL.yaml", "Computes a model file (fixtures/models, by name or path) as a rod of fibres."},
+     "Computes a bending test with the 1D beam model of a homogenised wire, described by options.",
+     NULL},
+    {"MODEL.yaml", "Computes a model file (fixtures/models, by name or path) as a 3D solid.",
+     "models"},
+    {"MODEL.yaml", "Computes a model file (fixtures/models, by name or path) as a rod of fibres.",
+     "models"},
     {"BUNDLE.yaml",
      "Computes a bundle file (fixtures/bundles, by name or path), wires with contact and tape, in "
-     "explicit dynamics."},
+     "explicit dynamics.",
+     "bundles"},
     {"WIRE.yaml --span-mm=L --deflection-mm=D",
-     "Computes a wire (fixtures/wires, by name or path) in three-point bending on round rollers."},
+     "Computes a wire (fixtures/wires, by name or path) in three-point bending on round rollers.",
+     "wires"},
 };
 
 static const struct wb_settings_source sources[] = {
@@ -162,6 +169,9 @@ static void parse_options(int argc, char **argv, struct options *options)
         /* Messages and --help are of "wirebench solve bundle". */
         snprintf(name, sizeof name, "solve %s", wb_solve_settings_kinds[kind]);
         argv[0] = name;
+        wb_complete_shipped(kinds[kind].folder);
+    } else {
+        wb_complete_arguments(wb_solve_settings_kinds);
     }
     wb_settings_parse(&command, argc, argv, options);
     options->settings.output = options->common.output;

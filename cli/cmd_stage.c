@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "cli/bench_options.h"
 #include "cli/check_cell.h"
+#include "cli/complete.h"
 #include "cli/live_line.h"
 #include "cli/settings.h"
 #include "daq/acquisition.h"
@@ -22,7 +23,7 @@ static const struct argp_option other_options[] = {
     {0},
 };
 
-static const char *const actions[] = {"home", "jog", "unlock", "release", "check"};
+static const char *const actions[] = {"home", "jog", "unlock", "release", "check", NULL};
 enum {
     ACTION_CHECK = 4,
     N_ACTIONS = 5
@@ -207,6 +208,8 @@ int wb_cmd_stage(int argc, char **argv)
         wb_error("stage: too many words");
         return WB_EXIT_USAGE;
     }
+    if (argc > 1) /* the first is the rig file */
+        wb_complete_arguments(actions);
     argc = shield_number(argc, argv, shielded);
     wb_setting_fill(&wb_bench_options_stage, &options);
     wb_settings_parse_table(&argp, &wb_bench_options_stage, &options, 1, argc, shielded, &options);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/number.h"
+#include "cli/complete.h"
 
 #define WB_LOG_DOMAIN "command"
 
@@ -47,6 +48,10 @@ void wb_command_parse(const struct argp *argp, int argc, char **argv, void *inpu
         .parser = parse_help, /* arguments and text are the child's */
         .children = children,
     };
+    if (wb_complete_is_on()) {
+        wb_complete_finish(&with_help);
+        exit(WB_EXIT_OK);
+    }
     if (argp_parse(&with_help, argc, argv, ARGP_NO_HELP, NULL, input) != 0)
         exit(WB_EXIT_USAGE);
 }

@@ -2,7 +2,8 @@
  *
  * How to add one: write cli/cmd_NAME.c with its argp options and `int wb_cmd_NAME(int, char **)`
  * (usage, option table, parse, call the library, print; no numerics), declare it below, and add it
- * to the table in main.c and to cli/meson.build. docs/ gets its manual page from the same argp.
+ * to the table in main.c and to cli/meson.build, and its section to docs/commands.md, of which its
+ * manual page is made.
  */
 #ifndef WB_CLI_COMMAND_H
 #define WB_CLI_COMMAND_H

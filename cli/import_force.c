@@ -7,6 +7,7 @@
 #include "analysis/dataset/machine_import.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/complete.h"
 #include "cli/import.h"
 
 #define WB_LOG_DOMAIN "import"
@@ -46,6 +47,10 @@ struct name {
     char character;
 };
 
+static const struct name delimiters[] = {{"tab", '\t'}, {"semicolon", ';'}, {"comma", ','},
+                                         {"bar", '|'},  {"blanks", ' '},    {NULL, '\0'}};
+static const struct name decimals[] = {{"point", '.'}, {"comma", ','}, {NULL, '\0'}};
+
 static char find_name(struct argp_state *state, const char *option, const char *text,
                       const struct name *names)
 {
@@ -62,9 +67,6 @@ static char find_name(struct argp_state *state, const char *option, const char *
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    static const struct name delimiters[] = {{"tab", '\t'}, {"semicolon", ';'}, {"comma", ','},
-                                             {"bar", '|'},  {"blanks", ' '},    {NULL, '\0'}};
-    static const struct name decimals[] = {{"point", '.'}, {"comma", ','}, {NULL, '\0'}};
     struct options *const o = state->input;
     switch (key) {
     case KEY_SPECIMEN:
@@ -190,6 +192,10 @@ int wb_import_force(int argc, char **argv)
         .common = {.noun = "file of a testing machine", .destination = "dataset goes: -o DATASET"}};
     struct wb_dataset dataset = {.rows = NULL};
     struct wb_machine_import_report report;
+    for (const struct name *name = delimiters; name->text; name++)
+        wb_complete_value("delimiter", name->text);
+    for (const struct name *name = decimals; name->text; name++)
+        wb_complete_value("decimal", name->text);
     wb_command_parse(&argp, argc, argv, &options);
     int code = wb_command_exit(run(&options, &dataset, &report));
     if (code == WB_EXIT_OK && options.common.json)

@@ -6,6 +6,7 @@
 
 #include "base/version.h"
 #include "cli/command.h"
+#include "cli/complete.h"
 
 #define WB_LOG_DOMAIN "main"
 
@@ -102,6 +103,36 @@ static const char *nearest(const char *name)
     return found;
 }
 
+static const struct command *find(const char *name)
+{
+    for (const struct command *command = commands; command->name; command++)
+        if (strcmp(name, command->name) == 0)
+            return command;
+    return NULL;
+}
+
+/* What may stand in place of the last word. */
+static int complete(int n, char **words)
+{
+    const struct command *const command = n > 1 ? find(words[0]) : NULL;
+    if (n == 0 || (n > 1 && !command))
+        return WB_EXIT_OK;
+    wb_complete_begin(words[n - 1], n > 1 ? words[n - 2] : "");
+    words[n - 1] = NULL;
+    if (command) {
+        /* It ends the process where it would parse; one of several kinds may only have offered
+         * their names, and says on stderr that it misses one. */
+        (void)command->run(n - 1, words);
+        wb_complete_finish(NULL);
+        return WB_EXIT_OK;
+    }
+    for (const struct command *c = commands; c->name; c++)
+        wb_complete_print(c->name, c->summary);
+    wb_complete_print("--help", "this help");
+    wb_complete_print("--version", "version and revision");
+    return WB_EXIT_OK;
+}
+
 int main(int argc, char **argv)
 {
     /* A file that may grow no further is an error code of write(), not the end of the process. */
@@ -115,10 +146,11 @@ int main(int argc, char **argv)
         printf("wirebench %s (%s)\n", wb_version(), wb_version_revision());
         return WB_EXIT_OK;
     }
-    for (const struct command *command = commands; command->name; command++) {
-        if (strcmp(name, command->name) == 0)
-            return run(command, argc - 1, argv + 1);
-    }
+    if (strcmp(name, "--complete") == 0)
+        return complete(argc - 2, argv + 2);
+    const struct command *const command = find(name);
+    if (command)
+        return run(command, argc - 1, argv + 1);
     const char *const meant = nearest(name);
     if (meant) {
         wb_error("no command '%s': did you mean `wirebench %s`?", name, meant);

@@ -6,6 +6,7 @@
 
 #include "base/log.h"
 #include "cli/command.h"
+#include "cli/complete.h"
 
 #define WB_LOG_DOMAIN "command"
 
@@ -171,12 +172,20 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     return status;
 }
 
+static void offer_choices(const struct wb_setting *row)
+{
+    for (const char *const *choice = row->choices; choice && *choice; choice++)
+        wb_complete_value(row->option, *choice);
+}
+
 void wb_settings_parse(const struct wb_settings_command *command, int argc, char **argv,
                        void *input)
 {
     struct line line;
     struct argp argp = *command->argp;
     begin(&line, command, input);
+    for (size_t i = 0; i < line.n; i++)
+        offer_choices(line.entries[i].row);
     argp.options = line.options;
     argp.parser = parse;
     wb_command_parse(&argp, argc, argv, &line);

@@ -5,7 +5,7 @@ set -eu
 tool=$(realpath "$1")
 manual=$2/docs/commands.md
 bad=0
-commands=$("$tool" --help | awk '/^  [a-z]/ && NF > 2 && !/--/ { print $1 }')
+commands=$("$tool" --help | awk '/^  [a-z]/ { print $1 }')
 [ "$(echo "$commands" | wc -w)" -ge 12 ] || { echo "too few commands in --help"; exit 1; }
 check() { # COMMAND [KIND]
     grep -qE "wirebench $*" "$manual" || { echo "'$*' is not documented"; bad=1; }

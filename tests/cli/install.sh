@@ -16,6 +16,12 @@ for file in fixtures/wires/type1.yaml fixtures/specimens/type1-L85-1.yaml fixtur
     fixtures/machines/two-rollers.yaml fixtures/virtual/wires.yaml recordings/index.yaml; do
     [ -s "share/wirebench/$file" ] || { echo "$file is not installed"; exit 1; }
 done
+pages='man/man1/wirebench.1 man/man1/wirebench-solve.1'
+[ -e "$build/docs/wirebench.1" ] || pages= # lowdown was not there
+for file in bash-completion/completions/wirebench $pages; do
+    [ -s "share/$file" ] || { echo "$file is not installed"; exit 1; }
+done
+[ -s lib/udev/rules.d/60-wirebench.rules ]
 [ -z "$(find share/wirebench -name '*.[ch]')" ] || { echo "sources are installed"; exit 1; }
 WIREBENCH_DATA=$place$prefix/share/wirebench bin/wirebench solve cantilever --wire type3 \
     --length-mm 85 --deflection-mm 53 --points 2 | grep -q '^cycle,phase,deflection_mm,'
