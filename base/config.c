@@ -1,5 +1,6 @@
 #include "base/config.h"
 
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,6 +58,40 @@ static enum wb_status load(struct wb_config *config, const char *text)
     return status;
 }
 
+/* Finds the entry of `name`; refuses a second one. */
+static enum wb_status find_entry(const struct wb_config_node *map, const char *name,
+                                 const struct wb_config_node **found)
+{
+    *found = NULL;
+    for (int i = 0; i < wb_config_entries(map); i++) {
+        const char *other;
+        const struct wb_config_node *const value = wb_config_entry(map, i, &other);
+        if (strcmp(name, other) != 0)
+            continue;
+        if (*found)
+            return wb_config_refuse(value, name, "given twice, first in line %d",
+                                    wb_config_line(*found));
+        *found = value;
+    }
+    return WB_OK;
+}
+
+static enum wb_status check_schema(const struct wb_config *config)
+{
+    int schema = WB_CONFIG_SCHEMA;
+    const struct wb_config_node *value;
+    const struct wb_config_key key = WB_CONFIG_INTEGER("schema", &schema, 1, INT_MAX);
+    WB_TRY(find_entry(wb_config_root(config), "schema", &value));
+    if (value)
+        WB_TRY(wb_config_value(value, &key));
+    if (schema > WB_CONFIG_SCHEMA)
+        return wb_config_refuse(value, "schema",
+                                "the file has layout %d, this program reads up to %d: use a newer "
+                                "wirebench",
+                                schema, WB_CONFIG_SCHEMA);
+    return WB_OK;
+}
+
 enum wb_status wb_config_parse(struct wb_config **out, const char *text, const char *origin,
                                struct wb_reason *why)
 {
@@ -76,6 +111,8 @@ enum wb_status wb_config_parse(struct wb_config **out, const char *text, const c
         for (size_t i = 0; config->nodes && i < n; i++)
             config->nodes[i] = (struct wb_config_node){config, config->document.nodes.start + i};
     }
+    if (status == WB_OK)
+        status = check_schema(config);
     if (status != WB_OK) {
         wb_config_destroy(config);
         return status;
@@ -311,22 +348,10 @@ static enum wb_status refuse_unknown(const struct wb_config_node *value, const c
     return wb_config_refuse(value, name, "unknown key; known here: %s", known);
 }
 
-/* Finds the entry of `name`; refuses a second one. */
-static enum wb_status find_entry(const struct wb_config_node *map, const char *name,
-                                 const struct wb_config_node **found)
+/* wb_config_parse() has read it. */
+static bool is_schema(const struct wb_config_node *map, const char *name)
 {
-    *found = NULL;
-    for (int i = 0; i < wb_config_entries(map); i++) {
-        const char *other;
-        const struct wb_config_node *const value = wb_config_entry(map, i, &other);
-        if (strcmp(name, other) != 0)
-            continue;
-        if (*found)
-            return wb_config_refuse(value, name, "given twice, first in line %d",
-                                    wb_config_line(*found));
-        *found = value;
-    }
-    return WB_OK;
+    return map == wb_config_root(map->config) && strcmp(name, "schema") == 0;
 }
 
 enum wb_status wb_config_map(const struct wb_config_node *map, const struct wb_config_key *keys,
@@ -340,6 +365,8 @@ enum wb_status wb_config_map(const struct wb_config_node *map, const struct wb_c
         size_t k = 0;
         while (k < n_keys && strcmp(keys[k].name, name) != 0)
             k++;
+        if (k == n_keys && is_schema(map, name))
+            continue;
         if (k == n_keys)
             return refuse_unknown(value, name, keys, n_keys);
     }

@@ -12,6 +12,9 @@
  *
  * wb_config_map() refuses unknown keys, double keys, missing required keys, wrong types and values
  * out of range. Numbers are strict decimals: `85 mm`, `nan` and `0x10` are refused.
+ *
+ * Every file may say at its top which layout it has, `schema: 1`; without the key it has the first.
+ * A file of a later layout than WB_CONFIG_SCHEMA is refused when it is parsed.
  */
 #ifndef WB_BASE_CONFIG_H
 #define WB_BASE_CONFIG_H
@@ -22,6 +25,10 @@
 #include "base/reason.h"
 
 #define WB_COUNT(array) (sizeof(array) / sizeof((array)[0]))
+
+enum {
+    WB_CONFIG_SCHEMA = 1 /* of all YAML files together, see docs/versions.md */
+};
 
 struct wb_config;      /* one document, owned by the caller */
 struct wb_config_node; /* a map, sequence or scalar in it; owned by the document */

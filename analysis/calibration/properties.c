@@ -288,7 +288,7 @@ static void put_material(struct wb_text *text, const char *indent,
 
 static void put_wire(struct wb_text *text, const struct wb_test_info *info)
 {
-    wb_text_append(text, "wire: ");
+    wb_text_append(text, "schema: %d\nwire: ", WB_CONFIG_SCHEMA);
     put_quoted(text, info->wire);
     wb_text_append(text, "\n");
     put_number(text, "", "outer_diameter_mm", info->outer_diameter / WB_MM);

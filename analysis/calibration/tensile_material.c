@@ -101,6 +101,7 @@ static void append(struct wb_text *text, const struct wb_tensile_result *result,
              result->own_elongation ? "extensometer" : "crosshead",
              given ? "known from elsewhere" : "of the tests", result->n_low, result->n_high,
              result->identifiable ? "" : ": sigma_Y, K and n hold together only");
+    wb_text_append(text, "schema: %d\n", WB_CONFIG_SCHEMA);
     put_text(text, "name", name ? name : own);
     put_text(text, "source", source);
     wb_text_append(text, "origin: tensile tests\n");

@@ -122,6 +122,7 @@ static struct wb_json *make_json(const struct wb_card_source *source,
     const char *const warning = wb_card_source_warning(source);
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "card", warning ? warning : "wirebench table");
+    wb_json_set_integer(root, "schema", 1);
     struct wb_json *const tool = wb_json_set_object(root, "tool");
     wb_json_set_text(tool, "name", "wirebench");
     wb_json_set_text(tool, "version", wb_version());

@@ -11,6 +11,7 @@ void wb_numbers_put_title(struct wb_json *root, const char *title, const char *d
 
 void wb_numbers_put_program(struct wb_json *root)
 {
+    wb_json_set_integer(root, "schema", 1);
     struct wb_json *const tool = wb_json_set_object(root, "tool");
     wb_json_set_text(tool, "name", "wirebench report");
     wb_json_set_text(tool, "version", wb_version());

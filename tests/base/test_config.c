@@ -53,6 +53,36 @@ static enum wb_status read_sample(const char *text, struct sample *sample)
     return status;
 }
 
+static void layouts_that_are_known_are_read(void **state)
+{
+    (void)state;
+    struct sample sample;
+    assert_int_equal(read_sample("schema: 1\nlength_mm: 85\n", &sample), WB_OK);
+    assert_close(sample.length, 0.085, 1e-15);
+    assert_int_equal(read_sample("length_mm: 85\nschema: 2\n", &sample), WB_ERR_FORMAT);
+    assert_string_equal(kept.last, "test.yaml:2: schema: the file has layout 2, this program reads "
+                                   "up to 1: use a newer wirebench");
+    assert_int_equal(read_sample("length_mm: 85\nschema: one\n", &sample), WB_ERR_FORMAT);
+    assert_int_equal(read_sample("length_mm: 85\nschema: 0\n", &sample), WB_ERR_FORMAT);
+    /* Only at the top, and once. */
+    assert_int_equal(read_sample("schema: 1\nlength_mm: 85\nschema: 1\n", &sample), WB_ERR_FORMAT);
+    assert_non_null(strstr(kept.last, "given twice"));
+}
+
+static void a_layout_stands_at_the_top(void **state)
+{
+    (void)state;
+    struct wb_config *config;
+    double value;
+    const struct wb_config_node *inner = NULL;
+    const struct wb_config_key outer[] = {WB_CONFIG_NODE("inner", &inner)};
+    const struct wb_config_key keys[] = {WB_CONFIG_NUMBER("x", &value, 1.0, 0.0, 9.0)};
+    assert_int_equal(wb_config_parse(&config, "inner: {x: 1, schema: 1}\n", "t", NULL), WB_OK);
+    assert_int_equal(wb_config_map(wb_config_root(config), outer, 1), WB_OK);
+    assert_int_equal(wb_config_map(inner, keys, 1), WB_ERR_FORMAT);
+    wb_config_destroy(config);
+}
+
 static void values_become_si(void **state)
 {
     (void)state;
@@ -219,6 +249,8 @@ static void a_reason_takes_what_would_be_logged(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        fact(layouts_that_are_known_are_read),
+        fact(a_layout_stands_at_the_top),
         fact(values_become_si),
         fact(absent_optional_keys_leave_their_target),
         fact(errors_name_file_line_and_key),

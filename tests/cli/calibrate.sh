@@ -94,7 +94,7 @@ expect 1 "wire 'type1'" "$wirebench" validate type3.yaml type1
 sed 's/^youngs_modulus_MPa: .*/youngs_modulus_MPa: 4528 MPa/' type3.yaml >unit.yaml
 expect 1 'youngs_modulus_MPa' "$wirebench" validate unit.yaml L100
 sed 's/^wire: /colour: red\nwire: /' type3.yaml >unknown.yaml
-expect 1 'unknown.yaml:1: colour' "$wirebench" validate unknown.yaml L100
+expect 1 'unknown.yaml:2: colour' "$wirebench" validate unknown.yaml L100
 expect 1 'missing.yaml' "$wirebench" validate missing.yaml L100
 
 # What is given where a dataset or the properties are expected, and a command misspelt.
