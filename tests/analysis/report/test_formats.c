@@ -178,6 +178,11 @@ FACT(campaign_of_bundles, "campaign-bundles.yaml")
     read_campaign(path, "bundles", "Taped bundles in 3D and in 1D");
 }
 
+FACT(campaign_of_a_prediction, "campaign-prediction.yaml")
+{
+    read_campaign(path, "prediction", "Seven taped wires before they are bent");
+}
+
 FACT(campaign_of_a_machine, "campaign-machine.yaml")
 {
     read_campaign(path, "machine", "A cable and its layers in three-point bending");
@@ -269,6 +274,7 @@ static const char *const files[] = {
     "campaign-recordings.yaml",
     "campaign-comparison.yaml",
     "campaign-bundles.yaml",
+    "campaign-prediction.yaml",
     "campaign-machine.yaml",
     "recording.wbr.zst",
     "cantilever",
@@ -316,6 +322,7 @@ int main(void)
         cmocka_unit_test(campaign_of_recordings_is_read),
         cmocka_unit_test(campaign_of_comparison_is_read),
         cmocka_unit_test(campaign_of_bundles_is_read),
+        cmocka_unit_test(campaign_of_a_prediction_is_read),
         cmocka_unit_test(campaign_of_a_machine_is_read),
         cmocka_unit_test(recording_is_read),
         cmocka_unit_test(dataset_of_a_cantilever_is_read),
