@@ -16,8 +16,17 @@ awk -v command="$command" -v page="$page" '
         }
         next
     }
-    # Options and words with their text: "* `--json`: text" becomes a definition.
+    # Options and words with their text, "* `--json`: text", and rows of tables of two columns become
+    # definitions.
     function put(line) {
+        if (line ~ /^\| /) {
+            if (rows++ > 1) { # behind the head and its rule
+                split(line, cell, / *\| */)
+                print "\n" cell[2] "\n\n:   " cell[3]
+            }
+            return
+        }
+        rows = 0
         if (line ~ /^\* `/ && match(line, /`: /)) {
             # The colon behind the last of several: "`-o`, `--output=DIR`: folder to write"
             print ""
