@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/report/bench/index.h"
 #include "base/config.h"
 #include "base/units.h"
+#include "daq/index.h"
 
 #define WB_LOG_DOMAIN "campaign"
 

@@ -4,8 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "analysis/report/bench/index.h"
 #include "analysis/report/bench/recordings_kind.h"
+#include "daq/index.h"
 #include "tests/analysis/report/report_folder.h"
 
 #define SHA_A "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"

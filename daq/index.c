@@ -1,4 +1,4 @@
-#include "analysis/report/bench/index.h"
+#include "daq/index.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -17,8 +17,8 @@
  *       corrected_specimen: long.yaml   # beside the index; in place of the recorded one
  *       corrected_rig: kilograms.yaml   # likewise
  */
-#ifndef WB_ANALYSIS_REPORT_BENCH_INDEX_H
-#define WB_ANALYSIS_REPORT_BENCH_INDEX_H
+#ifndef WB_DAQ_INDEX_H
+#define WB_DAQ_INDEX_H
 
 #include <stdbool.h>
 
