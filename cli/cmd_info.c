@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/info.h"
 #include "daq/check_log.h"
+#include "daq/index.h"
 #include "daq/recover.h"
 #include "daq/replay.h"
 #include "daq/specimen.h"
@@ -74,7 +75,8 @@ struct facts {
     bool has_rig, has_specimen;
     struct wb_rig rig;
     struct wb_specimen specimen;
-    struct wb_json *events; /* array being filled */
+    struct wb_index_entry entry; /* of the index beside the recording; zeroed without one */
+    struct wb_json *events;      /* array being filled */
 };
 
 /* The meta value of a key, "" where the recording has none; the caller frees it. */
@@ -92,6 +94,9 @@ static enum wb_status gather(struct facts *facts, const char *path)
     WB_TRY(wb_survey_run(facts->recording, true, &facts->survey));
     if (wb_recording_sha256(path, facts->sha256, NULL) != WB_OK)
         strcpy(facts->sha256, "");
+    struct wb_reason why = {.text = ""};
+    if (!wb_index_look_up(&facts->entry, path, facts->sha256, &why) && why.text[0])
+        wb_warn("whether the test was excluded is not known: %s", why.text);
     if (facts->survey.has_rig)
         facts->has_rig = wb_replay_rig(facts->recording, &facts->rig) == WB_OK;
     if (facts->survey.has_specimen) {
@@ -114,6 +119,17 @@ static void print_meta(struct facts *facts, const char *label, const char *key)
 }
 
 #define SETTINGS_COLUMNS 86 /* of text behind its label, in a terminal of 100 */
+
+/* What the index beside the recording says of it. */
+static void print_entry(const struct wb_index_entry *entry)
+{
+    char text[WB_INDEX_EXCLUSION_TEXT];
+    if (entry->series[0])
+        printf("  %-10s %s, test %d\n", "series", entry->series, entry->number);
+    wb_index_exclusion_describe(&entry->excluded, text);
+    if (entry->excluded.is_excluded)
+        printf("  %-10s %s\n", "EXCLUDED", text);
+}
 
 /* What the stage's firmware was set to, as it printed it: settings side by side. */
 static void print_settings(struct facts *facts)
@@ -182,6 +198,7 @@ static enum wb_status print_text(struct facts *facts, const char *path)
     print_meta(facts, "recovered", WB_RECOVER_META_FROM);
     print_meta(facts, "operator", "operator");
     print_meta(facts, "notes", "notes");
+    print_entry(&facts->entry);
     if (facts->has_specimen)
         printf("  %-10s wire %s, %g mm, sample %d, %d markers\n", "specimen", facts->specimen.wire,
                facts->specimen.length / WB_MM, facts->specimen.sample, facts->specimen.n_markers);
@@ -297,6 +314,9 @@ static int print_json(struct facts *facts, const char *path)
         wb_json_set_integer(specimen, "sample", facts->specimen.sample);
         wb_json_set_integer(specimen, "markers", facts->specimen.n_markers);
     }
+    wb_json_set_text(root, "series", facts->entry.series[0] ? facts->entry.series : NULL);
+    if (facts->entry.excluded.is_excluded)
+        wb_index_exclusion_set_json(&facts->entry.excluded, root);
     add_check(facts, root);
     wb_json_set_number(root, "duration_s", wb_survey_duration(survey));
     add_streams(facts, root);

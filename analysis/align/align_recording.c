@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "base/units.h"
 #include "daq/foreign.h"
+#include "daq/index.h"
 #include "daq/loss.h"
 #include "daq/recording_foreign.h"
 #include "daq/recover.h"
@@ -385,7 +386,24 @@ static enum wb_status note_recovery(struct wb_align *align, struct wb_recording 
     return WB_OK;
 }
 
-static enum wb_status load_all(struct wb_align *align, struct wb_recording *recording)
+/* What was decided of the test after it was recorded stands in the index beside it. */
+static void note_exclusion(struct wb_align *align, const char *path, struct wb_json *recording)
+{
+    struct wb_index_entry entry;
+    struct wb_reason why = {.text = ""};
+    char text[WB_INDEX_EXCLUSION_TEXT];
+    const bool is_listed = wb_index_look_up(&entry, path, align->sha256, &why);
+    if (why.text[0])
+        wb_align_warn(align, "whether the test was excluded is not known: %s", why.text);
+    if (!is_listed || !entry.excluded.is_excluded)
+        return;
+    wb_index_exclusion_set_json(&entry.excluded, recording);
+    wb_index_exclusion_describe(&entry.excluded, text);
+    wb_align_warn(align, "the test was excluded %s", text);
+}
+
+static enum wb_status load_all(struct wb_align *align, struct wb_recording *recording,
+                               const char *path)
 {
     WB_TRY(load_rig_and_specimen(align, recording));
     WB_TRY(load_wire(align, recording));
@@ -402,6 +420,7 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
     copy_meta(recording, entry, "notes", "notes");
     copy_meta(recording, entry, "tool_version", "recorded_with_version");
     copy_meta(recording, entry, "tool_revision", "recorded_with_revision");
+    note_exclusion(align, path, entry);
     WB_TRY(wb_align_given_describe(align, recording, entry));
     WB_TRY(look_at_files(align, recording));
     copy_import(align, recording);
@@ -430,7 +449,7 @@ enum wb_status wb_align_load(struct wb_align *align, const char *path)
     WB_TRY(wb_recording_sha256(path, align->sha256, align->why));
     WB_TRY(wb_recording_open_with_reason(&recording, path, align->lost));
     wb_recording_warn_cut_short(recording);
-    const enum wb_status status = load_all(align, recording);
+    const enum wb_status status = load_all(align, recording, path);
     const enum wb_status closed = wb_recording_close(recording);
     return status != WB_OK ? status : closed;
 }

@@ -91,12 +91,23 @@ static enum wb_status take_entry(struct wb_recordings_test *test, const struct w
 {
     test->sample = entry->sample;
     test->seed = entry->seed;
+    test->excluded = entry->excluded;
     memcpy(test->sha256, entry->sha256, sizeof test->sha256);
     if (entry->corrected_specimen[0])
         WB_TRY(wb_file_join(test->corrected_specimen, index->folder, entry->corrected_specimen));
     if (entry->corrected_rig[0])
         WB_TRY(wb_file_join(test->corrected_rig, index->folder, entry->corrected_rig));
     return WB_OK;
+}
+
+/* A recording that the campaign's index does not know may be excluded in its own folder's. What is
+ * wrong with that one, the alignment tells. */
+static void take_folders_index(struct wb_recordings_test *test)
+{
+    struct wb_index_entry entry;
+    struct wb_reason ignored = {.text = ""};
+    if (!test->sha256[0] && wb_index_look_up(&entry, test->path, NULL, &ignored))
+        test->excluded = entry.excluded;
 }
 
 /* A recording at a path, with what the index knows of it (entry may be NULL). */
@@ -107,9 +118,10 @@ static enum wb_status add_file(struct wb_recordings_tests *tests, const char *pa
     snprintf(test.name, sizeof test.name, "%s", wb_file_name(path));
     if (entry)
         WB_TRY(take_entry(&test, index, entry));
-    if (wb_file_exists(path))
+    if (wb_file_exists(path)) {
         snprintf(test.path, sizeof test.path, "%s", path);
-    else
+        take_folders_index(&test);
+    } else
         snprintf(test.missing, sizeof test.missing, "%s",
                  entry                       ? "the index lists it, but the file is not there"
                  : strpbrk(test.name, "*?[") ? "no file matches this pattern"
@@ -269,7 +281,7 @@ static enum wb_status read_index(struct reading *reading, const char *given)
                  "there is no index of recordings '%.200s'", given[0] ? given : default_index);
         return WB_OK;
     }
-    WB_TRY(wb_index_read(&reading->index, path));
+    WB_TRY(wb_index_read(&reading->index, path, NULL));
     reading->has_index = true;
     return WB_OK;
 }
@@ -328,9 +340,11 @@ int wb_recordings_count(const struct wb_recordings *campaign, int *n_missing)
     for (int i = 0; i < campaign->n_wires; i++) {
         const struct wb_recordings_tests *const tests = campaign->wires[i].tests;
         for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
-            n += tests[k].n;
-            for (int j = 0; j < tests[k].n; j++)
-                *n_missing += tests[k].items[j].missing[0] != '\0';
+            for (int j = 0; j < tests[k].n; j++) {
+                n += !tests[k].items[j].excluded.is_excluded;
+                *n_missing +=
+                    tests[k].items[j].missing[0] && !tests[k].items[j].excluded.is_excluded;
+            }
         }
     }
     return n;

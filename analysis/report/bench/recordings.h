@@ -39,7 +39,8 @@
  *                                                 # index' recordings of this wire and length
  *
  * Reading a campaign finds its recordings. One that is not there is no error: it is listed with
- * the reason, and the report says so.
+ * the reason, and the report says so. One that the campaign's index or the one in its own folder
+ * excludes is not used; the report says who excluded it, and why.
  */
 #ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_H
 #define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_H
@@ -52,16 +53,18 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
+#include "daq/index.h"
 #include "fe/model/wire.h"
 
 /* One recording that the campaign wants. */
 struct wb_recordings_test {
-    char name[256];              /* file name without folder, or what is missing: "sample 2" */
-    char path[WB_PATH];          /* "" when missing */
-    char missing[320];           /* why it is not there; "" when it is */
-    int sample;                  /* as the index or the count says; 0 unknown */
-    int seed;                    /* as the index says; -1 unknown */
-    char sha256[WB_SHA256_TEXT]; /* as the index says; "" when it is not in the index */
+    char name[256];     /* file name without folder, or what is missing: "sample 2" */
+    char path[WB_PATH]; /* "" when missing */
+    char missing[320];  /* why it is not there; "" when it is */
+    struct wb_index_exclusion excluded; /* as an index says; it is shown, and not used */
+    int sample;                         /* as the index or the count says; 0 unknown */
+    int seed;                           /* as the index says; -1 unknown */
+    char sha256[WB_SHA256_TEXT];        /* as the index says; "" when it is not in the index */
     /* Paths of files that hold in place of what was recorded; "": the recording's own. */
     char corrected_specimen[WB_PATH], corrected_rig[WB_PATH];
 };
@@ -105,7 +108,7 @@ struct wb_recordings {
 WB_MUST_CHECK enum wb_status wb_recordings_keys(void *context, const struct wb_config_node *root);
 void wb_recordings_release(void *context);
 
-/* How many recordings it wants, and how many of them are missing. */
+/* How many recordings it wants, those not counted that are excluded, and how many are missing. */
 int wb_recordings_count(const struct wb_recordings *campaign, int *n_missing);
 
 #endif

@@ -48,6 +48,10 @@ static void put_test(struct wb_json *list, const struct wb_recordings_results_wi
     const char *const sha256 = test->sha256[0] ? test->sha256 : test->wanted->sha256;
     if (sha256[0])
         wb_json_set_text(entry, "sha256", sha256);
+    if (test->wanted->excluded.is_excluded) {
+        wb_index_exclusion_set_json(&test->wanted->excluded, entry);
+        return;
+    }
     if (!test->usable) {
         wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
         return;

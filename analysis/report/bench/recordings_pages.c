@@ -23,10 +23,35 @@ static void put_missing_tests(struct wb_document *document,
     const struct wb_recordings_results_test *test;
     const struct wb_recordings_results_wire *wire;
     for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, NULL)); i++) {
-        if (wire == of && !test->usable)
+        if (wire == of && !test->usable && !test->wanted->excluded.is_excluded)
             wb_pages_item(document, WB_TONE_WARNING, "<b>", test->wanted->name,
                           "</b>: ", wb_text_string(&test->problem));
     }
+}
+
+/* Who excluded which recordings, and why; nothing where none is. `of` NULL: of all wires. */
+static void put_exclusions(struct wb_document *document,
+                           const struct wb_recordings_results *results,
+                           const struct wb_recordings_results_wire *of)
+{
+    const struct wb_recordings_results_test *test;
+    const struct wb_recordings_results_wire *wire;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, NULL)); i++) {
+        char text[WB_INDEX_EXCLUSION_TEXT];
+        if (!test->wanted->excluded.is_excluded || (of && wire != of))
+            continue;
+        wb_index_exclusion_describe(&test->wanted->excluded, text);
+        wb_pages_item(document, WB_TONE_PLAIN, "<b>", test->wanted->name, "</b>: excluded ", text);
+    }
+}
+
+static int count_exclusions(const struct wb_recordings_results *results)
+{
+    const struct wb_recordings_results_test *test;
+    int n = 0;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, NULL, NULL)); i++)
+        n += test->wanted->excluded.is_excluded;
+    return n;
 }
 
 /* --- summary: origin, limits, what is missing, properties, figures of merit, warnings --- */
@@ -398,6 +423,20 @@ static void put_warnings(struct wb_document *document, const struct wb_recording
     }
 }
 
+static void put_excluded(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    char text[160];
+    const int n = count_exclusions(results);
+    if (n == 0)
+        return;
+    snprintf(
+        text, sizeof text, "%d further %s left out by people and %s in no number of this report.",
+        n, wb_pages_plural(n, "recording was", "recordings were"), wb_pages_plural(n, "is", "are"));
+    wb_document_heading(document, 2, "excluded", "Excluded");
+    wb_document_paragraph(document, text);
+    put_exclusions(document, results, NULL);
+}
+
 static void put_summary(struct wb_document *document, const struct wb_recordings_results *results,
                         const struct wb_figures *figures)
 {
@@ -408,6 +447,7 @@ static void put_summary(struct wb_document *document, const struct wb_recordings
     wb_recordings_cycle_pages_summary(document, results, figures);
     put_properties(document, results);
     put_merits(document, results);
+    put_excluded(document, results);
     put_warnings(document, results);
 }
 
@@ -883,6 +923,7 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
     if (has_warnings(results, wire)) {
         wb_document_heading(document, 2, "", "Warnings");
         put_missing_tests(document, results, wire);
+        put_exclusions(document, results, wire);
         put_alignment_warnings(document, results, wire);
     }
 }
@@ -895,7 +936,8 @@ static void put_test(struct wb_document_table *table, const struct wb_recordings
     wb_document_row(table, begins_group);
     wb_pages_cell_plain(table, WB_TONE_PLAIN, test->wanted->name);
     if (!test->usable) {
-        wb_pages_cell(table, WB_TONE_WARNING, "not used");
+        wb_pages_cell(table, WB_TONE_WARNING, "%s",
+                      test->wanted->excluded.is_excluded ? "excluded" : "not used");
     } else {
         char start[40];
         snprintf(start, sizeof start, "%.19s", test->start_utc);

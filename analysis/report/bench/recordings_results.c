@@ -340,9 +340,11 @@ static void add_alignments(struct schedule *schedule, enum wb_recordings_purpose
     for (int i = 0; i < schedule->results->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &schedule->results->wires[i];
         const struct wb_recordings_results_tests *const tests = &wire->steps[purpose].tests;
-        for (int k = 0; k < tests->n; k++)
-            schedule->jobs[schedule->n++] =
-                (struct job){.purpose = purpose, .wire = wire, .test = &tests->items[k]};
+        for (int k = 0; k < tests->n; k++) {
+            if (!tests->items[k].wanted->excluded.is_excluded)
+                schedule->jobs[schedule->n++] =
+                    (struct job){.purpose = purpose, .wire = wire, .test = &tests->items[k]};
+        }
     }
 }
 

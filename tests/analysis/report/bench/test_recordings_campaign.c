@@ -193,6 +193,40 @@ static void errors_name_file_line_and_key(void **state)
                      WB_ERR_NOT_FOUND);
 }
 
+static void an_excluded_recording_is_neither_wanted_nor_missing(void **state)
+{
+    (void)state;
+    int n_missing;
+    struct wb_recordings campaign;
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s", index_text,
+             "    excluded: {by: A. Tester, reason: it slipped}\n");
+    write_text("index.yaml", text);
+    write_text("one.wbr.zst", "x");
+    assert_int_equal(read_campaign(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
+    const struct wb_recordings_tests *const validation =
+        &campaign.wires[0].tests[WB_RECORDINGS_VALIDATION];
+    assert_string_equal(validation->items[0].name, "three.wbr.zst");
+    assert_string_equal(validation->items[0].excluded.by, "A. Tester");
+    /* "two" is missing, and sample 2 of the validation; "three" is not there either. */
+    assert_int_equal(wb_recordings_count(&campaign, &n_missing), 3);
+    assert_int_equal(n_missing, 2);
+    wb_recordings_release(&campaign);
+    /* Named by its path, it is known to the index of its own folder. */
+    write_text("own-index.yaml", "[]\n");
+    write_text("index.yaml",
+               "- {file: one.wbr, wire: type1, length_mm: 85, sample: 1, sha256: " SHA_A
+               ", excluded: {by: B. Tester, reason: it broke}}\n");
+    const char *const path =
+        write_text("campaign.yaml", "title: t\nindex: own-index.yaml\ncalibration_length_mm: 85\n"
+                                    "wires:\n  - wire: type1\n    calibration: [one.wbr.zst]\n");
+    assert_int_equal(wb_kind_read(&wb_recordings_kind, &campaign, path), WB_OK);
+    assert_string_equal(campaign.wires[0].tests[0].items[0].excluded.by, "B. Tester");
+    assert_int_equal(wb_recordings_count(&campaign, &n_missing), 0);
+    assert_int_equal(n_missing, 0);
+    wb_recordings_release(&campaign);
+}
+
 static void a_damaged_index_is_an_error(void **state)
 {
     (void)state;
@@ -211,7 +245,7 @@ static void a_damaged_index_is_an_error(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_index index;
         keep_messages();
-        assert_int_equal(wb_index_read(&index, write_text("bad.yaml", cases[i].text)),
+        assert_int_equal(wb_index_read(&index, write_text("bad.yaml", cases[i].text), NULL),
                          WB_ERR_FORMAT);
         assert_message(cases[i].said);
         assert_null(index.entries);
@@ -246,6 +280,7 @@ int main(void)
         cmocka_unit_test(recordings_may_be_named_by_path_and_glob),
         cmocka_unit_test(without_an_index_all_recordings_are_missing),
         cmocka_unit_test(errors_name_file_line_and_key),
+        cmocka_unit_test(an_excluded_recording_is_neither_wanted_nor_missing),
         cmocka_unit_test(a_damaged_index_is_an_error),
         cmocka_unit_test(
             the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders),
