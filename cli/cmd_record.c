@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/record_series.h"
 #include "cli/record_test.h"
 #include "cli/settings.h"
 #include "daq/bend_test.h"
@@ -16,10 +17,12 @@ struct options {
     struct wb_bend_test_request request;
     struct wb_record_views_options views;
     const char *figure; /* the curve's file; NULL: not wanted */
+    const char *series; /* the file of a series; NULL: a single test */
 };
 
 enum {
     OPTION_SPECIMEN = WB_KEY_OWN,
+    OPTION_SERIES,
     OPTION_OPERATOR,
     OPTION_NOTES,
     OPTION_LIVE,
@@ -29,7 +32,10 @@ enum {
 
 static const struct argp_option argp_options[] = {
     {"specimen", OPTION_SPECIMEN, "SPECIMEN.yaml", 0, "The piece of wire on the bench", 0},
-    {"output", 'o', "REC.wbr", 0, "The recording to write; it must not exist", 0},
+    {"series", OPTION_SERIES, "SERIES.yaml", 0,
+     "Test several specimens, one after the other, as this file says", 0},
+    {"output", 'o', "REC.wbr", 0,
+     "The recording to write; it must not exist. Of a series: the folder of its recordings", 0},
     {"operator", OPTION_OPERATOR, "NAME", 0, "Who runs the test, for the recording", 0},
     {"notes", OPTION_NOTES, "TEXT", 0, "Anything worth knowing later, for the recording", 0},
     {"live", OPTION_LIVE, NULL, 0,
@@ -42,6 +48,20 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
+/* What the series' file says is not said a second time. */
+static error_t check_series(struct argp_state *state, const struct options *options)
+{
+    if (options->request.specimen_path)
+        argp_error(state, "--series names the specimen in its file: leave out --specimen");
+    for (size_t i = 0; i < wb_bend_test_table.n; i++) {
+        const struct wb_setting *const row = &wb_bend_test_table.rows[i];
+        if (wb_setting_differs(row, &options->request))
+            argp_error(state, "with --series, write %s into its file instead of --%s", row->name,
+                       row->option);
+    }
+    return 0;
+}
+
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const options = state->input;
@@ -49,6 +69,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case OPTION_SPECIMEN:
         request->specimen_path = argument;
+        return 0;
+    case OPTION_SERIES:
+        options->series = argument;
         return 0;
     case OPTION_OPERATOR:
         request->operator_name = argument;
@@ -70,6 +93,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
                        argument);
         return 0;
     case ARGP_KEY_END:
+        if (options->series)
+            return check_series(state, options);
         if (!request->specimen_path)
             argp_error(state, "no --specimen given");
         if (options->common.output && !wb_command_ends_in(options->common.output, ".wbr"))
@@ -87,7 +112,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 static const struct argp argp = {
     .options = argp_options,
     .parser = parse,
-    .args_doc = "RIG.yaml --specimen SPECIMEN.yaml -o REC.wbr",
+    .args_doc =
+        "RIG.yaml --specimen SPECIMEN.yaml -o REC.wbr\n[RIG.yaml] --series SERIES.yaml [-o DIR]",
     .doc =
         "Runs a cantilever test and records it: connects to the instruments of the rig file, "
         "checks the start (all markers seen, zero of the load cell sane, travel free, stage "
@@ -152,6 +178,19 @@ static enum wb_status draw_figure(const char *recording, const char *path)
     return status;
 }
 
+static int run_series(const struct options *options)
+{
+    const struct wb_record_series series = {
+        .path = options->series,
+        .test = options->request,
+        .views = options->views,
+        .folder = options->common.output,
+        .figure = options->figure,
+        .json = options->common.json,
+    };
+    return wb_record_series_run(&series);
+}
+
 int wb_cmd_record(int argc, char **argv)
 {
     struct options options = {
@@ -162,6 +201,8 @@ int wb_cmd_record(int argc, char **argv)
     wb_bend_test_default_request(&options.request);
     wb_settings_parse_table(&argp, &wb_bend_test_table, &options.request, 1, argc, argv, &options);
     options.request.rig_path = options.common.input;
+    if (options.series)
+        return run_series(&options);
     options.request.output_path = options.common.output;
     options.request.specimen_path = wb_command_find(options.request.specimen_path, specimen);
     if (options.figure && wb_file_exists(options.figure)) {
@@ -179,6 +220,6 @@ int wb_cmd_record(int argc, char **argv)
     if (options.common.json && print_json(&result, options.request.output_path) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     if (!options.common.json && result.recorded)
-        wb_record_test_print(&result, options.request.output_path);
+        wb_record_test_print(stdout, &result, options.request.output_path);
     return code;
 }

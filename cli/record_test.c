@@ -147,13 +147,14 @@ static int exit_code(const struct wb_bend_test_result *result, enum wb_status st
     return result->started ? WB_EXIT_INCOMPLETE : WB_EXIT_FAILED;
 }
 
-void wb_record_test_print(const struct wb_bend_test_result *result, const char *output)
+void wb_record_test_print(FILE *out, const struct wb_bend_test_result *result, const char *output)
 {
-    printf("%s: %s%d cycle%s, %.0f s, %" PRIu64 " readings, %" PRIu64 " frames, largest force "
-           "%.2f mN, %" PRIu64 " drops\n",
-           output, result->is_virtual ? "virtual rig, " : "", result->cycles_done,
-           result->cycles_done == 1 ? "" : "s", result->duration, result->samples[WB_ROLE_LOAD],
-           result->samples[WB_ROLE_MOCAP], result->peak_tension / WB_MN, result->drops);
+    fprintf(out,
+            "%s: %s%d cycle%s, %.0f s, %" PRIu64 " readings, %" PRIu64 " frames, largest force "
+            "%.2f mN, %" PRIu64 " drops\n",
+            output, result->is_virtual ? "virtual rig, " : "", result->cycles_done,
+            result->cycles_done == 1 ? "" : "s", result->duration, result->samples[WB_ROLE_LOAD],
+            result->samples[WB_ROLE_MOCAP], result->peak_tension / WB_MN, result->drops);
 }
 
 /* The specimen's wire, and what its file says of the first force. */
@@ -162,7 +163,7 @@ static enum wb_status find_wire(struct wb_bend_test_request *request, struct wb_
     struct wb_first_force_bounds *const bounds = &request->stiffness;
     char path[WB_PATH];
     struct wb_specimen specimen;
-    WB_TRY(wb_specimen_read(request->specimen_path, &specimen));
+    WB_TRY(wb_bend_test_specimen(request, &specimen));
     WB_TRY(wb_specimen_find_wire(&specimen, request->specimen_path, path));
     WB_TRY(wb_wire_read(path, wire, NULL));
     wb_wire_stiffness_bounds(wire, specimen.length, &bounds->lowest, &bounds->highest);
@@ -174,7 +175,7 @@ static enum wb_status find_wire(struct wb_bend_test_request *request, struct wb_
 }
 
 enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
-                                  const struct wb_record_views_options *options,
+                                  struct wb_record_views_options *options,
                                   struct wb_bend_test_result *result, int *code)
 {
     static struct wb_record_views views;

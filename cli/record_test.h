@@ -2,6 +2,8 @@
 #ifndef WB_CLI_RECORD_TEST_H
 #define WB_CLI_RECORD_TEST_H
 
+#include <stdio.h>
+
 #include "base/status.h"
 #include "cli/record_views.h"
 #include "daq/bend_test.h"
@@ -11,10 +13,10 @@
  * ended, and what was lost; *code receives the command's exit code for it. An error before the test
  * began was logged, and `result` is not set then. */
 WB_MUST_CHECK enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
-                                                const struct wb_record_views_options *options,
+                                                struct wb_record_views_options *options,
                                                 struct wb_bend_test_result *result, int *code);
 
-/* Prints the outcome as one line on stdout. */
-void wb_record_test_print(const struct wb_bend_test_result *result, const char *output);
+/* Prints the outcome as one line. */
+void wb_record_test_print(FILE *out, const struct wb_bend_test_result *result, const char *output);
 
 #endif

@@ -56,7 +56,7 @@ static enum wb_status make_plan(struct wb_record_views *views,
     struct wb_rig rig;
     struct wb_specimen specimen;
     WB_TRY(wb_rig_read(request->rig_path, &rig));
-    WB_TRY(wb_specimen_read(request->specimen_path, &specimen));
+    WB_TRY(wb_bend_test_specimen(request, &specimen));
     if (wb_live_plan_make(&views->plan, &rig, &specimen, wire, request->travel) != WB_OK)
         wb_warn("the views show no predicted curve: the message before says why");
     snprintf(views->title, sizeof views->title, "%s, %g mm, sample %d on %s", wire->name,
@@ -80,14 +80,15 @@ static enum wb_status open_terminal(struct wb_record_views *views)
 }
 
 /* Before the view on the terminal: its address is a message for people. */
-static enum wb_status open_page(struct wb_record_views *views, int port)
+static enum wb_status open_page(struct wb_record_views *views, int *port)
 {
     int taken, index;
-    WB_TRY(wb_live_page_listen(port, &views->page.listener, &taken));
+    WB_TRY(wb_live_page_listen(*port, &views->page.listener, &taken));
     views->page.plan = &views->plan;
     const enum wb_status status =
         wb_live_feed_start(&views->feed, wb_live_page_run, &views->page, &index);
     close(views->page.listener);
+    *port = taken; /* the next test of a series is found at the same address */
     if (status == WB_OK)
         snprintf(views->address, sizeof views->address,
                  "the test can be watched at http://127.0.0.1:%d/", taken);
@@ -95,7 +96,7 @@ static enum wb_status open_page(struct wb_record_views *views, int port)
 }
 
 enum wb_status wb_record_views_open(struct wb_record_views *views,
-                                    const struct wb_record_views_options *options,
+                                    struct wb_record_views_options *options,
                                     struct wb_bend_test_request *request,
                                     const struct wb_wire *wire)
 {
@@ -106,7 +107,7 @@ enum wb_status wb_record_views_open(struct wb_record_views *views,
     WB_TRY(make_plan(views, request, wire));
     request->sink = wb_live_source_sink(&views->source);
     if (options->serve)
-        WB_TRY(open_page(views, options->port));
+        WB_TRY(open_page(views, &options->port));
     const enum wb_status status = options->live ? open_terminal(views) : WB_OK;
     if (status != WB_OK)
         wb_live_feed_stop(&views->feed, PATIENCE_MS);

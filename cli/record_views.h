@@ -26,7 +26,7 @@
 struct wb_record_views_options {
     bool live;  /* the view on the terminal */
     bool serve; /* the web page, */
-    int port;   /* at this port of 127.0.0.1; 0: a free one */
+    int port;   /* at this port of 127.0.0.1; 0: a free one, which then stands here */
 };
 
 struct wb_record_views {
@@ -47,7 +47,7 @@ struct wb_record_views {
  * properties has no prediction. Where there is no terminal `live` shows the live line, with a
  * message; where the port of the page is in use, nothing begins. `views` must outlive the test. */
 WB_MUST_CHECK enum wb_status wb_record_views_open(struct wb_record_views *views,
-                                                  const struct wb_record_views_options *options,
+                                                  struct wb_record_views_options *options,
                                                   struct wb_bend_test_request *request,
                                                   const struct wb_wire *wire);
 

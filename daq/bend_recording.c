@@ -129,7 +129,10 @@ static enum wb_status set_meta(struct wb_recording *recording,
     WB_TRY(wb_recording_set_meta(recording, "operator", d->operator_name ? d->operator_name : ""));
     WB_TRY(wb_recording_set_meta(recording, "notes", d->notes ? d->notes : ""));
     WB_TRY(set_text_file(recording, "rig", d->rig_path));
-    WB_TRY(set_text_file(recording, "specimen", d->specimen_path));
+    if (d->specimen_text)
+        WB_TRY(wb_recording_set_meta(recording, "specimen", d->specimen_text));
+    else
+        WB_TRY(set_text_file(recording, "specimen", d->specimen_path));
     WB_TRY(set_wire(recording, d));
     WB_TRY(set_truth(recording, d));
     WB_TRY(set_check(recording, d));

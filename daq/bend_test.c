@@ -494,6 +494,14 @@ enum wb_status wb_bend_test_check_request(const struct wb_bend_test_request *req
     return WB_OK;
 }
 
+enum wb_status wb_bend_test_specimen(const struct wb_bend_test_request *request,
+                                     struct wb_specimen *specimen)
+{
+    if (request->specimen_text)
+        return wb_specimen_parse(request->specimen_text, request->specimen_path, specimen, NULL);
+    return wb_specimen_read(request->specimen_path, specimen);
+}
+
 /* When the load cell was last found right. */
 static enum wb_status check_cell(const struct wb_rig *rig, const char *rig_path)
 {
@@ -512,7 +520,7 @@ static enum wb_status check_cell(const struct wb_rig *rig, const char *rig_path)
 static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test_request *request)
 {
     WB_TRY(wb_rig_read(request->rig_path, &test->run.rig));
-    WB_TRY(wb_specimen_read(request->specimen_path, &test->specimen));
+    WB_TRY(wb_bend_test_specimen(request, &test->specimen));
     WB_TRY(wb_bend_test_check_request(&test->request, &test->run.rig, NULL));
     WB_TRY(check_cell(&test->run.rig, request->rig_path));
     if (wb_file_exists(request->output_path))
@@ -527,6 +535,7 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
         .path = request->output_path,
         .rig_path = request->rig_path,
         .specimen_path = request->specimen_path,
+        .specimen_text = request->specimen_text,
         .rig = &test->run.rig,
         .specimen = &test->specimen,
         .operator_name = request->operator_name,
@@ -563,7 +572,7 @@ enum wb_status wb_bend_test_open(struct wb_bend_test **out,
     test->run.remedy = "";
     const enum wb_status status = start(test, request);
     test->request.rig_path = test->request.specimen_path = test->request.output_path = NULL;
-    test->request.operator_name = test->request.notes = NULL;
+    test->request.specimen_text = test->request.operator_name = test->request.notes = NULL;
     test->request.writer = NULL;
     if (status != WB_OK) {
         wb_acquisition_close(test->run.acquisition);

@@ -25,6 +25,8 @@ struct wb_bend_test; /* opaque */
 
 struct wb_bend_test_request {
     const char *rig_path, *specimen_path; /* YAML files */
+    const char *specimen_text;            /* in place of what the specimen's file holds, which then
+                                             only says where its wire is looked for; NULL: the file */
     const char *output_path;              /* the recording; must not exist */
     const char *operator_name, *notes;    /* may be NULL */
     int cycles;
@@ -43,6 +45,10 @@ extern const struct wb_setting_table wb_bend_test_table;
 
 /* 1 cycle, 53 mm, 6 s, 1 s, 2 s, 2 s; paths NULL. */
 void wb_bend_test_default_request(struct wb_bend_test_request *request);
+
+/* Reads the specimen that the request names. */
+WB_MUST_CHECK enum wb_status wb_bend_test_specimen(const struct wb_bend_test_request *request,
+                                                   struct wb_specimen *specimen);
 
 /* Whether the rig file allows the request's travel and cycles. Needs no port. `why` holds the
  * message; NULL: it is logged. */

@@ -1,0 +1,24 @@
+/* `wirebench record --series`: one test after the other, each with its specimen, name and judgement
+ * by the operator. */
+#ifndef WB_CLI_RECORD_SERIES_H
+#define WB_CLI_RECORD_SERIES_H
+
+#include <stdbool.h>
+
+#include "cli/record_views.h"
+#include "daq/bend_test.h"
+
+struct wb_record_series {
+    const char *path;                 /* of the series' file */
+    struct wb_bend_test_request test; /* rig (NULL: the file names it), operator, notes */
+    struct wb_record_views_options views;
+    const char *folder; /* of the recordings; NULL: that of the series' file */
+    const char *figure; /* of all curves; NULL: not wanted */
+    bool json;
+};
+
+/* Runs it, with questions on stderr and answers from stdin. Returns the command's exit code: 0 when
+ * all specimens are done, 3 when it was stopped before. */
+int wb_record_series_run(const struct wb_record_series *request);
+
+#endif
