@@ -1,0 +1,174 @@
+#!/bin/bash
+# `wirebench record --series` against the virtual rig: answers from standard input, an exclusion and
+# who is told of it, a series that was stopped, killed, or run twice at once.
+# Usage: series.sh WIREBENCH SOURCE_ROOT
+set -u
+. "$(dirname "$0")/wait.sh"
+
+wirebench=$(realpath "$1")
+root=$2
+folder=$(mktemp -d /tmp/wb-series-XXXXXX)
+failures=0
+rig=
+
+end_rig() {
+    kill -INT "$rig" 2>/dev/null
+    wait "$rig" 2>/dev/null
+}
+trap 'end_rig; rm -rf "$folder"' EXIT
+sed 's/stream_lost_s: 1/stream_lost_s: 20/' "$root/fixtures/rigs/paper.yaml" >"$folder/bench.yaml"
+cp "$root/fixtures/specimens/type1-L85-1.yaml" "$folder/like.yaml"
+cat >"$folder/series.yaml" <<END
+series: s
+specimen: like.yaml
+specimens: 3
+ask: [notes]
+travel_mm: 12
+END
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+start_rig() { # in $folder/rig, with options
+    "$wirebench" rig "$folder/bench.yaml" --specimen "$folder/like.yaml" --run "$folder/rig" \
+        --seed 3 --time-scale 20 "$@" 2>"$folder/rig.log" &
+    rig=$!
+    wait_until $rig grep -qs '^ready' "$folder/rig.log" && return
+    fail "the rig is not ready: $(cat "$folder/rig.log")"
+    exit 1
+}
+
+# series NAME ANSWERS OPTIONS...: the series into $folder/NAME; exit code in $code.
+series() {
+    local name=$1 answers=$2
+    shift 2
+    printf '%b' "$answers" | "$wirebench" record "$folder/rig/rig.yaml" \
+        --series "$folder/series.yaml" -o "$folder/$name" --operator 'A. Tester' "$@" \
+        >"$folder/$name.out" 2>"$folder/$name.err"
+    code=$?
+}
+
+expect() { # NAME CODE WORDS: the exit code, and what was said
+    [ "$code" = "$2" ] || fail "$1: exit code $code, expected $2: $(cat "$folder/$1.err")"
+    grep -q -- "$3" "$folder/$1.err" "$folder/$1.out" || fail "$1: '$3' not said: $(cat "$folder/$1.err")"
+}
+
+holds() { # FILE WORDS
+    grep -q -- "$2" "$folder/$1" || fail "$1 does not hold '$2': $(cat "$folder/$1")"
+}
+
+# The first specimen is tested and kept; the second one's test is excluded, and then the answers end.
+stopped_and_gone_on_with() {
+    series a 'first note\n\n\n\n\nx the wire slipped\n' --figure "$folder/a.svg"
+    expect a 3 '2 of 3 specimens are done; the same command goes on'
+    holds a.err 'standard input is no terminal: answers are read from it'
+    holds a.out 'excluded: the wire slipped'
+    grep -Eq '^tests +1 +1 +1 +1$' "$folder/a.out" || fail "a: not one test counts: $(cat "$folder/a.out")"
+    [ -s "$folder/a.svg" ] || fail 'a: no figure'
+    "$wirebench" info "$folder/a/s-001-type1-L85-1.wbr" >"$folder/info" 2>&1
+    holds info 'notes  *first note'
+    holds info 'series  *s, test 1'
+    "$wirebench" info "$folder/a/s-002-type1-L85-2.wbr" >"$folder/info" 2>&1
+    holds info 'EXCLUDED  *by A. Tester on 20..-..-..: the wire slipped'
+    holds info 'sample 2'
+    "$wirebench" info "$folder/a/s-002-type1-L85-2.wbr" --json >"$folder/info" 2>&1
+    holds info '"reason": "the wire slipped"'
+    "$wirebench" align "$folder/a/s-002-type1-L85-2.wbr" -o "$folder/dataset" >/dev/null 2>&1
+    holds dataset/dataset.json 'the test was excluded by A. Tester'
+    # The third one twice: somebody leaned on the bench.
+    series a 'n\n\nr I leaned on the bench\nn\n\n\n' --figure "$folder/a.svg" --json
+    expect a 0 '"specimens_done": 3'
+    grep -q '"number": 4' "$folder/a.out" || fail "a: no fourth test: $(cat "$folder/a.out")"
+    [ "$(ls "$folder/a" | tr '\n' ' ')" = \
+        'index.yaml s-001-type1-L85-1.wbr s-002-type1-L85-2.wbr s-003-type1-L85-3.wbr s-004-type1-L85-3.wbr ' ] ||
+        fail "a: other files: $(ls "$folder/a")"
+    cp "$folder/a/index.yaml" "$folder/index.before"
+    series a ''
+    expect a 0 '3 of 3 specimens are done'
+    cmp -s "$folder/a/index.yaml" "$folder/index.before" || fail 'a: a series that is done was changed'
+}
+
+# Who excluded what, and why, is on the report's page.
+reported() {
+    cat >"$folder/campaign.yaml" <<END
+title: A series
+index: a/index.yaml
+calibration_length_mm: 85
+samples: 3
+whole_cycle: false
+wires:
+  - wire: type1
+END
+    "$wirebench" report "$folder/campaign.yaml" -o "$folder/report" >"$folder/report.out" 2>&1
+    holds report.out '2 of 2 recordings used'
+    holds report/report.html 's-002-type1-L85-2.wbr</b>: excluded by A. Tester on 20..-..-..: the wire slipped'
+    holds report/report.html 's-003-type1-L85-3.wbr</b>: excluded by A. Tester on 20..-..-..: I leaned on'
+    holds report/report.json '"reason": "the wire slipped"'
+}
+
+# Killed while it waits for the operator's judgement: the test is judged at the next start, under
+# its number, and no other is recorded for that sample. The kill is the series' own only process.
+killed_before_the_judgement() {
+    mkfifo "$folder/answers"
+    exec 8<>"$folder/answers"
+    "$wirebench" record "$folder/rig/rig.yaml" --series "$folder/series.yaml" -o "$folder/b" \
+        --operator 'A. Tester' <"$folder/answers" >"$folder/b.out" 2>"$folder/b.err" &
+    local recorder=$!
+    printf 'n\n\n' >&8
+    wait_until $recorder grep -qs '^Enter: keep it' "$folder/b.err" || fail "b: $(cat "$folder/b.err")"
+    series c '' -o "$folder/b"
+    expect c 1 'another series is recorded into'
+    kill -KILL $recorder
+    wait $recorder 2>/dev/null
+    exec 8>&-
+    [ ! -e "$folder/b/index.yaml" ] || fail 'b: listed before it was judged'
+    series b '\nn\nq\n'
+    expect b 3 'nobody has said what to make of it'
+    expect b 3 '1 of 3 specimens are done'
+    holds b.err 'goes to s-002-type1-L85-2.wbr'
+    holds b/index.yaml "file: 's-001-type1-L85-1.wbr'"
+}
+
+# Answers that are none are asked for again; a test that did not begin is asked for again under the
+# next number, and is not in the index.
+wrong_answers_and_refused_tests() {
+    series d 'n\n\nx\nwhat?\nk\nn\nq\n'
+    expect d 3 'a reason is needed'
+    holds d.err "'what?' is none of these answers"
+    holds d.err '1 of 3 specimens are done'
+    end_rig
+    series d 'n\n\nn\nq\n'
+    expect d 3 '1 of 3 specimens are done'
+    [ "$(grep -c 'goes to s-002-type1-L85-2.wbr' "$folder/d.err")" = 2 ] ||
+        fail "d: the specimen is not asked for again: $(cat "$folder/d.err")"
+    start_rig
+    # The start check does not find the markers where the answer has them. Its recording is kept.
+    sed 's/notes/markers_mm/' "$folder/series.yaml" >"$folder/markers.yaml"
+    printf '0, 85.5\n0, 10, 20, 30, 40, 50, 85\n\nq\nq\n' | "$wirebench" record "$folder/rig/rig.yaml" \
+        --series "$folder/markers.yaml" -o "$folder/f" --operator me >"$folder/f.out" 2>"$folder/f.err"
+    code=$?
+    expect f 3 '0 of 3 specimens are done'
+    holds f.err 'expected the last marker at the strand'
+    holds f.err "'s-001-type1-L85-1.wbr' holds no cycle"
+    holds f.err 'goes to s-002-type1-L85-1.wbr'
+    printf 'series: s\nspecimen: like.yaml\nspecimens: 3\noutput: "{series}.wbr"\n' >"$folder/bad.yaml"
+    "$wirebench" record "$folder/rig/rig.yaml" --series "$folder/bad.yaml" </dev/null >"$folder/e.out" 2>"$folder/e.err"
+    code=$?
+    expect e 1 'bad.yaml:4: output: expected {number}'
+    "$wirebench" record --series "$folder/series.yaml" </dev/null >"$folder/e.out" 2>"$folder/e.err"
+    code=$?
+    expect e 1 "no rig: name its file before --series, or with 'rig'"
+    "$wirebench" record --series "$folder/series.yaml" --cycles 2 </dev/null >"$folder/e.out" 2>"$folder/e.err"
+    code=$?
+    expect e 2 'write cycles into its file instead of --cycles'
+}
+
+start_rig
+for case in stopped_and_gone_on_with reported killed_before_the_judgement wrong_answers_and_refused_tests; do
+    before=$failures
+    $case
+    [ $failures = $before ] && echo "ok: $case" || echo "not ok: $case"
+done
+[ $failures = 0 ]
