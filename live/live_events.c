@@ -72,8 +72,9 @@ static void set_markers(struct wb_json *root, const struct wb_live_frame *frame)
     }
 }
 
-static void append_state(struct wb_text *text, const struct wb_live_frame *frame)
+static void append_state(struct wb_text *text, const struct wb_live_history *history)
 {
+    const struct wb_live_frame *const frame = &history->frame;
     struct wb_json *const root = wb_json_create();
     wb_json_set_integer(root, "version", WB_LIVE_FRAME_VERSION);
     wb_json_set_integer(root, "number", (int64_t)frame->number);
@@ -92,6 +93,8 @@ static void append_state(struct wb_text *text, const struct wb_live_frame *frame
     wb_json_set_number(root, "disk_lag_s", frame->disk_lag);
     wb_json_set_number(root, "disk_memory_percent", frame->disk_fill / WB_PERCENT);
     wb_json_set_boolean(root, "disk_good", !frame->is_disk_failing && !frame->is_disk_late);
+    wb_json_set_number(root, "disk_free_GB", history->disk_free / 1e9);
+    wb_json_set_number(root, "disk_left_h", history->disk_left / 3600.0);
     wb_json_set_integer(root, "frames_dropped", (int64_t)frame->frames_dropped);
     wb_json_set_integer(root, "points_dropped", (int64_t)frame->points_dropped);
     set_markers(root, frame);
@@ -138,7 +141,7 @@ void wb_live_events_append(struct wb_live_events_cursor *cursor, const struct wb
         append_points(text, history, cursor->points);
     cursor->points = history->n_points;
     if (history->has_frame && history->frame.number != cursor->frame) {
-        append_state(text, &history->frame);
+        append_state(text, history);
         cursor->frame = history->frame.number;
     }
     if (history->n_messages > cursor->messages)

@@ -5,8 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/statvfs.h>
 
 #include "base/progress.h"
+#include "base/units.h"
+
+#define DISK_NS (2 * WB_NS_PER_S)
 
 static void thin(struct wb_live_history *history)
 {
@@ -84,4 +88,20 @@ void wb_live_history_release(struct wb_live_history *history)
 {
     free(history->points);
     memset(history, 0, sizeof *history);
+}
+
+void wb_live_history_look_at_disk(struct wb_live_history *history, const char *recording)
+{
+    struct statvfs status;
+    const struct wb_live_frame *const frame = &history->frame;
+    const int64_t now_ns = wb_progress_now_ns();
+    if (now_ns < history->disk_due_ns)
+        return;
+    history->disk_due_ns = now_ns + DISK_NS;
+    history->disk_free = history->disk_left = (double)NAN;
+    if (statvfs(recording, &status) != 0)
+        return;
+    history->disk_free = (double)status.f_bavail * (double)status.f_frsize;
+    if (frame->elapsed > 1.0 && frame->bytes > 0)
+        history->disk_left = history->disk_free * frame->elapsed / (double)frame->bytes;
 }

@@ -22,12 +22,20 @@ struct wb_live_history {
     uint64_t n_thinned;                 /* how often every second point was let go */
     int n_messages;                     /* all that came; the last ones are kept */
     struct wb_live_frame_message message[WB_LIVE_HISTORY_MESSAGES]; /* number i at i % MESSAGES */
-    bool is_bad; /* a packet was not understood, or memory is out: the view is to end */
+    /* The disk of the recording, as wb_live_history_look_at_disk() found it. */
+    int64_t disk_due_ns;
+    double disk_free; /* bytes; NaN: not known */
+    double disk_left; /* s until it is full, at the mean rate of this test so far; NaN: not known */
+    bool is_bad;      /* a packet was not understood, or memory is out: the view is to end */
 };
 
 /* Takes all packets that wait in the socket; never waits itself. False when there will be no more:
  * the recorder has gone, or the view is of no use any more. */
 bool wb_live_history_receive(struct wb_live_history *history, int socket);
+
+/* Looks at the room on the disk of the recording, every two seconds at most. Asking may take long
+ * on a network drive; only the view waits. */
+void wb_live_history_look_at_disk(struct wb_live_history *history, const char *recording);
 
 /* Largest deflection and force of the curve so far, 0 without points. */
 void wb_live_history_largest(const struct wb_live_history *history, double *deflection,

@@ -348,12 +348,13 @@ static int draw_streams(const struct wb_live_screen *screen, const struct box *b
 static int draw_disk(const struct wb_live_screen *screen, const struct box *box, int row)
 {
     const struct wb_live_frame *const frame = &screen->history->frame;
-    const double hours = screen->disk_free / screen->bytes_per_s / 3600.0;
+    const double room_left = screen->history->disk_free;
+    const double hours = screen->history->disk_left / 3600.0;
     char text[128], room[48] = "";
     if (isfinite(hours) && hours < 1000.0)
         snprintf(room, sizeof room, ", for %.3g h", hours);
-    snprintf(text, sizeof text, "disk     %.3g GB free%s", screen->disk_free / 1e9, room);
-    if (!isfinite(screen->disk_free))
+    snprintf(text, sizeof text, "disk     %.3g GB free%s", room_left / 1e9, room);
+    if (!isfinite(room_left))
         snprintf(text, sizeof text, "disk     room not known");
     put(row++, box->column, box->columns,
         COLOR_PAIR(isfinite(hours) && hours < 1.0 ? PAIR_BAD : PAIR_GOOD), text);

@@ -11,8 +11,6 @@ struct wb_live_screen {
     const struct wb_live_plan *plan;       /* borrowed */
     const struct wb_live_history *history; /* borrowed */
     bool is_unicode;
-    double disk_free;   /* bytes, of the recording's disk; NaN: not known */
-    double bytes_per_s; /* that the recording grows by; 0: not known */
 };
 
 /* Colours; once, after ncurses has begun. */

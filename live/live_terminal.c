@@ -4,13 +4,11 @@
 #include <errno.h>
 #include <langinfo.h>
 #include <locale.h>
-#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "base/progress.h"
@@ -20,7 +18,6 @@
 #include "live/live_screen.h"
 
 #define DRAW_NS (100 * WB_NS_PER_MS)
-#define DISK_NS (2 * WB_NS_PER_S)
 
 static volatile sig_atomic_t told_to_end;
 
@@ -43,20 +40,6 @@ static void send_key(int socket, int key)
     (void)send(socket, &packet, sizeof packet, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
-/* Room on the recording's disk. Asking may take long on a network drive; only the view waits. */
-static void look_at_disk(struct wb_live_screen *screen, int64_t *due_ns)
-{
-    struct statvfs status;
-    const struct wb_live_frame *const frame = &screen->history->frame;
-    if (wb_progress_now_ns() < *due_ns)
-        return;
-    *due_ns = wb_progress_now_ns() + DISK_NS;
-    screen->disk_free = statvfs(screen->plan->recording, &status) == 0
-                            ? (double)status.f_bavail * (double)status.f_frsize
-                            : (double)NAN;
-    screen->bytes_per_s = frame->elapsed > 1.0 ? (double)frame->bytes / frame->elapsed : 0.0;
-}
-
 static void handle_keys(int socket)
 {
     for (int key = getch(); key != ERR; key = getch()) {
@@ -69,7 +52,7 @@ static void handle_keys(int socket)
 
 static void follow(int socket, struct wb_live_screen *screen, struct wb_live_history *history)
 {
-    int64_t disk_ns = 0, drawn_ns = 0;
+    int64_t drawn_ns = 0;
     bool goes_on = true;
     while (goes_on && !told_to_end) {
         struct pollfd polled[] = {{.fd = socket, .events = POLLIN},
@@ -83,7 +66,7 @@ static void follow(int socket, struct wb_live_screen *screen, struct wb_live_his
         handle_keys(socket);
         if (wb_progress_now_ns() - drawn_ns < DRAW_NS)
             continue;
-        look_at_disk(screen, &disk_ns);
+        wb_live_history_look_at_disk(history, screen->plan->recording);
         wb_live_screen_draw(screen);
         drawn_ns = wb_progress_now_ns();
     }
@@ -93,7 +76,7 @@ int wb_live_terminal_run(int socket, void *context)
 {
     const struct wb_live_plan *const plan = context;
     struct wb_live_history history = {0};
-    struct wb_live_screen screen = {.plan = plan, .history = &history, .disk_free = (double)NAN};
+    struct wb_live_screen screen = {.plan = plan, .history = &history};
     struct sigaction action = {.sa_handler = note_end};
     setlocale(LC_CTYPE, "");
     screen.is_unicode = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;

@@ -99,17 +99,26 @@ static void numbers_are_those_of_the_curve(void **state)
     const struct wb_series_test *const test = &results.tests[0];
     assert_true(test->is_usable);
     assert_int_equal(results.tests[1].sample, 2);
-    double largest = 0.0, area = 0.0;
+    double largest = 0.0, area = 0.0, n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
     for (size_t i = 1; i < test->dataset.n_rows; i++) {
         const struct wb_row *const row = &test->dataset.rows[i], *const before = row - 1;
         if (!wb_series_results_shows(row))
             continue;
         largest = fmax(largest, row->force);
+        if (row->phase == WB_PHASE_LOAD && row->deflection <= 0.05 * 85.0 * WB_MM) {
+            n += 1.0;
+            x += row->deflection;
+            y += row->force;
+            xx += row->deflection * row->deflection;
+            xy += row->deflection * row->force;
+        }
         if (wb_series_results_shows(before))
             area += 0.5 * (row->force + before->force) * (row->deflection - before->deflection);
     }
     assert_close(test->values[WB_SERIES_PEAK_FORCE], largest, 1e-12);
     assert_close_relative(test->values[WB_SERIES_LOOP], area, 0.02);
+    assert_close_relative(test->values[WB_SERIES_STIFFNESS], (n * xy - x * y) / (n * xx - x * x),
+                          0.05);
     const double elastic = 3.0 * 396e-6 / (0.085 * 0.085 * 0.085);
     assert_true(test->values[WB_SERIES_STIFFNESS] < elastic);
     assert_true(test->values[WB_SERIES_STIFFNESS] > 0.6 * elastic);

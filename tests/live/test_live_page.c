@@ -12,6 +12,7 @@
 
 #include "base/units.h"
 #include "live/live_feed.h"
+#include "live/live_history.h"
 #include "live/live_page.h"
 #include "tests/check.h"
 #include "tests/messages.h"
@@ -129,6 +130,52 @@ static void events_bring_the_plan_the_curve_and_the_state(void **state)
     close(client);
 }
 
+static const char *last_heard(const char *words, const char *before)
+{
+    const char *last = NULL;
+    for (const char *at = heard; (at = strstr(at, words)) && (!before || at < before); at++)
+        last = at;
+    assert_non_null(last);
+    return last;
+}
+
+/* The number that the last state which came whole has under this key; NaN: null. */
+static double number_heard(const char *key)
+{
+    double value = (double)NAN;
+    const char *const last = last_heard(key, last_heard("\"frames_dropped\"", NULL));
+    (void)sscanf(last + strlen(key), "\": %lf", &value);
+    return value;
+}
+
+static void the_room_on_the_disk_is_told_in_bytes_and_in_time(void **state)
+{
+    (void)state;
+    frame.elapsed = 100.0;
+    frame.bytes = 1000000000;
+    const int client = ask("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    hear(client, "\"frames_dropped\"");
+    /* The first look may come before the first frame, the next one is two seconds later. */
+    const double GB = number_heard("disk_free_GB");
+    assert_true(GB > 0.0);
+    while (isnan(number_heard("disk_left_h")))
+        hear(client, "\"frames_dropped\"");
+    assert_close_relative(number_heard("disk_left_h") * 3600.0 * 1e-2, number_heard("disk_free_GB"),
+                          1e-9);
+    close(client);
+}
+
+static void a_disk_that_cannot_be_asked_has_unknown_room(void **state)
+{
+    (void)state;
+    struct wb_live_history history = {.frame = {.elapsed = 10.0, .bytes = 1000}};
+    wb_live_history_look_at_disk(&history, "/tmp");
+    assert_close_relative(history.disk_left, history.disk_free / 100.0, 1e-12);
+    history.disk_due_ns = 1;
+    wb_live_history_look_at_disk(&history, "/nowhere/at all");
+    assert_true(isnan(history.disk_free) && isnan(history.disk_left));
+}
+
 static void a_client_that_comes_later_has_all_of_the_curve(void **state)
 {
     (void)state;
@@ -219,6 +266,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         ON_A_PAGE(the_page_is_whole_and_fetches_nothing_from_elsewhere),
         ON_A_PAGE(events_bring_the_plan_the_curve_and_the_state),
+        ON_A_PAGE(the_room_on_the_disk_is_told_in_bytes_and_in_time),
+        cmocka_unit_test(a_disk_that_cannot_be_asked_has_unknown_room),
         ON_A_PAGE(a_client_that_comes_later_has_all_of_the_curve),
         ON_A_PAGE(a_client_that_never_reads_holds_up_nobody),
         ON_A_PAGE(it_can_only_be_read_and_only_from_here),

@@ -13,11 +13,11 @@ static struct wb_live_frame_point points[] = {
     {0.0f, 0.0f, 2}, /* of test 2: along the axis */
 };
 static const struct wb_live_history history = {.n_points = 4, .points = points};
-static const struct wb_live_plan plan = {.length = 0.085};
+static struct wb_live_plan plan = {.length = 0.085};
 
 static struct wb_text print(bool is_unicode, bool is_coloured)
 {
-    const struct wb_live_print settings = {50, 13, is_unicode, is_coloured};
+    const struct wb_live_print settings = {is_coloured ? 49 : 50, 13, is_unicode, is_coloured};
     struct wb_text text = {0};
     wb_live_print_curve(&settings, &plan, &history, &text);
     assert_false(text.failed);
@@ -67,8 +67,11 @@ static void the_last_cycle_is_bright_and_colours_end_with_their_line(void **stat
 {
     (void)state;
     size_t n;
+    plan.force_limit = 0.041; /* its line goes from edge to edge */
     struct wb_text text = print(true, true);
+    plan.force_limit = 0.0;
     const char *const first = line_of(&text, 1, &n);
+    assert_non_null(memmem(first, n, "\033[31m", 5));
     assert_non_null(memmem(first, n, "\033[90m", 5));
     assert_null(memmem(first, n, "\033[1;36m", 7));
     const char *const axis = line_of(&text, 10, &n);
