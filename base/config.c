@@ -1,5 +1,6 @@
 #include "base/config.h"
 
+#include <ctype.h>
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -398,5 +399,18 @@ enum wb_status wb_config_numbers(const struct wb_config_node *sequence,
     for (int i = 0; i < length; i++)
         WB_TRY(read_number(wb_config_item(sequence, i), key, &values[i]));
     *n = length;
+    return WB_OK;
+}
+
+enum wb_status wb_config_check_date(const struct wb_config_node *map, const char *key,
+                                    const char *date)
+{
+    int year, month, day, end = 0;
+    if (date[0] == '\0')
+        return WB_OK;
+    if (strlen(date) != 10 || sscanf(date, "%4d-%2d-%2d%n", &year, &month, &day, &end) != 3 ||
+        end != 10 || !isdigit((unsigned char)date[5]) || !isdigit((unsigned char)date[8]) ||
+        month < 1 || month > 12 || day < 1 || day > 31)
+        return wb_config_refuse(map, key, "expected a date as YYYY-MM-DD, not '%s'", date);
     return WB_OK;
 }

@@ -163,4 +163,9 @@ WB_MUST_CHECK enum wb_status wb_config_refuse(const struct wb_config_node *node,
                                               const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Refuses a text that is no date as YYYY-MM-DD, so that every reader understands it alike; "" is
+ * taken. */
+WB_MUST_CHECK enum wb_status wb_config_check_date(const struct wb_config_node *map, const char *key,
+                                                  const char *date);
+
 #endif

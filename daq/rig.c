@@ -53,20 +53,6 @@ static enum wb_status check_sign(const struct wb_config_node *map, const char *k
     return WB_OK;
 }
 
-/* A date as YYYY-MM-DD, so that every reader understands it alike. */
-static enum wb_status check_date(const struct wb_config_node *map, const char *key,
-                                 const char *date)
-{
-    int year, month, day, end = 0;
-    if (date[0] == '\0')
-        return WB_OK;
-    if (strlen(date) != 10 || sscanf(date, "%4d-%2d-%2d%n", &year, &month, &day, &end) != 3 ||
-        end != 10 || !isdigit((unsigned char)date[5]) || !isdigit((unsigned char)date[8]) ||
-        month < 1 || month > 12 || day < 1 || day > 31)
-        return wb_config_refuse(map, key, "expected a date as YYYY-MM-DD, not '%s'", date);
-    return WB_OK;
-}
-
 static int hex_value(char c)
 {
     if (c >= '0' && c <= '9')
@@ -368,7 +354,7 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
     strcpy(cell->protocol, load_protocols[protocol]);
     cell->tare = (enum wb_rig_tare)tare;
     WB_TRY(check_address(map, cell->address, wire_schemes));
-    WB_TRY(check_date(map, "calibration_date", cell->calibration_date));
+    WB_TRY(wb_config_check_date(map, "calibration_date", cell->calibration_date));
     WB_TRY(read_check_masses(masses, cell));
     WB_TRY(check_sign(map, "sign", cell->sign));
     if (preset && strcmp(cell->protocol, "generic") == 0)

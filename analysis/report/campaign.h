@@ -8,6 +8,7 @@
 #include <stddef.h>
 
 #include "analysis/calibration/calibrate.h"
+#include "analysis/report/laboratory.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -20,12 +21,13 @@ struct wb_campaign {
     char folder[WB_PATH];        /* of the file; no report shows it */
     char simulations[WB_PATH];   /* as the file gives it; "": the shipped ones */
     struct wb_calibrate_settings fit;
+    struct wb_laboratory laboratory;
 };
 
 /* The keys of every kind, first in its own table. */
 #define WB_CAMPAIGN_KEYS(head)                                                                     \
-    WB_CONFIG_IGNORED("kind"), WB_CONFIG_TEXT("title", (head)->title),                             \
-        WB_CONFIG_OPTIONAL_TEXT("notes", (head)->notes)
+    WB_CONFIG_IGNORED("kind"), WB_CONFIG_IGNORED("laboratory"),                                    \
+        WB_CONFIG_TEXT("title", (head)->title), WB_CONFIG_OPTIONAL_TEXT("notes", (head)->notes)
 
 /* Opens a campaign file, to be destroyed by the caller, and takes its name, checksum and folder;
  * the settings of the fit are the default ones. The rest is read by the kind's table of keys. */

@@ -54,7 +54,24 @@ void wb_document_release(struct wb_document *document)
     free(document->subtitle);
     free(document->footer);
     free(document->date_utc);
+    free(document->number);
     memset(document, 0, sizeof *document);
+}
+
+void wb_document_set_number(struct wb_document *document, const char *number)
+{
+    free(document->number);
+    document->number = copy_text(document, number);
+}
+
+void wb_document_move_to_front(struct wb_document *document, int first)
+{
+    for (int to = 0; first + to < document->n; to++) {
+        const struct wb_document_block block = document->blocks[first + to];
+        memmove(&document->blocks[to + 1], &document->blocks[to],
+                (size_t)first * sizeof *document->blocks);
+        document->blocks[to] = block;
+    }
 }
 
 static struct wb_document_block *add_block(struct wb_document *document, enum wb_document_kind kind,

@@ -2,7 +2,7 @@
  * and the HTML page are two views of it, so they always say the same.
  *
  * Text is the markup that Pango and HTML share: <b>, <i>, <sub>, <sup>, <tt>, and &amp; &lt; &gt;.
- * Kind, title, subtitle, footer, headings and code are plain text.
+ * Kind, title, subtitle, footer, number, headings and code are plain text.
  * Builders copy text, return nothing and remember running out of memory in `failed`, which
  * the views refuse. Figures are borrowed and must outlive the document.
  */
@@ -70,6 +70,7 @@ struct wb_document_block {
 struct wb_document {
     char *kind;                      /* of report: "Calibration report" */
     char *title, *subtitle, *footer; /* footer: on every page */
+    char *number;                    /* of the report, on every page; NULL: none */
     char *date_utc;                  /* of the document: of its latest data; "" unknown */
     int n, capacity, n_figures;
     struct wb_document_block *blocks;
@@ -80,6 +81,11 @@ struct wb_document {
 void wb_document_init(struct wb_document *document, const char *kind, const char *title,
                       const char *subtitle, const char *footer, const char *date_utc);
 void wb_document_release(struct wb_document *document);
+
+/* Gives the report a number. */
+void wb_document_set_number(struct wb_document *document, const char *number);
+/* Moves the blocks from the index `first` on before all others. */
+void wb_document_move_to_front(struct wb_document *document, int first);
 
 /* `anchor`: letters, digits and '-'; unique, or "" for none. */
 void wb_document_heading(struct wb_document *document, int level, const char *anchor,

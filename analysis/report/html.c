@@ -185,6 +185,15 @@ static enum wb_status put_block(struct wb_text *html, const struct wb_document_b
     return WB_OK;
 }
 
+static void put_number(struct wb_text *html, const struct wb_document *document)
+{
+    if (!document->number)
+        return;
+    wb_text_append(html, "Report ");
+    wb_text_append_escaped(html, document->number);
+    wb_text_append(html, " \xc2\xb7 ");
+}
+
 static void put_head(struct wb_text *html, const struct wb_document *document)
 {
     wb_text_append(html, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -199,6 +208,7 @@ static void put_head(struct wb_text *html, const struct wb_document *document)
     wb_text_append(html, "</p>\n<h1>");
     wb_text_append_escaped(html, document->title);
     wb_text_append(html, "</h1>\n<p class=\"subtitle\">");
+    put_number(html, document);
     wb_text_append_escaped(html, document->subtitle);
     wb_text_append(html, "</p>\n</header>\n");
 }
@@ -220,6 +230,7 @@ enum wb_status wb_html_render(const struct wb_document *document, struct wb_text
     if (in_list)
         wb_text_append(html, "</ul>\n");
     wb_text_append(html, "<footer>");
+    put_number(html, document);
     wb_text_append_escaped(html, document->footer);
     wb_text_append(html, "</footer>\n</main>\n</body>\n</html>\n");
     return html->failed ? wb_fail(WB_ERR_MEMORY, "out of memory writing the report") : WB_OK;

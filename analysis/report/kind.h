@@ -22,13 +22,14 @@
 
 /* How a report came out; the first three are known once the data were looked at. */
 struct wb_kind_outcome {
-    int n_wanted;       /* recordings or datasets */
-    int n_missing;      /* of recordings: what is not there */
-    int n_steps;        /* of the computation, for its progress */
-    int n_usable;       /* of those that are wanted */
-    bool is_complete;   /* nothing is missing, refused or failed */
-    bool exceeds_limit; /* of the campaign */
-    bool interrupted;   /* by Ctrl-C; the results are not to be reported */
+    int n_wanted;                       /* recordings or datasets */
+    int n_missing;                      /* of recordings: what is not there */
+    int n_steps;                        /* of the computation, for its progress */
+    int n_usable;                       /* of those that are wanted */
+    bool is_complete;                   /* nothing is missing, refused or failed */
+    bool exceeds_limit;                 /* of the campaign */
+    bool interrupted;                   /* by Ctrl-C; the results are not to be reported */
+    const struct wb_campaign *campaign; /* borrowed */
 };
 
 /* Called after each finished step, by one thread at a time: how many are done, and what was. May be
@@ -55,8 +56,9 @@ typedef struct wb_json *wb_kind_json(const void *results);
 typedef void wb_kind_release(void *of);
 
 struct wb_kind {
-    const char *name; /* `kind:` of the campaign file */
-    const char *data; /* what it is made from, for messages: "recordings" */
+    const char *name;       /* `kind:` of the campaign file */
+    const char *data;       /* what it is made from, for messages: "recordings" */
+    bool has_uncertainties; /* of what its limits bound */
     size_t campaign_size, results_size;
 
     wb_kind_keys *keys;

@@ -190,7 +190,8 @@ void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_out
         put_missing_dataset(document, &entry);
 }
 
-void wb_pages_put_verdicts(struct wb_document *document, const struct wb_verdict *verdicts, int n)
+void wb_pages_put_verdicts(struct wb_document *document, const struct wb_campaign *campaign,
+                           const struct wb_verdict *verdicts, int n)
 {
     for (int i = 0; i < n; i++) {
         const struct wb_verdict *const v = &verdicts[i];
@@ -199,9 +200,12 @@ void wb_pages_put_verdicts(struct wb_document *document, const struct wb_verdict
             wb_pages_escape(label, sizeof label, v->label);
         if (isfinite(v->value))
             snprintf(value, sizeof value, "%.3g %%", v->value / WB_PERCENT);
-        snprintf(text, sizeof text, "<b>%s</b> %s%s%s: %s, limit %.3g %%.",
+        snprintf(text, sizeof text, "<b>%s</b> %s%s%s: %s, limit %.3g %%.%s",
                  v->kept ? "Limit kept." : "Limit exceeded.", v->what, v->label ? ", " : "", label,
-                 value, v->limit / WB_PERCENT);
+                 value, v->limit / WB_PERCENT,
+                 campaign->laboratory.is_given
+                     ? " <i>U</i> not evaluated (a computed number); by simple acceptance."
+                     : "");
         wb_document_item(document, v->kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
     }
 }

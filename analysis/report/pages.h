@@ -46,8 +46,9 @@ void wb_pages_start_simulations(struct wb_document *document, const char *title,
 void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,
                           wb_simulation_list *list, const void *results);
 
-/* An item for each limit, kept or exceeded. */
-void wb_pages_put_verdicts(struct wb_document *document, const struct wb_verdict *verdicts, int n);
+/* An item for each limit, kept or exceeded; of a laboratory's report with uncertainty and rule. */
+void wb_pages_put_verdicts(struct wb_document *document, const struct wb_campaign *campaign,
+                           const struct wb_verdict *verdicts, int n);
 
 /* A table of all datasets with their checksums, under a heading. */
 void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *list,

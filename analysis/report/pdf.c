@@ -101,8 +101,11 @@ static void draw_frame(struct pen *pen)
     const double y = page_height - 40.0;
     rule(pen, margin_left, right_edge, y - 5.0, 0.5, wb_palette_rule());
     put_plain(pen, margin_left, y, pen->document->footer, &small);
-    char number[48];
-    snprintf(number, sizeof number, "Page %d of %d", pen->page, pen->n_pages);
+    char number[160];
+    snprintf(number, sizeof number, "%s%.100s%sPage %d of %d",
+             pen->document->number ? "Report " : "",
+             pen->document->number ? pen->document->number : "",
+             pen->document->number ? " \xc2\xb7 " : "", pen->page, pen->n_pages);
     put_plain(pen, right_edge, y, number, &right);
 }
 

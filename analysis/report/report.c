@@ -79,9 +79,15 @@ static enum wb_status deliver(struct making *making)
     WB_TRY(wb_kind_write(making->kind, making->results, order->folder, order->force));
     if (!order->quiet)
         making->kind->print(stdout, making->results);
-    making->end = !outcome->is_complete    ? WB_REPORT_INCOMPLETE
-                  : outcome->exceeds_limit ? WB_REPORT_LIMIT
-                                           : WB_REPORT_COMPLETE;
+    const int n_missing = wb_laboratory_missing(&outcome->campaign->laboratory);
+    if (n_missing > 0)
+        wb_warn(
+            "%d fields of ISO/IEC 17025 are missing in 'laboratory' of the campaign; the report "
+            "lists them",
+            n_missing);
+    making->end = !outcome->is_complete || n_missing > 0 ? WB_REPORT_INCOMPLETE
+                  : outcome->exceeds_limit               ? WB_REPORT_LIMIT
+                                                         : WB_REPORT_COMPLETE;
     return WB_OK;
 }
 

@@ -1,5 +1,24 @@
 #include "analysis/report/verdict.h"
 
+#include <stddef.h>
+
+const char *const wb_decision_names[] = {"simple", "guarded", NULL};
+
+const char *wb_decision_text(enum wb_decision rule)
+{
+    return rule == WB_DECISION_GUARDED
+               ? "guarded acceptance: a limit is kept where the sum of the value and its "
+                 "uncertainty "
+                 "U is at most the limit (ILAC-G8:09/2019, guard band U)"
+               : "simple acceptance: a limit is kept where the value is at most the limit; its "
+                 "uncertainty U is stated and not counted (ILAC-G8:09/2019, no guard band)";
+}
+
+bool wb_decision_keeps(enum wb_decision rule, double value, double expanded, double limit)
+{
+    return rule == WB_DECISION_GUARDED ? value + expanded <= limit : value <= limit;
+}
+
 void wb_verdict_add(struct wb_verdict *verdicts, int *n, const struct wb_verdict *verdict)
 {
     if (!(verdict->limit > 0.0))

@@ -194,6 +194,26 @@ static enum wb_status take_named(const struct reading *reading, const char *name
     return any ? status : add_file(tests, path, &reading->index, NULL);
 }
 
+/* Takes out what a person excluded. */
+static void leave_out(struct wb_recordings *campaign, struct wb_recordings_tests *tests)
+{
+    int kept = 0;
+    for (int i = 0; i < tests->n; i++) {
+        struct wb_recordings_exclusion *found = NULL;
+        for (int k = 0; k < campaign->n_excluded; k++) {
+            if (strcmp(campaign->excluded[k].name, tests->items[i].name) == 0)
+                found = &campaign->excluded[k];
+        }
+        if (found) {
+            found->is_found = true;
+            memcpy(found->sha256, tests->items[i].sha256, sizeof found->sha256);
+        } else {
+            tests->items[kept++] = tests->items[i];
+        }
+    }
+    tests->n = kept;
+}
+
 static enum wb_status find_tests(const struct reading *reading,
                                  const struct wb_recordings_wire *wire,
                                  const struct wb_config_node *list, double length,
@@ -210,6 +230,46 @@ static enum wb_status find_tests(const struct reading *reading,
             return wb_config_refuse(wb_config_item(list, i), NULL,
                                     "expected the name or path of a recording");
         WB_TRY(take_named(reading, name, tests));
+    }
+    return WB_OK;
+}
+
+static enum wb_status read_excluded(const struct wb_config_node *list,
+                                    struct wb_recordings *campaign)
+{
+    const int n = list ? wb_config_length(list) : 0;
+    if (list && n < 1)
+        return wb_config_refuse(list, "excluded",
+                                "expected a list of recordings that are not used");
+    campaign->excluded = calloc((size_t)n + 1, sizeof *campaign->excluded);
+    if (!campaign->excluded)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
+    for (int i = 0; i < n; i++) {
+        struct wb_recordings_exclusion *const one = &campaign->excluded[campaign->n_excluded++];
+        const struct wb_config_key keys[] = {
+            WB_CONFIG_TEXT("recording", one->name),
+            WB_CONFIG_TEXT("by", one->by),
+            WB_CONFIG_TEXT("why", one->why),
+        };
+        const struct wb_config_node *const node = wb_config_item(list, i);
+        WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+        if (!one->by[0] || !one->why[0])
+            return wb_config_refuse(node, one->by[0] ? "why" : "by",
+                                    "expected who excluded '%s', and why", one->name);
+    }
+    return WB_OK;
+}
+
+/* A name that means nothing would leave in what a person wanted out. */
+static enum wb_status check_excluded(const struct wb_config_node *list,
+                                     const struct wb_recordings *campaign)
+{
+    for (int i = 0; i < campaign->n_excluded; i++) {
+        if (!campaign->excluded[i].is_found)
+            return wb_config_refuse(wb_config_item(list, i), "recording",
+                                    "'%s' is no recording of this campaign: give its name as the "
+                                    "report has it",
+                                    campaign->excluded[i].name);
     }
     return WB_OK;
 }
@@ -239,6 +299,7 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
             WB_TRY(find_tests(reading, wire, lists[k], campaign->length[k], &wire->tests[k]));
         else if (lists[k])
             return wb_config_refuse(node, "validation", "the campaign has no validation_length_mm");
+        leave_out(reading->campaign, &wire->tests[k]);
     }
     return WB_OK;
 }
@@ -289,7 +350,7 @@ static enum wb_status read_index(struct reading *reading, const char *given)
 static enum wb_status read_all(struct reading *reading, const struct wb_config_node *root)
 {
     struct wb_recordings *const campaign = reading->campaign;
-    const struct wb_config_node *settings, *limits, *reference, *wires;
+    const struct wb_config_node *settings, *limits, *reference, *wires, *excluded;
     char index[1024] = "";
     campaign->samples = 1;
     campaign->whole_cycle = true;
@@ -305,13 +366,16 @@ static enum wb_status read_all(struct reading *reading, const struct wb_config_n
         WB_CONFIG_OPTIONAL_NODE("limits", &limits),
         WB_CONFIG_OPTIONAL_NODE("reference", &reference),
         WB_CONFIG_NODE("wires", &wires),
+        WB_CONFIG_OPTIONAL_NODE("excluded", &excluded),
     };
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
     WB_TRY(wb_campaign_read_settings(settings, &campaign->head.fit));
     WB_TRY(read_limits(limits, campaign));
     WB_TRY(read_merits(reference, campaign));
     WB_TRY(read_index(reading, index));
-    return read_wires(reading, wires);
+    WB_TRY(read_excluded(excluded, campaign));
+    WB_TRY(read_wires(reading, wires));
+    return check_excluded(excluded, campaign);
 }
 
 enum wb_status wb_recordings_keys(void *context, const struct wb_config_node *root)
@@ -330,6 +394,7 @@ void wb_recordings_release(void *context)
             free(campaign->wires[i].tests[k].items);
     }
     free(campaign->wires);
+    free(campaign->excluded);
     memset(campaign, 0, sizeof *campaign);
 }
 

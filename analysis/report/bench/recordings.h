@@ -37,6 +37,10 @@
  *         calibration: [my-test.wbr, "S?.wbr.zst"]   # optional: names in the index, paths or
  *         validation: []                          # globs relative to this file; by default the
  *                                                 # index' recordings of this wire and length
+ *     excluded:                                   # optional: recordings that are not used
+ *       - recording: type1-L85-2.wbr.zst          # its name, as the report has it
+ *         by: N. N.
+ *         why: the clamp slipped at 12 mm
  *
  * Reading a campaign finds its recordings. One that is not there is no error: it is listed with
  * the reason, and the report says so. One that the campaign's index or the one in its own folder
@@ -67,6 +71,13 @@ struct wb_recordings_test {
     char sha256[WB_SHA256_TEXT];        /* as the index says; "" when it is not in the index */
     /* Paths of files that hold in place of what was recorded; "": the recording's own. */
     char corrected_specimen[WB_PATH], corrected_rig[WB_PATH];
+};
+
+/* A recording that a person left out. */
+struct wb_recordings_exclusion {
+    char name[256], by[160], why[600];
+    char sha256[WB_SHA256_TEXT]; /* as the index says; "" unknown */
+    bool is_found;               /* a wire of the campaign would have it */
 };
 
 struct wb_recordings_tests {
@@ -102,6 +113,8 @@ struct wb_recordings {
     double reference_rms[2]; /* published range of the validation's RMS; 0: none */
     int n_wires;
     struct wb_recordings_wire *wires; /* (n_wires), owned */
+    int n_excluded;
+    struct wb_recordings_exclusion *excluded; /* (n_excluded), owned */
 };
 
 /* Reading and release, as wb_kind_keys and wb_kind_release have it. */

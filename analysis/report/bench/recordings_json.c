@@ -213,6 +213,17 @@ static void put_cycle(struct wb_json *entry, const struct wb_recordings_results 
         put_validation(prediction, &wire->prediction);
 }
 
+/* As a laboratory's report has it. */
+static void put_verdict(struct wb_json *of, const struct wb_recordings *campaign,
+                        const struct wb_recordings_results_wire *wire,
+                        enum wb_recordings_purpose purpose)
+{
+    wb_json_set_number(of, "rms_uncertainty_95_over_F_max",
+                       wb_recordings_results_uncertainty(wire, purpose));
+    if (campaign->limit[purpose] > 0.0)
+        wb_json_set_boolean(of, "limit_kept", wb_recordings_results_keeps(campaign, wire, purpose));
+}
+
 static void put_wire(struct wb_json *list, const struct wb_recordings_results *results,
                      const struct wb_recordings_results_wire *wire)
 {
@@ -237,8 +248,26 @@ static void put_wire(struct wb_json *list, const struct wb_recordings_results *r
             put_calibration(of, wire);
         else
             put_validation(of, &step->result);
+        if (results->campaign->head.laboratory.is_given)
+            put_verdict(of, results->campaign, wire, (enum wb_recordings_purpose)k);
     }
     put_cycle(entry, results, wire);
+}
+
+static void put_excluded(struct wb_json *root, const struct wb_recordings *campaign)
+{
+    if (campaign->n_excluded == 0)
+        return;
+    struct wb_json *const list = wb_json_set_array(root, "excluded");
+    for (int i = 0; i < campaign->n_excluded; i++) {
+        const struct wb_recordings_exclusion *const one = &campaign->excluded[i];
+        struct wb_json *const entry = wb_json_append_object(list);
+        wb_json_set_text(entry, "recording", one->name);
+        wb_json_set_text(entry, "by", one->by);
+        wb_json_set_text(entry, "why", one->why);
+        if (one->sha256[0])
+            wb_json_set_text(entry, "sha256", one->sha256);
+    }
 }
 
 struct wb_json *wb_recordings_json_build(const void *context)
@@ -258,6 +287,7 @@ struct wb_json *wb_recordings_json_build(const void *context)
     enum wb_recordings_purpose purpose;
     for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, &purpose)); i++)
         put_test(recordings, wire, test, purpose);
+    put_excluded(root, campaign);
     struct wb_json *const wires = wb_json_set_array(root, "wires");
     for (int i = 0; i < results->n_wires; i++)
         put_wire(wires, results, &results->wires[i]);

@@ -22,7 +22,7 @@ static void print_step(FILE *out, const struct wb_recordings_results *results, i
         return;
     if (state != WB_RECORDINGS_DONE)
         fprintf(out, "  %s missing", what);
-    else if (limit > 0.0 && !(rms <= limit))
+    else if (limit > 0.0 && !wb_recordings_results_keeps(results->campaign, wire, purpose))
         fprintf(out, "  %s RMS %.4f (limit %.4g exceeded)", what, rms, limit);
     else
         fprintf(out, "  %s RMS %.4f", what, rms);
@@ -120,6 +120,7 @@ static enum wb_status add_cards(struct wb_cards *cards, const void *context)
 const struct wb_kind wb_recordings_kind = {
     .name = "recordings",
     .data = "recordings",
+    .has_uncertainties = true,
     .campaign_size = sizeof(struct wb_recordings),
     .results_size = sizeof(struct wb_recordings_results),
     .keys = wb_recordings_keys,

@@ -103,6 +103,27 @@ static void put_miss(struct wb_document *document, const struct wb_recordings_re
     wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
 }
 
+/* A verdict as a laboratory's report has it: with uncertainty and decision rule. */
+static void put_verdict(struct wb_document *document, const struct wb_recordings *campaign,
+                        const struct wb_recordings_results_wire *wire,
+                        enum wb_recordings_purpose purpose)
+{
+    const bool is_kept = wb_recordings_results_keeps(campaign, wire, purpose);
+    const double uncertainty = wb_recordings_results_uncertainty(wire, purpose);
+    struct wb_text text = {0};
+    wb_text_append_escaped(&text, wire->wanted->label);
+    wb_text_append(&text, ", %s: RMS %.4f of <i>F</i><sub>max</sub>, ",
+                   wb_recordings_purposes[purpose], wb_recordings_results_rms(wire, purpose));
+    if (isfinite(uncertainty))
+        wb_text_append(&text, "<i>U</i> = %.4f (95 %%, scatter between specimens)", uncertainty);
+    else
+        wb_text_append(&text, "<i>U</i> not known (one specimen)");
+    wb_text_append(&text, ", limit %.4g: <b>%s</b> by %s acceptance.", campaign->limit[purpose],
+                   is_kept ? "kept" : "exceeded",
+                   wb_decision_names[campaign->head.laboratory.rule]);
+    wb_pages_put_text(document, WB_BLOCK_ITEM, is_kept ? WB_TONE_GOOD : WB_TONE_WARNING, &text);
+}
+
 static void put_limits(struct wb_document *document, const struct wb_recordings_results *results)
 {
     const double *const limit = results->campaign->limit;
@@ -115,8 +136,10 @@ static void put_limits(struct wb_document *document, const struct wb_recordings_
         if (!wb_recordings_results_of(wire, purpose) || !(limit[purpose] > 0.0))
             continue;
         judged++;
-        if (!(wb_recordings_results_rms(wire, purpose) <= limit[purpose]))
+        if (!wb_recordings_results_keeps(results->campaign, wire, purpose))
             put_miss(document, wire, purpose, limit[purpose]);
+        if (results->campaign->head.laboratory.is_given)
+            put_verdict(document, results->campaign, wire, purpose);
     }
     if (judged == 0 || results->outcome.exceeds_limit)
         return;
@@ -170,6 +193,26 @@ static void put_missing(struct wb_document *document, const struct wb_recordings
                 wb_pages_item(document, WB_TONE_WARNING, "<b>", wire->wanted->label, between,
                               problem_of(&wire->steps[k]));
         }
+    }
+}
+
+static void put_excluded(struct wb_document *document, const struct wb_recordings *campaign)
+{
+    if (campaign->n_excluded == 0)
+        return;
+    wb_document_heading(document, 2, "excluded", "Excluded recordings");
+    for (int i = 0; i < campaign->n_excluded; i++) {
+        const struct wb_recordings_exclusion *const one = &campaign->excluded[i];
+        struct wb_text text = {0};
+        wb_text_append(&text, "<b>");
+        wb_text_append_escaped(&text, one->name);
+        wb_text_append(&text, "</b>, excluded by ");
+        wb_text_append_escaped(&text, one->by);
+        wb_text_append(&text, ": ");
+        wb_text_append_escaped(&text, one->why);
+        if (one->sha256[0])
+            wb_text_append(&text, " (SHA-256 <tt>%s</tt>)", one->sha256);
+        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
     }
 }
 
@@ -254,7 +297,8 @@ static void put_rms(struct wb_document_table *table, const struct wb_recordings_
     else if (state != WB_RECORDINGS_DONE)
         wb_pages_cell(table, WB_TONE_WARNING, "missing");
     else
-        wb_pages_cell_judged(table, rms, 4, limit > 0.0, rms <= limit);
+        wb_pages_cell_judged(table, rms, 4, limit > 0.0,
+                             wb_recordings_results_keeps(results->campaign, wire, purpose));
 }
 
 static void put_merits(struct wb_document *document, const struct wb_recordings_results *results)
@@ -444,6 +488,7 @@ static void put_summary(struct wb_document *document, const struct wb_recordings
     put_origin(document, results);
     put_limits(document, results);
     put_missing(document, results);
+    put_excluded(document, results->campaign);
     wb_recordings_cycle_pages_summary(document, results, figures);
     put_properties(document, results);
     put_merits(document, results);

@@ -7,6 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <gsl/gsl_cdf.h>
+
 #include "analysis/align/align.h"
 #include "analysis/report/bench/recordings_results_private.h"
 #include "analysis/report/reasons.h"
@@ -391,6 +393,7 @@ enum wb_status wb_recordings_results_load(void *context, const void *of)
     const struct wb_recordings *const campaign = of;
     struct wb_kind_outcome *const outcome = &results->outcome;
     results->campaign = campaign;
+    outcome->campaign = &campaign->head;
     outcome->n_wanted = wb_recordings_count(campaign, &outcome->n_missing);
     outcome->n_steps = outcome->n_wanted;
     results->wires = calloc((size_t)campaign->n_wires, sizeof *results->wires);
@@ -435,9 +438,8 @@ static void judge_step(struct wb_recordings_results *results,
     }
     results->outcome.is_complete &=
         step->state == WB_RECORDINGS_DONE || step->state == WB_RECORDINGS_NOT_WANTED;
-    /* Compared so that a NaN exceeds. */
     if (step->state == WB_RECORDINGS_DONE && limit > 0.0 &&
-        !(wb_recordings_results_rms(wire, purpose) <= limit))
+        !wb_recordings_results_keeps(results->campaign, wire, purpose))
         results->outcome.exceeds_limit = true;
 }
 
@@ -571,6 +573,27 @@ double wb_recordings_results_rms(const struct wb_recordings_results_wire *wire,
 {
     return purpose == WB_RECORDINGS_CALIBRATION ? wire->calibration.rms
                                                 : wire->steps[purpose].result.elastoplastic.rms;
+}
+
+double wb_recordings_results_uncertainty(const struct wb_recordings_results_wire *wire,
+                                         enum wb_recordings_purpose purpose)
+{
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    if (purpose == WB_RECORDINGS_VALIDATION)
+        return wire->steps[purpose].result.expected_rms_95;
+    if (c->n_samples < 2)
+        return (double)NAN;
+    return gsl_cdf_tdist_Qinv(0.025, c->n_samples - 1) *
+           fmin(c->scatter_rms, c->residual_scatter_rms) / sqrt(c->n_samples);
+}
+
+bool wb_recordings_results_keeps(const struct wb_recordings *campaign,
+                                 const struct wb_recordings_results_wire *wire,
+                                 enum wb_recordings_purpose purpose)
+{
+    return wb_decision_keeps(
+        campaign->head.laboratory.rule, wb_recordings_results_rms(wire, purpose),
+        wb_recordings_results_uncertainty(wire, purpose), campaign->limit[purpose]);
 }
 
 double wb_recordings_results_capacity(const struct wb_rig *rig)

@@ -104,6 +104,17 @@ wb_recordings_results_prediction(const struct wb_recordings_results_wire *wire);
 double wb_recordings_results_rms(const struct wb_recordings_results_wire *wire,
                                  enum wb_recordings_purpose purpose);
 
+/* Its uncertainty U by the scatter between specimens, of a coverage of 95 % (Student's t); NaN with
+ * one specimen. An RMS is a norm of the difference of two curves, so it is off by no more than the
+ * RMS of what the means of a few specimens are off: that is U. */
+double wb_recordings_results_uncertainty(const struct wb_recordings_results_wire *wire,
+                                         enum wb_recordings_purpose purpose);
+
+/* Whether it keeps the campaign's limit, which is above 0, by the campaign's decision rule. */
+bool wb_recordings_results_keeps(const struct wb_recordings *campaign,
+                                 const struct wb_recordings_results_wire *wire,
+                                 enum wb_recordings_purpose purpose);
+
 /* Capacity of a rig's load cell as its maker states it: the mass, kg, that weighs so much under the
  * rig's gravity; NaN when that is not known. */
 double wb_recordings_results_capacity(const struct wb_rig *rig);

@@ -25,7 +25,8 @@ static void put_unfitted(struct wb_document *document, const struct wb_bundles_r
 static void put_limits(struct wb_document *document, const struct wb_bundles_results *results)
 {
     struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
-    wb_pages_put_verdicts(document, verdicts, wb_bundles_results_judge(results, verdicts));
+    wb_pages_put_verdicts(document, results->outcome.campaign, verdicts,
+                          wb_bundles_results_judge(results, verdicts));
 }
 
 /* --- what came out --- */

@@ -276,6 +276,7 @@ enum wb_status wb_bundles_results_load(void *context, const void *of)
     struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = of;
     results->campaign = campaign;
+    results->outcome.campaign = &campaign->head;
     results->outcome.n_steps = campaign->n_bundles;
     for (int i = 0; i < campaign->n_runs; i++)
         wb_bundles_run_load(&results->runs[i], &campaign->runs[i]);

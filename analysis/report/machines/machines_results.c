@@ -64,6 +64,7 @@ enum wb_status wb_machines_results_load(void *context, const void *of)
     const struct wb_machines *const campaign = of;
     memset(results, 0, sizeof *results);
     results->campaign = campaign;
+    results->outcome.campaign = &campaign->head;
     results->has_folder = !campaign->environment[0] || getenv(campaign->environment);
     results->groups = calloc((size_t)campaign->n_groups, sizeof *results->groups);
     if (!results->groups)

@@ -22,7 +22,8 @@ static void put_unfitted(struct wb_document *document, const struct wb_wires_res
 static void put_limits(struct wb_document *document, const struct wb_wires_results *results)
 {
     struct wb_verdict verdicts[WB_WIRES_VERDICTS];
-    wb_pages_put_verdicts(document, verdicts, wb_wires_results_judge(results, verdicts));
+    wb_pages_put_verdicts(document, results->outcome.campaign, verdicts,
+                          wb_wires_results_judge(results, verdicts));
 }
 
 /* --- what came out --- */

@@ -258,6 +258,7 @@ enum wb_status wb_wires_results_load(void *context, const void *campaign)
     struct wb_wires_results *const results = context;
     const struct wb_wires *const comparison = campaign;
     results->comparison = comparison;
+    results->outcome.campaign = &comparison->head;
     results->outcome.n_steps = 2;
     for (int i = 0; i < comparison->n_cases; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)

@@ -271,6 +271,48 @@ the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders(void
     wb_recordings_release(&campaign);
 }
 
+static void an_excluded_recording_is_neither_used_nor_missing(void **state)
+{
+    (void)state;
+    write_text("index.yaml", index_text);
+    struct wb_recordings campaign;
+    assert_int_equal(
+        read_campaign(&campaign,
+                      "wires:\n  - wire: type1\n"
+                      "excluded:\n  - {recording: one.wbr.zst, by: N. N., why: it slipped}\n"),
+        WB_OK);
+    const struct wb_recordings_tests *const calibration =
+        &campaign.wires[0].tests[WB_RECORDINGS_CALIBRATION];
+    assert_int_equal(calibration->n, 1);
+    assert_string_equal(calibration->items[0].name, "two.wbr.zst");
+    assert_int_equal(campaign.n_excluded, 1);
+    assert_string_equal(campaign.excluded[0].by, "N. N.");
+    assert_string_equal(campaign.excluded[0].why, "it slipped");
+    assert_string_equal(campaign.excluded[0].sha256, SHA_A);
+    wb_recordings_release(&campaign);
+}
+
+static void an_exclusion_says_who_and_why_and_means_a_recording_of_the_campaign(void **state)
+{
+    (void)state;
+    static const struct refused_campaign cases[] = {
+        {"excluded: []\n", "excluded"},
+        {"excluded: [{recording: four.wbr, by: N. N., why: x}]\n", "'four.wbr' is no recording"},
+        {"excluded: [{recording: one.wbr.zst, by: N. N.}]\n", "why"},
+        {"excluded: [{recording: one.wbr.zst, by: \"\", why: x}]\n", "by: expected who excluded"},
+        {"excluded: [{recording: one.wbr.zst, by: N. N., why: \"\"}]\n", "why: expected who"},
+    };
+    write_text("index.yaml", index_text);
+    for (size_t i = 0; i < WB_COUNT(cases); i++) {
+        struct wb_recordings campaign;
+        char tail[400];
+        snprintf(tail, sizeof tail, "wires:\n  - wire: type1\n%s", cases[i].text);
+        assert_true(read_campaign(&campaign, tail) != WB_OK);
+        if (!strstr(kept.error, cases[i].message))
+            fail_msg("'%s' does not say '%s'", kept.error, cases[i].message);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -284,6 +326,8 @@ int main(void)
         cmocka_unit_test(a_damaged_index_is_an_error),
         cmocka_unit_test(
             the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders),
+        cmocka_unit_test(an_excluded_recording_is_neither_used_nor_missing),
+        cmocka_unit_test(an_exclusion_says_who_and_why_and_means_a_recording_of_the_campaign),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -452,6 +452,63 @@ static void the_scatter_is_pooled_over_wires_where_it_is_asked_for(void **state)
     assert_true(isnan(low) && isnan(high));
 }
 
+/* The uncertainty of an RMS stands beside each verdict, and the rule decides by it. */
+static void a_laboratorys_verdicts_have_uncertainty_and_rule(void **state)
+{
+    struct good *const good = *state;
+    struct wb_laboratory *const laboratory = &good->campaign.head.laboratory;
+    const struct wb_recordings_results_wire *const wire = &good->results.wires[0];
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    /* Student's t of 1 degree of freedom is 12.7062 at 95 %. */
+    const double U = wb_recordings_results_uncertainty(wire, WB_RECORDINGS_CALIBRATION);
+    assert_close_relative(
+        U, 12.70620474 * fmin(c->scatter_rms, c->residual_scatter_rms) / sqrt(2.0), 1e-8);
+    assert_true(U > 0.0);
+    assert_close(wb_recordings_results_uncertainty(wire, WB_RECORDINGS_VALIDATION),
+                 wire->steps[WB_RECORDINGS_VALIDATION].result.expected_rms_95, 0.0);
+    const double limit = good->campaign.limit[0];
+    good->campaign.limit[0] = c->rms + 0.5 * U;
+    assert_true(wb_recordings_results_keeps(&good->campaign, wire, WB_RECORDINGS_CALIBRATION));
+    laboratory->rule = WB_DECISION_GUARDED;
+    assert_false(wb_recordings_results_keeps(&good->campaign, wire, WB_RECORDINGS_CALIBRATION));
+    laboratory->is_given = true;
+    snprintf(laboratory->report, sizeof laboratory->report, "WB-7");
+    assert_int_equal(
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("laboratory"), false), WB_OK);
+    char verdict[120];
+    snprintf(verdict, sizeof verdict, "<i>U</i> = %.4f (95 %%, scatter between specimens)", U);
+    assert_true(says("laboratory/report.html", verdict));
+    assert_true(says("laboratory/report.html", "<b>exceeded</b> by guarded acceptance"));
+    assert_true(says("laboratory/report.html", "End of report WB-7."));
+    assert_true(says("laboratory/report.json", "\"limit_kept\": false"));
+    *laboratory = (struct wb_laboratory){.is_given = false};
+    good->campaign.limit[0] = limit;
+}
+
+static void number_and_pages_stand_on_every_page(void **state)
+{
+    (void)state;
+    if (system("command -v pdftotext >/dev/null 2>&1") != 0)
+        skip();
+    char command[3 * WB_PATH], foot[80];
+    snprintf(command, sizeof command, "pdftotext -layout '%s' '%s'",
+             in_folder("laboratory/report.pdf"), in_folder("laboratory.txt"));
+    assert_int_equal(system(command), 0);
+    char *const text = read_text("laboratory.txt", NULL);
+    int n = 0;
+    for (const char *c = text; *c; c++)
+        n += *c == '\f';
+    assert_true(n > 3);
+    const char *page = text;
+    for (int i = 1; i <= n; i++) {
+        const char *const end = strchr(page, '\f');
+        snprintf(foot, sizeof foot, "Report WB-7 \xc2\xb7 Page %d of %d", i, n);
+        assert_non_null(memmem(page, (size_t)(end - page), foot, strlen(foot)));
+        page = end + 1;
+    }
+    free(text);
+}
+
 /* Without it the report is the paper's route alone, complete as before. */
 static void a_campaign_may_ask_for_the_papers_route_alone(void **state)
 {
@@ -685,6 +742,8 @@ int main(void)
         cmocka_unit_test(a_loading_alone_leaves_the_rule_untested),
         cmocka_unit_test(the_scatter_is_pooled_over_wires_where_it_is_asked_for),
         cmocka_unit_test(a_campaign_may_ask_for_the_papers_route_alone),
+        cmocka_unit_test(a_laboratorys_verdicts_have_uncertainty_and_rule),
+        cmocka_unit_test(number_and_pages_stand_on_every_page),
         cmocka_unit_test(the_pdf_text_can_be_searched),
         cmocka_unit_test(a_full_folder_is_refused_and_force_replaces_only_the_reports_own_files),
         cmocka_unit_test(a_folder_that_cannot_be_written_leaves_nothing),
