@@ -86,6 +86,7 @@ int wb_command_print_json(struct wb_json *root);
 int wb_cmd_align(int argc, char **argv);
 int wb_cmd_calibrate(int argc, char **argv);
 int wb_cmd_clock(int argc, char **argv);
+int wb_cmd_compare(int argc, char **argv);
 int wb_cmd_doctor(int argc, char **argv);
 int wb_cmd_export(int argc, char **argv);
 int wb_cmd_import(int argc, char **argv);

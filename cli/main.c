@@ -20,6 +20,7 @@ static const struct command commands[] = {
     {"align", wb_cmd_align, "recordings to datasets"},
     {"calibrate", wb_cmd_calibrate, "datasets to properties: E, sigma_Y, K, n"},
     {"clock", wb_cmd_clock, "clocks of a recording, lag between force and markers"},
+    {"compare", wb_cmd_compare, "two batches: equivalent, different, or how many more to test"},
     {"doctor", wb_cmd_doctor, "is the bench ready for a test?"},
     {"export", wb_cmd_export,
      "tables of recordings and datasets; with --to, a wire's law as a card"},

@@ -68,7 +68,7 @@ rooms() { # FOLDER ROOM...
     done
 }
 rooms fe team linear material swept solid model rod trial section bundle output
-rooms analysis dataset align import calibration cards validation plot predict solve jobs report
+rooms analysis dataset align import calibration cards validation plot predict compare solve jobs report
 rooms analysis/report draw bench wires bundles machines predictions kinds
 # What reports share knows no kind, and no kind knows another: kinds/ alone sees them all.
 complain 'analysis/report may not include a kind of report:' \

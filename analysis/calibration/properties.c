@@ -716,7 +716,7 @@ static void read_datasets(const struct wb_config_node *node, struct wb_propertie
 static enum wb_status read_calibration(const struct wb_config_node *node,
                                        struct wb_properties *properties)
 {
-    const struct wb_config_node *datasets = NULL;
+    const struct wb_config_node *datasets = NULL, *settings = NULL;
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_NUMBER("length_mm", &properties->calibration_length, WB_MM, 1.0, 1e4),
         WB_CONFIG_OPTIONAL_NUMBER("rms", &properties->rms, 1.0, 0.0, 1e6),
@@ -742,13 +742,19 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
         WB_CONFIG_IGNORED("max_error"),
         WB_CONFIG_OPTIONAL_BOOLEAN("simulation", &properties->is_simulation),
         WB_CONFIG_IGNORED("tool"),
-        WB_CONFIG_IGNORED("settings"),
+        WB_CONFIG_OPTIONAL_NODE("settings", &settings),
         WB_CONFIG_OPTIONAL_NODE("datasets", &datasets),
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     keep_scalar(node, "tool", properties->tool, sizeof properties->tool);
     read_datasets(datasets, properties);
-    return WB_OK;
+    const struct wb_config_key pooled =
+        WB_CONFIG_INTEGER("pooled_degrees", &properties->pooled_degrees, 1, 100000);
+    const struct wb_config_node *const given =
+        settings && wb_config_find(settings, "pooled_deviation")
+            ? wb_config_find(settings, pooled.name)
+            : NULL;
+    return given ? wb_config_value(given, &pooled) : WB_OK;
 }
 
 static enum wb_status read_estimate(const struct wb_config_node *node, double unit, double largest,

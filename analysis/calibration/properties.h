@@ -80,6 +80,8 @@ struct wb_properties {
                                    unknown */
     int n_samples;              /* of the calibration; 0 unknown */
     int n_series;               /* that they belong to, of three-point tests; 0 unknown */
+    int pooled_degrees;         /* of freedom, of a deviation pooled over several wires that all
+                                   intervals have; 0: their own specimens' */
     bool is_virtual;            /* from the virtual rig */
     bool is_simulation;         /* from a computation */
     char method[16];            /* "cycle", "paper", "three-point"; "" of a file by hand */

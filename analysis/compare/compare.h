@@ -1,0 +1,63 @@
+/* Two calibrated batches side by side: EI, springback and moments, of two suppliers, lots or
+ * temperatures, by the intervals that their properties files give.
+ *
+ * Compared are means of logarithms over specimens (welch.h), so that the difference is the
+ * logarithm of the ratio B over A. Springback and moments are compared at the same curvatures, up
+ * to the smaller of the two largest ones: each file's number at its own curvature, times what its
+ * law says between the two. What both batches have in common on one bench (gain of the cell,
+ * lengths, diameter) cancels in the ratio; what two benches do not share does not.
+ */
+#ifndef WB_ANALYSIS_COMPARE_COMPARE_H
+#define WB_ANALYSIS_COMPARE_COMPARE_H
+
+#include <stdbool.h>
+
+#include "analysis/calibration/properties.h"
+#include "analysis/compare/welch.h"
+#include "base/json.h"
+#include "base/status.h"
+
+enum {
+    WB_COMPARE_SIDES = 2,
+    WB_COMPARE_QUANTITIES = 2 + WB_CYCLE_MOMENTS
+};
+
+/* Of each verdict; the intervals are of 1 - 2 alpha. */
+#define WB_COMPARE_ALPHA 0.05
+
+struct wb_compare_quantity {
+    char name[64];      /* plain: "EI", "M(12.5 1/m)" */
+    char unit[16];      /* of `factor`: "N mm2"; "" none */
+    double factor;      /* unit to SI */
+    const char *reason; /* why it is not compared; NULL: it is, and only then is the rest known */
+    struct wb_welch_group groups[WB_COMPARE_SIDES]; /* of logarithms of SI values */
+    struct wb_welch welch;                          /* of the logarithm of B over A */
+    enum wb_verdict_of_groups verdict;
+    int more; /* specimens of each batch, where it is undecided (wb_welch_more()) */
+};
+
+struct wb_compare {
+    double within;    /* limit of the logarithm of the ratio */
+    double curvature; /* 1/m, up to which both are measured */
+    struct wb_compare_quantity quantities[WB_COMPARE_QUANTITIES];
+    int n_compared;
+    enum wb_verdict_of_groups
+        verdict; /* of all: different where any is, equivalent where all are */
+    int more;    /* the largest of those undecided; 0: see wb_welch_more() */
+};
+
+/* Properties of calibrations on whole cycles or three-point bending, whose numbers have intervals;
+ * of others, and where nothing can be compared: WB_ERR_DATA. `names` are for messages. */
+WB_MUST_CHECK enum wb_status wb_compare_run(struct wb_compare *compare,
+                                            const struct wb_properties *const *properties,
+                                            const char *const *names, double within);
+
+/* "equivalent", "different", "cannot tell". */
+const char *wb_compare_word(enum wb_verdict_of_groups verdict);
+
+/* All numbers, with units in the keys. */
+struct wb_json *wb_compare_json(const struct wb_compare *compare,
+                                const struct wb_properties *const *properties,
+                                const char *const *names);
+
+#endif

@@ -1,0 +1,135 @@
+/* wirebench compare: two batches side by side, by the properties of each. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/report/compared.h"
+#include "base/number.h"
+#include "cli/command.h"
+
+#define WB_LOG_DOMAIN "compare"
+
+struct options {
+    struct wb_command_common common;
+    double within; /* 0: not given */
+};
+
+enum {
+    KEY_WITHIN = WB_KEY_OWN
+};
+
+static const double least_within = 1e-4, most_within = 2.0;
+
+static const struct argp_option option_table[] = {
+    {"within", KEY_WITHIN, "X", 0,
+     "Limit of the logarithm of the ratio, 0.0001 to 2: 0.1 is -9.5 to +10.5 % (required)", 0},
+    {"output", 'o', "FILE.pdf", 0, "Write one page there", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Replace the file", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+    switch (key) {
+    case KEY_WITHIN:
+        if (!wb_number_parse(argument, &o->within) ||
+            !(o->within >= least_within && o->within <= most_within))
+            argp_error(state, "--within: expected a number from %g to %g, not '%s'", least_within,
+                       most_within, argument);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->common.n > WB_COMPARE_SIDES)
+            argp_error(state, "name two properties files, not %d", o->common.n);
+        if (o->common.n == WB_COMPARE_SIDES && !(o->within > 0.0))
+            argp_error(state, "say what counts as equivalent: --within X");
+        break;
+    }
+    return wb_command_parse_common(key, argument, state, &o->common);
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "A.yaml B.yaml",
+    .doc = "Compares two batches (lots, suppliers, temperatures) by the properties that "
+           "`calibrate` wrote of each: EI, springback and moments at the same curvatures. The "
+           "interval of 90 % of the logarithm of the ratio B over A (Welch) lies within -X to X: "
+           "equivalent; outside as a whole: different; else it cannot tell, and says how many more "
+           "specimens to test.\v"
+           "Exit code 3: it cannot tell. Exit code 4: a quantity is different.",
+};
+
+static void print(const struct wb_compare *c)
+{
+    struct wb_text text = {0};
+    for (int k = 0; k < WB_COMPARE_QUANTITIES; k++) {
+        const struct wb_compare_quantity *const q = &c->quantities[k];
+        if (q->reason) {
+            printf("%-24s %s\n", q->name, q->reason);
+            continue;
+        }
+        printf("%-24s A %.4g  B %.4g %s  B/A %.3f (%.3f to %.3f)  %s", q->name,
+               exp(q->groups[0].mean) / q->factor, exp(q->groups[1].mean) / q->factor, q->unit,
+               exp(q->welch.difference), exp(q->welch.low), exp(q->welch.high),
+               wb_compare_word(q->verdict));
+        if (q->verdict == WB_GROUPS_UNDECIDED && q->more > 0)
+            printf(", test %d more of each", q->more);
+        printf("\n");
+    }
+    wb_compared_append_verdict(&text, c);
+    printf("%s (alpha %g each)\n", wb_text_string(&text), WB_COMPARE_ALPHA);
+    wb_text_release(&text);
+}
+
+/* What a page calls a file: its name, and where both files have the same the folders up to one that
+ * differs. */
+static const char *name_of(const char *path, const char *other)
+{
+    const char *at = path + strlen(path), *end = other + strlen(other);
+    while (at > path && end > other && at[-1] == end[-1])
+        at--, end--;
+    if (at == path && end == other)
+        return wb_file_name(path);
+    while (at > path && at[-1] != '/')
+        at--;
+    return strchr(at, '/') ? at : wb_file_name(path);
+}
+
+static enum wb_status run(const struct options *o, struct wb_compare *compare,
+                          struct wb_properties properties[WB_COMPARE_SIDES])
+{
+    struct wb_compared page = {.compare = compare};
+    for (int i = 0; i < WB_COMPARE_SIDES; i++) {
+        WB_TRY(wb_properties_read(o->common.inputs[i], &properties[i]));
+        WB_TRY(wb_hash_file(o->common.inputs[i], page.sha256[i]));
+        page.properties[i] = &properties[i];
+        page.names[i] = name_of(o->common.inputs[i], o->common.inputs[1 - i]);
+    }
+    WB_TRY(wb_compare_run(compare, page.properties, page.names, o->within));
+    if (o->common.output)
+        WB_TRY(wb_compared_write(&page, o->common.output, o->common.force));
+    if (!o->common.json) {
+        print(compare);
+        return WB_OK;
+    }
+    return wb_command_print_json(wb_compare_json(compare, page.properties, page.names)) ==
+                   WB_EXIT_OK
+               ? WB_OK
+               : WB_ERR_MEMORY;
+}
+
+int wb_cmd_compare(int argc, char **argv)
+{
+    static const int codes[] = {[WB_GROUPS_EQUIVALENT] = WB_EXIT_OK,
+                                [WB_GROUPS_DIFFERENT] = WB_EXIT_LIMIT,
+                                [WB_GROUPS_UNDECIDED] = WB_EXIT_INCOMPLETE};
+    static struct wb_properties properties[WB_COMPARE_SIDES];
+    struct options options = {.common = {.noun = "two properties files", .least = 2}};
+    struct wb_compare compare = {.within = 0.0};
+    wb_command_parse(&argp, argc, argv, &options);
+    const enum wb_status status = run(&options, &compare, properties);
+    wb_command_release(&options.common);
+    return status == WB_OK ? codes[compare.verdict] : wb_command_exit(status);
+}
