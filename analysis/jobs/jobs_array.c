@@ -254,8 +254,8 @@ static enum wb_status read_id(const char *said, char array[32], char cluster[64]
 
 static enum wb_status ask_sbatch(const char *const *words, char array[32], char cluster[64])
 {
-    struct wb_jobs_queue_answer answer;
-    enum wb_status status = wb_jobs_queue_command(&answer, words, submit_time);
+    struct wb_program_answer answer;
+    enum wb_status status = wb_program_run(&answer, words, submit_time);
     if (status == WB_ERR_NOT_FOUND)
         return wb_fail(
             WB_ERR_NOT_FOUND,
@@ -272,7 +272,7 @@ static enum wb_status ask_sbatch(const char *const *words, char array[32], char 
                          (int)strcspn(said, "\n"), said);
     else
         status = read_id(wb_text_string(&answer.out), array, cluster);
-    wb_jobs_queue_answer_release(&answer);
+    wb_program_answer_release(&answer);
     return status;
 }
 

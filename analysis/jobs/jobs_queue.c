@@ -1,126 +1,15 @@
 #include "analysis/jobs/jobs_queue.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/wait.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "base/number.h"
 #include "base/progress.h"
-#include "base/units.h"
 
 #define WB_LOG_DOMAIN "jobs"
 
 static const double answer_time = 60.0; /* s; a busy controller takes its time */
-
-/* --- commands --- */
-
-/* The program of that name in PATH. */
-static bool find_program(char path[WB_PATH], const char *name)
-{
-    const char *folder = getenv("PATH");
-    while (folder && *folder) {
-        const size_t n = strcspn(folder, ":");
-        if (snprintf(path, WB_PATH, "%.*s%s%s", (int)n, folder, n > 0 ? "/" : "", name) < WB_PATH &&
-            access(path, X_OK) == 0 && !wb_file_is_folder(path))
-            return true;
-        folder += n + (folder[n] == ':');
-    }
-    return false;
-}
-
-static void pause_ms(int ms)
-{
-    const struct timespec time = {.tv_sec = 0, .tv_nsec = ms * 1000000L};
-    nanosleep(&time, NULL);
-}
-
-/* Its exit code into *code; false when it had to be killed. */
-static bool wait_for(pid_t child, double timeout, int *code)
-{
-    const int64_t until_ns = wb_progress_now_ns() + wb_ns_from_seconds(timeout);
-    int status = 0, ms = 1;
-    bool killed = false;
-    for (;;) {
-        const pid_t ended = waitpid(child, &status, WNOHANG);
-        if (ended == child || (ended < 0 && errno != EINTR))
-            break;
-        if (!killed && wb_progress_now_ns() > until_ns) {
-            kill(-child, SIGKILL);
-            killed = true;
-        }
-        pause_ms(ms);
-        ms = ms < 50 ? 2 * ms : 50;
-    }
-    *code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-    return !killed;
-}
-
-static void read_back(struct wb_text *text, int descriptor)
-{
-    char bytes[4096];
-    ssize_t n;
-    if (lseek(descriptor, 0, SEEK_SET) != 0)
-        return;
-    while ((n = read(descriptor, bytes, sizeof bytes)) > 0)
-        wb_text_append_bytes(text, bytes, (size_t)n);
-}
-
-/* Into two files in memory: nothing can be held up by a pipe that nobody reads. */
-static enum wb_status run_into(struct wb_jobs_queue_answer *answer, const char *path,
-                               const char *const *words, double timeout, const int files[2])
-{
-    const pid_t child = fork();
-    if (child < 0)
-        return wb_fail(WB_ERR_IO, "cannot start '%s': %s", path, strerror(errno));
-    if (child == 0) {
-        setpgid(0, 0); /* Ctrl-C must not hit a submission half-way */
-        const int nothing = open("/dev/null", O_RDONLY);
-        if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
-            dup2(files[0], STDOUT_FILENO) >= 0 && dup2(files[1], STDERR_FILENO) >= 0)
-            execv(path, (char *const *)words);
-        _exit(127);
-    }
-    setpgid(child, child);
-    if (!wait_for(child, timeout, &answer->code))
-        return wb_fail(WB_ERR_TIMEOUT, "%s did not end within %.0f s", words[0], timeout);
-    read_back(&answer->out, files[0]);
-    read_back(&answer->err, files[1]);
-    return WB_OK;
-}
-
-enum wb_status wb_jobs_queue_command(struct wb_jobs_queue_answer *answer, const char *const *words,
-                                     double timeout)
-{
-    char path[WB_PATH];
-    *answer = (struct wb_jobs_queue_answer){0};
-    if (!find_program(path, words[0]))
-        return WB_ERR_NOT_FOUND;
-    const int files[2] = {memfd_create("out", MFD_CLOEXEC), memfd_create("err", MFD_CLOEXEC)};
-    enum wb_status status = WB_OK;
-    if (files[0] < 0 || files[1] < 0)
-        status = wb_fail(WB_ERR_IO, "cannot make a file in memory: %s", strerror(errno));
-    else
-        status = run_into(answer, path, words, timeout, files);
-    for (int i = 0; i < 2; i++)
-        if (files[i] >= 0)
-            close(files[i]);
-    if (status != WB_OK)
-        wb_jobs_queue_answer_release(answer);
-    return status;
-}
-
-void wb_jobs_queue_answer_release(struct wb_jobs_queue_answer *answer)
-{
-    wb_text_release(&answer->out);
-    wb_text_release(&answer->err);
-}
 
 /* --- lines of squeue --- */
 
@@ -253,8 +142,8 @@ static enum wb_status look_at(struct wb_jobs_plan *plan, const struct wb_jobs_pl
                                  "--format=%i|%T|%r|%o",
                                  one->cluster[0] ? cluster : NULL,
                                  NULL};
-    struct wb_jobs_queue_answer answer;
-    const enum wb_status status = wb_jobs_queue_command(&answer, words, answer_time);
+    struct wb_program_answer answer;
+    const enum wb_status status = wb_program_run(&answer, words, answer_time);
     if (status == WB_ERR_NOT_FOUND)
         note_lost(look, "there is no squeue in PATH");
     else if (status == WB_ERR_TIMEOUT)
@@ -268,7 +157,7 @@ static enum wb_status look_at(struct wb_jobs_plan *plan, const struct wb_jobs_pl
         take_lines(plan, one, answer.out.bytes, look, seen);
     else
         note_lost(look, wb_text_string(&answer.err));
-    wb_jobs_queue_answer_release(&answer);
+    wb_program_answer_release(&answer);
     return WB_OK;
 }
 
@@ -308,9 +197,9 @@ void wb_jobs_queue_ask_ending(struct wb_jobs_plan_item *item)
                                  "--format=State",
                                  item->cluster[0] ? cluster : NULL,
                                  NULL};
-    struct wb_jobs_queue_answer answer;
+    struct wb_program_answer answer;
     const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
-    const enum wb_status status = wb_jobs_queue_command(&answer, words, answer_time);
+    const enum wb_status status = wb_program_run(&answer, words, answer_time);
     wb_log_set_gravest(before);
     if (status != WB_OK)
         return;
@@ -318,19 +207,19 @@ void wb_jobs_queue_ask_ending(struct wb_jobs_plan_item *item)
     if (answer.code == 0 && sscanf(wb_text_string(&answer.out), "%63[A-Z_]", state) == 1 &&
         has_ended(state))
         snprintf(item->ending, sizeof item->ending, "%s", state);
-    wb_jobs_queue_answer_release(&answer);
+    wb_program_answer_release(&answer);
 }
 
 int wb_jobs_queue_largest_task(void)
 {
     static const char *const words[] = {"scontrol", "show", "config", NULL};
-    struct wb_jobs_queue_answer answer;
+    struct wb_program_answer answer;
     int size = 1001; /* Slurm's own default */
-    if (wb_jobs_queue_command(&answer, words, answer_time) != WB_OK)
+    if (wb_program_run(&answer, words, answer_time) != WB_OK)
         return size - 1;
     const char *const line = strstr(wb_text_string(&answer.out), "MaxArraySize");
     if (!line || sscanf(line, "MaxArraySize = %d", &size) != 1 || size < 2)
         size = 1001;
-    wb_jobs_queue_answer_release(&answer);
+    wb_program_answer_release(&answer);
     return size - 1;
 }

@@ -6,21 +6,8 @@
 #define WB_ANALYSIS_JOBS_JOBS_QUEUE_H
 
 #include "analysis/jobs/jobs_plan.h"
+#include "base/program.h"
 #include "base/status.h"
-#include "base/text.h"
-
-/* What a command printed. */
-struct wb_jobs_queue_answer {
-    struct wb_text out, err;
-    int code; /* exit code; 128 + signal */
-};
-
-/* Runs a program of PATH and waits for it, through an interrupt as well. `words` is its command
- * line, NULL-terminated. WB_ERR_NOT_FOUND without a message when there is no such program,
- * WB_ERR_TIMEOUT with one when it did not end within `timeout` (s) and was killed. */
-WB_MUST_CHECK enum wb_status wb_jobs_queue_command(struct wb_jobs_queue_answer *answer,
-                                                   const char *const *words, double timeout);
-void wb_jobs_queue_answer_release(struct wb_jobs_queue_answer *answer);
 
 /* How a question about the queue went. */
 struct wb_jobs_queue_look {
