@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -495,4 +496,86 @@ bool wb_json_text(const struct wb_json *value, const char **text)
         return false;
     *text = value->as.text;
     return true;
+}
+
+/* --- two documents --- */
+
+struct comparison {
+    double tolerance;
+    char *place;
+    size_t length;
+};
+
+/* Puts a step on the way to a value; what was there before is put back by its length. */
+static size_t step_to(struct comparison *c, const char *key, size_t index)
+{
+    const size_t before = c->length, room = 200 - c->length;
+    const int n = key ? snprintf(c->place + before, room, "%s%s", before > 0 ? "." : "", key)
+                      : snprintf(c->place + before, room, "[%zu]", index);
+    c->length = n > 0 && (size_t)n < room ? before + (size_t)n : before;
+    return before;
+}
+
+static double largest_of(const struct wb_json *list)
+{
+    double largest = 0.0, number;
+    for (size_t i = 0; is_list(list) && list->kind == KIND_ARRAY && i < list->as.list.n; i++) {
+        if (wb_json_number(list->as.list.values[i], &number))
+            largest = fmax(largest, fabs(number));
+    }
+    return largest;
+}
+
+static bool differ(struct comparison *c, const struct wb_json *a, const struct wb_json *b,
+                   double scale, const char *ignored);
+
+static bool lists_differ(struct comparison *c, const struct wb_json *a, const struct wb_json *b,
+                         const char *ignored)
+{
+    const double scale = fmax(largest_of(a), largest_of(b));
+    if (a->as.list.n != b->as.list.n)
+        return true;
+    for (size_t i = 0; i < a->as.list.n; i++) {
+        const struct wb_json *const x = a->as.list.values[i], *const y = b->as.list.values[i];
+        const bool is_member = a->kind == KIND_OBJECT;
+        if (is_member && ignored && strcmp(x->key, ignored) == 0 && strcmp(y->key, ignored) == 0)
+            continue;
+        const size_t before = step_to(c, is_member ? x->key : NULL, i);
+        if ((is_member && strcmp(x->key, y->key) != 0) || differ(c, x, y, scale, NULL))
+            return true;
+        c->length = before;
+        c->place[before] = '\0';
+    }
+    return false;
+}
+
+/* `scale`: of the array that they stand in. */
+static bool differ(struct comparison *c, const struct wb_json *a, const struct wb_json *b,
+                   double scale, const char *ignored)
+{
+    double x, y;
+    /* A number without a fraction reads back as an integer. */
+    if (wb_json_number(a, &x) && wb_json_number(b, &y))
+        return !(fabs(x - y) <= c->tolerance * fmax(scale, fmax(fabs(x), fabs(y))));
+    if (!a || !b || a->kind != b->kind)
+        return a != b;
+    switch (a->kind) {
+    case KIND_BOOLEAN:
+        return a->as.boolean != b->as.boolean;
+    case KIND_TEXT:
+        return strcmp(a->as.text, b->as.text) != 0;
+    case KIND_ARRAY:
+    case KIND_OBJECT:
+        return lists_differ(c, a, b, ignored);
+    default:
+        return false;
+    }
+}
+
+bool wb_json_differs(const struct wb_json *a, const struct wb_json *b, double tolerance,
+                     const char *ignored, char place[200])
+{
+    struct comparison c = {.tolerance = tolerance, .place = place};
+    place[0] = '\0';
+    return differ(&c, a, b, 0.0, ignored);
 }

@@ -69,4 +69,11 @@ struct wb_json *wb_json_item(const struct wb_json *array, size_t index);
 bool wb_json_number(const struct wb_json *value, double *number);
 bool wb_json_text(const struct wb_json *value, const char **text);
 
+/* Whether two values differ, and where first: "wires[0].rms" into `place`. Texts, truths, keys and
+ * lengths are to be equal, and keys in the same order; numbers are to differ by at most `tolerance`
+ * times the larger of the two, or in an array of numbers times the largest of both arrays. Members
+ * `ignored` (NULL: none) of the two values themselves may differ. */
+bool wb_json_differs(const struct wb_json *a, const struct wb_json *b, double tolerance,
+                     const char *ignored, char place[200]);
+
 #endif

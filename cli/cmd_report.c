@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "analysis/jobs/jobs.h"
+#include "analysis/report/check.h"
 #include "analysis/report/kinds/kinds.h"
 #include "analysis/report/report.h"
 #include "base/file.h"
@@ -13,17 +14,29 @@
 struct options {
     struct wb_command_common common;
     int threads;
+    const char *key;             /* to sign with; NULL: not */
+    const char *check;           /* folder of a signed report; NULL: a report is made */
     struct wb_jobs_options jobs; /* for datasets that are missing */
 };
 
 enum {
-    KEY_THREADS = WB_KEY_OWN
+    KEY_THREADS = WB_KEY_OWN,
+    KEY_SIGN,
+    KEY_CHECK
 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Replace the report that the folder holds", 0},
     {"threads", KEY_THREADS, "N", 0, "Threads to compute on, 1 to 16 (as many as cores, 4 at most)",
+     0},
+    {"sign", KEY_SIGN, "KEY", 0,
+     "Also write manifest.json, SHA-256 sums of the report and of what it is made from, and its "
+     "OpenPGP signature with this key of gpg",
+     0},
+    {"check", KEY_CHECK, "DIR", 0,
+     "Check the signed report there: signature, files, and what comes out computed again; the "
+     "campaign file need be named only where it is not found",
      0},
     {"json", WB_KEY_JSON, NULL, 0, "Print all numbers as one JSON object", 0},
     {0},
@@ -39,9 +52,22 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_THREADS:
         o->threads = wb_command_integer(state, "--threads", argument, 1, 16);
         return 0;
+    case KEY_SIGN:
+        o->key = argument;
+        return 0;
+    case KEY_CHECK:
+        o->check = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->check)
+            break;
+        if (o->key || o->common.output)
+            argp_error(state, "--check makes no report: not with --sign or -o");
+        return 0;
     default:
-        return wb_command_parse_common(key, argument, state, &o->common);
+        break;
     }
+    return wb_command_parse_common(key, argument, state, &o->common);
 }
 
 static const struct argp_child children[] = {{&wb_job_options_argp, 0, NULL, 0}, {0}};
@@ -49,7 +75,7 @@ static const struct argp_child children[] = {{&wb_job_options_argp, 0, NULL, 0},
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .args_doc = "CAMPAIGN.yaml",
+    .args_doc = "CAMPAIGN.yaml\n--check DIR [CAMPAIGN.yaml]",
     .doc = "Aligns the recordings of a campaign, calibrates and validates its wires and writes the "
            "report: report.pdf, report.html, report.json and figures/ (SVG and PNG). A campaign of "
            "the kind `comparison` compares datasets that `solve` made of wire models, one of the "
@@ -58,7 +84,9 @@ static const struct argp argp = {
            "all is written, but a limit of the campaign is exceeded. The same recordings or "
            "datasets and the same revision give the same bytes. --solve and --slurm first make "
            "the datasets that a campaign misses, those that are outdated too (recordings cannot be "
-           "computed); run again, they go on where they ended. Logs lie in DIR.jobs.",
+           "computed); run again, they go on where they ended. Logs lie in DIR.jobs. "
+           "--check ends with exit code 0 where the same bytes come out again, or by another build "
+           "numbers within 1e-9; 3: the campaign is not here to be computed.",
     .children = children,
 };
 
@@ -89,7 +117,26 @@ static int deliver(const struct options *o, enum wb_report_end end)
     if (!o->common.json)
         printf("%s/report.pdf\n%s/report.html\n%s/report.json\n%s/figures\n", folder, folder,
                folder, folder);
+    if (!o->common.json && o->key)
+        printf("%s/manifest.json\n%s/manifest.json.asc\n", folder, folder);
     return codes[end];
+}
+
+static int check(const struct options *o)
+{
+    static const int codes[] = {[WB_CHECK_SAME] = WB_EXIT_OK,
+                                [WB_CHECK_OTHER_BUILD] = WB_EXIT_OK,
+                                [WB_CHECK_NOT_COMPUTED] = WB_EXIT_INCOMPLETE};
+    char buffer[WB_PATH];
+    enum wb_check_end end = WB_CHECK_NOT_COMPUTED;
+    const struct wb_check_order order = {
+        .folder = o->check,
+        .campaign = o->common.input ? wb_command_find(o->common.input, buffer) : NULL,
+        .n_threads = o->threads,
+        .out = stdout,
+    };
+    const enum wb_status status = wb_check_run(&end, wb_kinds, WB_KINDS, &order);
+    return status == WB_OK ? codes[end] : wb_command_exit(status);
 }
 
 int wb_cmd_report(int argc, char **argv)
@@ -99,11 +146,18 @@ int wb_cmd_report(int argc, char **argv)
         .common = {.noun = "campaign file", .destination = "report goes: -o DIR"}};
     enum wb_report_end end = WB_REPORT_NOTHING;
     wb_command_parse(&argp, argc, argv, &options);
+    if (options.check) {
+        wb_interrupt_install();
+        const int code = check(&options);
+        wb_jobs_options_release(&options.jobs);
+        return code;
+    }
     const struct wb_report_order order = {
         .campaign = wb_command_find(options.common.input, buffer),
         .folder = options.common.output,
         .force = options.common.force,
         .quiet = options.common.json,
+        .key = options.key,
         .n_threads = options.threads,
         .jobs = &options.jobs,
     };

@@ -1,7 +1,9 @@
 #include "analysis/plot/typeset.h"
 
+#include <stdio.h>
 #include <string.h>
 
+#include <fontconfig/fontconfig.h>
 #include <pango/pangocairo.h>
 
 static PangoLayout *layout_of(cairo_t *cairo, const char *markup,
@@ -95,4 +97,25 @@ struct wb_typeset_size wb_typeset_draw(cairo_t *cairo, double x, double y, const
     cairo_restore(cairo);
     g_object_unref(layout);
     return size;
+}
+
+int wb_typeset_font_files(char path[WB_TYPESET_FONTS][4096])
+{
+    static const char *const names[WB_TYPESET_FONTS] = {"DejaVu Sans", "DejaVu Sans:bold",
+                                                        "DejaVu Sans Mono"};
+    int n = 0;
+    for (int i = 0; i < WB_TYPESET_FONTS; i++) {
+        FcPattern *const pattern = FcNameParse((const FcChar8 *)names[i]);
+        FcResult result;
+        FcChar8 *file = NULL;
+        FcConfigSubstitute(NULL, pattern, FcMatchPattern);
+        FcDefaultSubstitute(pattern);
+        FcPattern *const match = FcFontMatch(NULL, pattern, &result);
+        if (match && FcPatternGetString(match, FC_FILE, 0, &file) == FcResultMatch)
+            snprintf(path[n++], 4096, "%s", (const char *)file);
+        if (match)
+            FcPatternDestroy(match);
+        FcPatternDestroy(pattern);
+    }
+    return n;
 }

@@ -44,4 +44,11 @@ struct wb_typeset_size wb_typeset_draw(cairo_t *cairo, double x, double y, const
 /* Sets the colour of what is drawn next. */
 void wb_typeset_set_colour(cairo_t *cairo, struct wb_colour colour);
 
+/* The files of the fonts that texts are set in, plain, bold and monospaced: paths into `path`,
+ * whose names tell nothing of their versions. Returns how many were found. */
+enum {
+    WB_TYPESET_FONTS = 3
+};
+int wb_typeset_font_files(char path[WB_TYPESET_FONTS][4096]);
+
 #endif

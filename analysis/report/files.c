@@ -165,8 +165,7 @@ static bool is_made(const struct outputs *outputs, const char *name)
     return false;
 }
 
-/* Only names that this program gives: nothing outside of the folder. */
-static bool is_ours(const char *name)
+bool wb_files_is_ours(const char *name)
 {
     bool is_in_place = !strchr(name, '/');
     for (size_t k = 0; k < WB_COUNT(subfolders); k++)
@@ -185,7 +184,7 @@ static void remove_stale(const struct outputs *outputs, const char *folder)
     const struct wb_json *const files = wb_json_get(before, "files");
     for (size_t i = 0; i < wb_json_length(files); i++) {
         const char *name;
-        if (wb_json_text(wb_json_item(files, i), &name) && is_ours(name) &&
+        if (wb_json_text(wb_json_item(files, i), &name) && wb_files_is_ours(name) &&
             !is_made(outputs, name) && wb_file_join(path, folder, name) == WB_OK)
             unlink(path);
     }

@@ -1,9 +1,12 @@
 #include "analysis/report/report.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/report/manifest.h"
 #include "analysis/report/missing.h"
+#include "analysis/report/openpgp.h"
 #include "base/config.h"
 #include "base/progress.h"
 
@@ -70,6 +73,44 @@ static enum wb_status compute(struct making *making)
     return status;
 }
 
+/* What keeps a report from being signed, before it costs the time of the computations. */
+static enum wb_status check_signing(const struct making *making)
+{
+    const struct wb_report_order *const order = making->order;
+    const struct wb_campaign *const campaign = making->campaign;
+    if (wb_manifest_is_signed(order->folder))
+        return wb_fail(WB_ERR_EXISTS,
+                       "'%s' holds a signed report, which stays: write into another folder; an "
+                       "amendment has a number of its own and names what it replaces "
+                       "(laboratory, amends)",
+                       order->folder);
+    if (!order->key)
+        return WB_OK;
+    if (!campaign->laboratory.is_given)
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "'%s' has no 'laboratory' with the number of the report: nothing to sign",
+                       order->campaign);
+    return wb_openpgp_find_key(order->key);
+}
+
+/* A manifest without the signature that was asked for does not stay. */
+static enum wb_status sign(const struct making *making)
+{
+    const struct wb_report_order *const order = making->order;
+    char path[WB_PATH], signature[WB_PATH];
+    if (!order->has_manifest && !order->key)
+        return WB_OK;
+    WB_TRY(wb_manifest_write(making->kind, making->results, order->folder));
+    if (!order->key)
+        return WB_OK;
+    WB_TRY(wb_file_join(path, order->folder, wb_manifest_name));
+    WB_TRY(wb_file_join(signature, order->folder, wb_manifest_signature_name));
+    const enum wb_status status = wb_openpgp_sign(path, signature, order->key);
+    if (status != WB_OK)
+        remove(path);
+    return status;
+}
+
 static enum wb_status deliver(struct making *making)
 {
     const struct wb_report_order *const order = making->order;
@@ -77,6 +118,7 @@ static enum wb_status deliver(struct making *making)
     if (outcome->interrupted)
         return refuse_interrupted(making);
     WB_TRY(wb_kind_write(making->kind, making->results, order->folder, order->force));
+    WB_TRY(sign(making));
     if (!order->quiet)
         making->kind->print(stdout, making->results);
     const int n_missing = wb_laboratory_missing(&outcome->campaign->laboratory);
@@ -101,6 +143,7 @@ static enum wb_status make(struct making *making)
     if (!making->campaign || !making->results)
         return wb_fail(WB_ERR_MEMORY, "out of memory");
     WB_TRY(wb_kind_read(kind, making->campaign, order->campaign));
+    WB_TRY(check_signing(making));
     /* A folder that may not be written should not cost the time of the computations. */
     WB_TRY(wb_file_prepare_output(order->folder, order->force));
     WB_TRY(kind->load(making->results, making->campaign));

@@ -19,6 +19,8 @@ struct wb_report_order {
     const char *folder;                 /* to write */
     bool force;                         /* replaces the report that it holds */
     bool quiet;                         /* prints no summary */
+    bool has_manifest;                  /* also writes manifest.json */
+    const char *key;                    /* to sign the manifest with, by gpg; NULL: none */
     int n_threads;                      /* 0: as many as cores, 4 at most */
     const struct wb_jobs_options *jobs; /* for datasets that are missing */
 };
@@ -32,8 +34,8 @@ enum wb_report_end {
 };
 
 /* Reads the campaign, whose kind is one of `kinds` (n_kinds; the first one where the file names
- * none), has missing datasets made where that is asked for, computes, writes, and prints a summary
- * on stdout. */
+ * none), has missing datasets made where that is asked for, computes, writes, signs, and prints a
+ * summary on stdout. A folder that holds a signed report is refused, `force` or not. */
 WB_MUST_CHECK enum wb_status wb_report_make(enum wb_report_end *end,
                                             const struct wb_kind *const *kinds, size_t n_kinds,
                                             const struct wb_report_order *order);

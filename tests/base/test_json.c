@@ -147,6 +147,50 @@ static void bad_json_is_refused(void **state)
     wb_log_set_sink(NULL, NULL);
 }
 
+/* Two documents: whether they differ by more than 1e-9, and where. */
+static void assert_differs(const char *one, const char *other, const char *ignored,
+                           const char *expected)
+{
+    struct wb_json *a, *b;
+    char place[200];
+    assert_int_equal(wb_json_parse(&a, one, "a"), WB_OK);
+    assert_int_equal(wb_json_parse(&b, other, "b"), WB_OK);
+    const bool differs = wb_json_differs(a, b, 1e-9, ignored, place);
+    assert_int_equal(differs, expected != NULL);
+    if (expected)
+        assert_string_equal(place, expected);
+    wb_json_destroy(a);
+    wb_json_destroy(b);
+}
+
+static void documents_are_compared_number_by_number(void **state)
+{
+    (void)state;
+    assert_differs("{\"a\": [1, {\"b\": 2.5}]}", "{\"a\": [1.0, {\"b\": 2.5}]}", NULL, NULL);
+    assert_differs("{\"a\": {\"b\": 1}}", "{\"a\": {\"b\": 1.0000000005}}", NULL, NULL);
+    assert_differs("{\"a\": {\"b\": 1}}", "{\"a\": {\"b\": 1.000000002}}", NULL, "a.b");
+    assert_differs("{\"a\": {\"b\": 1e-20}}", "{\"a\": {\"b\": 2e-20}}", NULL, "a.b");
+    /* What is nothing beside the largest of its array may be another nothing. */
+    assert_differs("{\"a\": [5, 1e-20]}", "{\"a\": [5, 2e-20]}", NULL, NULL);
+    assert_differs("{\"a\": [5, 1e-8]}", "{\"a\": [5, 2e-8]}", NULL, "a[1]");
+    assert_differs("{\"a\": [5, {\"b\": [true]}]}", "{\"a\": [5, {\"b\": [false]}]}", NULL,
+                   "a[1].b[0]");
+}
+
+static void what_is_no_number_is_to_be_equal(void **state)
+{
+    (void)state;
+    assert_differs("{\"a\": \"x\", \"c\": \"x\"}", "{\"a\": \"x\", \"c\": \"y\"}", NULL, "c");
+    assert_differs("{\"a\": \"1\"}", "{\"a\": 1}", NULL, "a");
+    assert_differs("{\"a\": null}", "{\"a\": null}", NULL, NULL);
+    assert_differs("{\"a\": null}", "{\"a\": 0}", NULL, "a");
+    assert_differs("{\"a\": {\"b\": 1}}", "{\"a\": {\"c\": 1}}", NULL, "a.b");
+    assert_differs("{\"a\": [1, 2]}", "{\"a\": [1]}", NULL, "a");
+    /* One member may be left out, here and not further down. */
+    assert_differs("{\"t\": 1, \"a\": 1}", "{\"t\": 2, \"a\": 1}", "t", NULL);
+    assert_differs("{\"a\": {\"t\": 1}}", "{\"a\": {\"t\": 2}}", "t", "a.t");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -157,6 +201,8 @@ int main(void)
         cmocka_unit_test(a_failure_belongs_to_one_document),
         cmocka_unit_test(setting_again_replaces_and_keeps_the_place),
         cmocka_unit_test(bad_json_is_refused),
+        cmocka_unit_test(documents_are_compared_number_by_number),
+        cmocka_unit_test(what_is_no_number_is_to_be_equal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

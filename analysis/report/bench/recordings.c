@@ -289,7 +289,8 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
     const struct wb_recordings *const campaign = reading->campaign;
     char path[WB_PATH];
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
-    WB_TRY(wb_campaign_find(&campaign->head, node, "wire", "wires", name, path, NULL));
+    WB_TRY(wb_campaign_find(&campaign->head, node, "wire", "wires", name, path, wire->file));
+    WB_TRY(wb_hash_file(path, wire->sha256));
     WB_TRY(wb_wire_read(path, &wire->product, NULL));
     if (!wire->label[0])
         snprintf(wire->label, sizeof wire->label, "%s", wire->product.name);

@@ -95,6 +95,7 @@ extern const char *const wb_recordings_purposes[WB_RECORDINGS_PURPOSES]; /* "cal
 
 struct wb_recordings_wire {
     char label[64];
+    char file[300], sha256[WB_SHA256_TEXT]; /* of the wire's file, as readers name it */
     struct wb_wire product;
     bool has_reference;
     char reference_source[160];

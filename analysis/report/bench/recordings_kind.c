@@ -1,6 +1,7 @@
 #include "analysis/report/bench/recordings_kind.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "analysis/report/bench/recordings_figures.h"
 #include "base/units.h"
@@ -117,6 +118,39 @@ static enum wb_status add_cards(struct wb_cards *cards, const void *context)
     return WB_OK;
 }
 
+/* Recordings, files that hold in place of what was recorded, wires. */
+static bool list_inputs(const void *context, int index, struct wb_kind_input *input)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_test *const test =
+        wb_recordings_results_at(results, index / 3, NULL, NULL);
+    *input = (struct wb_kind_input){.what = "recording"};
+    if (!test) {
+        const int wire = index - 3 * results->outcome.n_wanted;
+        if (wire >= results->n_wires)
+            return false;
+        const struct wb_recordings_wire *const wanted = results->wires[wire].wanted;
+        input->what = "wire";
+        snprintf(input->name, sizeof input->name, "%s", wanted->file);
+        memcpy(input->sha256, wanted->sha256, sizeof input->sha256);
+        return true;
+    }
+    if (!test->usable)
+        return true;
+    if (index % 3 == 0) {
+        snprintf(input->name, sizeof input->name, "%s", test->wanted->name);
+        memcpy(input->sha256, test->sha256, sizeof input->sha256);
+        return true;
+    }
+    const char *const path =
+        index % 3 == 1 ? test->wanted->corrected_specimen : test->wanted->corrected_rig;
+    input->what = index % 3 == 1 ? "corrected specimen" : "corrected rig";
+    snprintf(input->name, sizeof input->name, "%s", wb_file_name(path));
+    if (path[0] && wb_hash_file(path, input->sha256) != WB_OK)
+        snprintf(input->sha256, sizeof input->sha256, "not readable");
+    return true;
+}
+
 const struct wb_kind wb_recordings_kind = {
     .name = "recordings",
     .data = "recordings",
@@ -125,6 +159,7 @@ const struct wb_kind wb_recordings_kind = {
     .results_size = sizeof(struct wb_recordings_results),
     .keys = wb_recordings_keys,
     .load = wb_recordings_results_load,
+    .inputs = list_inputs,
     .compute = wb_recordings_results_compute,
     .figures = wb_recordings_figures,
     .n_figures = WB_RECORDINGS_FIGURES,

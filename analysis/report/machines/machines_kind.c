@@ -309,6 +309,26 @@ static enum wb_status add_cards(struct wb_cards *cards, const void *context)
     return WB_OK;
 }
 
+static bool list_inputs(const void *context, int index, struct wb_kind_input *input)
+{
+    const struct wb_machines_results *const results = context;
+    const struct wb_machines *const campaign = results->campaign;
+    for (int g = 0; g < campaign->n_groups; g++) {
+        const struct wb_machines_group *const group = &campaign->groups[g];
+        if (index >= group->n_tests) {
+            index -= group->n_tests;
+            continue;
+        }
+        const struct wb_machines_test *const test = &results->groups[g].tests[index];
+        *input = (struct wb_kind_input){.what = "test"};
+        snprintf(input->name, sizeof input->name, "%s", wb_campaign_as_shown(group->tests[index]));
+        if (test->is_usable)
+            memcpy(input->sha256, test->sha256, sizeof input->sha256);
+        return true;
+    }
+    return false;
+}
+
 const struct wb_kind wb_machines_kind = {
     .name = "machine",
     .data = "tests of a machine",
@@ -316,6 +336,7 @@ const struct wb_kind wb_machines_kind = {
     .results_size = sizeof(struct wb_machines_results),
     .keys = wb_machines_keys,
     .load = wb_machines_results_load,
+    .inputs = list_inputs,
     .compute = wb_machines_results_compute,
     .figures = figures,
     .n_figures = WB_COUNT(figures),

@@ -1,0 +1,230 @@
+#include "analysis/report/check.h"
+
+#include <errno.h>
+#include <ftw.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "analysis/report/manifest.h"
+#include "analysis/report/openpgp.h"
+#include "analysis/report/report.h"
+
+#define WB_LOG_DOMAIN "check"
+
+static const double tolerance = 1e-9;
+
+/* One report in two folders: as it was signed, and as it comes out now. */
+struct pair {
+    const struct wb_check_order *order;
+    struct wb_json *signed_manifest, *manifest; /* owned */
+    char again[WB_PATH];                        /* "": not computed */
+};
+
+/* --- signature and files --- */
+
+static enum wb_status check_signature(const struct wb_check_order *order)
+{
+    char path[WB_PATH], signature[WB_PATH];
+    struct wb_openpgp_signer signer;
+    WB_TRY(wb_file_join(path, order->folder, wb_manifest_name));
+    WB_TRY(wb_file_join(signature, order->folder, wb_manifest_signature_name));
+    if (!wb_file_exists(path) || !wb_file_exists(signature))
+        return wb_fail(WB_ERR_NOT_FOUND, "'%s' holds no signed report: there is no %s",
+                       order->folder,
+                       wb_file_exists(path) ? wb_manifest_signature_name : wb_manifest_name);
+    WB_TRY(wb_openpgp_verify(path, signature, &signer));
+    fprintf(order->out, "signature: good, by %s, key %s%s\n", signer.name, signer.fingerprint,
+            signer.is_trusted
+                ? ""
+                : " (not certified by you: compare it with what the laboratory says)");
+    return WB_OK;
+}
+
+static enum wb_status check_files(const struct pair *pair)
+{
+    int n = 0;
+    const char *number = "";
+    WB_TRY(wb_manifest_check_files(pair->signed_manifest, pair->order->folder, &n));
+    wb_json_get_text(pair->signed_manifest, "report", &number);
+    fprintf(pair->order->out, "files: %d as signed, report %s\n", n, number);
+    return WB_OK;
+}
+
+/* --- computing again --- */
+
+/* The campaign that was signed: the one given, or that of the manifest's name. "": not found. */
+static enum wb_status find_campaign(const struct pair *pair, char path[WB_PATH])
+{
+    const struct wb_json *const campaign = wb_json_get(pair->signed_manifest, "campaign");
+    const char *name = "", *wanted = "", *const given = pair->order->campaign;
+    char sha256[WB_SHA256_TEXT];
+    wb_json_get_text(campaign, "file", &name);
+    wb_json_get_text(campaign, "sha256", &wanted);
+    path[0] = '\0';
+    if (given || wb_file_exists(name))
+        WB_TRY(wb_file_join(path, "", given ? given : name));
+    else if (wb_file_find_data(path, name) != WB_OK)
+        path[0] = '\0';
+    if (!path[0]) {
+        wb_warn("the campaign '%s' is not here, so nothing is computed again; name it: wirebench "
+                "report CAMPAIGN.yaml --check %s",
+                name, pair->order->folder);
+        return WB_OK;
+    }
+    WB_TRY(wb_hash_file(path, sha256));
+    return strcmp(sha256, wanted) == 0
+               ? WB_OK
+               : wb_fail(WB_ERR_DATA,
+                         "'%s' is not the campaign that was signed: SHA-256 %s, signed %s", path,
+                         sha256, wanted);
+}
+
+static enum wb_status compute(struct pair *pair, const struct wb_kind *const *kinds, size_t n_kinds,
+                              const char *campaign, bool *is_done)
+{
+    const char *const temporary = getenv("TMPDIR");
+    char path[WB_PATH];
+    const struct wb_jobs_options none = {.dry_run = false};
+    enum wb_report_end end = WB_REPORT_NOTHING;
+    WB_TRY(wb_file_join(pair->again, temporary && *temporary ? temporary : "/tmp",
+                        "wirebench-check-XXXXXX"));
+    if (!mkdtemp(pair->again)) {
+        pair->again[0] = '\0';
+        return wb_fail(WB_ERR_IO, "cannot make a temporary folder: %s", strerror(errno));
+    }
+    const struct wb_report_order order = {.campaign = campaign,
+                                          .folder = pair->again,
+                                          .quiet = true,
+                                          .has_manifest = true,
+                                          .n_threads = pair->order->n_threads,
+                                          .jobs = &none};
+    WB_TRY(wb_report_make(&end, kinds, n_kinds, &order));
+    *is_done = end != WB_REPORT_INTERRUPTED && end != WB_REPORT_NOTHING;
+    if (!*is_done)
+        return WB_OK;
+    WB_TRY(wb_file_join(path, pair->again, wb_manifest_name));
+    return wb_json_read(&pair->manifest, path);
+}
+
+/* Both manifests list the same inputs, with the same sums. */
+static enum wb_status check_inputs(const struct pair *pair)
+{
+    const struct wb_json *const was = wb_json_get(pair->signed_manifest, "inputs");
+    const struct wb_json *const is = wb_json_get(pair->manifest, "inputs");
+    const size_t n = wb_json_length(was), m = wb_json_length(is);
+    char place[200];
+    for (size_t i = 0; i < n || i < m; i++) {
+        const struct wb_json *const a = wb_json_item(was, i), *const b = wb_json_item(is, i);
+        const char *name = "";
+        if (!wb_json_differs(a, b, 0.0, NULL, place))
+            continue;
+        wb_json_get_text(a ? a : b, "name", &name);
+        return wb_fail(WB_ERR_DATA, "input '%s' is not what was signed, or is not here", name);
+    }
+    fprintf(pair->order->out, "inputs: %zu as signed\n", n);
+    return WB_OK;
+}
+
+/* Which part of the builds differs, in words. */
+static const char *describe_build(const struct pair *pair, const char *place, char text[600])
+{
+    static const struct {
+        const char *part, *words;
+    } parts[] = {{"libraries", "libraries"}, {"fonts", "fonts"}};
+    const struct wb_json *const was = wb_json_get(pair->signed_manifest, "build");
+    const char *a = "?", *b = "?";
+    for (size_t i = 0; i < WB_COUNT(parts); i++) {
+        if (strncmp(place, parts[i].part, strlen(parts[i].part)) == 0) {
+            snprintf(text, 600, "other %s", parts[i].words);
+            return text;
+        }
+    }
+    wb_json_get_text(was, place, &a);
+    wb_json_get_text(wb_json_get(pair->manifest, "build"), place, &b);
+    snprintf(text, 600, "%s '%.150s', here '%.150s'", place, a, b);
+    return text;
+}
+
+/* The numbers of both report.json, but the program's revision. */
+static enum wb_status compare_numbers(const struct pair *pair, const char *build)
+{
+    char path[WB_PATH], place[200];
+    struct wb_json *was = NULL, *is = NULL;
+    WB_TRY(wb_file_join(path, pair->order->folder, "report.json"));
+    WB_TRY(wb_json_read(&was, path));
+    enum wb_status status = wb_file_join(path, pair->again, "report.json");
+    if (status == WB_OK)
+        status = wb_json_read(&is, path);
+    if (status == WB_OK && wb_json_differs(was, is, tolerance, "tool", place))
+        status = wb_fail(WB_ERR_DATA,
+                         "made by another build (%s), and not the same: '%s' of report.json "
+                         "differs by more than %g",
+                         build, place, tolerance);
+    wb_json_destroy(was);
+    wb_json_destroy(is);
+    return status;
+}
+
+static enum wb_status compare(const struct pair *pair, enum wb_check_end *end)
+{
+    char place[200], text[600];
+    FILE *const out = pair->order->out;
+    const struct wb_json *const files = wb_json_get(pair->manifest, "files");
+    WB_TRY(check_inputs(pair));
+    if (!wb_json_differs(wb_json_get(pair->signed_manifest, "files"), files, 0.0, NULL, place)) {
+        fprintf(out, "computed again: the same bytes\n");
+        *end = WB_CHECK_SAME;
+        return WB_OK;
+    }
+    if (!wb_json_differs(wb_json_get(pair->signed_manifest, "build"),
+                         wb_json_get(pair->manifest, "build"), 0.0, NULL, text)) {
+        const char *name = "a file";
+        const size_t at = strtoul(place + (place[0] == '['), NULL, 10);
+        wb_json_get_text(wb_json_item(files, at), "name", &name);
+        return wb_fail(WB_ERR_DATA,
+                       "the same build makes another report: '%s' of it is not what was signed",
+                       name);
+    }
+    snprintf(place, sizeof place, "%.199s", text);
+    WB_TRY(compare_numbers(pair, describe_build(pair, place, text)));
+    fprintf(out, "computed again: numbers within %g; made by another build: %s\n", tolerance, text);
+    *end = WB_CHECK_OTHER_BUILD;
+    return WB_OK;
+}
+
+/* --- all of it --- */
+
+static int remove_one(const char *path, const struct stat *info, int type, struct FTW *place)
+{
+    (void)info, (void)type, (void)place;
+    return remove(path);
+}
+
+static enum wb_status check(struct pair *pair, enum wb_check_end *end,
+                            const struct wb_kind *const *kinds, size_t n_kinds)
+{
+    char path[WB_PATH];
+    bool is_done = false;
+    WB_TRY(check_signature(pair->order));
+    WB_TRY(wb_file_join(path, pair->order->folder, wb_manifest_name));
+    WB_TRY(wb_json_read(&pair->signed_manifest, path));
+    WB_TRY(check_files(pair));
+    WB_TRY(find_campaign(pair, path));
+    *end = WB_CHECK_NOT_COMPUTED;
+    if (path[0])
+        WB_TRY(compute(pair, kinds, n_kinds, path, &is_done));
+    return is_done ? compare(pair, end) : WB_OK;
+}
+
+enum wb_status wb_check_run(enum wb_check_end *end, const struct wb_kind *const *kinds,
+                            size_t n_kinds, const struct wb_check_order *order)
+{
+    struct pair pair = {.order = order};
+    const enum wb_status status = check(&pair, end, kinds, n_kinds);
+    if (pair.again[0])
+        nftw(pair.again, remove_one, 8, FTW_DEPTH | FTW_PHYS);
+    wb_json_destroy(pair.signed_manifest);
+    wb_json_destroy(pair.manifest);
+    return status;
+}
