@@ -29,7 +29,7 @@ struct wb_kind_outcome {
     bool is_complete;                   /* nothing is missing, refused or failed */
     bool exceeds_limit;                 /* of the campaign */
     bool interrupted;                   /* by Ctrl-C; the results are not to be reported */
-    const struct wb_campaign *campaign; /* borrowed */
+    const struct wb_campaign *campaign; /* borrowed; `load` sets it */
 };
 
 /* Called after each finished step, by one thread at a time: how many are done, and what was. May be

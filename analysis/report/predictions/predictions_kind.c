@@ -407,6 +407,27 @@ static void print(FILE *out, const void *context)
     }
 }
 
+/* Of each bundle its file, then its tests. */
+static bool list_inputs(const void *context, int index, struct wb_kind_input *input)
+{
+    const struct wb_predictions_results *const results = context;
+    const struct wb_predictions *const campaign = results->campaign;
+    const int each = 1 + WB_PREDICTIONS_TESTS, b = index / each, i = index % each - 1;
+    *input = (struct wb_kind_input){.what = i < 0 ? "bundle" : "force_deflection.csv"};
+    if (b >= campaign->n_bundles)
+        return false;
+    const struct wb_predictions_bundle *const bundle = &campaign->bundles[b];
+    if (i < 0) {
+        snprintf(input->name, sizeof input->name, "%s", bundle->model_name);
+        snprintf(input->sha256, sizeof input->sha256, "%s", bundle->model->sha256);
+    } else if (i < bundle->n_tests) {
+        snprintf(input->name, sizeof input->name, "%s",
+                 wb_campaign_as_shown(bundle->tests[i].given));
+        snprintf(input->sha256, sizeof input->sha256, "%s", results->bundles[b].tests[i].sha256);
+    }
+    return true;
+}
+
 const struct wb_kind wb_predictions_kind = {
     .name = "prediction",
     .data = "datasets",
@@ -414,6 +435,7 @@ const struct wb_kind wb_predictions_kind = {
     .results_size = sizeof(struct wb_predictions_results),
     .keys = wb_predictions_keys,
     .load = wb_predictions_results_load,
+    .inputs = list_inputs,
     .compute = wb_predictions_results_compute,
     .figures = figures,
     .n_figures = WB_COUNT(figures),

@@ -68,6 +68,7 @@ enum wb_status wb_predictions_results_load(void *context, const void *of)
     struct wb_predictions_results *const results = context;
     const struct wb_predictions *const campaign = of;
     results->campaign = campaign;
+    results->outcome.campaign = &campaign->head;
     results->outcome.n_steps = campaign->n_bundles;
     for (int b = 0; b < campaign->n_bundles; b++) {
         const struct wb_predictions_bundle *const bundle = &campaign->bundles[b];
