@@ -85,16 +85,12 @@ static void take_argument(struct argp_state *state, const char *argument,
 
 static void check(struct argp_state *state, const struct wb_solve_settings *s)
 {
-    struct wb_solve_settings defaults = {0};
-    wb_setting_fill(&wb_solve_settings_table, &defaults);
     if (s->kind == 0)
         argp_error(state, "name the model: cantilever, wire3d, wire1d, bundle or bending3p");
     if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every is for --vtk");
     if (s->sweep && !s->uncertain)
         argp_error(state, "--sweep is for --uncertain");
-    if (!s->uncertain && (s->runs != defaults.runs || s->seed != defaults.seed))
-        argp_error(state, "--runs and --seed are for --uncertain");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
         argp_error(state, "--checkpoint-minutes is for --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)

@@ -20,18 +20,19 @@ static enum wb_status check_sha256(const struct wb_config_node *node, char *hex)
     return WB_OK;
 }
 
-static enum wb_status read_exclusion(const struct wb_config_node *node,
-                                     struct wb_index_exclusion *exclusion)
+enum wb_status wb_index_exclusion_read(const struct wb_config_node *node, char recording[256],
+                                       struct wb_index_exclusion *exclusion)
 {
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("by", exclusion->by),
         WB_CONFIG_TEXT("reason", exclusion->reason),
         WB_CONFIG_OPTIONAL_TEXT("date_utc", exclusion->date_utc),
         WB_CONFIG_OPTIONAL_BOOLEAN("repeated", &exclusion->is_repeated),
+        {.name = "recording", .type = WB_CONFIG_TYPE_TEXT, .target = recording, .size = 256},
     };
     if (!node)
         return WB_OK;
-    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys) - (recording == NULL)));
     if (!exclusion->by[0] || !exclusion->reason[0])
         return wb_config_refuse(node, exclusion->by[0] ? "reason" : "by",
                                 "expected a text: a test is excluded by somebody, for a reason");
@@ -68,7 +69,7 @@ static enum wb_status read_entry(const struct wb_config_node *node, struct wb_in
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     WB_TRY(check_sha256(node, sha256));
     memcpy(entry->sha256, sha256, sizeof entry->sha256);
-    return read_exclusion(excluded, &entry->excluded);
+    return wb_index_exclusion_read(excluded, NULL, &entry->excluded);
 }
 
 static enum wb_status read_entries(struct wb_index *index, const struct wb_config_node *list)

@@ -32,6 +32,7 @@
 
 #include <stdbool.h>
 
+#include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
@@ -84,6 +85,12 @@ const struct wb_index_entry *wb_index_find(const struct wb_index *index, const c
  * where the index cannot be read or has the name for other data. */
 bool wb_index_look_up(struct wb_index_entry *entry, const char *recording_path, const char *sha256,
                       struct wb_reason *why);
+
+/* Reads the keys `by`, `reason`, `date_utc` and `repeated` of a map into a zeroed exclusion, and
+ * `recording` where there is room for it (NULL: it is no key). `node` NULL: leaves all as it is. */
+WB_MUST_CHECK enum wb_status wb_index_exclusion_read(const struct wb_config_node *node,
+                                                     char recording[256],
+                                                     struct wb_index_exclusion *exclusion);
 
 /* "by A. Tester on 2026-11-20: the clamp slipped". */
 #define WB_INDEX_EXCLUSION_TEXT 384

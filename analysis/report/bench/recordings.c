@@ -17,8 +17,17 @@ const char *const wb_recordings_purposes[] = {"calibration", "validation"};
 static const char default_index[] = "recordings/index.yaml";
 
 /* What reading needs besides the campaign itself. */
+/* What the campaign's file excludes. */
+struct exclusion {
+    char name[256];
+    struct wb_index_exclusion of;
+    bool is_found; /* a wire of the campaign would have it */
+};
+
 struct reading {
     struct wb_recordings *campaign;
+    int n_excluded;
+    struct exclusion *excluded; /* (n_excluded) */
     struct wb_index index;
     bool has_index;
     char index_problem[320];
@@ -194,24 +203,18 @@ static enum wb_status take_named(const struct reading *reading, const char *name
     return any ? status : add_file(tests, path, &reading->index, NULL);
 }
 
-/* Takes out what a person excluded. */
-static void leave_out(struct wb_recordings *campaign, struct wb_recordings_tests *tests)
+/* Marks what the campaign excludes, as an index would. */
+static void exclude(struct reading *reading, struct wb_recordings_tests *tests)
 {
-    int kept = 0;
     for (int i = 0; i < tests->n; i++) {
-        struct wb_recordings_exclusion *found = NULL;
-        for (int k = 0; k < campaign->n_excluded; k++) {
-            if (strcmp(campaign->excluded[k].name, tests->items[i].name) == 0)
-                found = &campaign->excluded[k];
-        }
-        if (found) {
-            found->is_found = true;
-            memcpy(found->sha256, tests->items[i].sha256, sizeof found->sha256);
-        } else {
-            tests->items[kept++] = tests->items[i];
+        for (int k = 0; k < reading->n_excluded; k++) {
+            struct exclusion *const one = &reading->excluded[k];
+            if (strcmp(one->name, tests->items[i].name) != 0)
+                continue;
+            one->is_found = true;
+            tests->items[i].excluded = one->of;
         }
     }
-    tests->n = kept;
 }
 
 static enum wb_status find_tests(const struct reading *reading,
@@ -234,42 +237,33 @@ static enum wb_status find_tests(const struct reading *reading,
     return WB_OK;
 }
 
-static enum wb_status read_excluded(const struct wb_config_node *list,
-                                    struct wb_recordings *campaign)
+static enum wb_status read_excluded(struct reading *reading, const struct wb_config_node *list)
 {
     const int n = list ? wb_config_length(list) : 0;
     if (list && n < 1)
         return wb_config_refuse(list, "excluded",
                                 "expected a list of recordings that are not used");
-    campaign->excluded = calloc((size_t)n + 1, sizeof *campaign->excluded);
-    if (!campaign->excluded)
+    reading->excluded = calloc((size_t)n + 1, sizeof *reading->excluded);
+    if (!reading->excluded)
         return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
-    for (int i = 0; i < n; i++) {
-        struct wb_recordings_exclusion *const one = &campaign->excluded[campaign->n_excluded++];
-        const struct wb_config_key keys[] = {
-            WB_CONFIG_TEXT("recording", one->name),
-            WB_CONFIG_TEXT("by", one->by),
-            WB_CONFIG_TEXT("why", one->why),
-        };
-        const struct wb_config_node *const node = wb_config_item(list, i);
-        WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
-        if (!one->by[0] || !one->why[0])
-            return wb_config_refuse(node, one->by[0] ? "why" : "by",
-                                    "expected who excluded '%s', and why", one->name);
+    for (; reading->n_excluded < n; reading->n_excluded++) {
+        const struct wb_config_node *const node = wb_config_item(list, reading->n_excluded);
+        struct exclusion *const one = &reading->excluded[reading->n_excluded];
+        WB_TRY(wb_index_exclusion_read(node, one->name, &one->of));
     }
     return WB_OK;
 }
 
 /* A name that means nothing would leave in what a person wanted out. */
-static enum wb_status check_excluded(const struct wb_config_node *list,
-                                     const struct wb_recordings *campaign)
+static enum wb_status check_excluded(const struct reading *reading,
+                                     const struct wb_config_node *list)
 {
-    for (int i = 0; i < campaign->n_excluded; i++) {
-        if (!campaign->excluded[i].is_found)
+    for (int i = 0; i < reading->n_excluded; i++) {
+        if (!reading->excluded[i].is_found)
             return wb_config_refuse(wb_config_item(list, i), "recording",
                                     "'%s' is no recording of this campaign: give its name as the "
                                     "report has it",
-                                    campaign->excluded[i].name);
+                                    reading->excluded[i].name);
     }
     return WB_OK;
 }
@@ -300,7 +294,7 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
             WB_TRY(find_tests(reading, wire, lists[k], campaign->length[k], &wire->tests[k]));
         else if (lists[k])
             return wb_config_refuse(node, "validation", "the campaign has no validation_length_mm");
-        leave_out(reading->campaign, &wire->tests[k]);
+        exclude(reading, &wire->tests[k]);
     }
     return WB_OK;
 }
@@ -374,9 +368,9 @@ static enum wb_status read_all(struct reading *reading, const struct wb_config_n
     WB_TRY(read_limits(limits, campaign));
     WB_TRY(read_merits(reference, campaign));
     WB_TRY(read_index(reading, index));
-    WB_TRY(read_excluded(excluded, campaign));
+    WB_TRY(read_excluded(reading, excluded));
     WB_TRY(read_wires(reading, wires));
-    return check_excluded(excluded, campaign);
+    return check_excluded(reading, excluded);
 }
 
 enum wb_status wb_recordings_keys(void *context, const struct wb_config_node *root)
@@ -384,6 +378,7 @@ enum wb_status wb_recordings_keys(void *context, const struct wb_config_node *ro
     struct reading reading = {.campaign = context};
     const enum wb_status status = read_all(&reading, root);
     wb_index_release(&reading.index);
+    free(reading.excluded);
     return status;
 }
 
@@ -395,7 +390,6 @@ void wb_recordings_release(void *context)
             free(campaign->wires[i].tests[k].items);
     }
     free(campaign->wires);
-    free(campaign->excluded);
     memset(campaign, 0, sizeof *campaign);
 }
 

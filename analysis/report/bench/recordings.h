@@ -40,11 +40,11 @@
  *     excluded:                                   # optional: recordings that are not used
  *       - recording: type1-L85-2.wbr.zst          # its name, as the report has it
  *         by: N. N.
- *         why: the clamp slipped at 12 mm
+ *         reason: the clamp slipped at 12 mm
  *
  * Reading a campaign finds its recordings. One that is not there is no error: it is listed with
- * the reason, and the report says so. One that the campaign's index or the one in its own folder
- * excludes is not used; the report says who excluded it, and why.
+ * the reason, and the report says so. One that the campaign, its index or the one in its own
+ * folder excludes is not used; the report says who excluded it, and why.
  */
 #ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_H
 #define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_H
@@ -65,19 +65,13 @@ struct wb_recordings_test {
     char name[256];     /* file name without folder, or what is missing: "sample 2" */
     char path[WB_PATH]; /* "" when missing */
     char missing[320];  /* why it is not there; "" when it is */
-    struct wb_index_exclusion excluded; /* as an index says; it is shown, and not used */
+    struct wb_index_exclusion excluded; /* as an index or the campaign says; it is shown, and not
+                                           used */
     int sample;                         /* as the index or the count says; 0 unknown */
     int seed;                           /* as the index says; -1 unknown */
     char sha256[WB_SHA256_TEXT];        /* as the index says; "" when it is not in the index */
     /* Paths of files that hold in place of what was recorded; "": the recording's own. */
     char corrected_specimen[WB_PATH], corrected_rig[WB_PATH];
-};
-
-/* A recording that a person left out. */
-struct wb_recordings_exclusion {
-    char name[256], by[160], why[600];
-    char sha256[WB_SHA256_TEXT]; /* as the index says; "" unknown */
-    bool is_found;               /* a wire of the campaign would have it */
 };
 
 struct wb_recordings_tests {
@@ -114,8 +108,6 @@ struct wb_recordings {
     double reference_rms[2]; /* published range of the validation's RMS; 0: none */
     int n_wires;
     struct wb_recordings_wire *wires; /* (n_wires), owned */
-    int n_excluded;
-    struct wb_recordings_exclusion *excluded; /* (n_excluded), owned */
 };
 
 /* Reading and release, as wb_kind_keys and wb_kind_release have it. */

@@ -254,22 +254,6 @@ static void put_wire(struct wb_json *list, const struct wb_recordings_results *r
     put_cycle(entry, results, wire);
 }
 
-static void put_excluded(struct wb_json *root, const struct wb_recordings *campaign)
-{
-    if (campaign->n_excluded == 0)
-        return;
-    struct wb_json *const list = wb_json_set_array(root, "excluded");
-    for (int i = 0; i < campaign->n_excluded; i++) {
-        const struct wb_recordings_exclusion *const one = &campaign->excluded[i];
-        struct wb_json *const entry = wb_json_append_object(list);
-        wb_json_set_text(entry, "recording", one->name);
-        wb_json_set_text(entry, "by", one->by);
-        wb_json_set_text(entry, "why", one->why);
-        if (one->sha256[0])
-            wb_json_set_text(entry, "sha256", one->sha256);
-    }
-}
-
 struct wb_json *wb_recordings_json_build(const void *context)
 {
     const struct wb_recordings_results *const results = context;
@@ -287,7 +271,6 @@ struct wb_json *wb_recordings_json_build(const void *context)
     enum wb_recordings_purpose purpose;
     for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, &purpose)); i++)
         put_test(recordings, wire, test, purpose);
-    put_excluded(root, campaign);
     struct wb_json *const wires = wb_json_set_array(root, "wires");
     for (int i = 0; i < results->n_wires; i++)
         put_wire(wires, results, &results->wires[i]);

@@ -196,26 +196,6 @@ static void put_missing(struct wb_document *document, const struct wb_recordings
     }
 }
 
-static void put_excluded(struct wb_document *document, const struct wb_recordings *campaign)
-{
-    if (campaign->n_excluded == 0)
-        return;
-    wb_document_heading(document, 2, "excluded", "Excluded recordings");
-    for (int i = 0; i < campaign->n_excluded; i++) {
-        const struct wb_recordings_exclusion *const one = &campaign->excluded[i];
-        struct wb_text text = {0};
-        wb_text_append(&text, "<b>");
-        wb_text_append_escaped(&text, one->name);
-        wb_text_append(&text, "</b>, excluded by ");
-        wb_text_append_escaped(&text, one->by);
-        wb_text_append(&text, ": ");
-        wb_text_append_escaped(&text, one->why);
-        if (one->sha256[0])
-            wb_text_append(&text, " (SHA-256 <tt>%s</tt>)", one->sha256);
-        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
-    }
-}
-
 static void put_property(struct wb_document_table *table,
                          const struct wb_recordings_results_wire *wire, int i)
 {
@@ -488,7 +468,6 @@ static void put_summary(struct wb_document *document, const struct wb_recordings
     put_origin(document, results);
     put_limits(document, results);
     put_missing(document, results);
-    put_excluded(document, results->campaign);
     wb_recordings_cycle_pages_summary(document, results, figures);
     put_properties(document, results);
     put_merits(document, results);

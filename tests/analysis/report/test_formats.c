@@ -11,11 +11,11 @@
 #include "analysis/align/align.h"
 #include "analysis/calibration/properties.h"
 #include "analysis/dataset/dataset.h"
-#include "analysis/report/bench/index.h"
 #include "analysis/report/kinds/kinds.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "daq/index.h"
 #include "daq/rig.h"
 #include "daq/specimen.h"
 #include "daq/survey.h"
@@ -133,7 +133,7 @@ FACT(machine, "machine.yaml")
 FACT(index, "index.yaml")
 {
     struct wb_index index;
-    assert_int_equal(wb_index_read(&index, path), WB_OK);
+    assert_int_equal(wb_index_read(&index, path, NULL), WB_OK);
     assert_int_equal(index.n, 1);
     assert_string_equal(index.entries[0].wire, "type1");
     assert_close(index.entries[0].length, 0.085, 1e-12);

@@ -279,16 +279,18 @@ static void an_excluded_recording_is_neither_used_nor_missing(void **state)
     assert_int_equal(
         read_campaign(&campaign,
                       "wires:\n  - wire: type1\n"
-                      "excluded:\n  - {recording: one.wbr.zst, by: N. N., why: it slipped}\n"),
+                      "excluded:\n  - {recording: one.wbr.zst, by: N. N., reason: it slipped}\n"),
         WB_OK);
     const struct wb_recordings_tests *const calibration =
         &campaign.wires[0].tests[WB_RECORDINGS_CALIBRATION];
-    assert_int_equal(calibration->n, 1);
-    assert_string_equal(calibration->items[0].name, "two.wbr.zst");
-    assert_int_equal(campaign.n_excluded, 1);
-    assert_string_equal(campaign.excluded[0].by, "N. N.");
-    assert_string_equal(campaign.excluded[0].why, "it slipped");
-    assert_string_equal(campaign.excluded[0].sha256, SHA_A);
+    int n_missing;
+    assert_int_equal(calibration->n, 2);
+    assert_false(calibration->items[0].excluded.is_excluded);
+    assert_string_equal(calibration->items[1].name, "one.wbr.zst");
+    assert_true(calibration->items[1].excluded.is_excluded);
+    assert_string_equal(calibration->items[1].excluded.by, "N. N.");
+    assert_string_equal(calibration->items[1].excluded.reason, "it slipped");
+    assert_int_equal(wb_recordings_count(&campaign, &n_missing), 3); /* of 4 */
     wb_recordings_release(&campaign);
 }
 
@@ -297,10 +299,11 @@ static void an_exclusion_says_who_and_why_and_means_a_recording_of_the_campaign(
     (void)state;
     static const struct refused_campaign cases[] = {
         {"excluded: []\n", "excluded"},
-        {"excluded: [{recording: four.wbr, by: N. N., why: x}]\n", "'four.wbr' is no recording"},
-        {"excluded: [{recording: one.wbr.zst, by: N. N.}]\n", "why"},
-        {"excluded: [{recording: one.wbr.zst, by: \"\", why: x}]\n", "by: expected who excluded"},
-        {"excluded: [{recording: one.wbr.zst, by: N. N., why: \"\"}]\n", "why: expected who"},
+        {"excluded: [{recording: four.wbr, by: N. N., reason: x}]\n", "'four.wbr' is no recording"},
+        {"excluded: [{recording: one.wbr.zst, by: N. N.}]\n", "reason"},
+        {"excluded: [{recording: one.wbr.zst, by: \"\", reason: x}]\n", "by: expected a text"},
+        {"excluded: [{recording: one.wbr.zst, by: N. N., reason: \"\"}]\n",
+         "reason: expected a text"},
     };
     write_text("index.yaml", index_text);
     for (size_t i = 0; i < WB_COUNT(cases); i++) {
