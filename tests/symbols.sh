@@ -45,7 +45,7 @@ for archive in "$@"; do
             sub(/\.c\.o$/, "", stem)
             inner = stem
             # Meson writes the folder before the name.
-            sub(/^(dataset|align|import|calibration|cards|validation|plot|predict)_/, "", inner)
+            sub(/^(dataset|align|import|calibration|cards|validation|plot|predict|compare)_/, "", inner)
             if (!belongs(stem, $2) && !(inner != stem && belongs(inner, $2)))
                 print $1 " " $2
         }' | sort -u)

@@ -107,7 +107,7 @@ enum wb_status wb_laboratory_read(const struct wb_config_node *node, bool has_un
 {
     struct wb_config_key keys[WB_COUNT(fields) + 2];
     const struct wb_config_node *amends = NULL;
-    int rule = WB_DECISION_SIMPLE;
+    int rule = WB_RULE_SIMPLE;
     size_t n = 0;
     if (!node)
         return WB_OK;
@@ -119,14 +119,14 @@ enum wb_status wb_laboratory_read(const struct wb_config_node *node, bool has_un
                                          .target = (char *)laboratory + fields[n].offset,
                                          .size = fields[n].size};
     keys[n++] =
-        (struct wb_config_key)WB_CONFIG_OPTIONAL_CHOICE("decision_rule", &rule, wb_decision_names);
+        (struct wb_config_key)WB_CONFIG_OPTIONAL_CHOICE("decision_rule", &rule, wb_verdict_rules);
     keys[n++] = (struct wb_config_key)WB_CONFIG_OPTIONAL_NODE("amends", &amends);
     WB_TRY(wb_config_map(node, keys, n));
     if (!laboratory->report[0])
         return wb_config_refuse(node, "report", "expected the number of the report");
-    laboratory->rule = (enum wb_decision)rule;
+    laboratory->rule = (enum wb_verdict_rule)rule;
     laboratory->is_given = true;
-    if (laboratory->rule == WB_DECISION_GUARDED && !has_uncertainties)
+    if (laboratory->rule == WB_RULE_GUARDED && !has_uncertainties)
         return wb_config_refuse(node, "decision_rule",
                                 "'guarded' needs uncertainties, which reports of this kind do not "
                                 "evaluate; 'simple' does not");
@@ -195,7 +195,7 @@ static void put_fields(struct wb_document *document, const struct wb_laboratory 
         else if (!fields[i].is_optional)
             put_row(table, fields[i].name, WB_TONE_WARNING, "missing");
     }
-    put_row(table, "Decision rule", WB_TONE_PLAIN, wb_decision_text(laboratory->rule));
+    put_row(table, "Decision rule", WB_TONE_PLAIN, wb_verdict_rule_text(laboratory->rule));
 }
 
 void wb_laboratory_put_pages(struct wb_document *document, const struct wb_laboratory *laboratory)
@@ -232,7 +232,7 @@ void wb_laboratory_put_numbers(struct wb_json *root, const struct wb_laboratory 
         if (text_of(laboratory, &fields[i])[0])
             wb_json_set_text(of, fields[i].key, text_of(laboratory, &fields[i]));
     }
-    wb_json_set_text(of, "decision_rule", wb_decision_names[laboratory->rule]);
+    wb_json_set_text(of, "decision_rule", wb_verdict_rules[laboratory->rule]);
     if (laboratory->amends.report[0]) {
         struct wb_json *const amends = wb_json_set_object(of, "amends");
         wb_json_set_text(amends, "report", laboratory->amends.report);

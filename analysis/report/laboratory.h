@@ -46,7 +46,7 @@ struct wb_laboratory {
     char received[16], tested_from[16], tested_until[16], issued[16]; /* YYYY-MM-DD */
     char method[800], deviations[800], sampling[600], external[600], environment[400];
     char authorised_by[300];
-    enum wb_decision rule;
+    enum wb_verdict_rule rule;
     struct {
         char report[80], issued[16], why[800];
     } amends; /* `report` "": the report replaces none */

@@ -2,11 +2,11 @@
 
 #include <stddef.h>
 
-const char *const wb_decision_names[] = {"simple", "guarded", NULL};
+const char *const wb_verdict_rules[] = {"simple", "guarded", NULL};
 
-const char *wb_decision_text(enum wb_decision rule)
+const char *wb_verdict_rule_text(enum wb_verdict_rule rule)
 {
-    return rule == WB_DECISION_GUARDED
+    return rule == WB_RULE_GUARDED
                ? "guarded acceptance: a limit is kept where the sum of the value and its "
                  "uncertainty "
                  "U is at most the limit (ILAC-G8:09/2019, guard band U)"
@@ -14,9 +14,9 @@ const char *wb_decision_text(enum wb_decision rule)
                  "uncertainty U is stated and not counted (ILAC-G8:09/2019, no guard band)";
 }
 
-bool wb_decision_keeps(enum wb_decision rule, double value, double expanded, double limit)
+bool wb_verdict_keeps(enum wb_verdict_rule rule, double value, double expanded, double limit)
 {
-    return rule == WB_DECISION_GUARDED ? value + expanded <= limit : value <= limit;
+    return rule == WB_RULE_GUARDED ? value + expanded <= limit : value <= limit;
 }
 
 void wb_verdict_add(struct wb_verdict *verdicts, int *n, const struct wb_verdict *verdict)

@@ -5,17 +5,17 @@
 #include <stdbool.h>
 
 /* How a value with an uncertainty is held against a limit, as ILAC-G8:09/2019 has it. */
-enum wb_decision {
-    WB_DECISION_SIMPLE, /* kept: the value is at most the limit; the uncertainty is only stated */
-    WB_DECISION_GUARDED /* kept: the value and its uncertainty U are at most the limit */
+enum wb_verdict_rule {
+    WB_RULE_SIMPLE, /* kept: the value is at most the limit; the uncertainty is only stated */
+    WB_RULE_GUARDED /* kept: the value and its uncertainty U are at most the limit */
 };
-extern const char *const wb_decision_names[]; /* of a campaign file; NULL at the end */
+extern const char *const wb_verdict_rules[]; /* of a campaign file; NULL at the end */
 /* The rule in a sentence, plain text. */
-const char *wb_decision_text(enum wb_decision rule);
+const char *wb_verdict_rule_text(enum wb_verdict_rule rule);
 
 /* Whether a value keeps a limit. `expanded` is its U, of a coverage of 95 %; NaN: not known, which
  * keeps none by the guarded rule. A value that is NaN keeps none by any. */
-bool wb_decision_keeps(enum wb_decision rule, double value, double expanded, double limit);
+bool wb_verdict_keeps(enum wb_verdict_rule rule, double value, double expanded, double limit);
 
 struct wb_verdict {
     const char *what;    /* that is bounded; markup */

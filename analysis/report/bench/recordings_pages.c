@@ -119,8 +119,7 @@ static void put_verdict(struct wb_document *document, const struct wb_recordings
     else
         wb_text_append(&text, "<i>U</i> not known (one specimen)");
     wb_text_append(&text, ", limit %.4g: <b>%s</b> by %s acceptance.", campaign->limit[purpose],
-                   is_kept ? "kept" : "exceeded",
-                   wb_decision_names[campaign->head.laboratory.rule]);
+                   is_kept ? "kept" : "exceeded", wb_verdict_rules[campaign->head.laboratory.rule]);
     wb_pages_put_text(document, WB_BLOCK_ITEM, is_kept ? WB_TONE_GOOD : WB_TONE_WARNING, &text);
 }
 

@@ -591,7 +591,7 @@ bool wb_recordings_results_keeps(const struct wb_recordings *campaign,
                                  const struct wb_recordings_results_wire *wire,
                                  enum wb_recordings_purpose purpose)
 {
-    return wb_decision_keeps(
+    return wb_verdict_keeps(
         campaign->head.laboratory.rule, wb_recordings_results_rms(wire, purpose),
         wb_recordings_results_uncertainty(wire, purpose), campaign->limit[purpose]);
 }

@@ -187,21 +187,21 @@ static void what_makes_no_report_is_refused(void **state)
     struct wb_laboratory laboratory;
     make_section(text, NULL, "decision_rule: guarded\n");
     assert_int_equal(read_section(&laboratory, text, true), WB_OK);
-    assert_int_equal(laboratory.rule, WB_DECISION_GUARDED);
+    assert_int_equal(laboratory.rule, WB_RULE_GUARDED);
 }
 
 static void the_guarded_rule_adds_the_uncertainty_and_the_simple_one_does_not(void **state)
 {
     (void)state;
     const double none = (double)NAN;
-    assert_true(wb_decision_keeps(WB_DECISION_SIMPLE, 0.9, 0.5, 1.0));
-    assert_true(wb_decision_keeps(WB_DECISION_SIMPLE, 0.9, none, 1.0));
-    assert_false(wb_decision_keeps(WB_DECISION_SIMPLE, 1.1, 0.0, 1.0));
-    assert_false(wb_decision_keeps(WB_DECISION_SIMPLE, none, 0.0, 1.0));
-    assert_true(wb_decision_keeps(WB_DECISION_GUARDED, 0.5, 0.25, 0.75));
-    assert_false(wb_decision_keeps(WB_DECISION_GUARDED, 0.5, 0.26, 0.75));
-    assert_false(wb_decision_keeps(WB_DECISION_GUARDED, 0.5, none, 0.75));
-    assert_false(wb_decision_keeps(WB_DECISION_GUARDED, none, 0.1, 0.75));
+    assert_true(wb_verdict_keeps(WB_RULE_SIMPLE, 0.9, 0.5, 1.0));
+    assert_true(wb_verdict_keeps(WB_RULE_SIMPLE, 0.9, none, 1.0));
+    assert_false(wb_verdict_keeps(WB_RULE_SIMPLE, 1.1, 0.0, 1.0));
+    assert_false(wb_verdict_keeps(WB_RULE_SIMPLE, none, 0.0, 1.0));
+    assert_true(wb_verdict_keeps(WB_RULE_GUARDED, 0.5, 0.25, 0.75));
+    assert_false(wb_verdict_keeps(WB_RULE_GUARDED, 0.5, 0.26, 0.75));
+    assert_false(wb_verdict_keeps(WB_RULE_GUARDED, 0.5, none, 0.75));
+    assert_false(wb_verdict_keeps(WB_RULE_GUARDED, none, 0.1, 0.75));
 }
 
 int main(void)

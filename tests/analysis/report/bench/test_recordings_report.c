@@ -469,7 +469,7 @@ static void a_laboratorys_verdicts_have_uncertainty_and_rule(void **state)
     const double limit = good->campaign.limit[0];
     good->campaign.limit[0] = c->rms + 0.5 * U;
     assert_true(wb_recordings_results_keeps(&good->campaign, wire, WB_RECORDINGS_CALIBRATION));
-    laboratory->rule = WB_DECISION_GUARDED;
+    laboratory->rule = WB_RULE_GUARDED;
     assert_false(wb_recordings_results_keeps(&good->campaign, wire, WB_RECORDINGS_CALIBRATION));
     laboratory->is_given = true;
     snprintf(laboratory->report, sizeof laboratory->report, "WB-7");
