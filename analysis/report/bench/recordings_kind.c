@@ -118,37 +118,42 @@ static enum wb_status add_cards(struct wb_cards *cards, const void *context)
     return WB_OK;
 }
 
-/* Recordings, files that hold in place of what was recorded, wires. */
+/* Of each recording its sum, then files that hold in place of what was recorded. */
+static void take_test(const struct wb_recordings_results_test *test, int part,
+                      struct wb_kind_input *input)
+{
+    const char *const path =
+        part == 1 ? test->wanted->corrected_specimen : test->wanted->corrected_rig;
+    if (!test->usable)
+        return;
+    if (part == 0) {
+        snprintf(input->name, sizeof input->name, "%s", test->wanted->name);
+        memcpy(input->sha256, test->sha256, sizeof input->sha256);
+        return;
+    }
+    input->what = part == 1 ? "corrected specimen" : "corrected rig";
+    snprintf(input->name, sizeof input->name, "%s", wb_file_name(path));
+    if (path[0] && wb_hash_file(path, input->sha256) != WB_OK)
+        snprintf(input->sha256, sizeof input->sha256, "not readable");
+}
+
+/* Wires, then recordings. */
 static bool list_inputs(const void *context, int index, struct wb_kind_input *input)
 {
     const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_test *const test =
-        wb_recordings_results_at(results, index / 3, NULL, NULL);
-    *input = (struct wb_kind_input){.what = "recording"};
-    if (!test) {
-        const int wire = index - 3 * results->outcome.n_wanted;
-        if (wire >= results->n_wires)
-            return false;
-        const struct wb_recordings_wire *const wanted = results->wires[wire].wanted;
-        input->what = "wire";
+    *input = (struct wb_kind_input){.what = index < results->n_wires ? "wire" : "recording"};
+    if (index < results->n_wires) {
+        const struct wb_recordings_wire *const wanted = results->wires[index].wanted;
         snprintf(input->name, sizeof input->name, "%s", wanted->file);
         memcpy(input->sha256, wanted->sha256, sizeof input->sha256);
         return true;
     }
-    if (!test->usable)
-        return true;
-    if (index % 3 == 0) {
-        snprintf(input->name, sizeof input->name, "%s", test->wanted->name);
-        memcpy(input->sha256, test->sha256, sizeof input->sha256);
-        return true;
-    }
-    const char *const path =
-        index % 3 == 1 ? test->wanted->corrected_specimen : test->wanted->corrected_rig;
-    input->what = index % 3 == 1 ? "corrected specimen" : "corrected rig";
-    snprintf(input->name, sizeof input->name, "%s", wb_file_name(path));
-    if (path[0] && wb_hash_file(path, input->sha256) != WB_OK)
-        snprintf(input->sha256, sizeof input->sha256, "not readable");
-    return true;
+    index -= results->n_wires;
+    const struct wb_recordings_results_test *const test =
+        wb_recordings_results_at(results, index / 3, NULL, NULL);
+    if (test)
+        take_test(test, index % 3, input);
+    return test;
 }
 
 const struct wb_kind wb_recordings_kind = {
