@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "analysis/align/align.h"
-#include "analysis/import/sync.h"
-#include "analysis/reversal_lag.h"
+#include "analysis/import/reversal_lag.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "clock"
@@ -43,41 +42,17 @@ static bool next_reversal(const struct wb_dataset *dataset, size_t *at,
     return false;
 }
 
-/* Weighted sums of what the reversals say, s. */
-struct lags {
-    int n_reversals, n;
-    double weights, sum, squares;
-};
-
-static void add_lag(struct lags *lags, const struct wb_reversal_lag *one)
-{
-    const double weight = 1.0 / (one->uncertainty * one->uncertainty);
-    lags->n++;
-    lags->weights += weight;
-    lags->sum += weight * one->lag;
-    lags->squares += weight * one->lag * one->lag;
-}
-
-/* The mean, and its uncertainty, enlarged where the reversals differ by more than theirs. */
-static void average(const struct lags *lags, double *mean, double *uncertainty)
-{
-    *mean = lags->sum / lags->weights;
-    const double chi = fmax(0.0, lags->squares - lags->weights * *mean * *mean);
-    const double enlarged = lags->n > 1 ? fmax(1.0, chi / (lags->n - 1)) : 1.0;
-    *uncertainty = sqrt(enlarged / lags->weights);
-}
-
-static void refuse_lag(struct wb_clock_report *report, const struct lags *lags, double uncertainty)
+static void refuse_lag(struct wb_clock_report *report, int n_reversals, int n, double uncertainty)
 {
     const double nan = (double)NAN;
-    if (lags->n_reversals == 0)
+    if (n_reversals == 0)
         snprintf(report->reason, sizeof report->reason, "no reversal of the motion in it");
-    else if (lags->n == 0)
+    else if (n == 0)
         snprintf(report->reason, sizeof report->reason,
                  "no reversal has a force that stands out of its noise on both sides");
     else
         snprintf(report->reason, sizeof report->reason,
-                 "%d reversal%s leave %.0f ms of uncertainty", lags->n, lags->n == 1 ? "" : "s",
+                 "%d reversal%s leave %.0f ms of uncertainty", n, n == 1 ? "" : "s",
                  uncertainty / MS);
     report->lag = report->uncertainty = report->interval[0] = report->interval[1] = nan;
 }
@@ -86,24 +61,25 @@ static void refuse_lag(struct wb_clock_report *report, const struct lags *lags, 
  * that delay is too small. */
 static void find_lag(struct wb_clock_report *report, const struct wb_align_signals *signals)
 {
-    const struct wb_sync_signal motion = {signals->motion_t, signals->motion, signals->n_motion};
-    const struct wb_sync_signal force = {signals->force_t, signals->force, signals->n_force};
-    struct lags lags = {0};
-    struct wb_reversal reversal;
+    const struct wb_signal motion = {signals->motion_t, signals->motion, signals->n_motion};
+    const struct wb_signal force = {signals->force_t, signals->force, signals->n_force};
+    struct wb_reversal_mean lags = {0};
+    struct wb_reversal reversal = {.turn = WB_TURN_BACK};
     struct wb_reversal_lag one;
     double left, uncertainty;
+    int n_reversals = 0;
     for (size_t at = 0; next_reversal(&report->dataset, &at, &reversal);) {
-        lags.n_reversals++;
+        n_reversals++;
         if (wb_reversal_lag_find(&one, &motion, &force, &reversal, signals->filter_delay))
-            add_lag(&lags, &one);
+            wb_reversal_mean_add(&lags, one.lag, one.uncertainty);
     }
     report->expected = signals->filter_delay;
     report->expected_uncertainty = signals->filter_delay_uncertainty;
     report->n_reversals = lags.n;
-    average(&lags, &left, &uncertainty);
+    wb_reversal_mean_find(&lags, &left, &uncertainty);
     report->identifiable = lags.n > 0 && uncertainty < MOST_UNCERTAINTY;
     if (!report->identifiable) {
-        refuse_lag(report, &lags, uncertainty);
+        refuse_lag(report, n_reversals, lags.n, uncertainty);
         return;
     }
     report->lag = signals->filter_delay + left;

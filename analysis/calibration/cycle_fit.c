@@ -14,8 +14,8 @@
 #include <gsl/gsl_multifit_nlinear.h>
 
 #include "analysis/calibration/cycle_model.h"
-#include "analysis/calibration/least_squares.h"
 #include "analysis/dataset/fit.h"
+#include "analysis/dataset/least_squares.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "cycle"

@@ -11,7 +11,7 @@
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
-#include "analysis/calibration/least_squares.h"
+#include "analysis/dataset/least_squares.h"
 #include "base/progress.h"
 #include "base/units.h"
 

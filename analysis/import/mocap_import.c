@@ -287,16 +287,16 @@ static enum wb_status find_motion(struct import *import)
         import->t[import->n_motion] = import->take.frames[i].t;
         import->motion[import->n_motion++] = along;
     }
-    const struct wb_sync_signal motion = {import->t, import->motion, import->n_motion};
-    wb_sync_shake(&motion, import->shake);
+    const struct wb_signal motion = {import->t, import->motion, import->n_motion};
+    wb_signal_shake(&motion, import->shake);
     return WB_OK;
 }
 
 /* Where the tip last rested before it surely moved. */
 static enum wb_status find_start(struct import *import)
 {
-    const struct wb_sync_signal motion = {import->t, import->motion, import->n_motion};
-    const double noise = wb_sync_noise(&motion);
+    const struct wb_signal motion = {import->t, import->motion, import->n_motion};
+    const double noise = wb_signal_noise(&motion);
     double most = 0.0;
     for (size_t i = 0; i < import->n_motion; i++)
         most = fmax(most, fabs(import->motion[i]));
@@ -343,9 +343,9 @@ static enum wb_status bring_together(struct import *import)
         .reversal = any || request->reversal,
         .filter_delay = delay,
     };
-    const struct wb_sync_signal motion = {import->t, import->motion, import->n_motion};
-    const struct wb_sync_signal shake = {import->t, import->shake, import->n_motion};
-    const struct wb_sync_signal force = {import->force.t, import->force.force, import->force.n};
+    const struct wb_signal motion = {import->t, import->motion, import->n_motion};
+    const struct wb_signal shake = {import->t, import->shake, import->n_motion};
+    const struct wb_signal force = {import->force.t, import->force.force, import->force.n};
     if (wb_sync_find(&result->sync, &motion, &shake, &force, &settings) != WB_OK)
         return no_memory();
     if (result->sync.method == WB_SYNC_NONE)

@@ -6,35 +6,44 @@
 #include <string.h>
 
 #include "analysis/dataset/fit.h"
+#include "analysis/import/reversal_lag.h"
 
 #define WB_LOG_DOMAIN "sync"
 
-/* A tap is over within this time, s, on each side of its middle. */
-#define TAP_HALF 0.2
+/* A tap is over within this time, s, on each side of its middle: half of that of
+ * wb_signal_shake(), which shows it again, turned over, on either side. */
+#define TAP_HALF 0.1
 /* A tap rises above the noise of its signal by this factor, and over this part of the largest. */
 #define TAP_NOISE 10.0
 #define TAP_PART 0.3
+/* Of a tap counts what is above so many times the noise: little of that far from it would move its
+ * middle. */
+#define FLOOR_NOISE 4.0
 /* Events nearer than this, s, are one. */
 #define SAME_TAP 0.6
 /* A turn is a way back by this part of the whole way. */
 #define TURN_PART 0.15
-/* Parabolas at a corner see so much time, s, or the time in which the signal moves by so many
- * deviations of its noise, and this part of a branch at most. */
-#define CORNER_WINDOW 2.5
-#define CORNER_NOISE 50.0
-/* Windows of this part show how much the parabolas leave out of the curve. */
-#define SHORTER 0.6
-#define CORNER_PART 0.4
-/* A motion that stays for longer than this, s, rests before it turns. */
-#define DWELL 0.3
+/* Lines to the top of a turn see so much time, s, and this part of a branch at most. */
+#define SIDE_WINDOW 2.5
+#define SIDE_PART 0.4
+/* A motion that stays for longer than this, s, is looked at where it comes to rest and where it
+ * leaves it; wb_reversal_lag_find() sees through shorter rests. */
+#define LONG_REST 0.7
 /* Pairs of events may be apart by this, s, once the lag is taken off. */
-#define PAIR_GATE 0.12
+#define TAP_GATE 0.12
+#define TURN_GATE 1.0
+/* A lag is brought nearer so many times, until it moves by less than this, s. */
+#define ROUNDS 6
+#define ARRIVED 0.01
 /* A lag is given only if it is known to this, s. */
 #define MOST_UNCERTAINTY 0.25
 #define MOST_EVENTS 64
 
 struct event {
     double t, deviation; /* s */
+    /* Of a turn, s: where its way there begins, where the next way there begins, and how long it
+     * rests; about. */
+    double from, until, rest;
 };
 
 struct events {
@@ -48,62 +57,19 @@ const char *wb_sync_name(enum wb_sync_method method)
     return names[method];
 }
 
-/* --- signals --- */
-
-static size_t index_at(const struct wb_sync_signal *s, double t)
-{
-    return wb_fit_first_at(s->t, sizeof *s->t, s->n, t);
-}
-
-/* Straight between samples; the ends go on. */
-static double value_at(const struct wb_sync_signal *s, double t)
-{
-    const size_t next = index_at(s, t);
-    if (next == 0)
-        return s->x[0];
-    if (next == s->n)
-        return s->x[s->n - 1];
-    const double part = (t - s->t[next - 1]) / (s->t[next] - s->t[next - 1]);
-    return (1.0 - part) * s->x[next - 1] + part * s->x[next];
-}
-
-static double median_period(const struct wb_sync_signal *s)
+static double median_period(const struct wb_signal *s)
 {
     return s->n > 1 ? (s->t[s->n - 1] - s->t[0]) / (double)(s->n - 1) : 1.0;
-}
-
-double wb_sync_noise(const struct wb_sync_signal *s)
-{
-    if (s->n < 8)
-        return 0.0;
-    double *const second = malloc(s->n * sizeof *second);
-    if (!second)
-        return (double)NAN;
-    for (size_t i = 1; i + 1 < s->n; i++)
-        second[i - 1] = fabs(s->x[i - 1] - 2.0 * s->x[i] + s->x[i + 1]);
-    const double median = wb_fit_median(second, s->n - 2);
-    free(second);
-    return 1.4826 * median / sqrt(6.0);
-}
-
-void wb_sync_shake(const struct wb_sync_signal *s, double *out)
-{
-    for (size_t i = 0; i < s->n; i++) {
-        const double t = s->t[i];
-        const bool inside = t - TAP_HALF >= s->t[0] && t + TAP_HALF <= s->t[s->n - 1];
-        out[i] =
-            inside ? s->x[i] - 0.5 * (value_at(s, t - TAP_HALF) + value_at(s, t + TAP_HALF)) : 0.0;
-    }
 }
 
 /* --- taps --- */
 
 /* Middle of what stands out around sample i. */
-static struct event tap_at(const struct wb_sync_signal *shake, size_t i, double floor)
+static struct event tap_at(const struct wb_signal *shake, size_t i, double floor)
 {
     const double middle = shake->t[i];
     double sum = 0.0, moment = 0.0;
-    for (size_t k = index_at(shake, middle - TAP_HALF);
+    for (size_t k = wb_signal_index(shake, middle - TAP_HALF);
          k < shake->n && shake->t[k] <= middle + TAP_HALF; k++) {
         const double weight = fmax(fabs(shake->x[k]) - floor, 0.0);
         sum += weight;
@@ -114,7 +80,7 @@ static struct event tap_at(const struct wb_sync_signal *shake, size_t i, double 
                           .deviation = 0.5 * period};
 }
 
-static enum wb_status find_taps(const struct wb_sync_signal *shake, struct events *taps)
+static enum wb_status find_taps(const struct wb_signal *shake, struct events *taps)
 {
     double largest = 0.0;
     double *const sizes = malloc((shake->n + 1) * sizeof *sizes);
@@ -138,7 +104,7 @@ static enum wb_status find_taps(const struct wb_sync_signal *shake, struct event
         for (; i < shake->n && shake->t[i] < until; i++)
             best = fabs(shake->x[i]) > fabs(shake->x[best]) ? i : best;
         if (taps->n < MOST_EVENTS)
-            taps->at[taps->n++] = tap_at(shake, best, 0.2 * threshold);
+            taps->at[taps->n++] = tap_at(shake, best, fmax(0.2 * threshold, FLOOR_NOISE * noise));
     }
     return WB_OK;
 }
@@ -180,133 +146,59 @@ static int find_turns(const double *y, size_t n, double least, struct turn *turn
     return count;
 }
 
-/* Parabola through the samples from..to of time, about `zero`: value, slope and curvature there. */
-static bool fit_side(const struct wb_sync_signal *s, const double *y, double from, double to,
-                     double zero, double c[3], double *deviation)
+/* Where a side of a turn, from the sample `far` to `near`, reaches the value `top` by its line. */
+static bool reaches(const struct wb_signal *s, const double *y, size_t far, size_t near, double top,
+                    double *t)
 {
-    const size_t first = index_at(s, from), last = index_at(s, to);
-    const size_t n = last > first ? last - first : 0;
-    if (n < 6)
-        return false;
-    double *const x = malloc(n * sizeof *x);
+    const double window = fmin(SIDE_WINDOW, SIDE_PART * fabs(s->t[near] - s->t[far]));
+    const bool rises = far < near;
+    const size_t from = rises ? wb_signal_index(s, s->t[near] - window) : near;
+    const size_t until = rises ? near : wb_signal_index(s, s->t[near] + window);
+    double *const x = malloc((until - from + 1) * sizeof *x);
+    struct wb_fit_line line;
     if (!x)
         return false;
-    for (size_t i = 0; i < n; i++)
-        x[i] = s->t[first + i] - zero;
-    const bool fitted = wb_fit_parabola(x, y + first, n, c, deviation);
+    for (size_t i = from; i < until; i++)
+        x[i - from] = s->t[i] - s->t[near];
+    const bool found = until > from + 5 && wb_fit_line(x, y + from, until - from, &line) &&
+                       (rises ? line.slope > 0.0 : line.slope < 0.0);
     free(x);
-    return fitted;
+    if (found)
+        *t = s->t[near] + (top - line.value) / line.slope;
+    return found && fabs(*t - s->t[near]) < 2.0 * SIDE_WINDOW;
 }
 
-/* The root of c0 + c1 x + c2 x^2 nearest to 0, no farther than `most`. */
-static bool nearest_root(const double c[3], double most, double *root)
+/* The turn as it seems: its middle is reached and left on straight lines. */
+static bool place(const struct wb_signal *s, const double *y, const struct turn *turn, double noise,
+                  struct event *event)
 {
-    const double d = c[1] * c[1] - 4.0 * c[2] * c[0];
-    if (!(d >= 0.0) || c[1] == 0.0)
-        return false;
-    *root = -2.0 * c[0] / (c[1] + copysign(sqrt(d), c[1]));
-    return fabs(*root) <= most;
-}
-
-struct corner {
-    double level_from, level_to; /* s: the signal is at its peak between these */
-    double left, right;          /* s, of the parabolas' windows: their outer ends */
-    double guard;                /* s */
-};
-
-/* Where two parabolas, or one and a level (right side NULL), meet. Twice, the second time about
- * the meeting point, so that deviations are those of values there. */
-static bool meet(const struct wb_sync_signal *s, const double *y, const struct corner *corner,
-                 const double *level, struct event *event)
-{
-    double zero = corner->level_from, moved = 0.0;
-    for (int round = 0; round < 2; round++) {
-        double a[3], b[3] = {0.0}, da, db = 0.0;
-        if (!fit_side(s, y, corner->left, corner->level_from - corner->guard, zero, a, &da))
-            return false;
-        if (level)
-            b[0] = *level;
-        else if (!fit_side(s, y, corner->level_to + corner->guard, corner->right, zero, b, &db))
-            return false;
-        const double c[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-        if (!nearest_root(c, corner->right - corner->left, &moved))
-            return false;
-        const double slope = fabs(c[1] + 2.0 * c[2] * moved);
-        event->t = zero + moved;
-        event->deviation = hypot(da, db) / slope;
-        /* Corners must stand out of what their sides scatter. */
-        if (!(slope > 0.0) || !isfinite(event->deviation))
-            return false;
-        zero = event->t;
+    const double near = fmax(5.0 * noise, 0.003 * (y[turn->peak] - y[turn->before]));
+    size_t first = turn->before, last = turn->after, n = 0;
+    double top = 0.0, left;
+    while (first < turn->peak && y[first] < y[turn->peak] - near)
+        first++;
+    while (last > turn->peak && y[last] < y[turn->peak] - near)
+        last--;
+    /* The largest of many samples stands out by its noise. */
+    for (size_t i = turn->peak < 10 ? 0 : turn->peak - 10; i < s->n && i <= turn->peak + 10; i++) {
+        if (y[i] >= y[turn->peak] - near) {
+            top += y[i];
+            n++;
+        }
     }
+    top /= (double)n;
+    if (!reaches(s, y, turn->before, first, top, &event->t) ||
+        !reaches(s, y, turn->after, last, top, &left))
+        return false;
+    event->rest = fmax(0.0, left - event->t);
+    event->from = s->t[turn->before];
+    event->until = s->t[turn->after];
+    event->deviation = 1.0;
     return true;
 }
 
-/* Length of the window on the branch between the samples `far` and `near`, s. */
-static double window_of(const struct wb_sync_signal *s, const double *y, size_t far, size_t near,
-                        double noise)
-{
-    const double time = fabs(s->t[near] - s->t[far]), way = fabs(y[near] - y[far]);
-    const double needed = way > 0.0 ? CORNER_NOISE * noise * time / way : 0.0;
-    return fmin(fmax(CORNER_WINDOW, needed), CORNER_PART * time);
-}
-
-static void place_corner(const struct wb_sync_signal *s, const double *y, const struct turn *turn,
-                         double noise, double guard, struct corner *corner)
-{
-    const double near = fmax(5.0 * noise, 0.003 * (y[turn->peak] - y[turn->before]));
-    size_t first = turn->peak, last = turn->peak;
-    while (first > turn->before && y[first - 1] >= y[turn->peak] - near)
-        first--;
-    while (last < turn->after && y[last + 1] >= y[turn->peak] - near)
-        last++;
-    /* Noise may leave and come back. */
-    for (size_t i = turn->before; i < first; i++)
-        if (y[i] >= y[turn->peak] - near)
-            first = i;
-    for (size_t i = turn->after; i > last; i--)
-        if (y[i] >= y[turn->peak] - near)
-            last = i;
-    corner->level_from = s->t[first];
-    corner->level_to = s->t[last];
-    corner->guard = guard;
-    corner->left = corner->level_from - guard - window_of(s, y, turn->before, first, noise);
-    corner->right = corner->level_to + guard + window_of(s, y, turn->after, last, noise);
-}
-
-/* How long the motion rests between its two ramps at a turn, s. */
-static double dwell_of(const struct wb_sync_signal *s, const double *y, const struct corner *corner)
-{
-    double a[3], b[3], deviation;
-    const double top = value_at(&(struct wb_sync_signal){s->t, y, s->n},
-                                0.5 * (corner->level_from + corner->level_to));
-    if (!fit_side(s, y, corner->left, corner->level_from - corner->guard, corner->level_from, a,
-                  &deviation) ||
-        !fit_side(s, y, corner->level_to + corner->guard, corner->right, corner->level_to, b,
-                  &deviation) ||
-        !(a[1] > 0.0) || !(b[1] < 0.0))
-        return 0.0;
-    const double came = corner->level_from + (top - a[0]) / a[1];
-    const double left = corner->level_to + (top - b[0]) / b[1];
-    return left - came;
-}
-
-/* Mean at the top, over at most half a second from where it was reached. */
-static double level_of(const struct wb_sync_signal *s, const double *y, const struct corner *corner)
-{
-    const size_t first = index_at(s, corner->level_from);
-    const size_t last = index_at(s, fmin(corner->level_to, corner->level_from + 1.0));
-    const size_t begin = first + (last - first) / 2;
-    double sum = 0.0;
-    size_t n = 0;
-    for (size_t i = begin; i <= last && i < s->n; i++, n++)
-        sum += y[i];
-    return n > 0 ? sum / (double)n : y[first];
-}
-
-/* Corners of |x - x(0)| at its turns. `rests` is said by the motion and applied to the force. */
-static enum wb_status find_reversals(const struct wb_sync_signal *s, double guard,
-                                     const bool *rests, bool *do_rest, struct events *events)
+/* Turns of |x - x(0)|, about. */
+static enum wb_status find_reversals(const struct wb_signal *s, struct events *events)
 {
     struct turn turns[MOST_EVENTS];
     double *const y = malloc((s->n + 1) * sizeof *y);
@@ -314,7 +206,7 @@ static enum wb_status find_reversals(const struct wb_sync_signal *s, double guar
     events->n = 0;
     if (!y)
         return WB_ERR_MEMORY;
-    const double noise = wb_sync_noise(s), zero = s->n > 0 ? s->x[0] : 0.0;
+    const double noise = wb_signal_noise(s), zero = s->n > 0 ? s->x[0] : 0.0;
     double sign = 1.0;
     for (size_t i = 0; i < s->n; i++) {
         if (fabs(s->x[i] - zero) > fabs(most)) {
@@ -326,28 +218,8 @@ static enum wb_status find_reversals(const struct wb_sync_signal *s, double guar
         y[i] = sign * (s->x[i] - zero);
     const double least = fmax(TURN_PART * fabs(most), 20.0 * noise);
     const int n = s->n > 16 && most != 0.0 ? find_turns(y, s->n, least, turns) : 0;
-    for (int i = 0; i < n; i++) {
-        struct corner corner;
-        struct event event;
-        place_corner(s, y, &turns[i], noise, guard, &corner);
-        bool rest = rests ? *rests : dwell_of(s, y, &corner) > DWELL;
-        if (do_rest && i == 0)
-            *do_rest = rest;
-        if (do_rest)
-            rest = *do_rest;
-        const double level = level_of(s, y, &corner);
-        if (!meet(s, y, &corner, rest ? &level : NULL, &event))
-            continue;
-        struct corner shorter = corner;
-        struct event other;
-        shorter.left += (1.0 - SHORTER) * (corner.level_from - guard - corner.left);
-        shorter.right -= (1.0 - SHORTER) * (corner.right - corner.level_to - guard);
-        if (meet(s, y, &shorter, rest ? &level : NULL, &other))
-            event.deviation = fmax(event.deviation, fabs(other.t - event.t));
-        event.deviation = fmax(event.deviation, 0.1 * median_period(s));
-        if (event.deviation < MOST_UNCERTAINTY)
-            events->at[events->n++] = event;
-    }
+    for (int i = 0; i < n; i++)
+        events->n += place(s, y, &turns[i], noise, &events->at[events->n]);
     free(y);
     return WB_OK;
 }
@@ -359,46 +231,46 @@ struct pairing {
     double lag, deviation, first;
 };
 
-static struct pairing pair_at(const struct events *a, const struct events *b, double lag)
+/* Which of `b` is the event of `a` behind a lag; -1: none. */
+static int partner_of(const struct event *a, const struct events *b, double lag, double gate)
 {
-    double weights = 0.0, sum = 0.0, squares = 0.0;
+    int best = -1;
+    for (int k = 0; k < b->n; k++) {
+        const double off = fabs(a->t - b->at[k].t - lag);
+        if (off < gate && (best < 0 || off < fabs(a->t - b->at[best].t - lag)))
+            best = k;
+    }
+    return best;
+}
+
+static struct pairing pair_at(const struct events *a, const struct events *b, double lag,
+                              double gate)
+{
+    struct wb_reversal_mean mean = {0};
     struct pairing pairing = {.first = HUGE_VAL};
     for (int i = 0; i < a->n; i++) {
-        int best = -1;
-        for (int k = 0; k < b->n; k++)
-            if (fabs(a->at[i].t - b->at[k].t - lag) < PAIR_GATE &&
-                (best < 0 ||
-                 fabs(a->at[i].t - b->at[k].t - lag) < fabs(a->at[i].t - b->at[best].t - lag)))
-                best = k;
-        if (best < 0)
+        const int k = partner_of(&a->at[i], b, lag, gate);
+        if (k < 0)
             continue;
-        const double variance =
-            a->at[i].deviation * a->at[i].deviation + b->at[best].deviation * b->at[best].deviation;
-        const double difference = a->at[i].t - b->at[best].t;
-        pairing.n++;
-        weights += 1.0 / variance;
-        sum += difference / variance;
-        squares += difference * difference / variance;
+        wb_reversal_mean_add(&mean, a->at[i].t - b->at[k].t,
+                             hypot(a->at[i].deviation, b->at[k].deviation));
         pairing.first = fmin(pairing.first, a->at[i].t);
     }
-    if (pairing.n > 0) {
-        pairing.lag = sum / weights;
-        const double chi = fmax(squares - weights * pairing.lag * pairing.lag, 0.0);
-        const double inflation = pairing.n > 1 ? fmax(1.0, chi / (double)(pairing.n - 1)) : 1.0;
-        pairing.deviation = sqrt(inflation / weights);
-    }
+    pairing.n = mean.n;
+    if (mean.n > 0)
+        wb_reversal_mean_find(&mean, &pairing.lag, &pairing.deviation);
     return pairing;
 }
 
 /* The lag that pairs the most events; false where another pairs as many. */
-static bool pair(const struct events *a, const struct events *b, struct pairing *best)
+static bool pair(const struct events *a, const struct events *b, double gate, struct pairing *best)
 {
     int rival = 0;
     *best = (struct pairing){0};
     for (int i = 0; i < a->n; i++) {
         for (int k = 0; k < b->n; k++) {
-            const struct pairing p = pair_at(a, b, a->at[i].t - b->at[k].t);
-            const bool same = best->n > 0 && fabs(p.lag - best->lag) < 2.0 * PAIR_GATE;
+            const struct pairing p = pair_at(a, b, a->at[i].t - b->at[k].t, gate);
+            const bool same = best->n > 0 && fabs(p.lag - best->lag) < 2.0 * gate;
             if (p.n > best->n) {
                 rival = same ? rival : best->n;
                 *best = p;
@@ -410,26 +282,98 @@ static bool pair(const struct events *a, const struct events *b, struct pairing 
     return best->n > 0 && best->n > rival && 2 * best->n >= (a->n < b->n ? a->n : b->n);
 }
 
+/* --- lags of reversals --- */
+
+struct lag_search {
+    const struct wb_signal *motion, *force;
+    double filter_delay;
+    double *shifted; /* (force->n), times of the force on the motion's clock */
+    struct wb_reversal_mean mean;
+};
+
+/* Adds the lag at one turn, from the lag that it seems to have. */
+static void add_turn(struct lag_search *s, const struct wb_reversal *reversal, double lag)
+{
+    const struct wb_signal force = {s->shifted, s->force->x, s->force->n};
+    struct wb_reversal_lag found = {.lag = HUGE_VAL};
+    for (int round = 0; round < ROUNDS && !(fabs(found.lag) < ARRIVED); round++) {
+        for (size_t i = 0; i < force.n; i++)
+            s->shifted[i] = s->force->t[i] + lag;
+        if (!wb_reversal_lag_find(&found, s->motion, &force, reversal, s->filter_delay))
+            return;
+        lag -= found.lag;
+    }
+    if (fabs(found.lag) < ARRIVED)
+        wb_reversal_mean_add(&s->mean, lag,
+                             fmax(found.uncertainty, 0.1 * median_period(s->motion)));
+}
+
+/* A long rest is two turns: the force may fall in it, as a wire relaxes. */
+static void add_event(struct lag_search *s, const struct event *motion, double lag)
+{
+    const double comes = motion->t, leaves = motion->t + motion->rest;
+    if (!(motion->rest > LONG_REST)) {
+        add_turn(s, &(struct wb_reversal){motion->from, comes, motion->until, WB_TURN_BACK}, lag);
+        return;
+    }
+    add_turn(s, &(struct wb_reversal){motion->from, comes, leaves, WB_TURN_TO_REST}, lag);
+    add_turn(s, &(struct wb_reversal){comes, leaves, motion->until, WB_TURN_FROM_REST}, lag);
+}
+
+static enum wb_status find_lags(const struct wb_signal *motion, const struct wb_signal *force,
+                                const struct events *a, const struct events *b, double filter_delay,
+                                struct pairing *pairing)
+{
+    struct lag_search s = {.motion = motion,
+                           .force = force,
+                           .filter_delay = filter_delay,
+                           .shifted = malloc((force->n + 1) * sizeof *s.shifted)};
+    if (!s.shifted)
+        return WB_ERR_MEMORY;
+    int n = 0;
+    for (int i = 0; i < a->n; i++) {
+        const int k = partner_of(&a->at[i], b, pairing->lag, TURN_GATE), before = s.mean.n;
+        if (k < 0)
+            continue;
+        add_event(&s, &a->at[i], a->at[i].t - b->at[k].t);
+        n += s.mean.n > before;
+    }
+    free(s.shifted);
+    pairing->n = n;
+    pairing->deviation = HUGE_VAL;
+    if (n > 0)
+        wb_reversal_mean_find(&s.mean, &pairing->lag, &pairing->deviation);
+    return WB_OK;
+}
+
 /* --- all --- */
 
-static void take(struct wb_sync *sync, enum wb_sync_method method, const struct events *a,
-                 const struct events *b, double extra, char reason[120])
+/* Whether the events of both fit together in one way. */
+static bool match(struct pairing *pairing, enum wb_sync_method method, const struct events *a,
+                  const struct events *b, char reason[120])
 {
-    struct pairing pairing;
-    reason[0] = '\0';
-    if (a->n == 0 || b->n == 0) {
+    if (a->n == 0 || b->n == 0)
         snprintf(reason, 120, "no %s in %s", wb_sync_name(method),
                  a->n == 0 && b->n == 0 ? "either signal"
                  : a->n == 0            ? "the motion"
                                         : "the force");
-        return;
-    }
-    if (!pair(a, b, &pairing)) {
+    else if (!pair(a, b, method == WB_SYNC_TAP ? TAP_GATE : TURN_GATE, pairing))
         snprintf(reason, 120, "%d %ss in the motion and %d in the force fit in more than one way",
                  a->n, wb_sync_name(method), b->n);
+    else
+        return true;
+    return false;
+}
+
+static void take(struct wb_sync *sync, enum wb_sync_method method, const struct pairing *pairing,
+                 double extra, char reason[120])
+{
+    const double uncertainty = hypot(pairing->deviation, extra);
+    if (!(uncertainty < HUGE_VAL)) {
+        snprintf(reason, 120, "the force has no corner that stands out at the %s",
+                 wb_sync_name(method));
         return;
     }
-    const double uncertainty = hypot(pairing.deviation, extra);
     if (!(uncertainty < MOST_UNCERTAINTY)) {
         snprintf(reason, 120, "the %s leaves %.0f ms of uncertainty", wb_sync_name(method),
                  uncertainty * 1e3);
@@ -438,39 +382,58 @@ static void take(struct wb_sync *sync, enum wb_sync_method method, const struct 
     if (sync->method != WB_SYNC_NONE && sync->uncertainty <= uncertainty)
         return;
     sync->method = method;
-    sync->lag = pairing.lag;
+    sync->lag = pairing->lag;
     sync->uncertainty = uncertainty;
-    sync->n_events = pairing.n;
-    sync->first_event = pairing.first;
+    sync->n_events = pairing->n;
+    sync->first_event = pairing->first;
 }
 
-enum wb_status wb_sync_find(struct wb_sync *sync, const struct wb_sync_signal *motion,
-                            const struct wb_sync_signal *shake, const struct wb_sync_signal *force,
-                            const struct wb_sync_settings *settings)
+static enum wb_status find_by_tap(struct wb_sync *sync, const struct wb_signal *shake,
+                                  const struct wb_signal *force, double filter_delay,
+                                  char reason[120])
 {
     struct events a, b;
+    struct pairing pairing;
+    double *const out = malloc((force->n + 1) * sizeof *out);
+    if (!out)
+        return WB_ERR_MEMORY;
+    wb_signal_shake(force, out);
+    const struct wb_signal shaken = {force->t, out, force->n};
+    enum wb_status status = find_taps(shake, &a);
+    if (status == WB_OK)
+        status = find_taps(&shaken, &b);
+    free(out);
+    /* A filter delays a short event by less than a ramp. */
+    if (status == WB_OK && match(&pairing, WB_SYNC_TAP, &a, &b, reason))
+        take(sync, WB_SYNC_TAP, &pairing, 0.5 * filter_delay, reason);
+    return status;
+}
+
+static enum wb_status find_by_reversal(struct wb_sync *sync, const struct wb_signal *motion,
+                                       const struct wb_signal *force, double filter_delay,
+                                       char reason[120])
+{
+    struct events a, b;
+    struct pairing pairing;
+    WB_TRY(find_reversals(motion, &a));
+    WB_TRY(find_reversals(force, &b));
+    if (!match(&pairing, WB_SYNC_REVERSAL, &a, &b, reason))
+        return WB_OK;
+    WB_TRY(find_lags(motion, force, &a, &b, filter_delay, &pairing));
+    take(sync, WB_SYNC_REVERSAL, &pairing, 0.0, reason);
+    return WB_OK;
+}
+
+enum wb_status wb_sync_find(struct wb_sync *sync, const struct wb_signal *motion,
+                            const struct wb_signal *shake, const struct wb_signal *force,
+                            const struct wb_sync_settings *settings)
+{
     char tap[120] = "", reversal[120] = "";
     *sync = (struct wb_sync){.lag = (double)NAN, .uncertainty = (double)NAN};
-    if (settings->tap) {
-        double *const out = malloc((force->n + 1) * sizeof *out);
-        if (!out)
-            return WB_ERR_MEMORY;
-        wb_sync_shake(force, out);
-        const struct wb_sync_signal shaken = {force->t, out, force->n};
-        enum wb_status status = find_taps(shake, &a);
-        if (status == WB_OK)
-            status = find_taps(&shaken, &b);
-        free(out);
-        WB_TRY(status);
-        /* A filter delays a short event by less than a ramp. */
-        take(sync, WB_SYNC_TAP, &a, &b, 0.5 * settings->filter_delay, tap);
-    }
-    if (settings->reversal) {
-        bool rests = false;
-        WB_TRY(find_reversals(motion, 0.05, NULL, &rests, &a));
-        WB_TRY(find_reversals(force, fmax(0.05, 3.0 * settings->filter_delay), &rests, NULL, &b));
-        take(sync, WB_SYNC_REVERSAL, &a, &b, 0.0, reversal);
-    }
+    if (settings->tap)
+        WB_TRY(find_by_tap(sync, shake, force, settings->filter_delay, tap));
+    if (settings->reversal)
+        WB_TRY(find_by_reversal(sync, motion, force, settings->filter_delay, reversal));
     if (sync->method == WB_SYNC_NONE)
         snprintf(sync->reason, sizeof sync->reason, "%s%s%s", tap,
                  tap[0] && reversal[0] ? "; " : "", reversal);

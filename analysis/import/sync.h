@@ -2,24 +2,18 @@
  * tap on the bench, or that the motion was reversed.
  *
  * A ramp that only rises slides along itself: any lag fits, and none is given. A tap stands out of
- * both signals for a moment. A reversal is a corner: parabolas before and behind it meet there, in
- * deflection and in force, whatever the wire's curve in between. Where the motion rests before it
- * turns, the corner is where it came to rest. Events of the two are paired by their pattern; a
- * pattern that fits in two ways, as one missing of several equal cycles makes it, gives no lag.
+ * both signals for a moment. A reversal is a corner of both (analysis/import/reversal_lag.h); where
+ * the motion rests for long before it turns, there are two. Events of the two are paired by their
+ * pattern; a pattern that fits in two ways, as one missing of several equal cycles makes it, gives
+ * no lag.
  */
 #ifndef WB_ANALYSIS_SYNC_H
 #define WB_ANALYSIS_SYNC_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
+#include "analysis/import/signal.h"
 #include "base/status.h"
-
-/* Samples on a clock of their own, times ascending. */
-struct wb_sync_signal {
-    const double *t, *x;
-    size_t n;
-};
 
 enum wb_sync_method {
     WB_SYNC_NONE,
@@ -45,17 +39,11 @@ struct wb_sync_settings {
 };
 
 /* Finds the lag of `force` (any unit and sign) behind `motion`. For taps `shake` is the fast part
- * of the motion, from wb_sync_shake() or zeros where there is none. WB_OK with method WB_SYNC_NONE
- * where it is not identifiable; WB_ERR_MEMORY, silent. */
-WB_MUST_CHECK enum wb_status wb_sync_find(struct wb_sync *sync, const struct wb_sync_signal *motion,
-                                          const struct wb_sync_signal *shake,
-                                          const struct wb_sync_signal *force,
+ * of the motion, from wb_signal_shake() or zeros where there is none. WB_OK with method
+ * WB_SYNC_NONE where it is not identifiable; WB_ERR_MEMORY, silent. */
+WB_MUST_CHECK enum wb_status wb_sync_find(struct wb_sync *sync, const struct wb_signal *motion,
+                                          const struct wb_signal *shake,
+                                          const struct wb_signal *force,
                                           const struct wb_sync_settings *settings);
-
-/* How far each sample is from the middle of those 0.2 s before and after it, into out[n]. */
-void wb_sync_shake(const struct wb_sync_signal *signal, double *out);
-
-/* Standard deviation of a sample's noise, from second differences. NaN when out of memory. */
-double wb_sync_noise(const struct wb_sync_signal *signal);
 
 #endif

@@ -1,15 +1,18 @@
-#include "analysis/reversal_lag.h"
+#include "analysis/import/reversal_lag.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/calibration/least_squares.h"
 #include "analysis/dataset/fit.h"
+#include "analysis/dataset/least_squares.h"
 
-/* Windows on each side, s, and at most this part of a way. */
+/* Windows on each side, s, or the time in which the signal moves by so many deviations of its
+ * noise; at most this part of a way, and of a rest. */
 #define MOTION_WINDOW 6.0
 #define FORCE_WINDOW 3.0
+#define WINDOW_NOISES 25.0
 #define WINDOW_PART 0.4
+#define REST_PART 0.9
 #define SHORTER 0.6
 /* s of the force left out before the turn, and the filter's delays behind it. */
 #define GUARD 0.05
@@ -17,7 +20,7 @@
 /* Samples that each signal must have on each side. */
 #define LEAST 12
 #define MOST_ITERATIONS 100
-#define MOST_LAG 0.5 /* s: a search that ends farther off went astray */
+#define MOST_LAG 2.5 /* s: a search that ends farther off went astray */
 #define TIMES 10.0   /* free numbers in 1 s */
 /* Lengths of the rest that are tried, s apart; those less probable than this part of the best are
  * left out. */
@@ -42,7 +45,7 @@ enum {
 
 /* Samples of one signal in the window, about the turn and the signal's value there. */
 struct part {
-    const struct wb_sync_signal *signal;
+    const struct wb_signal *signal;
     size_t first, last;           /* last is behind the end */
     double skip_from, skip_until; /* s: left out between */
     double zero, scale;           /* of the values: the noise is 1 in scaled ones */
@@ -55,20 +58,31 @@ struct problem {
     enum wb_status status;
 };
 
-static struct part take_part(const struct wb_sync_signal *signal, double from, double at,
-                             double until)
+static struct part take_part(const struct wb_signal *signal, double from, double at, double until)
 {
-    const size_t middle = wb_fit_first_at(signal->t, sizeof *signal->t, signal->n, at);
+    const size_t middle = wb_signal_index(signal, at);
     struct part part = {
         .signal = signal,
-        .first = wb_fit_first_at(signal->t, sizeof *signal->t, signal->n, from),
-        .last = wb_fit_first_at(signal->t, sizeof *signal->t, signal->n, until),
+        .first = wb_signal_index(signal, from),
+        .last = wb_signal_index(signal, until),
         .skip_from = at,
         .skip_until = at,
-        .scale = wb_sync_noise(signal),
+        .scale = wb_signal_noise(signal),
     };
     part.zero = signal->n > 0 ? signal->x[middle < signal->n ? middle : signal->n - 1] : 0.0;
     return part;
+}
+
+/* Length of the window between the turn and the way's other end, s. */
+static double window_of(const struct wb_signal *signal, double at, double end, double least,
+                        double most)
+{
+    const size_t a = wb_signal_index(signal, fmin(at, end)),
+                 b = wb_signal_index(signal, fmax(at, end));
+    const double way = b < signal->n ? fabs(signal->x[b] - signal->x[a]) : 0.0;
+    const double needed =
+        way > 0.0 ? WINDOW_NOISES * wb_signal_noise(signal) * fabs(end - at) / way : 0.0;
+    return fmin(fmax(least, needed), most);
 }
 
 static bool is_left_out(const struct part *part, double t)
@@ -177,10 +191,10 @@ static double rest_of(int index)
     return REST_STEP * index;
 }
 
-static bool find_rests(struct problem *p, struct rests *rests)
+static bool find_rests(struct problem *p, int n_rests, struct rests *rests)
 {
     double squares[N_RESTS], least = HUGE_VAL;
-    for (int i = 0; i < N_RESTS; i++) {
+    for (int i = 0; i < n_rests; i++) {
         double x[N_ALL] = {0.0};
         p->rest = rest_of(i);
         x[P_SPEED_THERE] = 1e-3 / p->motion.scale;
@@ -190,7 +204,7 @@ static bool find_rests(struct problem *p, struct rests *rests)
         rests->begins[i] = seconds_of(x[P_REST_BEGINS]);
         least = fmin(least, squares[i]);
     }
-    for (int i = 0; i < N_RESTS; i++)
+    for (int i = 0; i < n_rests; i++)
         rests->weight[i] = exp(-0.5 * (squares[i] - least));
     return isfinite(least);
 }
@@ -217,26 +231,32 @@ static bool find_with_rest(struct problem *p, int index, const struct rests *res
 
 /* Both signals with windows of this part of the whole ones; the mean over all lengths of the rest,
  * each by its probability. */
-static bool find_with(struct wb_reversal_lag *result, const struct wb_sync_signal *motion,
-                      const struct wb_sync_signal *force, const struct wb_reversal *reversal,
+static bool find_with(struct wb_reversal_lag *result, const struct wb_signal *motion,
+                      const struct wb_signal *force, const struct wb_reversal *reversal,
                       double filter_delay, double window)
 {
-    const double there = WINDOW_PART * (reversal->at - reversal->from), at = reversal->at;
-    const double back = WINDOW_PART * (reversal->until - reversal->at);
+    const int n_rests = reversal->turn == WB_TURN_BACK ? N_RESTS : 1;
+    const double at = reversal->at;
+    const double there =
+        (reversal->turn == WB_TURN_FROM_REST ? REST_PART : WINDOW_PART) * (at - reversal->from);
+    const double back =
+        (reversal->turn == WB_TURN_TO_REST ? REST_PART : WINDOW_PART) * (reversal->until - at);
     struct problem p = {
         .turn = at,
-        .motion = take_part(motion, at - window * fmin(MOTION_WINDOW, there), at,
-                            at + window * fmin(MOTION_WINDOW, back)),
-        .force = take_part(force, at - window * fmin(FORCE_WINDOW, there), at,
-                           at + window * fmin(FORCE_WINDOW, back)),
+        .motion = take_part(
+            motion, at - window * window_of(motion, at, reversal->from, MOTION_WINDOW, there), at,
+            at + window * window_of(motion, at, reversal->until, MOTION_WINDOW, back)),
+        .force = take_part(
+            force, at - window * window_of(force, at, reversal->from, FORCE_WINDOW, there), at,
+            at + window * window_of(force, at, reversal->until, FORCE_WINDOW, back)),
         .status = WB_OK,
     };
     struct rests rests;
     double weights = 0.0, lag = 0.0, squares = 0.0, rest = 0.0;
-    if (!is_enough(&p.motion) || !find_rests(&p, &rests))
+    if (!is_enough(&p.motion) || !find_rests(&p, n_rests, &rests))
         return false;
     p.with_force = true;
-    for (int i = 0; i < N_RESTS; i++) {
+    for (int i = 0; i < n_rests; i++) {
         struct wb_reversal_lag one;
         if (rests.weight[i] < LEAST_WEIGHT || !find_with_rest(&p, i, &rests, filter_delay, &one))
             continue;
@@ -253,8 +273,8 @@ static bool find_with(struct wb_reversal_lag *result, const struct wb_sync_signa
     return true;
 }
 
-bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_sync_signal *motion,
-                          const struct wb_sync_signal *force, const struct wb_reversal *reversal,
+bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_signal *motion,
+                          const struct wb_signal *force, const struct wb_reversal *reversal,
                           double filter_delay)
 {
     struct wb_reversal_lag shorter;
@@ -267,4 +287,21 @@ bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_sync_s
     const double moved = fabs(shorter.lag - result->lag);
     result->uncertainty = hypot(result->uncertainty, fmax(0.0, moved - noise));
     return true;
+}
+
+void wb_reversal_mean_add(struct wb_reversal_mean *mean, double lag, double uncertainty)
+{
+    const double weight = 1.0 / (uncertainty * uncertainty);
+    mean->n++;
+    mean->weights += weight;
+    mean->sum += weight * lag;
+    mean->squares += weight * lag * lag;
+}
+
+void wb_reversal_mean_find(const struct wb_reversal_mean *mean, double *lag, double *uncertainty)
+{
+    *lag = mean->sum / mean->weights;
+    const double chi = fmax(0.0, mean->squares - mean->weights * *lag * *lag);
+    const double enlarged = mean->n > 1 ? fmax(1.0, chi / (mean->n - 1)) : 1.0;
+    *uncertainty = sqrt(enlarged / mean->weights);
 }

@@ -1,4 +1,4 @@
-#include "analysis/calibration/least_squares.h"
+#include "analysis/dataset/least_squares.h"
 
 #include <math.h>
 #include <pthread.h>

@@ -1,5 +1,5 @@
 /* Searches and priors that fits share, on problems whose answers are known. */
-#include "analysis/calibration/least_squares.h"
+#include "analysis/dataset/least_squares.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>

@@ -7,17 +7,29 @@
  * tenth of a second for its next command, and the force, steeper on the way back, then has its
  * corner nearer to the end of the rest than the motion.
  *
+ * Where the rest is long, the two corners are looked at by themselves: the lines of one way are
+ * then those of the rest, in which the force may go on.
+ *
  * Left out of the force is what a filter of first order still remembers: three of its delays after
  * the rest.
  */
 #ifndef WB_ANALYSIS_REVERSAL_LAG_H
 #define WB_ANALYSIS_REVERSAL_LAG_H
 
-#include "analysis/import/sync.h"
+#include <stdbool.h>
+
+#include "analysis/import/signal.h"
+
+enum wb_turn {
+    WB_TURN_BACK,     /* at once, or after less than a second of rest */
+    WB_TURN_TO_REST,  /* the motion stops; the force may still fall */
+    WB_TURN_FROM_REST /* it moves again */
+};
 
 struct wb_reversal {
     double from, at, until; /* s: where the way there begins, about where it turns, where the way
-                               back ends */
+                               back ends; or the rest in place of one of them */
+    enum wb_turn turn;
 };
 
 struct wb_reversal_lag {
@@ -28,8 +40,19 @@ struct wb_reversal_lag {
 };
 
 /* False where there are too few samples, or the numbers are not determined. */
-bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_sync_signal *motion,
-                          const struct wb_sync_signal *force, const struct wb_reversal *reversal,
+bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_signal *motion,
+                          const struct wb_signal *force, const struct wb_reversal *reversal,
                           double filter_delay);
+
+/* Mean over lags, each weighted by its uncertainty; begins as zeros. */
+struct wb_reversal_mean {
+    int n;
+    double weights, sum, squares;
+};
+
+void wb_reversal_mean_add(struct wb_reversal_mean *mean, double lag, double uncertainty);
+/* Of at least one. Its standard uncertainty is enlarged where the lags differ by more than theirs.
+ */
+void wb_reversal_mean_find(const struct wb_reversal_mean *mean, double *lag, double *uncertainty);
 
 #endif
