@@ -18,6 +18,10 @@
 #define LEAST_ZERO_ROWS 6
 /* Part of the largest tension above which a strand is taut beyond doubt. */
 #define TAUT_PART 0.3
+/* A strand that becomes taut pulls by more than so many deviations of a row's reading, and this
+ * part of the largest tension. */
+#define PULL_NOISES 10.0
+#define PULL_PART 0.02
 /* Without a strand, or without its geometry: tension below this part of the largest is none. */
 #define NO_TENSION_PART 0.005
 /* The zero of force and the initial slope are read over so much deflection at the least, or this
@@ -310,14 +314,19 @@ static bool is_first_loading(const struct wb_align_row *row)
     return row->cycle == 1 && row->phase == WB_PHASE_LOAD;
 }
 
-/* Where the first loading became taut for good, and the first row after the filter settled. */
+/* Where the first loading became taut for good, and the first row after the filter settled. Before,
+ * the markers' noise lets single rows of a slack strand look taut: nothing pulls in them. */
 static bool find_taut(struct wb_align *align, size_t *settled)
 {
-    size_t i = 0;
-    while (i < align->n_rows && !is_first_loading(&align->rows[i]))
-        i++;
-    if (i == align->n_rows)
+    const double least = fmax(PULL_NOISES * row_noise(align), PULL_PART * align->largest);
+    size_t pulled = 0, i;
+    while (pulled < align->n_rows &&
+           !(is_first_loading(&align->rows[pulled]) && align->rows[pulled].reading > least))
+        pulled++;
+    if (pulled == align->n_rows)
         return false;
+    for (i = pulled; i > 0 && is_first_loading(&align->rows[i - 1]);)
+        i--;
     align->taut_t = align->rows[i].t;
     /* Taut from the first row on: the filter had settled before. */
     const double settle = i == 0 ? 0.0 : settle_time(align);

@@ -29,6 +29,12 @@
 #define MOTION_DEVIATIONS 6.0
 /* Part of the whole deflection that is surely motion, and no tap. */
 #define SURE_MOTION 0.15
+/* Means over so long, s, show its beginning where single places do not: until they are off the rest
+ * by no more than this many of their deviations. */
+#define REST_WINDOW 0.2
+#define REST_DEVIATIONS 3.0
+/* So much of the rest, s, and half of it at most, belongs to the test, as a bench records it. */
+#define REST_BEFORE 1.0
 
 static const struct wb_setting setting_rows[] = {
     {.name = "offset_s",
@@ -292,7 +298,24 @@ static enum wb_status find_motion(struct import *import)
     return WB_OK;
 }
 
-/* Where the tip last rested before it surely moved. */
+/* The first sample of the last window, with or before `last`, in which the tip still rests. */
+static size_t last_rest(const struct wb_signal *motion, double rest, double noise, size_t last)
+{
+    size_t from = last;
+    for (size_t until = last;; until--) {
+        double sum = 0.0;
+        from = wb_signal_index(motion, motion->t[until] - REST_WINDOW);
+        for (size_t i = from; i <= until; i++)
+            sum += motion->x[i] - rest;
+        const double n = (double)(until - from + 1);
+        if (from == 0 || !(fabs(sum / n) > REST_DEVIATIONS * noise / sqrt(n)))
+            return from;
+    }
+}
+
+/* Where the tip last rested before it surely moved, and a little before: the strand becomes taut
+ * while the tip hardly moves, and the force's zero is read where the wire comes by its level, a
+ * millimetre from its rest or less. */
 static enum wb_status find_start(struct import *import)
 {
     const struct wb_signal motion = {import->t, import->motion, import->n_motion};
@@ -312,7 +335,14 @@ static enum wb_status find_start(struct import *import)
     for (size_t i = 0; i < sure; i++)
         if (fabs(import->motion[i]) <= band)
             last = i;
-    import->result->motion_start = import->t[last];
+    double *const resting = malloc((last + 1) * sizeof *resting);
+    if (!resting)
+        return no_memory();
+    memcpy(resting, import->motion, (last + 1) * sizeof *resting);
+    const double rest = wb_fit_median(resting, last + 1);
+    free(resting);
+    const double rested = import->t[last_rest(&motion, rest, noise, last)];
+    import->result->motion_start = rested - fmin(REST_BEFORE, 0.5 * (rested - import->t[0]));
     return WB_OK;
 }
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "analysis/align/align.h"
+#include "analysis/dataset/fit.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -118,12 +119,11 @@ static void write_motive(int first, int last)
     wb_text_release(&text);
 }
 
-/* As a logger of another country writes it, at an even rate. */
-static void write_force(double until)
+/* Readings' times on the clock of the take, at an even rate. */
+static void reading_times(double *t)
 {
     static double number[MOST];
     static int64_t host_ns[MOST];
-    struct wb_text text = {0};
     struct wb_clock_line line;
     for (int i = 0; i < said.n_readings; i++) {
         number[i] = (double)i;
@@ -132,21 +132,104 @@ static void write_force(double until)
     assert_int_equal(
         wb_clock_fit_envelope(&line, number, host_ns, (size_t)said.n_readings, 1.0 / 80.0, 32.0),
         WB_OK);
+    for (int i = 0; i < said.n_readings; i++)
+        t[i] = wb_seconds_from_ns(wb_clock_line_host_ns(&line, number[i])) - said.host_less_device -
+               said.frames[0].t_device;
+}
+
+/* As a logger of another country writes it. */
+static void write_force(double until)
+{
+    static double t[MOST];
+    struct wb_text text = {0};
+    reading_times(t);
     wb_text_append(&text, "Zeit (s);Kraft (mN)\r\n");
-    for (int i = 0; i < said.n_readings; i++) {
-        const double device =
-            wb_seconds_from_ns(wb_clock_line_host_ns(&line, number[i])) - said.host_less_device;
-        const double t = device - said.frames[0].t_device;
-        if (t > until)
-            break;
+    for (int i = 0; i < said.n_readings && t[i] <= until; i++) {
         char row[80];
-        snprintf(row, sizeof row, "%.4f;%.5f\r\n", t + CLOCKS, said.readings[i].force / WB_MN);
+        snprintf(row, sizeof row, "%.4f;%.5f\r\n", t[i] + CLOCKS, said.readings[i].force / WB_MN);
         for (char *at = row; *at; at++)
             *at = *at == '.' ? ',' : *at;
         wb_text_append(&text, "%s", row);
     }
     assert_int_equal(wb_file_write_text(force_path, &text), WB_OK);
     wb_text_release(&text);
+}
+
+/* A C3D with a point for each id and the force as its channel, two readings a frame. */
+static void write_c3d(const char *path)
+{
+    static double t[MOST];
+    static struct example_bytes head;
+    const int first = said.frames[0].frame_number;
+    const int n = said.frames[said.n_frames - 1].frame_number - first + 1;
+    char labels[4 * MOST_IDS];
+    FILE *const file = fopen(path, "wb");
+    assert_non_null(file);
+    for (int i = 0; i < said.n_ids; i++)
+        memcpy(labels + (size_t)4 * i,
+               (char[]){'M', (char)('0' + i / 10), (char)('0' + i % 10), ' '}, 4);
+    head = (struct example_bytes){.processor = 84};
+    example_byte(&head, 2);
+    example_byte(&head, 0x50);
+    const long words[] = {said.n_ids, 2, 1, n, 10};
+    for (int i = 0; i < 5; i++)
+        example_word(&head, words[i]);
+    example_float(&head, -1.0);
+    example_word(&head, 5);
+    example_word(&head, 2);
+    example_float(&head, RATE);
+    example_block(&head);
+    example_byte(&head, 0);
+    example_byte(&head, 0);
+    example_byte(&head, 3);
+    example_byte(&head, head.processor);
+    example_group(&head, 1, "POINT");
+    example_int(&head, 1, "USED", said.n_ids);
+    example_int(&head, 1, "FRAMES", n);
+    example_int(&head, 1, "DATA_START", 5);
+    example_real(&head, 1, "SCALE", -1.0);
+    example_real(&head, 1, "RATE", RATE);
+    example_texts(&head, 1, "LABELS", labels, said.n_ids);
+    example_texts(&head, 1, "UNITS", "mm\0\0", 1);
+    example_group(&head, 2, "ANALOG");
+    example_int(&head, 2, "USED", 1);
+    example_real(&head, 2, "GEN_SCALE", 1.0);
+    example_real(&head, 2, "SCALE", 1.0);
+    example_int(&head, 2, "OFFSET", 0);
+    example_texts(&head, 2, "LABELS", "Fz  ", 1);
+    example_texts(&head, 2, "UNITS", "mN\0\0", 1);
+    while (head.n < (size_t)4 * 512)
+        example_byte(&head, 0);
+    assert_int_equal(fwrite(head.bytes, 1, head.n, file), head.n);
+    reading_times(t);
+    const struct wb_mocap_frame *frame = said.frames;
+    for (int f = 0, at = 1; f < n; f++) {
+        float row[4 * MOST_IDS + 2] = {0.0f};
+        for (int i = 0; i < said.n_ids; i++)
+            row[4 * i + 3] = -1.0f;
+        while (frame < said.frames + said.n_frames && frame->frame_number - first < f)
+            frame++;
+        for (int k = 0; frame->frame_number - first == f && k < frame->n_markers; k++) {
+            int i = 0;
+            while (said.ids[i] != frame->markers[k].id)
+                i++;
+            for (int j = 0; j < 3; j++)
+                row[4 * i + j] = 1e3f * frame->markers[k].position[j];
+            row[4 * i + 3] = is_measured(&frame->markers[k]) ? 1.0f : -1.0f;
+        }
+        for (int r = 0; r < 2; r++) {
+            const double now = (f + 0.5 * r) / RATE;
+            while (at + 1 < said.n_readings && t[at] < now)
+                at++;
+            const double part = (now - t[at - 1]) / (t[at] - t[at - 1]);
+            row[4 * said.n_ids + r] = (float)(((1.0 - part) * said.readings[at - 1].force +
+                                               part * said.readings[at].force) /
+                                              WB_MN);
+        }
+        assert_int_equal(fwrite(row, sizeof *row, (size_t)(4 * said.n_ids + 2), file),
+                         4 * said.n_ids + 2);
+    }
+    fclose(file);
 }
 
 /* --- all --- */
@@ -219,6 +302,23 @@ static double force_at(const struct wb_dataset *dataset, double deflection)
     return (double)NAN;
 }
 
+/* Deflection where the force comes to zero on the way back, by a line through the rows about it. */
+static double left_of(const struct wb_dataset *dataset)
+{
+    double x[200], y[200];
+    struct wb_fit_line line;
+    size_t n = 0;
+    for (size_t i = 0; i < dataset->n_rows && n < 200; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (row->phase != WB_PHASE_UNLOAD || fabs(row->force) > 2.0 * WB_MN)
+            continue;
+        x[n] = row->force;
+        y[n++] = row->deflection;
+    }
+    assert_true(n > 50 && wb_fit_line(x, y, n, &line));
+    return line.value;
+}
+
 static void align_output(struct wb_dataset *dataset)
 {
     struct wb_align_settings settings;
@@ -245,6 +345,10 @@ static void a_test_in_files_is_the_same_test(void **state)
     assert_close(result.sync.lag, -CLOCKS - 0.05, 3.0 * result.sync.uncertainty);
     assert_close(result.offset, result.sync.lag + 0.05, 1e-12);
     align_output(&dataset);
+    print_message("lag off by %.1f ms, stated %.1f ms; left deflected %.2f mm, by the recording "
+                  "%.2f mm\n",
+                  1e3 * (result.sync.lag + CLOCKS + 0.05), 1e3 * result.sync.uncertainty,
+                  left_of(&dataset) / WB_MM, left_of(&reference) / WB_MM);
     for (double at = 5.0; at < 51.0; at += 5.0)
         assert_close(force_at(&dataset, at * WB_MM), force_at(&reference, at * WB_MM), 0.3 * WB_MN);
     assert_true(wb_dataset_is_complete(&dataset));
@@ -429,6 +533,34 @@ static void rigid_bodies_alone_are_refused(void **state)
     write_motive(0, said.n_frames);
 }
 
+/* Of a take with its force in it nothing says when the test began: it is found early enough, so
+ * that the zero of the force is that of the recording. */
+static void a_take_with_its_force_in_it_is_the_same_test(void **state)
+{
+    (void)state;
+    struct wb_mocap_import result;
+    struct wb_dataset dataset;
+    char path[80];
+    snprintf(path, sizeof path, "%s/take.c3d", folder);
+    write_c3d(path);
+    struct wb_mocap_import_request request = request_of();
+    request.take_path = path;
+    request.force_path = NULL;
+    assert_int_equal(wb_mocap_import_run(&result, &request), WB_OK);
+    assert_int_equal(result.sync.method, WB_SYNC_SAME);
+    assert_string_equal(result.channel, "Fz");
+    align_output(&dataset);
+    print_message("left deflected %.2f mm, by the recording %.2f\n", left_of(&dataset) / WB_MM,
+                  left_of(&reference) / WB_MM);
+    assert_close(left_of(&dataset), left_of(&reference), 0.05 * WB_MM);
+    for (size_t i = 0; i < 12; i++)
+        assert_true(dataset.rows[i].force < force_at(&reference, 5.0 * WB_MM) - 20.0 * WB_MN);
+    for (double at = 5.0; at < 51.0; at += 5.0)
+        assert_close(force_at(&dataset, at * WB_MM), force_at(&reference, at * WB_MM), 0.3 * WB_MN);
+    wb_dataset_release(&dataset);
+    unlink(path);
+}
+
 /* The force of a C3D is a channel of it, on the same clock. */
 static void a_channel_of_a_take_is_its_force(void **state)
 {
@@ -468,6 +600,7 @@ int main(void)
         cmocka_unit_test(what_is_left_out_is_counted_and_the_dataset_is_incomplete),
         cmocka_unit_test(an_existing_recording_is_not_overwritten),
         cmocka_unit_test(rigid_bodies_alone_are_refused),
+        cmocka_unit_test(a_take_with_its_force_in_it_is_the_same_test),
         cmocka_unit_test(a_channel_of_a_take_is_its_force),
     };
     return cmocka_run_group_tests(tests, start, end);
