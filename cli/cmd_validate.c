@@ -1,5 +1,6 @@
 /* wirebench validate: properties against datasets they were not calibrated on. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -21,6 +22,8 @@ struct options {
     struct wb_command_common common;
     struct wb_datasets datasets;
     struct wb_calibrate_settings settings;
+    struct wb_three_point_calibrate_settings three_point;
+    const struct wb_setting *of[2]; /* the first option of either kind of test that was given */
 };
 
 static const struct argp_option other_options[] = {
@@ -44,6 +47,41 @@ static const struct argp argp = {
         "deflection of tests with a follower force. Exit code 3: a prediction was cut short "
         "because the beam did not converge, or a three-point test cannot serve.",
 };
+
+static const struct wb_settings_source sources[] = {
+    {.tables = &wb_calibrate_table,
+     .n_tables = 1,
+     .offset = offsetof(struct options, settings),
+     .title = "Settings of tests of cantilevers:"},
+    {.tables = wb_three_point_calibrate_tables,
+     .n_tables = WB_THREE_POINT_CALIBRATE_TABLES,
+     .offset = offsetof(struct options, three_point),
+     .title = "Settings of datasets of three-point bending, as of `wirebench calibrate`:"},
+};
+
+static void note_option(void *input, const struct wb_setting *row)
+{
+    struct options *const o = input;
+    const bool is_three_point =
+        !(row >= wb_calibrate_table.rows && row < wb_calibrate_table.rows + wb_calibrate_table.n);
+    if (!o->of[is_three_point])
+        o->of[is_three_point] = row;
+}
+
+/* Options of tests that are not among the datasets would do nothing. */
+static enum wb_status check_options(const struct options *o)
+{
+    bool has[2] = {false, false};
+    for (int i = 0; i < o->datasets.n; i++)
+        has[o->datasets.pointers[i]->info.kind == WB_TEST_THREE_POINT] = true;
+    for (int k = 0; k < 2; k++) {
+        if (o->of[k] && !has[k])
+            return wb_fail(WB_ERR_ARGUMENT, "--%s is for %s: there is none among the datasets",
+                           o->of[k]->option,
+                           k == 0 ? "tests of cantilevers" : "datasets of three-point bending");
+    }
+    return WB_OK;
+}
 
 /* Of one wire, length and loading, or of one wire on one bench of three-point bending. */
 struct group {
@@ -74,9 +112,9 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
     struct group *const g = &groups->items[group];
     g->is_three_point = members[0]->info.kind == WB_TEST_THREE_POINT;
     const enum wb_status status =
-        g->is_three_point
-            ? wb_validate_three_point_run(&g->three_point, properties, members, n, NULL)
-            : wb_validate_run(&g->result, properties, members, n, &o->settings, NULL);
+        g->is_three_point ? wb_validate_three_point_run(&g->three_point, properties, members, n,
+                                                        &o->three_point, NULL)
+                          : wb_validate_run(&g->result, properties, members, n, &o->settings, NULL);
     free(members);
     return status;
 }
@@ -86,6 +124,7 @@ static enum wb_status run_groups(struct options *o, const struct wb_properties *
 {
     WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs + 1, o->common.n - 1,
                             WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
+    WB_TRY(check_options(o));
     const size_t n = (size_t)o->datasets.n;
     groups->of = calloc(n, sizeof *groups->of);
     groups->items = calloc(n, sizeof *groups->items);
@@ -292,13 +331,21 @@ static int deliver(const struct options *o, const struct wb_properties *properti
 
 int wb_cmd_validate(int argc, char **argv)
 {
+    static const struct wb_settings_command command = {
+        .argp = &argp,
+        .sources = sources,
+        .n_sources = WB_COUNT(sources),
+        .place = WB_CALIBRATE_VALIDATE,
+        .note = note_option,
+    };
     struct options options = {
         .common = {.noun = "the properties and at least one dataset", .least = 2}};
     struct wb_properties properties;
     struct groups groups = {0};
     wb_calibrate_default_settings(&options.settings);
-    wb_settings_parse_table(&argp, &wb_calibrate_table, &options.settings, WB_CALIBRATE_VALIDATE,
-                            argc, argv, &options);
+    wb_setting_fill(&wb_three_point_calibrate_tables[0], &options.three_point.data);
+    wb_setting_fill(&wb_three_point_calibrate_tables[1], &options.three_point.fit);
+    wb_settings_parse(&command, argc, argv, &options);
 
     enum wb_status status =
         wb_file_is_folder(options.common.input)

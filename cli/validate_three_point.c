@@ -48,6 +48,23 @@ static void print_scatter(const struct wb_validate_three_point *r)
                                           : "no more than the scatter explains");
 }
 
+static void print_test(const struct wb_validate_three_point_test *test)
+{
+    const struct wb_test_info *const info = &test->data.info;
+    printf("  sample %d%s%s: ", info->sample, info->piece.series[0] ? ", series " : "",
+           info->piece.series);
+    if (!test->is_used) {
+        printf("left out: %s\n", test->why.text);
+        return;
+    }
+    printf("first contact %.3f mm (as read %.3f), ", test->first_contact / WB_MM,
+           test->data.first_contact / WB_MM);
+    if (test->is_bow_searched || test->bow != 0.0)
+        printf("natural bow %.3f mm%s, ", test->bow / WB_MM,
+               test->is_bow_searched ? " (found)" : "");
+    printf("RMS %.3g\n", test->rms);
+}
+
 void wb_validate_three_point_print(const struct wb_validate_three_point *r)
 {
     printf("wire %s, three-point bending, span %g mm, %d of %d test%s%s\n", r->info.wire,
@@ -66,14 +83,7 @@ void wb_validate_three_point_print(const struct wb_validate_three_point *r)
     print_bench(r);
     print_scatter(r);
     for (int i = 0; i < r->n_tests; i++) {
-        const struct wb_validate_three_point_test *const test = &r->tests[i];
-        if (test->is_used)
-            printf("  sample %d%s%s: first contact %.3f mm (as read %.3f), RMS %.3g\n",
-                   test->data.info.sample, test->data.info.piece.series[0] ? ", series " : "",
-                   test->data.info.piece.series, test->first_contact / WB_MM,
-                   test->data.first_contact / WB_MM, test->rms);
-        else
-            printf("  sample %d: left out: %s\n", test->data.info.sample, test->why.text);
+        print_test(&r->tests[i]);
     }
     if (r->is_beyond)
         printf("  beyond         the middle is bent to %.3g /m, further than these properties are "

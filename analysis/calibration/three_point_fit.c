@@ -11,6 +11,8 @@
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
+#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/three_point_place.h"
 #include "analysis/dataset/least_squares.h"
 #include "base/progress.h"
 #include "base/units.h"
@@ -54,6 +56,7 @@ const struct wb_setting wb_three_point_fit_rows[WB_THREE_POINT_FIT_ROWS] = {
      .fallback = 2.0,
      .option = "part-prior",
      .argument = "X",
+     .applies = WB_CALIBRATE_COMMAND,
      .help = "Prior of the second differences of the logarithms of the moduli of parts that yield"},
     {.name = "contact_prior",
      .type = WB_SETTING_NUMBER,
@@ -91,6 +94,7 @@ const struct wb_setting wb_three_point_fit_rows[WB_THREE_POINT_FIT_ROWS] = {
      .fallback = 40,
      .option = "curve-iterations",
      .argument = "N",
+     .applies = WB_CALIBRATE_COMMAND,
      .help = "Most iterations of a fit"},
 };
 
@@ -424,17 +428,6 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
     return WB_OK;
 }
 
-/* What the specimen's file says of the bow: a number holds it, a band is two standard deviations on
- * either side. */
-static void take_bow(struct problem *p)
-{
-    const struct wb_test_info *const info = &p->data->info;
-    const struct wb_band *const given = &info->piece.natural_bow;
-    p->bow = given->known ? given->value : 0.0;
-    p->bow_deviation =
-        given->known ? 0.25 * (given->most - given->least) : p->settings->bow_prior * info->length;
-}
-
 enum wb_status wb_three_point_fit_run(struct wb_three_point_fit *fit,
                                       const struct wb_three_point_data *data,
                                       const struct wb_three_point_bench *bench,
@@ -458,13 +451,13 @@ enum wb_status wb_three_point_fit_run(struct wb_three_point_fit *fit,
                           "wire '%s', sample %d: a compliance of %.3g mm/N takes all of the travel",
                           data->info.wire, data->info.sample, bench->compliance / WB_MM);
     p.n_law = WB_THREE_POINT_PARTS + data->has_unloading;
-    take_bow(&p);
+    wb_three_point_place_bow(&data->info, settings, &p.bow, &p.bow_deviation);
     const int is_bow_free = p.bow_deviation > 0.0;
     p.n_curve = p.n_law + is_bow_free;
     p.n_free = p.n_curve + 1;
     p.n_residuals =
         data->n_points + WB_THREE_POINT_PARTS - 3 + 1 + is_bow_free + data->has_unloading;
-    p.force_scale = fmax(data->noise, settings->force_share * data->max_force);
+    p.force_scale = wb_three_point_place_error(data, settings);
     start_law(&p, start);
     law_of(&p, no_step, &law);
     WB_TRY(wb_three_point_model_create(&p.model, &data->info, bench, &law, settings->n_elements));

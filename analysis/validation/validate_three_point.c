@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/calibration/three_point_model.h"
+#include "analysis/calibration/three_point_place.h"
 #include "analysis/dataset/errors.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/validation/validate.h"
@@ -17,13 +18,9 @@
 
 enum {
     GRID = WB_VALIDATE_THREE_POINT_GRID,
-    LAST_POINTS = 3, /* of the way back, whose line leads to zero force */
-    SEARCHES = 48    /* halvings of a contact's range, golden sections */
+    LAST_POINTS = 3 /* of the way back, whose line leads to zero force */
 };
 
-static const double golden = 0.6180339887498949;
-/* Standard deviations of the prior within which a contact is looked for. */
-static const double contact_reach = 3.0;
 /* See validate.c. */
 static const double beyond = 1.1;
 
@@ -31,91 +28,109 @@ static const double beyond = 1.1;
 struct group {
     struct wb_validate_three_point *result;
     const struct wb_law *law;
-    struct wb_three_point_calibrate_settings settings;
+    const struct wb_three_point_calibrate_settings *settings;
     struct wb_three_point_model *model;
     double deepest; /* m of deflection, of all tests */
 };
 
 /* --- a law on a bench --- */
 
-static enum wb_status run_loading(const struct group *g, struct wb_three_point_model *model,
-                                  const struct wb_law *law, struct wb_three_point_run *run)
+/* Means over the tests, each with its own bow, at the deflections of the loading. */
+struct curve {
+    double force[GRID], stiffness[GRID]; /* N, N/m of travel */
+    double force_as_read[GRID];          /* where each test begins where the readings show it */
+    double largest_curvature;            /* 1/m */
+    bool reached;                        /* else nothing is computed */
+};
+
+static double bend(const struct group *g, const struct wb_validate_three_point_test *test)
 {
-    return wb_three_point_model_run(model, law, 0.0, g->deepest, false, run);
+    return wb_three_point_model_curvature(&g->result->info, test->bow);
 }
 
 static enum wb_status create(const struct group *g, const struct wb_three_point_bench *bench,
                              const struct wb_law *law, struct wb_three_point_model **model)
 {
     return wb_three_point_model_create(model, &g->result->info, bench, law,
-                                       g->settings.fit.n_elements);
+                                       g->settings->fit.n_elements);
 }
 
-/* --- first contacts --- */
-
-/* Sum of squares of a test whose wire is so much stiffer than the law's as fits it best: specimens
- * differ, and a contact should not make up for that. */
-static double misfit_at(const struct group *g, const struct wb_validate_three_point_test *test,
-                        double contact)
+static enum wb_status compute(const struct group *g, struct wb_three_point_model *model,
+                              const struct wb_law *law, struct curve *curve)
 {
-    const struct wb_three_point_data *const data = &test->data;
-    const struct wb_three_point_fit_settings *const fit = &g->settings.fit;
-    const double scale = fmax(data->noise, fit->force_share * data->max_force);
-    const double off = (contact - data->first_contact) / (fit->contact_prior * data->info.length);
-    double mm = 0.0, mf = 0.0, ff = 0.0;
-    for (int i = 0; i < wb_three_point_data_count_loading(data); i++) {
-        const struct wb_three_point_point *const point = &data->points[i];
-        const double force = wb_three_point_model_force(g->model, point->travel - contact, false);
-        mm += point->force * point->force;
-        mf += point->force * force;
-        ff += force * force;
-    }
-    return (mm - (ff > 0.0 ? mf * mf / ff : 0.0)) / (scale * scale) + off * off;
-}
-
-/* Golden section: the sum of squares has one valley, as curves are shifted along a rise. */
-static double find_contact(const struct group *g, const struct wb_validate_three_point_test *test)
-{
-    const double reach = contact_reach * g->settings.fit.contact_prior * test->data.info.length;
-    double low = test->data.first_contact - reach, high = test->data.first_contact + reach;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = misfit_at(g, test, a), at_b = misfit_at(g, test, b);
-    for (int i = 0; i < SEARCHES; i++) {
-        if (at_a < at_b) {
-            high = b;
-            b = a;
-            at_b = at_a;
-            a = high - golden * (high - low);
-            at_a = misfit_at(g, test, a);
-        } else {
-            low = a;
-            a = b;
-            at_a = at_b;
-            b = low + golden * (high - low);
-            at_b = misfit_at(g, test, b);
+    const struct wb_validate_three_point *const r = g->result;
+    struct wb_three_point_run run = {.reached = false};
+    double bent = (double)NAN; /* none is computed */
+    *curve = (struct curve){.reached = true};
+    for (int i = 0; i < r->n_tests && curve->reached; i++) {
+        const struct wb_validate_three_point_test *const test = &r->tests[i];
+        if (!test->is_used)
+            continue;
+        if (bend(g, test) != bent) {
+            bent = bend(g, test);
+            WB_TRY(wb_three_point_model_run(model, law, bent, g->deepest, false, &run));
+        }
+        curve->reached = run.reached;
+        curve->largest_curvature = fmax(curve->largest_curvature, run.largest_curvature);
+        const double shift = test->first_contact - test->data.first_contact;
+        for (int k = 0; k < GRID && run.reached; k++) {
+            const double at = r->loading.deflection[k];
+            curve->force[k] += wb_three_point_model_force(model, at, false) / r->n_used;
+            curve->stiffness[k] += wb_three_point_model_stiffness(model, at, false) / r->n_used;
+            curve->force_as_read[k] +=
+                wb_three_point_model_force(model, at + shift, false) / r->n_used;
         }
     }
-    return 0.5 * (low + high);
+    return WB_OK;
 }
 
-static void find_contacts(const struct group *g)
+/* A bench or a law other than the group's. */
+static enum wb_status compute_other(const struct group *g, const struct wb_three_point_bench *bench,
+                                    const struct wb_law *law, struct curve *curve)
+{
+    struct wb_three_point_model *model;
+    WB_TRY(create(g, bench, law, &model));
+    const enum wb_status status = compute(g, model, law, curve);
+    wb_three_point_model_destroy(model);
+    return status;
+}
+
+/* --- first contacts and bows --- */
+
+static enum wb_status find_places(const struct group *g, struct wb_reason *why)
 {
     struct wb_validate_three_point *const r = g->result;
     for (int i = 0; i < r->n_tests; i++) {
         struct wb_validate_three_point_test *const test = &r->tests[i];
+        const struct wb_three_point_data *const data = &test->data;
+        struct wb_three_point_place place;
+        struct wb_three_point_run run;
+        double middle, deviation;
         if (!test->is_used)
             continue;
-        test->first_contact = find_contact(g, test);
-        const int n = wb_three_point_data_count_loading(&test->data);
+        WB_TRY(wb_three_point_place_find(&place, g->model, g->law, data, g->deepest,
+                                         &g->settings->fit, &run));
+        if (!run.reached)
+            return wb_fail_to(why, WB_ERR_CONVERGENCE,
+                              "wire '%s', span %g mm: the model comes to %.3g of %.3g mm (%s): use "
+                              "less of the test (usable_travel_mm, --usable-mm)",
+                              r->info.wire, r->info.length / WB_MM, run.travel / WB_MM,
+                              g->deepest / WB_MM, wb_three_point_bending_end_name(run.end));
+        wb_three_point_place_bow(&data->info, &g->settings->fit, &middle, &deviation);
+        test->is_bow_searched = deviation > 0.0;
+        test->first_contact = place.first_contact;
+        test->bow = place.bow;
+        const int n = wb_three_point_data_count_loading(data);
         double sum = 0.0;
         for (int k = 0; k < n; k++) {
-            const struct wb_three_point_point *const point = &test->data.points[k];
+            const struct wb_three_point_point *const point = &data->points[k];
             const double force =
                 wb_three_point_model_force(g->model, point->travel - test->first_contact, false);
             sum += pow(force - point->force, 2);
         }
-        test->rms = sqrt(sum / n) / test->data.max_force;
+        test->rms = sqrt(sum / n) / data->max_force;
     }
+    return WB_OK;
 }
 
 /* --- the loading --- */
@@ -173,31 +188,9 @@ static void judge(struct wb_validate_three_point_way *way, double max_force)
     way->largest_error = wb_errors_largest(way->n, error);
 }
 
-/* RMS of the loading by a model's last run; `shift` of each test's contact. */
-static double loading_rms(const struct wb_validate_three_point *r,
-                          const struct wb_three_point_model *model, double *force)
+static double rms_of(const struct wb_validate_three_point *r, const double *force)
 {
     double error[GRID];
-    for (int k = 0; k < GRID; k++)
-        force[k] = wb_three_point_model_force(model, r->loading.deflection[k], false);
-    wb_errors_curve(GRID, r->loading.measured, force, r->max_force, error);
-    return wb_errors_rms(GRID, error);
-}
-
-/* The same where each test begins where the readings show it: the mean over tests, at the same
- * travels. */
-static double rms_as_read(const struct group *g)
-{
-    const struct wb_validate_three_point *const r = g->result;
-    double error[GRID], force[GRID] = {0.0};
-    for (int i = 0; i < r->n_tests; i++) {
-        const struct wb_validate_three_point_test *const test = &r->tests[i];
-        const double shift = test->first_contact - test->data.first_contact;
-        for (int k = 0; k < GRID && test->is_used; k++)
-            force[k] +=
-                wb_three_point_model_force(g->model, r->loading.deflection[k] + shift, false) /
-                r->n_used;
-    }
     wb_errors_curve(GRID, r->loading.measured, force, r->max_force, error);
     return wb_errors_rms(GRID, error);
 }
@@ -206,17 +199,16 @@ static enum wb_status find_elastic(const struct group *g)
 {
     struct wb_validate_three_point *const r = g->result;
     const struct wb_law_part part = {g->law->material.youngs_modulus, (double)INFINITY};
-    struct wb_three_point_model *model;
-    struct wb_three_point_run run;
     struct wb_law elastic;
+    struct curve curve;
     wb_law_init_parallel(&elastic, &part, 1, 0.0, g->law->material.poissons_ratio);
     r->elastic_rms = (double)NAN;
-    WB_TRY(create(g, &r->bench, &elastic, &model));
-    const enum wb_status status = run_loading(g, model, &elastic, &run);
-    if (status == WB_OK && run.reached)
-        r->elastic_rms = loading_rms(r, model, r->elastic);
-    wb_three_point_model_destroy(model);
-    return status;
+    WB_TRY(compute_other(g, &r->bench, &elastic, &curve));
+    if (!curve.reached)
+        return WB_OK;
+    memcpy(r->elastic, curve.force, sizeof r->elastic);
+    r->elastic_rms = rms_of(r, curve.force);
+    return WB_OK;
 }
 
 static enum wb_status vary_bench(const struct group *g)
@@ -225,19 +217,14 @@ static enum wb_status vary_bench(const struct group *g)
     for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         struct wb_three_point_bench bench = r->bench;
         double *const number = i < 2 ? &bench.friction : &bench.nose_radius;
-        struct wb_three_point_model *model;
-        struct wb_three_point_run run;
-        double force[GRID];
+        struct curve curve;
         r->bench_rms[i] = (double)NAN;
         if (*number == r->ends[i].value)
             continue;
         *number = r->ends[i].value;
-        WB_TRY(create(g, &bench, g->law, &model));
-        const enum wb_status status = run_loading(g, model, g->law, &run);
-        if (status == WB_OK && run.reached)
-            r->bench_rms[i] = loading_rms(r, model, force);
-        wb_three_point_model_destroy(model);
-        WB_TRY(status);
+        WB_TRY(compute_other(g, &bench, g->law, &curve));
+        if (curve.reached)
+            r->bench_rms[i] = rms_of(r, curve.force);
     }
     return WB_OK;
 }
@@ -265,9 +252,12 @@ static enum wb_status go_back(const struct group *g, struct wb_validate_three_po
 {
     const struct wb_three_point_data *const data = &test->data;
     const double top = data->usable - test->first_contact;
-    const double force = wb_three_point_model_force(g->model, top, false);
     struct wb_three_point_run run;
-    WB_TRY(wb_three_point_model_run(g->model, g->law, 0.0,
+    WB_TRY(wb_three_point_model_run(g->model, g->law, bend(g, test), g->deepest, false, &run));
+    if (!run.reached)
+        return WB_OK;
+    const double force = wb_three_point_model_force(g->model, top, false);
+    WB_TRY(wb_three_point_model_run(g->model, g->law, bend(g, test),
                                     top - g->result->bench.compliance * force, true, &run));
     *reached = run.reached;
     if (!run.reached)
@@ -356,16 +346,11 @@ static enum wb_status validate_unloading(const struct group *g)
 /* --- what scatter lets expect --- */
 
 /* G of validate.h. A wire that is stiffer by a factor bends a machine that gives way, too. */
-static double find_sensitivity(const struct group *g)
+static double find_sensitivity(const struct wb_validate_three_point *r, const struct curve *curve)
 {
-    const struct wb_validate_three_point *const r = g->result;
     double of[GRID];
-    for (int k = 0; k < GRID; k++) {
-        const double d = r->loading.deflection[k];
-        of[k] = wb_three_point_model_force(g->model, d, false) *
-                (1.0 - r->bench.compliance * wb_three_point_model_stiffness(g->model, d, false)) /
-                r->max_force;
-    }
+    for (int k = 0; k < GRID; k++)
+        of[k] = curve->force[k] * (1.0 - r->bench.compliance * curve->stiffness[k]) / r->max_force;
     return wb_errors_rms(GRID, of);
 }
 
@@ -408,10 +393,10 @@ static double scatter_of_series(const struct wb_validate_three_point *r)
     return sqrt(squares);
 }
 
-static void judge_scatter(const struct group *g, const struct wb_properties *properties)
+static void judge_scatter(struct wb_validate_three_point *r, const struct curve *curve,
+                          const struct wb_properties *properties)
 {
-    struct wb_validate_three_point *const r = g->result;
-    const double G = find_sensitivity(g);
+    const double G = find_sensitivity(r, curve);
     r->is_by_series = r->n_series > 1 || properties->n_series > 1;
     const struct wb_expected_group here = {r->is_by_series ? r->n_series : r->n_used,
                                            !r->is_by_series  ? r->scatter_rms / G
@@ -433,7 +418,7 @@ static enum wb_status take_tests(struct group *g, const struct wb_dataset *const
     struct wb_validate_three_point *const r = g->result;
     for (int i = 0; i < r->n_tests; i++) {
         struct wb_validate_three_point_test *const test = &r->tests[i];
-        test->is_used = wb_three_point_data_make(&test->data, datasets[i], &g->settings.data,
+        test->is_used = wb_three_point_data_make(&test->data, datasets[i], &g->settings->data,
                                                  &test->why) == WB_OK;
         if (!test->is_used) {
             test->data.info = datasets[i]->info;
@@ -460,23 +445,15 @@ static enum wb_status validate(struct group *g, const struct wb_properties *prop
                                struct wb_reason *why)
 {
     struct wb_validate_three_point *const r = g->result;
-    struct wb_three_point_run run;
-    WB_TRY(run_loading(g, g->model, g->law, &run));
-    if (!run.reached)
-        return wb_fail_to(why, WB_ERR_CONVERGENCE,
-                          "wire '%s', span %g mm: the model comes to %.3g of %.3g mm (%s): give "
-                          "the specimen a usable_travel_mm",
-                          r->info.wire, r->info.length / WB_MM, run.travel / WB_MM,
-                          g->deepest / WB_MM, wb_three_point_bending_end_name(run.end));
-    r->largest_curvature = run.largest_curvature;
-    find_contacts(g);
+    struct curve curve;
+    WB_TRY(find_places(g, why));
     WB_TRY(find_loading(r, why));
-    for (int k = 0; k < GRID; k++)
-        r->loading.computed[k] =
-            wb_three_point_model_force(g->model, r->loading.deflection[k], false);
+    WB_TRY(compute(g, g->model, g->law, &curve));
+    r->largest_curvature = curve.largest_curvature;
+    memcpy(r->loading.computed, curve.force, sizeof curve.force);
     judge(&r->loading, r->max_force);
-    r->rms_as_read = rms_as_read(g);
-    judge_scatter(g, properties);
+    r->rms_as_read = rms_of(r, curve.force_as_read);
+    judge_scatter(r, &curve, properties);
     WB_TRY(find_elastic(g));
     WB_TRY(vary_bench(g));
     WB_TRY(validate_unloading(g));
@@ -493,14 +470,13 @@ static enum wb_status validate(struct group *g, const struct wb_properties *prop
 enum wb_status wb_validate_three_point_run(struct wb_validate_three_point *result,
                                            const struct wb_properties *properties,
                                            const struct wb_dataset *const *datasets, int n,
+                                           const struct wb_three_point_calibrate_settings *settings,
                                            struct wb_reason *why)
 {
     const double begin = wb_progress_thread_cpu();
-    struct group g = {.result = result, .law = &properties->law};
+    struct group g = {.result = result, .law = &properties->law, .settings = settings};
     *result = (struct wb_validate_three_point){.info = datasets[0]->info, .n_tests = n};
     WB_TRY(wb_validate_check_wire(properties, &result->info, why));
-    wb_setting_fill(&wb_three_point_calibrate_tables[0], &g.settings.data);
-    wb_setting_fill(&wb_three_point_calibrate_tables[1], &g.settings.fit);
     result->is_compliance_known = result->info.machine.compliance.known;
     wb_three_point_calibrate_bench(&result->info.machine, &result->bench, result->ends);
     result->tests = calloc((size_t)n, sizeof *result->tests);
@@ -586,6 +562,8 @@ static void put_tests(struct wb_json *item, const struct wb_validate_three_point
         }
         wb_json_set_number(entry, "first_contact_mm", test->first_contact / WB_MM);
         wb_json_set_number(entry, "first_contact_as_read_mm", test->data.first_contact / WB_MM);
+        wb_json_set_number(entry, "natural_bow_mm", test->bow / WB_MM);
+        wb_json_set_boolean(entry, "natural_bow_searched", test->is_bow_searched);
         wb_json_set_number(entry, "rms", test->rms);
         wb_json_set_number(entry, "unloading_rms", test->unloading_rms);
     }

@@ -33,6 +33,8 @@ struct wb_validate_three_point_test {
     bool is_used;
     struct wb_reason why;      /* where it is not */
     double first_contact;      /* m of travel, found with the law */
+    double bow;                /* m, see struct wb_three_point_fit */
+    bool is_bow_searched;      /* else it is the specimen's, or none */
     double rms, unloading_rms; /* of its own points over its own F_max; NaN: no way back */
     double left_measured,
         left_computed; /* m beyond the first contact, where the force comes to zero
@@ -76,13 +78,14 @@ struct wb_validate_three_point {
     double cpu_s;
 };
 
-/* Predicts n tests of one wire on one bench. WB_ERR_DATA when the properties are another wire's or
- * no test can serve, WB_ERR_CONVERGENCE when the beam does not come to the end of the tests. The
- * reason goes to `why` (NULL: logged). */
-WB_MUST_CHECK enum wb_status wb_validate_three_point_run(struct wb_validate_three_point *result,
-                                                         const struct wb_properties *properties,
-                                                         const struct wb_dataset *const *datasets,
-                                                         int n, struct wb_reason *why);
+/* Predicts n tests of one wire on one bench, with the settings of a calibration, of which those of
+ * the points, of contact and bow, and of the beam count. WB_ERR_DATA when the properties are
+ * another wire's or no test can serve, WB_ERR_CONVERGENCE when the beam does not come to the end of
+ * the tests. The reason goes to `why` (NULL: logged). */
+WB_MUST_CHECK enum wb_status wb_validate_three_point_run(
+    struct wb_validate_three_point *result, const struct wb_properties *properties,
+    const struct wb_dataset *const *datasets, int n,
+    const struct wb_three_point_calibrate_settings *settings, struct wb_reason *why);
 
 /* Mean curves as CSV: deflection_mm,measured_N,deviation_N,computed_N,error,elastic_N; of the way
  * back without the last. Written atomically over an existing file. */

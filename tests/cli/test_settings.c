@@ -54,6 +54,8 @@ static const struct command {
      WB_THREE_POINT_CALIBRATE_TABLES, 0},
     {"export --to mujoco", "none.yaml", "export --to", &wb_card_table, 1, 0},
     {"validate", "none.yaml none", "validate", &wb_calibrate_table, 1, WB_CALIBRATE_VALIDATE},
+    {"validate", "none.yaml none", "validate", wb_three_point_calibrate_tables,
+     WB_THREE_POINT_CALIBRATE_TABLES, WB_CALIBRATE_VALIDATE},
     {"solve cantilever", "--wire ./none --length-mm 1 --deflection-mm 1", "solve",
      &wb_solve_settings_table, 1, WB_SOLVE_CANTILEVER},
     {"solve bending3p", "./none.yaml --span-mm 1 --deflection-mm 1", "solve",

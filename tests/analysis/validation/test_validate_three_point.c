@@ -14,6 +14,15 @@ enum {
 
 static struct wb_dataset datasets[MOST];
 static struct wb_validate_three_point result;
+static struct wb_three_point_calibrate_settings settings;
+
+static int begin(void **state)
+{
+    (void)state;
+    wb_setting_fill(&wb_three_point_calibrate_tables[0], &settings.data);
+    wb_setting_fill(&wb_three_point_calibrate_tables[1], &settings.fit);
+    return 0;
+}
 
 static struct wb_properties properties_of(const struct three_point_made *made)
 {
@@ -36,7 +45,7 @@ static enum wb_status validate(const struct wb_properties *properties, int n, st
     for (int i = 0; i < n; i++)
         pointers[i] = &datasets[i];
     const enum wb_status status =
-        wb_validate_three_point_run(&result, properties, pointers, n, why);
+        wb_validate_three_point_run(&result, properties, pointers, n, &settings, why);
     for (int i = 0; i < n; i++)
         wb_dataset_release(&datasets[i]);
     return status;
@@ -156,6 +165,70 @@ static void bench_that_is_not_known_is_varied(void **state)
     wb_validate_three_point_release(&result);
 }
 
+/* Of two wires that are bowed up and down; the curve of a straight one is another. */
+static void bows_of_the_specimens_are_taken(void **state)
+{
+    (void)state;
+    const struct wb_properties properties = properties_of(&plain);
+    double straight = 0.0;
+    for (int known = 0; known < 2; known++) {
+        for (int i = 0; i < 2; i++) {
+            struct three_point_made made = plain;
+            made.bow = i == 0 ? 0.8e-3 : 0.3e-3;
+            made.with_way_back = true;
+            three_point_make(&datasets[i], &made, "");
+            datasets[i].info.piece.natural_bow =
+                (struct wb_band){known == 1, made.bow, made.bow, made.bow};
+        }
+        assert_int_equal(validate(&properties, 2, NULL), WB_OK);
+        print_message("loading %.2g, way back %.2g\n", result.loading.rms, result.unloading.rms);
+        if (known == 0)
+            straight = result.loading.rms;
+        for (int i = 0; i < 2 && known == 1; i++)
+            assert_close(result.tests[i].rms, 0.0, 2e-3);
+        assert_false(result.tests[0].is_bow_searched);
+        assert_close(result.tests[1].bow, known ? 0.3e-3 : 0.0, 1e-12);
+        if (known == 1) {
+            assert_true(result.loading.rms < 2e-3 && result.loading.rms < 0.2 * straight);
+            assert_true(result.unloading.rms < 5e-3);
+        }
+        wb_validate_three_point_release(&result);
+    }
+}
+
+static void bow_with_a_range_is_found(void **state)
+{
+    (void)state;
+    const struct wb_properties properties = properties_of(&plain);
+    for (int by_settings = 0; by_settings < 2; by_settings++) {
+        struct three_point_made made = plain;
+        made.bow = 0.6e-3;
+        three_point_make(&datasets[0], &made, "");
+        if (by_settings)
+            settings.fit.bow_prior = 0.05;
+        else
+            datasets[0].info.piece.natural_bow = (struct wb_band){true, 0.0, -2e-3, 2e-3};
+        assert_int_equal(validate(&properties, 1, NULL), WB_OK);
+        assert_true(result.tests[0].is_bow_searched);
+        assert_close(result.tests[0].bow, made.bow, 0.05e-3);
+        assert_true(result.loading.rms < 2e-3);
+        wb_validate_three_point_release(&result);
+    }
+}
+
+static void settings_of_the_calibration_count(void **state)
+{
+    (void)state;
+    const struct wb_properties properties = properties_of(&plain);
+    settings.data.seating = 0.03;
+    settings.data.usable = 3e-3;
+    three_point_make(&datasets[0], &plain, "");
+    assert_int_equal(validate(&properties, 1, NULL), WB_OK);
+    assert_true(result.loading.deflection[0] >= 0.03 * three_point_span - 0.01e-3);
+    assert_close(result.loading.deflection[WB_VALIDATE_THREE_POINT_GRID - 1], 3e-3, 0.02e-3);
+    wb_validate_three_point_release(&result);
+}
+
 static void what_cannot_be_validated_is_refused(void **state)
 {
     (void)state;
@@ -221,17 +294,22 @@ static void expected_error_is_of_both_groups(void **state)
     assert_true(e.degrees == 0 && isnan(e.rms_95));
 }
 
+#define TEST(name) cmocka_unit_test_setup(name, begin)
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(true_law_predicts_loading_and_way_back),
-        cmocka_unit_test(wrong_law_is_told_on_each_part),
-        cmocka_unit_test(scatter_lets_expect_an_error),
-        cmocka_unit_test(series_count_by_their_means),
-        cmocka_unit_test(bench_that_is_not_known_is_varied),
-        cmocka_unit_test(what_cannot_be_validated_is_refused),
-        cmocka_unit_test(tables_and_numbers_are_those_of_the_result),
-        cmocka_unit_test(expected_error_is_of_both_groups),
+        TEST(true_law_predicts_loading_and_way_back),
+        TEST(wrong_law_is_told_on_each_part),
+        TEST(scatter_lets_expect_an_error),
+        TEST(series_count_by_their_means),
+        TEST(bench_that_is_not_known_is_varied),
+        TEST(bows_of_the_specimens_are_taken),
+        TEST(bow_with_a_range_is_found),
+        TEST(settings_of_the_calibration_count),
+        TEST(what_cannot_be_validated_is_refused),
+        TEST(tables_and_numbers_are_those_of_the_result),
+        TEST(expected_error_is_of_both_groups),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
