@@ -56,6 +56,9 @@ static void print_text(const struct wb_machine_compliance *c, const struct wb_te
     printf("of the interval's half: readings %.2g, the bar's rigidity %.2g, friction %.2g mm/N\n",
            c->of_readings / WB_MM, c->of_rigidity / WB_MM, c->of_friction / WB_MM);
     printf("readings are %.2g mm off their line\n", c->misfit / WB_MM);
+    if (c->has_way_back)
+        printf("on the way back %.3g mm/N; %.2g of %.3g mm are left\n", c->value_back / WB_MM,
+               c->left / WB_MM, c->most_travel / WB_MM);
     if (c->is_told)
         printf("in the machine file:\ncompliance_mm_N: %.3g\n", c->value / WB_MM);
 }
@@ -70,12 +73,24 @@ static int print_json(const struct wb_machine_compliance *c, const struct wb_tes
     wb_json_set_number(root, "high", c->high / WB_MM);
     wb_json_set_boolean(root, "told", c->is_told);
     wb_json_set_boolean(root, "straight", c->is_straight);
+    wb_json_set_boolean(root, "has_way_back", c->has_way_back);
+    wb_json_set_boolean(root, "comes_back", c->comes_back);
+    wb_json_set_number(root, "way_back_mm_N", c->value_back / WB_MM);
+    wb_json_set_number(root, "left_mm", c->left / WB_MM);
+    wb_json_set_number(root, "largest_travel_mm", c->most_travel / WB_MM);
+    wb_json_set_number(root, "strain", c->strain);
     wb_json_set_number(root, "of_the_bar_mm_N", c->of_bar / WB_MM);
     wb_json_set_number(root, "half_by_readings_mm_N", c->of_readings / WB_MM);
     wb_json_set_number(root, "half_by_rigidity_mm_N", c->of_rigidity / WB_MM);
     wb_json_set_number(root, "half_by_friction_mm_N", c->of_friction / WB_MM);
     wb_json_set_number(root, "misfit_mm", c->misfit / WB_MM);
     return wb_command_print_json(root);
+}
+
+static double youngs_modulus(const struct wb_machine_compliance_settings *settings,
+                             const struct wb_test_info *info)
+{
+    return settings->rigidity * 64.0 / (M_PI * pow(info->outer_diameter, 4));
 }
 
 static int deliver(const struct options *o, const struct wb_machine_compliance *c)
@@ -88,9 +103,21 @@ static int deliver(const struct options *o, const struct wb_machine_compliance *
     } else {
         print_text(c, info);
     }
+    if (!c->has_way_back)
+        wb_warn(
+            "no way back was measured: a bar that yields early looks as straight, and makes the "
+            "machine too soft; its outer fibre was strained by %.2g %%, so its steel must not "
+            "yield below %.0f MPa",
+            100.0 * c->strain, c->strain * youngs_modulus(&o->settings, info) / WB_MPA);
     if (c->is_told)
         return WB_EXIT_OK;
-    if (!c->is_straight && c->low > 0.0)
+    if (!c->comes_back)
+        wb_warn(
+            "the bar does not come back: %.2g of %.3g mm are left, and it gives way %.3g mm/N on "
+            "the way up, %.3g mm/N back: it yields, or slips; take less force, or a thicker bar "
+            "of harder steel",
+            c->left / WB_MM, c->most_travel / WB_MM, c->value / WB_MM, c->value_back / WB_MM);
+    else if (!c->is_straight && c->low > 0.0)
         wb_warn("the readings are no line: the bar yields or slips, or the machine has play; take "
                 "less force, or a thicker bar");
     else if (c->of_rigidity > fmax(c->of_readings, c->of_friction))

@@ -58,40 +58,61 @@ enum {
 };
 
 static const double coverage = 0.95;
-/* Part of a line's rise over either half of its forces by which it may be curved. */
+/* Part of a line's rise over either half of its forces by which it may be curved; the way back may
+ * be off by as much in slope, and in travel. */
 static const double most_curved = 0.03;
+/* Part of the largest force above which the way back does not count: friction turns there. */
+static const double below_turn = 0.9;
+/* Standard deviations that are no difference. */
+static const double noises = 3.0;
 static const double poissons_ratio = 0.3; /* of a metal: shear of a bar on a short span */
 
-/* The readings of one loading, their force from the smallest on, and what lies between its travel
- * and the bar's deflection. */
+/* The readings of one way whose force counts, and what lies between their travel and the bar's
+ * deflection. */
 struct readings {
     int n;
     double *travel, *force, *rest;
 };
 
-static bool collect(struct readings *r, const struct wb_dataset *dataset, double from_force)
+struct test {
+    double zero, largest; /* N */
+    struct readings up, back;
+};
+
+static void take(struct readings *r, const struct wb_row *row, double force)
 {
+    r->travel[r->n] = row->deflection;
+    r->force[r->n++] = force;
+}
+
+static bool collect(struct test *test, const struct wb_dataset *dataset, double from_force)
+{
+    const size_t n = dataset->n_rows;
     size_t top = 0;
-    double largest = -HUGE_VAL, zero = HUGE_VAL;
-    double *const room = calloc(3 * dataset->n_rows + 1, sizeof *room);
-    *r = (struct readings){
-        .travel = room, .force = room + dataset->n_rows, .rest = room + 2 * dataset->n_rows};
+    double *const room = calloc(6 * n + 1, sizeof *room);
+    *test = (struct test){
+        .zero = HUGE_VAL,
+        .up = {.travel = room, .force = room + n, .rest = room + 2 * n},
+        .back = {.travel = room + 3 * n, .force = room + 4 * n, .rest = room + 5 * n}};
     if (!room)
         return false;
-    for (size_t i = 0; i < dataset->n_rows; i++) {
+    for (size_t i = 0; i < n; i++) {
         if (dataset->rows[i].deflection > dataset->rows[top].deflection)
             top = i;
     }
-    for (size_t i = 0; i <= top && i < dataset->n_rows; i++)
-        largest = fmax(largest, dataset->rows[i].force);
-    for (size_t i = 0; i <= top && i < dataset->n_rows; i++)
-        zero = fmin(zero, dataset->rows[i].force);
-    for (size_t i = 0; i <= top && i < dataset->n_rows; i++) {
+    for (size_t i = 0; i <= top && i < n; i++)
+        test->zero = fmin(test->zero, dataset->rows[i].force);
+    for (size_t i = 0; i <= top && i < n; i++)
+        test->largest = fmax(test->largest, dataset->rows[i].force - test->zero);
+    for (size_t i = 0; i < n && dataset->rows[i].cycle == dataset->rows[0].cycle; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        if (!(row->force - zero >= from_force * (largest - zero)) || !isfinite(row->deflection))
+        const double force = row->force - test->zero;
+        if (!(force >= from_force * test->largest) || !isfinite(row->deflection))
             continue;
-        r->travel[r->n] = row->deflection;
-        r->force[r->n++] = row->force - zero;
+        if (i <= top)
+            take(&test->up, row, force);
+        else if (force <= below_turn * test->largest)
+            take(&test->back, row, force);
     }
     return true;
 }
@@ -127,12 +148,13 @@ static double curved_part(const struct readings *r, double mean, double slope)
     return found ? fabs(c[2] * reach / slope) : 0.0;
 }
 
-/* The line of one test. */
+/* The line of one way. */
 struct slope {
     double value, error, misfit, curved;
+    double at_zero; /* m, of travel */
 };
 
-static enum wb_status find_slope(struct slope *slope, struct readings *r,
+static enum wb_status find_slope(struct slope *slope, const struct readings *r,
                                  const struct wb_three_point_model *model, double most)
 {
     struct wb_fit_line line;
@@ -152,6 +174,7 @@ static enum wb_status find_slope(struct slope *slope, struct readings *r,
         spread += pow(r->force[i] - mean, 2);
     }
     slope->value = line.slope;
+    slope->at_zero = line.value;
     slope->misfit = line.residual;
     slope->error = line.residual * sqrt(fmax(1.0, 0.5 * r->n / signs) / spread);
     slope->curved = curved_part(r, mean, line.slope);
@@ -179,12 +202,34 @@ static enum wb_status check(const struct wb_dataset *const *datasets, int n,
     return WB_OK;
 }
 
-/* Mean slope over the tests with the bench's friction. */
+/* Mean over the tests with the bench's friction. */
 struct mean {
     double slope, deviation, error, misfit, of_bar, curved;
+    /* Of the ways back: their mean slope and its error, what is left at the least force, the
+     * largest travel from zero force. NaN: not all tests have one. */
+    double back, back_error, left, most_travel;
+    double strain; /* of the bar, largest */
 };
 
-static enum wb_status find_mean(struct mean *mean, const struct readings *all, int n,
+/* Adds the way back of one test to the sums. */
+static enum wb_status add_back(struct mean *mean, const struct test *test, int n,
+                               const struct slope *up, const struct wb_three_point_model *model,
+                               double most)
+{
+    struct slope back;
+    if (test->back.n < LEAST_READINGS)
+        mean->back = (double)NAN;
+    if (!isfinite(mean->back))
+        return WB_OK;
+    WB_TRY(find_slope(&back, &test->back, model, most));
+    const double least = test->up.force[0];
+    mean->back += back.value / n;
+    mean->back_error = hypot(mean->back_error, hypot(back.error, up->error) / n);
+    mean->left += (back.at_zero - up->at_zero + (back.value - up->value) * least) / n;
+    return WB_OK;
+}
+
+static enum wb_status find_mean(struct mean *mean, const struct test *all, int n,
                                 const struct wb_test_info *info,
                                 const struct wb_three_point_bench *bench, double rigidity,
                                 struct wb_reason *why)
@@ -196,10 +241,8 @@ static enum wb_status find_mean(struct mean *mean, const struct readings *all, i
     struct wb_law law;
     double largest = 0.0, sum = 0.0, squares = 0.0, misfits = 0.0;
     *mean = (struct mean){.of_bar = pow(span, 3) / (48.0 * rigidity)};
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < all[i].n; k++)
-            largest = fmax(largest, all[i].force[k]);
-    }
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, all[i].largest);
     const double most = 1.1 * largest * mean->of_bar;
     wb_law_init_parallel(&law, &part, 1, 0.0, poissons_ratio);
     WB_TRY(wb_three_point_model_create(&model, info, bench, &law, ELEMENTS));
@@ -211,9 +254,10 @@ static enum wb_status find_mean(struct mean *mean, const struct readings *all, i
                             rigidity / 1e-6, largest, run.travel / WB_MM,
                             wb_three_point_bending_end_name(run.end));
     for (int i = 0; i < n && status == WB_OK; i++) {
-        struct readings r = all[i];
         struct slope slope;
-        status = find_slope(&slope, &r, model, 1.5 * most);
+        status = find_slope(&slope, &all[i].up, model, 1.5 * most);
+        if (status == WB_OK)
+            status = add_back(mean, &all[i], n, &slope, model, 1.5 * most);
         if (status != WB_OK) {
             (void)wb_fail_to(why, status, "test %d of '%s': its force does not vary", i + 1,
                              info->wire);
@@ -224,7 +268,11 @@ static enum wb_status find_mean(struct mean *mean, const struct readings *all, i
         misfits += slope.misfit * slope.misfit;
         mean->error = slope.error;
         mean->curved = fmax(mean->curved, slope.curved);
+        mean->most_travel =
+            fmax(mean->most_travel,
+                 deflection_of(model, all[i].largest, 1.5 * most) + slope.value * all[i].largest);
     }
+    mean->strain = 0.5 * d * run.largest_curvature / 1.1; /* computed up to 1.1 of its deflection */
     wb_three_point_model_destroy(model);
     mean->slope = sum / n;
     mean->misfit = sqrt(misfits / n);
@@ -233,7 +281,25 @@ static enum wb_status find_mean(struct mean *mean, const struct readings *all, i
     return status;
 }
 
-static enum wb_status find(struct wb_machine_compliance *result, const struct readings *all, int n,
+/* Friction holds the bar back either way, so that the ways differ by twice what it does to one. */
+static void judge_back(struct wb_machine_compliance *result, const struct mean *mean)
+{
+    result->has_way_back = isfinite(mean->back);
+    result->comes_back = true;
+    result->value_back = mean->back;
+    result->left = result->has_way_back ? mean->left : (double)NAN;
+    result->most_travel = mean->most_travel;
+    result->strain = mean->strain;
+    if (!result->has_way_back)
+        return;
+    const double of_slope = most_curved * (mean->of_bar + mean->slope) + 2.0 * result->of_friction +
+                            noises * mean->back_error;
+    const double of_travel = most_curved * mean->most_travel + noises * mean->misfit;
+    result->comes_back =
+        fabs(mean->back - mean->slope) <= of_slope && fabs(mean->left) <= of_travel;
+}
+
+static enum wb_status find(struct wb_machine_compliance *result, const struct test *all, int n,
                            const struct wb_test_info *info,
                            const struct wb_machine_compliance_settings *s, struct wb_reason *why)
 {
@@ -263,7 +329,8 @@ static enum wb_status find(struct wb_machine_compliance *result, const struct re
     result->low = result->value - half;
     result->high = result->value + half;
     result->is_straight = mean.curved <= most_curved;
-    result->is_told = result->low > 0.0 && result->is_straight;
+    judge_back(result, &mean);
+    result->is_told = result->low > 0.0 && result->is_straight && result->comes_back;
     return WB_OK;
 }
 
@@ -275,24 +342,24 @@ enum wb_status wb_machine_compliance_find(struct wb_machine_compliance *result,
     if (n < 1)
         return wb_fail_to(why, WB_ERR_ARGUMENT, "expected at least one test");
     WB_TRY(check(datasets, n, settings, why));
-    struct readings *const all = calloc((size_t)n, sizeof *all);
+    struct test *const all = calloc((size_t)n, sizeof *all);
     if (!all)
         return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", n);
     enum wb_status status = WB_OK;
     for (int i = 0; i < n && status == WB_OK; i++) {
         if (!collect(&all[i], datasets[i], settings->from_force))
             status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", datasets[i]->n_rows);
-        else if (all[i].n < LEAST_READINGS)
+        else if (all[i].up.n < LEAST_READINGS)
             status = wb_fail_to(why, WB_ERR_DATA,
                                 "test %d of '%s': %d readings above %g of the largest force: "
                                 "expected at least %d",
-                                i + 1, datasets[i]->info.wire, all[i].n, settings->from_force,
+                                i + 1, datasets[i]->info.wire, all[i].up.n, settings->from_force,
                                 LEAST_READINGS);
     }
     if (status == WB_OK)
         status = find(result, all, n, &datasets[0]->info, settings, why);
     for (int i = 0; i < n; i++)
-        free(all[i].travel);
+        free(all[i].up.travel);
     free(all);
     return status;
 }

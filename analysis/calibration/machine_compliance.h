@@ -6,6 +6,11 @@
  * smallest reading is the zero of the force. Only readings above a part of the largest force count,
  * past the seating.
  *
+ * That holds of a bar which does not yield. One that yields early, far below the first reading that
+ * counts, bends along a line, too: so the way back, where it was measured, must be along the same
+ * line, or nothing is told. Without a way back the strain of the bar's outer fibre is what is left
+ * to judge by.
+ *
  * What is known of C: the scatter of the slope over several tests (Student's t, 95 %), or of one
  * alone two standard errors, with neighbouring residuals of one sign counted once; and joined with
  * it in quadrature the error of the bar's rigidity, which counts by as much as the bar gives way
@@ -32,10 +37,18 @@ struct wb_machine_compliance {
     double value, low, high;                      /* m/N; low may be below zero */
     double of_bar;                                /* m/N: what the bar gives way itself */
     double of_readings, of_rigidity, of_friction; /* half widths of the interval's parts, m/N */
-    bool is_straight; /* else the lines are curved by more than 3 %: the bar yields, or
-                         slips, or the machine has play */
-    bool is_told;     /* they are straight, and the interval is above zero */
-    double misfit;    /* RMS distance of the readings from their lines, m of travel */
+    bool is_straight;  /* else the lines are curved by more than 3 %: the bar yields, or
+                          slips, or the machine has play */
+    bool has_way_back; /* of all tests: at least ten readings, too */
+    bool comes_back;   /* it is the way up; else the bar yields, or slips: by 3 % in slope or in
+                          travel, beyond noise and friction. True without a way back */
+    double value_back; /* m/N, of the way back; NaN: none */
+    double
+        left; /* m of travel that is left on the way back, mean, at the least force that counts */
+    double most_travel; /* m, largest way from zero force */
+    double strain;      /* 1, of the bar's outer fibre, largest, if it is elastic */
+    bool is_told;       /* they are straight, come back, and the interval is above zero */
+    double misfit;      /* RMS distance of the readings from their lines, m of travel */
     int n_tests;
 };
 

@@ -21,6 +21,10 @@ struct bar {
     double noise;    /* m of travel */
     double scatter;  /* of the compliance between tests */
     double yield;    /* Pa; 0: elastic */
+    double exponent; /* of its hardening; 0: one half */
+    bool with_way_back;
+    double slip;   /* m, at the turn */
+    double softer; /* m/N, on the way back, from a fifth of the largest force on */
 };
 
 static struct wb_dataset datasets[MOST];
@@ -37,13 +41,14 @@ static void make(struct wb_dataset *dataset, const struct bar *bar, int index)
         .hardening = bar->yield > 0.0 ? WB_HARDENING_ISOTROPIC_POWER : WB_HARDENING_NONE_ELASTIC,
         .youngs_modulus = modulus,
         .yield_stress = bar->yield,
-        .strength_coefficient = 1e9,
-        .hardening_exponent = 0.5,
+        .strength_coefficient = bar->exponent > 0.0 ? 100e9 : 1e9,
+        .hardening_exponent = bar->exponent > 0.0 ? bar->exponent : 0.5,
         .poissons_ratio = 0.3,
     };
     const struct wb_band unknown = {false, (double)NAN, (double)NAN, (double)NAN};
     struct wb_section section;
     struct wb_three_point_bending *bending;
+    double largest = 0.0;
     assert_int_equal(wb_dataset_init(dataset), WB_OK);
     dataset->info = (struct wb_test_info){.wire = "bar",
                                           .sample = index + 1,
@@ -70,13 +75,16 @@ static void make(struct wb_dataset *dataset, const struct bar *bar, int index)
     };
     assert_int_equal(wb_three_point_bending_create(&bending, &model), WB_OK);
     wb_section_release(&section);
-    for (int i = 0; i <= READINGS; i++) {
+    for (int i = 0; i <= (bar->with_way_back ? 2 : 1) * READINGS; i++) {
         struct wb_three_point_bending_point point;
-        assert_int_equal(wb_three_point_bending_move(bending, 0.1e-3 * i / READINGS, &point),
-                         WB_OK);
+        const double part = (double)(i <= READINGS ? i : 2 * READINGS - i) / READINGS;
+        assert_int_equal(wb_three_point_bending_move(bending, 0.1e-3 * part, &point), WB_OK);
         assert_int_equal(point.end, WB_THREE_POINT_BENDING_CONVERGED);
+        largest = fmax(largest, point.force);
+        const double back =
+            i > READINGS ? bar->slip + bar->softer * (point.force - 0.2 * largest) : 0.0;
         const struct wb_row row = {.cycle = 1,
-                                   .deflection = 0.3e-3 + point.travel +
+                                   .deflection = 0.3e-3 + point.travel + back +
                                                  bar->noise * (2.0 * test_random(&random) - 1.0),
                                    .force = point.force + 5.0}; /* the cell is not zeroed */
         assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
@@ -149,6 +157,56 @@ static void bar_that_yields_does_not_tell(void **unused)
     assert_true(!c.is_straight && !c.is_told && c.low > 0.0);
 }
 
+/* It yields at a fiftieth of its largest force, and hardens evenly: its way up is a line. */
+static void bar_that_yields_early_does_not_come_back(void **unused)
+{
+    (void)unused;
+    struct bar bar = {4e-3, 0.2e-6, 0.0, 5e6, .exponent = 1.0};
+    struct wb_machine_compliance c;
+    assert_int_equal(find(&c, &bar, 1, 0.02, NULL), WB_OK);
+    print(&c);
+    assert_true(c.is_straight && !c.has_way_back && c.is_told);
+    assert_false(c.low < true_compliance);
+    bar.with_way_back = true;
+    assert_int_equal(find(&c, &bar, 1, 0.02, NULL), WB_OK);
+    print_message("back %.3g mm/N, left %.3g of %.3g mm\n", 1e3 * c.value_back, 1e3 * c.left,
+                  1e3 * c.most_travel);
+    assert_true(c.is_straight && c.has_way_back && !c.comes_back && !c.is_told);
+    assert_close_relative(c.value_back, true_compliance, 0.1);
+    assert_true(c.left > 0.1 * c.most_travel);
+}
+
+static void slip_and_another_slope_are_told(void **unused)
+{
+    (void)unused;
+    const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .slip = -0.1e-3},
+                               {6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .softer = -0.1e-6}};
+    for (size_t i = 0; i < sizeof bars / sizeof *bars; i++) {
+        struct wb_machine_compliance c;
+        assert_int_equal(find(&c, &bars[i], 1, 0.02, NULL), WB_OK);
+        assert_true(c.is_straight && !c.comes_back && !c.is_told);
+        assert_close_relative(c.value_back, true_compliance + bars[i].softer, 0.01);
+        assert_close(c.left, bars[i].slip, 0.01e-3);
+    }
+}
+
+static void elastic_bar_comes_back(void **unused)
+{
+    (void)unused;
+    const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_way_back = true},
+                               {6e-3, 2e-6, 0.0, 0.0, .with_way_back = true},
+                               {4e-3, 1e-6, 0.0, 0.0, .with_way_back = true}};
+    for (size_t i = 0; i < sizeof bars / sizeof *bars; i++) {
+        struct wb_machine_compliance c;
+        assert_int_equal(find(&c, &bars[i], 1, 0.02, NULL), WB_OK);
+        print_message("back %.3g mm/N, left %.3g of %.3g mm\n", 1e3 * c.value_back, 1e3 * c.left,
+                      1e3 * c.most_travel);
+        assert_true(c.has_way_back && c.comes_back && c.is_told);
+        assert_close_relative(c.value_back, true_compliance, 0.03);
+        assert_close_relative(c.strain, 6.0 * bars[i].diameter * 0.1e-3 / (span * span), 0.05);
+    }
+}
+
 static void several_tests_scatter(void **unused)
 {
     (void)unused;
@@ -191,6 +249,9 @@ int main(void)
         cmocka_unit_test(compliance_is_found_within_its_interval),
         cmocka_unit_test(soft_bar_does_not_tell),
         cmocka_unit_test(bar_that_yields_does_not_tell),
+        cmocka_unit_test(bar_that_yields_early_does_not_come_back),
+        cmocka_unit_test(slip_and_another_slope_are_told),
+        cmocka_unit_test(elastic_bar_comes_back),
         cmocka_unit_test(several_tests_scatter),
         cmocka_unit_test(what_tells_nothing_is_refused),
     };
