@@ -1,10 +1,11 @@
-/* Five hundred structural changes of a take in each format (rows, columns, separators, encodings,
- * truncations) end in a refusal with a reason, or in a take that counts what is missing: of the
- * frames that it has, no place is anywhere but where the file has it, or where another row or
- * column of the file has it. */
+/* Five hundred structural changes of a take in each format, and of a table of the force (rows,
+ * columns, separators, encodings, truncations) end in a refusal with a reason, or in a take that
+ * counts what is missing: of the frames that it has, no place is anywhere but where the file has
+ * it, or where another row or column of the file has it. */
 #include <math.h>
 #include <stdlib.h>
 
+#include "daq/force_table.h"
 #include "daq/take_reader.h"
 #include "tests/daq/take_example.h"
 #include "tests/messages.h"
@@ -221,6 +222,80 @@ static void changed_trc_files_are_refused_or_counted(void **state)
     wb_text_release(&text);
 }
 
+/* --- tables of the force --- */
+
+#define READINGS 40
+
+static double time_of(int i)
+{
+    return 10.0 + 0.0125 * i;
+}
+
+static double load_of(int i)
+{
+    return 3.0 + 0.1 * i + 0.001 * i * i;
+}
+
+/* Readings that no row of the file holds, but what the change itself wrote. */
+static size_t count_strange(const struct wb_force_table *table)
+{
+    size_t n = 0;
+    for (size_t k = 0; k < table->n; k++) {
+        bool found = table->force[k] > 1e6;
+        for (int i = 0; i < READINGS && !found; i++)
+            found = fabs(table->t[k] - time_of(i)) < 1e-9 &&
+                    fabs(table->force[k] - 1e-3 * load_of(i)) < 1e-9;
+        n += !found;
+    }
+    return n;
+}
+
+static void changed_tables_of_the_force_are_refused_or_counted(void **state)
+{
+    (void)state;
+    struct wb_rig rig = {.gravity = 9.80665};
+    struct wb_text seed = {0};
+    size_t n_read = 0, strange = 0;
+    rig.load_cell.sign = 1;
+    wb_text_append(&seed, "Time (s)\tLoad (mN)\n");
+    for (int i = 0; i < READINGS; i++)
+        wb_text_append(&seed, "%.4f\t%.4f\n", time_of(i), load_of(i));
+    for (int i = 0; i < MUTATIONS; i++) {
+        struct text text = {.bytes = malloc(seed.length + 1), .n = seed.length};
+        struct wb_reason why = {.text = ""};
+        struct wb_force_table table;
+        char taken[WB_FORCE_TABLE_LIST];
+        memcpy(text.bytes, seed.bytes, seed.length);
+        mutate_text(&text, '\t');
+        if (wb_force_table_parse(&table, "a", text.bytes, text.n, "", taken, &rig, &why) == WB_OK) {
+            size_t lines = 0;
+            bool below_header = false;
+            for (size_t k = 0; k < text.n; k++) {
+                below_header = below_header || (k > 0 && text.bytes[k - 1] == '\n' &&
+                                                text.bytes[k] >= '0' && text.bytes[k] <= '9');
+                lines += below_header && text.bytes[k] == '\n';
+            }
+            n_read++;
+            strange += count_strange(&table);
+            for (size_t k = 1; k < table.n; k++)
+                assert_true(table.t[k] > table.t[k - 1]);
+            /* Below the header every line is a reading or counted; line ends may be others. */
+            assert_true(table.n + table.skipped_rows + table.empty_rows >= lines);
+            wb_force_table_release(&table);
+        } else {
+            assert_true(why.text[0] != '\0');
+        }
+        free(text.bytes);
+    }
+    wb_text_release(&seed);
+    count_trials("Tables of the force with rows, columns, separators and encodings changed",
+                 MUTATIONS, "files: refused, or what is missing counted");
+    printf("force: %zu of %d changed files are read, %zu strange readings\n", n_read, MUTATIONS,
+           strange);
+    assert_true(n_read > 100 && n_read < MUTATIONS - 100);
+    assert_int_equal(strange, 0);
+}
+
 /* Bytes of header and parameters, words turned round, cuts. */
 static void changed_c3d_files_are_refused_or_counted(void **state)
 {
@@ -276,6 +351,7 @@ int main(void)
         cmocka_unit_test_setup(changed_motive_files_are_refused_or_counted, begin),
         cmocka_unit_test_setup(changed_rows_of_motive_are_refused_or_counted, begin),
         cmocka_unit_test_setup(changed_trc_files_are_refused_or_counted, begin),
+        cmocka_unit_test_setup(changed_tables_of_the_force_are_refused_or_counted, begin),
         cmocka_unit_test_setup(changed_c3d_files_are_refused_or_counted, begin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
