@@ -204,7 +204,7 @@ static enum wb_status take_named(const struct reading *reading, const char *name
 }
 
 /* Marks what the campaign excludes, as an index would. */
-static void exclude(struct reading *reading, struct wb_recordings_tests *tests)
+static void exclude(const struct reading *reading, struct wb_recordings_tests *tests)
 {
     for (int i = 0; i < tests->n; i++) {
         for (int k = 0; k < reading->n_excluded; k++) {
