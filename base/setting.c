@@ -456,7 +456,9 @@ void wb_setting_set_json(const struct wb_setting *row, const void *settings, str
         wb_json_set_text(object, row->name, text_of(row, settings));
         break;
     case WB_SETTING_LIST: {
-        struct wb_json *const members = wb_json_set_object(object, row->name);
+        /* One member alone is no object, as files have it. */
+        struct wb_json *const members =
+            row->members->n > 1 ? wb_json_set_object(object, row->name) : object;
         for (size_t i = 0; i < row->members->n; i++)
             wb_setting_set_json(&row->members->rows[i], field, members);
         break;
@@ -503,7 +505,8 @@ bool wb_setting_is_same(const struct wb_setting *row, const void *settings,
         return false;
     }
     case WB_SETTING_LIST: {
-        const struct wb_json *const members = wb_json_get(object, row->name);
+        const struct wb_json *const members =
+            row->members->n > 1 ? wb_json_get(object, row->name) : object;
         for (size_t i = 0; i < row->members->n; i++) {
             if (!wb_setting_is_same(&row->members->rows[i], field, members, problem))
                 return false;

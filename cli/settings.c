@@ -44,21 +44,39 @@ static int group_of(const struct line *line, const struct wb_settings_source *so
     return source->title ? 1 + (int)(source - line->command->sources) : 0;
 }
 
+/* The entry of that option; a new one where there is none. Kinds that share an option have rows of
+ * their own: the row of the place that is taken stands for all. */
+static size_t find_entry(const struct line *line, const char *option)
+{
+    size_t i = 0;
+    while (i < line->n && strcmp(line->entries[i].row->option, option) != 0)
+        i++;
+    return i;
+}
+
 static void add_entry(struct line *line, const struct wb_settings_source *source,
                       const struct wb_setting_table *table, const struct wb_setting *row)
 {
-    const size_t i = line->n;
+    const size_t i = find_entry(line, row->option);
     struct entry *const entry = &line->entries[i];
     struct wb_text help = {0};
-    *entry = (struct entry){
+    const struct entry own = {
         .row = row,
         .offset = source->offset + table->offset,
         .applies = row->applies ? row->applies : source->applies,
     };
+    const unsigned others = i < line->n ? entry->applies : 0;
+    const bool is_kept = i < line->n && (is_taken(line, entry) || !is_taken(line, &own));
+    if (!is_kept)
+        *entry = own;
+    entry->applies = own.applies | others;
+    if (is_kept)
+        return;
     const bool shows = line->command->place != 0 && is_taken(line, entry);
     if (!shows && !line->command->places)
         return;
     wb_setting_describe(row, table->otherwise, &help);
+    free(line->help[i]);
     line->help[i] = help.bytes;
     line->options[i] = (struct argp_option){
         .name = row->option,
@@ -68,7 +86,8 @@ static void add_entry(struct line *line, const struct wb_settings_source *source
         .doc = help.bytes,
         .group = group_of(line, source),
     };
-    line->n++;
+    if (i == line->n)
+        line->n++;
 }
 
 static size_t count(const struct wb_settings_command *command)

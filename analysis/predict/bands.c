@@ -272,9 +272,7 @@ static enum wb_status prepare_model(struct wb_bundle_model *model, const char *p
                                     const struct wb_bundle_variant *variant,
                                     const struct wb_bands_settings *settings)
 {
-    WB_TRY(wb_bundle_model_read_variant(model, path, variant));
-    if (settings->override)
-        WB_TRY(wb_bundle_override_apply(settings->override, model));
+    WB_TRY(wb_bundle_override_read(model, path, settings->override, variant));
     const double shortest = model->length * (1.0 - model->uncertainty.length);
     if (!(model->run.deflection < shortest))
         return wb_fail(WB_ERR_ARGUMENT,

@@ -45,11 +45,10 @@ static enum wb_status prepare(void *context)
     char path[WB_PATH];
 
     WB_TRY(wb_file_find_fixture(path, "bundles", s->model, NULL));
-    WB_TRY(wb_bundle_model_read(&run->model, path));
+    WB_TRY(wb_bundle_override_read(&run->model, path, &s->override, NULL));
     run->solve.name = run->model.name;
     for (int i = 0; i < run->model.n_types && is_first(); i++)
         WB_TRY(wb_solve_law_tell(&run->model.type[i]));
-    WB_TRY(wb_bundle_override_apply(&s->override, &run->model));
     run->mesh = wb_bundle_model_mesh(&run->model, run->model.run.mesh);
     run->states = (struct wb_bundle_states){
         .wants_surface = is_first() && s->output,

@@ -75,12 +75,11 @@ static enum wb_status prepare(void *context)
     char path[WB_PATH];
 
     WB_TRY(wb_file_find_fixture(path, "bundles", s->model, NULL));
-    WB_TRY(wb_bundle_model_read(&run->model, path));
     WB_TRY(refuse_explicit(s));
     if (s->uncertain)
         WB_TRY(refuse_stated(&s->override.interface));
+    WB_TRY(wb_bundle_override_read(&run->model, path, &s->override, NULL));
     run->solve.name = run->model.name;
-    WB_TRY(wb_bundle_override_apply(&s->override, &run->model));
     return wb_section_run_init(&run->result, &run->model, MARKERS);
 }
 

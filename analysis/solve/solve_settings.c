@@ -310,7 +310,9 @@ static void add_option(struct words *words, const struct wb_setting *row, const 
  * before it come last. */
 static const struct {
     int table, first;
-} order[] = {{WB_BUNDLE_OVERRIDE_LOADS, 0},
+} order[] = {{WB_BUNDLE_OVERRIDE_PIECE, 0},
+             {WB_BUNDLE_OVERRIDE_TEST, 0},
+             {WB_BUNDLE_OVERRIDE_LOADS, 0},
              {WB_BUNDLE_OVERRIDE_FRICTION, 0},
              {WB_BUNDLE_OVERRIDE_COHESION, 0},
              {WB_BUNDLE_OVERRIDE_MESH, 0},

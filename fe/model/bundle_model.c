@@ -73,13 +73,19 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
                                     .scale = WB_MM,
                                     .least = 1e-6,
                                     .largest = 1e6,
-                                    .fallback = 53.0},
+                                    .fallback = 53.0,
+                                    .option = "deflection-mm",
+                                    .argument = "D",
+                                    .help = "Largest deflection of the tip"},
     [WB_BUNDLE_MODEL_ROWS] = {.name = "rows",
                               .type = WB_SETTING_INTEGER,
                               .offset = offsetof(struct wb_bundle_run, rows),
                               .least = 1,
                               .largest = 10000,
-                              .fallback = 53},
+                              .fallback = 53,
+                              .option = "points",
+                              .argument = "N",
+                              .help = "Equal steps to the largest deflection"},
     [WB_BUNDLE_MODEL_CYCLES] = {.name = "cycles",
                                 .type = WB_SETTING_INTEGER,
                                 .offset = offsetof(struct wb_bundle_run, cycles),
@@ -615,7 +621,7 @@ static enum wb_status check_taping(const struct wb_config_node *map,
         return wb_config_refuse(map, "bond_reach_mm",
                                 "this key is missing: a tape on a circle touches wires along lines "
                                 "only; say how far it may be off a wire where it is bonded "
-                                "(0: it is bonded nowhere)");
+                                "(0: it is bonded nowhere), here or by --bond-reach-mm");
     return WB_OK;
 }
 
@@ -639,16 +645,16 @@ static enum wb_status read_taping(const struct wb_config_node *map,
     keys[4].present = &settings->has_hand;
     keys[5].present = &settings->has_poisson;
     keys[7].present = &settings->has_reach;
-    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    return check_taping(map, settings);
+    return wb_config_map(map, keys, WB_COUNT(keys));
 }
 
 static bool has_tape_of_its_own(const struct wb_bundle_variant *variant)
 {
-    return variant && (variant->layers > 0 || variant->lap > 0.0 || variant->has_outline);
+    return variant && (variant->layers > 0 || variant->lap > 0.0 || variant->has_outline ||
+                       variant->has_reach);
 }
 
-static enum wb_status vary_taping(struct reader *reader, struct taping_settings *settings)
+static enum wb_status vary_taping(const struct reader *reader, struct taping_settings *settings)
 {
     const struct wb_bundle_variant *const variant = reader->variant;
 
@@ -656,14 +662,16 @@ static enum wb_status vary_taping(struct reader *reader, struct taping_settings 
         return WB_OK;
     if (settings->layout != 0)
         return wb_config_refuse(reader->file.root, "taping",
-                                "variant %s: layers, overlap and outline vary of a sleeve only",
+                                "variant %s: layers, overlap, outline and bonds vary of a sleeve "
+                                "only",
                                 variant->name);
     if (variant->layers > 0)
         settings->layers = variant->layers;
-    if (variant->has_outline) {
+    if (variant->has_outline)
         settings->outline = variant->outline;
+    if (variant->has_reach)
         settings->reach = variant->reach;
-    }
+    settings->has_reach |= variant->has_reach;
     return WB_OK;
 }
 
@@ -723,6 +731,7 @@ static enum wb_status read_tape(struct reader *reader, const char *name,
     if (map)
         WB_TRY(read_taping(map, &settings));
     WB_TRY(vary_taping(reader, &settings));
+    WB_TRY(check_taping(map ? map : reader->file.root, &settings));
     WB_TRY(read_tape_material(reader, name));
     double *const poisson = &reader->model->tape.material.material.poissons_ratio;
     if (settings.has_poisson)

@@ -1,12 +1,79 @@
-#include "fe/model/bundle_override.h"
-
 #include <stddef.h>
 #include <stdio.h>
 
 #include "base/config.h"
 #include "base/units.h"
+#include "fe/model/bundle_override_private.h"
 
 #define WB_LOG_DOMAIN "bundle"
+
+/* After the word for what the file says, in the order of enum wb_bundle_packing. */
+static const char *const packings[] = {"file", "hexagon", "triangle", "densest", NULL};
+static const char *const outlines[] = {"file", "hull", "circle", NULL};
+
+static const struct wb_setting bond_row[1] = {
+    {.name = "bond_reach_mm",
+     .title = "reach of bonds",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .scale = WB_MM,
+     .largest = 1.0},
+};
+
+static const struct wb_setting_table bond_table = {bond_row, 1, 0, NULL};
+
+static const struct wb_setting piece_rows[] = {
+    {.name = "length_mm",
+     .title = "length",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_override, length),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1e6,
+     .option = "length-mm",
+     .argument = "L",
+     .help = "Free length from clamp to tip"},
+    {.name = "packing",
+     .type = WB_SETTING_CHOICE,
+     .offset = offsetof(struct wb_bundle_override, packing),
+     .choices = packings,
+     .option = "packing",
+     .argument = "PACKING",
+     .help = "How the wires are packed"},
+    {.name = "layers",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_bundle_override, layers),
+     .least = 1,
+     .largest = 20,
+     .option = "layers",
+     .argument = "N",
+     .help = "Layers of the tape"},
+    {.name = "outline",
+     .type = WB_SETTING_CHOICE,
+     .offset = offsetof(struct wb_bundle_override, outline),
+     .choices = outlines,
+     .option = "outline",
+     .argument = "OUTLINE",
+     .help = "How the tape lies: taut on the wires, or on a circle round them"},
+    {.name = "bond_reach_mm",
+     .title = "reach of bonds",
+     .type = WB_SETTING_LIST,
+     .offset = offsetof(struct wb_bundle_override, bond.reach),
+     .option = "bond-reach-mm",
+     .argument = "R",
+     .help = "The tape is bonded where it is no farther off a wire",
+     .members = &bond_table,
+     .given = offsetof(struct wb_bundle_override, bond.is_given)},
+    {.name = "cycles",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_bundle_override, run.cycles),
+     .least = 1,
+     .largest = 1000,
+     .option = "cycles",
+     .argument = "N",
+     .help = "Load and unload N times"},
+};
 
 static const struct wb_setting load_rows[] = {
     {.name = "dead_force",
@@ -28,6 +95,9 @@ static const struct wb_setting load_rows[] = {
 const struct wb_setting_table wb_bundle_override_tables[WB_BUNDLE_OVERRIDE_TABLES] = {
     [WB_BUNDLE_OVERRIDE_MESH] = {&wb_bundle_model_run_settings[WB_BUNDLE_MODEL_MESH], 1, RUN_AT,
                                  FILES},
+    [WB_BUNDLE_OVERRIDE_PIECE] = {piece_rows, WB_COUNT(piece_rows), 0, FILES},
+    [WB_BUNDLE_OVERRIDE_TEST] = {&wb_bundle_model_run_settings[WB_BUNDLE_MODEL_DEFLECTION], 2,
+                                 RUN_AT, FILES},
     [WB_BUNDLE_OVERRIDE_LOADS] = {load_rows, WB_COUNT(load_rows), 0, NULL},
     [WB_BUNDLE_OVERRIDE_RUN] = {&wb_bundle_model_run_settings[WB_BUNDLE_MODEL_DURATION], 3, RUN_AT,
                                 FILES},
@@ -61,10 +131,9 @@ static enum wb_status check(const struct wb_bundle_override *override)
     return WB_OK;
 }
 
-static enum wb_status override_run(const struct wb_bundle_run *given, struct wb_bundle_model *model)
+static enum wb_status override_run(const struct wb_bundle_run *given,
+                                   const struct wb_bundle_model *model, struct wb_bundle_run *run)
 {
-    struct wb_bundle_run *const run = &model->run;
-
     if (given->mesh[0] && !wb_bundle_model_mesh(model, given->mesh))
         return wb_fail(WB_ERR_ARGUMENT, "%s: there is no mesh '%s'", model->path, given->mesh);
     if (given->mesh[0])
@@ -75,7 +144,30 @@ static enum wb_status override_run(const struct wb_bundle_run *given, struct wb_
         run->mass_scaling = given->mass_scaling;
     if (given->selective > 0.0)
         run->selective = given->selective;
+    if (given->deflection > 0.0)
+        run->deflection = given->deflection;
+    if (given->rows > 0)
+        run->rows = given->rows;
+    if (given->cycles > 0)
+        run->cycles = given->cycles;
     return WB_OK;
+}
+
+/* The tip reaches the deflection, and the epoxy leaves a bundle to bend. */
+static enum wb_status check_length(const struct wb_bundle_model *model, double length,
+                                   double deflection)
+{
+    if (!(deflection < length))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "%s: a deflection of %g mm cannot be reached by a bundle of %g mm: expected "
+                       "a smaller deflection (--deflection-mm) or a greater length (--length-mm)",
+                       model->path, deflection / WB_MM, length / WB_MM);
+    if (model->potted_length < 0.5 * length)
+        return WB_OK;
+    return wb_fail(WB_ERR_ARGUMENT,
+                   "%s: a length of %g mm is not more than twice potted_mm, %g mm: expected a "
+                   "greater length (--length-mm)",
+                   model->path, length / WB_MM, model->potted_length / WB_MM);
 }
 
 static enum wb_status override_friction(const struct wb_bundle_interface *given,
@@ -127,20 +219,62 @@ enum wb_status wb_bundle_override_apply(const struct wb_bundle_override *overrid
                                         struct wb_bundle_model *model)
 {
     struct wb_bundle_interface interface = model->interface;
-    const struct wb_bundle_run before = model->run;
+    struct wb_bundle_run run = model->run;
+    const double length = override->length > 0.0 ? override->length : model->length;
 
     WB_TRY(check(override));
     WB_TRY(override_friction(&override->interface, &interface));
     WB_TRY(override_cohesion(override->interface.normal_stiffness, &interface));
-    const enum wb_status status = override_run(&override->run, model);
-    if (status != WB_OK) {
-        model->run = before;
-        return status;
-    }
+    WB_TRY(override_run(&override->run, model, &run));
+    if (override->length > 0.0 || override->run.deflection > 0.0)
+        WB_TRY(check_length(model, length, run.deflection));
     model->interface = interface;
+    model->run = run;
+    model->length = length;
+    if (override->length > 0.0)
+        model->length_source = WB_BUNDLE_LENGTH_OWN;
     if (override->dead_force)
         model->loads.strand_length = 0.0;
     if (override->no_weight)
         model->loads.weight = false;
     return WB_OK;
+}
+
+/* --- packing and tape --- */
+
+/* What the variant leaves open. Messages call it by the options. */
+static void join(const struct wb_bundle_override *override, struct wb_bundle_variant *variant)
+{
+    if (override->packing > 0 && !variant->has_packing) {
+        variant->has_packing = true;
+        variant->packing = override->packing - 1;
+    }
+    if (variant->layers == 0)
+        variant->layers = override->layers;
+    if (override->outline > 0 && !variant->has_outline) {
+        variant->has_outline = true;
+        variant->outline = override->outline - 1;
+    }
+    if (override->bond.is_given && !variant->has_reach) {
+        variant->has_reach = true;
+        variant->reach = override->bond.reach;
+    }
+    if (!variant->name[0])
+        snprintf(variant->name, sizeof variant->name, "of the options");
+}
+
+enum wb_status wb_bundle_override_read(struct wb_bundle_model *model, const char *path,
+                                       const struct wb_bundle_override *override,
+                                       const struct wb_bundle_variant *variant)
+{
+    struct wb_bundle_variant all = {.wires = 0};
+
+    if (variant)
+        all = *variant;
+    if (override) {
+        WB_TRY(check(override));
+        join(override, &all);
+    }
+    WB_TRY(wb_bundle_model_read_variant(model, path, &all));
+    return override ? wb_bundle_override_apply(override, model) : WB_OK;
 }

@@ -11,10 +11,19 @@
 #include "fe/model/bundle_model.h"
 
 struct wb_bundle_override {
+    /* Of the piece; 0: the file's. */
+    double length; /* m */
+    int packing;   /* 1 and enum wb_bundle_packing, but no places */
+    int layers;    /* of the tape's sleeve */
+    int outline;   /* of the tape: 1 hull, 2 circle */
+    struct {
+        bool is_given;
+        double reach; /* m */
+    } bond;
     bool dead_force; /* a vertical force at the tip, no strand */
     bool no_weight;
-    struct wb_bundle_run run;             /* of it mesh, duration, mass scaling and selective mass
-                                             scaling; "" and 0: the file's */
+    struct wb_bundle_run run;             /* but the limit of kinetic energy and the precision; ""
+                                             and 0: the file's */
     struct wb_bundle_interface interface; /* of it the friction if has_friction, and the normal
                                              stiffness, with which the shear stiffness keeps its
                                              ratio; 0: the file's */
@@ -23,8 +32,10 @@ struct wb_bundle_override {
 /* The rows of all of it, in the order in which a dataset names them. */
 enum {
     WB_BUNDLE_OVERRIDE_MESH,
+    WB_BUNDLE_OVERRIDE_PIECE, /* of struct wb_bundle_override itself, and the cycles */
+    WB_BUNDLE_OVERRIDE_TEST,  /* deflection and rows */
     WB_BUNDLE_OVERRIDE_LOADS, /* of struct wb_bundle_override itself */
-    WB_BUNDLE_OVERRIDE_RUN,   /* but the mesh */
+    WB_BUNDLE_OVERRIDE_RUN,   /* in time: duration and masses */
     WB_BUNDLE_OVERRIDE_FRICTION,
     WB_BUNDLE_OVERRIDE_COHESION,
     WB_BUNDLE_OVERRIDE_TABLES /* how many */
@@ -34,9 +45,13 @@ extern const struct wb_setting_table wb_bundle_override_tables[WB_BUNDLE_OVERRID
 /* Whether it changes anything. */
 bool wb_bundle_override_is_empty(const struct wb_bundle_override *override);
 
-/* Changes the model; it is as it was on failure. WB_ERR_ARGUMENT when it has no such mesh, and for
- * values out of range, also for a stiffness with which the interface's damage would not soften. */
-WB_MUST_CHECK enum wb_status wb_bundle_override_apply(const struct wb_bundle_override *override,
-                                                      struct wb_bundle_model *model);
+/* Reads a bundle as wb_bundle_model_read_variant() does, with what the override has in place of the
+ * file's. What the variant says has precedence. NULL: neither. WB_ERR_ARGUMENT when the bundle has
+ * no such mesh, and for values out of range or that do not go with each other, also for a stiffness
+ * with which the interface's damage would not soften. */
+WB_MUST_CHECK enum wb_status wb_bundle_override_read(struct wb_bundle_model *model,
+                                                     const char *path,
+                                                     const struct wb_bundle_override *override,
+                                                     const struct wb_bundle_variant *variant);
 
 #endif

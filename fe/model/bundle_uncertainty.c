@@ -101,7 +101,6 @@ static enum wb_status read_scenario(struct wb_bundle_uncertainty *u,
                                     const struct wb_config_node *map, const char *const *outlines)
 {
     struct wb_bundle_variant *const variant = &u->scenario[u->n_scenarios];
-    bool has_reach = false;
     struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", variant->name),
         WB_CONFIG_OPTIONAL_INTEGER("wires", &variant->wires, 1, 128),
@@ -113,11 +112,11 @@ static enum wb_status read_scenario(struct wb_bundle_uncertainty *u,
     };
     keys[2].present = &variant->has_packing;
     keys[5].present = &variant->has_outline;
-    keys[6].present = &has_reach;
+    keys[6].present = &variant->has_reach;
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     WB_TRY(wb_model_file_check_name(map, variant->name));
-    if (has_reach != variant->has_outline)
-        return wb_config_refuse(map, has_reach ? "bond_reach_mm" : "outline",
+    if (variant->has_reach != variant->has_outline)
+        return wb_config_refuse(map, variant->has_reach ? "bond_reach_mm" : "outline",
                                 "outline and bond_reach_mm belong together");
     for (int i = 0; i < u->n_scenarios; i++)
         if (strcmp(u->scenario[i].name, variant->name) == 0)

@@ -42,8 +42,9 @@ struct wb_bundle_variant {
     double lap; /* part of a winding that the next one covers: the tape is 1/(1 - lap) times as
                    thick as its layers */
     bool has_outline;
-    int outline;  /* 0 hull, 1 circle */
-    double reach; /* m, of bonds, with the outline */
+    int outline; /* 0 hull, 1 circle */
+    bool has_reach;
+    double reach; /* m, of bonds */
 };
 
 /* Of the wires of one kind: properties with specimens, or tolerances. */

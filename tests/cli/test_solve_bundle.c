@@ -236,8 +236,8 @@ static void what_was_overridden_is_told(void **unused)
 static void options_of_others_are_refused(void **unused)
 {
     (void)unused;
-    assert_int_not_equal(solve("--points 5"), 0);
-    assert_non_null(strstr(o.err, "--points"));
+    assert_int_equal(solve("--span-mm 5"), 2);
+    assert_non_null(strstr(o.err, "--span-mm"));
     assert_int_equal(solve("--mesh none"), 2);
     assert_non_null(strstr(o.err, "there is no mesh 'none'"));
     assert_int_equal(solve("--mesh ''"), 2);
@@ -360,6 +360,60 @@ static void the_section_model_tells_from_where_a_circle_lets_go(void **unused)
     assert_string_equal(o.err, "");
 }
 
+/* A short look without a copy of the file. */
+static void test_and_piece_are_options_as_of_the_cantilever(void **unused)
+{
+    (void)unused;
+    struct wb_json *root = NULL;
+    struct wb_dataset dataset;
+    char path[128];
+    tool("solve bundle 7-type3 --model section --friction 0.2 --dead-force --no-weight "
+         "--deflection-mm 8 --points 4 --cycles 1 --length-mm 57 --packing densest --layers 1 "
+         "--outline circle --bond-reach-mm 0.005 --json -o look");
+    assert_int_equal(o.code, 0);
+    assert_int_equal(wb_json_parse(&root, o.out, "output"), WB_OK);
+    const struct wb_json *const points = wb_json_get(root, "points");
+    assert_int_equal(wb_json_length(points), 9);
+    assert_close(number(wb_json_item(points, 4), "deflection_mm"), 8.0, 1e-9);
+    wb_json_destroy(root);
+    snprintf(path, sizeof path, "%s/look", folder);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
+    assert_close(dataset.info.length, 0.057, 1e-15);
+    const struct wb_json *const given =
+        wb_json_get(wb_json_get(dataset.document, "simulation"), "overridden");
+    const char *text = "";
+    assert_close(number(given, "length_mm"), 57.0, 1e-9);
+    assert_close(number(given, "rows"), 4.0, 0.0);
+    assert_close(number(given, "layers"), 1.0, 0.0);
+    assert_close(number(given, "bond_reach_mm"), 0.005, 1e-9);
+    assert_true(wb_json_get_text(given, "packing", &text) && strcmp(text, "densest") == 0);
+    wb_dataset_release(&dataset);
+
+    assert_int_equal(solve("--deflection-mm 4 --points 2 --length-mm 60 --duration-s 0.5 --json"),
+                     0);
+    assert_int_equal(wb_json_parse(&root, o.out, "output"), WB_OK);
+    assert_int_equal(wb_json_length(wb_json_get(root, "points")), 3);
+    assert_close(number(wb_json_item(wb_json_get(root, "points"), 2), "tip_x_mm"), 60.0, 0.5);
+    wb_json_destroy(root);
+}
+
+static void what_the_piece_cannot_have_is_said_in_options(void **unused)
+{
+    (void)unused;
+    assert_int_equal(solve("--length-mm 10"), 2);
+    assert_non_null(strstr(o.err, "--length-mm"));
+    tool("solve bundle 7-type3 --packing triangle");
+    assert_int_equal(o.code, 1);
+    assert_non_null(strstr(o.err, "7 wires are no triangle; 6 or 12 are"));
+    assert_int_equal(solve("--packing places"), 2);
+    assert_non_null(strstr(o.err, "expected file, hexagon, triangle or densest"));
+    assert_int_equal(solve("--layers 1"), 1);
+    assert_non_null(strstr(o.err, "of a tape, and there is none"));
+    tool("solve wire3d none --cycles 2");
+    assert_int_equal(o.code, 2);
+    assert_non_null(strstr(o.err, "--cycles is for cantilever and bundle and bending3p"));
+}
+
 /* The last one: it changes the model. */
 static void cycles_have_rows_up_and_down(void **unused)
 {
@@ -464,6 +518,8 @@ int main(void)
         cmocka_unit_test(the_section_model_tells_from_where_a_circle_lets_go),
         cmocka_unit_test(bands_are_written_beside_the_curve_and_summarised),
         cmocka_unit_test(bands_of_what_nobody_stated_are_refused),
+        cmocka_unit_test(test_and_piece_are_options_as_of_the_cantilever),
+        cmocka_unit_test(what_the_piece_cannot_have_is_said_in_options),
         cmocka_unit_test(cycles_have_rows_up_and_down),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);

@@ -20,66 +20,87 @@ struct settings {
 /* --- reading --- */
 
 enum {
-    MOST_KEYS = 16
+    MOST_KEYS = 24,
+    MOST_LISTS = 4
 };
+
+/* A row of the override that is a list in the file, or a number alone. */
+struct list {
+    const struct wb_setting *row;
+    void *settings;
+    const struct wb_config_node *node;
+};
+
+/* Keys of the override's rows, but of those that say it the other way round. */
+static size_t add_rows(struct wb_bundle_override *o, struct wb_config_key *keys,
+                       struct list lists[MOST_LISTS], int *n_lists)
+{
+    size_t n = 0;
+    for (int t = 0; t < WB_BUNDLE_OVERRIDE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_bundle_override_tables[t];
+        void *const settings = (char *)o + table->offset;
+        if (t != WB_BUNDLE_OVERRIDE_LOADS)
+            n += wb_setting_keys(table, 0, settings, keys + n);
+        for (size_t i = 0; i < table->n; i++)
+            if (table->rows[i].type == WB_SETTING_LIST)
+                lists[(*n_lists)++] = (struct list){&table->rows[i], settings, NULL};
+    }
+    for (size_t i = 0; i < n; i++)
+        keys[i].optional = true;
+    return n;
+}
 
 /* What is not given stays. The first n_own of `keys` are the caller's. */
 static enum wb_status read_settings(struct settings *s, const struct wb_config_node *node,
                                     struct wb_config_key keys[MOST_KEYS], size_t n_own)
 {
     struct wb_bundle_override *const o = &s->override;
-    const struct wb_config_node *friction;
+    struct list lists[MOST_LISTS];
+    int n_lists = 0;
     bool has_load = false, has_weight = false;
     const struct wb_config_key loads[] = {
         WB_CONFIG_OPTIONAL_BOOLEAN("dead_force", &s->dead_force),
         WB_CONFIG_OPTIONAL_BOOLEAN("weight", &s->weight),
-        WB_CONFIG_OPTIONAL_NODE("friction", &friction),
     };
-    size_t n = n_own;
-    for (int i = 0; i < WB_BUNDLE_OVERRIDE_TABLES; i++) {
-        const struct wb_setting_table *const table = &wb_bundle_override_tables[i];
-        if (i != WB_BUNDLE_OVERRIDE_LOADS)
-            n += wb_setting_keys(table, 0, (char *)o + table->offset, keys + n);
-    }
-    for (size_t i = n_own; i < n; i++)
-        keys[i].optional = true;
+    size_t n = n_own + add_rows(o, keys + n_own, lists, &n_lists);
     for (size_t i = 0; i < WB_COUNT(loads); i++)
         keys[n++] = loads[i];
-    keys[n - 3].present = &has_load;
-    keys[n - 2].present = &has_weight;
+    keys[n - 2].present = &has_load;
+    keys[n - 1].present = &has_weight;
+    for (int i = 0; i < n_lists; i++)
+        keys[n++] =
+            (struct wb_config_key)WB_CONFIG_OPTIONAL_NODE(lists[i].row->name, &lists[i].node);
     WB_TRY(wb_config_map(node, keys, n));
     s->has_load |= has_load;
     s->has_weight |= has_weight;
-    return friction
-               ? wb_setting_read_list(wb_bundle_model_friction_setting, friction, &o->interface)
-               : WB_OK;
+    for (int i = 0; i < n_lists; i++)
+        if (lists[i].node)
+            WB_TRY(wb_setting_read_list(lists[i].row, lists[i].node, lists[i].settings));
+    return WB_OK;
 }
 
 /* --- the model as the run has it --- */
 
+/* The command can only take strand and weight away. */
 static enum wb_status read_model(const struct wb_bundles *all, const struct wb_config_node *node,
-                                 const char *name, struct wb_bundles_run *run, char path[WB_PATH])
+                                 const char *name, struct settings *s, struct wb_bundles_run *run,
+                                 char path[WB_PATH])
 {
     WB_TRY(wb_campaign_find(&all->head, node, "bundle", "bundles", name, path, run->model_name));
     run->model = calloc(1, sizeof *run->model);
     if (!run->model)
         return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
-    return wb_bundle_model_read(run->model, path);
-}
-
-/* The command can only take strand and weight away. */
-static enum wb_status apply(struct settings *s, const struct wb_config_node *node,
-                            struct wb_bundles_run *run)
-{
     struct wb_bundle_model *const m = run->model;
+    s->override.dead_force = s->dead_force;
+    s->override.no_weight = s->has_weight && !s->weight;
+    const enum wb_status status = wb_bundle_override_read(m, path, &s->override, NULL);
+    if (status == WB_ERR_ARGUMENT)
+        return wb_config_refuse(node, NULL, "the run cannot have these settings");
+    WB_TRY(status);
     if (s->has_load && !s->dead_force && m->loads.strand_length == 0.0)
         return wb_config_refuse(node, "dead_force", "'%s' has no strand", m->name);
     if (s->has_weight && s->weight && !m->loads.weight)
         return wb_config_refuse(node, "weight", "'%s' has no weight", m->name);
-    s->override.dead_force = s->dead_force;
-    s->override.no_weight = s->has_weight && !s->weight;
-    if (wb_bundle_override_apply(&s->override, m) != WB_OK)
-        return wb_config_refuse(node, NULL, "the run cannot have these settings");
     run->mesh = wb_bundle_model_mesh(m, m->run.mesh);
     return WB_OK;
 }
@@ -113,8 +134,7 @@ static enum wb_status read_run(const struct wb_bundles *all, const struct wb_con
     run->judged = true;
     keys[3] = (struct wb_config_key)WB_CONFIG_OPTIONAL_BOOLEAN("judged", &run->judged);
     WB_TRY(read_settings(s, node, keys, 4));
-    WB_TRY(read_model(all, node, bundle, run, path));
-    WB_TRY(apply(s, node, run));
+    WB_TRY(read_model(all, node, bundle, s, run, path));
     set_label(run);
     WB_TRY(wb_simulation_find(&run->dataset, &all->head, run->name));
     struct wb_solve_settings solve = {.kind = WB_SOLVE_BUNDLE};

@@ -788,7 +788,7 @@ static void variants_are_read_as_if_the_file_said_so(void **unused)
     (void)unused;
     const struct wb_bundle_variant more = {.name = "more", .wires = 12, .layers = 1};
     const struct wb_bundle_variant round = {
-        .name = "round", .has_outline = true, .outline = 1, .reach = 1e-5};
+        .name = "round", .has_outline = true, .outline = 1, .has_reach = true, .reach = 1e-5};
     char text[4096];
     read_text(known_badly);
     assert_int_equal(try_variant(&more), WB_OK);

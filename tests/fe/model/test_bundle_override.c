@@ -1,9 +1,10 @@
 /* What a run has in place of values of its bundle's file. */
-#include "fe/model/bundle_override.h"
-
 #include <string.h>
+#include <unistd.h>
 
-#include "tests/check.h"
+#include "base/file.h"
+#include "fe/model/bundle_override_private.h"
+#include "tests/messages.h"
 
 static void make_model(struct wb_bundle_model *model)
 {
@@ -15,6 +16,11 @@ static void make_model(struct wb_bundle_model *model)
     strcpy(model->run.mesh, "coarse");
     model->run.mass_scaling = 25.0;
     model->run.selective = 1.0;
+    model->run.deflection = 0.053;
+    model->run.rows = 53;
+    model->length = 0.114;
+    model->length_source = WB_BUNDLE_LENGTH_PRINTED;
+    model->potted_length = 0.003;
     model->loads = (struct wb_bundle_loads){.strand_length = 0.76, .weight = true};
     model->interface = (struct wb_bundle_interface){
         .normal_stiffness = 30e9,
@@ -44,7 +50,14 @@ static void all_of_it_reaches_the_model(void **unused)
     const struct wb_bundle_override override = {
         .dead_force = true,
         .no_weight = true,
-        .run = {.mesh = "fine", .duration = 1.5, .mass_scaling = 100.0, .selective = 50.0},
+        .length = 0.08,
+        .run = {.mesh = "fine",
+                .duration = 1.5,
+                .mass_scaling = 100.0,
+                .selective = 50.0,
+                .deflection = 0.02,
+                .rows = 4,
+                .cycles = 2},
         .interface = {.has_friction = true,
                       .friction_static = 0.3,
                       .friction_kinetic = 0.3,
@@ -59,6 +72,11 @@ static void all_of_it_reaches_the_model(void **unused)
     assert_close(model.run.duration, 1.5, 0.0);
     assert_close(model.run.mass_scaling, 100.0, 0.0);
     assert_close(model.run.selective, 50.0, 0.0);
+    assert_close(model.run.deflection, 0.02, 0.0);
+    assert_int_equal(model.run.rows, 4);
+    assert_int_equal(model.run.cycles, 2);
+    assert_close(model.length, 0.08, 0.0);
+    assert_int_equal(model.length_source, WB_BUNDLE_LENGTH_OWN);
     assert_close(model.interface.friction_static, 0.3, 0.0);
     assert_close(model.interface.friction_kinetic, 0.3, 0.0);
     assert_close(model.interface.friction_decay, 0.0, 0.0);
@@ -91,6 +109,13 @@ static void what_is_out_of_range_is_refused_and_changes_nothing(void **unused)
         {.dead_force = true, .run = {.selective = 0.99}},
         {.run = {.duration = -1.0}},
         {.run = {.duration = (double)NAN}},
+        {.length = 0.05},
+        {.run = {.deflection = 0.114}},
+        {.length = 0.1, .run = {.deflection = 0.1}},
+        {.length = 0.006, .run = {.deflection = 0.001}},
+        {.length = -1.0},
+        {.run = {.rows = -1}},
+        {.run = {.cycles = 1001}},
     };
     static struct wb_bundle_model model, before;
     make_model(&model);
@@ -126,6 +151,85 @@ static void damage_has_to_soften_with_the_new_stiffness(void **unused)
     assert_int_equal(wb_bundle_override_apply(&override, &model), WB_ERR_ARGUMENT);
 }
 
+/* --- of a file --- */
+
+static const char source[] = "name: twelve\nwires: [{wire: type3, count: 12}]\npacking: triangle\n"
+                             "tape: tape\ntaping: {layout: sleeve, layers: 2}\nlength_mm: 114\n"
+                             "interface: {cohesive_stiffness_N_mm3: 30, friction: 0.4}\n"
+                             "loads: {weight: false}\n";
+static char path[64];
+
+static int write_file(void **unused)
+{
+    (void)unused;
+    snprintf(path, sizeof path, "/tmp/test_bundle_override-%d.yaml", (int)getpid());
+    return wb_file_write(path, source, strlen(source)) == WB_OK ? 0 : -1;
+}
+
+static int remove_file(void **unused)
+{
+    (void)unused;
+    return remove(path);
+}
+
+static void packing_and_tape_are_those_that_are_given(void **unused)
+{
+    (void)unused;
+    static struct wb_bundle_model model, plain;
+    struct wb_bundle_override override = {
+        .packing = 1 + WB_BUNDLE_DENSEST, .layers = 1, .run = {.rows = 7}};
+    assert_int_equal(wb_bundle_override_read(&plain, path, NULL, NULL), WB_OK);
+    assert_int_equal(wb_bundle_override_read(&model, path, &override, NULL), WB_OK);
+    assert_int_equal(model.arrangement, WB_BUNDLE_DENSEST);
+    assert_true(wb_bundle_model_diameter(&model) < wb_bundle_model_diameter(&plain) - 1e-6);
+    assert_close_relative(wb_taping_thickness(&model.tape.taping),
+                          0.5 * wb_taping_thickness(&plain.tape.taping), 1e-12);
+    assert_int_equal(model.run.rows, 7);
+    override = (struct wb_bundle_override){.bond = {.is_given = true, .reach = 1e-5}};
+    assert_int_equal(wb_bundle_override_read(&model, path, &override, NULL), WB_OK);
+    assert_false(model.tape.round);
+    assert_close(model.tape.reach, 1e-5, 0.0);
+    override = (struct wb_bundle_override){.outline = 2, .bond = {.is_given = true}};
+    assert_int_equal(wb_bundle_override_read(&model, path, &override, NULL), WB_OK);
+    assert_true(model.tape.round);
+    assert_close(model.tape.reach, 0.0, 0.0);
+}
+
+static void a_variant_has_precedence(void **unused)
+{
+    (void)unused;
+    static struct wb_bundle_model model;
+    const struct wb_bundle_override override = {
+        .packing = 1 + WB_BUNDLE_DENSEST, .layers = 1, .outline = 2, .bond = {.is_given = true}};
+    const struct wb_bundle_variant variant = {.name = "thick", .layers = 3};
+    assert_int_equal(wb_bundle_override_read(&model, path, &override, &variant), WB_OK);
+    assert_close(model.tape.taping.layers, 3.0, 0.0);
+    assert_int_equal(model.arrangement, WB_BUNDLE_DENSEST);
+    assert_true(model.tape.round);
+}
+
+static void what_the_bundle_cannot_have_is_refused(void **unused)
+{
+    (void)unused;
+    static struct wb_bundle_model model;
+    static const struct wb_bundle_override bad[] = {
+        {.packing = 1 + WB_BUNDLE_HEXAGON},
+        {.layers = 21},
+        {.bond = {.is_given = true, .reach = 2e-3}},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        keep_messages();
+        assert_int_not_equal(wb_bundle_override_read(&model, path, &bad[i], NULL), WB_OK);
+        assert_int_equal(kept.n, 1);
+        wb_log_set_sink(NULL, NULL);
+    }
+    const struct wb_bundle_override circle = {.outline = 2};
+    keep_messages();
+    assert_int_not_equal(wb_bundle_override_read(&model, path, &circle, NULL), WB_OK);
+    assert_non_null(strstr(kept.last, "--bond-reach-mm"));
+    wb_log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -134,6 +238,9 @@ int main(void)
         cmocka_unit_test(friction_of_zero_is_an_override),
         cmocka_unit_test(what_is_out_of_range_is_refused_and_changes_nothing),
         cmocka_unit_test(damage_has_to_soften_with_the_new_stiffness),
+        cmocka_unit_test(packing_and_tape_are_those_that_are_given),
+        cmocka_unit_test(a_variant_has_precedence),
+        cmocka_unit_test(what_the_bundle_cannot_have_is_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, write_file, remove_file);
 }
