@@ -579,3 +579,106 @@ bool wb_json_differs(const struct wb_json *a, const struct wb_json *b, double to
     place[0] = '\0';
     return differ(&c, a, b, 0.0, ignored);
 }
+
+/* --- comparing --- */
+
+/* Where in a document two values differ, and how. */
+struct difference {
+    char *problem;
+    char path[WB_JSON_PROBLEM / 2]; /* "mesh, elements_along" */
+};
+
+/* A value for a message; of a list that it is one. */
+static void show(const struct wb_json *value, char text[80])
+{
+    if (!value || value->kind == KIND_NULL) {
+        snprintf(text, 80, "nothing");
+        return;
+    }
+    double number;
+    if (wb_json_number(value, &number))
+        snprintf(text, 80, "%.8g", number);
+    else if (value->kind == KIND_TEXT)
+        snprintf(text, 80, "'%.70s'", value->as.text);
+    else if (value->kind == KIND_BOOLEAN)
+        snprintf(text, 80, "%s", value->as.boolean ? "true" : "false");
+    else
+        snprintf(text, 80, value->kind == KIND_ARRAY ? "a list of %zu" : "something",
+                 value->as.list.n);
+}
+
+static bool tell(const struct difference *difference, const struct wb_json *stored,
+                 const struct wb_json *wanted)
+{
+    char is[80], should_be[80];
+    show(stored, is);
+    show(wanted, should_be);
+    snprintf(difference->problem, WB_JSON_PROBLEM, "%.120s is %s in it, and %s is wanted",
+             difference->path, is, should_be);
+    return false;
+}
+
+static bool is_same_scalar(const struct wb_json *stored, const struct wb_json *wanted)
+{
+    double a, b;
+    if (wb_json_number(stored, &a) && wb_json_number(wanted, &b))
+        return fabs(a - b) <= 1e-9 * fmax(fabs(a), fabs(b));
+    if (stored->kind != wanted->kind)
+        return false;
+    switch (stored->kind) {
+    case KIND_BOOLEAN:
+        return stored->as.boolean == wanted->as.boolean;
+    case KIND_TEXT:
+        return strcmp(stored->as.text, wanted->as.text) == 0;
+    default:
+        return stored->kind == KIND_NULL;
+    }
+}
+
+static bool compare(struct difference *difference, const struct wb_json *stored,
+                    const struct wb_json *wanted);
+
+/* The member of that key, or the item of that index, of both; the path is as before afterwards
+ * where they are the same. */
+static bool compare_part(struct difference *difference, const struct wb_json *stored,
+                         const struct wb_json *wanted, const char *key, size_t index)
+{
+    const size_t used = strlen(difference->path);
+    const size_t left = sizeof difference->path - used;
+    if (key)
+        snprintf(difference->path + used, left, "%s%.60s", used > 0 ? ", " : "", key);
+    else
+        snprintf(difference->path + used, left, " %zu", index + 1);
+    const bool same =
+        compare(difference, key ? wb_json_get(stored, key) : wb_json_item(stored, index),
+                key ? wb_json_get(wanted, key) : wb_json_item(wanted, index));
+    if (same)
+        difference->path[used] = '\0';
+    return same;
+}
+
+static bool compare(struct difference *difference, const struct wb_json *stored,
+                    const struct wb_json *wanted)
+{
+    if (!stored || !wanted)
+        return tell(difference, stored, wanted);
+    if (!is_list(stored) || stored->kind != wanted->kind)
+        return is_same_scalar(stored, wanted) || tell(difference, stored, wanted);
+    const bool is_object = stored->kind == KIND_OBJECT;
+    if (!is_object && stored->as.list.n != wanted->as.list.n)
+        return tell(difference, stored, wanted);
+    for (size_t i = 0; i < wanted->as.list.n; i++)
+        if (!compare_part(difference, stored, wanted, wanted->as.list.values[i]->key, i))
+            return false;
+    for (size_t i = 0; i < stored->as.list.n && is_object; i++)
+        if (!wb_json_get(wanted, stored->as.list.values[i]->key))
+            return compare_part(difference, stored, wanted, stored->as.list.values[i]->key, i);
+    return true;
+}
+
+bool wb_json_is_same(const struct wb_json *stored, const struct wb_json *wanted,
+                     char problem[WB_JSON_PROBLEM])
+{
+    struct difference difference = {.problem = problem};
+    return compare(&difference, stored, wanted);
+}

@@ -36,11 +36,6 @@ static bool has_range(const struct wb_setting *row)
     return row->least != 0.0 || row->largest != 0.0;
 }
 
-static const char *title_of(const struct wb_setting *row)
-{
-    return row->title ? row->title : row->name;
-}
-
 bool wb_setting_applies(const struct wb_setting *row, unsigned place)
 {
     return place == 0 || row->applies == 0 || (row->applies & place) != 0;
@@ -394,13 +389,6 @@ static const char *text_of(const struct wb_setting *row, const void *settings)
     return row->size > 0 ? field : *(const char *const *)field;
 }
 
-/* The same, and "" where there is none. */
-static const char *words_of(const struct wb_setting *row, const void *settings)
-{
-    const char *const text = text_of(row, settings);
-    return text ? text : "";
-}
-
 static void format_list(const struct wb_setting *row, const void *members,
                         char text[WB_SETTING_VALUE])
 {
@@ -428,7 +416,8 @@ void wb_setting_format(const struct wb_setting *row, const void *settings,
         break;
     case WB_SETTING_TEXT:
     case WB_SETTING_CHOICE:
-        snprintf(text, WB_SETTING_VALUE, "%s", words_of(row, settings));
+        if (wb_setting_is_given(row, settings) || row->type == WB_SETTING_CHOICE)
+            snprintf(text, WB_SETTING_VALUE, "%s", text_of(row, settings));
         break;
     case WB_SETTING_LIST:
         format_list(row, look_at(row, settings), text);
@@ -463,87 +452,6 @@ void wb_setting_set_json(const struct wb_setting *row, const void *settings, str
             wb_setting_set_json(&row->members->rows[i], field, members);
         break;
     }
-    }
-}
-
-static bool is_same_number(const struct wb_setting *row, double wanted,
-                           const struct wb_json *object, char problem[WB_SETTING_PROBLEM])
-{
-    double stored = (double)NAN;
-    (void)wb_json_get_number(object, row->name, &stored);
-    if (fabs(stored - wanted) <= 1e-9 * fmax(fabs(stored), fabs(wanted)))
-        return true;
-    snprintf(problem, WB_SETTING_PROBLEM, "the %s%s%s%s is %.6g in it, and %.6g is wanted",
-             title_of(row), row->unit ? " (" : "", row->unit ? row->unit : "", row->unit ? ")" : "",
-             stored, wanted);
-    return false;
-}
-
-bool wb_setting_is_same(const struct wb_setting *row, const void *settings,
-                        const struct wb_json *object, char problem[WB_SETTING_PROBLEM])
-{
-    const void *const field = look_at(row, settings);
-    switch (row->type) {
-    case WB_SETTING_NUMBER:
-    case WB_SETTING_INTEGER:
-        return is_same_number(row, wb_setting_value(row, settings), object, problem);
-    case WB_SETTING_BOOLEAN: {
-        bool stored = false;
-        if (wb_json_get_boolean(object, row->name, &stored) && stored == *(const bool *)field)
-            return true;
-        break;
-    }
-    case WB_SETTING_TEXT:
-    case WB_SETTING_CHOICE: {
-        const char *stored = "";
-        const char *const wanted = words_of(row, settings);
-        (void)wb_json_get_text(object, row->name, &stored);
-        if (strcmp(stored, wanted) == 0)
-            return true;
-        snprintf(problem, WB_SETTING_PROBLEM, "the %s is '%.80s' in it, and '%.80s' is wanted",
-                 title_of(row), stored, wanted);
-        return false;
-    }
-    case WB_SETTING_LIST: {
-        const struct wb_json *const members =
-            row->members->n > 1 ? wb_json_get(object, row->name) : object;
-        for (size_t i = 0; i < row->members->n; i++) {
-            if (!wb_setting_is_same(&row->members->rows[i], field, members, problem))
-                return false;
-        }
-        return true;
-    }
-    }
-    snprintf(problem, WB_SETTING_PROBLEM, "the %s is another one in it", title_of(row));
-    return false;
-}
-
-void wb_setting_identify(const struct wb_setting_table *table, const void *settings,
-                         struct wb_text *text)
-{
-    for (size_t i = 0; i < table->n; i++) {
-        const struct wb_setting *const row = &table->rows[i];
-        const void *const field = look_at(row, settings);
-        wb_text_append(text, "%s=", row->name);
-        switch (row->type) {
-        case WB_SETTING_NUMBER:
-            wb_text_append(text, "%.17g", *(const double *)field);
-            break;
-        case WB_SETTING_INTEGER:
-            wb_text_append(text, "%d", *(const int *)field);
-            break;
-        case WB_SETTING_BOOLEAN:
-            wb_text_append(text, "%d", *(const bool *)field);
-            break;
-        case WB_SETTING_TEXT:
-        case WB_SETTING_CHOICE:
-            wb_text_append(text, "%s", words_of(row, settings));
-            break;
-        case WB_SETTING_LIST:
-            wb_setting_identify(row->members, field, text);
-            break;
-        }
-        wb_text_append(text, ";");
     }
 }
 

@@ -1,9 +1,9 @@
 /* Settings: each is one row of a table in the module that owns it, and everything that treats a
  * setting reads the row: the command line and its --help, YAML files, JSON documents, checks of a
- * filled struct, the identity of a result, the test of the documentation.
+ * filled struct, the inputs of a result, the test of the documentation.
  *
  *     static const struct wb_setting rows[] = {
- *         {.name = "step_mm", .title = "step", .unit = "mm", .type = WB_SETTING_NUMBER,
+ *         {.name = "step_mm", .unit = "mm", .type = WB_SETTING_NUMBER,
  *          .offset = offsetof(struct wb_example_settings, step), .scale = WB_MM,
  *          .least = 0.01, .largest = 100.0, .fallback = 0.5,
  *          .option = "step-mm", .argument = "H", .help = "Step of the comparison"},
@@ -38,9 +38,8 @@ enum wb_setting_type {
 struct wb_setting_table;
 
 struct wb_setting {
-    const char *name;  /* key in files, with its unit: "step_mm" */
-    const char *title; /* for messages, without article: "step"; NULL: the name */
-    const char *unit;  /* "mm"; NULL: none */
+    const char *name; /* key in files, with its unit: "step_mm" */
+    const char *unit; /* "mm"; NULL: none */
     enum wb_setting_type type;
     size_t offset;         /* of the field in its struct */
     size_t size;           /* of a text's array */
@@ -121,15 +120,6 @@ void wb_setting_format(const struct wb_setting *row, const void *settings,
 /* Sets the field as a member of an object, under the row's name. */
 void wb_setting_set_json(const struct wb_setting *row, const void *settings,
                          struct wb_json *object);
-
-/* Compares the member of that name in an object with the field, numbers to 1e-9. False with a
- * `problem`: "the step (mm) is 1 in it, and 0.5 is wanted". */
-bool wb_setting_is_same(const struct wb_setting *row, const void *settings,
-                        const struct wb_json *object, char problem[WB_SETTING_PROBLEM]);
-
-/* Appends "step_mm=0.0005;" for each row, exact, in SI: equal texts, equal settings. */
-void wb_setting_identify(const struct wb_setting_table *table, const void *settings,
-                         struct wb_text *text);
 
 /* An option's help with range and default: "Step of the comparison: 0.01 to 100 mm (0.5)". */
 void wb_setting_describe(const struct wb_setting *row, const char *otherwise, struct wb_text *text);

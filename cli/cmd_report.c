@@ -16,13 +16,15 @@ struct options {
     int threads;
     const char *key;             /* to sign with; NULL: not */
     const char *check;           /* folder of a signed report; NULL: a report is made */
+    bool lists;                  /* only what is outdated */
     struct wb_jobs_options jobs; /* for datasets that are missing */
 };
 
 enum {
     KEY_THREADS = WB_KEY_OWN,
     KEY_SIGN,
-    KEY_CHECK
+    KEY_CHECK,
+    KEY_STALE
 };
 
 static const struct argp_option option_table[] = {
@@ -38,9 +40,26 @@ static const struct argp_option option_table[] = {
      "Check the signed report there: signature, files, and what comes out computed again; the "
      "campaign file need be named only where it is not found",
      0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print all numbers as one JSON object", 0},
+    {"stale", KEY_STALE, NULL, 0,
+     "Instead of a report, list the datasets that are missing or outdated, and why", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print all numbers, or the list, as one JSON object", 0},
     {0},
 };
+
+/* Whether all that is needed was given, and nothing beside it that makes no sense. */
+static error_t check_end(struct options *o, struct argp_state *state)
+{
+    if (o->check) {
+        if (o->key || o->common.output || o->lists)
+            argp_error(state, "--check makes no report: not with --sign, --stale or -o");
+        return 0;
+    }
+    if (!o->lists && !o->common.output)
+        argp_error(state, "say where the report goes: -o DIR, or list with --stale");
+    if (o->lists && (o->key || o->common.output || wb_jobs_wanted(&o->jobs)))
+        argp_error(state, "--stale makes nothing: not with --sign, -o, --solve or --slurm");
+    return wb_command_parse_common(ARGP_KEY_END, NULL, state, &o->common);
+}
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
@@ -48,6 +67,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->jobs;
+        return 0;
+    case KEY_STALE:
+        o->lists = true;
         return 0;
     case KEY_THREADS:
         o->threads = wb_command_integer(state, "--threads", argument, 1, 16);
@@ -59,11 +81,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         o->check = argument;
         return 0;
     case ARGP_KEY_END:
-        if (!o->check)
-            break;
-        if (o->key || o->common.output)
-            argp_error(state, "--check makes no report: not with --sign or -o");
-        return 0;
+        return check_end(o, state);
     default:
         break;
     }
@@ -110,7 +128,7 @@ static int deliver(const struct options *o, enum wb_report_end end)
                                 [WB_REPORT_INTERRUPTED] = WB_EXIT_FAILED,
                                 [WB_REPORT_NOTHING] = WB_EXIT_OK};
     const char *const folder = o->common.output;
-    if (end == WB_REPORT_INTERRUPTED || end == WB_REPORT_NOTHING)
+    if (end == WB_REPORT_INTERRUPTED || end == WB_REPORT_NOTHING || o->lists)
         return codes[end];
     if (o->common.json && print_json(folder) != WB_OK)
         return WB_EXIT_FAILED;
@@ -142,8 +160,7 @@ static int check(const struct options *o)
 int wb_cmd_report(int argc, char **argv)
 {
     char buffer[WB_PATH];
-    struct options options = {
-        .common = {.noun = "campaign file", .destination = "report goes: -o DIR"}};
+    struct options options = {.common = {.noun = "campaign file"}};
     enum wb_report_end end = WB_REPORT_NOTHING;
     wb_command_parse(&argp, argc, argv, &options);
     if (options.check) {
@@ -161,7 +178,7 @@ int wb_cmd_report(int argc, char **argv)
         .n_threads = options.threads,
         .jobs = &options.jobs,
     };
-    const bool existed = wb_file_exists(order.folder);
+    const bool existed = options.lists || wb_file_exists(order.folder);
     wb_interrupt_install();
     const enum wb_status status = wb_report_make(&end, wb_kinds, WB_KINDS, &order);
     if (!existed)

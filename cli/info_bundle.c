@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/dataset/simulated_bundle.h"
 #include "analysis/report/draw/figures_bundle.h"
 #include "base/units.h"
 #include "cli/info.h"
@@ -115,13 +116,15 @@ static void print_meshes(const struct wb_bundle_model *model)
 
 static void print_text(const struct wb_bundle_model *model, const char *figure)
 {
+    char sha256[WB_SHA256_TEXT];
     printf("%s: bundle %s\n", model->path, model->name);
     if (model->title[0])
         printf("  %-10s %s\n", "title", model->title);
     if (model->notes[0])
         printf("  %-10s %s\n", "notes", model->notes);
     print_section(model);
-    printf("  %-10s %s\n", "sha256", model->sha256);
+    wb_simulated_bundle_sum(model, wb_bundle_model_mesh(model, model->run.mesh), sha256);
+    printf("  %-10s %s\n", "inputs", sha256);
     if (figure)
         printf("  %-10s %s\n", "figure", figure);
     print_facts(model);
@@ -176,7 +179,9 @@ static int print_json(const struct wb_bundle_model *model, const char *figure)
     wb_json_set_text(root, "bundle", model->path);
     wb_json_set_text(root, "name", model->name);
     wb_json_set_text(root, "title", model->title);
-    wb_json_set_text(root, "sha256", model->sha256);
+    char sha256[WB_SHA256_TEXT];
+    wb_simulated_bundle_sum(model, wb_bundle_model_mesh(model, model->run.mesh), sha256);
+    wb_json_set_text(root, "inputs_sha256", sha256);
     wb_json_set_text(root, "packing", wb_bundle_model_arrangement(model));
     wb_json_set_boolean(root, "settled", model->settled);
     wb_json_set_number(root, "length_mm", model->length / WB_MM);

@@ -13,7 +13,6 @@
 
 static const struct wb_setting rows[] = {
     {.name = "youngs_modulus_MPa",
-     .title = "Young's modulus",
      .unit = "MPa",
      .offset = offsetof(struct wb_tensile_material_settings, youngs_modulus),
      .scale = WB_MPA,
@@ -24,7 +23,6 @@ static const struct wb_setting rows[] = {
      .argument = "E",
      .help = "Young's modulus, known from elsewhere"},
     {.name = "density_g_cm3",
-     .title = "density",
      .unit = "g/cm3",
      .offset = offsetof(struct wb_tensile_material_settings, density),
      .scale = WB_G_PER_CM3,
@@ -35,7 +33,6 @@ static const struct wb_setting rows[] = {
      .argument = "R",
      .help = "Density"},
     {.name = "poissons_ratio",
-     .title = "Poisson's ratio",
      .offset = offsetof(struct wb_tensile_material_settings, poissons_ratio),
      .least = 0.0,
      .largest = 0.499,

@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "base/version.h"
+#include "fe/model/model_inputs.h"
 
 static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
 static const double shortest_row = 1e-3; /* s */
@@ -113,6 +114,21 @@ static void describe_law(struct wb_json *simulation, const struct wb_law *law)
     }
 }
 
+void wb_simulated_cantilever_inputs(struct wb_json *object,
+                                    const struct wb_simulated_cantilever *cantilever)
+{
+    wb_json_set_text(object, "solver", "cantilever");
+    wb_json_set_integer(object, "version", WB_CANTILEVER_VERSION);
+    wb_model_inputs_law(wb_json_set_object(object, "law"), cantilever->law);
+    wb_json_set_number(object, "outer_diameter_mm", cantilever->outer_diameter / WB_MM);
+    wb_json_set_number(object, "length_mm", cantilever->length / WB_MM);
+    wb_json_set_number(object, "deflection_mm", cantilever->deflection / WB_MM);
+    wb_json_set_number(object, "strand_mm", cantilever->strand_length / WB_MM);
+    wb_json_set_number(object, "weight_kg_m", cantilever->mass_per_length);
+    wb_json_set_integer(object, "points", cantilever->points);
+    wb_json_set_integer(object, "cycles", cantilever->cycles);
+}
+
 /* `zero_force` (N) may be NaN: there is none. */
 static void describe(struct wb_json *document, const struct wb_test_info *info, bool converged,
                      double zero_force, const struct wb_simulated_origin *origin)
@@ -123,6 +139,9 @@ static void describe(struct wb_json *document, const struct wb_test_info *info, 
 
     struct wb_json *simulation = wb_json_set_object(document, "simulation");
     wb_json_set_text(simulation, "model", origin->model);
+    if (origin->cantilever)
+        wb_simulated_cantilever_inputs(wb_json_set_object(simulation, "inputs"),
+                                       origin->cantilever);
     describe_law(simulation, origin->law);
     wb_json_set_text(simulation, "properties_source", origin->source);
     wb_json_set_boolean(simulation, "converged", converged);

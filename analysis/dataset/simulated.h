@@ -15,12 +15,22 @@
 #include "fe/trial/wire3d.h"
 #include "fe/trial/wire_run.h"
 
+/* All that decides the numbers of a cantilever's test. */
+struct wb_simulated_cantilever {
+    const struct wb_law *law;
+    double outer_diameter, length, deflection; /* m */
+    double strand_length;                      /* m; 0: a vertical force */
+    double mass_per_length;                    /* kg/m; 0: no weight */
+    int points, cycles;
+};
+
 /* How the simulation was made, for dataset.json. */
 struct wb_simulated_origin {
     const char *model;        /* "cantilever" */
     const char *source;       /* where the properties come from */
     const struct wb_law *law; /* an elastic one: Ludwik's form of an elastic material */
     double wall, cpu;         /* s */
+    const struct wb_simulated_cantilever *cantilever; /* NULL: it is none */
 };
 
 /* The rows of a three-point bending test. */
@@ -64,6 +74,13 @@ WB_MUST_CHECK enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, st
 
 /* dataset.json's `tool`: this program. */
 void wb_simulated_describe_tool(struct wb_json *document);
+
+/* Set in an object what makes the `inputs` of dataset.json: all that decides the dataset's numbers,
+ * with the solver and its version. */
+void wb_simulated_cantilever_inputs(struct wb_json *object,
+                                    const struct wb_simulated_cantilever *cantilever);
+void wb_simulated_wire_inputs(struct wb_json *object, const struct wb_wire_model *model,
+                              bool is_solid);
 
 /* How a wire model was computed. */
 struct wb_simulated_wire {

@@ -8,6 +8,8 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "fe/model/model_inputs.h"
+#include "fe/section/section_run.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "dataset"
@@ -171,6 +173,23 @@ static void describe_override(struct wb_json *simulation, const struct wb_bundle
     }
 }
 
+void wb_simulated_bundle_inputs(struct wb_json *object, const struct wb_bundle_model *model,
+                                const struct wb_bundle_mesh *mesh)
+{
+    wb_json_set_text(object, "solver", mesh ? "bundle" : "section");
+    wb_json_set_integer(object, "version", mesh ? WB_BUNDLE_RUN_VERSION : WB_SECTION_RUN_VERSION);
+    wb_model_inputs_bundle(object, model, mesh);
+}
+
+void wb_simulated_bundle_sum(const struct wb_bundle_model *model, const struct wb_bundle_mesh *mesh,
+                             char sha256[WB_SHA256_TEXT])
+{
+    struct wb_json *const inputs = wb_json_create();
+    wb_simulated_bundle_inputs(inputs, model, mesh);
+    wb_model_inputs_sum(inputs, sha256);
+    wb_json_destroy(inputs);
+}
+
 struct wb_json *wb_simulated_bundle_begin(struct wb_dataset *dataset,
                                           const struct wb_simulated_bundle_head *head)
 {
@@ -184,13 +203,13 @@ struct wb_json *wb_simulated_bundle_begin(struct wb_dataset *dataset,
     wb_json_set_boolean(document, "complete", head->is_complete);
 
     struct wb_json *const simulation = wb_json_set_object(document, "simulation");
-    wb_json_set_text(simulation, "model", head->solver);
+    wb_json_set_text(simulation, "model", head->mesh ? "bundle" : "section");
     wb_json_set_text(simulation, "name", model->name);
     wb_json_set_text(simulation, "title", model->title);
     if (model->notes[0] != '\0')
         wb_json_set_text(simulation, "notes", model->notes);
     wb_json_set_text(simulation, "file", wb_file_name(model->path));
-    wb_json_set_text(simulation, "sha256", model->sha256);
+    wb_simulated_bundle_inputs(wb_json_set_object(simulation, "inputs"), model, head->mesh);
     wb_json_set_text(simulation, "law", "elastoplastic");
     wb_json_set_integer(simulation, "wires", model->packing.n);
     wb_json_set_boolean(simulation, "tape", model->has_tape);
@@ -203,9 +222,9 @@ enum wb_status wb_simulated_bundle_fill(struct wb_dataset *dataset,
                                         const struct wb_simulated_bundle *bundle)
 {
     const struct wb_simulated_bundle_head head = {
-        .solver = "bundle",
         .name = "simulated bundle",
         .model = bundle->model,
+        .mesh = bundle->mesh,
         .override = bundle->override,
         .is_complete = bundle->result->converged && !bundle->result->stopped,
     };

@@ -12,10 +12,20 @@
 #define WB_ANALYSIS_SIMULATED_BUNDLE_H
 
 #include "analysis/dataset/dataset.h"
+#include "base/hash.h"
 #include "base/status.h"
 #include "fe/bundle/bundle_run.h"
 #include "fe/model/bundle_model.h"
 #include "fe/model/bundle_override.h"
+
+/* Sets in an object all that decides the numbers of a dataset, with the solver and its version: the
+ * `inputs` of dataset.json. Without a mesh (NULL) of the section model. */
+void wb_simulated_bundle_inputs(struct wb_json *object, const struct wb_bundle_model *model,
+                                const struct wb_bundle_mesh *mesh);
+
+/* SHA-256 of these inputs. */
+void wb_simulated_bundle_sum(const struct wb_bundle_model *model, const struct wb_bundle_mesh *mesh,
+                             char sha256[WB_SHA256_TEXT]);
 
 struct wb_simulated_bundle {
     const struct wb_bundle_model *model; /* as it was run: with what was overridden */
@@ -28,9 +38,9 @@ struct wb_simulated_bundle {
 
 /* What a dataset says of a bundle whichever model computed it. */
 struct wb_simulated_bundle_head {
-    const char *solver;                        /* "bundle" */
     const char *name;                          /* after the bundle's: "simulated bundle" */
     const struct wb_bundle_model *model;       /* as it was run */
+    const struct wb_bundle_mesh *mesh;         /* NULL: the section model */
     const struct wb_bundle_override *override; /* NULL: nothing */
     bool is_complete;
 };

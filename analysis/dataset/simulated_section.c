@@ -114,7 +114,6 @@ enum wb_status wb_simulated_section_fill(struct wb_dataset *dataset,
                                          const struct wb_simulated_section *section)
 {
     const struct wb_simulated_bundle_head head = {
-        .solver = "section",
         .name = "simulated bundle, section model",
         .model = section->model,
         .override = section->override,

@@ -6,6 +6,8 @@
 #include "analysis/dataset/simulated.h"
 #include "base/file.h"
 #include "base/units.h"
+#include "fe/model/model_inputs.h"
+#include "fe/trial/wire1d.h"
 
 static const double megabyte = 1e6; /* bytes */
 
@@ -92,14 +94,23 @@ static void describe_parts(struct wb_json *simulation, const struct wb_wire_mode
     wb_json_set_number(whole, "poissons_ratio", wb_wire_model_poissons_ratio(model));
 }
 
-static void describe_model(struct wb_json *simulation, const struct wb_wire_model *model)
+void wb_simulated_wire_inputs(struct wb_json *object, const struct wb_wire_model *model,
+                              bool is_solid)
+{
+    wb_json_set_text(object, "solver", is_solid ? "wire3d" : "wire1d");
+    wb_json_set_integer(object, "version", is_solid ? WB_WIRE3D_VERSION : WB_WIRE1D_VERSION);
+    wb_model_inputs_wire(object, model, is_solid);
+}
+
+static void describe_model(struct wb_json *simulation, const struct wb_wire_model *model,
+                           bool is_solid)
 {
     wb_json_set_text(simulation, "name", model->name);
     wb_json_set_text(simulation, "title", model->title);
     if (model->notes[0] != '\0')
         wb_json_set_text(simulation, "notes", model->notes);
     wb_json_set_text(simulation, "file", wb_file_name(model->path));
-    wb_json_set_text(simulation, "sha256", model->sha256);
+    wb_simulated_wire_inputs(wb_json_set_object(simulation, "inputs"), model, is_solid);
     wb_json_set_text(simulation, "law", model->is_elastic ? "elastic" : "elastoplastic");
     describe_parts(simulation, model);
     wb_json_set_text(simulation, "clamp", model->clamp == WB_WIRE_CLAMP_FIXED ? "fixed" : "plane");
@@ -183,7 +194,7 @@ static void describe(struct wb_dataset *dataset, const struct wb_simulated_wire 
 
     struct wb_json *const simulation = wb_json_set_object(document, "simulation");
     wb_json_set_text(simulation, "model", wire->solver);
-    describe_model(simulation, wire->model);
+    describe_model(simulation, wire->model, strcmp(wire->solver, "wire3d") == 0);
     if (wire->balance)
         describe_solid(simulation, wire->model, wire->balance);
     describe_run(simulation, wire);

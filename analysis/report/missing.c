@@ -42,7 +42,7 @@ static enum wb_status name_checkpoint(const struct all *all,
 {
     char hash[WB_SHA256_TEXT], name[200];
     struct wb_text text = {0};
-    wb_text_append(&text, "%s %d %s %s", all->program, all->cores, entry->resumable,
+    wb_text_append(&text, "%s %d %s %s", all->program, all->cores, entry->wanted->inputs_sha256,
                    wb_text_string(&entry->wanted->command));
     wb_hash_bytes(wb_text_string(&text), text.length, hash);
     wb_text_release(&text);
@@ -67,7 +67,7 @@ static enum wb_status add_job(struct all *all, const struct wb_simulation_entry 
 {
     struct one *const one = &all->texts[all->n];
     one->settings = entry->wanted->settings;
-    if (entry->resumable) {
+    if (entry->is_resumable) {
         if (all->cores > 1)
             one->settings.threads = all->cores;
         WB_TRY(name_checkpoint(all, entry, one->checkpoint));
@@ -153,7 +153,7 @@ static bool is_done_with(wb_simulation_list *list, const void *results, const ch
 {
     struct wb_simulation_entry entry;
     for (int i = 0; list(results, i, &entry); i++) {
-        if (entry.resumable && entry.result->state == WB_SIMULATION_USABLE &&
+        if (entry.is_resumable && entry.result->state == WB_SIMULATION_USABLE &&
             is_checkpoint_of(file, entry.wanted->log))
             return true;
     }

@@ -133,6 +133,23 @@ static enum wb_status deliver(struct making *making)
     return WB_OK;
 }
 
+/* Which datasets cannot be used, why, and how to make them. */
+static enum wb_status list_datasets(struct making *making)
+{
+    const struct wb_kind *const kind = making->kind;
+    int n_wanted, n_usable;
+    if (!kind->datasets)
+        return wb_fail(WB_ERR_UNSUPPORTED, "a report of %s has no datasets that become outdated",
+                       kind->data);
+    wb_simulation_count(kind->datasets, making->results, &n_wanted, &n_usable);
+    making->end = n_usable < n_wanted ? WB_REPORT_INCOMPLETE : WB_REPORT_NOTHING;
+    if (making->order->quiet)
+        return wb_simulation_print_json(stdout, kind->datasets, making->results);
+    printf("%d of %d datasets are missing, outdated or refused\n", n_wanted - n_usable, n_wanted);
+    wb_simulation_print_missing(stdout, kind->datasets, making->results);
+    return WB_OK;
+}
+
 static enum wb_status make(struct making *making)
 {
     const struct wb_kind *const kind = making->kind;
@@ -143,10 +160,16 @@ static enum wb_status make(struct making *making)
     if (!making->campaign || !making->results)
         return wb_fail(WB_ERR_MEMORY, "out of memory");
     WB_TRY(wb_kind_read(kind, making->campaign, order->campaign));
-    WB_TRY(check_signing(making));
-    /* A folder that may not be written should not cost the time of the computations. */
-    WB_TRY(wb_file_prepare_output(order->folder, order->force));
+    if (order->folder) {
+        WB_TRY(check_signing(making));
+        /* A folder that may not be written should not cost the time of the computations. */
+        WB_TRY(wb_file_prepare_output(order->folder, order->force));
+    } else {
+        wb_log_set_threshold(WB_LOG_ERROR); /* the list says all that is warned of */
+    }
     WB_TRY(kind->load(making->results, making->campaign));
+    if (!order->folder)
+        return list_datasets(making);
     if (wb_jobs_wanted(order->jobs))
         WB_TRY(make_missing(making, &ends));
     if (ends)

@@ -16,11 +16,12 @@
 /* What is asked for; all borrowed. */
 struct wb_report_order {
     const char *campaign;               /* path of its file */
-    const char *folder;                 /* to write */
+    const char *folder;                 /* to write; NULL: nothing, only what cannot be used of the
+                                           datasets is listed, and why */
     bool force;                         /* replaces the report that it holds */
-    bool quiet;                         /* prints no summary */
     bool has_manifest;                  /* also writes manifest.json */
     const char *key;                    /* to sign the manifest with, by gpg; NULL: none */
+    bool quiet;                         /* prints no summary; a list is JSON */
     int n_threads;                      /* 0: as many as cores, 4 at most */
     const struct wb_jobs_options *jobs; /* for datasets that are missing */
 };
@@ -30,7 +31,8 @@ enum wb_report_end {
     WB_REPORT_INCOMPLETE, /* written; something is missing, and the report says what */
     WB_REPORT_LIMIT,      /* written; a limit of the campaign is exceeded */
     WB_REPORT_INTERRUPTED /* nothing is written, which was said; datasets that were made stay */,
-    WB_REPORT_NOTHING /* nothing is written: only the list of runs was asked for */
+    WB_REPORT_NOTHING /* nothing is written: only a list was asked for, of runs, or of datasets, of
+                         which none is missing or outdated */
 };
 
 /* Reads the campaign, whose kind is one of `kinds` (n_kinds; the first one where the file names

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/report/reasons.h"
+#include "fe/model/model_inputs.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -74,8 +75,11 @@ static enum wb_status show_command(struct wb_simulation *simulation, const char 
 }
 
 enum wb_status wb_simulation_set(struct wb_simulation *simulation,
-                                 const struct wb_solve_settings *settings, const char *shown)
+                                 const struct wb_solve_settings *settings, const char *shown,
+                                 struct wb_json *inputs)
 {
+    simulation->inputs = inputs;
+    wb_model_inputs_sum(inputs, simulation->inputs_sha256);
     simulation->settings = *settings;
     if (settings->model) {
         simulation->settings.model = strdup(settings->model);
@@ -88,6 +92,7 @@ enum wb_status wb_simulation_set(struct wb_simulation *simulation,
 void wb_simulation_release(struct wb_simulation *simulation)
 {
     free((char *)simulation->settings.model);
+    wb_json_destroy(simulation->inputs);
     wb_text_release(&simulation->command);
 }
 
@@ -104,17 +109,56 @@ const struct wb_json *wb_simulation_of(const struct wb_simulation_result *result
     return wb_json_get(result->dataset.document, "simulation");
 }
 
-bool wb_simulation_is_solved_by(const struct wb_simulation_result *result, const char *solver)
+void wb_simulation_describe(struct wb_json *object, const struct wb_simulation *wanted,
+                            const struct wb_simulation_result *result)
 {
-    const char *made_by = "";
-    return result->dataset.info.is_simulation &&
-           wb_json_get_text(wb_simulation_of(result), "model", &made_by) &&
-           strcmp(made_by, solver) == 0;
+    static const char *const states[] = {"not wanted", "missing", "outdated", "refused", "used"};
+    wb_json_set_text(object, "dataset", wanted->name);
+    wb_json_set_text(object, "state", states[result->state]);
+    wb_json_set_text(object, "command", wb_text_string(&wanted->command));
+    if (result->state != WB_SIMULATION_USABLE)
+        wb_json_set_text(object, "problem", wb_text_string(&result->problem));
 }
 
 bool wb_simulation_is_missing(const struct wb_simulation_result *result)
 {
     return result->state == WB_SIMULATION_MISSING || result->state == WB_SIMULATION_STALE;
+}
+
+/* Those of the planar beam say only whether they converged. */
+static bool is_whole(const struct wb_simulation_result *result)
+{
+    bool is = false;
+    if (!wb_json_get_boolean(result->dataset.document, "complete", &is))
+        (void)wb_json_get_boolean(wb_simulation_of(result), "converged", &is);
+    return is;
+}
+
+/* Whether it is of the inputs that are wanted, and whole. *stale: making it again mends that. */
+static enum wb_status check(const struct wb_simulation_result *result,
+                            const struct wb_simulation *wanted, bool *stale, struct wb_reason *why)
+{
+    const struct wb_json *const simulation = wb_simulation_of(result);
+    const struct wb_json *const inputs = wb_json_get(simulation, "inputs");
+    const char *const solver = wb_solve_settings_kind(&wanted->settings);
+    const char *made_by = "", *problem = "";
+    char difference[WB_JSON_PROBLEM];
+    if (!result->dataset.info.is_simulation || !wb_json_get_text(simulation, "model", &made_by) ||
+        strcmp(made_by, solver) != 0)
+        return wb_fail_to(why, WB_ERR_DATA, "it was not made by 'solve %s'%s%s%s", solver,
+                          made_by[0] ? " but by 'solve " : "", made_by, made_by[0] ? "'" : "");
+    *stale = true;
+    if (!inputs)
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "it does not say what it was computed of, as older versions did not");
+    if (!wb_json_is_same(inputs, wanted->inputs, difference))
+        return wb_fail_to(why, WB_ERR_DATA, "%s", difference);
+    (void)wb_json_get_text(simulation, "problem", &problem);
+    if (!is_whole(result))
+        return wb_fail_to(why, WB_ERR_DATA, "it did not come to its end%s%s",
+                          problem[0] ? ": " : "", problem);
+    *stale = false;
+    return WB_OK;
 }
 
 static enum wb_status read(struct wb_simulation_result *result, const struct wb_simulation *wanted,
@@ -127,7 +171,7 @@ static enum wb_status read(struct wb_simulation_result *result, const struct wb_
     (void)wb_json_get_text(wb_json_get(result->dataset.document, "tool"), "revision", &revision);
     snprintf(result->revision, sizeof result->revision, "%s", revision);
     result->cpu_s = wb_simulation_number(wb_simulation_of(result), "cpu_s");
-    WB_TRY(reader->check(reader->context, stale, why));
+    WB_TRY(check(result, wanted, stale, why));
     WB_TRY(wb_file_join(rows, wanted->path, "force_deflection.csv"));
     WB_TRY(wb_hash_file(rows, result->sha256));
     return reader->take ? reader->take(reader->context, why) : WB_OK;
@@ -183,4 +227,26 @@ void wb_simulation_print_missing(FILE *out, wb_simulation_list *list, const void
             fprintf(out, "  %s: %s; to make it:\n    %s\n", entry.wanted->name,
                     wb_text_string(&entry.result->problem), wb_text_string(&entry.wanted->command));
     }
+}
+
+enum wb_status wb_simulation_print_json(FILE *out, wb_simulation_list *list, const void *results)
+{
+    struct wb_simulation_entry entry;
+    struct wb_json *const root = wb_json_create();
+    struct wb_json *const datasets = wb_json_set_array(root, "datasets");
+    char *text;
+    for (int i = 0; list(results, i, &entry); i++) {
+        if (!entry.wanted->wanted)
+            continue;
+        struct wb_json *const object = wb_json_append_object(datasets);
+        wb_simulation_describe(object, entry.wanted, entry.result);
+        if (entry.wanted->inputs)
+            wb_json_set_copy(object, "inputs", entry.wanted->inputs);
+    }
+    const enum wb_status status = wb_json_format(root, &text);
+    wb_json_destroy(root);
+    WB_TRY(status);
+    fputs(text, out);
+    free(text);
+    return WB_OK;
 }

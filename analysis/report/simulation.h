@@ -27,6 +27,8 @@ struct wb_simulation {
     char log[128];      /* a name for a log and a checkpoint, of this dataset alone */
     struct wb_solve_settings settings; /* with which it is computed; the model's path is owned */
     struct wb_text command; /* that computes it, for readers: without paths of this machine */
+    struct wb_json *inputs; /* that it must have been computed of; owned */
+    char inputs_sha256[WB_SHA256_TEXT];
 };
 
 /* Path and name of a dataset. A name lies among the campaign's simulations, by default the shipped
@@ -36,10 +38,11 @@ WB_MUST_CHECK enum wb_status wb_simulation_find(struct wb_simulation *simulation
                                                 const char *given);
 
 /* Then the settings with which it is computed, and its command, which shows the model, where there
- * is one, as `shown`. A wire's name is borrowed. */
+ * is one, as `shown`. A wire's name is borrowed. The inputs are the dataset's
+ * (analysis/dataset/simulated.h); the simulation owns them from here on, also on failure. */
 WB_MUST_CHECK enum wb_status wb_simulation_set(struct wb_simulation *simulation,
                                                const struct wb_solve_settings *settings,
-                                               const char *shown);
+                                               const char *shown, struct wb_json *inputs);
 
 void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroed one */
 
@@ -48,8 +51,7 @@ void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroe
 enum wb_simulation_state {
     WB_SIMULATION_NOT_WANTED,
     WB_SIMULATION_MISSING, /* there is no such dataset */
-    WB_SIMULATION_STALE,   /* of a model or of settings that have changed, or cut short: to be made
-                              again */
+    WB_SIMULATION_STALE,   /* of other inputs, or cut short: to be made again */
     WB_SIMULATION_REFUSED, /* it is something else, damaged, ... */
     WB_SIMULATION_USABLE
 };
@@ -65,10 +67,7 @@ struct wb_simulation_result {
 
 /* How a kind of report looks at a dataset that was read. */
 struct wb_simulation_reader {
-    /* Whether it is of the model and the settings that are wanted, and whole. Sets *stale when a
-     * failure is one that making the dataset again mends. */
-    enum wb_status (*check)(void *context, bool *stale, struct wb_reason *why);
-    /* Reads the rest; NULL: there is none. */
+    /* Takes what it needs of a dataset that fits and is whole; NULL: nothing. */
     enum wb_status (*take)(void *context, struct wb_reason *why);
     void *context;
 };
@@ -78,24 +77,27 @@ void wb_simulation_load(struct wb_simulation_result *result, const struct wb_sim
                         const struct wb_simulation_reader *reader);
 void wb_simulation_result_release(struct wb_simulation_result *result);
 
+/* Sets its name, state, command, and what is wrong with it. */
+void wb_simulation_describe(struct wb_json *object, const struct wb_simulation *wanted,
+                            const struct wb_simulation_result *result);
+
 /* Whether it is to be made (again). */
 bool wb_simulation_is_missing(const struct wb_simulation_result *result);
 
 /* A number of a dataset's description; NaN where there is none. */
 double wb_simulation_number(const struct wb_json *object, const char *key);
 
-/* The dataset's `simulation`, and whether its `model` says that this solver made it. */
+/* The dataset's `simulation`. */
 const struct wb_json *wb_simulation_of(const struct wb_simulation_result *result);
-bool wb_simulation_is_solved_by(const struct wb_simulation_result *result, const char *solver);
 
 /* --- all of a report --- */
 
 struct wb_simulation_entry {
     const struct wb_simulation *wanted;
     const struct wb_simulation_result *result;
-    double cost;           /* of making it, beside the others; 0: not known */
-    const char *resumable; /* SHA-256 of its model: the run takes --threads, and --checkpoint FILE
-                              to continue where it was stopped; NULL: it does not */
+    double cost;       /* of making it, beside the others; 0: not known */
+    bool is_resumable; /* the run takes --threads, and --checkpoint FILE to continue where it
+                          was stopped */
 };
 
 /* How a kind of report lists its datasets: the one at an index; false after the last. */
@@ -107,5 +109,9 @@ void wb_simulation_count(wb_simulation_list *list, const void *results, int *n_w
 
 /* Prints which cannot be used, why, and how to make them. */
 void wb_simulation_print_missing(FILE *out, wb_simulation_list *list, const void *results);
+
+/* Prints all that are wanted with their state and the inputs that they must have, as a document. */
+WB_MUST_CHECK enum wb_status wb_simulation_print_json(FILE *out, wb_simulation_list *list,
+                                                      const void *results);
 
 #endif

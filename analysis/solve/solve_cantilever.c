@@ -94,12 +94,23 @@ static enum wb_status fill(const void *context, struct wb_dataset *dataset)
         .rest_level = (double)NAN,
         .is_simulation = true,
     };
+    const struct wb_simulated_cantilever cantilever = {
+        .law = &run->law,
+        .outer_diameter = run->wire.outer_diameter,
+        .length = o->length,
+        .deflection = o->deflection,
+        .strand_length = o->strand,
+        .mass_per_length = o->weight ? wb_wire_mass_per_length(&run->wire) : 0.0,
+        .points = o->points,
+        .cycles = o->cycles,
+    };
     const struct wb_simulated_origin origin = {
         .model = wb_solve_settings_kind(o),
         .source = run->wire.source,
         .law = &run->law,
         .wall = run->solve.spent.wall,
         .cpu = run->solve.spent.cpu,
+        .cantilever = &cantilever,
     };
 
     snprintf(info.wire, sizeof info.wire, "%s", run->wire.name);

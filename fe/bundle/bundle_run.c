@@ -9,9 +9,11 @@
 #include "base/checkpoint.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/json.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "fe/bundle/bundle_parts.h"
+#include "fe/model/model_inputs.h"
 #include "fe/swept/swept_hex.h"
 #include "fe/team/team.h"
 
@@ -153,8 +155,11 @@ static void identify(const struct run *r, char text[MOST_IDENTITY])
     const struct wb_bundle_model *m = r->model;
     const char *mesh = r->options.mesh ? r->options.mesh : m->run.mesh;
     char hash[WB_SHA256_TEXT];
+    struct wb_json *const inputs = wb_json_create();
 
-    wb_bundle_model_identify(m, hash);
+    wb_model_inputs_bundle(inputs, m, wb_bundle_model_mesh(m, mesh));
+    wb_model_inputs_sum(inputs, hash);
+    wb_json_destroy(inputs);
     snprintf(text, MOST_IDENTITY,
              "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
              "%s precision, %s, wirebench %s, program %.12s",

@@ -37,6 +37,11 @@
 #include "fe/linear/trial.h"
 #include "fe/model/bundle_model.h"
 
+/* Counted up whenever the same model comes to other numbers: datasets of before are outdated. */
+enum {
+    WB_BUNDLE_RUN_VERSION = 1
+};
+
 enum {
     WB_BUNDLE_RUN_ATTEMPTS = 5
 };

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "base/config.h"
-#include "base/text.h"
 #include "base/units.h"
 #include "fe/model/model_file.h"
 
@@ -34,7 +33,6 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
                               .argument = "NAME",
                               .help = "Mesh: engineering, paper, or one of the file"},
     [WB_BUNDLE_MODEL_DURATION] = {.name = "duration_s",
-                                  .title = "duration",
                                   .unit = "s",
                                   .type = WB_SETTING_NUMBER,
                                   .offset = offsetof(struct wb_bundle_run, duration),
@@ -46,7 +44,6 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
                                   .help = "Duration of a loading; where the file has none, it is "
                                           "chosen so that kinetic energy stays small"},
     [WB_BUNDLE_MODEL_MASS_SCALING] = {.name = "mass_scaling",
-                                      .title = "mass scaling",
                                       .type = WB_SETTING_NUMBER,
                                       .offset = offsetof(struct wb_bundle_run, mass_scaling),
                                       .least = 1.0,
@@ -56,7 +53,6 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
                                       .argument = "F",
                                       .help = "Factor on all masses"},
     [WB_BUNDLE_MODEL_SELECTIVE] = {.name = "selective_mass_scaling",
-                                   .title = "selective mass scaling",
                                    .type = WB_SETTING_NUMBER,
                                    .offset = offsetof(struct wb_bundle_run, selective),
                                    .least = 1.0,
@@ -66,7 +62,6 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
                                    .argument = "B",
                                    .help = "Selective mass scaling of sections"},
     [WB_BUNDLE_MODEL_DEFLECTION] = {.name = "deflection_mm",
-                                    .title = "deflection",
                                     .unit = "mm",
                                     .type = WB_SETTING_NUMBER,
                                     .offset = offsetof(struct wb_bundle_run, deflection),
@@ -92,7 +87,6 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
                                 .least = 0,
                                 .largest = 1000},
     [WB_BUNDLE_MODEL_KINETIC_LIMIT] = {.name = "kinetic_energy_limit",
-                                       .title = "limit of kinetic energy",
                                        .type = WB_SETTING_NUMBER,
                                        .offset = offsetof(struct wb_bundle_run, kinetic_limit),
                                        .least = 1e-6,
@@ -109,21 +103,18 @@ static const struct wb_setting_table run_table = {.rows = wb_bundle_model_run_se
 
 static const struct wb_setting friction_rows[] = {
     {.name = "static",
-     .title = "static friction",
      .type = WB_SETTING_NUMBER,
      .offset = offsetof(struct wb_bundle_interface, friction_static),
      .least = 0.0,
      .largest = 10.0,
      .required = true},
     {.name = "kinetic",
-     .title = "kinetic friction",
      .type = WB_SETTING_NUMBER,
      .offset = offsetof(struct wb_bundle_interface, friction_kinetic),
      .least = 0.0,
      .largest = 10.0,
      .required = true},
     {.name = "decay_s_mm",
-     .title = "decay of friction",
      .unit = "s/mm",
      .type = WB_SETTING_NUMBER,
      .offset = offsetof(struct wb_bundle_interface, friction_decay),
@@ -166,7 +157,6 @@ const struct wb_setting wb_bundle_model_friction_setting[1] = {
 
 const struct wb_setting wb_bundle_model_cohesion_setting[1] = {
     {.name = "cohesive_stiffness_N_mm3",
-     .title = "cohesive stiffness",
      .unit = "N/mm3",
      .type = WB_SETTING_NUMBER,
      .offset = offsetof(struct wb_bundle_interface, normal_stiffness),
@@ -184,7 +174,6 @@ static const struct wb_setting_table cohesion_table = {.rows = wb_bundle_model_c
 
 static const struct wb_setting loads_rows[] = {
     {.name = "strand_mm",
-     .title = "strand's length",
      .unit = "mm",
      .type = WB_SETTING_NUMBER,
      .offset = offsetof(struct wb_bundle_loads, strand_length),
@@ -199,23 +188,6 @@ static const struct wb_setting loads_rows[] = {
 };
 
 static const struct wb_setting_table loads_table = {.rows = loads_rows, .n = WB_COUNT(loads_rows)};
-
-void wb_bundle_model_identify(const struct wb_bundle_model *model, char sha256[WB_SHA256_TEXT])
-{
-    const struct wb_bundle_interface *const i = &model->interface;
-    struct wb_text text = {0};
-    wb_text_append(&text, "%s;%d;%d;%.17g;", model->sha256, model->has_tape, (int)model->tip,
-                   model->length);
-    wb_setting_identify(&run_table, &model->run, &text);
-    wb_setting_identify(&loads_table, &model->loads, &text);
-    wb_setting_identify(&friction_table, i, &text);
-    wb_setting_identify(&cohesion_table, i, &text);
-    wb_text_append(&text, "%.17g;%d;%.17g;%.17g;%.17g;", i->shear_stiffness, i->has_damage,
-                   i->damage.strength, i->damage.shear_strength, i->damage.fracture_energy);
-    /* Without memory for all of it the sum is that of a part, and of no other run. */
-    wb_hash_bytes(wb_text_string(&text), text.length, sha256);
-    wb_text_release(&text);
-}
 
 static const struct wb_bundle_mesh own_meshes[2] = {
     {.name = "engineering",
@@ -345,10 +317,6 @@ struct section_nodes {
 };
 
 /* --- names and files --- */
-
-/* A part of the checksum, to be counted up whenever files that stay as they are come to mean
- * something else: by defaults, or by what is computed of them. */
-static const char meaning[] = "# wirebench bundle files, 2\n";
 
 static enum wb_status find_wire(struct reader *reader, const struct wb_config_node *map,
                                 const char *key, const char *name, struct wb_wire *wire)
@@ -978,8 +946,7 @@ static enum wb_status read_all(struct reader *reader, const char *path)
     set_defaults(m);
     WB_TRY(wb_file_join(m->path, "", path));
     WB_TRY(wb_model_file_open(&reader->file, path));
-    WB_TRY(read_root(reader));
-    return wb_model_file_sum(&reader->file, meaning, m->sha256);
+    return read_root(reader);
 }
 
 enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *path)

@@ -23,7 +23,6 @@
 #include <stdbool.h>
 
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/setting.h"
 #include "base/status.h"
 #include "fe/material/material_file.h"
@@ -134,8 +133,7 @@ enum wb_bundle_length_source {
 
 struct wb_bundle_model {
     char name[64], title[200], notes[2000];
-    char path[WB_PATH];          /* of the file */
-    char sha256[WB_SHA256_TEXT]; /* of its text with those of the files it names */
+    char path[WB_PATH]; /* of the file */
 
     int n_types;
     struct wb_wire type[WB_BUNDLE_MODEL_TYPES]; /* different ones, as they come; all with properties
@@ -182,10 +180,6 @@ enum {
 extern const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTINGS];
 extern const struct wb_setting wb_bundle_model_friction_setting[1];
 extern const struct wb_setting wb_bundle_model_cohesion_setting[1];
-
-/* SHA-256 of all that decides the numbers which are computed of a model: its files, and its
- * settings as they are now. */
-void wb_bundle_model_identify(const struct wb_bundle_model *model, char sha256[WB_SHA256_TEXT]);
 
 /* Reads a bundle with its wires and its tape. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *path);

@@ -13,7 +13,6 @@ static const char *const outlines[] = {"file", "hull", "circle", NULL};
 
 static const struct wb_setting bond_row[1] = {
     {.name = "bond_reach_mm",
-     .title = "reach of bonds",
      .unit = "mm",
      .type = WB_SETTING_NUMBER,
      .scale = WB_MM,
@@ -24,7 +23,6 @@ static const struct wb_setting_table bond_table = {bond_row, 1, 0, NULL};
 
 static const struct wb_setting piece_rows[] = {
     {.name = "length_mm",
-     .title = "length",
      .unit = "mm",
      .type = WB_SETTING_NUMBER,
      .offset = offsetof(struct wb_bundle_override, length),
@@ -57,7 +55,6 @@ static const struct wb_setting piece_rows[] = {
      .argument = "OUTLINE",
      .help = "How the tape lies: taut on the wires, or on a circle round them"},
     {.name = "bond_reach_mm",
-     .title = "reach of bonds",
      .type = WB_SETTING_LIST,
      .offset = offsetof(struct wb_bundle_override, bond.reach),
      .option = "bond-reach-mm",

@@ -1,14 +1,12 @@
-/* What the readers of models share: the model's file, the files of wires and materials that it
- * names, and the checksum over the texts of them all.
+/* What the readers of models share: the model's file, and the files of wires and materials that it
+ * names.
  */
 #ifndef WB_FE_MODEL_MODEL_FILE_H
 #define WB_FE_MODEL_MODEL_FILE_H
 
 #include "base/config.h"
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/status.h"
-#include "base/text.h"
 #include "fe/model/wire.h"
 
 struct wb_model_file {
@@ -16,23 +14,17 @@ struct wb_model_file {
     const struct wb_config_node *root;
     const char *path;     /* borrowed */
     char folder[WB_PATH]; /* of `path`: files are looked for there, too */
-    struct wb_text texts; /* of all files so far, without `origin`, `intervals`, `uncertainty` */
 };
 
 /* Reads the model's file; wb_model_file_close() releases also one that could not be opened. */
 WB_MUST_CHECK enum wb_status wb_model_file_open(struct wb_model_file *file, const char *path);
 void wb_model_file_close(struct wb_model_file *file);
 
-/* SHA-256 of the texts so far, with `meaning` behind them. */
-WB_MUST_CHECK enum wb_status wb_model_file_sum(struct wb_model_file *file, const char *meaning,
-                                               char sha256[WB_SHA256_TEXT]);
-
 /* Refuses a `name` that could not go into file names and into tables without quotes. */
 WB_MUST_CHECK enum wb_status wb_model_file_check_name(const struct wb_config_node *map,
                                                       const char *name);
 
-/* The file of a kind ("wires", "materials") that the value `name` of `key` in `map` names. Its text
- * goes into the checksum. */
+/* The file of a kind ("wires", "materials") that the value `name` of `key` in `map` names. */
 WB_MUST_CHECK enum wb_status wb_model_file_find(struct wb_model_file *file,
                                                 const struct wb_config_node *map, const char *key,
                                                 const char *kind, const char *name,

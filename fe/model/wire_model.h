@@ -52,7 +52,6 @@
 #include <stdbool.h>
 
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/status.h"
 #include "fe/linear/trial.h"
 #include "fe/material/material.h"
@@ -98,8 +97,7 @@ enum wb_wire_clamp {
 
 struct wb_wire_model {
     char name[64], title[200], notes[2000];
-    char path[WB_PATH];          /* of the file */
-    char sha256[WB_SHA256_TEXT]; /* of its text with those of the wire and the materials */
+    char path[WB_PATH]; /* of the file */
     struct wb_wire wire;
     double length;       /* m */
     bool is_elastic;     /* law: elastic */

@@ -17,6 +17,11 @@
 #include "fe/section/section_homogenise.h"
 #include "fe/section/section_solver.h"
 
+/* Counted up whenever the same model comes to other numbers: datasets of before are outdated. */
+enum {
+    WB_SECTION_RUN_VERSION = 1
+};
+
 struct wb_section_run_row {
     int cycle; /* from 1 */
     enum wb_phase phase;

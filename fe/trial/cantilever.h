@@ -23,6 +23,11 @@
 #include "fe/material/material.h"
 #include "fe/rod/section.h"
 
+/* Counted up whenever the same model comes to other numbers: datasets of before are outdated. */
+enum {
+    WB_CANTILEVER_VERSION = 1
+};
+
 /* What the control value of wb_cantilever_move() means. */
 enum wb_cantilever_control {
     WB_CONTROL_DEFLECTION,     /* y of the tip, m */

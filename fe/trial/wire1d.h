@@ -11,6 +11,11 @@
 #include "fe/model/wire_model.h"
 #include "fe/trial/wire_run.h"
 
+/* Counted up whenever the same model comes to other numbers: datasets of before are outdated. */
+enum {
+    WB_WIRE1D_VERSION = 1
+};
+
 struct wb_wire1d; /* opaque */
 
 struct wb_wire1d_settings {

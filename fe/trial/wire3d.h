@@ -11,6 +11,11 @@
 #include "fe/solid/solid_mesh.h"
 #include "fe/trial/wire_run.h"
 
+/* Counted up whenever the same model comes to other numbers: datasets of before are outdated. */
+enum {
+    WB_WIRE3D_VERSION = 1
+};
+
 struct wb_wire3d; /* opaque */
 
 /* Stresses at the nodes of the present state. At an interface each part has its own values: they

@@ -191,6 +191,39 @@ static void what_is_no_number_is_to_be_equal(void **state)
     assert_differs("{\"a\": {\"t\": 1}}", "{\"a\": {\"t\": 2}}", "t", "a.t");
 }
 
+static void the_first_difference_is_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *stored, *wanted, *problem;
+    } cases[] = {
+        {"{\"a\": 1, \"b\": [1, 2]}", "{\"b\": [1.0, 2], \"a\": 1.0000000001}", NULL},
+        {"{\"a\": 1}", "{\"a\": 1.00001}", "a is 1 in it, and 1.00001 is wanted"},
+        {"{\"a\": \"x\"}", "{\"a\": \"y\"}", "a is 'x' in it, and 'y' is wanted"},
+        {"{\"a\": \"1\"}", "{\"a\": 1}", "a is '1' in it, and 1 is wanted"},
+        {"{\"a\": true}", "{\"a\": false}", "a is true in it, and false is wanted"},
+        {"{\"a\": null}", "{\"a\": null}", NULL},
+        {"{\"a\": null}", "{\"a\": 0}", "a is nothing in it, and 0 is wanted"},
+        {"{\"c\": {\"d\": [{\"e\": 1}, {\"e\": 2}]}}", "{\"c\": {\"d\": [{\"e\": 1}, {\"e\": 3}]}}",
+         "c, d 2, e is 2 in it, and 3 is wanted"},
+        {"{\"a\": [1]}", "{\"a\": [1, 2]}", "a is a list of 1 in it, and a list of 2 is wanted"},
+        {"{\"a\": 1}", "{}", "a is 1 in it, and nothing is wanted"},
+        {"{}", "{\"a\": {}}", "a is nothing in it, and something is wanted"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct wb_json *stored, *wanted;
+        char problem[WB_JSON_PROBLEM];
+        assert_int_equal(wb_json_parse(&stored, cases[i].stored, "stored"), WB_OK);
+        assert_int_equal(wb_json_parse(&wanted, cases[i].wanted, "wanted"), WB_OK);
+        const bool same = wb_json_is_same(stored, wanted, problem);
+        assert_true(same == !cases[i].problem);
+        if (!same)
+            assert_string_equal(problem, cases[i].problem);
+        wb_json_destroy(stored);
+        wb_json_destroy(wanted);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -203,6 +236,7 @@ int main(void)
         cmocka_unit_test(bad_json_is_refused),
         cmocka_unit_test(documents_are_compared_number_by_number),
         cmocka_unit_test(what_is_no_number_is_to_be_equal),
+        cmocka_unit_test(the_first_difference_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

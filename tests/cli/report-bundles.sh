@@ -80,10 +80,28 @@ run 0 c.yaml -o json --json
 cmp -s out again/report.json || fail '--json does not print report.json'
 grep -qiE "experiment|$folder" r/report.html r/report.json && fail 'a word or path that must not be there'
 
-# Another friction: the dataset is outdated, left out, and replaced.
+# What is outdated is listed with why and how to make it, and nothing is written.
+run 0 c.yaml --stale
+grep -q '^0 of 3 datasets' out || fail "datasets that fit are listed: $(cat out)"
+cp sim/one-1d/dataset.json kept.json
+sed -i 's/"version": 1,/"version": 0,/' sim/one-1d/dataset.json
+run 3 c.yaml --stale
+grep -q '^1 of 3 datasets' out || fail 'an older solver is not listed'
+grep -q 'sim/one-1d: version is 0 in it, and 1 is wanted' out || fail 'the older solver is not told'
+[ -s err ] && fail "what is listed is warned of, too: $(cat err)"
+run 3 c.yaml --stale --json
+grep -q '"problem": "version is 0 in it, and 1 is wanted"' out || fail 'the list is no JSON'
+cp kept.json sim/one-1d/dataset.json
+run 2 c.yaml --stale --solve
+run 2 c.yaml
+grep -q -e '--stale' err || fail 'without a folder nobody is told of --stale'
+
+# A comment changes nothing. Another friction: the dataset is outdated, left out, and replaced.
+echo '# a comment' >>one.yaml
+run 0 c.yaml -o r --force
 sed -i 's/friction: 0.2/friction: 0.3/' c.yaml
 run 3 c.yaml -o r --force
-grep -q 'the static friction is 0.2 in it, and 0.3 is wanted' out || fail 'outdated datasets are not told'
+grep -q 'interface, friction, static is 0.2 in it, and 0.3 is wanted' out || fail 'outdated datasets are not told'
 first=$(sha256sum sim/one/dataset.json)
 run 0 c.yaml -o r --force --solve
 grep -q '"static": 0.3' sim/one-0.2/dataset.json || fail 'the outdated dataset was not replaced'

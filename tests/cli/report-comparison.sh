@@ -34,7 +34,11 @@ for model in follower-8awg-elastic follower-8awg; do
     "$wirebench" solve wire1d $model -o "$folder/sim/$model-1d" >/dev/null 2>&1 ||
         fail "cannot solve $model"
     cp -r "$folder/sim/$model-1d" "$folder/sim/$model-3d"
-    sed -i 's/"model": "wire1d"/"model": "wire3d"/' "$folder/sim/$model-3d/dataset.json"
+    file=$WIREBENCH_SOURCE_ROOT/fixtures/models/$model.yaml
+    along=$(sed -n 's/^  elements_along: //p' "$file") density=$(sed -n 's/^  section_density: //p' "$file")
+    mesh="{\"elements_along\": ${along:-60}, \"section_density\": ${density:-1}, \"integration\": \"selective\"}"
+    sed -i 's/": "wire1d"/": "wire3d"/; s/^ *"fields_at_mm"/"mesh": '"$mesh"', &/' \
+        "$folder/sim/$model-3d/dataset.json"
 done
 run 0 "$folder/c.yaml" -o "$folder/r" --force
 grep -q '4 of 4 datasets used' "$folder/out" || fail 'not all datasets are used'
@@ -51,11 +55,12 @@ grep -qiE "experiment|$folder" "$folder/r/report.html" "$folder/r/report.json" &
 run 4 "$folder/strict.yaml" -o "$folder/strict"
 grep -q 'limit of the campaign is exceeded' "$folder/out" || fail 'the exceeded limit is not told'
 
-# A dataset of a model that has changed since is left out.
-sed -i 's/"sha256": "./"sha256": "x/' "$folder/sim/follower-8awg-3d/dataset.json"
+# A dataset of other inputs, and one of an older solver, are left out.
+sed -i 's/"poissons_ratio": 0.34/"poissons_ratio": 0.3/' "$folder/sim/follower-8awg-3d/dataset.json"
 run 3 "$folder/c.yaml" -o "$folder/r" --force
-grep -q 'have changed since' "$folder/out" || fail 'the changed model is not told'
-grep -q 'have changed since' "$folder/r/report.html" || fail 'the report hides the changed model'
+told='parts 1, poissons_ratio is 0.3 in it, and 0.34 is wanted'
+grep -q "$told" "$folder/out" || fail 'the other input is not told'
+grep -q "$told" "$folder/r/report.html" || fail 'the report hides the other input'
 grep -q 'no fitted rod' "$folder/out" || fail 'the missing fit is not told'
 
 # --solve makes what is missing: solids and rods of a coarse wire under a small force.
@@ -91,8 +96,10 @@ run 0 "$folder/own.yaml" -o "$folder/remade" --solve
     fail 'datasets that are there were made again'
 diff -r "$folder/made" "$folder/remade" >/dev/null || fail 'the same datasets gave other bytes'
 
-# A changed model: its datasets are outdated, and replaced; the others stay.
+# A changed model: its datasets are outdated, and replaced; the others stay. A comment changes nothing.
 echo '# changed' >>"$folder/follower-8awg-elastic.yaml"
+run 0 "$folder/own.yaml" -o "$folder/made" --force
+sed -i 's/rows: 12/rows: 13/' "$folder/follower-8awg-elastic.yaml"
 run 3 "$folder/own.yaml" -o "$folder/made" --force
 grep -q '2 of 4 datasets used' "$folder/out" || fail 'datasets of a changed model are used'
 run 0 "$folder/own.yaml" -o "$folder/made" --force --solve

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/dataset/simulated.h"
 #include "analysis/report/campaign.h"
 #include "base/config.h"
 
@@ -37,7 +38,20 @@ static enum wb_status set_rod(const struct wb_bundles_run *run, struct wb_simula
     settings.deflection = model->run.deflection;
     settings.strand = model->loads.strand_length;
     settings.weight = model->loads.weight;
-    return wb_simulation_set(rod, &settings, NULL);
+    const struct wb_wire *const beam = wb_bundles_published(run);
+    const struct wb_simulated_cantilever cantilever = {
+        .law = &beam->law,
+        .outer_diameter = beam->outer_diameter,
+        .length = settings.length,
+        .deflection = settings.deflection,
+        .strand_length = settings.strand,
+        .mass_per_length = settings.weight ? wb_wire_mass_per_length(beam) : 0.0,
+        .points = settings.points,
+        .cycles = settings.cycles,
+    };
+    struct wb_json *const inputs = wb_json_create();
+    wb_simulated_cantilever_inputs(inputs, &cantilever);
+    return wb_simulation_set(rod, &settings, NULL, inputs);
 }
 
 /* --- groups --- */
@@ -70,7 +84,7 @@ static enum wb_status read_bundle(struct wb_bundles *all, const struct wb_config
     const struct wb_bundles_run *const run = &all->runs[bundle->dynamic];
     if (constant[0]) {
         WB_TRY(find_run(all, node, "constant", constant, &bundle->constant));
-        if (strcmp(all->runs[bundle->constant].model->sha256, run->model->sha256) != 0)
+        if (strcmp(all->runs[bundle->constant].model->path, run->model->path) != 0)
             return wb_config_refuse(node, "constant", "'%s' is of another bundle than '%s'",
                                     constant, dynamic);
     }

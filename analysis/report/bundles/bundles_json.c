@@ -13,14 +13,9 @@ static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
 static void put_state(struct wb_json *entry, const struct wb_simulation *wanted,
                       const struct wb_bundles_result *result)
 {
-    static const char *const states[] = {"not wanted", "missing", "outdated", "refused", "used"};
-    wb_json_set_text(entry, "dataset", wanted->name);
-    wb_json_set_text(entry, "state", states[result->simulation.state]);
-    wb_json_set_text(entry, "command", wb_text_string(&wanted->command));
-    if (result->simulation.state != WB_SIMULATION_USABLE) {
-        wb_json_set_text(entry, "problem", wb_text_string(&result->simulation.problem));
+    wb_simulation_describe(entry, wanted, &result->simulation);
+    if (result->simulation.state != WB_SIMULATION_USABLE)
         return;
-    }
     wb_json_set_text(entry, "sha256", result->simulation.sha256);
     wb_json_set_text(entry, "tool_revision", result->simulation.revision);
     wb_json_set_number(entry, "cpu_s", result->simulation.cpu_s);
@@ -94,7 +89,7 @@ static void put_run(struct wb_json *list, const struct wb_bundles_results *resul
     struct wb_json *const entry = wb_json_append_object(list);
     wb_json_set_text(entry, "name", wanted->name);
     wb_json_set_text(entry, "bundle", wanted->model_name);
-    wb_json_set_text(entry, "bundle_sha256", m->sha256);
+    wb_json_set_text(entry, "inputs_sha256", wanted->dataset.inputs_sha256);
     wb_json_set_text(entry, "mesh", wanted->mesh->name);
     wb_setting_set_json(wb_bundle_model_friction_setting, &m->interface, entry);
     wb_setting_set_json(wb_bundle_model_cohesion_setting, &m->interface, entry);

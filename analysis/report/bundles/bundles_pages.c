@@ -458,7 +458,7 @@ static void put_models(struct wb_document *document, const struct wb_bundles *ca
     static const struct wb_document_column columns[] = {
         {"Bundle"},
         {.heading = "Mesh"},
-        {.heading = "SHA-256 with its wires and materials", .monospace = true},
+        {.heading = "SHA-256 of all inputs", .monospace = true},
     };
     wb_document_heading(document, 2, "models", "Bundles");
     struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
@@ -467,7 +467,7 @@ static void put_models(struct wb_document *document, const struct wb_bundles *ca
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, run->model_name);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, run->mesh->name);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, run->model->sha256);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, run->dataset.inputs_sha256);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/dataset/simulated_bundle.h"
 #include "analysis/report/bundles/bundles.h"
 #include "base/config.h"
 #include "base/units.h"
@@ -141,7 +142,9 @@ static enum wb_status read_run(const struct wb_bundles *all, const struct wb_con
     wb_setting_fill(&wb_solve_settings_table, &solve);
     solve.model = path;
     solve.override = s->override;
-    return wb_simulation_set(&run->dataset, &solve, run->model_name);
+    struct wb_json *const inputs = wb_json_create();
+    wb_simulated_bundle_inputs(inputs, run->model, run->mesh);
+    return wb_simulation_set(&run->dataset, &solve, run->model_name, inputs);
 }
 
 enum wb_status wb_bundles_run_read(struct wb_bundles *all, const struct wb_config_node *list,

@@ -267,7 +267,7 @@ bool wb_bundles_results_list(const void *context, int index, struct wb_simulatio
     *entry = (struct wb_simulation_entry){.wanted = &run->dataset,
                                           .result = &results->runs[index].simulation,
                                           .cost = wb_bundles_run_cost(run),
-                                          .resumable = run->model->sha256};
+                                          .is_resumable = true};
     return true;
 }
 
@@ -282,7 +282,7 @@ enum wb_status wb_bundles_results_load(void *context, const void *of)
         wb_bundles_run_load(&results->runs[i], &campaign->runs[i]);
     for (int i = 0; i < campaign->n_bundles; i++) {
         const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
-        wb_bundles_run_load_rod(&results->rods[i], bundle, &campaign->runs[bundle->dynamic]);
+        wb_bundles_run_load_rod(&results->rods[i], bundle);
     }
     return WB_OK;
 }

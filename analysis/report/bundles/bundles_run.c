@@ -48,119 +48,6 @@ static void clear_numbers(struct wb_bundles_numbers *n)
                                      none, none, none, none, none, none};
 }
 
-/* --- does it fit the campaign? --- */
-
-struct setting {
-    const char *what;
-    double stored, wanted;
-};
-
-static bool is_same(double a, double b)
-{
-    return fabs(a - b) <= 1e-9 * fmax(fabs(a), fabs(b));
-}
-
-static enum wb_status check_settings(const struct setting *settings, size_t n,
-                                     struct wb_reason *why)
-{
-    for (size_t i = 0; i < n; i++) {
-        if (!is_same(settings[i].stored, settings[i].wanted))
-            return wb_fail_to(why, WB_ERR_DATA, "%s is %.6g in it, and %.6g is wanted",
-                              settings[i].what, settings[i].stored, settings[i].wanted);
-    }
-    return WB_OK;
-}
-
-/* The same of a setting that dataset.json names as the bundle's file does. */
-static enum wb_status check_row(const struct wb_setting *row, const void *settings,
-                                const struct wb_json *simulation, struct wb_reason *why)
-{
-    char problem[WB_SETTING_PROBLEM];
-    if (wb_setting_is_same(row, settings, simulation, problem))
-        return WB_OK;
-    return wb_fail_to(why, WB_ERR_DATA, "%s", problem);
-}
-
-static double largest_deflection(const struct wb_dataset *dataset)
-{
-    double largest = 0.0;
-    for (size_t i = 0; i < dataset->n_rows; i++)
-        largest = fmax(largest, dataset->rows[i].deflection);
-    return largest;
-}
-
-/* Whether the dataset is of this bundle as it is now, with the run's settings, and whole. */
-static enum wb_status check_run(const struct wb_bundles_result *result,
-                                const struct wb_bundles_run *run, struct wb_reason *why)
-{
-    const struct wb_setting *const rows = wb_bundle_model_run_settings;
-    const struct wb_bundle_model *const m = run->model;
-    const struct wb_bundle_interface *const interface = &m->interface;
-    const struct wb_test_info *const info = &result->simulation.dataset.info;
-    const struct wb_json *const simulation = wb_simulation_of(&result->simulation);
-    const struct wb_json *const cohesion = wb_json_get(simulation, "cohesion");
-    const char *sha256 = "", *mesh = "", *problem = "";
-    (void)wb_json_get_text(simulation, "sha256", &sha256);
-    (void)wb_json_get_text(wb_json_get(simulation, "mesh"), "name", &mesh);
-    (void)wb_json_get_text(simulation, "problem", &problem);
-    if (strcmp(sha256, m->sha256) != 0)
-        return wb_fail_to(why, WB_ERR_DATA,
-                          "the bundle, its wires or its materials have changed since");
-    if (strcmp(mesh, m->run.mesh) != 0)
-        return wb_fail_to(why, WB_ERR_DATA, "its mesh is '%s', and '%s' is wanted", mesh,
-                          m->run.mesh);
-    const struct setting loads[] = {
-        {"the strand's length (mm)", info->strand_length / WB_MM, m->loads.strand_length / WB_MM},
-        {"gravity (m/s2)", info->gravity, m->loads.weight ? WB_STANDARD_GRAVITY : 0.0},
-    };
-    WB_TRY(check_row(wb_bundle_model_friction_setting, interface, simulation, why));
-    WB_TRY(check_settings(loads, sizeof loads / sizeof loads[0], why));
-    WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_MASS_SCALING], &m->run, simulation, why));
-    WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_SELECTIVE], &m->run, simulation, why));
-    const struct setting normal = {"the cohesive stiffness (N/mm3)",
-                                   wb_simulation_number(cohesion, "normal_stiffness_N_mm3"),
-                                   interface->normal_stiffness / WB_N_PER_MM3};
-    if (m->has_tape)
-        WB_TRY(check_settings(&normal, 1, why));
-    if (m->run.duration > 0.0)
-        WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_DURATION], &m->run, simulation, why));
-    else if (!result->kinetic_choice)
-        return wb_fail_to(why, WB_ERR_DATA,
-                          "its duration was given, and one that keeps kinetic energy "
-                          "small is wanted");
-    if (!wb_dataset_is_complete(&result->simulation.dataset))
-        return wb_fail_to(why, WB_ERR_DATA, "it did not come to its end%s%s",
-                          problem[0] ? ": " : "", problem);
-    return WB_OK;
-}
-
-static enum wb_status check_rod(const struct wb_bundles_result *result,
-                                const struct wb_bundles_run *run, struct wb_reason *why)
-{
-    const struct wb_bundle_model *const m = run->model;
-    const struct wb_wire *const beam = wb_bundles_published(run);
-    const struct wb_test_info *const info = &result->simulation.dataset.info;
-    const struct wb_json *const simulation = wb_simulation_of(&result->simulation);
-    const struct setting settings[] = {
-        {"the diameter (mm)", info->outer_diameter / WB_MM, beam->outer_diameter / WB_MM},
-        {"the length (mm)", info->length / WB_MM, m->length / WB_MM},
-        {"the largest deflection (mm)", largest_deflection(&result->simulation.dataset) / WB_MM,
-         m->run.deflection / WB_MM},
-        {"the strand's length (mm)", info->strand_length / WB_MM, m->loads.strand_length / WB_MM},
-        {"gravity (m/s2)", info->gravity, m->loads.weight ? WB_STANDARD_GRAVITY : 0.0},
-        {"Young's modulus (MPa)", wb_simulation_number(simulation, "youngs_modulus_MPa"),
-         beam->material.youngs_modulus / WB_MPA},
-        {"the yield stress (MPa)", wb_simulation_number(simulation, "yield_stress_MPa"),
-         beam->material.yield_stress / WB_MPA},
-        {"the strength coefficient (MPa)",
-         wb_simulation_number(simulation, "strength_coefficient_MPa"),
-         beam->material.strength_coefficient / WB_MPA},
-        {"the hardening exponent", wb_simulation_number(simulation, "hardening_exponent"),
-         beam->material.hardening_exponent},
-    };
-    return check_settings(settings, sizeof settings / sizeof settings[0], why);
-}
-
 /* --- energies.csv --- */
 
 static const char energies_header[] =
@@ -235,53 +122,38 @@ static enum wb_status read_energies(struct wb_bundles_result *result, const char
 /* A dataset while it is read. */
 struct loading {
     struct wb_bundles_result *result;
-    const struct wb_bundles_run *run; /* for a 1D beam, the run whose published beam it is of */
     const char *folder;
 };
-
-static enum wb_status check_bundle(void *context, bool *stale, struct wb_reason *why)
-{
-    const struct loading *const loading = context;
-    if (!wb_simulation_is_solved_by(&loading->result->simulation, "bundle"))
-        return wb_fail_to(why, WB_ERR_DATA, "it was not made by 'solve bundle'");
-    read_numbers(loading->result);
-    const enum wb_status status = check_run(loading->result, loading->run, why);
-    *stale = status != WB_OK;
-    return status;
-}
 
 static enum wb_status take_bundle(void *context, struct wb_reason *why)
 {
     const struct loading *const loading = context;
+    read_numbers(loading->result);
     WB_TRY(read_energies(loading->result, loading->folder, why));
     return wb_surface_read(&loading->result->surface, loading->folder, why);
 }
 
-static enum wb_status check_beam(void *context, bool *stale, struct wb_reason *why)
+static enum wb_status take_beam(void *context, struct wb_reason *why)
 {
     const struct loading *const loading = context;
-    if (!wb_simulation_is_solved_by(&loading->result->simulation, "cantilever"))
-        return wb_fail_to(why, WB_ERR_DATA, "it was not made by 'solve cantilever'");
+    (void)why;
     read_numbers(loading->result);
-    const enum wb_status status = check_rod(loading->result, loading->run, why);
-    *stale = status != WB_OK;
-    return status;
+    return WB_OK;
 }
 
 void wb_bundles_run_load(struct wb_bundles_result *result, const struct wb_bundles_run *run)
 {
-    struct loading loading = {result, run, run->dataset.path};
-    const struct wb_simulation_reader reader = {check_bundle, take_bundle, &loading};
+    struct loading loading = {result, run->dataset.path};
+    const struct wb_simulation_reader reader = {take_bundle, &loading};
     clear_numbers(&result->numbers);
     wb_simulation_load(&result->simulation, &run->dataset, &reader);
 }
 
 void wb_bundles_run_load_rod(struct wb_bundles_result *result,
-                             const struct wb_bundles_bundle *bundle,
-                             const struct wb_bundles_run *run)
+                             const struct wb_bundles_bundle *bundle)
 {
-    struct loading loading = {result, run, bundle->rod.path};
-    const struct wb_simulation_reader reader = {check_beam, NULL, &loading};
+    struct loading loading = {result, bundle->rod.path};
+    const struct wb_simulation_reader reader = {take_beam, &loading};
     clear_numbers(&result->numbers);
     wb_simulation_load(&result->simulation, &bundle->rod, &reader);
 }

@@ -46,10 +46,9 @@ struct wb_bundles_result {
 
 /* Reads what a run wants into a zeroed result. Nothing fails: the result says what is wrong. */
 void wb_bundles_run_load(struct wb_bundles_result *result, const struct wb_bundles_run *run);
-/* The same of the 1D dataset of a bundle, of `run`'s published beam. */
+/* The same of the 1D dataset of a bundle. */
 void wb_bundles_run_load_rod(struct wb_bundles_result *result,
-                             const struct wb_bundles_bundle *bundle,
-                             const struct wb_bundles_run *run);
+                             const struct wb_bundles_bundle *bundle);
 void wb_bundles_run_release(struct wb_bundles_result *result); /* accepts a zeroed one */
 
 /* The part of them that concerns the loading curve: averages the usable dataset's loading on the

@@ -1,4 +1,5 @@
 #include "analysis/report/predictions/predictions_kind.h"
+#include "analysis/dataset/simulated_bundle.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -294,14 +295,16 @@ static void put_models(struct wb_document *document, const struct wb_predictions
     };
     struct wb_document_table *const table =
         wb_document_table(document,
-                          "Of bundles: with their wires and materials; of tests: of "
+                          "Of bundles: of all inputs of the section model; of tests: of "
                           "<tt>force_deflection.csv</tt>.",
                           (int)WB_COUNT(columns), columns);
     for (int b = 0; b < results->campaign->n_bundles; b++) {
         const struct wb_predictions_bundle *const bundle = &results->campaign->bundles[b];
+        char sha256[WB_SHA256_TEXT];
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->model_name);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->model->sha256);
+        wb_simulated_bundle_sum(bundle->model, NULL, sha256);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, sha256);
         for (int i = 0; i < bundle->n_tests; i++) {
             if (results->bundles[b].tests[i].state != WB_SIMULATION_USABLE)
                 continue;
@@ -375,7 +378,9 @@ static struct wb_json *build_json(const void *context)
         struct wb_json *const entry = wb_json_append_object(list);
         wb_json_set_text(entry, "label", bundle->label);
         wb_json_set_text(entry, "bundle", bundle->model_name);
-        wb_json_set_text(entry, "bundle_sha256", bundle->model->sha256);
+        char sha256[WB_SHA256_TEXT];
+        wb_simulated_bundle_sum(bundle->model, NULL, sha256);
+        wb_json_set_text(entry, "inputs_sha256", sha256);
         if (of->bands)
             wb_bands_output_describe(of->bands, entry);
         else
@@ -407,7 +412,7 @@ static void print(FILE *out, const void *context)
     }
 }
 
-/* Of each bundle its file, then its tests. */
+/* Of each bundle its inputs, then its tests. */
 static bool list_inputs(const void *context, int index, struct wb_kind_input *input)
 {
     const struct wb_predictions_results *const results = context;
@@ -419,7 +424,7 @@ static bool list_inputs(const void *context, int index, struct wb_kind_input *in
     const struct wb_predictions_bundle *const bundle = &campaign->bundles[b];
     if (i < 0) {
         snprintf(input->name, sizeof input->name, "%s", bundle->model_name);
-        snprintf(input->sha256, sizeof input->sha256, "%s", bundle->model->sha256);
+        wb_simulated_bundle_sum(bundle->model, NULL, input->sha256);
     } else if (i < bundle->n_tests) {
         snprintf(input->name, sizeof input->name, "%s",
                  wb_campaign_as_shown(bundle->tests[i].given));

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/dataset/simulated.h"
 #include "analysis/report/campaign.h"
 #include "base/config.h"
 #include "base/units.h"
@@ -41,7 +42,9 @@ static enum wb_status want(const struct wb_wires *comparison, const char *given,
                                                                           : WB_SOLVE_WIRE1D};
     wb_setting_fill(&wb_solve_settings_table, &settings);
     settings.model = path;
-    return wb_simulation_set(dataset, &settings, item->model_name);
+    struct wb_json *const inputs = wb_json_create();
+    wb_simulated_wire_inputs(inputs, item->model, solver == WB_WIRES_SOLID);
+    return wb_simulation_set(dataset, &settings, item->model_name, inputs);
 }
 
 static enum wb_status read_case(const struct wb_wires *comparison,

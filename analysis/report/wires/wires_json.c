@@ -60,20 +60,13 @@ static void put_effect(struct wb_json *entry, const struct wb_wires_results *res
 static void put_run(struct wb_json *object, const struct wb_wires_results *results, int index,
                     int solver)
 {
-    /* Outdated ones are refused, too. */
-    static const char *const states[] = {"not wanted", "missing", "refused", "refused", "used"};
     const struct wb_wires_case *const item = &results->comparison->cases[index];
     const struct wb_wires_run *const run = &results->runs[index][solver];
     if (run->simulation.state == WB_SIMULATION_NOT_WANTED)
         return;
     struct wb_json *const entry =
         wb_json_set_object(object, wb_wires_command((enum wb_wires_solver)solver));
-    wb_json_set_text(entry, "dataset", item->datasets[solver].name);
-    wb_json_set_text(entry, "state", states[run->simulation.state]);
-    if (run->simulation.state != WB_SIMULATION_USABLE) {
-        wb_json_set_text(entry, "problem", wb_text_string(&run->simulation.problem));
-        wb_json_set_text(entry, "command", wb_text_string(&item->datasets[solver].command));
-    }
+    wb_simulation_describe(entry, &item->datasets[solver], &run->simulation);
     wb_json_set_number(entry, "elements", run->elements);
     wb_json_set_number(entry, "degrees_of_freedom", run->unknowns);
     wb_json_set_number(entry, "iterations", run->iterations);
@@ -164,7 +157,7 @@ static void put_cases(struct wb_json *root, const struct wb_wires_results *resul
         struct wb_json *const entry = wb_json_append_object(list);
         wb_json_set_text(entry, "label", item->label);
         wb_json_set_text(entry, "model", item->model_name);
-        wb_json_set_text(entry, "model_sha256", item->model->sha256);
+        wb_json_set_text(entry, "inputs_sha256", item->datasets[WB_WIRES_SOLID].inputs_sha256);
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)
             put_run(entry, results, i, k);
         if (item->datasets[WB_WIRES_ROD].wanted)

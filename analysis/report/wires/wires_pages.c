@@ -666,8 +666,7 @@ static void put_simulation(struct wb_document_table *table, const struct wb_wire
         wb_pages_cell(table, WB_TONE_GOOD, "converged");
     else
         wb_pages_cell(table, WB_TONE_WARNING, "%s",
-                      run->is_stale                                    ? "model changed"
-                      : run->is_cut_short                              ? "cut short"
+                      run->simulation.state == WB_SIMULATION_STALE     ? "outdated"
                       : run->simulation.state == WB_SIMULATION_MISSING ? "missing"
                                                                        : "not used");
     wb_pages_cell_number(
@@ -754,7 +753,7 @@ static void put_materials(struct wb_document *document, const struct wb_wires *c
 static void put_models(struct wb_document *document, const struct wb_wires *comparison)
 {
     static const struct wb_document_column columns[] = {
-        {"Model"}, {.heading = "SHA-256 of model, wire and materials", .monospace = true}};
+        {"Model"}, {.heading = "SHA-256 of all inputs of the solid", .monospace = true}};
     wb_document_heading(document, 2, "models", "Models");
     struct wb_document_table *const table = wb_document_table(document, NULL, 2, columns);
     for (int i = 0; i < comparison->n_cases; i++) {
@@ -763,7 +762,7 @@ static void put_models(struct wb_document *document, const struct wb_wires *comp
             continue;
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, item->model_name);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, item->model->sha256);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, item->datasets[WB_WIRES_SOLID].inputs_sha256);
     }
 }
 

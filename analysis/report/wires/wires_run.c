@@ -25,31 +25,6 @@ static void read_simulation(struct wb_wires_run *run)
     run->opening = wb_simulation_number(interface, "opening_mm") * WB_MM;
 }
 
-/* Whether the dataset is of this model as it is now, and whole. */
-static enum wb_status check_simulation(struct wb_wires_run *run, const struct wb_wires_case *item,
-                                       enum wb_wires_solver solver, struct wb_reason *why)
-{
-    const struct wb_json *const simulation = wb_simulation_of(&run->simulation);
-    const struct wb_test_info *const info = &run->simulation.dataset.info;
-    const char *sha256 = "", *made_by = "", *problem = "";
-    if (!info->is_simulation || !simulation || !wb_json_get_text(simulation, "model", &made_by) ||
-        !wb_json_get_text(simulation, "sha256", &sha256))
-        return wb_fail_to(why, WB_ERR_DATA, "it does not say of which model it is a simulation");
-    if (strcmp(made_by, wb_wires_command(solver)) != 0)
-        return wb_fail_to(why, WB_ERR_DATA, "it was made by 'solve %s', not by 'solve %s'", made_by,
-                          wb_wires_command(solver));
-    run->is_stale = strcmp(sha256, item->model->sha256) != 0;
-    if (run->is_stale)
-        return wb_fail_to(why, WB_ERR_DATA,
-                          "the model, its wire or its materials have changed since");
-    (void)wb_json_get_text(simulation, "problem", &problem);
-    run->is_cut_short = !wb_dataset_is_complete(&run->simulation.dataset);
-    if (run->is_cut_short)
-        return wb_fail_to(why, WB_ERR_DATA, "it did not converge to its end%s%s",
-                          problem[0] ? ": " : "", problem);
-    return WB_OK;
-}
-
 /* State and axis at the end of the history. */
 static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_model *model,
                                struct wb_reason *why)
@@ -150,21 +125,12 @@ struct loading {
     enum wb_wires_solver solver;
 };
 
-static enum wb_status check(void *context, bool *stale, struct wb_reason *why)
-{
-    const struct loading *const loading = context;
-    read_simulation(loading->run);
-    const enum wb_status status =
-        check_simulation(loading->run, loading->item, loading->solver, why);
-    *stale = loading->run->is_stale || loading->run->is_cut_short;
-    return status;
-}
-
 static enum wb_status take(void *context, struct wb_reason *why)
 {
     const struct loading *const loading = context;
     const struct wb_wire_model *const model = loading->item->model;
     struct wb_wires_run *const run = loading->run;
+    read_simulation(run);
     WB_TRY(take_end(run, model, why));
     WB_TRY(take_loading(run, model, why));
     WB_TRY(wb_fields_read(&run->fields, loading->item->datasets[loading->solver].path, why));
@@ -176,7 +142,7 @@ void wb_wires_run_load(struct wb_wires_run *run, const struct wb_wires_case *ite
                        enum wb_wires_solver solver)
 {
     struct loading loading = {run, item, solver};
-    const struct wb_simulation_reader reader = {check, take, &loading};
+    const struct wb_simulation_reader reader = {take, &loading};
     run->elements = run->unknowns = run->iterations = (double)NAN;
     run->memory_MB = run->slip = run->slip_limit = run->opening = (double)NAN;
     wb_simulation_load(&run->simulation, &item->datasets[solver], &reader);

@@ -15,8 +15,6 @@
 /* A dataset, and what it says of its simulation; numbers are NaN where it does not. */
 struct wb_wires_run {
     struct wb_simulation_result simulation;
-    bool is_stale;     /* the model has changed since */
-    bool is_cut_short; /* it did not converge, or was stopped */
     double elements, unknowns, iterations, memory_MB;
     double slip, slip_limit, opening; /* m, of an interface with friction */
     struct wb_fields fields;          /* of a usable one, as all that follows */

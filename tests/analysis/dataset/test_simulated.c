@@ -122,7 +122,10 @@ static void follower_test_is_a_dataset_of_its_force(void **state)
     assert_true(flag(dataset.document, "complete"));
     assert_text(simulation, "model", "wire3d");
     assert_text(simulation, "file", "follower-8awg-elastic.yaml");
-    assert_text(simulation, "sha256", model.sha256);
+    const struct wb_json *const inputs = wb_json_get(simulation, "inputs");
+    assert_text(inputs, "solver", "wire3d");
+    assert_close(number(inputs, "version"), WB_WIRE3D_VERSION, 0.0);
+    assert_close(number(inputs, "length_mm"), 100.0, 1e-9);
     assert_text(simulation, "law", "elastic");
     assert_true(flag(simulation, "substitutes"));
     assert_close(number(simulation, "cpu_s"), 1.0, 0.0);

@@ -25,7 +25,7 @@ static void the_command_is_whole_and_a_shell_takes_it(void **state)
     wb_setting_fill(&wb_solve_settings_table, &settings);
     settings.model = "/on/this/machine";
     memcpy(many, "a$b;c", 5);
-    assert_int_equal(wb_simulation_set(&one, &settings, many), WB_OK);
+    assert_int_equal(wb_simulation_set(&one, &settings, many, wb_json_create()), WB_OK);
     const char *const command = wb_text_string(&one.command);
     assert_non_null(strstr(command, "wirebench solve wire1d 'a$b;cxxx"));
     assert_non_null(strstr(command, "xxx' -o 'sim/it'\\''s here'"));
@@ -45,7 +45,7 @@ static bool list(const void *results, int index, struct wb_simulation_entry *ent
     (void)results;
     if (index < 2)
         *entry = (struct wb_simulation_entry){
-            .wanted = &wanted[index], .result = &there[index], .resumable = "a model"};
+            .wanted = &wanted[index], .result = &there[index], .is_resumable = true};
     return index < 2;
 }
 

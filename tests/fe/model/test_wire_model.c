@@ -257,72 +257,6 @@ static void contact_is_as_stiff_as_the_jacket_by_default(void **state)
                           41e6 * 0.57 / (1.43 * 0.14) / 0.8e-3, 1e-12);
 }
 
-/* Where numbers are from changes nothing that is computed. */
-static void checksum_leaves_out_where_numbers_are_from(void **state)
-{
-    (void)state;
-    char before[WB_SHA256_TEXT], text[1024];
-    read_text(full);
-    strcpy(before, model.sha256);
-    snprintf(text, sizeof text,
-             "origin: tensile tests\nintervals:\n  # of four\n  yield_stress_MPa: [1, 3]\n%s",
-             soft);
-    write_beside("soft.yaml", text);
-    read_text(full);
-    assert_string_equal(model.sha256, before);
-    snprintf(text, sizeof text, "%sintervals:\n  yield_stress_MPa: [1, 3]\n# then this\n", soft);
-    write_beside("soft.yaml", text);
-    read_text(full);
-    assert_string_not_equal(model.sha256, before);
-    write_beside("soft.yaml", soft);
-}
-
-static void checksum_covers_all_files(void **state)
-{
-    (void)state;
-    char before[WB_SHA256_TEXT], changed[sizeof full + 8];
-    read_text(full);
-    strcpy(before, model.sha256);
-    read_text(full);
-    assert_string_equal(model.sha256, before);
-
-    snprintf(changed, sizeof changed, "%s# x\n", full);
-    read_text(changed);
-    assert_string_not_equal(model.sha256, before);
-    write_beside("soft.yaml", "name: soft\nsource: other\nyoungs_modulus_MPa: 41\n"
-                              "poissons_ratio: 0.43\nyield_stress_MPa: 2\ndensity_g_cm3: 1.4\n");
-    read_text(full);
-    write_beside("soft.yaml", soft);
-    assert_string_not_equal(model.sha256, before);
-
-    /* As sha256sum of the files one after the other. */
-    char *text[4], joined[16384], hex[WB_SHA256_TEXT];
-    size_t size[4], n = 0;
-    static const char *const shipped[] = {"fixtures/wires/8awg.yaml",
-                                          "fixtures/materials/annealed-copper.yaml"};
-    char path[WB_PATH];
-    read_text(full);
-    assert_int_equal(wb_file_read(model_path, &text[0], &size[0]), WB_OK);
-    for (int i = 0; i < 2; i++) {
-        assert_int_equal(wb_file_find_data(path, shipped[i]), WB_OK);
-        assert_int_equal(wb_file_read(path, &text[i + 1], &size[i + 1]), WB_OK);
-    }
-    /* Without where its numbers are from, which stands at its end. */
-    const char *const origin = strstr(text[2], "origin:");
-    assert_non_null(origin);
-    size[2] = (size_t)(origin - text[2]);
-    text[3] = strdup(soft);
-    size[3] = strlen(soft);
-    for (int i = 0; i < 4; i++) {
-        assert_true(n + size[i] < sizeof joined);
-        memcpy(joined + n, text[i], size[i]);
-        n += size[i];
-        free(text[i]);
-    }
-    wb_hash_bytes(joined, n, hex);
-    assert_string_equal(model.sha256, hex);
-}
-
 static void read_history(const char *gravity, const char *history)
 {
     char text[512];
@@ -596,8 +530,6 @@ int main(void)
         cmocka_unit_test(rules_of_mixtures_give_the_papers_wire),
         cmocka_unit_test(elastic_law_takes_yield_from_all_parts),
         cmocka_unit_test(contact_is_as_stiff_as_the_jacket_by_default),
-        cmocka_unit_test(checksum_leaves_out_where_numbers_are_from),
-        cmocka_unit_test(checksum_covers_all_files),
         cmocka_unit_test(models_know_whether_they_are_a_bending_test),
         cmocka_unit_test(smaller_and_reversed_loads_unload),
         cmocka_unit_test(refusals_name_line_and_key),

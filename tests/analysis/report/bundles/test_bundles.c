@@ -211,8 +211,16 @@ static void make_rod(int index, double cpu)
     const struct wb_test_info info = {.length = run->model->length,
                                       .outer_diameter = beam->outer_diameter,
                                       .rest_level = (double)NAN};
-    const struct wb_simulated_origin origin = {
-        .model = "cantilever", .source = beam->source, .law = &beam->law, .cpu = cpu};
+    const struct wb_simulated_cantilever cantilever = {.law = &beam->law,
+                                                       .outer_diameter = beam->outer_diameter,
+                                                       .length = run->model->length,
+                                                       .deflection = run->model->run.deflection,
+                                                       .points = 53};
+    const struct wb_simulated_origin origin = {.model = "cantilever",
+                                               .source = beam->source,
+                                               .law = &beam->law,
+                                               .cpu = cpu,
+                                               .cantilever = &cantilever};
     struct wb_loading_steps_row rows[2] = {{.cycle = 1}, {.cycle = 1}};
     rows[1].point.deflection = run->model->run.deflection;
     const struct wb_loading_steps loading = {.n_rows = 2, .rows = rows, .converged = true};
@@ -402,12 +410,12 @@ static void a_dataset_with_other_settings_is_outdated(void **state)
     static const struct {
         const char *key, *value, *problem;
     } changes[] = {
-        {"friction", "0.4", "the static friction is 0.3 in it, and 0.4 is wanted"},
-        {"cohesion", "", "the cohesive stiffness (N/mm3) is 40 in it, and 30 is wanted"},
-        {"strand", "", "the strand's length (mm) is 500 in it, and 0 is wanted"},
-        {"scaling", "", "the mass scaling is 16 in it, and 25 is wanted"},
-        {"mesh", "", "its mesh is 'paper', and 'engineering' is wanted"},
-        {"duration", "", "its duration was given"},
+        {"friction", "0.4", "friction, static is 0.3 in it, and 0.4 is wanted"},
+        {"cohesion", "", "cohesive_stiffness_N_mm3 is 40 in it, and 30 is wanted"},
+        {"strand", "", "strand_mm is 500 in it, and 0 is wanted"},
+        {"scaling", "", "run, mass_scaling is 16 in it, and 25 is wanted"},
+        {"mesh", "", "mesh, core_quads is 6 in it, and 2 is wanted"},
+        {"duration", "", "run, duration_s is 0.7 in it, and 0 is wanted"},
     };
     for (int i = 0; i < (int)(sizeof changes / sizeof changes[0]); i++) {
         read_small("", "");
@@ -442,7 +450,11 @@ static void a_dataset_of_a_changed_bundle_is_outdated(void **state)
     wb_bundles_release(&campaign);
     read_small("", "# another line\n");
     compute();
-    assert_problem(WB_SIMULATION_STALE, "have changed since");
+    assert_int_equal(results.runs[0].simulation.state, WB_SIMULATION_USABLE);
+    release();
+    read_small("", "ends: {tip: capped}\n");
+    compute();
+    assert_problem(WB_SIMULATION_STALE, "tip is 'free' in it, and 'capped' is wanted");
     assert_int_equal(results.fits[0].state, WB_SIMULATION_MISSING);
     release();
 }
@@ -508,7 +520,7 @@ static void a_rod_with_other_properties_is_outdated(void **state)
     compute();
     assert_int_equal(results.rods[0].simulation.state, WB_SIMULATION_STALE);
     assert_non_null(strstr(wb_text_string(&results.rods[0].simulation.problem),
-                           "the yield stress (MPa) is 3 in it, and 2.7 is wanted"));
+                           "law, yield_stress_MPa is 3 in it, and 2.7 is wanted"));
     assert_true(isnan(wb_bundles_results_cost(&results, 0)));
     release();
 }

@@ -392,13 +392,21 @@ static void a_dataset_of_a_changed_model_is_outdated(void **state)
     assert_int_equal(results.outcome.n_usable, 2);
     release();
 
+    /* A comment changes nothing, another weight does. */
     copy_shipped("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "# one more line\n");
+    compute(own);
+    assert_int_equal(results.outcome.n_usable, 2);
+    release();
+    char command[300];
+    snprintf(command, sizeof command, "sed -i 's/3.26, 50/3.26, 51/' '%s'",
+             in_folder("elastic.yaml"));
+    assert_int_equal(system(command), 0);
     compute(own);
     assert_int_equal(results.outcome.n_usable, 0);
     const struct wb_wires_run *const run = &results.runs[WB_WIRES_ELASTIC][WB_WIRES_SOLID];
     assert_int_equal(run->simulation.state, WB_SIMULATION_STALE);
-    assert_true(run->is_stale);
-    assert_non_null(strstr(wb_text_string(&run->simulation.problem), "have changed since"));
+    assert_non_null(strstr(wb_text_string(&run->simulation.problem),
+                           "fields_at_mm 2 is 50 in it, and 51 is wanted"));
     /* What it cost can still be told. */
     assert_close(run->simulation.cpu_s, 200.0, 1e-12);
     release();
@@ -419,7 +427,6 @@ static void a_dataset_that_did_not_converge_is_outdated(void **state)
     compute(own);
     const struct wb_wires_run *const runs = results.runs[WB_WIRES_ELASTOPLASTIC];
     assert_int_equal(runs[0].simulation.state, WB_SIMULATION_STALE);
-    assert_true(runs[0].is_cut_short);
     assert_non_null(strstr(wb_text_string(&runs[0].simulation.problem), "at 12 N: made up"));
     assert_int_equal(runs[1].simulation.state, WB_SIMULATION_REFUSED);
     assert_non_null(strstr(wb_text_string(&runs[1].simulation.problem), "by 'solve wire3d'"));
