@@ -57,7 +57,7 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
                                    .offset = offsetof(struct wb_bundle_run, selective),
                                    .least = 1.0,
                                    .largest = 1e6,
-                                   .fallback = 1.0,
+                                   .fallback = 100.0,
                                    .option = "selective",
                                    .argument = "B",
                                    .help = "Selective mass scaling of sections"},

@@ -101,7 +101,8 @@ static void an_end_that_is_struck_tumbles_as_a_rigid_body(void **unused)
 
     read_model("wires: [{wire: type3, count: 2}]\npacking: places\n"
                "places_mm: [[-0.8, 0.3], [0.8, 0]]\nends: {tip: capped}\n"
-               "run: {mesh: twelve, deflection_mm: 1}\nloads: {weight: false}\n");
+               "run: {mesh: twelve, deflection_mm: 1, selective_mass_scaling: 1}\n"
+               "loads: {weight: false}\n");
     const struct wb_bundle_mesh *mesh = wb_bundle_model_mesh(&model, model.run.mesh);
     assert_int_equal(wb_bundle_part_create_whole(&part, &model, mesh, 0.9), WB_OK);
     struct wb_bundle_bodies *bodies = &part->bodies;

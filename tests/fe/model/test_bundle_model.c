@@ -196,7 +196,7 @@ static void what_is_left_out_has_a_default(void **state)
     assert_close(model.run.deflection, 0.053, 1e-15);
     assert_true(model.run.rows == 53 && model.run.cycles == 0 && model.run.duration == 0.0);
     assert_close(model.run.mass_scaling, 25.0, 0.0);
-    assert_close(model.run.selective, 1.0, 0.0);
+    assert_close(model.run.selective, 100.0, 0.0);
     assert_close(model.run.kinetic_limit, 0.05, 0.0);
     assert_true(model.loads.strand_length == 0.0 && !model.loads.weight);
     assert_int_equal(wb_bundle_model_tape_quads(&model, &model.mesh[0]), 0);
