@@ -14,8 +14,8 @@ fi
 grep -qE ': ([0-9]+) of \1 datasets used' "$folder/a.out" || fail 'a dataset is missing or outdated'
 grep 'limit .* exceeded' "$folder/a.out" | grep -v rms_max && fail 'energy or cost is beyond its limit'
 make_it_again "$campaign"
-# Of four groups: sections, forces, errors, energies; studies, ten bent bundles, 3D beside 1D.
-expect_figures 31
+# Of five groups: sections, forces, errors, energies, the section model; studies, eleven bent bundles, 3D beside 1D.
+expect_figures 42
 forbid "$folder|$root/"
 
 # What a user calibrates is what the report has of the first bundle.

@@ -139,8 +139,8 @@ static void the_shipped_campaign_can_be_read(void **state)
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/bundles.yaml"), WB_OK);
     assert_int_equal(wb_kind_read(&wb_bundles_kind, &campaign, path), WB_OK);
     assert_string_equal(campaign.head.name, "fixtures/campaigns/bundles.yaml");
-    /* Then those with the tape on a circle. */
-    assert_int_equal(campaign.n_bundles, 10);
+    /* Then those with the tape on a circle, and seven wires of the other type. */
+    assert_int_equal(campaign.n_bundles, 11);
     for (int i = 0; i < campaign.n_bundles; i++) {
         const struct wb_bundles_bundle *const bundle = &campaign.bundles[i];
         const struct wb_bundle_model *const model = campaign.runs[bundle->dynamic].model;
@@ -149,8 +149,9 @@ static void the_shipped_campaign_can_be_read(void **state)
         assert_close(model->interface.normal_stiffness, 30e9, 1.0);
         assert_close(model->loads.strand_length, 0.0, 0.0);
         assert_false(model->loads.weight);
-        assert_true((bundle->constant >= 0 && bundle->has_rod) == (i < 5));
-        assert_true(model->tape.round == (i >= 5));
+        assert_true(bundle->has_rod == (i < 5));
+        assert_true((bundle->constant >= 0) == (i < 5 || i == 10));
+        assert_true(model->tape.round == (i >= 5 && i < 10));
     }
     assert_close(campaign.limits.rms, 0.065, 1e-12);
     wb_bundles_release(&campaign);
