@@ -7,9 +7,5 @@
 #include "analysis/report/wires/wires_kind.h"
 
 const struct wb_kind *const wb_kinds[WB_KINDS] = {
-    &wb_recordings_kind,
-    &wb_wires_kind,
-    &wb_bundles_kind,
-    &wb_machines_kind,
-    &wb_predictions_kind,
+    &wb_recordings_kind, &wb_wires_kind, &wb_bundles_kind, &wb_machines_kind, &wb_predictions_kind,
 };
