@@ -69,18 +69,19 @@ static void note_option(void *input, const struct wb_setting *row)
 }
 
 /* Options of tests that are not among the datasets would do nothing. */
-static enum wb_status check_options(const struct options *o)
+static bool has_foreign_option(const struct options *o)
 {
     bool has[2] = {false, false};
     for (int i = 0; i < o->datasets.n; i++)
         has[o->datasets.pointers[i]->info.kind == WB_TEST_THREE_POINT] = true;
     for (int k = 0; k < 2; k++) {
-        if (o->of[k] && !has[k])
-            return wb_fail(WB_ERR_ARGUMENT, "--%s is for %s: there is none among the datasets",
-                           o->of[k]->option,
-                           k == 0 ? "tests of cantilevers" : "datasets of three-point bending");
+        if (!o->of[k] || has[k])
+            continue;
+        wb_error("--%s is for %s: there is none among the datasets", o->of[k]->option,
+                 k == 0 ? "tests of cantilevers" : "datasets of three-point bending");
+        return true;
     }
-    return WB_OK;
+    return false;
 }
 
 /* Of one wire, length and loading, or of one wire on one bench of three-point bending. */
@@ -122,9 +123,6 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
 static enum wb_status run_groups(struct options *o, const struct wb_properties *properties,
                                  struct groups *groups)
 {
-    WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs + 1, o->common.n - 1,
-                            WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
-    WB_TRY(check_options(o));
     const size_t n = (size_t)o->datasets.n;
     groups->of = calloc(n, sizeof *groups->of);
     groups->items = calloc(n, sizeof *groups->items);
@@ -354,9 +352,15 @@ int wb_cmd_validate(int argc, char **argv)
                       options.common.input)
             : wb_properties_read(options.common.input, &properties);
     if (status == WB_OK)
+        status =
+            wb_datasets_read(&options.datasets, options.common.inputs + 1, options.common.n - 1,
+                             WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT));
+    const bool is_misused = status == WB_OK && has_foreign_option(&options);
+    if (status == WB_OK && !is_misused)
         status = run_groups(&options, &properties, &groups);
-    const int code =
-        status == WB_OK ? deliver(&options, &properties, &groups) : wb_command_exit(status);
+    const int code = is_misused        ? WB_EXIT_USAGE
+                     : status == WB_OK ? deliver(&options, &properties, &groups)
+                                       : wb_command_exit(status);
     for (int i = 0; i < groups.n; i++) {
         wb_validate_result_release(&groups.items[i].result);
         wb_validate_three_point_release(&groups.items[i].three_point);

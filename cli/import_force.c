@@ -5,10 +5,12 @@
 #include <string.h>
 
 #include "analysis/dataset/machine_import.h"
+#include "base/file.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/complete.h"
 #include "cli/import.h"
+#include "daq/take_reader.h"
 
 #define WB_LOG_DOMAIN "import"
 
@@ -179,7 +181,13 @@ static enum wb_status run(const struct options *o, struct wb_dataset *dataset,
     WB_TRY(wb_test_piece_read(wb_command_find(o->specimen, found), machine.kind, &piece, NULL));
     WB_TRY(wb_file_read(o->common.input, &bytes, &size));
     const struct wb_machine_import from = {o->common.input, o->columns, &o->form, &machine, &piece};
-    enum wb_status status = wb_machine_import(dataset, bytes, size, &from, report, NULL);
+    const struct wb_take_reader *const take = wb_take_reader_detect((uint8_t *)bytes, size);
+    enum wb_status status =
+        take ? wb_fail(WB_ERR_FORMAT,
+                       "%s: a take of motion capture (%s), no curve of a testing machine: take "
+                       "'wirebench import mocap'",
+                       o->common.input, take->name)
+             : wb_machine_import(dataset, bytes, size, &from, report, NULL);
     if (status == WB_OK)
         status = wb_machine_import_write(dataset, bytes, size, o->common.output, o->common.force);
     free(bytes);

@@ -18,6 +18,9 @@ extern const struct wb_take_reader wb_motive_csv, wb_c3d, wb_trc;
 /* The reader of that name; NULL: none. */
 const struct wb_take_reader *wb_take_reader_find(const char *name);
 
+/* The reader of a file with these bytes; NULL: it is no take. */
+const struct wb_take_reader *wb_take_reader_detect(const uint8_t *bytes, size_t n);
+
 /* Finds the reader by the bytes, never by the file's name. *reader may be NULL; receives it. */
 WB_MUST_CHECK enum wb_status wb_take_read(struct wb_take *take, const char *name,
                                           const uint8_t *bytes, size_t n,

@@ -52,15 +52,28 @@ enum {
     MOST_POINTS = 1000
 };
 
-/* Parts of the largest force between which a line leads back to the first contact. */
+/* Parts of the largest force between which a line leads back to the first contact; of means over so
+ * many readings, an odd number up to the most, that their noise is less than the first of them. */
 static const double line_from = 0.02, line_to = 0.08;
-/* A kink: the force falls by more than this part of its largest so far (and several times the
- * noise) within this part of the span. */
-static const double kink_drop = 0.03, kink_reach = 0.03, kink_noises = 6.0;
-/* Part of the span below the turn where the way back begins: friction turns there. */
-static const double turn_distance = 0.02;
-/* Part of the largest force at which it ends. */
+enum {
+    MOST_MEAN = 21
+};
+/* A kink: the force, as a mean over a quarter of this part of the span, falls by more than this
+ * part of its largest so far (and several times its noise) within the part. Not where the force is
+ * below so much of its largest: there a soft wire's noise is as large. */
+static const double kink_drop = 0.03, kink_reach = 0.03, kink_noises = 6.0, kink_from = 0.2;
+enum {
+    KINK_MEANS = 4
+};
+/* Part of the span below the turn where the way back begins, and of the way back at most: friction
+ * turns there. */
+static const double turn_distance = 0.02, turn_part = 0.25;
+/* Part of the largest force at which it ends; a wire that springs back little has as many points.
+ */
 static const double last_force = 0.03;
+enum {
+    LEAST_BACK = 12
+};
 static const double largest_part = 1.0 / 3.0; /* of the span */
 
 const char *wb_three_point_limit_name(enum wb_three_point_limit limit)
@@ -102,15 +115,27 @@ static bool collect(const struct wb_dataset *dataset, struct readings *r)
     return true;
 }
 
-/* Where the line through the first rise of the force comes from zero. */
-static bool find_contact(const struct readings *r, double zero, double largest, size_t last,
-                         double *contact)
+/* Of the readings with up to `half` others on each side, as many on both. */
+static double mean_about(const struct readings *r, size_t i, size_t half)
 {
+    const size_t room = i < r->top - i ? i : r->top - i, reach = half < room ? half : room;
+    double sum = 0.0;
+    for (size_t k = i - reach; k <= i + reach; k++)
+        sum += r->force[k];
+    return sum / (double)(2 * reach + 1);
+}
+
+/* Where the line through the first rise of the force comes from zero. */
+static bool find_contact(const struct readings *r, double zero, double largest, double noise,
+                         size_t last, double *contact)
+{
+    const double needed = pow(noise / (line_from * largest), 2);
+    const size_t half = needed < MOST_MEAN ? (size_t)(0.5 * needed) : MOST_MEAN / 2;
     size_t from = 0, to = 0;
-    for (size_t i = 0; i <= last && r->force[i] - zero < line_to * largest; i++)
+    for (size_t i = 0; i <= last && mean_about(r, i, half) - zero < line_to * largest; i++)
         to = i + 1;
     for (size_t i = 0; i < to; i++) {
-        if (r->force[i] - zero < line_from * largest)
+        if (mean_about(r, i, half) - zero < line_from * largest)
             from = i + 1;
     }
     /* A coarse curve has few readings there: then the first two. */
@@ -166,16 +191,30 @@ static double find_noise(const struct readings *r, size_t last)
 /* Index of the last reading before the force breaks down. */
 static size_t find_kink(const struct readings *r, double reach, double noise)
 {
-    double largest = r->force[0];
-    size_t at = 0;
+    double lowest = r->force[0], most = r->force[0], highest = -HUGE_VAL, highest_at = 0.0;
+    size_t largest = 0;
     for (size_t i = 1; i <= r->top; i++) {
-        if (r->force[i] > largest) {
-            largest = r->force[i];
-            at = i;
+        lowest = fmin(lowest, r->force[i]);
+        most = fmax(most, r->force[i]);
+    }
+    const double from = lowest + kink_from * (most - lowest);
+    for (size_t i = 0; i <= r->top;) {
+        const double until = r->travel[i] + reach / KINK_MEANS;
+        const size_t first = i;
+        double mean = 0.0;
+        for (; i <= r->top && (i == first || r->travel[i] < until); i++)
+            mean += r->force[i];
+        const double n = (double)(i - first);
+        mean /= n;
+        if (highest > from && r->travel[first] - highest_at < reach &&
+            mean < highest - fmax(kink_drop * fabs(highest), kink_noises * noise / sqrt(n)))
+            return largest;
+        for (size_t k = first; k < i; k++)
+            largest = r->force[k] > r->force[largest] ? k : largest;
+        if (mean > highest) {
+            highest = mean;
+            highest_at = r->travel[i - 1];
         }
-        if (r->force[i] < largest - fmax(kink_drop * fabs(largest), kink_noises * noise) &&
-            r->travel[i] - r->travel[at] < reach)
-            return at;
     }
     return r->top;
 }
@@ -226,6 +265,29 @@ static void add_point(struct wb_three_point_data *data, double travel, double fo
     data->max_force = fmax(data->max_force, force);
 }
 
+/* The way back counts where the wire came to it within its usable range. */
+static void add_way_back(struct wb_three_point_data *data, const struct readings *r, double span,
+                         double step)
+{
+    const double first = data->points[0].travel, top = r->travel[r->top], largest = data->max_force;
+    size_t end = r->top;
+    if (data->usable < top - 0.5 * step)
+        return;
+    while (end + 1 < r->n && r->travel[end] > first &&
+           r->force[end] - data->zero_force > last_force * largest)
+        end++;
+    const double way = top - r->travel[end];
+    const double from = top - fmin(turn_distance * span, turn_part * way);
+    step = fmin(step, (from - r->travel[end]) / LEAST_BACK);
+    for (double at = from; step > 0.0 && at > first; at -= step) {
+        const double force = force_at(r, r->top, r->n - 1, at, 0.5 * step) - data->zero_force;
+        if (!(force > last_force * largest))
+            break;
+        add_point(data, at, force, true);
+        data->has_unloading = true;
+    }
+}
+
 static void add_points(struct wb_three_point_data *data, const struct readings *r, double span,
                        const struct wb_three_point_data_settings *s, size_t last)
 {
@@ -236,17 +298,8 @@ static void add_points(struct wb_three_point_data *data, const struct readings *
         const double at = data->usable - (n - i) * step;
         add_point(data, at, force_at(r, 0, last, at, 0.5 * step) - data->zero_force, false);
     }
-    /* The way back counts where the wire came to it within its usable range. */
-    if (data->usable < r->travel[r->top] - 0.5 * step || r->top + 1 >= r->n)
-        return;
-    const double largest = data->max_force;
-    for (double at = r->travel[r->top] - turn_distance * span; at > first; at -= step) {
-        const double force = force_at(r, r->top, r->n - 1, at, 0.5 * step) - data->zero_force;
-        if (!(force > last_force * largest))
-            break;
-        add_point(data, at, force, true);
-        data->has_unloading = true;
-    }
+    if (data->n_points > 0)
+        add_way_back(data, r, span, step);
 }
 
 static enum wb_status make(struct wb_three_point_data *data, const struct readings *r,
@@ -276,16 +329,19 @@ static enum wb_status make(struct wb_three_point_data *data, const struct readin
     double largest = 0.0;
     for (size_t i = 0; i <= last; i++)
         largest = fmax(largest, r->force[i]);
-    bool found = find_contact(r, 0.0, largest, last, &data->first_contact);
+    bool found = find_contact(r, 0.0, largest, data->noise, last, &data->first_contact);
     data->is_zeroed = found && find_zero(r, data->first_contact, 0.01 * span, &data->zero_force);
     if (data->is_zeroed)
-        found = find_contact(r, data->zero_force, largest - data->zero_force, last,
+        found = find_contact(r, data->zero_force, largest - data->zero_force, data->noise, last,
                              &data->first_contact);
     if (!found)
         return wb_fail_to(why, WB_ERR_DATA,
                           "wire '%s', sample %d: no first contact: the force does not rise from "
-                          "zero",
-                          info->wire, info->sample);
+                          "zero to %.3g N at %.3g mm (%s): is the sign of the force right, and "
+                          "does the test begin before the contact? Else say how far it serves "
+                          "(usable_travel_mm, --usable-mm)",
+                          info->wire, info->sample, largest, data->usable / WB_MM,
+                          wb_three_point_limit_name(data->limit));
     if (data->usable > data->first_contact + largest_part * span) {
         data->usable = data->first_contact + largest_part * span;
         data->limit = WB_THREE_POINT_LIMIT_THIRD;
@@ -297,7 +353,8 @@ static enum wb_status make(struct wb_three_point_data *data, const struct readin
     if (data->n_points < LEAST_POINTS)
         return wb_fail_to(why, WB_ERR_DATA,
                           "wire '%s', sample %d: %d points from %.3g to %.3g mm of travel (%s): "
-                          "expected at least %d",
+                          "expected at least %d: say how far the test serves (usable_travel_mm, "
+                          "--usable-mm), or take less seating (--seating)",
                           info->wire, info->sample, data->n_points,
                           (data->first_contact + s->seating * span) / WB_MM, data->usable / WB_MM,
                           wb_three_point_limit_name(data->limit), LEAST_POINTS);

@@ -52,6 +52,14 @@ says "odd.csv:5: column 2 'Kraft [mN]': expected a number, not 'kaputt'"
 ends 2 "$tool" import force german.csv -o odd
 ends 2 "$tool" import force german.csv $bend -o odd --decimal dot
 ends 2 "$tool" import nothing
+printf 'PathFileType\t4\t(X/Y/Z)\ta.trc\n' >take.trc
+ends 1 "$tool" import force take.trc $bend -o odd
+says "wirebench import mocap"
+printf '%s\n' 'wire: w' 'outer_diameter_mm: 0.8' 'mass_per_length_kg_m: 0.001' \
+    'youngs_modulus_MPa: 1000' 'yield_stress_MPa: 10' 'strength_coefficient_MPa: 50' \
+    'hardening_exponent: 0.5' 'poissons_ratio: 0.4' >w.yaml
+ends 2 "$tool" validate w.yaml bent --elements 30
+says "--elements is for tests of cantilevers"
 
 # Other commands say what they expect.
 ends 1 "$tool" validate "$fixtures/wires/type1.yaml" bent

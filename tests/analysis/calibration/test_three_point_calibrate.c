@@ -195,6 +195,57 @@ static void kink_and_given_travel_end_the_range(void **unused)
     wb_dataset_release(&dataset);
 }
 
+/* A soft wire's force lies low over the noise of the machine. */
+static void noise_is_no_kink_and_hides_no_contact(void **unused)
+{
+    (void)unused;
+    struct wb_three_point_calibrate_settings settings = settings_of_defaults();
+    for (int i = 0; i < 5; i++) {
+        const struct three_point_made made = {.modulus_factor = 1.0,
+                                              .softness = 4.0,
+                                              .friction = 0.2,
+                                              .nose_radius = 2e-3,
+                                              .noise = 0.15,
+                                              .contact = 1e-3};
+        struct wb_three_point_data data;
+        struct wb_dataset dataset;
+        three_point_make(&dataset, &made, "");
+        assert_int_equal(wb_three_point_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
+        print_message("noise %.1f %% of the largest force, contact at %.3f of %.3f mm, %s\n",
+                      100.0 * data.noise / data.max_force, 1e3 * data.first_contact,
+                      1e3 * made.contact, wb_three_point_limit_name(data.limit));
+        assert_int_equal(data.limit, WB_THREE_POINT_LIMIT_END);
+        assert_close(data.first_contact, made.contact, 0.15e-3);
+        wb_three_point_data_release(&data);
+        wb_dataset_release(&dataset);
+    }
+}
+
+/* A wire that settles with a jerk, and a single reading that is off. */
+static void jerk_at_the_start_and_a_stray_reading_are_no_kinks(void **unused)
+{
+    (void)unused;
+    const struct three_point_made made = {
+        .modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3, .noise = 1e-3};
+    struct wb_three_point_calibrate_settings settings = settings_of_defaults();
+    for (int stray = 0; stray < 2; stray++) {
+        struct wb_three_point_data data;
+        struct wb_dataset dataset;
+        three_point_make(&dataset, &made, "");
+        for (size_t i = 0; i < dataset.n_rows; i++) {
+            struct wb_row *const row = &dataset.rows[i];
+            if (stray && i == 120)
+                row->force *= 1.06;
+            if (!stray && i >= 6 && i < 12)
+                row->force = 0.3 * dataset.rows[3].force;
+        }
+        assert_int_equal(wb_three_point_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
+        assert_int_equal(data.limit, WB_THREE_POINT_LIMIT_END);
+        wb_three_point_data_release(&data);
+        wb_dataset_release(&dataset);
+    }
+}
+
 static void friction_is_not_told_by_the_curve_but_is_in_the_band(void **unused)
 {
     (void)unused;
@@ -328,6 +379,8 @@ int main(void)
         cmocka_unit_test(wire_that_hardly_hardens_is_found_with_its_errors),
         cmocka_unit_test(bow_of_the_specimen_is_taken_into_account),
         cmocka_unit_test(kink_and_given_travel_end_the_range),
+        cmocka_unit_test(noise_is_no_kink_and_hides_no_contact),
+        cmocka_unit_test(jerk_at_the_start_and_a_stray_reading_are_no_kinks),
         cmocka_unit_test(friction_is_not_told_by_the_curve_but_is_in_the_band),
         cmocka_unit_test(series_are_not_averaged_away),
         cmocka_unit_test(threads_change_nothing_and_a_stop_ends),
