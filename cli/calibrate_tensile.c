@@ -97,9 +97,9 @@ static void print_laws(const struct wb_tensile_result *r)
     print_number("  n", &r->direct_exponent, 1.0, "");
     if (!r->follows)
         printf("  this law does not meet every curve: take the stresses above\n");
-    else if (r->identifiable)
+    if (r->identifiable)
         printf("  n from %.3g to %.3g fits alike\n", r->n_low, r->n_high);
-    else
+    else if (isfinite(r->n_low))
         printf("  not identifiable: n from %.3g to %.3g fits alike, each with its own sigma_Y and "
                "K; these numbers hold together only\n",
                r->n_low, r->n_high);

@@ -151,6 +151,7 @@ static enum wb_status fill(const void *context, struct wb_dataset *dataset)
                   .length = o->span + 2.0 * overhang,
                   .mass_per_length = wb_wire_mass_per_length(&run->wire),
                   .usable_travel = unknown(),
+                  .natural_bow = known(o->bow),
                   .area = (double)NAN},
     };
     const struct wb_simulated_origin origin = {

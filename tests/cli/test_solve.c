@@ -251,7 +251,7 @@ static void three_point_bending_is_a_machine_test(void **unused)
         arguments, sizeof arguments,
         "solve bending3p type2 --span-mm 20 --deflection-mm 6 --roller-radius-mm 2 "
         "--nose-radius-mm 4.5 --roller-friction 0.3 --compliance-mm-n 0.1 --cycles 1 --points 12 "
-        "--json -o %s/three",
+        "--bow-mm 0.3 --json -o %s/three",
         folder);
     tool(arguments);
     assert_int_equal(o.code, 0);
@@ -278,6 +278,8 @@ static void three_point_bending_is_a_machine_test(void **unused)
     assert_int_equal(dataset.n_rows, n);
     assert_close(dataset.info.machine.span, 20e-3, 1e-12);
     assert_close(dataset.info.machine.nose_radius.value, 4.5e-3, 1e-12);
+    assert_true(dataset.info.piece.natural_bow.known);
+    assert_close(dataset.info.piece.natural_bow.value, 0.3e-3, 1e-12);
     assert_close_relative(dataset.rows[12].deflection, 1e-3 * number(top, "deflection_mm"), 1e-12);
     assert_close_relative(dataset.rows[12].force, number(top, "force_N"), 1e-12);
     wb_dataset_release(&dataset);
