@@ -39,6 +39,12 @@ bool wb_interrupted(void)
     return count > 0;
 }
 
+bool wb_interrupt_stops(void *context)
+{
+    (void)context;
+    return wb_interrupted();
+}
+
 int wb_interrupt_count(void)
 {
     return count;

@@ -16,6 +16,8 @@ void wb_interrupt_guard(void);
 
 /* True once a signal came; how many came. */
 bool wb_interrupted(void);
+/* The same for those who ask a function with a context whether to stop; it is not looked at. */
+bool wb_interrupt_stops(void *context);
 int wb_interrupt_count(void);
 
 #endif

@@ -65,16 +65,18 @@ bool wb_json_get_boolean(const struct wb_json *object, const char *key, bool *va
 struct wb_json *wb_json_get(const struct wb_json *object, const char *key);
 size_t wb_json_length(const struct wb_json *array);
 struct wb_json *wb_json_item(const struct wb_json *array, size_t index);
-/* Whether two values say the same: numbers to 1e-9, objects whatever the order of their members.
- * False with the first difference: "mesh, elements_along is 40 in it, and 62 is wanted". */
-enum {
-    WB_JSON_PROBLEM = 320 /* bytes */
-};
-bool wb_json_is_same(const struct wb_json *stored, const struct wb_json *wanted,
-                     char problem[WB_JSON_PROBLEM]);
 /* An item or value itself as number or text. */
 bool wb_json_number(const struct wb_json *value, double *number);
 bool wb_json_text(const struct wb_json *value, const char **text);
+
+enum {
+    WB_JSON_PROBLEM = 320 /* bytes */
+};
+
+/* Whether two values say the same: numbers to 1e-9, objects whatever the order of their members.
+ * False with the first difference: "mesh, elements_along is 40 in it, and 62 is wanted". */
+bool wb_json_is_same(const struct wb_json *stored, const struct wb_json *wanted,
+                     char problem[WB_JSON_PROBLEM]);
 
 /* Whether two values differ, and where first: "wires[0].rms" into `place`. Texts, truths, keys and
  * lengths are to be equal, and keys in the same order; numbers are to differ by at most `tolerance`

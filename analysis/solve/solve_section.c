@@ -83,12 +83,6 @@ static enum wb_status prepare(void *context)
     return wb_section_run_init(&run->result, &run->model, MARKERS);
 }
 
-static bool is_interrupted(void *context)
-{
-    (void)context;
-    return wb_interrupted();
-}
-
 static enum wb_status compute_bands(struct run *run)
 {
     const struct wb_solve_settings *const s = run->solve.settings;
@@ -98,7 +92,7 @@ static enum wb_status compute_bands(struct run *run)
         .seed = (uint64_t)s->seed,
         .override = &s->override,
         .variants = variants,
-        .stop = is_interrupted,
+        .stop = wb_interrupt_stops,
     };
     if (s->sweep)
         WB_TRY(wb_sweep_parse(s->sweep, WB_BANDS_CASES - 1, variants, &settings.n_variants));
@@ -110,7 +104,7 @@ static enum wb_status compute_bands(struct run *run)
 static enum wb_status compute(void *context)
 {
     struct run *const run = context;
-    const struct wb_section_run_settings settings = {.stop = is_interrupted};
+    const struct wb_section_run_settings settings = {.stop = wb_interrupt_stops};
     const enum wb_status status = wb_section_run(&run->result, &run->model, &settings);
 
     run->solve.n_rows = run->result.n_rows;

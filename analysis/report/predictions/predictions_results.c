@@ -219,12 +219,6 @@ const char *wb_predictions_judge(const struct wb_predictions_place places[WB_PRE
 
 /* --- all of it --- */
 
-static bool is_interrupted(void *context)
-{
-    (void)context;
-    return wb_interrupted();
-}
-
 static const struct wb_bands_case *find_case(const struct wb_bands *bands, const char *name)
 {
     for (int i = 0; i < bands->n_cases; i++)
@@ -242,7 +236,7 @@ static void predict(struct wb_predictions_results *results, int index, int n_thr
         .runs = campaign->runs,
         .seed = (uint64_t)campaign->seed,
         .n_threads = n_threads,
-        .stop = is_interrupted,
+        .stop = wb_interrupt_stops,
     };
     const enum wb_status status =
         wb_bands_create(&prediction->bands, bundle->model->path, &settings);

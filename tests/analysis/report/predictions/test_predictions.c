@@ -57,8 +57,8 @@ static void a_campaign_that_makes_no_sense_is_refused_with_its_line(void **state
 
 /* --- tests beside bands --- */
 
-/* The case's medians times a factor, at 1.5 times their places up and down again, so that it
- * springs back by this part. */
+/* The case's medians times a factor on the way up, then straight down to zero force and beyond, so
+ * that this part of the way springs back. */
 static void make_test(const char *name, const struct wb_bands_case *c, double factor, double back,
                       double length)
 {
