@@ -88,6 +88,7 @@ enum wb_status wb_build_put(struct wb_json *object)
     wb_json_set_text(object, "version", wb_version());
     wb_json_set_text(object, "revision", wb_version_revision());
     wb_json_set_text(object, "compiler", __VERSION__);
+    wb_json_set_text(object, "options", WB_CODE_OPTIONS);
     wb_json_set_text(object, "processor", processor);
     return put_libraries(object);
 }

@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/reads.h"
+
 #define WB_LOG_DOMAIN "file"
 
 static enum wb_status status_of_errno(int error)
@@ -66,8 +68,7 @@ static enum wb_status read_stream(FILE *file, const char *path, char **bytes, si
     }
     buffer[length] = '\0';
     *bytes = buffer;
-    if (size)
-        *size = length;
+    *size = length;
     return WB_OK;
 }
 
@@ -77,9 +78,15 @@ enum wb_status wb_file_read_with_reason(const char *path, char **bytes, size_t *
     FILE *file = fopen(path, "rbe");
     if (!file)
         return fail_with(errno, "open", path, why);
-    const enum wb_status status = read_stream(file, path, bytes, size, why);
+    size_t length = 0;
+    const enum wb_status status = read_stream(file, path, bytes, &length, why);
     fclose(file);
-    return status;
+    if (status != WB_OK)
+        return status;
+    wb_reads_note(path, *bytes, length);
+    if (size)
+        *size = length;
+    return WB_OK;
 }
 
 enum wb_status wb_file_read(const char *path, char **bytes, size_t *size)

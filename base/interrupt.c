@@ -22,8 +22,13 @@ static void handle(const int *signals, size_t n, void (*handler)(int))
 
 void wb_interrupt_install(void)
 {
-    static const int noted[] = {SIGINT, SIGTERM, SIGHUP};
+    static const int noted[] = {SIGINT, SIGTERM};
+    static const int hangup[] = {SIGHUP};
+    struct sigaction before;
     handle(noted, sizeof noted / sizeof noted[0], note_signal);
+    /* `nohup` has it ignored: then a terminal that is closed ends nothing. */
+    if (sigaction(SIGHUP, NULL, &before) != 0 || before.sa_handler != SIG_IGN)
+        handle(hangup, 1, note_signal);
 }
 
 void wb_interrupt_guard(void)

@@ -69,20 +69,24 @@ struct wb_json *wb_json_item(const struct wb_json *array, size_t index);
 bool wb_json_number(const struct wb_json *value, double *number);
 bool wb_json_text(const struct wb_json *value, const char **text);
 
-enum {
-    WB_JSON_PROBLEM = 320 /* bytes */
+/* One place where two values differ, and both of them for a message: `nothing` where one is not
+ * there, `a list of 3` of arrays. */
+struct wb_json_place {
+    char place[200]; /* "wires[0].rms" */
+    char a[80], b[80];
 };
 
-/* Whether two values say the same: numbers to 1e-9, objects whatever the order of their members.
- * False with the first difference: "mesh, elements_along is 40 in it, and 62 is wanted". */
-bool wb_json_is_same(const struct wb_json *stored, const struct wb_json *wanted,
-                     char problem[WB_JSON_PROBLEM]);
+struct wb_json_difference {
+    size_t n;       /* how many values differ; 0: the rest is empty */
+    double largest; /* of numbers, relative; INFINITY where something else differs */
+    struct wb_json_place first, most;
+};
 
-/* Whether two values differ, and where first: "wires[0].rms" into `place`. Texts, truths, keys and
- * lengths are to be equal, and keys in the same order; numbers are to differ by at most `tolerance`
+/* Whether two values (NULL: nothing) differ, and where first and most. Texts, truths, keys and
+ * lengths are to be equal, members stand in any order; numbers are to differ by at most `tolerance`
  * times the larger of the two, or in an array of numbers times the largest of both arrays. Members
  * `ignored` (NULL: none) of the two values themselves may differ. */
 bool wb_json_differs(const struct wb_json *a, const struct wb_json *b, double tolerance,
-                     const char *ignored, char place[200]);
+                     const char *ignored, struct wb_json_difference *difference);
 
 #endif

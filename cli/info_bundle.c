@@ -78,7 +78,8 @@ static void print_section(const struct wb_bundle_model *model)
     for (int i = 0; i < model->n_types; i++, before = "")
         printf("  %-10s %d x %s, %g mm\n", before, wb_bundle_model_count(model, i),
                model->type[i].name, model->type[i].outer_diameter / WB_MM);
-    printf("  %-10s %s%s\n", "packing", wb_bundle_model_arrangement(model),
+    printf("  %-10s %s%s%s\n", "packing", wb_bundle_model_arrangement(model),
+           model->touching > 0.0 ? ", moved until they touch" : "",
            model->settled ? ", settled" : "");
     if (model->wire_gap > 0.0)
         printf("  %-10s %g mm between wires\n", "gap", model->wire_gap / WB_MM);
@@ -183,6 +184,7 @@ static int print_json(const struct wb_bundle_model *model, const char *figure)
     wb_simulated_bundle_sum(model, wb_bundle_model_mesh(model, model->run.mesh), sha256);
     wb_json_set_text(root, "inputs_sha256", sha256);
     wb_json_set_text(root, "packing", wb_bundle_model_arrangement(model));
+    wb_json_set_number(root, "touching_mm", model->touching / WB_MM);
     wb_json_set_boolean(root, "settled", model->settled);
     wb_json_set_number(root, "length_mm", model->length / WB_MM);
     wb_json_set_text(root, "length_source", length_source(model));

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <ftw.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -107,60 +108,95 @@ static enum wb_status compute(struct pair *pair, const struct wb_kind *const *ki
     return wb_json_read(&pair->manifest, path);
 }
 
+static const char *text_of(const struct wb_json *entry, const char *key)
+{
+    const char *text = "";
+    wb_json_get_text(entry, key, &text);
+    return text;
+}
+
+/* How far an input stands in a list: not at all, with another sum, as it is. */
+enum presence {
+    ABSENT,
+    CHANGED,
+    SAME
+};
+
+static enum presence look_up(const struct wb_json *list, const struct wb_json *input)
+{
+    enum presence found = ABSENT;
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const struct wb_json *const entry = wb_json_item(list, i);
+        if (strcmp(text_of(entry, "name"), text_of(input, "name")) != 0)
+            continue;
+        if (strcmp(text_of(entry, "sha256"), text_of(input, "sha256")) == 0)
+            return SAME;
+        found = CHANGED;
+    }
+    return found;
+}
+
+/* Says of each input of `list` that stands so in the other one what is wrong with it; how many. */
+static int complain(const struct wb_json *list, const struct wb_json *other, enum presence wrong,
+                    const char *what)
+{
+    int n = 0;
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const struct wb_json *const input = wb_json_item(list, i);
+        if (look_up(other, input) != wrong)
+            continue;
+        wb_error("input '%s' %s", text_of(input, "name"), what);
+        n++;
+    }
+    return n;
+}
+
 /* Both manifests list the same inputs, with the same sums. */
 static enum wb_status check_inputs(const struct pair *pair)
 {
     const struct wb_json *const was = wb_json_get(pair->signed_manifest, "inputs");
     const struct wb_json *const is = wb_json_get(pair->manifest, "inputs");
-    const size_t n = wb_json_length(was), m = wb_json_length(is);
-    char place[200];
-    for (size_t i = 0; i < n || i < m; i++) {
-        const struct wb_json *const a = wb_json_item(was, i), *const b = wb_json_item(is, i);
-        const char *name = "";
-        if (!wb_json_differs(a, b, 0.0, NULL, place))
-            continue;
-        wb_json_get_text(a ? a : b, "name", &name);
-        return wb_fail(WB_ERR_DATA, "input '%s' is not what was signed, or is not here", name);
-    }
-    fprintf(pair->order->out, "inputs: %zu as signed\n", n);
+    const int n = complain(was, is, CHANGED, "is not what was signed") +
+                  complain(was, is, ABSENT, "was signed, and is not here or not read") +
+                  complain(is, was, ABSENT, "is read here, and was not signed");
+    if (n > 0)
+        return wb_fail(WB_ERR_DATA, "%d of the inputs of '%s' %s not as signed", n,
+                       pair->order->folder, n == 1 ? "is" : "are");
+    fprintf(pair->order->out, "inputs: %zu as signed\n", wb_json_length(was));
     return WB_OK;
 }
 
-/* Which part of the builds differs, in words. */
-static const char *describe_build(const struct pair *pair, const char *place, char text[600])
+/* What of the builds differs first, in words. */
+static void describe_build(const struct wb_json_place *at, char text[600])
 {
-    static const struct {
-        const char *part, *words;
-    } parts[] = {{"libraries", "libraries"}, {"fonts", "fonts"}};
-    const struct wb_json *const was = wb_json_get(pair->signed_manifest, "build");
-    const char *a = "?", *b = "?";
-    for (size_t i = 0; i < WB_COUNT(parts); i++) {
-        if (strncmp(place, parts[i].part, strlen(parts[i].part)) == 0) {
-            snprintf(text, 600, "other %s", parts[i].words);
-            return text;
-        }
+    static const char *const lists[] = {"libraries", "fonts"};
+    snprintf(text, 600, "%s %.80s, here %.80s", at->place, at->a, at->b);
+    for (size_t i = 0; i < WB_COUNT(lists); i++) {
+        if (strncmp(at->place, lists[i], strlen(lists[i])) == 0)
+            snprintf(text, 600, "other %s", lists[i]);
     }
-    wb_json_get_text(was, place, &a);
-    wb_json_get_text(wb_json_get(pair->manifest, "build"), place, &b);
-    snprintf(text, 600, "%s '%.150s', here '%.150s'", place, a, b);
-    return text;
 }
 
 /* The numbers of both report.json, but the program's revision. */
 static enum wb_status compare_numbers(const struct pair *pair, const char *build)
 {
-    char path[WB_PATH], place[200];
+    char path[WB_PATH], by[32] = "";
     struct wb_json *was = NULL, *is = NULL;
+    struct wb_json_difference found;
     WB_TRY(wb_file_join(path, pair->order->folder, "report.json"));
     WB_TRY(wb_json_read(&was, path));
     enum wb_status status = wb_file_join(path, pair->again, "report.json");
     if (status == WB_OK)
         status = wb_json_read(&is, path);
-    if (status == WB_OK && wb_json_differs(was, is, tolerance, "tool", place))
+    if (status == WB_OK && wb_json_differs(was, is, tolerance, "tool", &found)) {
+        if (isfinite(found.largest))
+            snprintf(by, sizeof by, ", by %.2g of it", found.largest);
         status = wb_fail(WB_ERR_DATA,
-                         "made by another build (%s), and not the same: '%s' of report.json "
-                         "differs by more than %g",
-                         build, place, tolerance);
+                         "made by another build (%s), and not the same within %g: %zu value%s of "
+                         "report.json, most '%s', %s in it and %s here%s",
+                         build, tolerance, found.n, found.n == 1 ? "" : "s", found.most.place,
+                         found.most.a, found.most.b, by);
+    }
     wb_json_destroy(was);
     wb_json_destroy(is);
     return status;
@@ -168,26 +204,29 @@ static enum wb_status compare_numbers(const struct pair *pair, const char *build
 
 static enum wb_status compare(const struct pair *pair, enum wb_check_end *end)
 {
-    char place[200], text[600];
+    char text[600];
+    struct wb_json_difference of_files, of_build;
     FILE *const out = pair->order->out;
     const struct wb_json *const files = wb_json_get(pair->manifest, "files");
     WB_TRY(check_inputs(pair));
-    if (!wb_json_differs(wb_json_get(pair->signed_manifest, "files"), files, 0.0, NULL, place)) {
+    if (!wb_json_differs(wb_json_get(pair->signed_manifest, "files"), files, 0.0, NULL,
+                         &of_files)) {
         fprintf(out, "computed again: the same bytes\n");
         *end = WB_CHECK_SAME;
         return WB_OK;
     }
     if (!wb_json_differs(wb_json_get(pair->signed_manifest, "build"),
-                         wb_json_get(pair->manifest, "build"), 0.0, NULL, text)) {
+                         wb_json_get(pair->manifest, "build"), 0.0, NULL, &of_build)) {
         const char *name = "a file";
-        const size_t at = strtoul(place + (place[0] == '['), NULL, 10);
-        wb_json_get_text(wb_json_item(files, at), "name", &name);
+        const char *const place = of_files.first.place;
+        wb_json_get_text(wb_json_item(files, strtoul(place + (place[0] == '['), NULL, 10)), "name",
+                         &name);
         return wb_fail(WB_ERR_DATA,
                        "the same build makes another report: '%s' of it is not what was signed",
                        name);
     }
-    snprintf(place, sizeof place, "%.199s", text);
-    WB_TRY(compare_numbers(pair, describe_build(pair, place, text)));
+    describe_build(&of_build.first, text);
+    WB_TRY(compare_numbers(pair, text));
     fprintf(out, "computed again: numbers within %g; made by another build: %s\n", tolerance, text);
     *end = WB_CHECK_OTHER_BUILD;
     return WB_OK;

@@ -55,14 +55,14 @@ typedef struct wb_json *wb_kind_json(const void *results);
 /* Of a campaign or of results; accepts zeroed ones. */
 typedef void wb_kind_release(void *of);
 
-/* A file that a report was made from, beside its campaign file and datasets. */
-struct wb_kind_input {
-    const char *what;            /* "recording" */
-    char name[300];              /* for readers: no path of this machine */
-    char sha256[WB_SHA256_TEXT]; /* "": there is none at this index */
+/* A recording that a report was made from. */
+struct wb_kind_recording {
+    const char *name;   /* for readers: no path of this machine; borrowed */
+    const char *sha256; /* of the uncompressed recording; borrowed; NULL: it is not used */
 };
-/* The input at an index; false after the last. */
-typedef bool wb_kind_inputs(const void *results, int index, struct wb_kind_input *input);
+/* The recording at an index; false after the last. */
+typedef bool wb_kind_recordings(const void *results, int index,
+                                struct wb_kind_recording *recording);
 
 struct wb_kind {
     const char *name;       /* `kind:` of the campaign file */
@@ -72,8 +72,8 @@ struct wb_kind {
 
     wb_kind_keys *keys;
     wb_kind_load *load;
-    wb_simulation_list *datasets; /* that may be computed; NULL: data are measured */
-    wb_kind_inputs *inputs;       /* NULL: the datasets alone */
+    wb_simulation_list *datasets;   /* that may be computed; NULL: data are measured */
+    wb_kind_recordings *recordings; /* NULL: it reads none */
     wb_kind_compute *compute;
 
     const struct wb_figures_row *figures; /* (n_figures) */

@@ -8,6 +8,7 @@
 #include "analysis/report/numbers.h"
 #include "base/build.h"
 #include "base/hash.h"
+#include "base/reads.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -23,19 +24,99 @@ static void put_sum(struct wb_json *list, const char *role, const char *name, co
     wb_json_set_text(entry, "sha256", sha256);
 }
 
-static void put_inputs(struct wb_json *root, const struct wb_kind *kind, const void *results)
+/* What a report was made from: a recording, or a file that was read. */
+struct input {
+    const char *what;
+    char name[WB_PATH], sha256[WB_SHA256_TEXT];
+};
+
+static int compare_inputs(const void *a, const void *b)
 {
+    const struct input *const x = a, *const y = b;
+    const int by_what = strcmp(y->what, x->what), by_name = strcmp(x->name, y->name);
+    return by_what != 0 ? by_what : by_name != 0 ? by_name : strcmp(x->sha256, y->sha256);
+}
+
+/* The part of an absolute path below a folder; NULL: it is not there. */
+static const char *below(const char *path, const char *folder)
+{
+    char *const whole = realpath(folder[0] ? folder : ".", NULL);
+    const size_t n = whole ? strlen(whole) : 0;
+    const bool is_below = n > 0 && strncmp(path, whole, n) == 0 && path[n] == '/';
+    free(whole);
+    return is_below ? path + n + 1 : NULL;
+}
+
+/* The part of an absolute path by which shipped data are found; NULL: it is none of them. */
+static const char *among_shipped(const char *path)
+{
+    for (const char *part = strchr(path, '/'); part; part = strchr(part, '/')) {
+        char found[WB_PATH];
+        part++;
+        if (*part == '\0' || wb_file_find_data(found, part) != WB_OK)
+            continue;
+        char *const whole = realpath(found, NULL);
+        const bool is_same = whole && strcmp(whole, path) == 0;
+        free(whole);
+        if (is_same)
+            return part;
+    }
+    return NULL;
+}
+
+/* A file as every machine names it: from the campaign's folder on, or as shipped data; of one that
+ * lies elsewhere the last folder and its name. */
+static const char *as_shown(const char *path, const struct wb_campaign *campaign)
+{
+    const char *shown = below(path, campaign->folder);
+    if (!shown)
+        shown = among_shipped(path);
+    if (shown)
+        return shown;
+    const char *const name = wb_file_name(path);
+    shown = name > path ? name - 1 : name;
+    while (shown > path && shown[-1] != '/')
+        shown--;
+    return *shown == '/' ? name : shown;
+}
+
+static void add_input(struct input *inputs, int *n, const char *what, const char *name,
+                      const char *sha256)
+{
+    struct input *const input = &inputs[(*n)++];
+    input->what = what;
+    snprintf(input->name, sizeof input->name, "%s", name);
+    snprintf(input->sha256, sizeof input->sha256, "%s", sha256);
+}
+
+/* Sorted: the order of reading depends on threads, and nobody asks for it. */
+static enum wb_status put_inputs(struct wb_json *root, const struct wb_kind *kind,
+                                 const void *results)
+{
+    const struct wb_kind_outcome *const outcome = results;
     struct wb_json *const list = wb_json_set_array(root, "inputs");
-    struct wb_kind_input input;
-    struct wb_simulation_entry entry;
-    for (int i = 0; kind->inputs && kind->inputs(results, i, &input); i++) {
-        if (input.sha256[0])
-            put_sum(list, input.what, input.name, input.sha256);
+    struct wb_kind_recording recording;
+    struct wb_read read;
+    int n = 0, n_recordings = 0;
+    while (kind->recordings && kind->recordings(results, n_recordings, &recording))
+        n_recordings++;
+    struct input *const inputs =
+        calloc((size_t)(n_recordings + wb_reads_count() + 1), sizeof *inputs);
+    if (!inputs)
+        return wb_fail(WB_ERR_MEMORY, "no room for the list of inputs");
+    for (int i = 0; i < n_recordings && kind->recordings(results, i, &recording); i++) {
+        if (recording.sha256)
+            add_input(inputs, &n, "recording", recording.name, recording.sha256);
     }
-    for (int i = 0; kind->datasets && kind->datasets(results, i, &entry); i++) {
-        if (entry.wanted->wanted && entry.result->state == WB_SIMULATION_USABLE)
-            put_sum(list, "force_deflection.csv", entry.wanted->name, entry.result->sha256);
+    for (int i = 0; wb_reads_at(i, &read); i++)
+        add_input(inputs, &n, "file", as_shown(read.path, outcome->campaign), read.sha256);
+    qsort(inputs, (size_t)n, sizeof *inputs, compare_inputs);
+    for (int i = 0; i < n; i++) {
+        if (i == 0 || compare_inputs(&inputs[i - 1], &inputs[i]) != 0)
+            put_sum(list, inputs[i].what, inputs[i].name, inputs[i].sha256);
     }
+    free(inputs);
+    return WB_OK;
 }
 
 /* Those that report.json lists, itself among them. */
@@ -88,7 +169,7 @@ static enum wb_status fill(struct wb_json *root, const struct wb_kind *kind, con
     if (laboratory->amends.report[0])
         wb_json_set_text(root, "amends", laboratory->amends.report);
     wb_numbers_put_campaign(root, outcome->campaign);
-    put_inputs(root, kind, results);
+    WB_TRY(put_inputs(root, kind, results));
     WB_TRY(put_files(root, folder));
     return put_build(root);
 }

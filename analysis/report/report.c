@@ -9,6 +9,7 @@
 #include "analysis/report/openpgp.h"
 #include "base/config.h"
 #include "base/progress.h"
+#include "base/reads.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -18,6 +19,7 @@ struct making {
     const struct wb_kind *kind;
     const struct wb_report_order *order;
     void *campaign, *results; /* owned */
+    int n_read;               /* files, before the data were looked at */
     enum wb_report_end end;
 };
 
@@ -50,6 +52,7 @@ static enum wb_status make_missing(struct making *making, bool *ends)
         return WB_OK;
     if (outcome.n > 0) {
         kind->release(making->results);
+        wb_reads_forget(making->n_read);
         WB_TRY(kind->load(making->results, making->campaign));
     }
     wb_missing_remove_checkpoints(kind->datasets, making->results, order->folder);
@@ -159,7 +162,11 @@ static enum wb_status make(struct making *making)
     making->results = calloc(1, kind->results_size);
     if (!making->campaign || !making->results)
         return wb_fail(WB_ERR_MEMORY, "out of memory");
+    if (order->has_manifest || order->key)
+        wb_reads_start();
     WB_TRY(wb_kind_read(kind, making->campaign, order->campaign));
+    wb_reads_leave_out(order->campaign); /* it has a place of its own in the manifest */
+    making->n_read = wb_reads_count();
     if (order->folder) {
         WB_TRY(check_signing(making));
         /* A folder that may not be written should not cost the time of the computations. */
@@ -189,6 +196,7 @@ enum wb_status wb_report_make(enum wb_report_end *end, const struct wb_kind *con
     WB_TRY(wb_campaign_read_kind(&kind, order->campaign, names, n_kinds));
     making.kind = kinds[kind];
     const enum wb_status status = make(&making);
+    wb_reads_stop();
     if (making.results)
         making.kind->release(making.results);
     if (making.campaign)

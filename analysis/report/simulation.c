@@ -142,7 +142,7 @@ static enum wb_status check(const struct wb_simulation_result *result,
     const struct wb_json *const inputs = wb_json_get(simulation, "inputs");
     const char *const solver = wb_solve_settings_kind(&wanted->settings);
     const char *made_by = "", *problem = "";
-    char difference[WB_JSON_PROBLEM];
+    struct wb_json_difference found;
     if (!result->dataset.info.is_simulation || !wb_json_get_text(simulation, "model", &made_by) ||
         strcmp(made_by, solver) != 0)
         return wb_fail_to(why, WB_ERR_DATA, "it was not made by 'solve %s'%s%s%s", solver,
@@ -151,8 +151,9 @@ static enum wb_status check(const struct wb_simulation_result *result,
     if (!inputs)
         return wb_fail_to(why, WB_ERR_DATA,
                           "it does not say what it was computed of, as older versions did not");
-    if (!wb_json_is_same(inputs, wanted->inputs, difference))
-        return wb_fail_to(why, WB_ERR_DATA, "%s", difference);
+    if (wb_json_differs(inputs, wanted->inputs, 1e-9, NULL, &found))
+        return wb_fail_to(why, WB_ERR_DATA, "%s is %s in it, and %s is wanted", found.first.place,
+                          found.first.a, found.first.b);
     (void)wb_json_get_text(simulation, "problem", &problem);
     if (!is_whole(result))
         return wb_fail_to(why, WB_ERR_DATA, "it did not come to its end%s%s",

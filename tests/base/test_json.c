@@ -1,5 +1,6 @@
 #include "tests/check.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -152,13 +153,13 @@ static void assert_differs(const char *one, const char *other, const char *ignor
                            const char *expected)
 {
     struct wb_json *a, *b;
-    char place[200];
+    struct wb_json_difference difference;
     assert_int_equal(wb_json_parse(&a, one, "a"), WB_OK);
     assert_int_equal(wb_json_parse(&b, other, "b"), WB_OK);
-    const bool differs = wb_json_differs(a, b, 1e-9, ignored, place);
+    const bool differs = wb_json_differs(a, b, 1e-9, ignored, &difference);
     assert_int_equal(differs, expected != NULL);
     if (expected)
-        assert_string_equal(place, expected);
+        assert_string_equal(difference.first.place, expected);
     wb_json_destroy(a);
     wb_json_destroy(b);
 }
@@ -184,44 +185,64 @@ static void what_is_no_number_is_to_be_equal(void **state)
     assert_differs("{\"a\": \"1\"}", "{\"a\": 1}", NULL, "a");
     assert_differs("{\"a\": null}", "{\"a\": null}", NULL, NULL);
     assert_differs("{\"a\": null}", "{\"a\": 0}", NULL, "a");
-    assert_differs("{\"a\": {\"b\": 1}}", "{\"a\": {\"c\": 1}}", NULL, "a.b");
+    assert_differs("{\"a\": {\"b\": 1}}", "{\"a\": {\"c\": 1}}", NULL, "a.c");
     assert_differs("{\"a\": [1, 2]}", "{\"a\": [1]}", NULL, "a");
     /* One member may be left out, here and not further down. */
     assert_differs("{\"t\": 1, \"a\": 1}", "{\"t\": 2, \"a\": 1}", "t", NULL);
     assert_differs("{\"a\": {\"t\": 1}}", "{\"a\": {\"t\": 2}}", "t", "a.t");
 }
 
-static void the_first_difference_is_named(void **state)
+static void the_first_difference_is_named_with_both_values(void **state)
 {
     (void)state;
     static const struct {
-        const char *stored, *wanted, *problem;
+        const char *a, *b, *place, *of_a, *of_b;
     } cases[] = {
-        {"{\"a\": 1, \"b\": [1, 2]}", "{\"b\": [1.0, 2], \"a\": 1.0000000001}", NULL},
-        {"{\"a\": 1}", "{\"a\": 1.00001}", "a is 1 in it, and 1.00001 is wanted"},
-        {"{\"a\": \"x\"}", "{\"a\": \"y\"}", "a is 'x' in it, and 'y' is wanted"},
-        {"{\"a\": \"1\"}", "{\"a\": 1}", "a is '1' in it, and 1 is wanted"},
-        {"{\"a\": true}", "{\"a\": false}", "a is true in it, and false is wanted"},
-        {"{\"a\": null}", "{\"a\": null}", NULL},
-        {"{\"a\": null}", "{\"a\": 0}", "a is nothing in it, and 0 is wanted"},
+        {"{\"a\": 1, \"b\": [1, 2]}", "{\"b\": [1.0, 2], \"a\": 1.0000000001}", NULL, "", ""},
+        {"{\"a\": 1}", "{\"a\": 1.00001}", "a", "1", "1.00001"},
+        {"{\"a\": \"x\"}", "{\"a\": \"y\"}", "a", "'x'", "'y'"},
+        {"{\"a\": \"1\"}", "{\"a\": 1}", "a", "'1'", "1"},
+        {"{\"a\": true}", "{\"a\": false}", "a", "true", "false"},
+        {"{\"a\": null}", "{\"a\": null}", NULL, "", ""},
+        {"{\"a\": null}", "{\"a\": 0}", "a", "nothing", "0"},
         {"{\"c\": {\"d\": [{\"e\": 1}, {\"e\": 2}]}}", "{\"c\": {\"d\": [{\"e\": 1}, {\"e\": 3}]}}",
-         "c, d 2, e is 2 in it, and 3 is wanted"},
-        {"{\"a\": [1]}", "{\"a\": [1, 2]}", "a is a list of 1 in it, and a list of 2 is wanted"},
-        {"{\"a\": 1}", "{}", "a is 1 in it, and nothing is wanted"},
-        {"{}", "{\"a\": {}}", "a is nothing in it, and something is wanted"},
+         "c.d[1].e", "2", "3"},
+        {"{\"a\": [1]}", "{\"a\": [1, 2]}", "a", "a list of 1", "a list of 2"},
+        {"{\"a\": 1}", "{}", "a", "1", "nothing"},
+        {"{}", "{\"a\": {}}", "a", "nothing", "something"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct wb_json *stored, *wanted;
-        char problem[WB_JSON_PROBLEM];
-        assert_int_equal(wb_json_parse(&stored, cases[i].stored, "stored"), WB_OK);
-        assert_int_equal(wb_json_parse(&wanted, cases[i].wanted, "wanted"), WB_OK);
-        const bool same = wb_json_is_same(stored, wanted, problem);
-        assert_true(same == !cases[i].problem);
-        if (!same)
-            assert_string_equal(problem, cases[i].problem);
-        wb_json_destroy(stored);
-        wb_json_destroy(wanted);
+        struct wb_json *a, *b;
+        struct wb_json_difference found;
+        assert_int_equal(wb_json_parse(&a, cases[i].a, "a"), WB_OK);
+        assert_int_equal(wb_json_parse(&b, cases[i].b, "b"), WB_OK);
+        assert_int_equal(wb_json_differs(a, b, 1e-9, NULL, &found), cases[i].place != NULL);
+        assert_string_equal(found.first.place, cases[i].place ? cases[i].place : "");
+        assert_string_equal(found.first.a, cases[i].of_a);
+        assert_string_equal(found.first.b, cases[i].of_b);
+        wb_json_destroy(a);
+        wb_json_destroy(b);
     }
+}
+
+static void differences_are_counted_and_the_largest_named(void **state)
+{
+    (void)state;
+    struct wb_json *a, *b;
+    struct wb_json_difference found;
+    assert_int_equal(wb_json_parse(&a, "{\"a\": 1, \"b\": [4, 2], \"c\": 1}", "a"), WB_OK);
+    assert_int_equal(wb_json_parse(&b, "{\"a\": 1.25, \"b\": [4, 1], \"c\": 2}", "b"), WB_OK);
+    assert_true(wb_json_differs(a, b, 1e-9, NULL, &found));
+    assert_int_equal(found.n, 3);
+    assert_string_equal(found.first.place, "a");
+    assert_string_equal(found.most.place, "c");
+    assert_true(found.largest == 0.5);
+    wb_json_set_text(b, "a", "1");
+    assert_true(wb_json_differs(a, b, 1e-9, NULL, &found));
+    assert_string_equal(found.most.place, "a");
+    assert_true(isinf(found.largest));
+    wb_json_destroy(a);
+    wb_json_destroy(b);
 }
 
 int main(void)
@@ -236,7 +257,8 @@ int main(void)
         cmocka_unit_test(bad_json_is_refused),
         cmocka_unit_test(documents_are_compared_number_by_number),
         cmocka_unit_test(what_is_no_number_is_to_be_equal),
-        cmocka_unit_test(the_first_difference_is_named),
+        cmocka_unit_test(the_first_difference_is_named_with_both_values),
+        cmocka_unit_test(differences_are_counted_and_the_largest_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -117,9 +117,11 @@ PYTHON
 resigned 1 "the same build makes another report: 'report.json'" 'report["settings"]["step_mm"] *= 1 + 1e-12'
 resigned 0 'numbers within 1e-09; made by another build: compiler' \
     'report["settings"]["step_mm"] *= 1 + 1e-12; manifest["build"]["compiler"] = "another"'
+resigned 0 'made by another build: options '"'-O0'" \
+    'report["settings"]["step_mm"] *= 1 + 1e-12; manifest["build"]["options"] = "-O0"'
 resigned 0 'made by another build: other libraries' \
     'report["tool"]["revision"] = "old"; manifest["build"]["libraries"][0]["sha256"] = "0"'
-resigned 1 "'settings.step_mm' of report.json" \
+resigned 1 "not the same within 1e-09: 1 value of report.json, most 'settings.step_mm', 0.25 in it and 0.25 here, by 1e-08" \
     'report["settings"]["step_mm"] *= 1 + 1e-8; manifest["build"]["processor"] = "another"'
 resigned 1 "input 'fixtures/wires/type1.yaml' is not what was signed" 'manifest["inputs"][0]["sha256"] = "0"'
 resigned 1 'has no name' 'manifest["files"].append({"name": "../c.yaml", "sha256": "0"})' 2>/dev/null

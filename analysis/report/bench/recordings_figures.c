@@ -435,7 +435,7 @@ static enum wb_status add_measured(struct wb_panel *panel, const struct wb_curve
 }
 
 static const struct wb_figure_style computed_style = {
-    .colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
+    .colour = WB_PALETTE_INK, .width = 1.2, .dash = WB_DASH_DASHED};
 
 /* Measured curve and calibrated beam of a step that is done, with room above for the inset. */
 static enum wb_status draw_step(struct wb_figures_item *item, enum wb_recordings_purpose purpose,

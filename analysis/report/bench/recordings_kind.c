@@ -118,41 +118,13 @@ static enum wb_status add_cards(struct wb_cards *cards, const void *context)
     return WB_OK;
 }
 
-/* Of each recording its sum, then files that hold in place of what was recorded. */
-static void take_test(const struct wb_recordings_results_test *test, int part,
-                      struct wb_kind_input *input)
+static bool take_recording(const void *results, int index, struct wb_kind_recording *recording)
 {
-    const char *const path =
-        part == 1 ? test->wanted->corrected_specimen : test->wanted->corrected_rig;
-    if (!test->usable)
-        return;
-    if (part == 0) {
-        snprintf(input->name, sizeof input->name, "%s", test->wanted->name);
-        memcpy(input->sha256, test->sha256, sizeof input->sha256);
-        return;
-    }
-    input->what = part == 1 ? "corrected specimen" : "corrected rig";
-    snprintf(input->name, sizeof input->name, "%s", wb_file_name(path));
-    if (path[0] && wb_hash_file(path, input->sha256) != WB_OK)
-        snprintf(input->sha256, sizeof input->sha256, "not readable");
-}
-
-/* Wires, then recordings. */
-static bool list_inputs(const void *context, int index, struct wb_kind_input *input)
-{
-    const struct wb_recordings_results *const results = context;
-    *input = (struct wb_kind_input){.what = index < results->n_wires ? "wire" : "recording"};
-    if (index < results->n_wires) {
-        const struct wb_recordings_wire *const wanted = results->wires[index].wanted;
-        snprintf(input->name, sizeof input->name, "%s", wanted->file);
-        memcpy(input->sha256, wanted->sha256, sizeof input->sha256);
-        return true;
-    }
-    index -= results->n_wires;
     const struct wb_recordings_results_test *const test =
-        wb_recordings_results_at(results, index / 3, NULL, NULL);
+        wb_recordings_results_at(results, index, NULL, NULL);
     if (test)
-        take_test(test, index % 3, input);
+        *recording = (struct wb_kind_recording){.name = test->wanted->name,
+                                                .sha256 = test->usable ? test->sha256 : NULL};
     return test;
 }
 
@@ -164,7 +136,7 @@ const struct wb_kind wb_recordings_kind = {
     .results_size = sizeof(struct wb_recordings_results),
     .keys = wb_recordings_keys,
     .load = wb_recordings_results_load,
-    .inputs = list_inputs,
+    .recordings = take_recording,
     .compute = wb_recordings_results_compute,
     .figures = wb_recordings_figures,
     .n_figures = WB_RECORDINGS_FIGURES,

@@ -9,14 +9,21 @@
  *     groups:
  *       - name: "1"
  *         label: insulated wire
- *         wire: 30 AWG               # optional, else the name: groups of one are calibrated
- * together machine: ../machines/two-rollers.yaml outer_diameter_mm: 0.8 zero_force_mN: 10 # the
- * test begins where the force first exceeds this usable_travel_mm: 4        # or a band tests:
- * [bending/group-1-test-1.txt, bending/group-1-test-2.txt] cable:                       # optional:
- * groups that are layers of one cable wires: ["1", "1b"]         # groups of the wire alone, each a
- * series core: "2b" layers: ["4", "5b"]        # wires laid round the core, and what is put round
- * those wire_count: 6 wire_circle_radius_mm: 0.85     # on which the wires' centres are conductor:
- * copper-22awg    # a material conductor_area_mm2: 0.0509
+ *         wire: 30 AWG               # optional, else the name: groups of one wire are calibrated
+ *                                    # together
+ *         machine: ../machines/two-rollers.yaml
+ *         outer_diameter_mm: 0.8
+ *         zero_force_mN: 10          # the test begins where the force first exceeds this
+ *         usable_travel_mm: 4        # or a band
+ *         tests: [bending/group-1-test-1.txt, bending/group-1-test-2.txt]
+ *     cable:                         # optional: groups that are layers of one cable
+ *       wires: ["1", "1b"]           # groups of the wire alone, each a series
+ *       core: "2b"
+ *       layers: ["4", "5b"]          # wires laid round the core, and what is put round those
+ *       wire_count: 6
+ *       wire_circle_radius_mm: 0.85  # on which the wires' centres are
+ *       conductor: copper-22awg      # a material
+ *       conductor_area_mm2: 0.0509
  */
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_H

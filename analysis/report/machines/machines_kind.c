@@ -52,8 +52,8 @@ static enum wb_status add_tests(struct wb_panel *panel, const struct wb_machines
 static enum wb_status add_curves(struct wb_panel *panel, const struct wb_machines_group *group,
                                  const struct wb_machines_group_results *results)
 {
-    static const struct wb_figure_style style = {.colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.4};
-    static const struct wb_colour pale = {0.34, 0.71, 0.91, 0.5};
+    static const struct wb_figure_style style = {.colour = WB_PALETTE_INK, .width = 1.4};
+    static const struct wb_colour pale = WB_PALETTE_PALE(0.5);
     double x[WB_MACHINES_GRID], y[WB_MACHINES_GRID], low[WB_MACHINES_GRID], high[WB_MACHINES_GRID];
     for (int k = 0; k < WB_MACHINES_GRID; k++) {
         const double s = isfinite(results->deviation[k]) ? results->deviation[k] : 0.0;
@@ -309,26 +309,6 @@ static enum wb_status add_cards(struct wb_cards *cards, const void *context)
     return WB_OK;
 }
 
-static bool list_inputs(const void *context, int index, struct wb_kind_input *input)
-{
-    const struct wb_machines_results *const results = context;
-    const struct wb_machines *const campaign = results->campaign;
-    for (int g = 0; g < campaign->n_groups; g++) {
-        const struct wb_machines_group *const group = &campaign->groups[g];
-        if (index >= group->n_tests) {
-            index -= group->n_tests;
-            continue;
-        }
-        const struct wb_machines_test *const test = &results->groups[g].tests[index];
-        *input = (struct wb_kind_input){.what = "test"};
-        snprintf(input->name, sizeof input->name, "%s", wb_campaign_as_shown(group->tests[index]));
-        if (test->is_usable)
-            memcpy(input->sha256, test->sha256, sizeof input->sha256);
-        return true;
-    }
-    return false;
-}
-
 const struct wb_kind wb_machines_kind = {
     .name = "machine",
     .data = "tests of a machine",
@@ -336,7 +316,6 @@ const struct wb_kind wb_machines_kind = {
     .results_size = sizeof(struct wb_machines_results),
     .keys = wb_machines_keys,
     .load = wb_machines_results_load,
-    .inputs = list_inputs,
     .compute = wb_machines_results_compute,
     .figures = figures,
     .n_figures = WB_COUNT(figures),

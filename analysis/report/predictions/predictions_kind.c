@@ -52,7 +52,7 @@ static enum wb_status draw_section(struct wb_figures_item *item)
 static enum wb_status add_test(struct wb_panel *panel, const char *label,
                                const struct wb_predictions_verdict *verdict)
 {
-    static const struct wb_figure_style style = {.colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.0};
+    static const struct wb_figure_style style = {.colour = WB_PALETTE_INK, .width = 1.0};
     const size_t n = verdict->dataset.n_rows;
     struct wb_text escaped = {0};
     double *const x = malloc(2 * (n > 0 ? n : 1) * sizeof *x);
@@ -412,27 +412,6 @@ static void print(FILE *out, const void *context)
     }
 }
 
-/* Of each bundle its inputs, then its tests. */
-static bool list_inputs(const void *context, int index, struct wb_kind_input *input)
-{
-    const struct wb_predictions_results *const results = context;
-    const struct wb_predictions *const campaign = results->campaign;
-    const int each = 1 + WB_PREDICTIONS_TESTS, b = index / each, i = index % each - 1;
-    *input = (struct wb_kind_input){.what = i < 0 ? "bundle" : "force_deflection.csv"};
-    if (b >= campaign->n_bundles)
-        return false;
-    const struct wb_predictions_bundle *const bundle = &campaign->bundles[b];
-    if (i < 0) {
-        snprintf(input->name, sizeof input->name, "%s", bundle->model_name);
-        wb_simulated_bundle_sum(bundle->model, NULL, input->sha256);
-    } else if (i < bundle->n_tests) {
-        snprintf(input->name, sizeof input->name, "%s",
-                 wb_campaign_as_shown(bundle->tests[i].given));
-        snprintf(input->sha256, sizeof input->sha256, "%s", results->bundles[b].tests[i].sha256);
-    }
-    return true;
-}
-
 const struct wb_kind wb_predictions_kind = {
     .name = "prediction",
     .data = "datasets",
@@ -440,7 +419,6 @@ const struct wb_kind wb_predictions_kind = {
     .results_size = sizeof(struct wb_predictions_results),
     .keys = wb_predictions_keys,
     .load = wb_predictions_results_load,
-    .inputs = list_inputs,
     .compute = wb_predictions_results_compute,
     .figures = figures,
     .n_figures = WB_COUNT(figures),
