@@ -9,6 +9,7 @@
 
 #include "analysis/align/align.h"
 #include "analysis/calibration/cycle_data.h"
+#include "analysis/dataset/holds.h"
 #include "analysis/plot/figure.h"
 #include "base/file.h"
 #include "base/units.h"
@@ -173,6 +174,9 @@ static void append_test(struct wb_text *text, const struct wb_series_test *test)
         wb_text_append(text, "  excluded: %s", test->excluded.reason);
     else if (!test->is_usable)
         wb_text_append(text, "  %s", test->problem);
+    double held;
+    if (test->is_usable && wb_holds_of_bent_wire(&test->dataset, &held) > 0)
+        wb_text_append(text, "  held for %.0f s", held);
     wb_text_append(text, "\n");
 }
 

@@ -1,5 +1,6 @@
 #include "cli/bench_options.h"
 
+#include <math.h>
 #include <stddef.h>
 
 #include "base/units.h"
@@ -20,6 +21,18 @@ static const struct wb_setting stage_rows[] = {
      .option = "speed-mm-s",
      .argument = "V",
      .help = "Speed of jog and release"},
+    {.name = "zero_mn",
+     .unit = "mN",
+     .type = WB_SETTING_NUMBER,
+     .offset = STAGE_AT(job.zero),
+     .scale = WB_MN,
+     .least = -1e6,
+     .largest = 1e6,
+     .fallback = (double)NAN,
+     .otherwise = "not known",
+     .option = "zero-mn",
+     .argument = "F",
+     .help = "What the load cell reads with a slack strand, for release"},
     {.name = "without_load_cell",
      .type = WB_SETTING_BOOLEAN,
      .offset = STAGE_AT(job.without_load_cell),

@@ -1,10 +1,14 @@
 /* wirebench record: the paper's test, recorded. */
+#include <stdio.h>
+#include <stdlib.h>
+
 #include "analysis/align/align.h"
 #include "analysis/plot/figure.h"
 #include "analysis/quicklook.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/live_line.h"
 #include "cli/record_series.h"
 #include "cli/record_test.h"
 #include "cli/settings.h"
@@ -122,7 +126,8 @@ static const struct argp argp = {
         "its start position. Every limit of the rig file (force, overload, travel, a silent "
         "instrument, an alarm of the stage) stops the stage; the specimen then stays where it "
         "is, and 'wirebench stage RIG.yaml release' frees it.\n\n"
-        "Keys while it runs: m marks the moment in the recording, q stops; Ctrl-C stops too. "
+        "Keys while it runs: m marks the moment in the recording, h holds the test where it is, r "
+        "resumes it, q stops; Ctrl-C stops too. "
         "The stage is stopped before the recording is closed.\n\n"
         "Exit codes: 0 complete; 1 failed before the first cycle, or nothing was recorded; 2 wrong "
         "usage; 3 stopped early or data lost, what was recorded is usable.",
@@ -152,6 +157,8 @@ static int print_json(const struct wb_bend_test_result *result, const char *outp
     wb_json_set_number(root, "duration_s", result->duration);
     wb_json_set_number(root, "tare_mN", result->tare / WB_MN);
     wb_json_set_number(root, "peak_tension_mN", result->peak_tension / WB_MN);
+    wb_json_set_integer(root, "holds", result->holds);
+    wb_json_set_number(root, "held_s", result->held);
     wb_json_set_number(root, "travel_mm", result->travel / WB_MM);
     wb_json_set_boolean(root, "stage_standing", result->standing);
     wb_json_set_boolean(root, "soft_reset", result->soft_reset);
@@ -176,6 +183,18 @@ static enum wb_status draw_figure(const char *recording, const char *path)
     const enum wb_status status = wb_quicklook_draw(&dataset, path);
     wb_dataset_release(&dataset);
     return status;
+}
+
+static void print_result(const struct wb_bend_test_result *result, const char *output)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *const memory = open_memstream(&text, &size);
+    if (memory)
+        wb_record_test_print(memory, result, output);
+    if (memory && fclose(memory) == 0)
+        wb_live_line_print(text);
+    free(text);
 }
 
 static int run_series(const struct options *options)
@@ -220,6 +239,6 @@ int wb_cmd_record(int argc, char **argv)
     if (options.common.json && print_json(&result, options.request.output_path) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     if (!options.common.json && result.recorded)
-        wb_record_test_print(stdout, &result, options.request.output_path);
+        print_result(&result, options.request.output_path);
     return code;
 }

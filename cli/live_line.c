@@ -116,7 +116,7 @@ void wb_live_line_open(void)
     live.open = true;
     live.draws = isatty(STDERR_FILENO);
     live.may_have_keys = live.draws && isatty(STDIN_FILENO);
-    wb_talk_open();
+    wb_talk_open(STDERR_FILENO);
     take_keys();
     wb_log_set_sink(wb_live_line_log, NULL);
     if (!registered)
@@ -158,6 +158,18 @@ void wb_live_line_show(const char *format, ...)
     }
     live.drawn_ns = wb_progress_now_ns();
     pthread_mutex_unlock(&lock);
+}
+
+void wb_live_line_print(const char *text)
+{
+    if (!isatty(STDOUT_FILENO)) {
+        fputs(text, stdout);
+        return;
+    }
+    fflush(stdout);
+    wb_talk_open(STDOUT_FILENO);
+    (void)wb_talk_say(text);
+    wb_talk_close(PATIENCE_MS);
 }
 
 void wb_live_line_close(void)

@@ -45,4 +45,8 @@ int wb_live_line_key(void);
 /* Erases the line, restores terminal and log; waits 0.3 s at most. Harmless when not open. */
 void wb_live_line_close(void);
 
+/* Prints a text to stdout after wb_live_line_close(). A terminal that hangs is waited for no longer
+ * than messages are; pipes and files get all of it. */
+void wb_live_line_print(const char *text);
+
 #endif

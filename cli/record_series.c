@@ -333,6 +333,39 @@ static bool ask_questions(struct run *run, int sample, struct wb_text *specimen,
     }
 }
 
+#define MOST_EARLIER 30    /* tests whose curves the views show, */
+#define EARLIER_POINTS 200 /* each of about so many points */
+
+static void add_earlier(const struct wb_series_test *test, struct wb_live_frame_point *points,
+                        size_t *n)
+{
+    const size_t stride = test->dataset.n_rows / EARLIER_POINTS + 1;
+    for (size_t i = 0; i < test->dataset.n_rows; i += stride) {
+        const struct wb_row *const row = &test->dataset.rows[i];
+        if (wb_series_results_shows(row) && isfinite(row->tension))
+            points[(*n)++] = (struct wb_live_frame_point){(float)row->deflection,
+                                                          (float)row->tension, test->number};
+    }
+}
+
+/* The curves of the last tests that count, for the views of the next one. To be freed; NULL where
+ * there are none. */
+static struct wb_live_frame_point *find_earlier(const struct wb_series_results *results, size_t *n)
+{
+    struct wb_live_frame_point *const points =
+        malloc((size_t)MOST_EARLIER * (EARLIER_POINTS + 1) * sizeof *points);
+    int left = MOST_EARLIER;
+    *n = 0;
+    for (int i = results->n - 1; points && i >= 0 && left > 0; i--) {
+        const struct wb_series_test *const test = &results->tests[i];
+        if (!test->is_usable || test->excluded.is_excluded)
+            continue;
+        add_earlier(test, points, n);
+        left--;
+    }
+    return points;
+}
+
 static enum wb_status test_sample(struct run *run, int number, int sample, const char *specimen,
                                   const char *notes)
 {
@@ -347,7 +380,11 @@ static enum wb_status test_sample(struct run *run, int number, int sample, const
     test.specimen_text = specimen;
     test.operator_name = run->operator_name;
     test.notes = notes[0] ? notes : run->test.notes;
-    if (wb_record_test_run(&test, &run->views, &result, &code) != WB_OK)
+    struct wb_live_frame_point *const earlier = find_earlier(&run->results, &run->views.n_earlier);
+    run->views.earlier = earlier;
+    const enum wb_status status = wb_record_test_run(&test, &run->views, &result, &code);
+    free(earlier);
+    if (status != WB_OK)
         return WB_OK; /* told; nothing was moved, and the specimen is asked for again */
     if (!result.recorded)
         return WB_OK;

@@ -84,11 +84,26 @@ static void show(const struct wb_bend_test *test)
 
 static void obey(struct wb_bend_test *test, int key)
 {
-    if (key == 'm') {
+    switch (key) {
+    case 'm':
         wb_bend_test_mark(test, "key m");
         wb_info("marked");
-    } else if (key == 'q') {
+        break;
+    case 'h':
+        if (!wb_bend_test_hold(test))
+            wb_info("there is nothing to hold: the stage is not on its way, or is held already");
+        break;
+    case 'r':
+        if (wb_bend_test_resume(test))
+            wb_info("resumed");
+        else
+            wb_info("there is nothing to resume: the test is not held, or the stage still moves");
+        break;
+    case 'q':
         wb_bend_test_stop(test);
+        break;
+    default:
+        break;
     }
 }
 
@@ -116,10 +131,14 @@ static void tell_stop(const struct wb_bend_test_result *result, const char *rig_
                  "the bench");
     else if (result->displaced && isfinite(result->travel))
         wb_warn("the stage stands at %.2f mm and the specimen stays as it is; free it with "
-                "'wirebench stage %s release %.0f', which goes up by no more than that many mm",
-                result->travel / WB_MM, rig_path, ceil(fabs(result->travel) / WB_MM) + 1.0);
+                "'wirebench stage %s release %.0f --zero-mn=%.2f', which goes up by no more than "
+                "that many mm and knows a slack strand by that reading",
+                result->travel / WB_MM, rig_path, ceil(fabs(result->travel) / WB_MM) + 1.0,
+                result->unloaded / WB_MN);
     else if (result->displaced)
-        wb_warn("the specimen stays as it is; free it with 'wirebench stage %s release'", rig_path);
+        wb_warn("the specimen stays as it is; free it with 'wirebench stage %s release "
+                "--zero-mn=%.2f', which knows a slack strand by that reading",
+                rig_path, result->unloaded / WB_MN);
 }
 
 static void tell_losses(const struct wb_bend_test_result *result)
@@ -135,6 +154,14 @@ static void tell_losses(const struct wb_bend_test_result *result)
                     wb_role_name((enum wb_role)role), result->loss[role].missing,
                     result->loss[role].gaps, result->loss[role].longest_gap);
     }
+}
+
+static void tell_holds(const struct wb_bend_test_result *result)
+{
+    if (result->holds > 0)
+        wb_warn("the test was held %d time%s, for %.0f s in all: the wire relaxed meanwhile, and "
+                "what follows is the curve of a wire with another history",
+                result->holds, result->holds == 1 ? "" : "s", result->held);
 }
 
 static int exit_code(const struct wb_bend_test_result *result, enum wb_status status)
@@ -194,12 +221,14 @@ enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
     wb_record_views_begin(&views, test);
     run(test, &views);
     const enum wb_status status = wb_bend_test_close(test, result);
-    wb_record_views_close(&views);
+    /* While the views are open: from there on a terminal that hangs would be waited for. */
     if (result->end != WB_SEQUENCE_DONE)
         tell_stop(result, request->rig_path);
     tell_losses(result);
+    tell_holds(result);
     if (!result->recorded)
         wb_info("nothing was recorded: '%s' was not kept", request->output_path);
+    wb_record_views_close(&views);
     *code = exit_code(result, status);
     return WB_OK;
 }

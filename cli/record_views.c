@@ -50,6 +50,7 @@ static void open_line(struct wb_record_views *views)
 /* --- opening --- */
 
 static enum wb_status make_plan(struct wb_record_views *views,
+                                const struct wb_record_views_options *options,
                                 const struct wb_bend_test_request *request,
                                 const struct wb_wire *wire)
 {
@@ -63,6 +64,8 @@ static enum wb_status make_plan(struct wb_record_views *views,
              specimen.length / WB_MM, specimen.sample, rig.name);
     views->plan.title = views->title;
     views->plan.recording = request->output_path;
+    views->plan.n_earlier = options->n_earlier;
+    views->plan.earlier = options->earlier;
     wb_live_source_init(&views->source, &views->feed, &rig, &specimen);
     return WB_OK;
 }
@@ -104,7 +107,7 @@ enum wb_status wb_record_views_open(struct wb_record_views *views,
     views->terminal = -1;
     if (!options->live && !options->serve)
         return WB_OK;
-    WB_TRY(make_plan(views, request, wire));
+    WB_TRY(make_plan(views, options, request, wire));
     request->sink = wb_live_source_sink(&views->source);
     if (options->serve)
         WB_TRY(open_page(views, &options->port));

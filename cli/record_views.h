@@ -24,9 +24,11 @@
 #include "live/live_source.h"
 
 struct wb_record_views_options {
-    bool live;  /* the view on the terminal */
-    bool serve; /* the web page, */
-    int port;   /* at this port of 127.0.0.1; 0: a free one, which then stands here */
+    bool live;        /* the view on the terminal */
+    bool serve;       /* the web page, */
+    int port;         /* at this port of 127.0.0.1; 0: a free one, which then stands here */
+    size_t n_earlier; /* points of earlier tests, for both: as of wb_live_plan */
+    const struct wb_live_frame_point *earlier;
 };
 
 struct wb_record_views {

@@ -30,21 +30,22 @@ static struct {
     char waiting[16384];
 } talk = {.descriptor = STDERR_FILENO};
 
-void wb_talk_open(void)
+void wb_talk_open(int shared)
 {
     struct stat status;
+    char path[32];
     memset(&talk, 0, sizeof talk);
-    talk.descriptor = STDERR_FILENO;
-    if (fstat(STDERR_FILENO, &status) != 0)
+    talk.descriptor = shared;
+    if (fstat(shared, &status) != 0)
         return;
     if (S_ISSOCK(status.st_mode))
         talk.way = WAY_SEND;
     if (!S_ISCHR(status.st_mode) && !S_ISFIFO(status.st_mode))
         return;
-    /* Opened anew, because O_NONBLOCK on stderr itself would hold for all who share it, the shell
-     * included. */
-    const int descriptor =
-        open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_APPEND | O_CLOEXEC);
+    /* Opened anew, because O_NONBLOCK on the descriptor itself would hold for all who share it, the
+     * shell included. */
+    snprintf(path, sizeof path, "/proc/self/fd/%d", shared);
+    const int descriptor = open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_APPEND | O_CLOEXEC);
     talk.is_own = descriptor >= 0;
     if (talk.is_own)
         talk.descriptor = descriptor;

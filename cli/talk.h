@@ -11,8 +11,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Begins: nothing waits, nothing is lost yet. */
-void wb_talk_open(void);
+/* Begins on a descriptor, stderr's or stdout's: nothing waits, nothing is lost yet. */
+void wb_talk_open(int descriptor);
 
 /* Says a whole text, such as a message with its newline. False when it was dropped. */
 bool wb_talk_say(const char *text);
@@ -21,7 +21,7 @@ bool wb_talk_say(const char *text);
  * is not worth saying otherwise. */
 bool wb_talk_flush(void);
 
-/* Waits at most `patience_ms` for stderr to take what is left, and ends. */
+/* Waits at most `patience_ms` for the descriptor to take what is left, and ends. */
 void wb_talk_close(int patience_ms);
 
 #endif

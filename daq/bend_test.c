@@ -12,8 +12,10 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "daq/bend_hold.h"
 #include "daq/bend_recording.h"
 #include "daq/check_due.h"
+#include "daq/clamp_watch.h"
 #include "daq/first_force.h"
 #include "daq/first_motion.h"
 #include "daq/force_drop.h"
@@ -34,7 +36,8 @@ enum phase {
     PHASE_TARE,
     PHASE_DOWN,
     PHASE_UP,
-    PHASE_REST
+    PHASE_REST,
+    PHASE_HELD
 };
 
 struct wb_bend_test {
@@ -50,20 +53,28 @@ struct wb_bend_test {
     struct wb_average zero; /* N, of the tare */
     struct wb_tip_watch tip;
     bool motion_agrees; /* the first motion was seen as the stage reported it */
+    struct wb_clamp_watch clamp;
+    uint64_t reports_followed;
     struct wb_first_force first_force;
     enum wb_first_force_verdict force_verdict;
     bool force_told;
     struct wb_force_drop force_drop;      /* of this way down */
     char force_text[WB_START_CHECK_TEXT]; /* why it is wrong */
     bool has_tare;
-    double unloaded; /* N, reading without tension: the tare less what hung on the cell then */
+    struct wb_bend_hold hold;
     struct wb_bend_test_result result;
 };
 
 static const char *const phase_names[] = {
-    [PHASE_CONNECT] = "connecting",  [PHASE_CHECK] = "check",    [PHASE_TARE] = "tare",
-    [PHASE_DOWN] = "down",           [PHASE_UP] = "up",          [PHASE_REST] = "rest",
-    [WB_SEQUENCE_STOP] = "stopping", [WB_SEQUENCE_OVER] = "end",
+    [PHASE_CONNECT] = "connecting",
+    [PHASE_CHECK] = "check",
+    [PHASE_TARE] = "tare",
+    [PHASE_DOWN] = "down",
+    [PHASE_UP] = "up",
+    [PHASE_REST] = "rest",
+    [PHASE_HELD] = "held",
+    [WB_SEQUENCE_STOP] = "stopping",
+    [WB_SEQUENCE_OVER] = "end",
 };
 
 static const struct wb_setting rows[] = {
@@ -87,6 +98,16 @@ static const struct wb_setting rows[] = {
      .option = "travel-mm",
      .argument = "D",
      .help = "How far down from the start position"},
+    {.name = "hold_most_s",
+     .unit = "s",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bend_test_request, hold_most),
+     .least = 1.0,
+     .largest = 86400.0,
+     .fallback = 600.0,
+     .option = "hold-most-s",
+     .argument = "S",
+     .help = "End the test when it is held (key h) for longer"},
 };
 
 const struct wb_setting_table wb_bend_test_table = {.rows = rows, .n = WB_COUNT(rows)};
@@ -133,9 +154,15 @@ static void finish(struct wb_bend_test *test)
     wb_sequence_enter(&test->run, WB_SEQUENCE_OVER);
 }
 
+static double tension_now(const struct wb_bend_test *test)
+{
+    return wb_acquisition_latest(test->run.acquisition)->load.force - test->result.unloaded;
+}
+
 static void step_stop(struct wb_bend_test *test)
 {
     const struct wb_stop *const stop = wb_acquisition_stop_state(test->run.acquisition);
+    wb_bend_hold_end(&test->hold, &test->run, "stopped", tension_now(test));
     test->result.standing = true;
     if (stop->state != WB_STOP_NONE) {
         if (!wb_stop_over(stop))
@@ -195,7 +222,7 @@ static void arm(struct wb_bend_test *test)
     if (!test->has_tare)
         settings.force = 0.0;
     wb_acquisition_arm(test->run.acquisition, &settings, test->run.start_position);
-    wb_acquisition_set_tare(test->run.acquisition, test->unloaded);
+    wb_acquisition_set_tare(test->run.acquisition, test->result.unloaded);
 }
 
 static void step_connect(struct wb_bend_test *test)
@@ -333,12 +360,18 @@ static bool arrived(struct wb_bend_test *test)
     return false;
 }
 
+/* From here on the force must not fall while the stage goes down. */
+static void watch_drop_anew(struct wb_bend_test *test)
+{
+    test->force_drop = (struct wb_force_drop){.noise = test->first_force.noise,
+                                              .share = test->run.rig.limits.force_drop};
+}
+
 static void begin_cycle(struct wb_bend_test *test)
 {
     test->cycle++;
     test->result.started = true;
-    test->force_drop = (struct wb_force_drop){.noise = test->first_force.noise,
-                                              .share = test->run.rig.limits.force_drop};
+    watch_drop_anew(test);
     wb_acquisition_event(test->run.acquisition, "cycle_start", "%d", test->cycle);
     wb_sequence_jog_to(&test->run, test->request.travel, test->run.rig.stage.speed, PHASE_DOWN);
 }
@@ -349,7 +382,7 @@ static void step_tare(struct wb_bend_test *test)
         test->zero.n < LEAST_READINGS)
         return;
     test->result.tare = test->zero.mean;
-    test->unloaded = test->result.tare - wb_rig_tare_load(&test->run.rig);
+    test->result.unloaded = test->result.tare - wb_rig_tare_load(&test->run.rig);
     test->has_tare = true;
     wb_acquisition_event(test->run.acquisition, "tare",
                          "{\"force_N\": %.17g, \"samples\": %" PRId64 ", \"sd_N\": %.17g}",
@@ -383,6 +416,20 @@ static void check_motion(struct wb_bend_test *test)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_MOTION, "%s", text);
 }
 
+/* Once the first motion agreed: does the clamp go on with the stage? */
+static void check_clamp(struct wb_bend_test *test)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
+    char text[WB_START_CHECK_TEXT];
+    if (!test->motion_agrees || latest->stage_reports == test->reports_followed)
+        return;
+    test->reports_followed = latest->stage_reports;
+    if (wb_clamp_watch_add(&test->clamp, &test->tip, latest->stage.t_ns,
+                           wb_sequence_travel(&test->run, latest->stage.position),
+                           uncertain_way(test), text))
+        wb_sequence_give_up(&test->run, WB_INTERLOCK_MOTION, "%s", text);
+}
+
 /* The first force is judged at the reading that completes it, and told here. */
 static void check_force(struct wb_bend_test *test)
 {
@@ -399,20 +446,27 @@ static void check_force(struct wb_bend_test *test)
                              test->first_force.taut / WB_MM);
 }
 
+static void turn(struct wb_bend_test *test)
+{
+    wb_acquisition_event(test->run.acquisition, "turn", "%d", test->cycle);
+    wb_sequence_jog_to(&test->run, 0.0, test->run.rig.stage.speed, PHASE_UP);
+}
+
 static void step_down(struct wb_bend_test *test)
 {
     check_motion(test);
     if (test->run.phase == PHASE_DOWN)
         check_force(test);
-    if (test->run.phase != PHASE_DOWN || !arrived(test))
-        return;
-    wb_acquisition_event(test->run.acquisition, "turn", "%d", test->cycle);
-    wb_sequence_jog_to(&test->run, 0.0, test->run.rig.stage.speed, PHASE_UP);
+    if (test->run.phase == PHASE_DOWN)
+        check_clamp(test);
+    if (test->run.phase == PHASE_DOWN && arrived(test))
+        turn(test);
 }
 
 static void step_up(struct wb_bend_test *test)
 {
-    if (arrived(test))
+    check_clamp(test);
+    if (test->run.phase == PHASE_UP && arrived(test))
         wb_sequence_enter(&test->run, PHASE_REST);
 }
 
@@ -437,13 +491,53 @@ static void step_rest(struct wb_bend_test *test)
     finish(test);
 }
 
+/* --- held by the operator --- */
+
+bool wb_bend_test_hold(struct wb_bend_test *test)
+{
+    const int phase = test->run.phase;
+    if (phase != PHASE_DOWN && phase != PHASE_UP && phase != PHASE_REST)
+        return false;
+    wb_bend_hold_begin(&test->hold, &test->run, PHASE_HELD, phase_names[phase], test->cycle,
+                       tension_now(test));
+    return true;
+}
+
+/* The wire relaxed meanwhile: what is measured from its force begins anew. */
+static void go_on_down(struct wb_bend_test *test)
+{
+    watch_drop_anew(test);
+    if (test->force_verdict == WB_FIRST_FORCE_OPEN)
+        wb_first_force_begin(&test->first_force, wb_average_deviation(&test->zero), &test->run.rig);
+}
+
+bool wb_bend_test_resume(struct wb_bend_test *test)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
+    const int phase = test->hold.phase;
+    if (test->run.phase != PHASE_HELD || !test->hold.stands)
+        return false;
+    wb_bend_hold_end(&test->hold, &test->run, "resumed", tension_now(test));
+    const double left = test->run.target - wb_sequence_travel(&test->run, latest->stage.position);
+    const bool is_there = fabs(left) <= WB_SEQUENCE_TOLERANCE;
+    if (phase == PHASE_DOWN)
+        go_on_down(test);
+    if (phase == PHASE_REST || (phase == PHASE_UP && is_there))
+        wb_sequence_enter(&test->run, PHASE_REST);
+    else if (is_there)
+        turn(test);
+    else
+        wb_sequence_jog_to(&test->run, test->run.target, test->run.rig.stage.speed, phase);
+    return true;
+}
+
 /* --- the samples it sees --- */
 
 /* A specimen that breaks or slips: the stage is held by the reading that shows it. */
 static void watch_drop(struct wb_bend_test *test, const struct wb_load_sample *sample)
 {
     char text[WB_START_CHECK_TEXT];
-    if (wb_force_drop_add(&test->force_drop, sample->force - test->unloaded, text))
+    if (wb_force_drop_add(&test->force_drop, sample->force - test->result.unloaded, text))
         wb_acquisition_stop(test->run.acquisition, WB_INTERLOCK_DROP, text);
 }
 
@@ -455,7 +549,8 @@ static void on_load(void *context, const struct wb_load_sample *sample)
     if (sample->valid && test->run.phase == PHASE_TARE)
         wb_average_add(&test->zero, sample->force);
     if (sample->valid && test->result.started && test->run.phase < WB_SEQUENCE_STOP)
-        test->result.peak_tension = fmax(test->result.peak_tension, sample->force - test->unloaded);
+        test->result.peak_tension =
+            fmax(test->result.peak_tension, sample->force - test->result.unloaded);
     if (sample->valid && test->run.phase == PHASE_DOWN)
         watch_drop(test, sample);
     if (sample->valid && test->run.phase == PHASE_DOWN && test->tip.settled &&
@@ -612,6 +707,9 @@ enum wb_sequence_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeou
     case PHASE_REST:
         step_rest(test);
         break;
+    case PHASE_HELD:
+        wb_bend_hold_step(&test->hold, &test->run, test->request.hold_most);
+        break;
     case WB_SEQUENCE_STOP:
         step_stop(test);
         break;
@@ -638,19 +736,22 @@ static double time_left(const struct wb_bend_test *test, double travel)
     const struct wb_bend_test_request *const request = &test->request;
     const double way = request->travel / test->run.rig.stage.speed;
     const double here = travel / test->run.rig.stage.speed;
-    const double spent = wb_seconds_from_ns(wb_sequence_lasts_ns(&test->run)) *
-                         test->run.rig.time_scale; /* in this phase */
+    const bool is_held = test->run.phase == PHASE_HELD;
+    const int phase = is_held ? test->hold.phase : test->run.phase;
+    const double spent = is_held ? 0.0
+                                 : wb_seconds_from_ns(wb_sequence_lasts_ns(&test->run)) *
+                                       test->run.rig.time_scale; /* in this phase */
     const int cycles = request->cycles - (test->cycle > 0 ? test->cycle : 1);
     double left = cycles * (2.0 * way + request->rest_time);
     if (test->run.end != WB_SEQUENCE_RUNNING || test->run.phase == WB_SEQUENCE_OVER)
         return 0.0;
-    if (test->run.phase == PHASE_UP)
+    if (phase == PHASE_UP)
         left += fmax(here, 0.0) + request->rest_time;
-    else if (test->run.phase == PHASE_REST)
+    else if (phase == PHASE_REST)
         left += fmax(request->rest_time - spent, 0.0);
     else
         left += fmax(way - here, 0.0) + way + request->rest_time;
-    if (test->run.phase == PHASE_TARE)
+    if (phase == PHASE_TARE)
         left += fmax(request->tare_time - spent, 0.0);
     return left / test->run.rig.time_scale;
 }
@@ -663,7 +764,7 @@ void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_st
     status->cycle = test->cycle;
     status->cycles = test->request.cycles;
     status->has_tension = latest->has_load;
-    status->tension = latest->load.force - test->unloaded;
+    status->tension = latest->load.force - test->result.unloaded;
     status->has_travel =
         latest->has_stage && isfinite(test->run.start_position) && isfinite(latest->stage.position);
     if (status->has_travel)
@@ -680,6 +781,9 @@ void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_st
     status->end_text = test->run.text;
     status->peak_tension = test->result.peak_tension;
     status->time_left = status->has_travel ? time_left(test, status->travel) : (double)NAN;
+    status->held = wb_bend_hold_lasts(&test->hold);
+    status->hold_left = test->request.hold_most - status->held;
+    status->hold_stands = test->hold.is_on && test->hold.stands;
     status->latest = latest;
 }
 
@@ -711,6 +815,8 @@ enum wb_status wb_bend_test_close(struct wb_bend_test *test, struct wb_bend_test
     const enum wb_status status = wb_writer_finish(test->writer);
     if (!test->result.recorded)
         unlink(test->output_path);
+    test->result.holds = test->hold.n;
+    test->result.held = test->hold.total;
     test->result.end = test->run.end;
     memcpy(test->result.text, test->run.text, sizeof test->result.text);
     if (result)

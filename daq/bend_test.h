@@ -37,13 +37,14 @@ struct wb_bend_test_request {
     double check_time;                       /* s of rig time the start check looks */
     double tare_time;                        /* s of rig time the tare averages */
     double rest_time;                        /* s of rig time at the end of each cycle: zero load */
+    double hold_most;                        /* s of host time that the operator may hold it */
     struct wb_first_force_bounds stiffness;  /* of this wire at this length; all 0: not known */
 };
 
-/* Rows of its cycles and travel. */
+/* Rows of its cycles, travel and longest hold. */
 extern const struct wb_setting_table wb_bend_test_table;
 
-/* 1 cycle, 53 mm, 6 s, 1 s, 2 s, 2 s; paths NULL. */
+/* 1 cycle, 53 mm, 6 s, 1 s, 2 s, 2 s, 600 s; paths NULL. */
 void wb_bend_test_default_request(struct wb_bend_test_request *request);
 
 /* Reads the specimen that the request names. */
@@ -69,8 +70,17 @@ enum wb_sequence_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeou
 void wb_bend_test_mark(struct wb_bend_test *test, const char *text);
 void wb_bend_test_stop(struct wb_bend_test *test);
 
+/* Holds the test: brakes the stage where it is, on its way or at rest, and goes on recording, with
+ * all limits watched. False, and nothing happens, before the first cycle, while it is held, and
+ * once it ends. A test that is held for longer than the request allows ends as by
+ * wb_bend_test_stop(). */
+bool wb_bend_test_hold(struct wb_bend_test *test);
+/* Goes on with the way that was held. False, and nothing happens, unless the stage stands held. */
+bool wb_bend_test_resume(struct wb_bend_test *test);
+
 struct wb_bend_test_status {
-    const char *phase; /* "connecting", "check", "tare", "down", "up", "rest", "stopping", "end" */
+    const char *phase; /* "connecting", "check", "tare", "down", "up", "rest", "held",
+                          "stopping", "end" */
     int cycle, cycles; /* cycle from 1; 0 before the first */
     bool has_tension, has_travel, has_deflection;
     double tension;    /* N, of the strand; the bare reading before the tare is known */
@@ -87,6 +97,9 @@ struct wb_bend_test_status {
     double peak_tension;      /* N, largest of the cycles so far */
     double time_left; /* s of host time to the end of the last cycle, at the commanded speed; NaN
                          before the start position is known, 0 once the test ends */
+    double held;      /* s of host time since it was asked to hold; NaN where it is not held, */
+    double hold_left; /* and until it ends by itself */
+    bool hold_stands; /* it can be resumed: the stage came to a stand */
     const struct wb_acquisition_latest *latest; /* owned by the test */
 };
 void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_status *status);
@@ -101,7 +114,11 @@ struct wb_bend_test_result {
     bool displaced; /* the stage is not back at the start: the specimen may be loaded */
     int cycles_done;
     double tare;         /* N, mean reading while it was taken */
+    double unloaded;     /* N, reading without tension: the tare less what hung on the cell then;
+                            0 before the tare */
     double peak_tension; /* N, largest of the cycles */
+    int holds;           /* by the operator, */
+    double held;         /* s of host time in all */
     double travel;       /* m, where the stage stands */
     double duration;     /* s of host time */
     uint64_t samples[WB_INTERLOCK_ROLES], bytes, drops;

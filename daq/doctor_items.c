@@ -384,9 +384,10 @@ static void judge_up(const struct look *look)
         add(look, "up axis", WB_DOCTOR_READY, "%c: the wire lies level to it within %.0f degrees",
             up, ceil(tilt / WB_DEGREE));
     else
-        add(look, "up axis", WB_DOCTOR_READY,
-            "the wire lies along x: at rest it tells %c from %c no better; record compares the "
-            "first 2 mm with the stage",
+        add(look, "up axis", WB_DOCTOR_UNKNOWN,
+            "the wire lies along x, and at rest does not tell %c from %c: record compares the "
+            "first 2 mm with the stage; turn the bench or the ground plane by 30 degrees to know "
+            "it here",
             up, other);
 }
 

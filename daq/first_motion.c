@@ -3,38 +3,21 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "base/vec3.h"
-
 #define LEAST_SHARE 0.5
 #define MOST_SHARE 1.5
 #define UPRIGHT 0.7 /* cosine: within 45 degrees of the vertical axis */
-
-/* Of the end that moved more: the clamp's, since the strand holds the other. */
-static double farthest(const struct wb_tip_watch *watch, double moved[3])
-{
-    double size = -1.0;
-    for (int end = 0; end < 2; end++) {
-        double here[3];
-        for (int k = 0; k < 3; k++)
-            here[k] = watch->at[end][k] - watch->rest[end][k].mean;
-        const double length = sqrt(wb_vec3_dot(here, here));
-        if (length <= size)
-            continue;
-        size = length;
-        for (int k = 0; k < 3; k++)
-            moved[k] = here[k];
-    }
-    return size;
-}
 
 bool wb_first_motion_agrees(const struct wb_tip_watch *watch, double travel, double ahead,
                             const struct wb_rig *rig, char text[WB_START_CHECK_TEXT])
 {
     const char up = rig->mocap.up;
+    const int clamp = wb_tip_watch_clamp(watch);
     double moved[3];
     if (!watch->settled)
         return true;
-    const double size = farthest(watch, moved), down = -moved[watch->up];
+    for (int k = 0; k < 3; k++)
+        moved[k] = watch->at[clamp][k] - watch->rest[clamp][k].mean;
+    const double size = wb_tip_watch_moved(watch, clamp), down = -moved[watch->up];
     if (size < LEAST_SHARE * travel)
         snprintf(text, WB_START_CHECK_TEXT,
                  "the stage says that it went %.1f mm, the markers moved by %.2f mm only: does the "

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/config.h"
+#include "base/reads.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -96,6 +97,7 @@ enum wb_status wb_index_read(struct wb_index *index, const char *path, struct wb
     memset(index, 0, sizeof *index);
     struct wb_config *config;
     WB_TRY(wb_config_read(&config, path, why));
+    wb_reads_leave_out(path); /* it grows; what counts are the recordings that are chosen by it */
     const struct wb_config_node *list = wb_config_root(config);
     enum wb_status status = WB_OK;
     if (wb_config_length(list) < 0) {
@@ -171,6 +173,25 @@ void wb_index_exclusion_set_json(const struct wb_index_exclusion *exclusion, str
     wb_json_set_text(excluded, "by", exclusion->by);
     wb_json_set_text(excluded, "reason", exclusion->reason);
     wb_json_set_text(excluded, "date_utc", exclusion->date_utc[0] ? exclusion->date_utc : NULL);
+}
+
+static void copy_text(const struct wb_json *object, const char *key, char *text, size_t size)
+{
+    const char *value = "";
+    (void)wb_json_get_text(object, key, &value);
+    snprintf(text, size, "%s", value);
+}
+
+bool wb_index_exclusion_get_json(struct wb_index_exclusion *exclusion, const struct wb_json *object)
+{
+    const struct wb_json *const excluded = wb_json_get(object, "excluded");
+    *exclusion = (struct wb_index_exclusion){.is_excluded = excluded != NULL};
+    if (!excluded)
+        return false;
+    copy_text(excluded, "by", exclusion->by, sizeof exclusion->by);
+    copy_text(excluded, "reason", exclusion->reason, sizeof exclusion->reason);
+    copy_text(excluded, "date_utc", exclusion->date_utc, sizeof exclusion->date_utc);
+    return true;
 }
 
 /* --- writing --- */

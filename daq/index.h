@@ -101,6 +101,10 @@ void wb_index_exclusion_describe(const struct wb_index_exclusion *exclusion,
 void wb_index_exclusion_set_json(const struct wb_index_exclusion *exclusion,
                                  struct wb_json *object);
 
+/* Reads that member; false where the object has none. */
+bool wb_index_exclusion_get_json(struct wb_index_exclusion *exclusion,
+                                 const struct wb_json *object);
+
 /* Adds an entry at the end of an index file, which is begun where there is none; what stands in it
  * stays as it is, comments included. The file is replaced as a whole. WB_ERR_EXISTS when the file
  * lists that name already. */

@@ -9,7 +9,8 @@
  * LEVEL_OVER. */
 #define LEVEL_SHARE 1e-3
 #define LEVEL_OVER (0.5 * WB_MM)
-#define SLACK_SHARE 0.25 /* of the capacity: what may hang on the cell when the strand is slack */
+#define LOOSE_SHARE 0.25 /* of the capacity: what may hang on a cell whose zero is not known */
+#define ZERO_SHARE 0.02  /* of the capacity: how far a known zero may have drifted */
 #define CERTAINTY 3.0    /* standard errors */
 
 #define STEP (1.0 * WB_MM)
@@ -21,12 +22,13 @@
 #define GROUP_NS (150 * WB_NS_PER_MS)
 #define GROUPS_MAX 16 /* a reading that does not calm down is taken as it is then */
 
-void wb_release_init(struct wb_release *release, const struct wb_rig *rig)
+void wb_release_init(struct wb_release *release, const struct wb_rig *rig, double zero)
 {
     memset(release, 0, sizeof *release);
     const double scale = rig->time_scale > 0.0 ? rig->time_scale : 1.0;
     release->noise = rig->load_cell.noise;
     release->capacity = rig->load_cell.capacity;
+    release->zero = zero;
     release->settle_ns = wb_ns_from_seconds(2.0 * rig->load_cell.filter_delay / scale);
     release->group_ns = (int64_t)((double)GROUP_NS / scale);
 }
@@ -142,10 +144,14 @@ void wb_release_add(struct wb_release *release, const struct wb_load_sample *sam
     memset(now, 0, sizeof *now);
 }
 
-/* Neither near zero nor level: NaN compares false. */
+/* What a slack strand may leave on the cell. The force of an overloaded cell, NaN, is neither that
+ * nor level: it compares false. */
 static bool near_zero(const struct wb_release *release, const struct wb_release_place *place)
 {
-    return fabs(place->force) <= SLACK_SHARE * release->capacity;
+    if (!isfinite(release->zero))
+        return fabs(place->force) <= LOOSE_SHARE * release->capacity;
+    return fabs(place->force - release->zero) <=
+           ZERO_SHARE * release->capacity + CERTAINTY * place->error;
 }
 
 /* True when the reading falls by less than a slack strand's may, even if chance hides a part. */
@@ -167,8 +173,11 @@ enum wb_release_verdict wb_release_judge(const struct wb_release *release)
         const double way = fabs(here->travel - there->travel);
         const bool both_near = near_zero(release, here) && near_zero(release, there);
         const double enough = both_near ? WB_RELEASE_LEVEL_WAY : WB_RELEASE_STUCK_WAY;
-        if (way >= enough && is_level(release, here, there))
-            return both_near ? WB_RELEASE_SLACK : WB_RELEASE_STUCK;
+        if (way < enough || !is_level(release, here, there))
+            continue;
+        if (!both_near)
+            return WB_RELEASE_STUCK;
+        return isfinite(release->zero) ? WB_RELEASE_SLACK : WB_RELEASE_LEVEL;
     }
     return WB_RELEASE_GO_UP;
 }

@@ -2,7 +2,10 @@
  * at the rests say whether the load still falls. Only readings of a clamp that stands are used, so
  * their delay does not matter. Knows no instrument and no clock.
  *
- *     wb_release_init(&release, &rig);
+ * A load that no longer falls is not enough: a clamp that jams leaves the wire bent, and the
+ * reading as level as a slack strand does. Only a reading at the cell's zero tells the two apart.
+ *
+ *     wb_release_init(&release, &rig, zero);
  *     wb_release_rest(&release, travel, t_ns);             the clamp stands since then
  *     wb_release_add(&release, &sample);                   every reading
  *     switch (wb_release_judge(&release)) ...
@@ -19,7 +22,9 @@
 enum wb_release_verdict {
     WB_RELEASE_LISTEN, /* this rest needs more readings */
     WB_RELEASE_GO_UP,  /* the load may still fall: one step further */
-    WB_RELEASE_SLACK,  /* the reading stays level near zero: the specimen is free */
+    WB_RELEASE_SLACK,  /* the reading stays level at the cell's zero: the specimen is free */
+    WB_RELEASE_LEVEL,  /* it stays level, and the cell's zero is not known: slack, or a clamp that
+                          does not go with the stage */
     WB_RELEASE_STUCK   /* it stays level far from zero: going on would change nothing */
 };
 
@@ -42,6 +47,7 @@ struct wb_release_place { /* what was read at a rest */
 /* All of it is private. */
 struct wb_release {
     double noise, capacity;      /* N */
+    double zero;                 /* N; NaN: not known */
     int64_t settle_ns, group_ns; /* until the filter follows; a group of readings lasts so long */
     int64_t rest_ns;             /* the clamp stands since */
     double travel;               /* m, of this rest */
@@ -53,7 +59,9 @@ struct wb_release {
     struct wb_release_place places[WB_RELEASE_RESTS]; /* the newest first */
 };
 
-void wb_release_init(struct wb_release *release, const struct wb_rig *rig);
+/* `zero` (N) is what the cell reads with a slack strand, such as a recording's tare; NaN where that
+ * is not known: the verdict is then never WB_RELEASE_SLACK. */
+void wb_release_init(struct wb_release *release, const struct wb_rig *rig, double zero);
 
 /* The clamp stands at `travel` (m, any origin) since t_ns. */
 void wb_release_rest(struct wb_release *release, double travel, int64_t t_ns);

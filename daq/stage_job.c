@@ -220,7 +220,7 @@ static void begin_motion(struct wb_stage_job *job)
         job->reach = fabs(distance) > 0.0 ? fmin(fabs(distance), job->run.rig.stage.travel)
                                           : longest_test(&job->run.rig);
         job->most = job->reach;
-        wb_release_init(&job->release, &job->run.rig);
+        wb_release_init(&job->release, &job->run.rig, job->request.zero);
         rest(job, 0.0);
         return;
     }
@@ -411,10 +411,45 @@ static void step_move(struct wb_stage_job *job)
     }
 }
 
+/* Release: the reading is level, and not known to be that of a slack strand. */
+static void end_level(struct wb_stage_job *job, enum wb_release_verdict verdict)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
+    const double up = -wb_sequence_travel(&job->run, latest->stage.position) / WB_MM;
+    const double force = wb_release_force(&job->release) / WB_MN;
+    const double zero = job->request.zero / WB_MN;
+    if (verdict == WB_RELEASE_LEVEL)
+        wb_sequence_set_end(
+            &job->run, WB_SEQUENCE_STILL_LOADED,
+            "went up by %.2f mm, and the reading no longer changes (%.2f mN). Either the strand is "
+            "slack, or the clamp does not go with the stage and the wire is still bent: look at "
+            "the strand before you touch the specimen. If it hangs slack the specimen is free. "
+            "With the cell's zero (--zero-mn, which record says after a stop) release tells them "
+            "apart",
+            up, force);
+    else if (isfinite(zero))
+        wb_sequence_set_end(
+            &job->run, WB_SEQUENCE_STILL_LOADED,
+            "went up by %.2f mm, but the reading stays at %.2f mN, where a slack strand leaves "
+            "%.2f mN (--zero-mn): the wire is still bent and the clamp does not go with the "
+            "stage, or something else hangs on the cell, or it was zeroed since. Look at the "
+            "clamp and the strand before you touch the specimen",
+            up, force, zero);
+    else
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_STILL_LOADED,
+                            "went up by %.2f mm, but the reading stays at %.2f mN, more than a "
+                            "slack strand leaves on the load cell: does the clamp go with the "
+                            "stage? Look at it, at the strand and at what hangs on the cell "
+                            "before you touch the specimen, then jog",
+                            up, force);
+    end_release(job);
+}
+
 static void step_rest(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
-    switch (wb_release_judge(&job->release)) {
+    const enum wb_release_verdict verdict = wb_release_judge(&job->release);
+    switch (verdict) {
     case WB_RELEASE_LISTEN:
         if (wb_sequence_lasts_ns(&job->run) > REST_NS)
             wb_sequence_give_up(
@@ -435,15 +470,9 @@ static void step_rest(struct wb_stage_job *job)
                             "the strand is slack: the specimen is free");
         end_release(job);
         break;
+    case WB_RELEASE_LEVEL:
     case WB_RELEASE_STUCK:
-        wb_sequence_set_end(
-            &job->run, WB_SEQUENCE_STILL_LOADED,
-            "went up by %.2f mm, but the reading stays at %.2f mN, more than a slack "
-            "strand leaves on the load cell: look at the strand and what hangs on the "
-            "cell, then jog",
-            -wb_sequence_travel(&job->run, latest->stage.position) / WB_MM,
-            wb_release_force(&job->release) / WB_MN);
-        end_release(job);
+        end_level(job, verdict);
         break;
     }
 }

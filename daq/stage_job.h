@@ -21,16 +21,18 @@ enum wb_stage_job_kind {
     WB_STAGE_JOB_JOG,    /* by `distance` */
     WB_STAGE_JOB_UNLOCK, /* to idle without a motion, whatever it does: a reset, which also stops a
                             motion of somebody else's, then $X */
-    /* Out of hold or alarm, then slowly up (half the rig's speed), step by step, until the strand
-     * is slack: the reading of the standing stage stays level over 0.75 mm near zero. */
+    /* Out of hold or alarm, then slowly up (half the rig's speed), step by step, until the reading
+     * of the standing stage stays level over 0.75 mm. The strand is slack where that is the cell's
+     * zero; where the zero is not known, somebody has to look. */
     WB_STAGE_JOB_RELEASE
 };
 
 struct wb_stage_job_request {
     enum wb_stage_job_kind kind;
-    double distance;        /* m: of a jog, positive down; of a release the most it goes up, 0: the
-                               longest way that a test may go down */
-    double speed;           /* m/s; 0: the rig's, of a release half of it */
+    double distance; /* m: of a jog, positive down; of a release the most it goes up, 0: the
+                        longest way that a test may go down */
+    double speed;    /* m/s; 0: the rig's, of a release half of it */
+    double zero;     /* N, release: what the cell reads with a slack strand; NaN: not known */
     bool without_load_cell; /* move blindly: the cell is not connected */
     double connect_timeout; /* s of host time; 0: 6 s */
 };

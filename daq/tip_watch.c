@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/units.h"
+#include "base/vec3.h"
 #include "daq/marker_check.h"
 
 #define SMOOTHING 0.1
@@ -15,6 +16,8 @@ static bool follow_ends(struct wb_tip_watch *watch, const struct wb_mocap_frame 
         double *const at = watch->at[end];
         const int found = wb_marker_check_nearest(frame, at, WB_MARKER_CHECK_REACH);
         both = both && found >= 0;
+        if (found >= 0)
+            watch->seen_ns[end] = frame->t_ns;
         for (int k = 0; found >= 0 && k < 3; k++)
             at[k] = (double)frame->markers[found].position[k];
     }
@@ -54,4 +57,17 @@ void wb_tip_watch_follow(struct wb_tip_watch *watch, const struct wb_mocap_frame
     const double now = fabs((watch->at[1][up] - watch->rest[1][up].mean) -
                             (watch->at[0][up] - watch->rest[0][up].mean));
     watch->deflection += SMOOTHING * (now - watch->deflection);
+}
+
+double wb_tip_watch_moved(const struct wb_tip_watch *watch, int end)
+{
+    double way[3];
+    for (int k = 0; k < 3; k++)
+        way[k] = watch->at[end][k] - watch->rest[end][k].mean;
+    return sqrt(wb_vec3_dot(way, way));
+}
+
+int wb_tip_watch_clamp(const struct wb_tip_watch *watch)
+{
+    return wb_tip_watch_moved(watch, 1) > wb_tip_watch_moved(watch, 0);
 }

@@ -6,17 +6,31 @@
 
 /* A limit so many times beyond the data would press them flat. */
 #define NEAR_LIMIT 1.4
+#define NO_CYCLE (-1)
+
+/* What the axes have to hold, m and N. */
+struct extent {
+    double deflection, lowest, force;
+};
+
+static void hold_points(struct extent *extent, const struct wb_live_frame_point *points, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        extent->deflection = fmax(extent->deflection, (double)points[i].deflection);
+        extent->lowest = fmin(extent->lowest, (double)points[i].force);
+        extent->force = fmax(extent->force, (double)points[i].force);
+    }
+}
 
 void wb_live_chart_range(struct wb_live_chart *chart, const struct wb_live_plan *plan,
                          const struct wb_live_history *history)
 {
-    double deflection, force, lowest = 0.0;
-    wb_live_history_largest(history, &deflection, &force);
-    deflection = fmax(deflection, plan->travel);
+    struct extent extent = {.deflection = plan->travel};
+    hold_points(&extent, history->points, history->n_points);
+    hold_points(&extent, plan->earlier, plan->n_earlier);
+    double deflection = extent.deflection, force = extent.force;
     for (int i = 0; i < plan->n_predicted; i++)
         force = fmax(force, plan->tension[i]);
-    for (size_t i = 0; i < history->n_points; i++)
-        lowest = fmin(lowest, (double)history->points[i].force);
     if (!(force > 0.0))
         force = plan->force_limit > 0.0 ? plan->force_limit : 1.0 * WB_MN;
     chart->shows_force_limit = plan->force_limit > 0.0 && plan->force_limit <= NEAR_LIMIT * force;
@@ -25,7 +39,7 @@ void wb_live_chart_range(struct wb_live_chart *chart, const struct wb_live_plan 
     if (plan->travel_limit > 0.0 && plan->travel_limit <= NEAR_LIMIT * deflection)
         deflection = fmax(deflection, plan->travel_limit);
     wb_scale_fit(&chart->deflection, 0.0, deflection / WB_MM, false);
-    wb_scale_fit(&chart->force, lowest / WB_MN, force / WB_MN, false);
+    wb_scale_fit(&chart->force, extent.lowest / WB_MN, force / WB_MN, false);
     wb_scale_place_ticks(&chart->deflection, 7);
     wb_scale_place_ticks(&chart->force, 6);
 }
@@ -56,6 +70,23 @@ static void draw_limits(const struct wb_live_chart *chart, const struct wb_live_
     }
 }
 
+/* Curves of points with one number; that of `bright` stands out. */
+static void draw_points(const struct wb_live_chart *chart, struct wb_live_raster *raster,
+                        const struct wb_live_frame_point *points, size_t n, int bright)
+{
+    double before[2] = {0.0, 0.0}, dot[2];
+    for (size_t i = 0; i < n; i++) {
+        const struct wb_live_frame_point *const point = &points[i];
+        find_dot(chart, raster, (double)point->deflection, (double)point->force, dot);
+        if (i > 0 && points[i - 1].cycle == point->cycle)
+            wb_live_raster_line(
+                raster, before, dot,
+                point->cycle == bright ? WB_LIVE_RASTER_NOW : WB_LIVE_RASTER_EARLIER, 1);
+        before[0] = dot[0];
+        before[1] = dot[1];
+    }
+}
+
 void wb_live_chart_draw(const struct wb_live_chart *chart, const struct wb_live_plan *plan,
                         const struct wb_live_history *history, struct wb_live_raster *raster)
 {
@@ -69,16 +100,8 @@ void wb_live_chart_draw(const struct wb_live_chart *chart, const struct wb_live_
         before[0] = dot[0];
         before[1] = dot[1];
     }
-    for (size_t i = 0; i < history->n_points; i++) {
-        const struct wb_live_frame_point *const point = &history->points[i];
-        find_dot(chart, raster, (double)point->deflection, (double)point->force, dot);
-        if (i > 0 && history->points[i - 1].cycle == point->cycle)
-            wb_live_raster_line(raster, before, dot,
-                                point->cycle == cycle ? WB_LIVE_RASTER_NOW : WB_LIVE_RASTER_EARLIER,
-                                1);
-        before[0] = dot[0];
-        before[1] = dot[1];
-    }
+    draw_points(chart, raster, plan->earlier, plan->n_earlier, NO_CYCLE);
+    draw_points(chart, raster, history->points, history->n_points, cycle);
 }
 
 void wb_live_chart_wire(const struct wb_live_plan *plan, const struct wb_live_frame *frame,

@@ -14,12 +14,12 @@ struct wb_live_chart {
     bool shows_force_limit;            /* it is near enough to be within the axis */
 };
 
-/* Ranges that hold the curve, the prediction, the way of the stage, and the limits as far as they
- * are near. */
+/* Ranges that hold the curve, those of earlier tests, the prediction, the way of the stage, and the
+ * limits as far as they are near. */
 void wb_live_chart_range(struct wb_live_chart *chart, const struct wb_live_plan *plan,
                          const struct wb_live_history *history);
 
-/* Draws limits, prediction, earlier cycles and this one. */
+/* Draws limits, prediction, earlier tests and cycles, and this cycle. */
 void wb_live_chart_draw(const struct wb_live_chart *chart, const struct wb_live_plan *plan,
                         const struct wb_live_history *history, struct wb_live_raster *raster);
 

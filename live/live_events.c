@@ -102,14 +102,25 @@ static void append_state(struct wb_text *text, const struct wb_live_history *his
 }
 
 /* [cycle, mm, mN] each; numbers only, and many: written directly. */
+static void append_list(struct wb_text *text, const struct wb_live_frame_point *points, size_t n)
+{
+    wb_text_append(text, "[");
+    for (size_t i = 0; i < n; i++)
+        wb_text_append(text, "%s[%d,%.5g,%.5g]", i > 0 ? "," : "", points[i].cycle,
+                       (double)points[i].deflection / WB_MM, (double)points[i].force / WB_MN);
+    wb_text_append(text, "]}\n\n");
+}
+
 static void append_points(struct wb_text *text, const struct wb_live_history *history, size_t from)
 {
-    wb_text_append(text, "event: points\ndata: {\"from\": %zu, \"points\": [", from);
-    for (size_t i = from; i < history->n_points; i++)
-        wb_text_append(text, "%s[%d,%.5g,%.5g]", i > from ? "," : "", history->points[i].cycle,
-                       (double)history->points[i].deflection / WB_MM,
-                       (double)history->points[i].force / WB_MN);
-    wb_text_append(text, "]}\n\n");
+    wb_text_append(text, "event: points\ndata: {\"from\": %zu, \"points\": ", from);
+    append_list(text, history->points + from, history->n_points - from);
+}
+
+static void append_earlier(struct wb_text *text, const struct wb_live_plan *plan)
+{
+    wb_text_append(text, "event: earlier\ndata: {\"points\": ");
+    append_list(text, plan->earlier, plan->n_earlier);
 }
 
 static void append_messages(struct wb_text *text, const struct wb_live_history *history, int from)
@@ -133,6 +144,8 @@ void wb_live_events_append(struct wb_live_events_cursor *cursor, const struct wb
 {
     if (!cursor->has_plan)
         append_plan(text, plan);
+    if (!cursor->has_plan && plan->n_earlier > 0)
+        append_earlier(text, plan);
     cursor->has_plan = true;
     if (cursor->thinned != history->n_thinned)
         cursor->points = 0;

@@ -31,7 +31,8 @@ enum wb_live_frame_word {
     WB_LIVE_FRAME_CONNECTING, /* instruments are waited for */
     WB_LIVE_FRAME_READY,      /* they answer; start check and tare */
     WB_LIVE_FRAME_TESTING,
-    WB_LIVE_FRAME_HELD,    /* stopped by a limit or the operator; the stage stands */
+    WB_LIVE_FRAME_HELD,    /* by the operator, who may go on with it */
+    WB_LIVE_FRAME_STOPPED, /* ended by a limit or the operator; the stage stands */
     WB_LIVE_FRAME_FAULTED, /* it failed, or the stage did not confirm that it stands */
     WB_LIVE_FRAME_DONE
 };
@@ -56,7 +57,7 @@ struct wb_live_frame {
     uint64_t points_dropped; /* of the curve, for the same reason */
     enum wb_live_frame_word word;
     char phase[16];                /* as in struct wb_bend_test_status */
-    char text[WB_LIVE_FRAME_TEXT]; /* why the test ended; "" while it runs */
+    char text[WB_LIVE_FRAME_TEXT]; /* why the test ended or how it is held; "" while it runs */
     int32_t cycle, cycles;
     double elapsed, time_left; /* s of host time */
     double force, peak, deflection, travel;
@@ -81,9 +82,11 @@ struct wb_live_frame_message {
     char text[WB_LIVE_FRAME_TEXT];
 };
 
+#define WB_LIVE_FRAME_KEYS "mhrq" /* mark, hold, resume, stop */
+
 struct wb_live_frame_key {
     struct wb_live_frame_header header;
-    int32_t key; /* 'm' or 'q' */
+    int32_t key; /* one of WB_LIVE_FRAME_KEYS */
 };
 
 /* A header for a packet of this kind. */
@@ -101,12 +104,12 @@ static inline bool wb_live_frame_is(const struct wb_live_frame_header *header, l
            header->version == WB_LIVE_FRAME_VERSION && header->size == size;
 }
 
-/* The word as people read it: "connecting", "ready", "test in progress", "held", "faulted",
- * "done". */
+/* The word as people read it: "connecting", "ready", "test in progress", "held", "stopped",
+ * "faulted", "done". */
 static inline const char *wb_live_frame_word(enum wb_live_frame_word word)
 {
-    static const char *const words[] = {"connecting", "ready",   "test in progress",
-                                        "held",       "faulted", "done"};
+    static const char *const words[] = {
+        "connecting", "ready", "test in progress", "held", "stopped", "faulted", "done"};
     return words[word];
 }
 

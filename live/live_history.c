@@ -74,16 +74,6 @@ bool wb_live_history_receive(struct wb_live_history *history, int socket)
     return false;
 }
 
-void wb_live_history_largest(const struct wb_live_history *history, double *deflection,
-                             double *force)
-{
-    *deflection = *force = 0.0;
-    for (size_t i = 0; i < history->n_points; i++) {
-        *deflection = fmax(*deflection, (double)history->points[i].deflection);
-        *force = fmax(*force, (double)history->points[i].force);
-    }
-}
-
 void wb_live_history_release(struct wb_live_history *history)
 {
     free(history->points);

@@ -37,10 +37,6 @@ bool wb_live_history_receive(struct wb_live_history *history, int socket);
  * on a network drive; only the view waits. */
 void wb_live_history_look_at_disk(struct wb_live_history *history, const char *recording);
 
-/* Largest deflection and force of the curve so far, 0 without points. */
-void wb_live_history_largest(const struct wb_live_history *history, double *deflection,
-                             double *force);
-
 void wb_live_history_release(struct wb_live_history *history);
 
 #endif

@@ -80,8 +80,9 @@ static int word_colour(enum wb_live_frame_word word)
 {
     switch (word) {
     case WB_LIVE_FRAME_CONNECTING:
-        return PAIR_WARN;
     case WB_LIVE_FRAME_HELD:
+        return PAIR_WARN;
+    case WB_LIVE_FRAME_STOPPED:
     case WB_LIVE_FRAME_FAULTED:
         return PAIR_BAD;
     default:
@@ -192,7 +193,7 @@ static void draw_legend(const struct wb_live_screen *screen, const struct box *b
     const int end = box->column + box->columns;
     put(box->row, column, end - column, COLOR_PAIR(PAIR_NOW) | A_BOLD, "this cycle");
     column += 12;
-    if (screen->history->frame.cycle > 1) {
+    if (screen->history->frame.cycle > 1 || screen->plan->n_earlier > 0) {
         put(box->row, column, end - column, COLOR_PAIR(PAIR_FAINT), "earlier");
         column += 9;
     }
@@ -395,12 +396,20 @@ static void draw_messages(const struct wb_live_screen *screen, const struct box 
     }
 }
 
-static void draw_keys(void)
+static void draw_keys(const struct wb_live_screen *screen)
 {
+    const bool is_held = screen->history->frame.word == WB_LIVE_FRAME_HELD;
     attron(COLOR_PAIR(PAIR_TITLE));
     mvhline(LINES - 1, 0, ' ', COLS);
     attroff(COLOR_PAIR(PAIR_TITLE));
-    put(LINES - 1, 1, COLS - 2, COLOR_PAIR(PAIR_TITLE), "m  mark this moment    q  stop the test");
+    if (COLS < 54) {
+        put(LINES - 1, 1, COLS - 2, COLOR_PAIR(PAIR_TITLE),
+            is_held ? "q stop  r resume  m mark" : "q stop  h hold  m mark");
+        return;
+    }
+    put(LINES - 1, 1, COLS - 2, COLOR_PAIR(PAIR_TITLE),
+        is_held ? "m  mark this moment    r  resume    q  stop the test"
+                : "m  mark this moment    h  hold    q  stop the test");
 }
 
 /* --- all of it --- */
@@ -437,6 +446,6 @@ void wb_live_screen_draw(const struct wb_live_screen *screen)
         draw_panel(screen, &(struct box){3, COLS - panel, rows, panel});
         draw_messages(screen, &(struct box){LINES - 1 - n_messages, 0, n_messages, COLS});
     }
-    draw_keys();
+    draw_keys(screen);
     refresh();
 }

@@ -26,7 +26,8 @@ static void on_load(void *context, const struct wb_load_sample *sample)
     if (!source->test || !sample->valid || sample->t_ns < source->point_ns)
         return;
     wb_bend_test_status(source->test, &status);
-    if (status.cycle == 0 || !status.has_deflection || status.end != WB_SEQUENCE_RUNNING)
+    if (status.cycle == 0 || !status.has_deflection || status.end != WB_SEQUENCE_RUNNING ||
+        isfinite(status.held))
         return;
     source->point_ns = sample->t_ns + source->point_interval_ns;
     wb_live_feed_add_point(source->feed,
@@ -52,10 +53,26 @@ static enum wb_live_frame_word find_word(const struct wb_bend_test_status *statu
     if (status->end == WB_SEQUENCE_DONE)
         return WB_LIVE_FRAME_DONE;
     if (status->end != WB_SEQUENCE_RUNNING)
+        return WB_LIVE_FRAME_STOPPED;
+    if (isfinite(status->held))
         return WB_LIVE_FRAME_HELD;
     if (status->cycle > 0)
         return WB_LIVE_FRAME_TESTING;
     return status->is_connected ? WB_LIVE_FRAME_READY : WB_LIVE_FRAME_CONNECTING;
+}
+
+static void fill_text(const struct wb_bend_test_status *status, char text[WB_LIVE_FRAME_TEXT])
+{
+    const bool is_held = isfinite(status->held) && status->end == WB_SEQUENCE_RUNNING;
+    if (is_held && !status->hold_stands)
+        snprintf(text, WB_LIVE_FRAME_TEXT, "the stage comes to a stand");
+    else if (is_held)
+        snprintf(text, WB_LIVE_FRAME_TEXT,
+                 "held at %.2f mm for %.0f s: r goes on, q ends the test; it ends by itself in "
+                 "%.0f s",
+                 status->travel / WB_MM, status->held, fmax(status->hold_left, 0.0));
+    else
+        snprintf(text, WB_LIVE_FRAME_TEXT, "%.*s", WB_LIVE_FRAME_TEXT - 1, status->end_text);
 }
 
 static void fill_streams(const struct wb_acquisition_latest *latest, struct wb_live_frame *frame)
@@ -100,7 +117,7 @@ void wb_live_source_fill(const struct wb_live_source *source, struct wb_live_fra
     memset(frame, 0, sizeof *frame);
     frame->word = find_word(&status);
     snprintf(frame->phase, sizeof frame->phase, "%s", status.phase);
-    snprintf(frame->text, sizeof frame->text, "%.*s", WB_LIVE_FRAME_TEXT - 1, status.end_text);
+    fill_text(&status, frame->text);
     frame->cycle = status.cycle;
     frame->cycles = status.cycles;
     frame->elapsed = status.elapsed;

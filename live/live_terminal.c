@@ -43,7 +43,7 @@ static void send_key(int socket, int key)
 static void handle_keys(int socket)
 {
     for (int key = getch(); key != ERR; key = getch()) {
-        if (key == 'm' || key == 'q')
+        if (key > 0 && key < 128 && strchr(WB_LIVE_FRAME_KEYS, key))
             send_key(socket, key);
         else if (key == KEY_RESIZE)
             clear();

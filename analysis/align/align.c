@@ -98,6 +98,7 @@ static enum wb_status add_shape(struct wb_align *align, const struct wb_align_ro
             .s = align->specimen.markers[k],
             .x = rounded(row->x[k]),
             .y = rounded(row->y[k]),
+            .z = (double)NAN, /* the frame is the plane of bending */
         };
         WB_TRY(wb_dataset_add_shape_row(align->dataset, &shape));
     }
@@ -144,7 +145,9 @@ static void describe_rows(struct wb_align *align)
     size_t n_gaps = 0;
     double longest = 0.0, largest = 0.0;
     for (size_t i = 0; i < align->n_rows; i++) {
-        const double gap = i > 0 ? align->rows[i].t - align->rows[i - 1].t : 0.0;
+        const bool is_next =
+            i > 0 && !wb_align_is_held(align, align->rows[i - 1].t, align->rows[i].t);
+        const double gap = is_next ? align->rows[i].t - align->rows[i - 1].t : 0.0;
         n_gaps += gap > most;
         longest = fmax(longest, gap);
         largest = fmax(largest, align->rows[i].tip_y);
@@ -156,6 +159,8 @@ static void describe_rows(struct wb_align *align)
     wb_json_set_integer(rows, "rows", (int64_t)align->dataset->n_rows);
     wb_json_set_integer(rows, "shape_rows", (int64_t)align->dataset->n_shape_rows);
     wb_json_set_integer(rows, "left_out", (int64_t)align->n_dropped_rows);
+    if (align->n_holds > 0)
+        wb_json_set_integer(rows, "held", (int64_t)align->n_held_rows);
     wb_json_set_integer(rows, "gaps", (int64_t)n_gaps);
     wb_align_set(rows, "longest_gap_s", longest);
     wb_align_set(rows, "deflection_level_uncertainty_mm",
@@ -183,6 +188,7 @@ static enum wb_status run(struct wb_align *align,
     WB_TRY(wb_align_natural(align));
     WB_TRY(export_rows(align));
     describe_rows(align);
+    wb_align_describe_holds(align);
     return WB_OK;
 }
 

@@ -3,6 +3,7 @@
  * The order: align_recording.c decodes the recording and puts everything on the bench's clock,
  * align_given.c tells how files that were given differ from what was recorded,
  * align_rows.c makes rows of it in the clamp's frame, compares the stage and cuts cycles,
+ * align_holds.c tells which were made while the operator held the test,
  * align_force.c turns readings into tension and force, align_natural.c finds the natural shape, and
  * align.c, which calls them all, fills the dataset. align_report.c, which all call, writes what was
  * done into dataset.json.
@@ -21,6 +22,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/status.h"
+#include "daq/bend_hold.h"
 #include "daq/clock.h"
 #include "daq/recording.h"
 #include "daq/replay.h"
@@ -72,6 +74,7 @@ struct wb_align_zero {
 };
 #define WB_ALIGN_MAX_ZEROS 64
 #define WB_ALIGN_MAX_SEGMENTS 64
+#define WB_ALIGN_MAX_HOLDS 64
 
 struct wb_align {
     struct wb_align_settings settings;
@@ -105,9 +108,11 @@ struct wb_align {
     long tare_samples;
     int64_t tare_ns, start_ns;
     int n_cycle_starts;
-    bool is_cut_short;    /* not done to its end, or parts are damaged */
-    char stop_reason[64]; /* text of the event `stop` */
+    bool is_cut_short;     /* not done to its end, or parts are damaged */
+    char stop_reason[384]; /* text of the event `stop` */
     unsigned n_lost, n_drops;
+    int n_holds; /* by the operator */
+    struct wb_bend_hold_told holds[WB_ALIGN_MAX_HOLDS];
 
     /* Times. */
     int64_t zero_ns;                               /* host time of bench time 0 */
@@ -126,6 +131,7 @@ struct wb_align {
     size_t n_rows;
     struct wb_align_row *rows; /* owned */
     size_t n_dropped_rows;     /* bins that had frames but no row */
+    size_t n_held_rows;        /* bins of holds, of which no row is made */
     int n_cycles;
 
     /* Force. */
@@ -164,6 +170,15 @@ WB_MUST_CHECK enum wb_status
 wb_align_run_from(struct wb_dataset *dataset, const struct wb_align_settings *settings,
                   enum wb_status (*load)(struct wb_align *align, const void *context),
                   const void *context, struct wb_reason *why);
+
+/* Bench time of a host time, s. */
+double wb_align_bench_time(const struct wb_align *align, int64_t host_ns);
+
+/* Whether the operator held the test at some time between two bench times. */
+bool wb_align_is_held(const struct wb_align *align, double from, double to);
+
+/* Writes the holds into the checks, and warns of those of a bent wire. */
+void wb_align_describe_holds(struct wb_align *align);
 
 /* How well zero deflection is known, m: the offsets of the clamp's and the tip's marker, and the
  * vertical over the wire's length. */

@@ -194,6 +194,29 @@ static enum wb_status take_tare(struct wb_align *align, const struct wb_event *e
     return WB_OK;
 }
 
+static void take_hold(struct wb_align *align, const struct wb_event *event)
+{
+    const bool begins = strcmp(event->kind, WB_BEND_HOLD_START) == 0;
+    struct wb_bend_hold_told told;
+    if (begins && align->n_holds == WB_ALIGN_MAX_HOLDS) {
+        wb_align_warn(align,
+                      "the test was held more than %d times: the rows of the later holds are "
+                      "taken for motion",
+                      WB_ALIGN_MAX_HOLDS);
+        return;
+    }
+    if (!begins && align->n_holds == 0)
+        return;
+    if (!begins)
+        told = align->holds[align->n_holds - 1];
+    if (wb_bend_hold_read(event, &told) != WB_OK) {
+        wb_align_warn(align, "an event %s is not understood: '%.100s'", event->kind, event->text);
+        return;
+    }
+    align->n_holds += begins;
+    align->holds[align->n_holds - 1] = told;
+}
+
 static enum wb_status take_event(void *context, const struct wb_event *event)
 {
     struct wb_align *const align = context;
@@ -205,9 +228,12 @@ static enum wb_status take_event(void *context, const struct wb_event *event)
         align->has_start = true;
         align->n_cycle_starts++;
     } else if (strcmp(event->kind, "stop") == 0) {
-        snprintf(align->stop_reason, sizeof align->stop_reason, "%.60s", event->text);
+        snprintf(align->stop_reason, sizeof align->stop_reason, "%.383s", event->text);
         if (strcmp(event->text, "done") != 0)
             align->is_cut_short = true;
+    } else if (strcmp(event->kind, WB_BEND_HOLD_START) == 0 ||
+               strcmp(event->kind, WB_BEND_HOLD_END) == 0) {
+        take_hold(align, event);
     } else if (strcmp(event->kind, "stream_lost") == 0) {
         align->n_lost++;
     } else if (strcmp(event->kind, "drop") == 0) {
@@ -456,7 +482,7 @@ enum wb_status wb_align_load(struct wb_align *align, const char *path)
 
 /* --- the bench's clock --- */
 
-static double bench_time(const struct wb_align *align, int64_t host_ns)
+double wb_align_bench_time(const struct wb_align *align, int64_t host_ns)
 {
     return wb_seconds_from_ns(host_ns - align->zero_ns) * align->rig.time_scale;
 }
@@ -522,7 +548,7 @@ static void use_arrivals(struct wb_align *align)
 {
     const struct wb_point_frame *const frames = align->cloud.frames;
     for (size_t i = 0; i < align->cloud.n_frames; i++)
-        align->frame_t[i] = bench_time(align, frames[i].t_ns);
+        align->frame_t[i] = wb_align_bench_time(align, frames[i].t_ns);
     align->method = "arrival";
     align->camera_uncertainty = (double)NAN;
     wb_align_warn(align, "frames carry no stamp of the server: their arrival times are used, with "
@@ -600,7 +626,8 @@ static enum wb_status map_segments(struct wb_align *align, const struct stamps *
         if (status != WB_OK)
             return wb_fail_to(align->why, status, "out of memory for %zu stamps", last - first);
         for (size_t k = first; k < last; k++)
-            align->frame_t[k] = bench_time(align, wb_clock_line_host_ns(&line, stamps->device[k]));
+            align->frame_t[k] =
+                wb_align_bench_time(align, wb_clock_line_host_ns(&line, stamps->device[k]));
         describe_segment(align, list, last - first,
                          stamps->device[last - 1] - stamps->device[first], &line);
         const double uncertainty = line.uncertainty * align->rig.time_scale;
@@ -632,7 +659,7 @@ static void drop_backward(struct wb_align *align)
 static void use_file_times(struct wb_align *align)
 {
     for (size_t i = 0; i < align->cloud.n_frames; i++)
-        align->frame_t[i] = bench_time(align, align->cloud.frames[i].t_ns);
+        align->frame_t[i] = wb_align_bench_time(align, align->cloud.frames[i].t_ns);
     align->method = "times of the file";
     align->camera_uncertainty = align->import_uncertainty * align->rig.time_scale;
 }
@@ -700,7 +727,7 @@ static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, doubl
         WB_TRY(wb_clock_fit_envelope(&line, number + first, host_ns + first, last - first,
                                      mean_period, 32.0));
         for (size_t k = first; k < last; k++)
-            readings[k].t = bench_time(align, wb_clock_line_host_ns(&line, number[k]));
+            readings[k].t = wb_align_bench_time(align, wb_clock_line_host_ns(&line, number[k]));
         scatter = fmax(scatter, line.scatter);
     }
     align->load_scatter = scatter * align->rig.time_scale;
@@ -751,7 +778,7 @@ static enum wb_status map_load(struct wb_align *align)
     size_t n_segments = 1;
     if (by_arrival) {
         for (size_t i = 0; i < n; i++)
-            readings[i].t = bench_time(align, readings[i].t_ns);
+            readings[i].t = wb_align_bench_time(align, readings[i].t_ns);
     } else {
         int64_t *const host_ns = malloc((n + 1) * sizeof *host_ns);
         double *const number = malloc((n + 1) * sizeof *number);
@@ -784,7 +811,7 @@ static void map_stage(struct wb_align *align)
 {
     struct wb_align_report_point *const reports = wb_align_reports(align);
     for (size_t i = 0; i < align->reports.n; i++)
-        reports[i].t = bench_time(align, reports[i].t_ns);
+        reports[i].t = wb_align_bench_time(align, reports[i].t_ns);
 }
 
 enum wb_status wb_align_times(struct wb_align *align)

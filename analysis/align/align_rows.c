@@ -302,7 +302,10 @@ enum wb_status wb_align_rows(struct wb_align *align)
             if (floor(align->frame_t[last] * rate) > bin)
                 break;
         }
-        if (make_row(align, first, last, half, &align->rows[align->n_rows]))
+        /* The wire relaxes while it is held: that is no motion, and not the curve's. */
+        if (wb_align_is_held(align, align->frame_t[first], align->frame_t[last - 1]))
+            align->n_held_rows++;
+        else if (make_row(align, first, last, half, &align->rows[align->n_rows]))
             align->n_rows++;
         else
             align->n_dropped_rows++;
@@ -663,6 +666,11 @@ enum wb_status wb_align_stage(struct wb_align *align)
     const bool fitted = fit_stage(align, pairs, n, &fit);
     if (fitted) {
         describe_stage(align, &fit, n);
+    } else if (n >= 4 * STANDING) {
+        wb_json_set_boolean(wb_json_set_object(align->checks, "stage"), "lost_steps", true);
+        wb_align_warn(align, "the clamp did not go with the stage, which went on counting: it "
+                             "jammed, or the motor lost its steps. The deflection is measured at "
+                             "the markers and not affected");
     } else {
         wb_align_warn(align,
                       "too few reports of the stage (%zu) to compare its travel with the "

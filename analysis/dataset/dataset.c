@@ -765,6 +765,26 @@ enum wb_status wb_dataset_read_kinds(struct wb_dataset *dataset, const char *fol
     return WB_OK;
 }
 
+enum wb_status wb_dataset_settle(struct wb_dataset *dataset)
+{
+    struct wb_test_info info = {.sample = 0};
+    struct wb_json *document = NULL;
+    char *text = NULL;
+    WB_TRY(format_document(dataset, &text));
+    enum wb_status status = wb_json_parse(&document, text, "dataset.json");
+    free(text);
+    if (status == WB_OK)
+        status = get_info(document, "dataset.json", &info, NULL);
+    if (status != WB_OK) {
+        wb_json_destroy(document);
+        return status;
+    }
+    wb_json_destroy(dataset->document);
+    dataset->document = document;
+    dataset->info = info;
+    return WB_OK;
+}
+
 double wb_dataset_gap(const struct wb_dataset *dataset)
 {
     const size_t n = dataset->n_rows;

@@ -126,6 +126,9 @@ WB_MUST_CHECK enum wb_status wb_dataset_write(const struct wb_dataset *dataset, 
 WB_MUST_CHECK enum wb_status wb_dataset_begin(const char *folder, bool force);
 WB_MUST_CHECK enum wb_status wb_dataset_finish(const struct wb_dataset *dataset,
                                                const char *folder);
+/* Makes a dataset that was not written the one that would be read from its folder: the document has
+ * the typed part, whose numbers have the digits of dataset.json. On failure it stays as it is. */
+WB_MUST_CHECK enum wb_status wb_dataset_settle(struct wb_dataset *dataset);
 WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder,
                                              struct wb_reason *why);
 

@@ -77,6 +77,9 @@ stopped_and_gone_on_with() {
     holds info '"reason": "the wire slipped"'
     "$wirebench" align "$folder/a/s-002-type1-L85-2.wbr" -o "$folder/dataset" >/dev/null 2>&1
     holds dataset/dataset.json 'the test was excluded by A. Tester'
+    "$wirebench" calibrate "$folder/dataset" -o "$folder/properties.yaml" 2>"$folder/refused" &&
+        fail 'an excluded test was calibrated'
+    holds refused 'the test was excluded by A. Tester on 20..-..-..: the wire slipped. Leave'
     # The third one twice: somebody leaned on the bench.
     series a 'n\n\nr I leaned on the bench\nn\n\n\n' --figure "$folder/a.svg" --json
     expect a 0 '"specimens_done": 3'

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <pty.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <termios.h>
@@ -95,6 +96,50 @@ static void a_terminal_that_hangs_loses_messages_and_counts_them(void **state)
     close(ours);
 }
 
+/* The last line of a recording that is whole already. */
+static void the_result_does_not_wait_for_a_terminal_that_hangs(void **state)
+{
+    (void)state;
+    int theirs, ours;
+    assert_int_equal(openpty(&theirs, &ours, NULL, NULL, NULL), 0);
+    const int modes = fcntl(ours, F_GETFL);
+    assert_int_equal(fcntl(ours, F_SETFL, modes | O_NONBLOCK), 0);
+    while (write(ours, "x", 1) == 1) {
+    }
+    assert_int_equal(fcntl(ours, F_SETFL, modes), 0);
+    fflush(stdout);
+    const int kept = dup(STDOUT_FILENO);
+    alarm(20); /* what hangs is ended */
+    assert_true(dup2(ours, STDOUT_FILENO) >= 0);
+    wb_live_line_print("the result\n");
+    fflush(stdout);
+    dup2(kept, STDOUT_FILENO);
+    alarm(0);
+    close(kept);
+    close(theirs);
+    close(ours);
+}
+
+/* What is read is whole, on a terminal as in a file. */
+static void the_result_reaches_who_reads(void **state)
+{
+    (void)state;
+    int theirs, ours;
+    assert_int_equal(openpty(&theirs, &ours, NULL, NULL, NULL), 0);
+    assert_int_equal(fcntl(theirs, F_SETFL, O_NONBLOCK), 0);
+    fflush(stdout);
+    const int kept = dup(STDOUT_FILENO);
+    assert_true(dup2(ours, STDOUT_FILENO) >= 0);
+    wb_live_line_print("the result\n");
+    dup2(kept, STDOUT_FILENO);
+    heard[0] = '\0';
+    listen_to(theirs);
+    close(kept);
+    close(theirs);
+    close(ours);
+    assert_string_equal(heard, "the result\r\n");
+}
+
 static void a_pipe_nobody_reads_loses_messages_and_counts_them(void **state)
 {
     (void)state;
@@ -177,6 +222,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_terminal_that_hangs_loses_messages_and_counts_them),
         cmocka_unit_test(a_pipe_nobody_reads_loses_messages_and_counts_them),
+        cmocka_unit_test(the_result_does_not_wait_for_a_terminal_that_hangs),
+        cmocka_unit_test(the_result_reaches_who_reads),
         cmocka_unit_test(a_pipe_without_reader_is_survived),
         cmocka_unit_test(keys_are_taken_in_the_foreground_only_and_ctrl_s_is_off),
     };

@@ -101,6 +101,19 @@ static inline void read_events(struct fixture *fixture)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
+/* The events named come in this order. */
+static inline void assert_events(struct fixture *fixture, const char *const *expected, size_t n)
+{
+    read_events(fixture);
+    const char *at = fixture->events;
+    for (size_t i = 0; i < n; i++) {
+        const char *const found = strstr(at, expected[i]);
+        if (!found)
+            fail_msg("no event '%s' in its place in:\n%s", expected[i], fixture->events);
+        at = found + 1;
+    }
+}
+
 /* A new bench in the place of the one that was used; streams may be silent for so long. */
 static inline void renew(struct fixture *fixture, double stream_lost)
 {

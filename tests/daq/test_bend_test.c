@@ -19,19 +19,6 @@ static bool takes_tare(const struct wb_bend_test_status *status)
     return strcmp(status->phase, "tare") == 0;
 }
 
-/* The events named come in this order. */
-static void assert_events(struct fixture *fixture, const char *const *expected, size_t n)
-{
-    read_events(fixture);
-    const char *at = fixture->events;
-    for (size_t i = 0; i < n; i++) {
-        const char *const found = strstr(at, expected[i]);
-        if (!found)
-            fail_msg("no event '%s' in its place in:\n%s", expected[i], fixture->events);
-        at = found + 1;
-    }
-}
-
 /* When the hold byte reached the stage, after the moment that showed the limit. An alarm is itself
  * the word that the stage stands: the test may end while the byte is still on its way. */
 static void note_hold(const struct fixture *fixture, struct fake_latency *latency, int64_t shown_ns)

@@ -262,10 +262,10 @@ static void a_wire_that_rises_along_the_up_axis_shows_a_wrong_one(void **state)
     const double along_x[3] = {1.0, 0.0, 0.0}, towards_z[3] = {c, 0.0, s},
                  towards_y[3] = {c, s, 0.0}, nearly[3] = {cos(0.1), sin(0.1), 0.0};
     (void)state;
-    assert_int_equal(judge_axis('y', along_x), WB_DOCTOR_READY);
+    assert_int_equal(judge_axis('y', along_x), WB_DOCTOR_UNKNOWN);
     assert_int_equal(judge_axis('y', towards_z), WB_DOCTOR_READY);
     assert_int_equal(judge_axis('y', towards_y), WB_DOCTOR_NOT_READY);
-    assert_int_equal(judge_axis('y', nearly), WB_DOCTOR_READY);
+    assert_int_equal(judge_axis('y', nearly), WB_DOCTOR_UNKNOWN);
     assert_int_equal(judge_axis('z', towards_y), WB_DOCTOR_READY);
     assert_int_equal(judge_axis('z', towards_z), WB_DOCTOR_NOT_READY);
 }

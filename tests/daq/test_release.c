@@ -15,6 +15,7 @@ struct bench {
     struct wb_rig rig;
     double (*load)(double travel); /* N */
     double noise;                  /* N, uniform to both sides */
+    double zero;                   /* N, what the release knows of it; NaN: nothing */
     double overload;               /* N, beyond which the cell reads no number; 0: none */
     int64_t period_ns;             /* of the readings */
     int at_once;                   /* so many arrive together */
@@ -54,9 +55,24 @@ static double heavy(double travel)
     return 80.0 * WB_MN;
 }
 
+/* A clamp that jams with the wire bent: less hangs on the cell than a hook and a counterweight may.
+ */
+static double jammed(double travel)
+{
+    (void)travel;
+    return 36.7 * WB_MN;
+}
+
+/* The wire's load falls, until the clamp jams on its way up. */
+static double jams_on_the_way(double travel)
+{
+    return soft(fmax(travel, 20.0 * WB_MM));
+}
+
 static struct bench make(double (*load)(double travel))
 {
     struct bench bench = {.load = load, .period_ns = 10 * MS, .at_once = 1, .seed = 1};
+    bench.zero = 1.5 * WB_MN;
     bench.rig.time_scale = 1.0;
     bench.rig.load_cell.capacity = 196.0 * WB_MN;
     bench.rig.load_cell.noise = 0.1 * WB_MN;
@@ -89,7 +105,7 @@ static void read_at(struct bench *bench, struct wb_release *release, double trav
 static enum wb_release_verdict release_from(struct bench *bench, double travel)
 {
     struct wb_release release;
-    wb_release_init(&release, &bench->rig);
+    wb_release_init(&release, &bench->rig, bench->zero);
     double before = travel;
     for (bench->rests = 0; travel >= 0.0; bench->rests++) {
         enum wb_release_verdict verdict = WB_RELEASE_LISTEN;
@@ -206,6 +222,37 @@ static void a_level_reading_far_from_zero_is_no_slack_strand_and_ends_it(void **
     assert_close(bench.travel, 26.0 * WB_MM, 1e-12);
 }
 
+static void a_clamp_that_jams_is_no_slack_strand(void **state)
+{
+    (void)state;
+    struct bench bench = make(jammed);
+    assert_int_equal(release_from(&bench, 32.0 * WB_MM), WB_RELEASE_STUCK);
+    bench = make(jams_on_the_way);
+    assert_int_equal(release_from(&bench, 32.0 * WB_MM), WB_RELEASE_STUCK);
+}
+
+static void a_zero_far_from_nothing_is_a_zero(void **state)
+{
+    (void)state;
+    struct bench bench = make(jammed);
+    bench.zero = 35.0 * WB_MN;
+    assert_int_equal(release_from(&bench, 32.0 * WB_MM), WB_RELEASE_SLACK);
+    bench = make(slack_below_12_mm);
+    bench.zero = -35.0 * WB_MN;
+    assert_int_equal(release_from(&bench, 32.0 * WB_MM), WB_RELEASE_STUCK);
+}
+
+static void without_a_zero_a_level_reading_is_never_said_to_be_slack(void **state)
+{
+    (void)state;
+    double (*const loads[])(double) = {slack_below_12_mm, soft, jammed, jams_on_the_way};
+    for (size_t i = 0; i < sizeof loads / sizeof loads[0]; i++) {
+        struct bench bench = make(loads[i]);
+        bench.zero = (double)NAN;
+        assert_int_equal(release_from(&bench, 32.0 * WB_MM), WB_RELEASE_LEVEL);
+    }
+}
+
 static void an_overloaded_cell_is_relieved(void **state)
 {
     (void)state;
@@ -224,7 +271,7 @@ static void invalid_readings_do_not_count(void **state)
     (void)state;
     const struct bench bench = make(heavy);
     struct wb_release release;
-    wb_release_init(&release, &bench.rig);
+    wb_release_init(&release, &bench.rig, bench.zero);
     wb_release_rest(&release, 0.0, 0);
     for (int i = 1; i <= 100; i++) {
         const struct wb_load_sample sample = {.t_ns = i * 100 * MS, .force = (double)NAN};
@@ -244,6 +291,9 @@ int main(void)
         cmocka_unit_test(a_noisy_cell_needs_a_longer_way_and_tells_no_lie),
         cmocka_unit_test(a_strand_that_is_slack_from_the_start_moves_one_step),
         cmocka_unit_test(a_level_reading_far_from_zero_is_no_slack_strand_and_ends_it),
+        cmocka_unit_test(a_clamp_that_jams_is_no_slack_strand),
+        cmocka_unit_test(a_zero_far_from_nothing_is_a_zero),
+        cmocka_unit_test(without_a_zero_a_level_reading_is_never_said_to_be_slack),
         cmocka_unit_test(an_overloaded_cell_is_relieved),
         cmocka_unit_test(invalid_readings_do_not_count),
     };

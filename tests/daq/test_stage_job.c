@@ -13,6 +13,7 @@ struct fixture {
     struct fake_bench *bench;
     char path[64];
     struct wb_rig rig;
+    double zero; /* N, what a release knows of the cell's */
 };
 
 static void keep_quiet(void *context, enum wb_log_level level, const char *domain,
@@ -35,6 +36,7 @@ static int set_up(void **state)
     fixture->bench = fake_start();
     fake_write_rig(fixture->bench, fixture->path, 40.0, 60.0);
     assert_int_equal(wb_rig_read(fixture->path, &fixture->rig), WB_OK);
+    fixture->zero = 0.15e-3 * WB_STANDARD_GRAVITY;
     wb_interrupt_set(false);
     wb_log_set_sink(keep_quiet, NULL);
     *state = fixture;
@@ -55,8 +57,10 @@ static int tear_down(void **state)
 static struct wb_stage_job_result run(struct fixture *fixture, enum wb_stage_job_kind kind,
                                       double distance_mm)
 {
-    const struct wb_stage_job_request request = {
-        .kind = kind, .distance = distance_mm * WB_MM, .connect_timeout = 0.6};
+    const struct wb_stage_job_request request = {.kind = kind,
+                                                 .distance = distance_mm * WB_MM,
+                                                 .zero = fixture->zero,
+                                                 .connect_timeout = 0.6};
     struct wb_stage_job *job;
     struct wb_stage_job_result result;
     assert_int_equal(wb_stage_job_open(&job, &fixture->rig, &request), WB_OK);
@@ -314,6 +318,27 @@ static void release_ends_soon_when_the_reading_does_not_change(void **state)
     assert_close(bench->position_mm, 24.0, 1e-3);
 }
 
+/* The clamp jams with the wire bent: 3.7 g, 36.7 mN on a cell of 20 g. Nobody is told to touch it.
+ */
+static void release_of_a_jammed_clamp_does_not_say_free(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->spring_mg_mm = 0;
+    bench->force_mg = 3740;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_SEQUENCE_DONE);
+    struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
+    if (!strstr(result.text, "stays at 36.") ||
+        !strstr(result.text, "the clamp does not go with the stage"))
+        fail_msg("'%s' does not say what is wrong", result.text);
+    assert_null(strstr(result.text, "free"));
+    fixture->zero = (double)NAN;
+    result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
+    assert_non_null(strstr(result.text, "look at the strand before you touch the specimen"));
+}
+
 static void release_may_begin_beyond_the_limits(void **state)
 {
     struct fixture *const fixture = *state;
@@ -457,6 +482,7 @@ int main(void)
         TEST(release_ends_after_the_longest_way_of_a_test),
         TEST(release_ends_at_the_soft_limit),
         TEST(release_ends_soon_when_the_reading_does_not_change),
+        TEST(release_of_a_jammed_clamp_does_not_say_free),
         TEST(release_may_begin_beyond_the_limits),
         TEST(release_stops_when_up_loads),
         TEST(release_says_when_it_saw_no_slack),

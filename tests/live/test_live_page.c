@@ -17,7 +17,10 @@
 #include "tests/check.h"
 #include "tests/messages.h"
 
+static const struct wb_live_frame_point earlier[] = {{0.001f, 0.040f, 3}, {0.002f, 0.050f, 3}};
 static struct wb_live_plan plan = {
+    .earlier = earlier,
+    .n_earlier = 2,
     .title = "type9, \"85\" mm <b>",
     .recording = "/tmp",
     .travel = 53.0 * WB_MM,
@@ -119,6 +122,7 @@ static void events_bring_the_plan_the_curve_and_the_state(void **state)
     wb_live_feed_add_point(feed, &(struct wb_live_frame_point){0.0015f, 0.0225f, 1});
     const int client = ask(GET("/events"));
     hear(client, "\"points\": [[1,1.5,22.5]]}\n\n");
+    assert_heard("event: earlier\ndata: {\"points\": [[3,1,40],[3,2,50]]}\n\n");
     hear(client, "\"force_mN\": 12.5");
     assert_heard("\"state\": \"test in progress\"");
     assert_heard("\"time_left_s\": null");
@@ -235,7 +239,7 @@ static void the_last_state_and_the_end_reach_the_clients(void **state)
     (void)state;
     const int client = ask(GET("/events"));
     hear(client, "event: state");
-    frame.word = WB_LIVE_FRAME_HELD;
+    frame.word = WB_LIVE_FRAME_STOPPED;
     snprintf(frame.text, sizeof frame.text, "stopped by the operator");
     wb_live_feed_push(feed, &frame);
     wb_live_feed_stop(feed, 20000);

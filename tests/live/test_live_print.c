@@ -85,9 +85,31 @@ static void the_last_cycle_is_bright_and_colours_end_with_their_line(void **stat
     wb_text_release(&text);
 }
 
+/* Twice as high as what is measured: the axis reaches up to it, in the faint colour. */
+static void earlier_tests_are_faint_and_within_the_axes(void **state)
+{
+    (void)state;
+    static const struct wb_live_frame_point earlier[] = {
+        {0.0f, 0.0f, 2}, {0.010f, 0.080f, 2}, {0.0f, 0.080f, 7}, {0.010f, 0.080f, 7}};
+    size_t n;
+    plan.earlier = earlier;
+    plan.n_earlier = 4;
+    struct wb_text text = print(true, true);
+    plan.n_earlier = 0;
+    const char *const first = line_of(&text, 1, &n);
+    assert_memory_equal(first, "     80", 7);
+    assert_non_null(memmem(first, n, "\033[90m", 5));
+    assert_null(memmem(first, n, "\033[1;36m", 7));
+    /* The last cycle of this test has the number of an earlier one, and is bright all the same. */
+    const char *const axis = line_of(&text, 10, &n);
+    assert_non_null(memmem(axis, n, "\033[1;36m", 7));
+    wb_text_release(&text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(earlier_tests_are_faint_and_within_the_axes),
         cmocka_unit_test(a_curve_stands_between_its_axes),
         cmocka_unit_test(the_last_cycle_is_bright_and_colours_end_with_their_line),
     };

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "analysis/align/align.h"
+#include "analysis/dataset/holds.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "daq/natnet_encode.h"
@@ -34,7 +35,7 @@ struct session {
     struct wb_sim_mocap mocap;
     struct wb_natnet_version version;
     struct wb_recording *recording;
-    double travel, time_scale;
+    double travel, time_scale, hold;
     int load, camera, stage;
     int64_t seq[3];
     double tare_sum, tare_squares;
@@ -60,12 +61,19 @@ static int64_t host(double t)
 
 static double end_time(void)
 {
-    return START_S + 2.0 * session.travel / session.setup.rig.stage.speed + DWELL_S;
+    return START_S + 2.0 * session.travel / session.setup.rig.stage.speed + session.hold + DWELL_S;
+}
+
+/* When the operator holds the test: half way down. */
+static double hold_time(void)
+{
+    return START_S + 0.5 * session.travel / session.setup.rig.stage.speed;
 }
 
 static double travel_at(double t)
 {
-    const double speed = session.setup.rig.stage.speed, in = t - START_S;
+    const double speed = session.setup.rig.stage.speed;
+    const double in = (t < hold_time() ? t : fmax(hold_time(), t - session.hold)) - START_S;
     const double down = session.travel / speed;
     if (in <= 0.0 || in >= 2.0 * down)
         return 0.0;
@@ -170,6 +178,12 @@ static void write_events(void)
              session.tare_n, sqrt(variance));
     event(START_S - 0.01, "tare", text);
     event(START_S, "cycle_start", "1");
+    if (session.hold > 0.0) {
+        event(hold_time(), "hold_start",
+              "{\"cycle\": 1, \"phase\": \"down\", \"travel_mm\": 10, \"tension_mN\": 60}");
+        event(hold_time() + session.hold, "hold_end",
+              "{\"lasted_s\": 6, \"tension_mN\": 58.5, \"how\": \"resumed\"}");
+    }
     event(end_time(), "stop", "done");
 }
 
@@ -192,6 +206,7 @@ struct plan {
     uint64_t seed;
     int major, minor;
     double travel, time_scale;
+    double hold; /* s */
 };
 
 static void record(const struct plan *plan, char path[WB_PATH])
@@ -201,6 +216,7 @@ static void record(const struct plan *plan, char path[WB_PATH])
     session.version = (struct wb_natnet_version){(uint8_t)plan->major, (uint8_t)plan->minor};
     session.travel = plan->travel;
     session.time_scale = plan->time_scale;
+    session.hold = plan->hold;
     setup_bench(&session.setup, plan->specimen, plan->seed);
     struct setup *const s = &session.setup;
     const struct wb_live_wire_parts parts = {&s->truth, &s->composite, &s->wire, &s->rig,
@@ -317,6 +333,47 @@ static void assert_aligned(const struct plan *plan)
     wb_dataset_release(&dataset);
 }
 
+static void the_rows_of_a_hold_are_left_out_and_it_is_told(void **state)
+{
+    (void)state;
+    char path[WB_PATH];
+    struct wb_dataset dataset;
+    struct wb_align_settings settings;
+    wb_align_default_settings(&settings);
+    record(&(struct plan){"type1-L85-1", 2, 3, 0, 0.02, 1.0, 6.0}, path);
+    if (wb_align_run(&dataset, path, &settings, NULL) != WB_OK)
+        fail_msg("not aligned: %s", kept.last);
+    const double from = hold_time() - START_S;
+    int before = 0, after = 0;
+    for (size_t i = 0; i < dataset.n_rows; i++) {
+        const double t = dataset.rows[i].t;
+        assert_false(t > from && t < from + 6.0);
+        before += t > from - 1.0 && t <= from;
+        after += t >= from + 6.0 && t < from + 7.0;
+    }
+    assert_true(before >= 18 && after >= 18); /* of 20 a second */
+    const struct wb_json *const holds =
+        wb_json_get(wb_json_get(dataset.document, "checks"), "holds");
+    double start = 0.0, lasted = 0.0, seconds = 0.0;
+    assert_int_equal(wb_json_length(holds), 1);
+    assert_true(wb_json_get_number(wb_json_item(holds, 0), "start_s", &start));
+    assert_true(wb_json_get_number(wb_json_item(holds, 0), "lasted_s", &lasted));
+    assert_close(start, from, 1e-4);
+    assert_close(lasted, 6.0, 1e-4);
+    assert_int_equal(wb_holds_of_bent_wire(&dataset, &seconds), 1);
+    assert_close(seconds, 6.0, 1e-4);
+    assert_true(wb_dataset_is_complete(&dataset)); /* a hold is no gap in the data */
+    assert_int_equal(number_in(&dataset, "rows", "gaps"), 0);
+    assert_int_equal(dataset.rows[dataset.n_rows - 1].cycle, 1);
+    const char *warning = "";
+    const struct wb_json *const warnings = wb_json_get(dataset.document, "warnings");
+    for (size_t i = 0; i < wb_json_length(warnings) && !strstr(warning, "held at"); i++)
+        assert_true(wb_json_text(wb_json_item(warnings, i), &warning));
+    assert_non_null(strstr(warning, "held at 10.00 mm of travel on the way down of cycle 1 for "
+                                    "6.0 s, where the tension went from 60.00 to 58.50 mN"));
+    wb_dataset_release(&dataset);
+}
+
 static void type_1_is_aligned(void **state)
 {
     (void)state;
@@ -408,6 +465,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(type_1_is_aligned),
+        cmocka_unit_test(the_rows_of_a_hold_are_left_out_and_it_is_told),
         cmocka_unit_test(type_3_is_aligned_at_twenty_times_the_speed),
         cmocka_unit_test(a_server_without_echo_serves),
         cmocka_unit_test(what_is_stated_of_downward_bows_holds),
