@@ -85,10 +85,12 @@ static void print_modulus(const struct wb_tensile_result *r)
     print_number("slope with grips and machine", &r->slope, WB_MPA, "MPa");
 }
 
-static void print_laws(const struct wb_tensile_result *r)
+static void print_laws(const struct options *o, const struct wb_tensile_result *r)
 {
     if (r->direct_exponent.n == 0) {
-        printf("no law is fitted: too few points behind the yield point\n");
+        printf("no law is fitted: %s\n", r->specimens[0].start_is_straight
+                                             ? "too few points behind the yield point"
+                                             : "there is no plastic strain");
         return;
     }
     printf("sigma = sigma_Y + K ep^n (eq. 6), least squares\n");
@@ -96,20 +98,35 @@ static void print_laws(const struct wb_tensile_result *r)
     print_number("  K", &r->direct_strength, WB_MPA, "MPa");
     print_number("  n", &r->direct_exponent, 1.0, "");
     if (!r->follows)
-        printf("  this law does not meet every curve: take the stresses above\n");
+        printf(
+            "  this law meets %d of %d curves within %.3g %% of the strength (--alike): take the "
+            "stresses above\n",
+            r->n_followed, r->n_specimens, o->settings.alike / WB_PERCENT);
     if (r->identifiable)
         printf("  n from %.3g to %.3g fits alike\n", r->n_low, r->n_high);
     else if (isfinite(r->n_low))
         printf("  not identifiable: n from %.3g to %.3g fits alike, each with its own sigma_Y and "
                "K; these numbers hold together only\n",
                r->n_low, r->n_high);
-    if (isfinite(r->of_mean.rms) && r->n_specimens > 1)
-        printf("  of the mean curve: %.4g MPa, %.4g MPa, %.3g, misfit %.2g MPa\n",
+    if (isfinite(r->of_mean.rms) && r->n_specimens > 1) {
+        printf("  of the mean curve: %.4g MPa, %.4g MPa, %.3g, misfit %.2g MPa",
                r->of_mean.yield_stress / WB_MPA, r->of_mean.strength_coefficient / WB_MPA,
                r->of_mean.hardening_exponent, r->of_mean.rms / WB_MPA);
+        if (isfinite(r->of_mean_n_low))
+            printf("; n from %.3g to %.3g fits alike", r->of_mean_n_low, r->of_mean_n_high);
+        putchar('\n');
+    }
     printf("by eq. 7, with the proof stress as sigma_Y\n");
     print_number("  K", &r->eq7_strength, WB_MPA, "MPa");
     print_number("  n", &r->eq7_exponent, 1.0, "");
+}
+
+static void print_cell(int width, int digits, double value)
+{
+    if (isfinite(value))
+        printf(" %*.*g", width, digits, value);
+    else
+        printf(" %*s", width, "-");
 }
 
 static void print_specimens(const struct wb_tensile_result *r)
@@ -119,11 +136,17 @@ static void print_specimens(const struct wb_tensile_result *r)
         "n  misfit MPa  n alike\n");
     for (int i = 0; i < r->n_specimens; i++) {
         const struct wb_tensile_specimen *const s = &r->specimens[i];
-        printf("%6d %8.3f %10.5g %10.4g %13.4g %5.3g %13.4g %8.4g %6.3g %11.3g  %.3g to %.3g\n",
-               s->sample, s->slack / WB_PERCENT, s->slope / WB_MPA, s->proof_stress / WB_MPA,
-               s->strength / WB_MPA, s->uniform_strain / WB_PERCENT,
-               s->direct.yield_stress / WB_MPA, s->direct.strength_coefficient / WB_MPA,
-               s->direct.hardening_exponent, s->direct.rms / WB_MPA, s->n_low, s->n_high);
+        printf("%6d %8.3f %10.5g", s->sample, s->slack / WB_PERCENT, s->slope / WB_MPA);
+        print_cell(10, 4, s->proof_stress / WB_MPA);
+        printf(" %13.4g %5.3g", s->strength / WB_MPA, s->uniform_strain / WB_PERCENT);
+        print_cell(13, 4, s->direct.yield_stress / WB_MPA);
+        print_cell(8, 4, s->direct.strength_coefficient / WB_MPA);
+        print_cell(6, 3, s->direct.hardening_exponent);
+        print_cell(11, 3, s->direct.rms / WB_MPA);
+        if (isfinite(s->n_low))
+            printf("  %.3g to %.3g\n", s->n_low, s->n_high);
+        else
+            printf("  none\n");
     }
 }
 
@@ -144,15 +167,13 @@ static void print_text(const struct options *o, const struct wb_tensile_result *
         snprintf(name, sizeof name, "true stress at ep = %g", wb_tensile_plastic_strains[k]);
         print_number(name, &r->stress[k], WB_MPA, "MPa");
     }
-    print_laws(r);
+    print_laws(o, r);
     print_specimens(r);
     for (int i = 0; i < r->n_specimens; i++) {
-        if (r->specimens[i].slack < -0.002) {
-            printf(
-                "\nthe start is not straight (negative slack): slope and proof stress are none of "
-                "an elastic limit\n");
-            break;
-        }
+        if (!r->specimens[i].start_is_straight)
+            printf("\nsample %d: the start is not straight but bends over: no proof stress, no "
+                   "plastic strain, no law\n",
+                   r->specimens[i].sample);
     }
     if (r->constituent != WB_CONDUCTOR)
         printf("\nloading alone does not tell plastic strain from elastic strain that bends over, "
@@ -189,6 +210,7 @@ static void set_specimens(struct wb_json *root, const struct wb_tensile_result *
         struct wb_json *const object = wb_json_append_object(list);
         wb_json_set_integer(object, "sample", s->sample);
         wb_json_set_integer(object, "points", (int64_t)s->n_points);
+        wb_json_set_boolean(object, "start_is_straight", s->start_is_straight);
         wb_json_set_number(object, "slack", s->slack);
         wb_json_set_number(object, "slope_MPa", s->slope / WB_MPA);
         wb_json_set_number(object, "proof_stress_MPa", s->proof_stress / WB_MPA);
@@ -230,9 +252,13 @@ static int print_json(const struct options *o, const struct wb_tensile_result *r
     set_number(direct, "hardening_exponent", &r->direct_exponent, 1.0);
     wb_json_set_number(direct, "exponent_alike_low", r->n_low);
     wb_json_set_number(direct, "exponent_alike_high", r->n_high);
+    wb_json_set_integer(direct, "followed", r->n_followed);
     wb_json_set_boolean(direct, "follows", r->follows);
     wb_json_set_boolean(direct, "identifiable", r->identifiable);
-    set_law(wb_json_set_object(direct, "of_mean_curve"), &r->of_mean);
+    struct wb_json *const of_mean = wb_json_set_object(direct, "of_mean_curve");
+    set_law(of_mean, &r->of_mean);
+    wb_json_set_number(of_mean, "exponent_alike_low", r->of_mean_n_low);
+    wb_json_set_number(of_mean, "exponent_alike_high", r->of_mean_n_high);
     struct wb_json *const eq7 = wb_json_set_object(root, "eq7");
     set_number(eq7, "strength_coefficient_MPa", &r->eq7_strength, WB_MPA);
     set_number(eq7, "hardening_exponent", &r->eq7_exponent, 1.0);

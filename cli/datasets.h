@@ -12,8 +12,8 @@ struct wb_datasets {
     const struct wb_dataset **pointers; /* (n) to the items, as the library wants them; owned */
 };
 
-/* Reads those of the names (n); `kinds` of test as of wb_dataset_read_kinds(), others are refused.
- */
+/* Reads those of the names (n); `kinds` of test as of wb_dataset_read_kinds(), others are refused,
+ * and so are those of a test that was excluded, with who and why. */
 WB_MUST_CHECK enum wb_status wb_datasets_read(struct wb_datasets *datasets,
                                               const char *const *names, int n, unsigned kinds);
 

@@ -9,6 +9,7 @@
 #include "analysis/calibration/cycle_fit.h"
 #include "analysis/calibration/cycle_model.h"
 #include "analysis/dataset/fit.h"
+#include "analysis/dataset/holds.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "check"
@@ -606,6 +607,18 @@ static void check_others(struct wb_cycle_remarks *remarks,
             off > 0.0 ? "higher" : "lower", 100.0 * expm1(allowed));
 }
 
+static void check_holds(struct wb_cycle_remarks *remarks, const struct specimen *s)
+{
+    double seconds;
+    const int n = wb_holds_of_bent_wire(s->dataset, &seconds);
+    if (n > 0)
+        say(remarks, WB_CHECK_DOUBT, s->sample,
+            "wire '%s', sample %d: the test was held %d time%s, for %.0f s in all, while the wire "
+            "was bent: it relaxed, and no law here knows of that. Leave it out or test it again "
+            "without a hold",
+            s->wire, s->sample, n, n == 1 ? "" : "s", seconds);
+}
+
 enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
                                   const struct wb_cycle_calibration *calibration,
                                   const struct wb_dataset *const *datasets)
@@ -627,6 +640,7 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
             .sample = member->sample,
         };
         check_travel(remarks, &specimen);
+        check_holds(remarks, &specimen);
         check_natural_shape(remarks, &specimen);
         WB_TRY(check_zeros(remarks, &specimen, is_length_seen(datasets[i])));
         check_misfit(remarks, &specimen);

@@ -188,14 +188,20 @@ static double stress_at(const double *over, const double *stress, size_t n, doub
     return (double)NAN;
 }
 
-/* Both strains less the slack; S meets the line E (e - offset) where e - S/E exceeds the offset. */
+/* How far a point lies to the right of the line of the start, in strain. */
+static double beyond_line(const struct curve *curve, const struct wb_tensile_specimen *specimen,
+                          size_t i)
+{
+    return curve->strain[i] - specimen->slack - curve->stress[i] / specimen->slope;
+}
+
+/* S meets the line E (e - slack - offset) where the curve lies beyond the line by the offset. */
 static double proof_stress(const struct curve *curve, const struct wb_tensile_specimen *specimen,
                            double offset)
 {
     double before = -HUGE_VAL;
     for (size_t i = 0; i < curve->n; i++) {
-        const double beyond =
-            curve->strain[i] - specimen->slack - curve->stress[i] / specimen->slope;
+        const double beyond = beyond_line(curve, specimen, i);
         if (beyond > offset && before <= offset && isfinite(before))
             return curve->stress[i - 1] + (offset - before) / (beyond - before) *
                                               (curve->stress[i] - curve->stress[i - 1]);
@@ -336,7 +342,9 @@ static enum wb_status run_specimen(struct wb_tensile_specimen *specimen, struct 
     memset(specimen, 0, sizeof *specimen);
     specimen->sample = dataset->info.sample;
     specimen->direct = specimen->eq7 = none;
-    specimen->n_low = specimen->n_high = (double)NAN;
+    specimen->n_low = specimen->n_high = specimen->proof_stress = (double)NAN;
+    for (int k = 0; k < WB_TENSILE_STRESSES; k++)
+        specimen->stress[k] = (double)NAN;
     WB_TRY(take_curve(curve, dataset, why));
     specimen->strength = curve->stress[curve->n - 1];
     if (!(specimen->strength > 0.0) || !find_start(curve, settings->stretch, specimen))
@@ -346,6 +354,9 @@ static enum wb_status run_specimen(struct wb_tensile_specimen *specimen, struct 
             "force: this is no tensile curve",
             specimen->sample, LEAST_WINDOW, settings->stretch);
     specimen->uniform_strain = curve->strain[curve->n - 1] - specimen->slack;
+    specimen->start_is_straight = beyond_line(curve, specimen, 0) <= settings->proof_offset;
+    if (!specimen->start_is_straight)
+        return WB_OK; /* a plastic strain over such a line would be none */
     specimen->proof_stress = proof_stress(curve, specimen, settings->proof_offset);
     make_true(curve, dataset->info.machine.own_elongation, specimen);
     for (int k = 0; k < WB_TENSILE_STRESSES; k++)
@@ -423,18 +434,18 @@ static void summarise(struct wb_tensile_result *result)
     bool cut = false;
     result->n_low = HUGE_VAL;
     result->n_high = 0.0;
-    result->follows = true;
     for (int i = 0; i < result->n_specimens; i++) {
         const struct wb_tensile_specimen *const specimen = &result->specimens[i];
-        result->follows = result->follows && isfinite(specimen->n_low);
         if (!isfinite(specimen->n_low))
             continue;
+        result->n_followed++;
         result->n_low = fmin(result->n_low, specimen->n_low);
         result->n_high = fmax(result->n_high, specimen->n_high);
         cut = cut || specimen->n_is_cut;
     }
     if (!(result->n_high > 0.0))
         result->n_low = result->n_high = (double)NAN;
+    result->follows = result->n_followed == result->n_specimens;
     result->identifiable =
         result->follows && !cut && result->n_high <= KNOWN_WITHIN * result->n_low;
 }
@@ -478,11 +489,12 @@ static void fit_mean(struct wb_tensile_result *result, const struct curve *curve
         POINTS = 300
     };
     const struct wb_tensile_law none = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
-    struct wb_tensile_specimen mean = {.direct = none};
+    struct wb_tensile_specimen mean = {.direct = none, .n_low = (double)NAN, .n_high = (double)NAN};
     double strain[POINTS], stress[POINTS];
     double to = settings->fit_to > 0.0 ? settings->fit_to : HUGE_VAL;
     size_t n = 0;
     result->of_mean = none;
+    result->of_mean_n_low = result->of_mean_n_high = (double)NAN;
     for (int i = 0; i < result->n_specimens; i++) {
         if (!isfinite(result->specimens[i].direct.rms))
             return;
@@ -502,6 +514,8 @@ static void fit_mean(struct wb_tensile_result *result, const struct curve *curve
         return;
     fit_direct(strain, stress, n, settings->alike * result->strength.mean, &mean);
     result->of_mean = mean.direct;
+    result->of_mean_n_low = mean.n_low;
+    result->of_mean_n_high = mean.n_high;
 }
 
 static void release_all(struct curve *curves, int n)

@@ -5,7 +5,9 @@
  *      stranded conductor the metal's), L0 the gauge length; what the machine itself gives way is
  *      taken off where its compliance is given;
  *   2. the steepest straight stretch of the start, and the slack: the strain where that line meets
- *      S = 0, which is taken off;
+ *      S = 0, which is taken off. Where the curve begins further to the right of that line than the
+ *      offset of the proof stress, the start bends over, as rubber's does: there is no line of the
+ *      start, no plastic strain, and none of 4, 6 and 7;
  *   3. the slope of that line. It is Young's modulus only where the elongation is the specimen's
  * own; with the travel of a crosshead it holds grips and machine as well, and there is no E;
  *   4. the proof stress: S where the curve meets the line moved by the offset;
@@ -57,6 +59,7 @@ struct wb_tensile_law {
 struct wb_tensile_specimen {
     int sample;
     size_t n_points;                    /* of the least squares */
+    bool start_is_straight;             /* otherwise what needs plastic strain is NaN */
     double slack;                       /* strain */
     double slope;                       /* Pa, of the start */
     double slope_from, slope_to;        /* Pa, stresses between which it was found */
@@ -91,8 +94,10 @@ struct wb_tensile_result {
     /* Least squares on the mean of the specimens' true curves: unlike the means of the numbers
      * above, these belong together. NaN where there is none. */
     struct wb_tensile_law of_mean;
+    double of_mean_n_low, of_mean_n_high; /* exponents that fit that curve alike; NaN: none does */
     double n_low, n_high; /* least and largest exponent that fits alike in any specimen */
-    bool follows;         /* Ludwik's law meets each specimen's curve within `alike` */
+    int n_followed;       /* specimens whose curve Ludwik's law meets within `alike` */
+    bool follows;         /* these are all */
     bool identifiable;    /* so well that n is known within a factor of 1.25 */
 };
 

@@ -69,6 +69,13 @@ static enum wb_status check(const struct wb_tensile_result *result,
                             const struct wb_tensile_material_settings *settings,
                             struct wb_reason *why)
 {
+    for (int i = 0; i < result->n_specimens; i++) {
+        if (!result->specimens[i].start_is_straight)
+            return wb_fail_to(why, WB_ERR_DATA,
+                              "sample %d: the start is not straight but bends over: there is no "
+                              "plastic strain, and no law for a material file",
+                              result->specimens[i].sample);
+    }
     if (!isfinite(result->of_mean.rms))
         return wb_fail_to(why, WB_ERR_DATA,
                           "no law is fitted: too few points behind the yield point for a material");
@@ -89,15 +96,20 @@ static void append(struct wb_text *text, const struct wb_tensile_result *result,
                    const struct wb_tensile_material_settings *settings)
 {
     const bool given = settings->youngs_modulus > 0.0;
-    char own[128], source[300];
+    char own[128], alike[160], source[400];
     snprintf(own, sizeof own, "%.60s, %s", result->wire,
              wb_test_piece_constituent_name(result->constituent));
-    snprintf(source, sizeof source,
-             "%d tensile test%s of %s, elongation by %s; E %s; n from %.3g to %.3g fits alike%s",
+    if (result->n_followed > 0)
+        snprintf(alike, sizeof alike,
+                 "the law meets %d of the curves; n from %.3g to %.3g fits alike%s",
+                 result->n_followed, result->n_low, result->n_high,
+                 result->identifiable ? "" : ": sigma_Y, K and n hold together only");
+    else
+        snprintf(alike, sizeof alike, "the law meets none of the curves");
+    snprintf(source, sizeof source, "%d tensile test%s of %s, elongation by %s; E %s; %s",
              result->n_specimens, result->n_specimens == 1 ? "" : "s", own,
              result->own_elongation ? "extensometer" : "crosshead",
-             given ? "known from elsewhere" : "of the tests", result->n_low, result->n_high,
-             result->identifiable ? "" : ": sigma_Y, K and n hold together only");
+             given ? "known from elsewhere" : "of the tests", alike);
     wb_text_append(text, "schema: %d\n", WB_CONFIG_SCHEMA);
     put_text(text, "name", name ? name : own);
     put_text(text, "source", source);

@@ -58,6 +58,9 @@ static const double line_from = 0.02, line_to = 0.08;
 enum {
     MOST_MEAN = 21
 };
+/* The zero is that of the readings which lie before the contact by this part of the span, or by
+ * this part of the way to it where that is short. */
+static const double zero_distance = 0.01, zero_part = 0.5;
 /* A kink: the force, as a mean over a quarter of this part of the span, falls by more than this
  * part of its largest so far (and several times its noise) within the part. Not where the force is
  * below so much of its largest: there a soft wire's noise is as large. */
@@ -280,7 +283,7 @@ static void add_way_back(struct wb_three_point_data *data, const struct readings
     const double from = top - fmin(turn_distance * span, turn_part * way);
     step = fmin(step, (from - r->travel[end]) / LEAST_BACK);
     for (double at = from; step > 0.0 && at > first; at -= step) {
-        const double force = force_at(r, r->top, r->n - 1, at, 0.5 * step) - data->zero_force;
+        const double force = force_at(r, r->top, end - 1, at, 0.5 * step) - data->zero_force;
         if (!(force > last_force * largest))
             break;
         add_point(data, at, force, true);
@@ -330,7 +333,9 @@ static enum wb_status make(struct wb_three_point_data *data, const struct readin
     for (size_t i = 0; i <= last; i++)
         largest = fmax(largest, r->force[i]);
     bool found = find_contact(r, 0.0, largest, data->noise, last, &data->first_contact);
-    data->is_zeroed = found && find_zero(r, data->first_contact, 0.01 * span, &data->zero_force);
+    const double before = zero_part * (data->first_contact - r->travel[0]);
+    data->is_zeroed = found && find_zero(r, data->first_contact, fmin(zero_distance * span, before),
+                                         &data->zero_force);
     if (data->is_zeroed)
         found = find_contact(r, data->zero_force, largest - data->zero_force, data->noise, last,
                              &data->first_contact);

@@ -29,12 +29,17 @@ static const double contact_scale = 2e-3; /* of the span: unit of the first cont
 static const double bow_scale = 1e-2;     /* and of the natural bow's */
 /* A bow is told by the readings where they leave less than this part of its prior. */
 static const double told_part = 0.5;
-static const double share_prior = 4.0; /* of the logistic number */
+/* The isotropic share: its prior about a half, and the step of its slope at the end, taken inwards.
+ * Its number may go beyond where shares are, 0 to 1, against a wall this steep: many wires are at
+ * an end, and a number that comes there ever more slowly would hold up the others. */
+static const double share_spread = 0.5, share_step = 0.02, share_wall = 0.02;
 /* What no reading and no prior tells stays finite by a prior of this weight; a law is moved by this
  * many standard errors, and no number by more than that. Units of the free numbers. */
 static const double know_nothing = 1e-6, moved_by = 0.1, farthest = 1.0;
-/* Parts may yield before the first point, down to this part of its strain. */
-static const double before_first = 0.25;
+/* Parts may yield before the first point, down to this part of its strain; with a way back, which
+ * tells the stiffness before them, from earlier on: what yields there and has no part is taken for
+ * a later contact. */
+static const double before_first = 0.25, before_first_back = 0.1;
 
 #define AT(field) offsetof(struct wb_three_point_fit_settings, field)
 
@@ -100,19 +105,25 @@ const struct wb_setting wb_three_point_fit_rows[WB_THREE_POINT_FIT_ROWS] = {
 
 #undef AT
 
+enum {
+    SHARE = WB_THREE_POINT_PARTS /* place of the isotropic share among the free numbers */
+};
+
 struct problem {
     const struct wb_three_point_data *data;
     const struct wb_three_point_strains *strains;
     const struct wb_three_point_fit_settings *settings;
     struct wb_three_point_model *model;
     /* The law's numbers (moduli, and share), the bow where it is free, and last the contact. */
-    int n_law, n_curve, n_free, n_residuals; /* n_curve: those that change the curve */
+    int n_law, n_curve, n_free, n_residuals; /* n_curve: those that change the curve; the contact
+                                                where there is a way back, which begins at the turn,
+                                                so much further from the contact */
     double bow, bow_deviation;               /* m: where it is looked for, and its prior; 0: held */
     double start_bow;
     double start_modulus[WB_THREE_POINT_PARTS], yield_strain[WB_THREE_POINT_PARTS];
     double start_share;
     double contact, force_scale;
-    double deepest; /* m: the largest deflection that is computed */
+    double end; /* m of travel less what the machine gives way: the last that is computed */
 
     /* The law last computed: what a nose does, whenever it came. */
     double of[WB_THREE_POINT_MOST_FREE];
@@ -127,6 +138,12 @@ static double contact_of(const struct problem *p, const double *x)
     return p->contact + contact_scale * p->data->info.length * x[p->n_free - 1];
 }
 
+/* The largest deflection. A loading beyond it goes on straight, and need not be computed anew. */
+static double deepest_of(const struct problem *p, const double *x)
+{
+    return p->end - (p->data->has_unloading ? contact_of(p, x) : p->data->first_contact);
+}
+
 static double bow_of(const struct problem *p, const double *x)
 {
     return p->start_bow +
@@ -134,12 +151,15 @@ static double bow_of(const struct problem *p, const double *x)
 }
 
 /* The isotropic share comes last of the law's numbers. */
+static double share_of(const struct problem *p, const double *x)
+{
+    return p->n_law > SHARE ? fmin(fmax(0.5 + x[SHARE], 0.0), 1.0) : 0.0;
+}
+
 static void law_of(const struct problem *p, const double *x, struct wb_law *law)
 {
     struct wb_law_part parts[WB_THREE_POINT_PARTS];
-    const double share = p->n_law > WB_THREE_POINT_PARTS
-                             ? 1.0 / (1.0 + exp(-(p->start_share + x[WB_THREE_POINT_PARTS])))
-                             : 0.0;
+    const double share = share_of(p, x);
     const double poissons_ratio =
         p->data->info.poissons_ratio > 0.0 ? p->data->info.poissons_ratio : 0.4;
     for (int i = 0; i < WB_THREE_POINT_PARTS; i++)
@@ -159,9 +179,9 @@ struct wb_three_point_strains wb_three_point_fit_strains(const struct wb_three_p
 {
     const double way = fmax(data->points[0].travel - data->first_contact, 1e-3 * data->info.length);
     /* A wire that yields bends more sharply in the middle. */
-    return (struct wb_three_point_strains){before_first * strain_at(data, way),
-                                           1.5 *
-                                               strain_at(data, data->usable - data->first_contact)};
+    const double before = data->has_unloading ? before_first_back : before_first;
+    return (struct wb_three_point_strains){
+        before * strain_at(data, way), 1.5 * strain_at(data, data->usable - data->first_contact)};
 }
 
 static void start_law(struct problem *p, const struct wb_three_point_fit *start)
@@ -194,8 +214,7 @@ static void start_law(struct problem *p, const struct wb_three_point_fit *start)
     }
     p->contact = start->first_contact;
     p->start_bow = start->bow;
-    const double share = fmin(fmax(start->law.isotropic_share, 1e-3), 1.0 - 1e-3);
-    p->start_share = log(share / (1.0 - share));
+    p->start_share = start->law.isotropic_share - 0.5;
 }
 
 /* The whole curve of a law; `reached` of the run says whether it came to its end. */
@@ -215,8 +234,8 @@ static void compute(struct problem *p, const double *x)
         return;
     p->runs++;
     p->status = wb_three_point_model_run(
-        p->model, &law, wb_three_point_model_curvature(&p->data->info, bow_of(p, x)), p->deepest,
-        p->data->has_unloading, &p->run);
+        p->model, &law, wb_three_point_model_curvature(&p->data->info, bow_of(p, x)),
+        deepest_of(p, x), p->data->has_unloading, &p->run);
 }
 
 static int residuals(struct problem *p, const double *x, double *r)
@@ -247,8 +266,10 @@ static int residuals(struct problem *p, const double *x, double *r)
     r[at++] = (contact - data->first_contact) / (p->settings->contact_prior * span);
     if (p->bow_deviation > 0.0)
         r[at++] = (bow_of(p, x) - p->bow) / p->bow_deviation;
-    if (p->n_law > WB_THREE_POINT_PARTS)
-        r[at++] = (p->start_share + x[WB_THREE_POINT_PARTS]) / share_prior;
+    if (p->n_law > SHARE) {
+        const double inside = share_of(p, x) - 0.5;
+        r[at++] = inside / share_spread + (x[SHARE] - inside) / share_wall;
+    }
     return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
 }
 
@@ -323,12 +344,33 @@ static bool find_covariance(const gsl_matrix *J, size_t n_readings, double varia
     return good;
 }
 
+/* Slopes by the isotropic share itself in place of those by its number, which end where the share
+ * is 0 or 1. */
+static bool slope_of_share(struct problem *p, const gsl_vector *x, const gsl_vector *f,
+                           gsl_matrix *J)
+{
+    double moved[WB_THREE_POINT_MOST_FREE];
+    double *const r = calloc(f->size, sizeof *r);
+    const double share = share_of(p, x->data), by = share > 0.5 ? -share_step : share_step;
+    memcpy(moved, x->data, (size_t)p->n_free * sizeof *moved);
+    moved[SHARE] = share + by - 0.5;
+    const bool good = r && residuals(p, moved, r) == GSL_SUCCESS && p->run.reached;
+    for (size_t i = 0; good && i < f->size; i++)
+        gsl_matrix_set(J, i, SHARE, (r[i] - gsl_vector_get(f, i)) / by);
+    if (good)
+        gsl_matrix_set(J, f->size - 1, SHARE, 1.0 / share_spread);
+    free(r);
+    return good;
+}
+
 /* The law moved along the columns of the covariance's triangular factor, which the covariance is
- * destroyed for. */
+ * destroyed for; a share, to where shares are. */
 static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *covariance,
                      struct wb_three_point_fit *fit)
 {
     const size_t n = (size_t)p->n_free;
+    const bool is_share_free = p->n_law > SHARE;
+    const double share = share_of(p, x->data);
     fit->n_moved = 0;
     if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
         return;
@@ -336,9 +378,17 @@ static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *c
         double step[WB_THREE_POINT_MOST_FREE], largest = 1e-300;
         for (size_t i = k; i < n; i++)
             largest = fmax(largest, fabs(gsl_matrix_get(covariance, i, k)));
-        const double by = fmin(moved_by, farthest / largest);
+        double by = fmin(moved_by, farthest / largest);
+        if (is_share_free && k <= SHARE) {
+            const double of = gsl_matrix_get(covariance, SHARE, k);
+            by = fmin(by, 0.5 / fmax(fabs(of), 1e-300));
+            by = (share > 0.5) == (of > 0.0) ? -by : by;
+        }
         for (size_t i = 0; i < n; i++)
             step[i] = gsl_vector_get(x, i) + (i < k ? 0.0 : by * gsl_matrix_get(covariance, i, k));
+        if (is_share_free)
+            step[SHARE] =
+                share - 0.5 + (k <= SHARE ? by * gsl_matrix_get(covariance, SHARE, k) : 0.0);
         law_of(p, step, &fit->moved[fit->n_moved]);
         fit->moved_by[fit->n_moved++] = by;
     }
@@ -358,7 +408,8 @@ static void find_errors(struct problem *p, gsl_multifit_nlinear_workspace *w,
         sum += pow(gsl_vector_get(w->f, i), 2);
     const double variance =
         sum / fmax(1.0, p->data->n_points - p->n_free) * alike_in_a_row(w->f, p->data->n_points);
-    if (find_covariance(w->J, (size_t)p->data->n_points, variance, covariance)) {
+    if ((p->n_law <= SHARE || slope_of_share(p, w->x, w->f, w->J)) &&
+        find_covariance(w->J, (size_t)p->data->n_points, variance, covariance)) {
         const double of_contact = sqrt(gsl_matrix_get(covariance, contact, contact));
         fit->first_contact_error = contact_scale * span * of_contact;
         if (p->bow_deviation > 0.0) {
@@ -386,6 +437,7 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
         .params = p,
     };
     double zero[WB_THREE_POINT_MOST_FREE] = {0.0};
+    zero[SHARE] = p->n_law > SHARE ? p->start_share : 0.0;
     const gsl_vector_view x = gsl_vector_view_array(zero, (size_t)p->n_free);
     const int started = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
     if (p->status != WB_OK)
@@ -396,7 +448,7 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
                           "(%s) with a nose of %.3g mm and friction %.2g from the first guess: use "
                           "less of the test (usable_travel_mm, --usable-mm)",
                           p->data->info.wire, p->data->info.sample, p->run.travel / WB_MM,
-                          p->deepest / WB_MM, wb_three_point_bending_end_name(p->run.end),
+                          deepest_of(p, zero) / WB_MM, wb_three_point_bending_end_name(p->run.end),
                           bench->nose_radius / WB_MM, bench->friction);
     const struct wb_least_squares_search how = {
         .max_iterations = p->settings->max_iterations,
@@ -445,16 +497,16 @@ enum wb_status wb_three_point_fit_run(struct wb_three_point_fit *fit,
     for (int i = 0; i < data->n_points && !data->points[i].is_unloading; i++)
         last_force = data->points[i].force;
     *fit = (struct wb_three_point_fit){.is_converged = false};
-    p.deepest = data->usable - data->first_contact - bench->compliance * last_force;
-    if (!(p.deepest > 0.0))
+    p.end = data->usable - bench->compliance * last_force;
+    if (!(p.end > data->first_contact))
         return wb_fail_to(why, WB_ERR_DATA,
                           "wire '%s', sample %d: a compliance of %.3g mm/N takes all of the travel",
                           data->info.wire, data->info.sample, bench->compliance / WB_MM);
     p.n_law = WB_THREE_POINT_PARTS + data->has_unloading;
     wb_three_point_place_bow(&data->info, settings, &p.bow, &p.bow_deviation);
     const int is_bow_free = p.bow_deviation > 0.0;
-    p.n_curve = p.n_law + is_bow_free;
-    p.n_free = p.n_curve + 1;
+    p.n_free = p.n_law + is_bow_free + 1;
+    p.n_curve = data->has_unloading ? p.n_free : p.n_free - 1;
     p.n_residuals =
         data->n_points + WB_THREE_POINT_PARTS - 3 + 1 + is_bow_free + data->has_unloading;
     p.force_scale = wb_three_point_place_error(data, settings);

@@ -12,8 +12,12 @@
 
 enum {
     STEPS = 36, /* of the way up, */
-    BACK = 24   /* and of the way back */
+    BACK = 24   /* and of the way back, at most */
 };
+
+/* The first step of the way back, as a part of the deflection; and for how much of the steps that
+ * are left the rest of it would do, going on as it falls: it falls ever more slowly. */
+static const double first_back = 0.01, slower = 0.6;
 
 /* Bent by nature beyond this over the span, rad, a wire does not lie on rollers. */
 static const double most_bent = 1.0;
@@ -143,18 +147,46 @@ static enum wb_status go_up(struct wb_three_point_model *model, double deflectio
     return WB_OK;
 }
 
+/* Whether a curve goes through the points of the way back, which come as the nose moves. */
+static bool draw_back(struct way *back)
+{
+    for (int i = 0, k = back->n - 1; i < k; i++, k--) {
+        const double travel = back->travel[i], force = back->force[i];
+        back->travel[i] = back->travel[k];
+        back->force[i] = back->force[k];
+        back->travel[k] = travel;
+        back->force[k] = force;
+    }
+    if (back->spline)
+        gsl_spline_free(back->spline);
+    back->spline = gsl_spline_alloc(gsl_interp_steffen, (size_t)back->n);
+    return back->spline &&
+           gsl_spline_init(back->spline, back->travel, back->force, (size_t)back->n) == GSL_SUCCESS;
+}
+
+/* Steps that come to where the nose leaves the wire, which is a kink: the curve ends there. */
 static enum wb_status go_back(struct wb_three_point_model *model, double deflection,
                               struct wb_three_point_run *run, bool *reached)
 {
     struct way *const back = &model->back;
-    for (int i = 0; i <= BACK; i++) {
-        const double to = deflection * (1.0 - pow((double)i / BACK, 1.5));
-        WB_TRY(add(model, back, BACK - i, to, run, reached));
+    double at = deflection, step = first_back * deflection;
+    bool has_left = false;
+    WB_TRY(add(model, back, 0, at, run, reached));
+    for (int i = 1; i <= BACK && *reached && !has_left; i++) {
+        at = i < BACK ? fmax(0.0, at - step) : 0.0;
+        WB_TRY(add(model, back, i, at, run, reached));
         if (!*reached)
             return WB_OK;
+        const double force = back->force[i], fallen = back->force[i - 1] - force;
+        has_left = !(force > 0.0) || at == 0.0;
+        if (!(force > 0.0))
+            back->travel[i] = wb_three_point_bending_contact_level(model->bending);
+        back->n = i + 1;
+        if (fallen > 0.0 && i < BACK)
+            step = force / fallen * (back->travel[i - 1] - back->travel[i]) / (slower * (BACK - i));
     }
     run->left = wb_three_point_bending_contact_level(model->bending);
-    *reached = gsl_spline_init(back->spline, back->travel, back->force, BACK + 1) == GSL_SUCCESS;
+    *reached = *reached && draw_back(back);
     return WB_OK;
 }
 

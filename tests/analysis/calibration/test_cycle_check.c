@@ -419,6 +419,25 @@ static void good_specimens_are_not_doubted(void **state)
     release(bench);
 }
 
+/* Last, because it changes the good specimen. */
+static void a_held_test_is_doubted_but_not_one_held_at_rest(void **state)
+{
+    (void)state;
+    static const char *const phases[] = {"rest", "down"};
+    struct wb_json *const holds =
+        wb_json_set_array(wb_json_get(good->datasets[0].document, "checks"), "holds");
+    for (int i = 0; i < 2; i++) {
+        struct wb_json *const hold = wb_json_append_object(holds);
+        wb_json_set_text(hold, "phase", phases[i]);
+        wb_json_set_number(hold, "lasted_s", 30.0 + i);
+        good->remarks = (struct wb_cycle_remarks){.n = 0};
+        assert_int_equal(wb_cycle_check_run(&good->remarks, &good->calibration, good->list), WB_OK);
+        if (i == 0)
+            assert_no_doubt(good);
+    }
+    assert_told(good, WB_CHECK_DOUBT, 1, "the test was held 1 time, for 31 s in all");
+}
+
 /* Three types, four lengths, five specimens each. */
 static void no_good_specimen_is_doubted(void **state)
 {
@@ -455,6 +474,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_specimen_unlike_the_others_is_told),
         cmocka_unit_test(one_sample_is_noted),
         cmocka_unit_test(good_specimens_are_not_doubted),
+        cmocka_unit_test(a_held_test_is_doubted_but_not_one_held_at_rest),
     };
     const struct CMUnitTest many[] = {
         cmocka_unit_test(no_good_specimen_is_doubted),

@@ -186,7 +186,57 @@ static void exponents_that_fit_alike_are_told(void **state)
     make(&datasets[0], &noisy, 1, true);
     assert_int_equal(run(1), WB_OK);
     assert_false(result.follows);
-    assert_true(isnan(result.n_low));
+    assert_int_equal(result.n_followed, 0);
+    assert_true(isnan(result.n_low) && isnan(result.of_mean_n_low));
+    /* Beside one that is met it counts as not met. */
+    settings.alike = 0.01;
+    make(&datasets[0], &copper, 1, true);
+    noisy.noise = 0.8;
+    make(&datasets[1], &noisy, 2, true);
+    assert_int_equal(run(2), WB_OK);
+    assert_false(result.follows);
+    assert_int_equal(result.n_followed, 1);
+    assert_true(result.of_mean_n_low < 0.5 && result.of_mean_n_high > 0.5);
+}
+
+/* Rubber: the curve bends over from the first row on, to a tenth of its slope. A preload, on the
+ * other hand, leaves a straight start straight. */
+static void a_start_that_bends_over_has_no_plastic_strain(void **state)
+{
+    (void)state;
+    struct wb_tensile_material_settings material = {4e6, 1100.0, (double)NAN};
+    wb_tensile_default_settings(&settings);
+    make(&datasets[0], &copper, 1, false);
+    datasets[0].n_rows = 0;
+    for (int i = 0; i <= 100; i++) {
+        const double e = 0.03 * i;
+        add(&datasets[0], &copper, e, 2e6 * e + 1e6 * (1.0 - exp(-e / 0.1)));
+    }
+    assert_int_equal(run(1), WB_OK);
+    assert_false(result.specimens[0].start_is_straight);
+    assert_false(result.follows);
+    assert_int_equal(result.proof_stress.n, 0);
+    assert_int_equal(result.stress[0].n, 0);
+    assert_int_equal(result.direct_exponent.n, 0);
+    assert_close_relative(result.strength.mean, 7e6, 1e-3);
+    assert_int_equal(wb_tensile_material_write(&result, NULL, &material, folder, &why),
+                     WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "sample 1: the start is not straight"));
+
+    make(&datasets[0], &copper, 1, true);
+    size_t first = 0;
+    while (datasets[0].rows[first].force < 50e6 * AREA)
+        first++;
+    const double zero = datasets[0].rows[first].deflection;
+    datasets[0].n_rows -= first;
+    memmove(datasets[0].rows, datasets[0].rows + first, datasets[0].n_rows * sizeof(struct wb_row));
+    for (size_t i = 0; i < datasets[0].n_rows; i++)
+        datasets[0].rows[i].deflection -= zero;
+    settings.stretch = 0.15;
+    assert_int_equal(run(1), WB_OK);
+    assert_true(result.specimens[0].slack < 0.0);
+    assert_true(result.specimens[0].start_is_straight);
+    assert_close_relative(result.youngs_modulus.mean, 70e9, 5e-3);
 }
 
 static void intervals_are_those_of_the_mean_of_logarithms(void **state)
@@ -284,6 +334,7 @@ int main(void)
         cmocka_unit_test(eq_7_with_the_true_yield_stress_gives_k_and_n),
         cmocka_unit_test(a_crosshead_gives_no_modulus_but_the_same_plastic_curve),
         cmocka_unit_test(exponents_that_fit_alike_are_told),
+        cmocka_unit_test(a_start_that_bends_over_has_no_plastic_strain),
         cmocka_unit_test(intervals_are_those_of_the_mean_of_logarithms),
         cmocka_unit_test(other_tests_and_mixtures_are_refused),
         cmocka_unit_test(a_material_file_carries_origin_and_intervals),

@@ -9,8 +9,9 @@
 #include "tests/analysis/three_point_data.h"
 
 enum {
-    TESTS = 12,
+    TESTS = 6,
     WAYS_BACK = 8,
+    ALTERNATIVES_BACK = 2, /* a way back costs several loadings */
     NUMBERS = 1 + WB_THREE_POINT_MOMENTS
 };
 
@@ -21,9 +22,9 @@ struct alternative {
 
 static const struct alternative alternatives[] = {
     {"defaults", 1.0, 1.0, 1.0},
+    {"points from 0.002 span on", 1.0, 0.2, 1.0},
     {"contact prior / 10", 0.1, 1.0, 1.0},
     {"contact prior x 10", 10.0, 1.0, 1.0},
-    {"points from 0.002 span on", 1.0, 0.2, 1.0},
     {"points from 0.03 span on", 1.0, 3.0, 1.0},
     {"part prior / 4", 1.0, 1.0, 0.25},
     {"part prior x 4", 1.0, 1.0, 4.0},
@@ -133,18 +134,18 @@ static void run(struct sums *sums, const struct alternative *a, const struct thr
     wb_dataset_release(&dataset);
 }
 
-static void run_all(struct sums *sums, int n, bool with_way_back)
+static void run_all(struct sums *sums, int n, int n_alternatives, bool with_way_back)
 {
     static const char *const names[NUMBERS] = {"EI", "M at 0.05", "0.1", "0.2", "0.5", "1 kappa"};
     uint64_t random = 20261123;
     for (int i = 0; i < n; i++) {
         struct three_point_made made = draw(&random);
         made.with_way_back = with_way_back;
-        for (int a = 0; a < ALTERNATIVES; a++)
+        for (int a = 0; a < n_alternatives; a++)
             run(&sums[a], &alternatives[a], &made);
     }
     print_message("%d tests: mean and RMS of ln(found / true) in %%, intervals that hold\n", n);
-    for (int a = 0; a < ALTERNATIVES; a++) {
+    for (int a = 0; a < n_alternatives; a++) {
         print_message("%-26s", alternatives[a].name);
         for (int k = 0; k < NUMBERS; k++)
             print_message("  %s %+.1f %.1f %d", names[k], 100.0 * sums[a].error[k] / n,
@@ -157,15 +158,15 @@ static void defaults_are_as_good_as_others_on_loadings(void **state)
 {
     (void)state;
     struct sums sums[ALTERNATIVES] = {{0}};
-    run_all(sums, TESTS, false);
+    run_all(sums, TESTS, ALTERNATIVES, false);
     /* The largest moment is known within 3 %, and no alternative knows it much better. */
     const int last = NUMBERS - 1;
     assert_true(sqrt(sums[0].squares[last] / TESTS) < 0.03);
     for (int a = 1; a < ALTERNATIVES; a++)
         assert_true(sums[0].squares[last] < 2.0 * sums[a].squares[last] + 1e-4 * TESTS);
-    /* Intervals of 95 % hold the truth; 12 of them miss more than two in one of fifty cases. */
+    /* Intervals of 95 % hold the truth; 6 of them miss more than one in one of thirty cases. */
     for (int k = 1; k < NUMBERS; k++)
-        assert_true(sums[0].covered[k] >= TESTS - 2);
+        assert_true(sums[0].covered[k] >= TESTS - 1);
 }
 
 static void defaults_are_as_good_as_others_on_ways_back(void **state)
@@ -173,8 +174,8 @@ static void defaults_are_as_good_as_others_on_ways_back(void **state)
     (void)state;
     struct sums sums[ALTERNATIVES] = {{0}};
     const int n = WAYS_BACK;
-    run_all(sums, n, true);
-    for (int a = 0; a < ALTERNATIVES; a++)
+    run_all(sums, n, ALTERNATIVES_BACK, true);
+    for (int a = 0; a < ALTERNATIVES_BACK; a++)
         print_message("%-26s  unloading RMS %.2f %% of F_max, left %+.3f mm, RMS %.3f mm, of %.2f "
                       "mm\n",
                       alternatives[a].name, 100.0 * sqrt(sums[a].unloading / n),
@@ -185,11 +186,14 @@ static void defaults_are_as_good_as_others_on_ways_back(void **state)
      * Points from 0.002 of the span on know better what is left, but not EI. */
     assert_true(sqrt(sums[0].unloading / n) < 0.025);
     assert_true(sqrt(sums[0].left_squares / n) < 0.05 * WB_MM);
-    for (int a = 1; a < ALTERNATIVES; a++)
+    for (int a = 1; a < ALTERNATIVES_BACK; a++)
         assert_true(sums[0].unloading < 4.0 * sums[a].unloading &&
                     sums[0].squares[0] < 4.0 * sums[a].squares[0]);
-    /* With a way back EI is told: within 5 %. */
+    /* With a way back EI is told: within 5 %. Intervals of 95 % hold EI and the moments: 8 of them
+     * miss more than one in one of seventeen cases. */
     assert_true(sqrt(sums[0].squares[0] / n) < 0.05);
+    for (int k = 0; k < NUMBERS; k++)
+        assert_true(sums[0].covered[k] >= n - 1);
 }
 
 int main(void)
