@@ -9,6 +9,7 @@
 #include "base/config.h"
 #include "base/units.h"
 #include "fe/model/model_file.h"
+#include "fe/model/packing_touch.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
@@ -415,6 +416,7 @@ static enum wb_status vary_wires(struct reader *reader, struct section_nodes *se
     m->arrangement = variant->has_packing ? (enum wb_bundle_packing)variant->packing
                                           : natural_packing(m->packing.n);
     m->settled = false;
+    m->touching = 0.0;
     section->has_settled = false;
     section->places = NULL;
     if (m->arrangement != WB_BUNDLE_DENSEST)
@@ -495,10 +497,21 @@ static enum wb_status check_keys(const struct reader *reader, const struct secti
         return wb_config_refuse(reader->file.root, "search", "only with packing: densest");
     if (is_densest && section->has_settled)
         return wb_config_refuse(reader->file.root, "settled", "the densest packing is settled");
+    if (!is_places && m->touching > 0.0)
+        return wb_config_refuse(reader->file.root, "touching_mm", "only with packing: places");
     if (is_places && !m->settled && m->wire_gap > 0.0)
         return wb_config_refuse(section->gaps, "wires_mm",
                                 "the places say how far wires are apart");
     return WB_OK;
+}
+
+/* The places that make wires touch, or a refusal of touching_mm that says why there are none. */
+static enum wb_status touch(const struct reader *reader, struct wb_packing *packing)
+{
+    struct wb_reason why = {""};
+    if (wb_packing_touch(packing, reader->model->touching, &why) == WB_OK)
+        return WB_OK;
+    return wb_config_refuse(reader->file.root, "touching_mm", "%s", why.text);
 }
 
 /* Wires packed with their gap as part of them. */
@@ -525,6 +538,8 @@ static enum wb_status pack(struct reader *reader, const struct section_nodes *se
         break;
     case WB_BUNDLE_PLACES:
         WB_TRY(read_places(reader, section->places, &packing));
+        if (m->touching > 0.0)
+            WB_TRY(touch(reader, &packing));
         break;
     }
     if (m->settled)
@@ -548,7 +563,7 @@ static enum wb_status place_axis(struct reader *reader)
     const double gap = wb_packing_smallest_gap(packing);
     if (gap < -touching)
         return wb_config_refuse(reader->file.root, "places_mm",
-                                "two wires overlap by %g mm (settled: true moves them apart)",
+                                "two wires overlap by %g mm (touching_mm moves them apart)",
                                 -gap / WB_MM);
     return WB_OK;
 }
@@ -908,6 +923,7 @@ static enum wb_status read_root(struct reader *reader)
         WB_CONFIG_NODE("wires", &section.wires),
         WB_CONFIG_CHOICE("packing", &packing, packings),
         WB_CONFIG_OPTIONAL_NODE("places_mm", &section.places),
+        WB_CONFIG_OPTIONAL_NUMBER("touching_mm", &m->touching, WB_MM, 0.0, 1.0),
         WB_CONFIG_OPTIONAL_NODE("search", &section.search),
         WB_CONFIG_OPTIONAL_NODE("gaps", &section.gaps),
         WB_CONFIG_OPTIONAL_TEXT("tape", section.tape),

@@ -140,6 +140,7 @@ struct wb_bundle_model {
                                                  */
     enum wb_bundle_packing arrangement;
     bool settled;
+    double touching; /* m: listed places within it are moved until they touch; 0: none */
     struct wb_packing_search search; /* of the densest */
     double wire_gap;                 /* m, between wires that would touch */
     struct wb_packing packing;       /* of the wires themselves, without their gap */

@@ -101,7 +101,7 @@ echo '# a comment' >>one.yaml
 run 0 c.yaml -o r --force
 sed -i 's/friction: 0.2/friction: 0.3/' c.yaml
 run 3 c.yaml -o r --force
-grep -q 'interface, friction, static is 0.2 in it, and 0.3 is wanted' out || fail 'outdated datasets are not told'
+grep -q 'interface.friction.static is 0.2 in it, and 0.3 is wanted' out || fail 'outdated datasets are not told'
 first=$(sha256sum sim/one/dataset.json)
 run 0 c.yaml -o r --force --solve
 grep -q '"static": 0.3' sim/one-0.2/dataset.json || fail 'the outdated dataset was not replaced'

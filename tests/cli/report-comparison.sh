@@ -58,9 +58,9 @@ grep -q 'limit of the campaign is exceeded' "$folder/out" || fail 'the exceeded 
 # A dataset of other inputs, and one of an older solver, are left out.
 sed -i 's/"poissons_ratio": 0.34/"poissons_ratio": 0.3/' "$folder/sim/follower-8awg-3d/dataset.json"
 run 3 "$folder/c.yaml" -o "$folder/r" --force
-told='parts 1, poissons_ratio is 0.3 in it, and 0.34 is wanted'
-grep -q "$told" "$folder/out" || fail 'the other input is not told'
-grep -q "$told" "$folder/r/report.html" || fail 'the report hides the other input'
+told='parts[0].poissons_ratio is 0.3 in it, and 0.34 is wanted'
+grep -qF "$told" "$folder/out" || fail 'the other input is not told'
+grep -qF "$told" "$folder/r/report.html" || fail 'the report hides the other input'
 grep -q 'no fitted rod' "$folder/out" || fail 'the missing fit is not told'
 
 # --solve makes what is missing: solids and rods of a coarse wire under a small force.

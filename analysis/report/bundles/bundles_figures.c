@@ -20,11 +20,8 @@ static const double panel_height = 190.0;
 
 /* --- lines --- */
 
-/* The published curve is a broad pale line in every figure; the others lie on it. */
-static const struct wb_figure_style published_style = {.colour = {0.34, 0.71, 0.91, 0.75},
-                                                       .width = 3.6};
-static const struct wb_figure_style dynamic_style = {.colour = {0.114, 0.153, 0.2, 1.0},
-                                                     .width = 1.3};
+/* They lie on the published curve. */
+static const struct wb_figure_style dynamic_style = {.colour = WB_PALETTE_INK, .width = 1.3};
 static const struct wb_figure_style constant_style = {
     .colour = {0.835, 0.369, 0.0, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
 
@@ -41,7 +38,8 @@ static enum wb_status add_published(struct wb_panel *panel, const char *label,
 {
     if (!run || !run->published)
         return WB_OK;
-    return wb_figures_add_curve(panel, label, &run->curve, run->published, 1.0, &published_style);
+    return wb_figures_add_curve(panel, label, &run->curve, run->published, 1.0,
+                                &wb_figures_reference_style);
 }
 
 static enum wb_status start(struct wb_figure **figure, const char *kind, int index, double height)

@@ -12,10 +12,7 @@ static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
 
 /* --- curves --- */
 
-static const struct wb_figure_style explicit_style = {.colour = {0.34, 0.71, 0.91, 0.75},
-                                                      .width = 3.6};
-static const struct wb_figure_style section_style = {.colour = {0.114, 0.153, 0.2, 1.0},
-                                                     .width = 1.3};
+static const struct wb_figure_style section_style = {.colour = WB_PALETTE_INK, .width = 1.3};
 
 /* Of the run with constant friction, where both models have the same one, else of the other. */
 static int shown_run(const struct wb_bundles_results *results,
@@ -40,7 +37,7 @@ static enum wb_status add_bundle(struct wb_figure *figure, const struct wb_bundl
     if (explicit) {
         largest = fmax(largest, explicit->curve.max_force);
         WB_TRY(wb_figures_add_curve(panel, "explicit 3D", &explicit->curve, explicit->curve.force,
-                                    1.0, &explicit_style));
+                                    1.0, &wb_figures_reference_style));
     }
     /* Room above for the legend, so that the panels are alike. */
     wb_figure_set_y_range(panel, 0.0, 1.25 * largest);

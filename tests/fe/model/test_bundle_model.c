@@ -260,6 +260,11 @@ static void listed_places_are_kept_round_their_circle(void **state)
                  "wires: [{wire: type3, count: 2}]\npacking: places\nsettled: true\n"
                  "places_mm: [[1, 5], [1, 5.5]]");
     assert_close(wb_bundle_model_diameter(&model), 2.8e-3, 1e-12);
+
+    read_changed(bare, "wires: [{wire: type3}]\npacking: hexagon",
+                 "wires: [{wire: type3, count: 2}]\npacking: places\ntouching_mm: 0.1\n"
+                 "places_mm: [[1, 5], [1, 6.45]]");
+    assert_close(wb_bundle_model_diameter(&model), 2.8e-3, 1e-12);
 }
 
 static void the_densest_packing_is_by_seed(void **state)
@@ -550,6 +555,7 @@ static void wrong_packings_are_refused(void **state)
     refuse(full, "packing: hexagon", "packing: hexagon\nplaces_mm: [[0, 0]]", ":9: places_mm: ");
     refuse(full, "packing: hexagon", "packing: hexagon\nsearch: {seed: 1}", ":9: search: ");
     refuse(full, "packing: hexagon", "packing: densest", ":9: settled: ");
+    refuse(full, "settled: false", "touching_mm: 0.1", ":9: touching_mm: ");
     refuse(full, "wires_mm: 0.02", "wires_mm: -0.02", ":10: wires_mm: ");
     refuse(bare, "packing: hexagon", "packing: places\nplaces_mm: [[0, 0], [1, 0]]",
            ":4: places_mm: expected a list of 1 places");

@@ -411,12 +411,12 @@ static void a_dataset_with_other_settings_is_outdated(void **state)
     static const struct {
         const char *key, *value, *problem;
     } changes[] = {
-        {"friction", "0.4", "friction, static is 0.3 in it, and 0.4 is wanted"},
+        {"friction", "0.4", "friction.static is 0.3 in it, and 0.4 is wanted"},
         {"cohesion", "", "cohesive_stiffness_N_mm3 is 40 in it, and 30 is wanted"},
         {"strand", "", "strand_mm is 500 in it, and 0 is wanted"},
-        {"scaling", "", "run, mass_scaling is 16 in it, and 25 is wanted"},
-        {"mesh", "", "mesh, core_quads is 6 in it, and 2 is wanted"},
-        {"duration", "", "run, duration_s is 0.7 in it, and 0 is wanted"},
+        {"scaling", "", "run.mass_scaling is 16 in it, and 25 is wanted"},
+        {"mesh", "", "mesh.core_quads is 6 in it, and 2 is wanted"},
+        {"duration", "", "run.duration_s is 0.7 in it, and 0 is wanted"},
     };
     for (int i = 0; i < (int)(sizeof changes / sizeof changes[0]); i++) {
         read_small("", "");
@@ -521,7 +521,7 @@ static void a_rod_with_other_properties_is_outdated(void **state)
     compute();
     assert_int_equal(results.rods[0].simulation.state, WB_SIMULATION_STALE);
     assert_non_null(strstr(wb_text_string(&results.rods[0].simulation.problem),
-                           "law, yield_stress_MPa is 3 in it, and 2.7 is wanted"));
+                           "law.yield_stress_MPa is 3 in it, and 2.7 is wanted"));
     assert_true(isnan(wb_bundles_results_cost(&results, 0)));
     release();
 }

@@ -406,7 +406,7 @@ static void a_dataset_of_a_changed_model_is_outdated(void **state)
     const struct wb_wires_run *const run = &results.runs[WB_WIRES_ELASTIC][WB_WIRES_SOLID];
     assert_int_equal(run->simulation.state, WB_SIMULATION_STALE);
     assert_non_null(strstr(wb_text_string(&run->simulation.problem),
-                           "fields_at_mm 2 is 50 in it, and 51 is wanted"));
+                           "fields_at_mm[1] is 50 in it, and 51 is wanted"));
     /* What it cost can still be told. */
     assert_close(run->simulation.cpu_s, 200.0, 1e-12);
     release();
