@@ -1,11 +1,12 @@
-/* Calibrates a wire on datasets and prints what is known of it, and its bending moments.
+/* Calibrates a wire on datasets and prints what is known of it, and its bending moments. Recordings
+ * are aligned in memory; folders are those that `wirebench align` wrote.
  *
  *     cc calibrate_dataset.c $(pkg-config --cflags --libs wirebench) -o calibrate_dataset
- *     wirebench align recordings/type1-L85-1.wbr.zst -o type1-L85-1
- *     ./calibrate_dataset type1-L85-1
+ *     ./calibrate_dataset recordings/type1-L85-1.wbr.zst
  */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <wirebench.h>
 
@@ -18,6 +19,22 @@ static int fail(void)
 {
     fprintf(stderr, "calibrate_dataset: %s\n", wirebench_message());
     return 1;
+}
+
+static int is_recording(const char *path)
+{
+    const char *const ending = strstr(path, ".wbr");
+    return ending && (strcmp(ending, ".wbr") == 0 || strcmp(ending, ".wbr.zst") == 0);
+}
+
+static int get(struct wirebench_dataset **dataset, const char *path)
+{
+    const enum wirebench_status status = is_recording(path)
+                                             ? wirebench_dataset_align(dataset, path, NULL)
+                                             : wirebench_dataset_read(dataset, path);
+    if (status == WIREBENCH_INCOMPLETE)
+        fprintf(stderr, "calibrate_dataset: %s\n", wirebench_message());
+    return status < 0 ? fail() : 0;
 }
 
 static int print(const struct wirebench_properties *properties)
@@ -50,13 +67,11 @@ int main(int argc, char **argv)
     const int n = argc - 1;
     int code = 0;
     if (n < 1 || n > MOST) {
-        fprintf(stderr, "usage: calibrate_dataset DATASET...\n");
+        fprintf(stderr, "usage: calibrate_dataset REC.wbr|DATASET...\n");
         return 2;
     }
-    for (int i = 0; i < n && code == 0; i++) {
-        if (wirebench_dataset_read(&datasets[i], argv[1 + i]) < 0)
-            code = fail();
-    }
+    for (int i = 0; i < n && code == 0; i++)
+        code = get(&datasets[i], argv[1 + i]);
     if (code == 0) {
         const enum wirebench_status status = wirebench_calibrate(
             &properties, (const struct wirebench_dataset *const *)datasets, (size_t)n, NULL);

@@ -1,7 +1,7 @@
-"""Calibrates a wire on datasets and prints what is known of it, and its bending moments.
+"""Calibrates a wire on datasets and prints what is known of it, and its bending moments. Recordings
+are aligned in memory; folders are those that `wirebench align` wrote.
 
-    wirebench align recordings/type1-L85-1.wbr.zst -o type1-L85-1
-    python3 calibrate_dataset.py type1-L85-1
+    python3 calibrate_dataset.py recordings/type1-L85-1.wbr.zst
 """
 
 import sys
@@ -11,9 +11,15 @@ import numpy as np
 import wirebench
 
 
-def main(folders):
+def get(path):
+    if path.endswith((".wbr", ".wbr.zst")):
+        return wirebench.align(path)
+    return wirebench.Dataset(path)
+
+
+def main(paths):
     warnings.simplefilter("ignore", wirebench.Remark)
-    properties = wirebench.calibrate([wirebench.Dataset(folder) for folder in folders])
+    properties = wirebench.calibrate([get(path) for path in paths])
     info = properties.info
     print("wire %s, method %s, %d sample%s" %
           (info.wire, info.method, info.n_samples, "" if info.n_samples == 1 else "s"))

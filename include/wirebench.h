@@ -22,12 +22,12 @@
  * 0 means the default that stands beside the member.
  *
  * The process. No locale, signal handler, environment variable or standard stream is changed. GSL's
- * error handler, which belongs to the process, is off during wirebench_calibrate() and put back
- * after the last such call has ended.
+ * error handler, which belongs to the process, is off during wirebench_dataset_align() and
+ * wirebench_calibrate() and put back after the last such call has ended.
  *
  * A recording is the bytes of the instruments with their times; a dataset is a test as a table of
- * force over deflection; properties are what is known of a wire. `wirebench align` makes datasets
- * of recordings. docs/library.md shows the use from C and Python.
+ * force over deflection, made of a recording; properties are what is known of a wire.
+ * docs/library.md shows the use from C and Python.
  */
 #ifndef WIREBENCH_H
 #define WIREBENCH_H
@@ -200,8 +200,26 @@ struct wirebench_dataset_info {
     int is_complete; /* nothing was missing or cut short */
 };
 
-/* Reads the dataset's folder. */
+/* Reads the folder of a dataset. */
 enum wirebench_status wirebench_dataset_read(struct wirebench_dataset **out, const char *folder);
+
+struct wirebench_alignment {
+    size_t size;
+    /* Paths of a rig and a specimen file (YAML) that hold in place of the recorded ones, where
+     * those were wrong; NULL: the recorded. */
+    const char *rig, *specimen;
+    /* Other options of `wirebench align` by their names, "row-rate=50"; NULL or NULL-terminated. */
+    const char *const *options;
+};
+
+/* Makes the dataset of a recording, NAME.wbr or NAME.wbr.zst, in memory: what
+ * wirebench_dataset_read() reads from the folder that `wirebench align` writes. `alignment` may be
+ * NULL: the default. wirebench_warnings() has what the tool warns of. WIREBENCH_INCOMPLETE: the
+ * dataset can be used, and something of the test is missing (gaps, damaged or lost data, a test
+ * that was cut short). WIREBENCH_ERR_DATA: no dataset can be made of the recording. */
+enum wirebench_status wirebench_dataset_align(struct wirebench_dataset **out,
+                                              const char *recording_path,
+                                              const struct wirebench_alignment *alignment);
 void wirebench_dataset_close(struct wirebench_dataset *dataset);
 
 enum wirebench_status wirebench_dataset_describe(const struct wirebench_dataset *dataset,

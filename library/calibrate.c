@@ -1,39 +1,17 @@
 /* Calibration of the library: the methods of `wirebench calibrate`. Whatever the method, its result
  * is written as a properties file in memory and read again, so that a caller gets the same as one
  * who reads the command's file. */
-#include <gsl/gsl_errno.h>
-#include <pthread.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "analysis/calibration/cycle_check.h"
 #include "analysis/calibration/method.h"
 #include "library/handles.h"
+#include "library/options.h"
 
 #define WB_LOG_DOMAIN "library"
-
-/* --- GSL's error handler, which belongs to the process --- */
-
-static pthread_mutex_t handler_lock = PTHREAD_MUTEX_INITIALIZER;
-static gsl_error_handler_t *handler; /* the caller's, while calibrations run */
-static int n_running;
-
-static void begin_gsl(void)
-{
-    pthread_mutex_lock(&handler_lock);
-    if (n_running++ == 0)
-        handler = gsl_set_error_handler_off();
-    pthread_mutex_unlock(&handler_lock);
-}
-
-static void end_gsl(void)
-{
-    pthread_mutex_lock(&handler_lock);
-    if (--n_running == 0)
-        gsl_set_error_handler(handler);
-    pthread_mutex_unlock(&handler_lock);
-}
 
 /* --- what is asked for --- */
 
@@ -62,51 +40,19 @@ static bool report_evaluation(void *context, int evaluation, double error, doubl
     return report(context, evaluation, 0);
 }
 
-/* Tables of settings of a method, and the struct that they fill. */
-struct target {
-    const struct wb_setting_table *tables;
-    int n;
-    void *settings;
-};
-
-static struct target find_target(struct job *job)
+static enum wb_status set_options(struct job *job)
 {
+    const char *const *const options = job->given.options;
     switch (job->method) {
     case WB_METHOD_PAPER:
-        return (struct target){&wb_calibrate_table, 1, &job->paper};
+        return wb_options_set(&wb_calibrate_table, 1, &job->paper, options, "calibrate");
     case WB_METHOD_THREE_POINT:
-        return (struct target){wb_three_point_calibrate_tables, WB_THREE_POINT_CALIBRATE_TABLES,
-                               &job->three_point};
+        return wb_options_set(wb_three_point_calibrate_tables, WB_THREE_POINT_CALIBRATE_TABLES,
+                              &job->three_point, options, "calibrate");
     default:
-        return (struct target){wb_cycle_calibrate_tables, WB_CYCLE_CALIBRATE_TABLES, &job->cycle};
+        return wb_options_set(wb_cycle_calibrate_tables, WB_CYCLE_CALIBRATE_TABLES, &job->cycle,
+                              options, "calibrate");
     }
-}
-
-static enum wb_status set_option(const struct target *target, const char *option)
-{
-    const char *const equals = strchr(option, '=');
-    const size_t length = equals ? (size_t)(equals - option) : strlen(option);
-    for (int t = 0; t < target->n; t++) {
-        const struct wb_setting_table *const table = &target->tables[t];
-        for (size_t i = 0; i < table->n; i++) {
-            const struct wb_setting *const row = &table->rows[i];
-            char problem[WB_SETTING_PROBLEM];
-            if (!row->option || strlen(row->option) != length ||
-                strncmp(row->option, option, length) != 0)
-                continue;
-            if (row->type != WB_SETTING_BOOLEAN && !equals)
-                return wb_fail(WB_ERR_ARGUMENT, "option '%s': expected %s=%s", option, option,
-                               row->argument);
-            if (row->type == WB_SETTING_BOOLEAN && equals)
-                return wb_fail(WB_ERR_ARGUMENT, "option '%s': expected no value", option);
-            if (!wb_setting_parse(row, equals ? equals + 1 : NULL,
-                                  (char *)target->settings + table->offset, problem))
-                return wb_fail(WB_ERR_ARGUMENT, "option '%s': %s", option, problem);
-            return WB_OK;
-        }
-    }
-    return wb_fail(WB_ERR_NOT_FOUND,
-                   "option '%s': `wirebench calibrate --help` has those of this method", option);
 }
 
 static enum wb_status choose_method(struct job *job)
@@ -139,9 +85,7 @@ static enum wb_status prepare(struct job *job)
     if (job->given.threads < 0)
         return wb_fail(WB_ERR_ARGUMENT, "threads: %d: expected 0 (all) or more",
                        job->given.threads);
-    const struct target target = find_target(job);
-    for (int i = 0; job->given.options && job->given.options[i]; i++)
-        WB_TRY(set_option(&target, job->given.options[i]));
+    WB_TRY(set_options(job));
     job->cycle.threads = job->given.threads;
     job->three_point.threads = job->given.threads;
     job->paper.progress = report_evaluation;
@@ -225,9 +169,9 @@ static enum wb_status calibrate(struct job *job, struct wirebench_properties *pr
     };
     struct wb_text *const text = &properties->text;
     WB_TRY(prepare(job));
-    begin_gsl();
+    wb_call_begin_gsl();
     const enum wb_status status = run[job->method](job, text);
-    end_gsl();
+    wb_call_end_gsl();
     WB_TRY(status);
     if (text->failed)
         return wb_fail(WB_ERR_MEMORY, "no memory for the properties");

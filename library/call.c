@@ -1,5 +1,6 @@
 #include "library/call.h"
 
+#include <gsl/gsl_errno.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -122,6 +123,28 @@ enum wb_status wb_call_need(const void *pointer, const char *name)
     if (!pointer)
         return wb_fail(WB_ERR_ARGUMENT, "%s: expected a pointer, not NULL", name);
     return WB_OK;
+}
+
+/* --- GSL's error handler --- */
+
+static pthread_mutex_t handler_lock = PTHREAD_MUTEX_INITIALIZER;
+static gsl_error_handler_t *handler; /* the caller's, while it is off */
+static int n_without_handler;
+
+void wb_call_begin_gsl(void)
+{
+    pthread_mutex_lock(&handler_lock);
+    if (n_without_handler++ == 0)
+        handler = gsl_set_error_handler_off();
+    pthread_mutex_unlock(&handler_lock);
+}
+
+void wb_call_end_gsl(void)
+{
+    pthread_mutex_lock(&handler_lock);
+    if (--n_without_handler == 0)
+        gsl_set_error_handler(handler);
+    pthread_mutex_unlock(&handler_lock);
 }
 
 /* --- what the library says of itself --- */

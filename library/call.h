@@ -43,6 +43,11 @@ WB_MUST_CHECK enum wb_status wb_call_take(void *mine, size_t n, const void *give
 WB_MUST_CHECK enum wb_status wb_call_give(void *given, const void *mine, size_t n,
                                           const char *name);
 
+/* Between the two, GSL's error handler, which belongs to the process and aborts it by default, is
+ * off. Any thread may be between them; the caller's handler is back when the last has left. */
+void wb_call_begin_gsl(void);
+void wb_call_end_gsl(void);
+
 /* WB_ERR_ARGUMENT with a message where a pointer is NULL that must not be. */
 WB_MUST_CHECK enum wb_status wb_call_need(const void *pointer, const char *name);
 

@@ -2,8 +2,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "analysis/align/align.h"
 #include "base/file.h"
 #include "library/handles.h"
+#include "library/options.h"
 
 #define WB_LOG_DOMAIN "library"
 
@@ -15,17 +17,23 @@ _Static_assert(sizeof((struct wb_test_info){0}.natural_shape) ==
                    sizeof((struct wirebench_dataset_info){0}.natural_shape),
                "natural shape");
 
+/* What callers look at, of a dataset that was read or made. */
+static enum wb_status show(struct wirebench_dataset *dataset)
+{
+    struct wb_columns tables[WB_DATASET_COLUMNS_TABLES];
+    WB_TRY(wb_dataset_columns_make(tables, &dataset->dataset));
+    for (int i = 0; i < WB_DATASET_COLUMNS_TABLES; i++)
+        dataset->tables[i].columns = tables[i];
+    return wb_json_format(dataset->dataset.document, &dataset->json);
+}
+
 static enum wb_status read_dataset(struct wirebench_dataset *dataset, const char *folder)
 {
     const unsigned kinds = WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT) |
                            WB_TEST_BIT(WB_TEST_TENSILE);
-    struct wb_columns tables[WB_DATASET_COLUMNS_TABLES];
     char path[WB_PATH];
     WB_TRY(wb_dataset_read_kinds(&dataset->dataset, folder, kinds, NULL));
-    WB_TRY(wb_dataset_columns_make(tables, &dataset->dataset));
-    for (int i = 0; i < WB_DATASET_COLUMNS_TABLES; i++)
-        dataset->tables[i].columns = tables[i];
-    WB_TRY(wb_json_format(dataset->dataset.document, &dataset->json));
+    WB_TRY(show(dataset));
     snprintf(dataset->origin.name, sizeof dataset->origin.name, "%s", wb_file_name(folder));
     WB_TRY(wb_file_join(path, folder, "force_deflection.csv"));
     return wb_hash_file(path, dataset->origin.sha256);
@@ -45,6 +53,78 @@ enum wirebench_status wirebench_dataset_read(struct wirebench_dataset **out, con
     else
         wirebench_dataset_close(dataset);
     return wb_call_end(status);
+}
+
+/* --- of a recording --- */
+
+/* Calibrated properties name the recording, as those of a report do. */
+static void set_origin(struct wirebench_dataset *dataset)
+{
+    const struct wb_json *const recording =
+        wb_json_item(wb_json_get(dataset->dataset.document, "recordings"), 0);
+    struct wb_properties_dataset *const origin = &dataset->origin;
+    const char *name, *sha256;
+    origin->is_recording = true;
+    if (wb_json_get_text(recording, "name", &name))
+        snprintf(origin->name, sizeof origin->name, "%.95s", name);
+    if (wb_json_get_text(recording, "sha256", &sha256))
+        snprintf(origin->sha256, sizeof origin->sha256, "%s", sha256);
+}
+
+static enum wb_status align_dataset(struct wirebench_dataset *dataset, const char *path,
+                                    const struct wirebench_alignment *alignment)
+{
+    struct wb_align_settings settings;
+    wb_align_default_settings(&settings);
+    settings.rig_path = alignment->rig;
+    settings.specimen_path = alignment->specimen;
+    WB_TRY(wb_options_set(&wb_align_table, 1, &settings, alignment->options, "align"));
+    wb_call_begin_gsl();
+    const enum wb_status status = wb_align_run(&dataset->dataset, path, &settings, NULL);
+    wb_call_end_gsl();
+    WB_TRY(status);
+    set_origin(dataset);
+    WB_TRY(wb_dataset_settle(&dataset->dataset));
+    return show(dataset);
+}
+
+/* A dataset that is not complete lists why among its warnings. */
+static enum wirebench_status end_incomplete(const struct wirebench_dataset *dataset)
+{
+    const struct wb_json *const warnings = wb_json_get(dataset->dataset.document, "warnings");
+    struct wb_text text = {0};
+    for (size_t i = 0; i < wb_json_length(warnings); i++) {
+        const char *warning;
+        if (wb_json_text(wb_json_item(warnings, i), &warning))
+            wb_text_append(&text, "%s%s", i > 0 ? "; " : "", warning);
+    }
+    const enum wirebench_status status = wb_call_end_incomplete(
+        "%s: the test is not all there: %s", dataset->origin.name, wb_text_string(&text));
+    wb_text_release(&text);
+    return status;
+}
+
+enum wirebench_status wirebench_dataset_align(struct wirebench_dataset **out,
+                                              const char *recording_path,
+                                              const struct wirebench_alignment *alignment)
+{
+    struct wirebench_alignment given = {0};
+    wb_call_begin();
+    if (wb_call_need(out, "out") != WB_OK ||
+        wb_call_need(recording_path, "recording_path") != WB_OK ||
+        (alignment &&
+         wb_call_take(&given, sizeof given, alignment, "wirebench_alignment") != WB_OK))
+        return wb_call_end(WB_ERR_ARGUMENT);
+    struct wirebench_dataset *const dataset = calloc(1, sizeof *dataset);
+    if (!dataset)
+        return wb_call_end(wb_fail(WB_ERR_MEMORY, "no memory for a dataset"));
+    const enum wb_status status = align_dataset(dataset, recording_path, &given);
+    if (status != WB_OK) {
+        wirebench_dataset_close(dataset);
+        return wb_call_end(status);
+    }
+    *out = dataset;
+    return wb_dataset_is_complete(&dataset->dataset) ? wb_call_end(WB_OK) : end_incomplete(dataset);
 }
 
 void wirebench_dataset_close(struct wirebench_dataset *dataset)

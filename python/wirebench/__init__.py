@@ -6,7 +6,7 @@ SI units; NaN is a number that is not known. Tables are dictionaries of NumPy ar
     import wirebench
     with wirebench.Recording("type1-L85-1.wbr.zst") as recording:
         force = recording.table("load")["force_N"]
-    dataset = wirebench.Dataset("type1-L85-1")
+    dataset = wirebench.align("type1-L85-1.wbr.zst")
     wire = wirebench.calibrate([dataset])
     print(wire.info.rigidity.value, wire.bend(20.0).springback)
     frame = dataset.table("shape").frame()   # with pandas
@@ -19,6 +19,7 @@ warnings is a wirebench.Remark.
 import ctypes as _c
 import json as _json
 import os as _os
+import sys as _sys
 import types as _types
 import warnings as _warnings
 from collections.abc import Mapping as _Mapping
@@ -28,7 +29,7 @@ import numpy as _np
 from . import _structs as _s
 
 __all__ = ["Dataset", "Error", "Incomplete", "Properties", "Recording", "Remark", "Table",
-           "calibrate", "revision", "solve_cantilever", "solve_three_point", "version"]
+           "align", "calibrate", "revision", "solve_cantilever", "solve_three_point", "version"]
 
 
 class Error(Exception):
@@ -60,6 +61,14 @@ def _path(path):
     return _os.fsencode(_os.fspath(path))
 
 
+def _caller():
+    """The stack level, seen from _check(), of the line that called this module."""
+    level, frame = 2, _sys._getframe(2)
+    while frame.f_back and frame.f_globals is globals():
+        level, frame = level + 1, frame.f_back
+    return level
+
+
 def _check(status):
     """Raises or warns, as the status of the call before says."""
     message = _text(_lib.wirebench_message())
@@ -67,9 +76,9 @@ def _check(status):
     if status < 0:
         raise Error(status, message)
     for remark in remarks.splitlines():
-        _warnings.warn(remark, Remark, stacklevel=3)
+        _warnings.warn(remark, Remark, stacklevel=_caller())
     if status > 0:
-        _warnings.warn(message, Incomplete, stacklevel=3)
+        _warnings.warn(message, Incomplete, stacklevel=_caller())
 
 
 def _plain(value):
@@ -141,6 +150,12 @@ class _Handle:
         self._handle = _c.c_void_p()
         _check(make(_c.byref(self._handle), *arguments))
 
+    @classmethod
+    def _made(cls, make, *arguments):
+        made = cls.__new__(cls)
+        _Handle.__init__(made, make, *arguments)
+        return made
+
     def close(self):
         handle, self._handle = getattr(self, "_handle", None), None
         if handle:
@@ -203,7 +218,8 @@ class Recording(_Handle):
 
 
 class Dataset(_Handle):
-    """A test as force over deflection and shapes: the folder that `wirebench align` wrote."""
+    """A test as force over deflection and shapes: a folder that `wirebench align` wrote. align()
+    makes one of a recording without a folder."""
 
     _free = _lib.wirebench_dataset_close
 
@@ -251,12 +267,6 @@ class Properties(_Handle):
         super().__init__(_lib.wirebench_properties_create, _c.byref(law))
 
     @classmethod
-    def _made(cls, make, *arguments):
-        made = cls.__new__(cls)
-        _Handle.__init__(made, make, *arguments)
-        return made
-
-    @classmethod
     def read(cls, path_or_name):
         """A properties file, a wire file, or a shipped wire by its name, "type1"."""
         return cls._made(_lib.wirebench_properties_read, _path(path_or_name))
@@ -293,6 +303,26 @@ def version():
 def revision():
     """The source revision that the library was built from."""
     return _text(_lib.wirebench_revision())
+
+
+def _options(options):
+    """{"data-step-mm": 2} as the library takes it, "data-step-mm=2"."""
+    given = [name if value is True else "%s=%s" % (name, value)
+             for name, value in (options or {}).items()]
+    return (_c.c_char_p * (len(given) + 1))(*[text.encode() for text in given], None)
+
+
+def align(path, *, rig=None, specimen=None, options=None):
+    """Makes the dataset of a recording as `wirebench align` does, and gives a Dataset.
+
+    rig, specimen: paths of files that hold in place of the recorded ones. options: others of the
+    command by their names, {"row-rate": 50}.
+    """
+    alignment = _s.Alignment(size=_c.sizeof(_s.Alignment),
+                             rig=None if rig is None else _path(rig),
+                             specimen=None if specimen is None else _path(specimen),
+                             options=_options(options))
+    return Dataset._made(_lib.wirebench_dataset_align, _path(path), _c.byref(alignment))
 
 
 def _solve(call, properties, test, deflection, result, shapes=0):
@@ -360,9 +390,6 @@ def calibrate(datasets, method=None, *, threads=0, options=None, progress=None):
         raise ValueError("method: expected cycle, paper or None, not %r" % (method,))
     datasets = list(datasets)
     handles = (_c.c_void_p * len(datasets))(*[dataset._open.value for dataset in datasets])
-    given = [name if value is True else "%s=%s" % (name, value)
-             for name, value in (options or {}).items()]
-    texts = (_c.c_char_p * (len(given) + 1))(*[text.encode() for text in given], None)
     raised = []
 
     def report(_context, done, all_):
@@ -373,7 +400,7 @@ def calibrate(datasets, method=None, *, threads=0, options=None, progress=None):
             return 0
 
     calibration = _s.Calibration(size=_c.sizeof(_s.Calibration), method=methods[method],
-                                 threads=threads, options=texts,
+                                 threads=threads, options=_options(options),
                                  progress=_s.PROGRESS(report) if progress else _s.PROGRESS())
     with _warnings.catch_warnings(record=True) as given_warnings:
         _warnings.simplefilter("always")

@@ -57,6 +57,9 @@ Part = _struct("Part", *_doubles("modulus yield_strain"))
 
 _LUDWIK = _doubles("youngs_modulus yield_stress strength_coefficient hardening_exponent")
 
+Alignment = _struct("Alignment", _SIZE, ("rig", c.c_char_p), ("specimen", c.c_char_p),
+                    ("options", c.POINTER(c.c_char_p)))
+
 Law = _struct("Law", _SIZE, *_doubles("outer_diameter mass_per_length poissons_ratio"), *_LUDWIK,
               ("n_parts", c.c_int), ("parts", Part * MOST_PARTS),
               ("kinematic_share", c.c_double))
@@ -100,7 +103,7 @@ Calibration = _struct("Calibration", _SIZE, *_ints("method threads"),
 
 # The header's name of each.
 STRUCTS = {"column": Column, "recording_info": RecordingInfo, "stream": Stream,
-           "dataset_info": DatasetInfo, "part": Part, "law": Law, "estimate": Estimate,
+           "dataset_info": DatasetInfo, "alignment": Alignment, "part": Part, "law": Law, "estimate": Estimate,
            "properties_info": PropertiesInfo, "bending": Bending, "cantilever": Cantilever,
            "cantilever_result": CantileverResult, "three_point": ThreePoint,
            "three_point_result": ThreePointResult, "calibration": Calibration}
@@ -126,6 +129,7 @@ FUNCTIONS = {
     "recording_meta": (c.c_char_p, _HANDLE, c.c_char_p),
     "recording_table": (c.c_int, _HANDLE, c.c_char_p, _OUT),
     "dataset_read": (c.c_int, _OUT, c.c_char_p),
+    "dataset_align": (c.c_int, _OUT, c.c_char_p, c.POINTER(Alignment)),
     "dataset_close": (None, _HANDLE),
     "dataset_describe": (c.c_int, _HANDLE, c.POINTER(DatasetInfo)),
     "dataset_table": (c.c_int, _HANDLE, c.c_char_p, _OUT),

@@ -377,6 +377,118 @@ static void a_dataset_is_its_csv_in_si(void **state)
     wirebench_dataset_close(dataset);
 }
 
+/* A NaN equals a NaN. */
+static void assert_columns_equal(const struct wirebench_table *a, const struct wirebench_table *b)
+{
+    assert_int_equal(wirebench_table_columns(a), wirebench_table_columns(b));
+    for (int i = 0; i < wirebench_table_columns(a); i++) {
+        struct wirebench_column one = {.size = sizeof one}, other = {.size = sizeof other};
+        succeed(wirebench_table_column(a, i, &one));
+        succeed(wirebench_table_column(b, i, &other));
+        assert_string_equal(one.name, other.name);
+        assert_int_equal(one.n, other.n);
+        for (size_t k = 0; k < one.n; k++) {
+            if (one.type == WIREBENCH_REAL && one.reals[k] != other.reals[k] &&
+                !(isnan(one.reals[k]) && isnan(other.reals[k])))
+                fail_msg("%s, row %zu: %.17g is not %.17g", one.name, k, one.reals[k],
+                         other.reals[k]);
+            if (one.type == WIREBENCH_INTEGER)
+                assert_int_equal(one.integers[k], other.integers[k]);
+            if (one.type == WIREBENCH_TEXT)
+                assert_string_equal(one.texts[k], other.texts[k]);
+        }
+    }
+}
+
+/* The shipped recording has a gap of a second in which the tip's marker is hidden. */
+static void a_recording_is_aligned_to_the_dataset_that_the_tool_writes(void **state)
+{
+    (void)state;
+    struct wirebench_dataset *aligned = NULL, *const written = read_dataset();
+    struct wirebench_dataset_info a = {.size = sizeof a}, b = {.size = sizeof b};
+    assert_int_equal(wirebench_dataset_align(&aligned, recording_path, NULL), WIREBENCH_INCOMPLETE);
+    assert_says("type1-L85-1.wbr.zst: the test is not all there: 1 gap in the rows");
+    assert_non_null(strstr(wirebench_warnings(), "1 gap in the rows"));
+    static const char *const names[] = {"force_deflection", "shape"};
+    for (int i = 0; i < 2; i++) {
+        const struct wirebench_table *one, *other;
+        succeed(wirebench_dataset_table(aligned, names[i], &one));
+        succeed(wirebench_dataset_table(written, names[i], &other));
+        assert_true(wirebench_table_rows(one) > 1000);
+        assert_columns_equal(one, other);
+    }
+    succeed(wirebench_dataset_describe(aligned, &a));
+    succeed(wirebench_dataset_describe(written, &b));
+    assert_string_equal(a.wire, b.wire);
+    a.wire = b.wire = NULL;
+    assert_memory_equal(&a, &b, sizeof a);
+    assert_string_equal(wirebench_dataset_json(aligned), wirebench_dataset_json(written));
+    wirebench_dataset_close(aligned);
+    wirebench_dataset_close(written);
+}
+
+static void options_and_files_of_an_alignment_hold(void **state)
+{
+    (void)state;
+    char path[64];
+    snprintf(path, sizeof path, "%s/specimen.yaml", folder);
+    struct wirebench_recording *recording = NULL;
+    succeed(wirebench_recording_open(&recording, recording_path));
+    const char *const recorded = wirebench_recording_meta(recording, "specimen");
+    const char *const sample = strstr(recorded, "sample: 1");
+    assert_non_null(sample);
+    FILE *const file = fopen(path, "w");
+    fprintf(file, "%.*ssample: 7%s", (int)(sample - recorded), recorded,
+            sample + strlen("sample: 1"));
+    fclose(file);
+    wirebench_recording_close(recording);
+    static const char *const given[] = {"longest-gap-s=5", "row-rate=2", NULL};
+    const struct wirebench_alignment alignment = {
+        .size = sizeof alignment, .specimen = path, .options = given};
+    struct wirebench_dataset *aligned = NULL;
+    struct wirebench_dataset_info info = {.size = sizeof info};
+    const struct wirebench_table *rows;
+    /* What is not farther apart than 5 s is no gap: nothing is missing. */
+    succeed(wirebench_dataset_align(&aligned, recording_path, &alignment));
+    assert_non_null(strstr(wirebench_warnings(), "sample"));
+    succeed(wirebench_dataset_describe(aligned, &info));
+    assert_int_equal(info.sample, 7);
+    assert_true(info.is_complete);
+    succeed(wirebench_dataset_table(aligned, "force_deflection", &rows));
+    assert_true(wirebench_table_rows(rows) > 500 && wirebench_table_rows(rows) < 700);
+    wirebench_dataset_close(aligned);
+}
+
+static void what_cannot_be_aligned_is_said(void **state)
+{
+    (void)state;
+    static const char *const bad[][2] = {{"row-rate=0", "expected a number"},
+                                         {"no-such-option=1", "wirebench align --help"},
+                                         {"row-rate", "row-rate=N"}};
+    struct wirebench_dataset *dataset = NULL;
+    assert_int_equal(wirebench_dataset_align(&dataset, "/no/such.wbr", NULL),
+                     WIREBENCH_ERR_NOT_FOUND);
+    assert_says("/no/such.wbr");
+    assert_true(wirebench_dataset_align(&dataset, __FILE__, NULL) < 0);
+    assert_int_equal(wirebench_dataset_align(&dataset, NULL, NULL), WIREBENCH_ERR_ARGUMENT);
+    assert_says("recording_path");
+    const struct wirebench_alignment unsized = {.rig = NULL};
+    assert_int_equal(wirebench_dataset_align(&dataset, recording_path, &unsized),
+                     WIREBENCH_ERR_ARGUMENT);
+    assert_says("size is not set");
+    const struct wirebench_alignment rig = {.size = sizeof rig, .rig = "/no/rig.yaml"};
+    assert_int_equal(wirebench_dataset_align(&dataset, recording_path, &rig),
+                     WIREBENCH_ERR_NOT_FOUND);
+    assert_says("/no/rig.yaml");
+    for (int i = 0; i < 3; i++) {
+        const char *const options[] = {bad[i][0], NULL};
+        const struct wirebench_alignment alignment = {.size = sizeof alignment, .options = options};
+        assert_true(wirebench_dataset_align(&dataset, recording_path, &alignment) < 0);
+        assert_says(bad[i][1]);
+    }
+    assert_null(dataset);
+}
+
 static void a_missing_file_is_named_and_nothing_is_printed(void **state)
 {
     (void)state;
@@ -506,6 +618,10 @@ static void the_process_is_left_as_it_was(void **state)
     gsl_error_handler_t *const kept = gsl_set_error_handler(own_handler);
     const struct wirebench_dataset *const dataset = read_dataset();
     struct wirebench_properties *properties = NULL;
+    struct wirebench_dataset *aligned = NULL;
+    assert_true(wirebench_dataset_align(&aligned, recording_path, NULL) >= 0);
+    wirebench_dataset_close(aligned);
+    assert_ptr_equal(gsl_set_error_handler(own_handler), own_handler);
     succeed(wirebench_calibrate(&properties, &dataset, 1, NULL));
     wirebench_properties_destroy(properties);
     assert_ptr_equal(gsl_set_error_handler(kept), own_handler);
@@ -589,6 +705,9 @@ int main(int argc, char **argv)
         FACT(columns_have_one_array_and_times_that_agree),
         FACT(a_recording_cut_short_is_incomplete_and_says_so),
         FACT(a_dataset_is_its_csv_in_si),
+        FACT(a_recording_is_aligned_to_the_dataset_that_the_tool_writes),
+        FACT(options_and_files_of_an_alignment_hold),
+        FACT(what_cannot_be_aligned_is_said),
         FACT(a_missing_file_is_named_and_nothing_is_printed),
         FACT(both_methods_calibrate_and_their_text_reads_back),
         FACT(progress_stops_a_calibration),

@@ -86,6 +86,35 @@ class Files(unittest.TestCase):
         shape = dataset.table("shape")
         self.assertEqual(set(shape["marker"]), set(range(7)))
 
+    def test_a_recording_is_aligned_to_the_dataset_that_the_tool_writes(self):
+        written = wirebench.Dataset(DATASET)
+        with self.assertWarnsRegex(wirebench.Incomplete, "1 gap in the rows") as warned:
+            aligned = wirebench.align(RECORDING)
+        self.assertEqual(warned.filename, __file__)  # the caller's line
+        self.assertIsInstance(aligned, wirebench.Dataset)
+        for name in ("force_deflection", "shape"):
+            one, other = aligned.table(name), written.table(name)
+            self.assertEqual(list(one), list(other))
+            self.assertGreater(one.rows, 1000)
+            for column in one:
+                np.testing.assert_array_equal(one[column], other[column], column)
+        self.assertEqual(aligned.info, written.info)
+        self.assertEqual(aligned.document, written.document)
+
+    def test_options_and_files_of_an_alignment_hold(self):
+        with wirebench.Recording(RECORDING) as recording:
+            specimen = recording.meta("specimen").replace("sample: 1", "sample: 7")
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write(specimen)
+            file.flush()
+            with self.assertWarnsRegex(wirebench.Remark, "sample"):
+                aligned = wirebench.align(RECORDING, specimen=file.name,
+                                          options={"longest-gap-s": 5, "row-rate": 2})
+        self.assertEqual((aligned.info.sample, aligned.info.is_complete), (7, 1))
+        self.assertTrue(500 < aligned.table().rows < 700)
+        with self.assertRaisesRegex(wirebench.Error, "no-such"):
+            wirebench.align(RECORDING, options={"no-such": 1})
+
     def test_a_recording_has_samples_and_texts(self):
         with wirebench.Recording(RECORDING) as recording:
             self.assertTrue(recording.info.is_whole)

@@ -1,0 +1,54 @@
+/* Solves a three-point bending test and prints force over deflection, on the way down and back.
+ *
+ *     cc solve_three_point.c $(pkg-config --cflags --libs wirebench) -o solve_three_point
+ *     ./solve_three_point type1 0.04 0.008
+ */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <wirebench.h>
+
+enum {
+    STEPS = 10, /* each way */
+    ROWS = 2 * STEPS + 1
+};
+
+static int fail(void)
+{
+    fprintf(stderr, "solve_three_point: %s\n", wirebench_message());
+    return 1;
+}
+
+int main(int argc, char **argv)
+{
+    struct wirebench_properties *properties = NULL;
+    double deflection[ROWS], force[ROWS], moment[ROWS];
+    if (argc != 4) {
+        fprintf(stderr, "usage: solve_three_point WIRE SPAN DEFLECTION, in metres\n");
+        return 2;
+    }
+    const double largest = strtod(argv[3], NULL);
+    for (int i = 0; i < ROWS; i++)
+        deflection[i] = largest * (i <= STEPS ? i : 2 * STEPS - i) / STEPS;
+
+    /* Rollers and nose of 3 mm radius, without friction. */
+    const struct wirebench_three_point test = {.size = sizeof test,
+                                               .span = strtod(argv[2], NULL),
+                                               .roller_radius = 0.003,
+                                               .nose_radius = 0.003};
+    struct wirebench_three_point_result result = {
+        .size = sizeof result, .force = force, .middle_moment = moment};
+    int code = 0;
+    if (wirebench_properties_read(&properties, argv[1]) < 0 ||
+        wirebench_solve_three_point(properties, &test, ROWS, deflection, &result) < 0)
+        code = fail();
+    if (code == 0) {
+        printf("deflection_m,force_N,middle_moment_Nm\n");
+        for (size_t i = 0; i < result.n_done; i++)
+            printf("%.9g,%.9g,%.9g\n", deflection[i], force[i], moment[i]);
+        if (result.n_done < ROWS)
+            fprintf(stderr, "solve_three_point: %s\n", wirebench_message());
+    }
+    wirebench_properties_destroy(properties);
+    return code;
+}
