@@ -35,7 +35,7 @@ failures=0
 for run in $(seq "$runs"); do
     began=$(date +%s)
     code=0
-    timeout $run_s meson test -C "$build" --no-rebuild -t 4 "$@" >"$folder/log" 2>&1 || code=$?
+    timeout $run_s meson test -C "$build" --no-rebuild "$@" >"$folder/log" 2>&1 || code=$?
     # meson is content with a name that it does not know.
     grep -q '^Ok: *[1-9]' "$folder/log" || code=1
     if [ $code = 0 ]; then

@@ -91,7 +91,7 @@ struct wb_colour wb_palette_map(enum wb_palette_map map, double part)
 
 struct wb_colour wb_palette_ink(void)
 {
-    return colour_of(0x1d2733);
+    return (struct wb_colour)WB_PALETTE_INK;
 }
 
 struct wb_colour wb_palette_grey(void)

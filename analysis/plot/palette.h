@@ -31,6 +31,17 @@ struct wb_colour wb_palette_rule(void);    /* grid lines and table rules */
 struct wb_colour wb_palette_warning(void); /* what exceeds a limit or is missing */
 struct wb_colour wb_palette_good(void);    /* what keeps a limit */
 
+/* As values of constants: the ink, and the pale blue of bands and of broad lines on which others
+ * lie. */
+#define WB_PALETTE_INK                                                                             \
+    {                                                                                              \
+        0x1d / 255.0, 0x27 / 255.0, 0x33 / 255.0, 1.0                                              \
+    }
+#define WB_PALETTE_PALE(alpha)                                                                     \
+    {                                                                                              \
+        0.34, 0.71, 0.91, (alpha)                                                                  \
+    }
+
 /* The same colour with another alpha. */
 struct wb_colour wb_palette_fade(struct wb_colour colour, double alpha);
 

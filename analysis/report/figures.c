@@ -9,6 +9,9 @@
 
 #define WB_LOG_DOMAIN "report"
 
+const struct wb_figure_style wb_figures_reference_style = {.colour = WB_PALETTE_PALE(0.75),
+                                                           .width = 3.6};
+
 /* --- the table --- */
 
 static int count_of(const struct wb_figures_row *row, const void *results)

@@ -65,6 +65,9 @@ void wb_figures_put(const struct wb_figures *figures, struct wb_document *docume
 
 /* --- what functions that draw share --- */
 
+/* What others are held against in a figure: a broad pale line on which they lie. */
+extern const struct wb_figure_style wb_figures_reference_style;
+
 /* Starts a figure of the text's width that says that it shows simulations. */
 WB_MUST_CHECK enum wb_status wb_figures_start_simulation(struct wb_figure **figure,
                                                          const char *name, double height);

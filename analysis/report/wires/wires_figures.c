@@ -30,14 +30,12 @@ static const char *figure_number(char text[48], const struct wb_wires_results *r
 /* --- lines --- */
 
 /* How a model looks in every figure: the solid a broad pale line, the others on it. */
-static const struct wb_figure_style solid_style = {.colour = {0.34, 0.71, 0.91, 0.75},
-                                                   .width = 3.6};
 static const struct wb_figure_style contact_style = {.colour = {0.0, 0.28, 0.45, 1.0},
                                                      .width = 0.9};
 static const struct wb_figure_style rod_style = {
     .colour = {0.835, 0.369, 0.0, 1.0}, .width = 1.3, .dash = WB_DASH_DASHED};
 static const struct wb_figure_style fitted_style = {
-    .colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.2, .dash = WB_DASH_DOTTED};
+    .colour = WB_PALETTE_INK, .width = 1.2, .dash = WB_DASH_DOTTED};
 static const struct wb_figure_style printed_style = {
     .colour = {0.365, 0.408, 0.459, 1.0}, .width = 1.0, .dash = WB_DASH_MIXED};
 
@@ -142,7 +140,7 @@ static enum wb_status draw_elastic_shapes(struct wb_figures_item *item)
                    "bonded solid.",
                    force_of(results), figure_number(in, results, "4, linear elastic"));
     struct wb_panel *panel = add_shape_panel(item->figure, "Linear elastic");
-    add_axis(panel, "3D, bonded", bonded, &solid_style);
+    add_axis(panel, "3D, bonded", bonded, &wb_figures_reference_style);
     add_axis(panel, "3D, friction", contact, &contact_style);
     add_axis(panel, "1D", rod, &rod_style);
     add_rod_axis(panel, "1D, exact", &results->exact, &fitted_style);
@@ -171,7 +169,7 @@ static enum wb_status draw_shapes(struct wb_figures_item *item)
         "fitted to the solid.",
         force_of(results), figure_number(in, results, "4, elastoplastic"));
     struct wb_panel *panel = add_shape_panel(item->figure, "Elastoplastic");
-    add_axis(panel, "3D", solid, &solid_style);
+    add_axis(panel, "3D", solid, &wb_figures_reference_style);
     add_axis(panel, "1D fibres", rod, &rod_style);
     if (fitted)
         add_rod_axis(panel, "1D fitted", &results->fitted, &fitted_style);
@@ -234,7 +232,7 @@ static enum wb_status draw_loading(struct wb_figures_item *item)
         panels[i] = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panels[0], "Deflection of the tip (mm)", "Follower force (N)");
     wb_figure_set_axes(panels[1], "Angle of the tip (degrees)", "Follower force (N)");
-    add_rows(panels, "3D", solid, &solid_style);
+    add_rows(panels, "3D", solid, &wb_figures_reference_style);
     add_rows(panels, "1D fibres", rod, &rod_style);
     if (results->fit_state == WB_SIMULATION_USABLE)
         add_rod_rows(panels, "1D fitted", &results->fitted, &fitted_style);
