@@ -89,7 +89,9 @@ const struct wb_card_kind *wb_card_find(const char *name)
     }
     for (int i = 0; i < WB_CARD_KINDS; i++)
         wb_text_append(&names, "%s%s", i == 0 ? "" : ", ", wb_card_kinds[i].name);
-    wb_error("no card '%s': expected one of %s", name, wb_text_string(&names));
+    wb_error("no card '%s': expected one of %s; recordings and datasets are exported without a "
+             "kind, with -o FILE.h5 (HDF5), a recording also with -o FOLDER (CSV)",
+             name, wb_text_string(&names));
     wb_text_release(&names);
     return NULL;
 }

@@ -37,6 +37,7 @@ expect 0 'LOADING ONLY' type2 --to calculix
 expect 0 '"wire": "type2"' type2 --to=table
 expect 0 'segment7' type1 --to mujoco --segments 7 --length-mm 50 --curvature 5
 expect 2 'expected one of calculix' type1 --to nastran
+expect 2 'without a kind, with -o FILE.h5' type1 --to hdf5
 expect 2 '--to mujoco' type1 --to table --segments 3
 expect 1 'none.yaml' "$folder/none.yaml" --to table
 expect 1 'expected a wire file' "$2/fixtures/materials/pvc.yaml" --to table
