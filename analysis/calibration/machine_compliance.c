@@ -87,8 +87,9 @@ static void take(struct readings *r, const struct wb_row *row, double force)
 
 static bool collect(struct test *test, const struct wb_dataset *dataset, double from_force)
 {
-    const size_t n = dataset->n_rows;
-    size_t top = 0;
+    size_t n = 0, top = 0;
+    while (n < dataset->n_rows && dataset->rows[n].cycle == dataset->rows[0].cycle)
+        n++;
     double *const room = calloc(6 * n + 1, sizeof *room);
     *test = (struct test){
         .zero = HUGE_VAL,
@@ -96,15 +97,17 @@ static bool collect(struct test *test, const struct wb_dataset *dataset, double 
         .back = {.travel = room + 3 * n, .force = room + 4 * n, .rest = room + 5 * n}};
     if (!room)
         return false;
+    /* The way up ends at the largest force, not at the largest travel: a bar that slips forward at
+     * the turn goes on, and its readings there would pass for noise of the way up. */
     for (size_t i = 0; i < n; i++) {
-        if (dataset->rows[i].deflection > dataset->rows[top].deflection)
+        if (dataset->rows[i].force > dataset->rows[top].force)
             top = i;
     }
     for (size_t i = 0; i <= top && i < n; i++)
         test->zero = fmin(test->zero, dataset->rows[i].force);
-    for (size_t i = 0; i <= top && i < n; i++)
-        test->largest = fmax(test->largest, dataset->rows[i].force - test->zero);
-    for (size_t i = 0; i < n && dataset->rows[i].cycle == dataset->rows[0].cycle; i++) {
+    if (n > 0)
+        test->largest = dataset->rows[top].force - test->zero;
+    for (size_t i = 0; i < n; i++) {
         const struct wb_row *const row = &dataset->rows[i];
         const double force = row->force - test->zero;
         if (!(force >= from_force * test->largest) || !isfinite(row->deflection))

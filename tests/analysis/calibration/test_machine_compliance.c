@@ -179,7 +179,8 @@ static void bar_that_yields_early_does_not_come_back(void **unused)
 static void slip_and_another_slope_are_told(void **unused)
 {
     (void)unused;
-    const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .slip = -0.1e-3},
+    const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .slip = -0.08e-3},
+                               {6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .slip = 0.08e-3},
                                {6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .softer = -0.1e-6}};
     for (size_t i = 0; i < sizeof bars / sizeof *bars; i++) {
         struct wb_machine_compliance c;
@@ -205,6 +206,29 @@ static void elastic_bar_comes_back(void **unused)
         assert_close_relative(c.value_back, true_compliance, 0.03);
         assert_close_relative(c.strain, 6.0 * bars[i].diameter * 0.1e-3 / (span * span), 0.05);
     }
+}
+
+static void first_cycle_counts(void **unused)
+{
+    (void)unused;
+    const struct bar bar = {6e-3, 0.0, 0.0, 0.0, .with_way_back = true};
+    const struct wb_machine_compliance_settings settings = {
+        .rigidity = rigidity_of(bar.diameter), .rigidity_error = 0.02, .from_force = 0.2};
+    const struct wb_dataset *const pointer = &datasets[0];
+    struct wb_machine_compliance c;
+    make(&datasets[0], &bar, 0);
+    /* Pressed once more, and further, after a slip. */
+    for (size_t i = 0, n = datasets[0].n_rows; i < n; i++) {
+        struct wb_row row = datasets[0].rows[i];
+        row.cycle = 2;
+        row.deflection = 1.3 * row.deflection + 0.2e-3;
+        row.force *= 1.2;
+        assert_int_equal(wb_dataset_add_row(&datasets[0], &row), WB_OK);
+    }
+    assert_int_equal(wb_machine_compliance_find(&c, &pointer, 1, &settings, NULL), WB_OK);
+    assert_true(c.has_way_back && c.comes_back && c.is_told);
+    assert_close_relative(c.value, true_compliance, 2e-3);
+    wb_dataset_release(&datasets[0]);
 }
 
 static void several_tests_scatter(void **unused)
@@ -252,6 +276,7 @@ int main(void)
         cmocka_unit_test(bar_that_yields_early_does_not_come_back),
         cmocka_unit_test(slip_and_another_slope_are_told),
         cmocka_unit_test(elastic_bar_comes_back),
+        cmocka_unit_test(first_cycle_counts),
         cmocka_unit_test(several_tests_scatter),
         cmocka_unit_test(what_tells_nothing_is_refused),
     };
