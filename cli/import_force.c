@@ -149,9 +149,11 @@ static void print_text(const struct wb_dataset *dataset,
         printf("the file is cut off: its last row is not whole\n");
     if (!isfinite(dataset->rows[0].t))
         printf("no time in the file\n");
-    if (info->machine.kind == WB_TEST_TENSILE && !info->machine.own_elongation)
+    const bool own_elongation =
+        info->machine.kind == WB_TEST_TENSILE && info->machine.own_elongation;
+    if (info->machine.kind == WB_TEST_TENSILE && !own_elongation)
         printf("elongation from the crosshead's travel: good for yield and hardening, no E\n");
-    if (!info->machine.compliance.known)
+    if (!info->machine.compliance.known && !own_elongation)
         printf("compliance of the machine not given: the travel holds it\n");
     printf("written to %s\n", folder);
 }

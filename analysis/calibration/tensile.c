@@ -99,7 +99,10 @@ static enum wb_status take_curve(struct curve *curve, const struct wb_dataset *d
                                  struct wb_reason *why)
 {
     const struct wb_test_info *const info = &dataset->info;
-    const double compliance = info->machine.compliance.known ? info->machine.compliance.value : 0.0;
+    /* What the machine gives way is in the crosshead's travel; an extensometer does not see it. */
+    const double compliance = info->machine.compliance.known && !info->machine.own_elongation
+                                  ? info->machine.compliance.value
+                                  : 0.0;
     size_t n = 0, top = 0;
     while (n < dataset->n_rows && dataset->rows[n].cycle == 1 &&
            dataset->rows[n].phase == WB_PHASE_LOAD)
@@ -464,13 +467,19 @@ static enum wb_status check_same(const struct wb_dataset *const *datasets, int n
             return wb_fail_to(why, WB_ERR_DATA, "%s, sample %d: area or gauge length is missing",
                               info->wire, info->sample);
         if (strcmp(info->wire, first->wire) != 0 ||
-            info->piece.constituent != first->piece.constituent ||
-            info->machine.own_elongation != first->machine.own_elongation)
+            info->piece.constituent != first->piece.constituent)
             return wb_fail_to(why, WB_ERR_DATA,
                               "%s of %s and %s of %s are not specimens of one constituent: "
                               "calibrate them apart",
                               wb_test_piece_constituent_name(first->piece.constituent), first->wire,
                               wb_test_piece_constituent_name(info->piece.constituent), info->wire);
+        if (info->machine.own_elongation != first->machine.own_elongation)
+            return wb_fail_to(why, WB_ERR_DATA,
+                              "sample %d: elongation by %s, of the first by %s: calibrate them "
+                              "apart",
+                              info->sample,
+                              info->machine.own_elongation ? "extensometer" : "crosshead",
+                              first->machine.own_elongation ? "extensometer" : "crosshead");
     }
     return WB_OK;
 }
@@ -539,7 +548,6 @@ enum wb_status wb_tensile_run(struct wb_tensile_result *result,
     memcpy(made.wire, info->wire, sizeof made.wire);
     made.constituent = info->piece.constituent;
     made.own_elongation = info->machine.own_elongation;
-    made.compliance_known = info->machine.compliance.known;
     made.area = info->piece.area;
     made.gauge_length = info->length;
     made.specimens = calloc((size_t)n, sizeof *made.specimens);

@@ -3,7 +3,7 @@
  * Of each specimen, from its first loading up to the largest force:
  *   1. engineering stress S = F/A over strain e = x/L0, A the area that carries the load (of a
  *      stranded conductor the metal's), L0 the gauge length; what the machine itself gives way is
- *      taken off where its compliance is given;
+ *      taken off a crosshead's travel where its compliance is given;
  *   2. the steepest straight stretch of the start, and the slack: the strain where that line meets
  *      S = 0, which is taken off. Where the curve begins further to the right of that line than the
  *      offset of the proof stress, the start bends over, as rubber's does: there is no line of the
@@ -82,7 +82,7 @@ struct wb_tensile_number {
 struct wb_tensile_result {
     char wire[64];
     enum wb_constituent constituent;
-    bool own_elongation, compliance_known;
+    bool own_elongation;
     double area, gauge_length; /* m2, m, of the first specimen */
     int n_specimens;
     struct wb_tensile_specimen *specimens;   /* (n_specimens), owned */

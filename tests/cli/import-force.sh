@@ -84,6 +84,24 @@ ends 1 "$tool" calibrate --tensile pulled -o copper.yaml
 says "--youngs-modulus-mpa"
 ends 0 "$tool" calibrate --tensile pulled -o copper.yaml --youngs-modulus-mpa 117000 \
     --density-g-cm3 8.96 --poissons-ratio 0.34
+
+# The same specimen with an extensometer on it, whose strain stands beside the travel of a machine that gives way by
+# 0.002 mm/N: the slope is E, and the material file needs none from elsewhere.
+sed 's/crosshead/extensometer/; $a compliance_mm_N: 0.002' "$fixtures/machines/tensile.yaml" >extensometer.yaml
+awk -F'\t' 'NR == 1 { print $0 "\tStrain (%)"; next }
+    { printf "%s\t%.9g\t%.9g\n", $1, $2 + 0.002 * $1, 2 * $2 }' pull.txt >strain.txt
+ends 0 "$tool" import force strain.txt --specimen pulled.yaml --machine extensometer.yaml -o strained
+! grep -qE "crosshead|compliance" out || fail "an extensometer sees no machine: $(cat out)"
+grep -q '"header": "Strain (%)"' strained/dataset.json || fail "the strain is not taken"
+ends 0 "$tool" calibrate --tensile strained
+grep -qE '^E +7(\.0[0-9]*)?e\+04 MPa' out || fail "E is not 70 GPa: $(cat out)"
+! grep -q "crosshead" out || fail "speaks of a crosshead: $(cat out)"
+ends 0 "$tool" calibrate --tensile strained -o own.yaml --density-g-cm3 8.96 --poissons-ratio 0.34 --json
+grep -qE '^youngs_modulus_MPa: (69|70)[0-9]{3}' own.yaml || fail "the material file has another E: $(cat own.yaml)"
+grep -q 'elongation by extensometer; E of the tests' own.yaml || fail "its source is not said: $(cat own.yaml)"
+ends 1 "$tool" calibrate --tensile pulled strained
+says "sample 1: elongation by extensometer, of the first by crosshead"
+
 ends 0 "$tool" calibrate --constituents --conductor ./copper.yaml --conductor-diameter-mm 1 --json
 says '"fill": 1'
 ends 2 "$tool" calibrate --constituents --conductor ./copper.yaml
