@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -305,6 +306,22 @@ static void add_points(struct wb_three_point_data *data, const struct readings *
         add_way_back(data, r, span, step);
 }
 
+static enum wb_status refuse_contact(const struct wb_three_point_data *data, double largest,
+                                     struct wb_reason *why)
+{
+    char noise[80] = "";
+    if (data->noise > line_from * largest)
+        snprintf(noise, sizeof noise, "; its readings scatter by %.2g N, which may hide it",
+                 data->noise);
+    return wb_fail_to(why, WB_ERR_DATA,
+                      "wire '%s', sample %d: no first contact: the force does not rise from zero "
+                      "to %.3g N at %.3g mm (%s)%s: is the sign of the force right, and does the "
+                      "test begin before the contact? Else say how far it serves "
+                      "(usable_travel_mm, --usable-mm)",
+                      data->info.wire, data->info.sample, largest, data->usable / WB_MM,
+                      wb_three_point_limit_name(data->limit), noise);
+}
+
 static enum wb_status make(struct wb_three_point_data *data, const struct readings *r,
                            const struct wb_three_point_data_settings *s, struct wb_reason *why)
 {
@@ -340,13 +357,7 @@ static enum wb_status make(struct wb_three_point_data *data, const struct readin
         found = find_contact(r, data->zero_force, largest - data->zero_force, data->noise, last,
                              &data->first_contact);
     if (!found)
-        return wb_fail_to(why, WB_ERR_DATA,
-                          "wire '%s', sample %d: no first contact: the force does not rise from "
-                          "zero to %.3g N at %.3g mm (%s): is the sign of the force right, and "
-                          "does the test begin before the contact? Else say how far it serves "
-                          "(usable_travel_mm, --usable-mm)",
-                          info->wire, info->sample, largest, data->usable / WB_MM,
-                          wb_three_point_limit_name(data->limit));
+        return refuse_contact(data, largest, why);
     if (data->usable > data->first_contact + largest_part * span) {
         data->usable = data->first_contact + largest_part * span;
         data->limit = WB_THREE_POINT_LIMIT_THIRD;

@@ -367,6 +367,14 @@ static void other_tests_are_refused(void **unused)
         datasets[0].rows[i].force = 0.0;
     assert_int_equal(wb_three_point_calibrate_run(&c, pointers, 1, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "first contact"));
+    assert_null(strstr(why.text, "scatter"));
+    /* Nothing but noise of 1 N. */
+    uint64_t random = 20261124;
+    for (size_t i = 0; i < datasets[0].n_rows; i++)
+        datasets[0].rows[i].force = 2.0 * test_random(&random) - 1.0;
+    assert_int_equal(wb_three_point_calibrate_run(&c, pointers, 1, &settings, &why), WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "first contact"));
+    assert_non_null(strstr(why.text, "scatter by 0."));
     wb_dataset_release(&datasets[0]);
     wb_dataset_release(&datasets[1]);
 }
