@@ -84,12 +84,23 @@ void wb_pages_cell_plain(struct wb_document_table *table, enum wb_document_tone 
     wb_document_cell(table, tone, wb_pages_escape(escaped, sizeof escaped, text));
 }
 
+int wb_pages_decimals(double value)
+{
+    if (!(value > 0.0) || !isfinite(value))
+        return 0;
+    return (int)fmin(fmax(2.0 - floor(log10(value)), 0.0), 6.0);
+}
+
+/* A real minus sign, where there is one: what rounds to zero has none. */
+static const char *minus(double value, int decimals)
+{
+    return value < 0.0 && -value * pow(10.0, decimals) >= 0.5 ? "\xe2\x88\x92" : "";
+}
+
 static void put_number(struct wb_document_table *table, enum wb_document_tone tone, double value,
                        int decimals)
 {
-    /* What rounds to zero has no sign. */
-    const bool negative = value < 0.0 && -value * pow(10.0, decimals) >= 0.5;
-    wb_pages_cell(table, tone, "%s%.*f", negative ? "\xe2\x88\x92" : "", decimals, fabs(value));
+    wb_pages_cell(table, tone, "%s%.*f", minus(value, decimals), decimals, fabs(value));
 }
 
 void wb_pages_cell_number(struct wb_document_table *table, double value, int decimals)
@@ -98,6 +109,16 @@ void wb_pages_cell_number(struct wb_document_table *table, double value, int dec
         put_number(table, WB_TONE_PLAIN, value, decimals);
     else
         wb_document_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
+}
+
+void wb_pages_cell_range(struct wb_document_table *table, enum wb_document_tone tone, double low,
+                         double high, int decimals)
+{
+    if (isfinite(low) && isfinite(high))
+        wb_pages_cell(table, tone, "%s%.*f to %s%.*f", minus(low, decimals), decimals, fabs(low),
+                      minus(high, decimals), decimals, fabs(high));
+    else
+        wb_pages_cell_number(table, (double)NAN, 0);
 }
 
 void wb_pages_cell_judged(struct wb_document_table *table, double value, int decimals,

@@ -17,9 +17,15 @@ void wb_pages_cell(struct wb_document_table *table, enum wb_document_tone tone, 
                    ...) __attribute__((format(printf, 3, 4)));
 void wb_pages_cell_plain(struct wb_document_table *table, enum wb_document_tone tone,
                          const char *text);
+/* Decimals, at most six, that give a positive number three digits that mean something; 0 of any
+ * other. */
+int wb_pages_decimals(double value);
 /* A number with `decimals`, or an en dash when it is not finite. */
 void wb_pages_cell_number(struct wb_document_table *table, double value, int decimals);
-/* The same with a tone, where there is a limit: whether it is kept. */
+/* "1.2 to 3.4", or an en dash when an end is not finite. */
+void wb_pages_cell_range(struct wb_document_table *table, enum wb_document_tone tone, double low,
+                         double high, int decimals);
+/* A number with a tone, where there is a limit: whether it is kept. */
 void wb_pages_cell_judged(struct wb_document_table *table, double value, int decimals,
                           bool is_limited, bool is_kept);
 /* Escapes into a buffer, cut where it ends (never within an entity). Returns the buffer. */

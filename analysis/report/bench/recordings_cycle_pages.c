@@ -13,28 +13,15 @@ static const double N_MM2 = 1e-6, MILLI = 1e-3;
 
 /* --- numbers --- */
 
-/* Decimals that give a positive number three digits that mean something. */
-static int decimals_of(double value)
-{
-    if (!(value > 0.0) || !isfinite(value))
-        return 0;
-    const int before = (int)floor(log10(value)) + 1;
-    return before >= 3 ? 0 : 3 - before;
-}
-
 static void put_number(struct wb_document_table *table, double value)
 {
-    wb_pages_cell_number(table, value, decimals_of(value));
+    wb_pages_cell_number(table, value, wb_pages_decimals(value));
 }
 
 /* "367 to 432"; a dash where either is not known. */
 static void put_range(struct wb_document_table *table, double low, double high)
 {
-    const int decimals = decimals_of(high);
-    if (!isfinite(low) || !isfinite(high))
-        wb_pages_cell_number(table, (double)NAN, 0);
-    else
-        wb_pages_cell(table, WB_TONE_PLAIN, "%.*f to %.*f", decimals, low, decimals, high);
+    wb_pages_cell_range(table, WB_TONE_PLAIN, low, high, wb_pages_decimals(high));
 }
 
 /* A real minus sign, where there is one. */
@@ -369,7 +356,7 @@ void wb_recordings_cycle_pages_summary(struct wb_document *document,
 static void append_estimate(struct wb_text *text, const char *name, const struct wb_estimate *e,
                             double unit, const char *unit_name)
 {
-    const int decimals = decimals_of(e->value / unit);
+    const int decimals = wb_pages_decimals(e->value / unit);
     wb_text_append(text, "%s = %.*f%s", name, decimals, e->value / unit, unit_name);
     if (isfinite(e->low))
         wb_text_append(text, " (%.*f to %.*f)", decimals, e->low / unit, decimals, e->high / unit);
@@ -388,9 +375,10 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
                        "ways by %.2f %% of <i>F</i><sub>max</sub>. <i>EI</i> lies between %.*f and "
                        "%.*f N mm\xc2\xb2, springback between %.3f and %.3f, over the laws that "
                        "fit about as well. ",
-                       100.0 * best_misfit(c), decimals_of(c->rigidity.candidates_low / N_MM2),
+                       100.0 * best_misfit(c),
+                       wb_pages_decimals(c->rigidity.candidates_low / N_MM2),
                        c->rigidity.candidates_low / N_MM2,
-                       decimals_of(c->rigidity.candidates_high / N_MM2),
+                       wb_pages_decimals(c->rigidity.candidates_high / N_MM2),
                        c->rigidity.candidates_high / N_MM2, c->springback.candidates_low,
                        c->springback.candidates_high);
     } else {
@@ -534,11 +522,10 @@ static void put_sensitivities(struct wb_document *document, const struct wb_reco
         const struct wb_cycle_sensitivity *const s = &cycle->sensitivities[i];
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, wb_cycle_shared_name(i));
-        /* Adding zero makes no number "-0.0". */
-        wb_pages_cell_number(table, round(10.0 * s->rigidity) / 10.0 + 0.0, 1);
-        wb_pages_cell_number(table, round(10.0 * s->modulus) / 10.0 + 0.0, 1);
-        wb_pages_cell_number(table, round(10.0 * s->moment) / 10.0 + 0.0, 1);
-        wb_pages_cell_number(table, round(10.0 * s->springback) / 10.0 + 0.0, 1);
+        wb_pages_cell_number(table, s->rigidity, 1);
+        wb_pages_cell_number(table, s->modulus, 1);
+        wb_pages_cell_number(table, s->moment, 1);
+        wb_pages_cell_number(table, s->springback, 1);
     }
 }
 

@@ -109,8 +109,7 @@ static void put_range(struct wb_document_table *table, const struct wb_cable_int
                       int decimals)
 {
     if (isfinite(interval->low))
-        wb_pages_cell(table, WB_TONE_PLAIN, "%.*f to %.*f", decimals, interval->low, decimals,
-                      interval->high);
+        wb_pages_cell_range(table, WB_TONE_PLAIN, interval->low, interval->high, decimals);
     else
         wb_pages_cell(table, WB_TONE_QUIET, "not known");
 }
@@ -123,10 +122,7 @@ static void put_ends(struct wb_document_table *table, const double values[][WB_M
         low = fmin(low, values[i][k]);
         high = fmax(high, values[i][k]);
     }
-    if (n > 0 && low <= high)
-        wb_pages_cell(table, WB_TONE_PLAIN, "%.2f to %.2f", low, high);
-    else
-        wb_pages_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
+    wb_pages_cell_range(table, WB_TONE_PLAIN, low, high, 2);
 }
 
 /* Begins a row where the layer has one, with the group's name and the curvature. */

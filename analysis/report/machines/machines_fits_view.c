@@ -68,25 +68,15 @@ enum wb_status wb_machines_fits_draw(struct wb_figures_item *item)
 
 /* --- pages --- */
 
-/* Of three digits. */
-static int decimals(double value)
-{
-    return value > 0.0 ? (int)fmin(fmax(2.0 - floor(log10(value)), 0.0), 6.0) : 0;
-}
-
-static void put_range(struct wb_document_table *table, enum wb_document_tone tone, double low,
-                      double high)
-{
-    wb_pages_cell(table, tone, "%.*f to %.*f", decimals(low), low, decimals(high), high);
-}
-
 static void put_estimate(struct wb_document_table *table, const struct wb_estimate *e, double unit,
                          bool is_quiet)
 {
     const enum wb_document_tone tone = is_quiet ? WB_TONE_QUIET : WB_TONE_PLAIN;
-    wb_pages_cell(table, tone, "%.*f", decimals(e->value / unit), e->value / unit);
-    put_range(table, tone, e->low / unit, e->high / unit);
-    put_range(table, tone, e->candidates_low / unit, e->candidates_high / unit);
+    wb_pages_cell(table, tone, "%.*f", wb_pages_decimals(e->value / unit), e->value / unit);
+    wb_pages_cell_range(table, tone, e->low / unit, e->high / unit,
+                        wb_pages_decimals(e->high / unit));
+    wb_pages_cell_range(table, tone, e->candidates_low / unit, e->candidates_high / unit,
+                        wb_pages_decimals(e->candidates_high / unit));
 }
 
 /* Fits whose iterations ran out. */
