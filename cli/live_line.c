@@ -102,6 +102,9 @@ int wb_live_line_key(void)
 
 void wb_live_line_restore(const struct termios *modes, const char *sequence)
 {
+    /* What still waits for a terminal that is slow or hangs belongs to the screen that is left, and
+     * would take the room of what follows. */
+    (void)tcflush(STDERR_FILENO, TCOFLUSH);
     wb_live_line_say(sequence);
     live.has_keys = false;
     if (in_foreground() && tcsetattr(STDIN_FILENO, TCSANOW, modes) == 0)

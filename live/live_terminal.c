@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include "base/progress.h"
@@ -72,6 +73,16 @@ static void follow(int socket, struct wb_live_screen *screen, struct wb_live_his
     }
 }
 
+/* A Ctrl-S by mistake would halt the view, and with it the keys that hold and stop the test. */
+static void ignore_flow_control(void)
+{
+    struct termios modes;
+    if (tcgetattr(STDIN_FILENO, &modes) != 0)
+        return;
+    modes.c_iflag &= ~(tcflag_t)IXON;
+    (void)tcsetattr(STDIN_FILENO, TCSANOW, &modes);
+}
+
 int wb_live_terminal_run(int socket, void *context)
 {
     const struct wb_live_plan *const plan = context;
@@ -94,6 +105,7 @@ int wb_live_terminal_run(int socket, void *context)
     nodelay(stdscr, TRUE);
     keypad(stdscr, TRUE);
     curs_set(0);
+    ignore_flow_control();
     wb_live_screen_prepare();
     follow(socket, &screen, &history);
     endwin();
