@@ -258,35 +258,42 @@ enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind, const 
     return wb_file_find_named(path, kind, name, beside, NULL, NULL);
 }
 
+/* A name without a slash or ending may also be that of a folder, such as the output of a command.
+ */
+static bool is_meant(const char *path, bool is_name)
+{
+    return wb_file_exists(path) && !(is_name && wb_file_is_folder(path));
+}
+
 enum wb_status wb_file_find_named(char path[WB_PATH], const char *kind, const char *name,
                                   const char *beside, const char *named_in, struct wb_reason *why)
 {
-    const char *const colon = named_in ? ": " : "";
-    if (!named_in)
-        named_in = "";
-    char candidate[WB_PATH];
-    if (is_path(name)) {
-        if (beside) {
-            WB_TRY(join(path, beside, name, why));
-            if (wb_file_exists(path))
-                return WB_OK;
-        }
-        WB_TRY(join(path, "", name, why));
-        if (wb_file_exists(path) || wb_file_find_data(path, name) == WB_OK)
+    const char *const place = named_in ? named_in : "", *const colon = named_in ? ": " : "";
+    const bool is_name = !is_path(name), elsewhere = beside && strcmp(beside, ".") != 0;
+    char shipped[WB_PATH];
+
+    if (is_name) {
+        if (snprintf(shipped, sizeof shipped, "fixtures/%s/%s.yaml", kind, name) >=
+            (int)sizeof shipped)
+            return wb_fail_to(why, WB_ERR_ARGUMENT, "name too long: '%s'", name);
+        if (wb_file_find_data(path, shipped) == WB_OK)
             return WB_OK;
-        const bool elsewhere = beside && strcmp(beside, ".") != 0;
-        return wb_fail_to(why, WB_ERR_NOT_FOUND, "%s%sno file '%s'%s%s%s", named_in, colon, name,
-                          elsewhere ? ", here or in '" : "", elsewhere ? beside : "",
-                          elsewhere ? "'" : "");
     }
-    if (snprintf(candidate, sizeof candidate, "fixtures/%s/%s.yaml", kind, name) >=
-        (int)sizeof candidate)
-        return wb_fail_to(why, WB_ERR_ARGUMENT, "name too long: '%s'", name);
-    if (wb_file_find_data(path, candidate) == WB_OK)
+    if (beside) {
+        WB_TRY(join(path, beside, name, why));
+        if (is_meant(path, is_name))
+            return WB_OK;
+    }
+    WB_TRY(join(path, "", name, why));
+    if (is_meant(path, is_name) || (!is_name && wb_file_find_data(path, name) == WB_OK))
         return WB_OK;
-    return wb_fail_to(why, WB_ERR_NOT_FOUND,
-                      "%s%sno '%s' among the shipped %s (no %s); give a path to your own file",
-                      named_in, colon, name, kind, candidate);
+    if (is_name)
+        return wb_fail_to(why, WB_ERR_NOT_FOUND,
+                          "%s%sno '%s' among the shipped %s (no %s); give a path to your own file",
+                          place, colon, name, kind, shipped);
+    return wb_fail_to(why, WB_ERR_NOT_FOUND, "%s%sno file '%s'%s%s%s", place, colon, name,
+                      elsewhere ? ", here or in '" : "", elsewhere ? beside : "",
+                      elsewhere ? "'" : "");
 }
 
 static long read_holder(int descriptor)

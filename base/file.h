@@ -54,8 +54,9 @@ WB_MUST_CHECK enum wb_status wb_file_find_data(char path[WB_PATH], const char *n
 
 /* Finds the YAML file that `name` means in a place where fixtures are named: a path when it has a
  * slash or ends in ".yaml" (tried relative to the folder `beside` first when that is not NULL, then
- * to the current folder, then as shipped data), else fixtures/KIND/NAME.yaml ("wires", "type1").
- * WB_ERR_NOT_FOUND with a message that says where it looked. */
+ * to the current folder, then as shipped data), else fixtures/KIND/NAME.yaml ("wires", "type1"), or
+ * where none ships a file of that name, in the same places. WB_ERR_NOT_FOUND with a message that
+ * says where it looked. */
 WB_MUST_CHECK enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind,
                                                   const char *name, const char *beside);
 

@@ -62,7 +62,8 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "REC.wbr|BUNDLE.yaml",
     .doc = "Tells what a recording (.wbr or .wbr.zst) holds: specimen, rig, operator, streams with "
-           "their rates, events. Or what a bundle is: wires, packing, tape, diameters, density and "
+           "their rates, events. Or what a bundle (fixtures/bundles, by name or path) is: wires, "
+           "packing, tape, diameters, density and "
            "bounds of its flexural rigidity beside the published ones, meshes.\v"
            "Exit code 3: something is missing or damaged; 'wirebench verify' says what.",
 };

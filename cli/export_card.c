@@ -93,7 +93,7 @@ int wb_export_card(int argc, char **argv)
     wb_setting_fill(&wb_card_table, &o.settings);
     wb_settings_parse(&command, argc, argv, &o);
     char path[WB_PATH];
-    enum wb_status status = wb_card_source_find(path, o.common.input);
+    enum wb_status status = wb_file_find_fixture(path, "wires", o.common.input, NULL);
     if (status == WB_OK)
         status = wb_card_source_read(&source, path);
     if (status == WB_OK)

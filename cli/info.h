@@ -13,7 +13,8 @@ struct wb_info_options {
     const char *mesh;   /* whose lines are drawn; NULL: that of the run */
 };
 
-/* Whether a file's name says that it is a bundle's. */
+/* Whether a file's name says that it is a bundle's, or is that of no file: then of a shipped one.
+ */
 bool wb_info_is_bundle(const char *name);
 
 /* Returns an exit code. */

@@ -20,7 +20,11 @@ static const double pixels_of_a_point = 3.0;
 
 bool wb_info_is_bundle(const char *name)
 {
-    return wb_command_ends_in(name, ".yaml") || wb_command_ends_in(name, ".yml");
+    const bool is_recording =
+        wb_command_ends_in(name, ".wbr") || wb_command_ends_in(name, ".wbr.zst");
+    return wb_command_ends_in(name, ".yaml") || wb_command_ends_in(name, ".yml") ||
+           !(is_recording || strchr(name, '/') ||
+             (wb_file_exists(name) && !wb_file_is_folder(name)));
 }
 
 static const char *length_source(const struct wb_bundle_model *model)
@@ -231,8 +235,9 @@ int wb_info_bundle(const struct wb_info_options *options)
     struct wb_bundle_model *const model = malloc(sizeof *model);
     if (!model)
         return wb_command_exit(wb_fail(WB_ERR_MEMORY, "no memory for a bundle"));
-    enum wb_status status =
-        wb_bundle_model_read(model, wb_command_find(options->common.input, path));
+    enum wb_status status = wb_file_find_fixture(path, "bundles", options->common.input, NULL);
+    if (status == WB_OK)
+        status = wb_bundle_model_read(model, path);
     const int code = status == WB_OK ? tell(options, model) : wb_command_exit(status);
     free(model);
     return code;

@@ -74,12 +74,6 @@ enum wb_status wb_card_source_parse(struct wb_card_source *source, const char *t
     return WB_OK;
 }
 
-enum wb_status wb_card_source_find(char path[WB_PATH], const char *name)
-{
-    return wb_file_exists(name) ? wb_file_join(path, "", name)
-                                : wb_file_find_fixture(path, "wires", name, NULL);
-}
-
 enum wb_status wb_card_source_read(struct wb_card_source *source, const char *path)
 {
     char *text;

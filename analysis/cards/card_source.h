@@ -23,9 +23,6 @@ struct wb_card_source {
     char stated[160];            /* what a wire file says of its numbers' source; "" nothing */
 };
 
-/* The file itself, or a shipped wire of that name ("type1"). */
-WB_MUST_CHECK enum wb_status wb_card_source_find(char path[WB_PATH], const char *name);
-
 /* Reads either file. Errors name file, line and key; a wire without properties, and what is neither
  * of the two, is WB_ERR_FORMAT. */
 WB_MUST_CHECK enum wb_status wb_card_source_read(struct wb_card_source *source, const char *path);

@@ -113,6 +113,16 @@ static void fixtures_are_found_by_name_and_by_path(void **state)
     assert_int_equal(wb_file_find_fixture(path, "wires", file, NULL), WB_OK);
     assert_int_equal(wb_file_find_fixture(path, "wires", "no-such-wire", NULL), WB_ERR_NOT_FOUND);
     assert_int_equal(wb_file_find_fixture(path, "wires", "no/such.yaml", folder), WB_ERR_NOT_FOUND);
+    /* A file without the ending, but no folder. */
+    assert_int_equal(wb_file_join(file, folder, "mine"), WB_OK);
+    assert_int_equal(wb_file_write(file, "a: 1\n", 5), WB_OK);
+    assert_int_equal(wb_file_find_fixture(path, "wires", "mine", folder), WB_OK);
+    assert_string_equal(path, file);
+    assert_int_equal(wb_file_find_fixture(path, "wires", "type1", folder), WB_OK);
+    assert_non_null(strstr(path, "fixtures/wires/type1.yaml"));
+    assert_int_equal(wb_file_join(file, folder, "results"), WB_OK);
+    assert_int_equal(wb_file_make_folder(file), WB_OK);
+    assert_int_equal(wb_file_find_fixture(path, "wires", "results", folder), WB_ERR_NOT_FOUND);
     /* Shipped data wins from the folder in the environment. */
     char shipped[WB_PATH];
     assert_int_equal(wb_file_join(shipped, folder, "fixtures/wires"), WB_OK);

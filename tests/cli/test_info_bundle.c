@@ -24,6 +24,43 @@ static void a_bundle_is_described(void **state)
     assert_string_equal(o.err, "");
 }
 
+/* By name, with a folder of that name here, too, and by path: each command that takes such a file
+ * finds it in the same places. */
+static void shipped_files_go_by_name_or_path(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "info 7-type3",
+        "info fixtures/bundles/7-type3.yaml",
+        "solve bundle 7-type3 --model section -o named",
+        "solve bundle copy --model section -o copied",
+        "solve bending3p type1 --span-mm 40 --deflection-mm 1",
+        "solve cantilever --wire type1 --length-mm 100 --deflection-mm 1",
+        "export type1 --to table -o card.txt",
+    };
+    char *text;
+    size_t size;
+    char path[WB_PATH];
+    assert_int_equal(wb_file_find_fixture(path, "bundles", "7-type3", NULL), WB_OK);
+    assert_int_equal(wb_file_read(path, &text, &size), WB_OK);
+    assert_int_equal(wb_file_write(path_of("copy"), text, size), WB_OK);
+    free(text);
+    assert_int_equal(wb_file_make_folder(path_of("7-type3")), WB_OK);
+    assert_int_equal(wb_file_make_folder(path_of("type1")), WB_OK);
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
+        expect(lines[i], 0, "");
+    static const char *const wrong[] = {
+        "info no-such",
+        "solve bundle no-such",
+        "solve wire3d no-such",
+        "solve wire1d no-such",
+        "solve bending3p no-such --span-mm 40 --deflection-mm 1",
+        "export no-such --to table -o other.txt",
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
+        expect(wrong[i], 1, "no 'no-such' among the shipped ");
+}
+
 static void json_has_the_numbers(void **state)
 {
     (void)state;
@@ -119,6 +156,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bundle_is_described),
+        cmocka_unit_test(shipped_files_go_by_name_or_path),
         cmocka_unit_test(json_has_the_numbers),
         cmocka_unit_test(a_circle_is_bonded_to_what_is_within_reach),
         cmocka_unit_test(a_section_is_drawn),
