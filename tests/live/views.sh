@@ -77,9 +77,8 @@ has_grown() {
     [ "$(cat "$folder/$1.wbr" "$folder/$1.wbr-wal" 2>/dev/null | wc -c)" -gt 900000 ]
 }
 
-# NAME: what the cameras sent did not all come: at this speed a busy machine loses frames by itself.
-lost_frames() {
-    grep -qsaF 'what the mocap sent never came' "$folder/$1.screen" "$folder/$1.out"
+lost_some() { # NAME
+    lost_samples "$folder/$1.screen" "$folder/$1.out"
 }
 
 # NAME CODE: the recorder ended so, and left the terminal as it found it.
@@ -87,7 +86,7 @@ finish() {
     local code
     wait $script
     code=$(cat "$folder/$1.code" 2>/dev/null)
-    [ "$code" = "$2" ] || { [ "$2$code" = 03 ] && lost_frames "$1"; } || fail "$1: exit code '$code', expected $2: $(tail -c 600 "$folder/$1.screen")"
+    [ "$code" = "$2" ] || { [ "$2$code" = 03 ] && lost_some "$1"; } || fail "$1: exit code '$code', expected $2: $(tail -c 600 "$folder/$1.screen")"
     cmp -s "$folder/$1.before" "$folder/$1.after" || fail "$1: the terminal is not as it was"
     LC_ALL=C grep -qaF $'\033[?1049l' "$folder/$1.screen" || fail "$1: the usual screen is not back"
     exec 8>&-
@@ -243,7 +242,7 @@ lost_with_nohup() {
     script=$!
     wait_for_motion lost_with_nohup
     kill -s HUP $script
-    wait $script || lost_frames lost_with_nohup || fail "lost_with_nohup: $(cat "$folder/lost_with_nohup.out")"
+    wait $script || lost_some lost_with_nohup || fail "lost_with_nohup: $(cat "$folder/lost_with_nohup.out")"
     whole lost_with_nohup
 }
 
@@ -310,7 +309,7 @@ page_killed() {
     wait $script
     code=$?
     exec 7>&-
-    [ $code = 0 ] || { [ $code = 3 ] && lost_frames page; } || fail "page: exit code $code: $(cat "$folder/page.screen")"
+    [ $code = 0 ] || { [ $code = 3 ] && lost_some page; } || fail "page: exit code $code: $(cat "$folder/page.screen")"
     whole page
 }
 
