@@ -122,17 +122,23 @@ enum wb_status wb_config_parse(struct wb_config **out, const char *text, const c
     return WB_OK;
 }
 
+enum wb_status wb_config_read_text(char **out, const char *path, struct wb_reason *why)
+{
+    size_t size;
+    WB_TRY(wb_file_read_with_reason(path, out, &size, why));
+    if (strlen(*out) == size)
+        return WB_OK;
+    free(*out);
+    *out = NULL;
+    return wb_fail_to(why, WB_ERR_FORMAT, "'%s' is not a text file", path);
+}
+
 enum wb_status wb_config_read(struct wb_config **out, const char *path, struct wb_reason *why)
 {
     *out = NULL;
     char *text;
-    size_t size;
-    WB_TRY(wb_file_read_with_reason(path, &text, &size, why));
-    enum wb_status status;
-    if (strlen(text) != size)
-        status = wb_fail_to(why, WB_ERR_FORMAT, "'%s' is not a text file", path);
-    else
-        status = wb_config_parse(out, text, path, why);
+    WB_TRY(wb_config_read_text(&text, path, why));
+    const enum wb_status status = wb_config_parse(out, text, path, why);
     free(text);
     return status;
 }

@@ -40,6 +40,10 @@ WB_MUST_CHECK enum wb_status wb_config_read(struct wb_config **out, const char *
                                             struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_config_parse(struct wb_config **out, const char *text,
                                              const char *origin, struct wb_reason *why);
+
+/* Reads a file as a text for wb_config_parse(), to be freed. */
+WB_MUST_CHECK enum wb_status wb_config_read_text(char **out, const char *path,
+                                                 struct wb_reason *why);
 void wb_config_destroy(struct wb_config *config); /* accepts NULL */
 
 /* The top node. Its file name, and a node's line (from 1). */

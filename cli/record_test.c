@@ -3,7 +3,9 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "base/config.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "cli/command.h"
@@ -201,9 +203,9 @@ static enum wb_status find_wire(struct wb_bend_test_request *request, struct wb_
     return WB_OK;
 }
 
-enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
-                                  struct wb_record_views_options *options,
-                                  struct wb_bend_test_result *result, int *code)
+static enum wb_status run_test(struct wb_bend_test_request *request,
+                               struct wb_record_views_options *options,
+                               struct wb_bend_test_result *result, int *code)
 {
     static struct wb_record_views views;
     struct wb_bend_test *test;
@@ -231,4 +233,21 @@ enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
     wb_record_views_close(&views);
     *code = exit_code(result, status);
     return WB_OK;
+}
+
+/* The specimen's file is read once: what is checked, shown and recorded is one text, whoever
+ * changes the file meanwhile. */
+enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
+                                  struct wb_record_views_options *options,
+                                  struct wb_bend_test_result *result, int *code)
+{
+    const char *const given = request->specimen_text;
+    char *text = NULL;
+    if (!given)
+        WB_TRY(wb_config_read_text(&text, request->specimen_path, NULL));
+    request->specimen_text = given ? given : text;
+    const enum wb_status status = run_test(request, options, result, code);
+    request->specimen_text = given;
+    free(text);
+    return status;
 }

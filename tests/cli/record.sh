@@ -419,6 +419,13 @@ bad_ports() {
     record unit
     expect unit 1 'furlong'
 
+    # A specimen's file that no editor would show whole.
+    printf 'wire: type1\0\n' >"$folder/binary.yaml"
+    "$wirebench" record "$good" --specimen "$folder/binary.yaml" -o "$folder/binary.wbr" \
+        >"$folder/binary.err" 2>&1
+    [ $? = 1 ] && grep -q "binary.yaml' is not a text file" "$folder/binary.err" ||
+        fail "binary: $(cat "$folder/binary.err")"
+
     # Busy: a first record holds the ports.
     "$wirebench" record "$good" --specimen "$specimen" -o "$folder/first.wbr" \
         >"$folder/first.out" 2>"$folder/first.err" </dev/null &
