@@ -20,7 +20,8 @@ lost_samples() {
 
 # run_in_lanes LANES CASE...: the cases side by side in so many lanes, each lane one after the other;
 # more virtual rigs at many times their speed would starve each other. A case is a function with its
-# arguments, and failed where it counted up `failures`. A lane ends with leave_lane, if there is one.
+# arguments, and failed where it counted up `failures`. A case ends with leave_case and a lane with
+# leave_lane, if there are such functions.
 run_in_lanes() {
     local lanes=$1 lane i before process pids=()
     shift
@@ -33,6 +34,7 @@ run_in_lanes() {
                 before=$failures
                 # shellcheck disable=SC2086 # a case is words
                 ${cases[$i]}
+                ! declare -F leave_case >/dev/null || leave_case
                 [ $failures = $before ] && echo "ok: ${cases[$i]}" || echo "not ok: ${cases[$i]}"
             done
             [ $failures = 0 ]
