@@ -1,5 +1,6 @@
 /* A bundle file in the section model. */
 #include <math.h>
+#include <stdio.h>
 
 #include "analysis/dataset/simulated_section.h"
 #include "analysis/predict/bands_output.h"
@@ -185,11 +186,18 @@ static void tell_lost(const void *context)
 {
     const struct run *const run = context;
     const struct wb_section_solver_point *const lost = &run->result.lost;
+    char why[96];
+
+    if (isfinite(lost->residual))
+        snprintf(why, sizeof why, "residual %.2g of the largest force", lost->residual);
+    else
+        snprintf(why, sizeof why, "forces are no numbers there%s",
+                 run->model.loads.strand_length > 0.0 ? ": the strand may be too short to reach"
+                                                      : "");
     wb_warn(
-        "%s: no equilibrium was found beyond %.4g mm (residual %.2g of the largest force); %d of "
-        "%d rows were computed; compute it with --model explicit",
-        run->model.name, lost->deflection / WB_MM, lost->residual, run->result.n_rows,
-        run->result.capacity);
+        "%s: no equilibrium was found beyond %.4g mm (%s); %d of %d rows were computed; compute "
+        "it with --model explicit",
+        run->model.name, lost->deflection / WB_MM, why, run->result.n_rows, run->result.capacity);
 }
 
 static void warn(const void *context)
@@ -198,6 +206,7 @@ static void warn(const void *context)
     const struct wb_section_run *const r = &run->result;
     const char *const name = run->model.name;
     const double loosens = wb_section_run_loosens(r, &run->model);
+    const double folds = wb_section_run_folds(r);
 
     if (r->is_mean && run->model.packing.n > 1)
         wb_warn("%s: friction decays with the slip rate, which a static model does not know: mu = "
@@ -209,6 +218,10 @@ static void warn(const void *context)
             "its outline lets go of the wires: the section model is too stiff there; compute "
             "it with --model explicit",
             name, loosens / WB_MM);
+    if (isfinite(folds))
+        wb_warn("%s: from %.3g mm on the bundle bends to a radius below its own depth, where the "
+                "section model means nothing: take a smaller deflection, or a longer bundle",
+                name, folds / WB_MM);
     if (r->imbalance > allowed_imbalance)
         wb_warn("%s: energies differ from the work by up to %.3g of it: more rows (run: rows) make "
                 "the increments smaller",

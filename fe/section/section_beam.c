@@ -59,6 +59,9 @@ static void evaluate_wire(struct wb_section_beam *beam, int element, int w)
     add(beam, beam->residual, element + 1, 0, moment);
     add(beam, beam->residual, element, 0, -moment);
     beam->axial = fmax(beam->axial, fabs(r->N));
+    beam->fold =
+        fmax(beam->fold,
+             fabs(kappa) * (fabs(wire->y) + 0.5 * beam->model->type[wire->type].outer_diameter));
 }
 
 static struct wb_section_beam_wall find_wall(const struct wb_section_beam *beam, int element,
@@ -307,7 +310,7 @@ void wb_section_beam_evaluate(struct wb_section_beam *beam,
     memset(beam->residual, 0, size);
     memset(beam->lever, 0, size);
     memset(beam->draw, 0, size);
-    beam->axial = beam->tape_plastic = 0.0;
+    beam->axial = beam->tape_plastic = beam->fold = 0.0;
     beam->n_slipping = 0;
     find_tip(beam, loads);
     for (int m = 0; m < beam->n_elements; m++) {

@@ -100,6 +100,7 @@ struct wb_section_beam {
     struct wb_section_beam_tip tip;
     double missing; /* of the balance in the plane, over the loads: the largest of all elements */
     double tape_plastic; /* 1: largest accumulated plastic strain of the tape */
+    double fold;         /* 1: largest curvature times half the depth of the wires */
     int n_slipping;      /* contacts at their limit, of all stations */
 
     /* The rest is the beam's own. */

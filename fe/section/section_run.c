@@ -14,8 +14,9 @@ enum {
 
 /* Plastic strain of a tape on a circle, where nothing but its stretch holds wires together. */
 static const double circle_limit = 0.010;
-static const double small = 1e-5; /* of the length: a deflection at which the elastic bundle is
-                                     linear */
+static const double fold_limit = 0.5; /* of half the depth over the radius of the bend */
+static const double small = 1e-5;     /* of the length: a deflection at which the elastic bundle is
+                                         linear */
 
 /* --- memory --- */
 
@@ -210,6 +211,14 @@ double wb_section_run_loosens(const struct wb_section_run *run, const struct wb_
         return (double)NAN;
     for (int i = 0; i < run->n_rows; i++)
         if (run->rows[i].point.tape_plastic > circle_limit)
+            return run->rows[i].point.deflection;
+    return (double)NAN;
+}
+
+double wb_section_run_folds(const struct wb_section_run *run)
+{
+    for (int i = 0; i < run->n_rows; i++)
+        if (run->rows[i].point.fold > fold_limit)
             return run->rows[i].point.deflection;
     return (double)NAN;
 }

@@ -19,7 +19,7 @@
 
 /* Counted up whenever the same model comes to other numbers: datasets of before are outdated. */
 enum {
-    WB_SECTION_RUN_VERSION = 1
+    WB_SECTION_RUN_VERSION = 2
 };
 
 struct wb_section_run_row {
@@ -96,5 +96,9 @@ double wb_section_run_springback(const struct wb_section_run *run);
  * lets go of the wires. NaN: it stays below, or the tape lies taut on the wires. */
 double wb_section_run_loosens(const struct wb_section_run *run,
                               const struct wb_bundle_model *model);
+
+/* The deflection (m) from which on the bundle bends to a radius below its own depth: no beam's
+ * strains mean much there. NaN: it does not. */
+double wb_section_run_folds(const struct wb_section_run *run);
 
 #endif

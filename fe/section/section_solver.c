@@ -18,12 +18,13 @@ enum {
 static const double default_tolerance = 1e-6;
 static const double default_smallest_step = 1.0 / 256.0;
 static const double jump = 2e-3; /* of the force: what may be the other way round than expected */
+static const double least_part = 1.0 / 128.0; /* of the weight, in an increment */
 static const double flat =
     0.05; /* a search ends where the slope along the step fell to this part */
 
 /* An equilibrium, to continue from. */
 struct place {
-    double deflection, vertical;
+    double deflection, vertical, weight;
 };
 
 struct wb_section_solver {
@@ -32,9 +33,11 @@ struct wb_section_solver {
     struct wb_section_beam_loads loads;
     struct place now, before;
     int n_committed;
-    bool hangs;    /* the strand is slack, the tip is where the weight holds it */
-    double *step;  /* (n_unknowns) */
-    double *right; /* (RIGHT_SIDES x n_unknowns) */
+    double weight;      /* N/m: all of it */
+    double weight_part; /* of it, at most, in an increment */
+    bool hangs;         /* the strand is slack, the tip is where the weight holds it */
+    double *step;       /* (n_unknowns) */
+    double *right;      /* (RIGHT_SIDES x n_unknowns) */
     struct wb_section_solver_point point;
     struct wb_memory memory;
 };
@@ -61,8 +64,10 @@ static double find_residual(const struct wb_section_solver *s, const double *tar
     for (int i = 0; i < beam->n_unknowns; i++) {
         const bool turns = i % beam->per_station == 0;
         const double force = beam->residual[i] / (turns ? length : 1.0);
-        if (!(fabs(force) <= largest))
-            largest = fabs(force);
+        /* One that is no number is not forgotten, nor taken for the smaller one by fmax(). */
+        if (isnan(force))
+            return force;
+        largest = fmax(largest, fabs(force));
     }
     const double gap = target ? fabs(*target - beam->tip.y) : 0.0;
     return fmax(gap / length, scale > 0.0 ? largest / scale : 0.0);
@@ -196,7 +201,7 @@ static void commit(struct wb_section_solver *s, double target)
     wb_section_energy_take(s->beam);
     wb_section_beam_commit(s->beam);
     s->before = s->now;
-    s->now = (struct place){target, s->loads.vertical};
+    s->now = (struct place){target, s->loads.vertical, s->loads.weight};
     s->n_committed++;
 }
 
@@ -216,6 +221,7 @@ static void describe(struct wb_section_solver *s)
     p->slack = s->hangs;
     p->missing = beam->missing;
     p->tape_plastic = beam->tape_plastic;
+    p->fold = beam->fold;
 }
 
 /* The strand would have to push: it is slack, and the tip hangs. False: that was not found. */
@@ -261,6 +267,7 @@ static void give_up(struct wb_section_solver *s)
     s->point.end = WB_SECTION_SOLVER_NOT_CONVERGED;
     wb_section_beam_revert(s->beam);
     s->loads.vertical = s->now.vertical;
+    s->loads.weight = s->now.weight;
     wb_section_beam_evaluate(s->beam, &s->loads, true);
     s->point.residual = residual;
 }
@@ -269,19 +276,22 @@ void wb_section_solver_move(struct wb_section_solver *s, double deflection,
                             struct wb_section_solver_point *point)
 {
     const double from = s->now.deflection, way = deflection - from;
-    double done = 0.0, part = 1.0;
+    const double weight = s->now.weight, added = s->weight - weight;
+    const double most = added > 0.0 ? s->weight_part : 1.0;
+    double done = 0.0, part = most;
 
     s->point = (struct wb_section_solver_point){.end = WB_SECTION_SOLVER_CONVERGED};
     /* Where the tip hangs already it stays until the strand pulls again. */
     while (!(s->hangs && deflection <= s->now.deflection) && (done < 1.0 || s->n_committed == 0)) {
         const double next = fmin(done + part, 1.0);
+        s->loads.weight = next < 1.0 ? weight + next * added : s->weight;
         if (advance(s, next < 1.0 ? from + next * way : deflection)) {
             done = next;
-            part = fmin(2.0 * part, 1.0);
+            part = fmin(2.0 * part, most);
             continue;
         }
         part *= 0.5;
-        if (part < s->settings.smallest_step) {
+        if (part < s->settings.smallest_step * most) {
             give_up(s);
             break;
         }
@@ -318,6 +328,16 @@ static void fill_settings(struct wb_section_solver *s,
         s->settings.smallest_step = default_smallest_step;
 }
 
+/* The weight, and in how many parts it comes on: one where the wires alone, sliding freely, would
+ * sag by no more than an eighth of their length (q L^3 / (8 E I)). */
+static void set_weight(struct wb_section_solver *s, const struct wb_bundle_model *model)
+{
+    s->weight =
+        WB_STANDARD_GRAVITY * (wb_bundle_model_wire_mass(model) + wb_bundle_model_tape_mass(model));
+    const double moment = s->weight * pow(model->length, 3.0);
+    s->weight_part = fmax(fmin(wb_bundle_model_rigidity(model).wires / moment, 1.0), least_part);
+}
+
 enum wb_status wb_section_solver_create(struct wb_section_solver **out,
                                         const struct wb_bundle_model *model,
                                         const struct wb_section_solver_settings *settings)
@@ -341,8 +361,7 @@ enum wb_status wb_section_solver_create(struct wb_section_solver **out,
         return wb_fail(WB_ERR_MEMORY, "no memory for %zu unknowns", n);
     }
     if (model->loads.weight)
-        s->loads.weight = WB_STANDARD_GRAVITY *
-                          (wb_bundle_model_wire_mass(model) + wb_bundle_model_tape_mass(model));
+        set_weight(s, model);
     s->loads.strand = model->loads.strand_length;
     *out = s;
     return WB_OK;

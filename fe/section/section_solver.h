@@ -4,7 +4,8 @@
  * Each is found by Newton's method in all unknowns and the force that leads the tip, to
  * settings.tolerance of the forces, with the friction that the same state allows: where a step does
  * not bring the residual down, a search along it does. A move that does not converge is divided; if
- * that does not help, the end says so and the state stays at the last equilibrium.
+ * that does not help, the end says so and the state stays at the last equilibrium. The first move
+ * brings the weight on, in parts that bend a bundle little.
  */
 #ifndef WB_FE_SECTION_SECTION_SOLVER_H
 #define WB_FE_SECTION_SECTION_SOLVER_H
@@ -37,6 +38,7 @@ struct wb_section_solver_point {
     double residual;          /* over the largest force */
     double missing;           /* of the balance in the plane, over what presses the wires */
     double tape_plastic;      /* largest accumulated plastic strain of the tape */
+    double fold;              /* largest curvature times half the depth of the wires */
     int iterations;           /* of all increments since the last point */
     int increments;
 };

@@ -360,6 +360,31 @@ static void the_section_model_tells_from_where_a_circle_lets_go(void **unused)
     assert_string_equal(o.err, "");
 }
 
+static void the_section_model_tells_where_its_answers_end(void **unused)
+{
+    (void)unused;
+    static const char strand[] = "strand_mm: ";
+    char path[WB_PATH], *text;
+    size_t size;
+    tool("solve bundle 7-type3 --model section --friction 0.2 --length-mm 5 --deflection-mm 2.3");
+    assert_int_equal(o.code, 0);
+    assert_non_null(strstr(o.err, "from 2 mm on the bundle"));
+    assert_non_null(strstr(o.err, "radius below its own depth"));
+    /* The strand of 760 mm becomes one of 20 mm, which lies level before the tip is at 90 mm. */
+    assert_int_equal(wb_file_find_fixture(path, "bundles", "template", NULL), WB_OK);
+    assert_int_equal(wb_file_read(path, &text, &size), WB_OK);
+    char *const at = strstr(text, strand);
+    assert_non_null(at);
+    memcpy(at + strlen(strand), "20 ", 3);
+    snprintf(path, sizeof path, "%s/level.yaml", folder);
+    assert_int_equal(wb_file_write(path, text, size), WB_OK);
+    free(text);
+    tool("solve bundle level.yaml --model section --deflection-mm 90");
+    assert_int_equal(o.code, 3);
+    assert_non_null(strstr(o.err, "no equilibrium was found beyond "));
+    assert_non_null(strstr(o.err, "strand may be too short"));
+}
+
 /* A short look without a copy of the file. */
 static void test_and_piece_are_options_as_of_the_cantilever(void **unused)
 {
@@ -516,6 +541,7 @@ int main(void)
         cmocka_unit_test(the_section_model_says_which_friction_it_takes_for_one_that_decays),
         cmocka_unit_test(the_section_model_refuses_what_it_cannot_do_and_names_the_explicit_one),
         cmocka_unit_test(the_section_model_tells_from_where_a_circle_lets_go),
+        cmocka_unit_test(the_section_model_tells_where_its_answers_end),
         cmocka_unit_test(bands_are_written_beside_the_curve_and_summarised),
         cmocka_unit_test(bands_of_what_nobody_stated_are_refused),
         cmocka_unit_test(test_and_piece_are_options_as_of_the_cantilever),
