@@ -457,7 +457,8 @@ static enum wb_status read_places(struct reader *reader, const struct wb_config_
     const int n = wb_config_length(list);
     if (n != packing->n)
         return wb_config_refuse(reader->file.root, "places_mm",
-                                "expected a list of %d places [y, z]", packing->n);
+                                "expected a list of %d places [up, right], one of each wire",
+                                packing->n);
     for (int i = 0; i < n; i++) {
         double place[2];
         int two;

@@ -86,7 +86,9 @@ static enum wb_status check_wires(const struct wb_bundle_model *model, struct wb
         if (pair[i].gap > most_gap)
             return wb_fail_to(why, WB_ERR_UNSUPPORTED,
                               "%s: the neighbours %d and %d of the packing are %.3g mm apart: the "
-                              "section model is made for wires that touch (at most %g mm); %s",
+                              "section model is made for wires that touch (at most %g mm); if they "
+                              "do on the bundle, 'touching_mm' beside places_mm closes what was "
+                              "read too wide; %s",
                               model->path, pair[i].a + 1, pair[i].b + 1, pair[i].gap / WB_MM,
                               most_gap / WB_MM, way_out);
     return WB_OK;

@@ -558,7 +558,7 @@ static void wrong_packings_are_refused(void **state)
     refuse(full, "settled: false", "touching_mm: 0.1", ":9: touching_mm: ");
     refuse(full, "wires_mm: 0.02", "wires_mm: -0.02", ":10: wires_mm: ");
     refuse(bare, "packing: hexagon", "packing: places\nplaces_mm: [[0, 0], [1, 0]]",
-           ":4: places_mm: expected a list of 1 places");
+           ":4: places_mm: expected a list of 1 places [up, right]");
     refuse(bare, "packing: hexagon", "packing: places\nplaces_mm: [[0, 0, 0]]", ":4: places_mm: ");
     refuse(bare, "packing: hexagon", "packing: places\nplaces_mm: [[0, 0]]\ngaps: {wires_mm: 0.1}",
            ":5: wires_mm: ");

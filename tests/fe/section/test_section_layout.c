@@ -128,6 +128,7 @@ static void a_gap_between_neighbours_is_refused_from_a_hundredth_of_a_millimetre
     wb_section_layout_release(&layout);
     model.packing.wire[1].z += 0.003e-3;
     assert_model_refused("are 0.012 mm apart");
+    assert_model_refused("'touching_mm' beside places_mm");
 }
 
 static void bonds_that_break_and_epoxy_are_refused(void **unused)
