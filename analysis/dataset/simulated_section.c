@@ -1,6 +1,6 @@
 #include "analysis/dataset/simulated_section.h"
 
-#include <math.h>
+#include <string.h>
 
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/simulated.h"
@@ -41,19 +41,29 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_secti
 
 /* --- dataset.json --- */
 
-static double imbalance(const struct wb_section_beam_energies *e)
+enum {
+    ENERGIES = 6
+};
+
+/* Of dataset.json and of energies.csv. */
+static const char *const energy_names[ENERGIES] = {"external_J", "wires_J",    "tape_J",
+                                                   "cohesive_J", "friction_J", "imbalance_J"};
+
+static void list_energies(const struct wb_section_beam_energies *e, double list[ENERGIES])
 {
-    return e->external - e->wires - e->tape - e->bonds - e->friction;
+    const double all[ENERGIES] = {
+        e->external, e->wires,    e->tape,
+        e->bonds,    e->friction, e->external - e->wires - e->tape - e->bonds - e->friction};
+    memcpy(list, all, sizeof all);
 }
 
 static void describe_energies(struct wb_json *object, const struct wb_section_beam_energies *e)
 {
-    wb_json_set_number(object, "external_J", e->external);
-    wb_json_set_number(object, "wires_J", e->wires);
-    wb_json_set_number(object, "tape_J", e->tape);
-    wb_json_set_number(object, "cohesive_J", e->bonds);
-    wb_json_set_number(object, "friction_J", e->friction);
-    wb_json_set_number(object, "imbalance_J", imbalance(e));
+    double list[ENERGIES];
+
+    list_energies(e, list);
+    for (int i = 0; i < ENERGIES; i++)
+        wb_json_set_number(object, energy_names[i], list[i]);
 }
 
 /* E I and M over kappa are no properties of the section alone: their name says so, and three
@@ -141,19 +151,14 @@ enum wb_status wb_simulated_section_write_energies(const struct wb_dataset *data
     if (dataset->n_rows != (size_t)run->n_rows)
         return wb_fail(WB_ERR_ARGUMENT, "%s: %d rows of energies for a dataset of %zu", folder,
                        run->n_rows, dataset->n_rows);
-    wb_text_append(&text, "t_s,deflection_mm,external_J,wires_J,tape_J,cohesive_J,friction_J,"
-                          "imbalance_J\n");
+    wb_text_append(&text, "t_s,deflection_mm");
+    for (int k = 0; k < ENERGIES; k++)
+        wb_text_append(&text, ",%s", energy_names[k]);
+    wb_text_append(&text, "\n");
     for (int i = 0; i < run->n_rows; i++) {
-        const struct wb_section_beam_energies *const e = &run->rows[i].energies;
-        const double columns[] = {dataset->rows[i].t,
-                                  run->rows[i].point.deflection,
-                                  e->external,
-                                  e->wires,
-                                  e->tape,
-                                  e->bonds,
-                                  e->friction,
-                                  imbalance(e)};
-        for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++) {
+        double columns[2 + ENERGIES] = {dataset->rows[i].t, run->rows[i].point.deflection};
+        list_energies(&run->rows[i].energies, columns + 2);
+        for (int k = 0; k < 2 + ENERGIES; k++) {
             char number[WB_CSV_TABLE_NUMBER];
             wb_csv_table_format_number(columns[k], k == 1 ? MM_SHIFT : 0, number);
             wb_text_append(&text, "%s%s", k == 0 ? "" : ",", number);
