@@ -122,9 +122,26 @@ static void a_file_by_hand_needs_the_properties_only(void **state)
     assert_close_relative(read.law.material.strength_coefficient, 500e6, 1e-15);
     assert_true(isnan(read.largest_curvature) && isnan(read.rigidity.value));
     assert_true(isnan(read.springback.candidates_low) && isnan(read.ludwik_misfit));
+    assert_true(isnan(read.loop_energy.value) && isnan(read.moment[0].value));
     assert_int_equal(read.n_specimens, 0);
     assert_int_equal(read.n_moments, 0);
     assert_false(read.is_rule_tested || read.is_rule_supported);
+}
+
+static void energy_of_a_loop_is_read(void **state)
+{
+    (void)state;
+    static const char text[] = "wire: mine\nouter_diameter_mm: 2\nmass_per_length_kg_m: 0.01\n"
+                               "youngs_modulus_MPa: 1000\nyield_stress_MPa: 2\n"
+                               "strength_coefficient_MPa: 500\nhardening_exponent: 0.5\n"
+                               "poissons_ratio: 0.4\n"
+                               "loop_energy_mJ_per_m: {value: 3, low: 2.5, high: 4}\n";
+    struct wb_properties read;
+    assert_int_equal(wb_properties_parse(text, "mine.yaml", &read, NULL), WB_OK);
+    assert_close_relative(read.loop_energy.value, 3e-3, 1e-15);
+    assert_close_relative(read.loop_energy.low, 2.5e-3, 1e-15);
+    assert_close_relative(read.loop_energy.high, 4e-3, 1e-15);
+    assert_true(isnan(read.loop_energy.candidates_low));
 }
 
 static void datasets_are_read_with_their_checksums(void **state)
@@ -193,6 +210,7 @@ int main(void)
         cmocka_unit_test(the_file_says_virtual_rig_and_how_it_was_made),
         cmocka_unit_test(what_is_not_known_stays_unknown),
         cmocka_unit_test(a_file_by_hand_needs_the_properties_only),
+        cmocka_unit_test(energy_of_a_loop_is_read),
         cmocka_unit_test(datasets_are_read_with_their_checksums),
         cmocka_unit_test(an_existing_file_is_kept_without_force),
         cmocka_unit_test(errors_name_file_line_and_key),
