@@ -89,7 +89,7 @@ enum wirebench_status wirebench_properties_read(struct wirebench_properties **ou
     struct wirebench_properties *const properties = calloc(1, sizeof *properties);
     if (!properties)
         return wb_call_end(wb_fail(WB_ERR_MEMORY, "no memory for properties"));
-    enum wb_status status = wb_card_source_find(path, path_or_name);
+    enum wb_status status = wb_file_find_fixture(path, "wires", path_or_name, NULL);
     if (status == WB_OK)
         status = wb_card_source_read(&properties->source, path);
     if (status == WB_OK)
