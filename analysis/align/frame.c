@@ -116,7 +116,10 @@ static enum wb_status fit_motion(struct wb_bench_frame *frame,
         for (int k = 0; k < 3; k++)
             frame->up[k] = sign * directions[0][k];
     }
-    frame->tilt = acos(fmin(1.0, fabs(wb_vec3_dot(frame->up, server_up))));
+    /* Its cosine would leave nothing of a small one but round-off. */
+    double cross[3];
+    wb_vec3_cross(frame->up, server_up, cross);
+    frame->tilt = atan2(sqrt(wb_vec3_dot(cross, cross)), fabs(wb_vec3_dot(frame->up, server_up)));
     return WB_OK;
 }
 

@@ -170,7 +170,9 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
                                       double *misfit)
 {
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-    parameters.h_df = 1e-6;
+    /* K and n lie in a valley so flat that the noise of one-sided differences shows in them. */
+    parameters.fdtype = GSL_MULTIFIT_NLINEAR_CTRDIFF;
+    parameters.h_df = 1e-4;
     gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
         gsl_multifit_nlinear_trust, &parameters, EQUIVALENT_POINTS, EQUIVALENT_FREE);
     if (!w)
@@ -193,7 +195,7 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
     int info = 0;
     int code = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
     if (code == GSL_SUCCESS)
-        code = gsl_multifit_nlinear_driver(200, 1e-8, 1e-10, 1e-10, NULL, NULL, &info, w);
+        code = gsl_multifit_nlinear_driver(200, 1e-12, 1e-15, 0.0, NULL, NULL, &info, w);
     if (e->status == WB_OK) {
         /* The last evaluation need not have been the best. */
         (void)equivalent_residuals(w->x, e, w->f);

@@ -80,7 +80,7 @@ static struct wb_cantilever_settings complete_settings(const struct wb_cantileve
     if (given)
         s = *given;
     if (s.force_tolerance == 0.0)
-        s.force_tolerance = 1e-9;
+        s.force_tolerance = 1e-12;
     if (s.max_iterations == 0)
         s.max_iterations = 25;
     if (s.smallest_step == 0.0)

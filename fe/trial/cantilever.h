@@ -58,7 +58,7 @@ struct wb_cantilever_model {
 };
 
 struct wb_cantilever_settings {
-    double force_tolerance; /* residual of forces over the largest internal force, 1; 0: 1e-9 */
+    double force_tolerance; /* residual of forces over the largest internal force, 1; 0: 1e-12 */
     int max_iterations;     /* per step; 0: 25 */
     double smallest_step;   /* fraction of the requested move below which it gives up; 0: 1e-4 */
 };
