@@ -572,8 +572,17 @@ static void compare_part(struct comparison *c, const struct wb_json *a, const st
     c->place[before] = '\0';
 }
 
+static bool is_among(const char *key, const char *const *names)
+{
+    for (; names && *names; names++) {
+        if (strcmp(key, *names) == 0)
+            return true;
+    }
+    return false;
+}
+
 static void compare_lists(struct comparison *c, const struct wb_json *a, const struct wb_json *b,
-                          const char *ignored)
+                          const char *const *ignored)
 {
     const bool is_object = a->kind == KIND_OBJECT;
     const double scale = fmax(largest_of(a), largest_of(b));
@@ -585,12 +594,12 @@ static void compare_lists(struct comparison *c, const struct wb_json *a, const s
         const struct wb_json *const y = b->as.list.values[i];
         if (!is_object)
             compare_part(c, a->as.list.values[i], y, NULL, i, scale);
-        else if (!ignored || strcmp(y->key, ignored) != 0)
+        else if (!is_among(y->key, ignored))
             compare_part(c, wb_json_get(a, y->key), y, y->key, i, 0.0);
     }
     for (size_t i = 0; is_object && i < a->as.list.n; i++) {
         const struct wb_json *const x = a->as.list.values[i];
-        if (!wb_json_get(b, x->key) && !(ignored && strcmp(x->key, ignored) == 0))
+        if (!wb_json_get(b, x->key) && !is_among(x->key, ignored))
             compare_part(c, x, NULL, x->key, i, 0.0);
     }
 }
@@ -627,7 +636,7 @@ static void compare(struct comparison *c, const struct wb_json *a, const struct 
 }
 
 bool wb_json_differs(const struct wb_json *a, const struct wb_json *b, double tolerance,
-                     const char *ignored, struct wb_json_difference *difference)
+                     const char *const *ignored, struct wb_json_difference *difference)
 {
     struct comparison c = {.tolerance = tolerance, .found = difference};
     *difference = (struct wb_json_difference){.n = 0};

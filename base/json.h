@@ -85,8 +85,8 @@ struct wb_json_difference {
 /* Whether two values (NULL: nothing) differ, and where first and most. Texts, truths, keys and
  * lengths are to be equal, members stand in any order; numbers are to differ by at most `tolerance`
  * times the larger of the two, or in an array of numbers times the largest of both arrays. Members
- * `ignored` (NULL: none) of the two values themselves may differ. */
+ * `ignored` (names up to a NULL; NULL: none) of the two values themselves may differ. */
 bool wb_json_differs(const struct wb_json *a, const struct wb_json *b, double tolerance,
-                     const char *ignored, struct wb_json_difference *difference);
+                     const char *const *ignored, struct wb_json_difference *difference);
 
 #endif

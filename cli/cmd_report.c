@@ -104,7 +104,8 @@ static const struct argp argp = {
            "the datasets that a campaign misses, those that are outdated too (recordings cannot be "
            "computed); run again, they go on where they ended. Logs lie in DIR.jobs. "
            "--check ends with exit code 0 where the same bytes come out again, or by another build "
-           "numbers within 1e-9; 3: the campaign is not here to be computed.",
+           "numbers within 1e-9, fitted ones within 1e-5; 3: the campaign is not here to be "
+           "computed.",
     .children = children,
 };
 

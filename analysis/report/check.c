@@ -13,7 +13,13 @@
 
 #define WB_LOG_DOMAIN "check"
 
-static const double tolerance = 1e-9;
+/* Numbers of another build agree within the first; a search ends where the rounding of its build
+ * leads it, so that what is fitted, and follows from it, is held to the second. */
+static const double tolerance = 1e-9, fitted_tolerance = 1e-5;
+
+/* The members of report.json that hold what is fitted, and none but the program that made it. */
+static const char *const program[] = {"tool", NULL};
+static const char *const program_and_fitted[] = {"tool", "wires", "fit", "bundles", NULL};
 
 /* One report in two folders: as it was signed, and as it comes out now. */
 struct pair {
@@ -177,26 +183,50 @@ static void describe_build(const struct wb_json_place *at, char text[600])
     }
 }
 
-/* The numbers of both report.json, but the program's revision. */
+static enum wb_status refuse(const struct wb_json_difference *found, double limit,
+                             const char *build)
+{
+    char by[32] = "";
+    if (isfinite(found->largest))
+        snprintf(by, sizeof by, ", by %.2g of it", found->largest);
+    return wb_fail(WB_ERR_DATA,
+                   "made by another build (%s), and not the same within %g: %zu value%s of "
+                   "report.json, most '%s', %s in it and %s here%s",
+                   build, limit, found->n, found->n == 1 ? "" : "s", found->most.place,
+                   found->most.a, found->most.b, by);
+}
+
+/* The numbers of both, and what is to be said of them. */
+static enum wb_status compare_documents(const struct wb_json *was, const struct wb_json *is,
+                                        const char *build, FILE *out)
+{
+    struct wb_json_difference found, too_large;
+    const bool differs = wb_json_differs(was, is, tolerance, program, &found);
+    if (wb_json_differs(was, is, tolerance, program_and_fitted, &too_large))
+        return refuse(&too_large, tolerance, build);
+    if (differs && !(found.largest <= fitted_tolerance)) {
+        wb_json_differs(was, is, fitted_tolerance, program, &too_large);
+        return refuse(&too_large, fitted_tolerance, build);
+    }
+    fprintf(out, "computed again: numbers within %g", tolerance);
+    if (differs)
+        fprintf(out, ", but %zu of fits within %g, most '%s', by %.2g of it", found.n,
+                fitted_tolerance, found.most.place, found.largest);
+    fprintf(out, "; made by another build: %s\n", build);
+    return WB_OK;
+}
+
 static enum wb_status compare_numbers(const struct pair *pair, const char *build)
 {
-    char path[WB_PATH], by[32] = "";
+    char path[WB_PATH];
     struct wb_json *was = NULL, *is = NULL;
-    struct wb_json_difference found;
     WB_TRY(wb_file_join(path, pair->order->folder, "report.json"));
     WB_TRY(wb_json_read(&was, path));
     enum wb_status status = wb_file_join(path, pair->again, "report.json");
     if (status == WB_OK)
         status = wb_json_read(&is, path);
-    if (status == WB_OK && wb_json_differs(was, is, tolerance, "tool", &found)) {
-        if (isfinite(found.largest))
-            snprintf(by, sizeof by, ", by %.2g of it", found.largest);
-        status = wb_fail(WB_ERR_DATA,
-                         "made by another build (%s), and not the same within %g: %zu value%s of "
-                         "report.json, most '%s', %s in it and %s here%s",
-                         build, tolerance, found.n, found.n == 1 ? "" : "s", found.most.place,
-                         found.most.a, found.most.b, by);
-    }
+    if (status == WB_OK)
+        status = compare_documents(was, is, build, pair->order->out);
     wb_json_destroy(was);
     wb_json_destroy(is);
     return status;
@@ -227,7 +257,6 @@ static enum wb_status compare(const struct pair *pair, enum wb_check_end *end)
     }
     describe_build(&of_build.first, text);
     WB_TRY(compare_numbers(pair, text));
-    fprintf(out, "computed again: numbers within %g; made by another build: %s\n", tolerance, text);
     *end = WB_CHECK_OTHER_BUILD;
     return WB_OK;
 }

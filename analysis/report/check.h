@@ -16,7 +16,7 @@ struct wb_check_order {
 
 enum wb_check_end {
     WB_CHECK_SAME,         /* the same bytes came out again */
-    WB_CHECK_OTHER_BUILD,  /* other bytes by another build, numbers within 1e-9 */
+    WB_CHECK_OTHER_BUILD,  /* made by another build, numbers within 1e-9, fitted ones 1e-5 */
     WB_CHECK_NOT_COMPUTED, /* signature and files are good; the campaign is not here, or Ctrl-C */
 };
 

@@ -123,6 +123,12 @@ resigned 0 'made by another build: other libraries' \
     'report["tool"]["revision"] = "old"; manifest["build"]["libraries"][0]["sha256"] = "0"'
 resigned 1 "not the same within 1e-09: 1 value of report.json, most 'settings.step_mm', 0.25 in it and 0.25 here, by 1e-08" \
     'report["settings"]["step_mm"] *= 1 + 1e-8; manifest["build"]["processor"] = "another"'
+resigned 0 "numbers within 1e-09, but 1 of fits within 1e-05, most 'wires[0].outer_diameter_mm', by 1e-07 of it" \
+    'report["wires"][0]["outer_diameter_mm"] *= 1 + 1e-7; manifest["build"]["processor"] = "another"'
+resigned 1 "not the same within 1e-05: 1 value of report.json, most 'wires[0].outer_diameter_mm'" \
+    'report["wires"][0]["outer_diameter_mm"] *= 1 + 1e-4; manifest["build"]["processor"] = "another"'
+resigned 1 "not the same within 1e-05: 1 value of report.json, most 'wires[0].wire', 'another' in it" \
+    'report["wires"][0]["wire"] = "another"; manifest["build"]["processor"] = "another"'
 resigned 1 "input 'fixtures/wires/type1.yaml' is not what was signed" 'manifest["inputs"][0]["sha256"] = "0"'
 resigned 1 'has no name' 'manifest["files"].append({"name": "../c.yaml", "sha256": "0"})' 2>/dev/null
 
