@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/dataset/exclusion.h"
 #include "analysis/quicklook.h"
 #include "base/file.h"
 #include "cli/command.h"
-#include "daq/index.h"
 
 #define WB_LOG_DOMAIN "datasets"
 
@@ -73,25 +73,6 @@ static enum wb_status check_name(const char *name)
     return WB_OK;
 }
 
-/* What a person left out of a series is no data for properties either. */
-static enum wb_status check_excluded(const struct wb_dataset *dataset, const char *folder)
-{
-    const struct wb_json *const recordings = wb_json_get(dataset->document, "recordings");
-    for (size_t i = 0; i < wb_json_length(recordings); i++) {
-        struct wb_index_exclusion excluded;
-        char text[WB_INDEX_EXCLUSION_TEXT];
-        if (!wb_index_exclusion_get_json(&excluded, wb_json_item(recordings, i)))
-            continue;
-        wb_index_exclusion_describe(&excluded, text);
-        return wb_fail(WB_ERR_DATA,
-                       "'%s': the test was excluded %s. Leave the dataset out; to use it, take "
-                       "`excluded` out of index.yaml beside its recording, and run `wirebench "
-                       "align` again",
-                       folder, text);
-    }
-    return WB_OK;
-}
-
 enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const *names, int n,
                                 unsigned kinds)
 {
@@ -104,7 +85,7 @@ enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const 
         WB_TRY(check_name(names[i]));
     for (int i = 0; i < n; i++) {
         WB_TRY(wb_dataset_read_kinds(&datasets->items[i], names[i], kinds, NULL));
-        WB_TRY(check_excluded(&datasets->items[i], names[i]));
+        WB_TRY(wb_exclusion_check(&datasets->items[i], names[i]));
         datasets->pointers[i] = &datasets->items[i];
     }
     return WB_OK;

@@ -8,6 +8,7 @@
 
 #include "analysis/calibration/cycle_check.h"
 #include "analysis/calibration/method.h"
+#include "analysis/dataset/exclusion.h"
 #include "library/handles.h"
 #include "library/options.h"
 
@@ -198,6 +199,7 @@ static enum wb_status take_datasets(struct job *job,
         if (datasets[i]->dataset.info.kind == WB_TEST_TENSILE)
             return wb_fail(WB_ERR_UNSUPPORTED, "'%s' is a tensile test: expected tests of bending",
                            datasets[i]->origin.name);
+        WB_TRY(wb_exclusion_check(&datasets[i]->dataset, datasets[i]->origin.name));
         job->datasets[i] = &datasets[i]->dataset;
         job->origins[i] = datasets[i]->origin;
         job->names[i] = datasets[i]->origin.name;

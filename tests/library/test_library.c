@@ -553,6 +553,27 @@ static void both_methods_calibrate_and_their_text_reads_back(void **state)
     wirebench_dataset_close((struct wirebench_dataset *)dataset);
 }
 
+static void what_a_person_excluded_is_refused(void **state)
+{
+    (void)state;
+    char command[6000], path[64];
+    struct wirebench_dataset *dataset = NULL;
+    struct wirebench_properties *calibrated = NULL;
+    snprintf(path, sizeof path, "%s/excluded", folder);
+    snprintf(command, sizeof command,
+             "cp -r '%s' '%s' && sed -i -z 's/\"recordings\": *\\[[ \\n]*{/&\"excluded\": {"
+             "\"by\": \"A. Tester\", \"reason\": \"it slipped\", \"date_utc\": "
+             "\"2026-11-20\"},/' '%s/dataset.json'",
+             dataset_folder, path, path);
+    assert_int_equal(system(command), 0);
+    succeed(wirebench_dataset_read(&dataset, path));
+    const struct wirebench_dataset *const given = dataset;
+    assert_int_equal(wirebench_calibrate(&calibrated, &given, 1, NULL), WIREBENCH_ERR_DATA);
+    assert_null(calibrated);
+    assert_says("the test was excluded by A. Tester on 2026-11-20: it slipped. Leave");
+    wirebench_dataset_close(dataset);
+}
+
 static int count_and_stop(void *context, int done, int all)
 {
     (void)done, (void)all;
@@ -710,6 +731,7 @@ int main(int argc, char **argv)
         FACT(what_cannot_be_aligned_is_said),
         FACT(a_missing_file_is_named_and_nothing_is_printed),
         FACT(both_methods_calibrate_and_their_text_reads_back),
+        FACT(what_a_person_excluded_is_refused),
         FACT(progress_stops_a_calibration),
         FACT(options_are_those_of_the_command),
         FACT(the_process_is_left_as_it_was),
