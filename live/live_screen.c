@@ -215,7 +215,9 @@ static void draw_curve(const struct wb_live_screen *screen, const struct box *bo
     wb_live_raster_init(&raster, box->columns - MARGIN, box->rows - 3, screen->is_unicode);
     wb_live_chart_range(&chart, screen->plan, screen->history);
     wb_live_chart_draw(&chart, screen->plan, screen->history, &raster);
-    draw_axes(box, &chart);
+    /* A very large window is larger than the raster: the axes are the curve's. */
+    draw_axes(&(struct box){box->row, box->column, raster.rows + 3, raster.columns + MARGIN},
+              &chart);
     draw_legend(screen, box, &chart);
     draw_raster(&raster, box->row + 1, box->column + MARGIN);
 }
