@@ -98,9 +98,10 @@ said() { # NAME WORDS
     grep -qaF -- "$2" "$folder/$1.screen" "$folder/$1.out" || fail "$1: '$2' was not said"
 }
 
-# NAME WORDS: on the usual screen, where it stays: the view may have been too late to draw at all.
+# NAME WORDS: on the usual screen, where it stays: the view may have been too late to draw at all. In
+# bytes, because a character of a screen that was given up may be there in part.
 said_at_the_end() {
-    tr -d '\n' <"$folder/$1.screen" | sed 's/.*\[?1049h.*\[?1049l//' >"$folder/$1.end"
+    tr -d '\n' <"$folder/$1.screen" | LC_ALL=C sed 's/.*\[?1049h.*\[?1049l//' >"$folder/$1.end"
     grep -qa '\[?1049h' "$folder/$1.end" && fail "$1: the usual screen is not back"
     grep -qaF -- "$2" "$folder/$1.end" || fail "$1: '$2' not at the end: $(tail -c 600 "$folder/$1.screen")"
 }
