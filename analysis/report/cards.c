@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "analysis/cards/card.h"
+#include "analysis/report/pages.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -59,25 +60,48 @@ static enum wb_status add_file(struct wb_cards *cards, const char *stem, const c
     return WB_OK;
 }
 
-static enum wb_status add_cards(struct wb_cards *cards, const char *stem,
+static enum wb_status add_cards(struct wb_cards *cards, struct wb_cards_law *law,
                                 const struct wb_card_source *source)
 {
     struct wb_card_settings settings;
     wb_setting_fill(&wb_card_table, &settings);
+    wb_text_append(&law->endings, ".yaml");
     for (int k = 0; k < WB_CARD_KINDS; k++) {
         const struct wb_card_kind *const kind = &wb_card_kinds[k];
         struct wb_text text = {0};
         struct wb_reason why = {.text = ""};
         enum wb_status status = wb_card_write(kind, source, &settings, &text, &why);
         if (status == WB_OK)
-            status = add_file(cards, stem, kind->ending, &text);
+            status = add_file(cards, law->stem, kind->ending, &text);
         wb_text_release(&text);
-        if (status == WB_ERR_UNSUPPORTED)
+        if (status == WB_ERR_UNSUPPORTED) {
             wb_warn("no card %s: %s", kind->name, why.text);
-        else
+            wb_text_append(&law->missing, "%s%s: %s", law->missing.length > 0 ? "; " : "",
+                           kind->name, why.text);
+        } else {
             WB_TRY(status);
+            wb_text_append(&law->endings, ", .%s", kind->ending);
+        }
     }
     return WB_OK;
+}
+
+/* NULL: no memory. */
+static struct wb_cards_law *add_law(struct wb_cards *cards, const char *stem,
+                                    const struct wb_card_source *source)
+{
+    struct wb_cards_law *const laws =
+        realloc(cards->laws, (size_t)(cards->n_laws + 1) * sizeof *laws);
+    if (!laws)
+        return NULL;
+    cards->laws = laws;
+    struct wb_cards_law *const law = &laws[cards->n_laws++];
+    *law = (struct wb_cards_law){
+        .curvature = wb_card_source_curvature(source),
+        .has_way_back = wb_card_source_has_way_back(source),
+    };
+    snprintf(law->stem, sizeof law->stem, "%s", stem);
+    return law;
 }
 
 enum wb_status wb_cards_add(struct wb_cards *cards, const char *wire, struct wb_text *properties)
@@ -94,9 +118,12 @@ enum wb_status wb_cards_add(struct wb_cards *cards, const char *wire, struct wb_
         wb_text_release(properties);
         return WB_OK;
     }
-    enum wb_status status = add_file(cards, stem, "yaml", properties);
+    const enum wb_status status = add_file(cards, stem, "yaml", properties);
     wb_text_release(properties);
-    return status == WB_OK ? add_cards(cards, stem, &source) : status;
+    WB_TRY(status);
+    struct wb_cards_law *const law = add_law(cards, stem, &source);
+    return law ? add_cards(cards, law, &source)
+               : wb_fail(WB_ERR_MEMORY, "no memory for the report's cards");
 }
 
 enum wb_status wb_cards_add_fit(struct wb_cards *cards, const struct wb_calibrate_result *result,
@@ -115,6 +142,49 @@ void wb_cards_release(struct wb_cards *cards)
 {
     for (int i = 0; i < cards->n; i++)
         wb_text_release(&cards->files[i].bytes);
+    for (int i = 0; i < cards->n_laws; i++) {
+        wb_text_release(&cards->laws[i].endings);
+        wb_text_release(&cards->laws[i].missing);
+    }
     free(cards->files);
+    free(cards->laws);
     *cards = (struct wb_cards){.n = 0};
+}
+
+void wb_cards_put_pages(struct wb_document *document, const struct wb_cards *cards)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "cards/"},
+        {.heading = "Files", .wraps = true},
+        {.heading = "Curvature up to (1/m)", .right = true},
+        {.heading = "Ways"},
+    };
+    if (cards->n_laws == 0)
+        return;
+    wb_document_heading(document, 1, "cards", "Cards for other programs");
+    struct wb_document_table *const table =
+        wb_document_table(document,
+                          "Beside this report; <tt>wirebench export</tt> makes them of the .yaml. "
+                          "Beyond the curvature "
+                          "the law is extrapolated. Ways: those that the data support.",
+                          WB_COUNT(columns), columns);
+    for (int i = 0; i < cards->n_laws; i++) {
+        const struct wb_cards_law *const law = &cards->laws[i];
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, law->stem);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, wb_text_string(&law->endings));
+        wb_pages_cell_number(table, law->curvature, wb_pages_decimals(law->curvature));
+        wb_pages_cell_plain(table, WB_TONE_PLAIN,
+                            law->has_way_back ? "loading, unloading" : "loading only");
+    }
+    for (int i = 0; i < cards->n_laws; i++) {
+        struct wb_text text = {0};
+        if (cards->laws[i].missing.length == 0)
+            continue;
+        wb_text_append(&text, "<b>");
+        wb_text_append_escaped(&text, cards->laws[i].stem);
+        wb_text_append(&text, "</b>, no card for ");
+        wb_text_append_escaped(&text, wb_text_string(&cards->laws[i].missing));
+        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
+    }
 }

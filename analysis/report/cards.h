@@ -4,7 +4,10 @@
 #ifndef WB_ANALYSIS_REPORT_CARDS_H
 #define WB_ANALYSIS_REPORT_CARDS_H
 
+#include <stdbool.h>
+
 #include "analysis/calibration/calibrate.h"
+#include "analysis/report/document.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -13,9 +16,18 @@ struct wb_cards_file {
     struct wb_text bytes;
 };
 
+struct wb_cards_law {                /* one, with all its files */
+    char stem[80];                   /* "type1" */
+    double curvature;                /* 1/m, up to which its data reach */
+    bool has_way_back;               /* the data support it */
+    struct wb_text endings, missing; /* ".yaml, .calculix.inp"; the kinds without a card, and why */
+};
+
 struct wb_cards {
     int n, capacity;
     struct wb_cards_file *files; /* (n), owned */
+    int n_laws;
+    struct wb_cards_law *laws; /* (n_laws), owned */
 };
 
 /* Adds the files of a law by the text of its properties, which becomes the list's; they are named
@@ -30,5 +42,9 @@ WB_MUST_CHECK enum wb_status wb_cards_add_fit(struct wb_cards *cards,
                                               const struct wb_calibrate_settings *settings,
                                               const char *dataset, const char *sha256);
 void wb_cards_release(struct wb_cards *cards); /* accepts a zeroed one */
+
+/* Appends the chapter that says which cards lie beside the report and for what they hold; nothing
+ * where there are none. */
+void wb_cards_put_pages(struct wb_document *document, const struct wb_cards *cards);
 
 #endif

@@ -32,11 +32,12 @@ enum wb_status wb_kind_write(const struct wb_kind *kind, const void *results, co
     struct wb_document document;
     struct wb_cards cards = {0};
     WB_TRY(wb_figures_create(&figures, kind->figures, kind->n_figures, results));
+    enum wb_status status = kind->cards ? kind->cards(&cards, results) : WB_OK;
     kind->pages(&document, results, &figures);
+    wb_cards_put_pages(&document, &cards);
     wb_laboratory_put_pages(&document, laboratory);
     struct wb_json *const numbers = kind->json(results);
     wb_laboratory_put_numbers(numbers, laboratory);
-    enum wb_status status = kind->cards ? kind->cards(&cards, results) : WB_OK;
     if (status == WB_OK)
         status = wb_files_write(&document, &figures, &cards, numbers, folder, force);
     wb_cards_release(&cards);

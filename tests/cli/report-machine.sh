@@ -53,6 +53,10 @@ run 0 "$folder/fit.yaml" -o "$folder/fit"
 cmp -s "$folder/card" "$folder/fit/cards/mine.calculix.inp" || fail "the card is not that of the properties beside it"
 grep -q "$(sha256sum "$folder/data/test-3.txt" | cut -d ' ' -f 1)" "$folder/card" || fail "no checksum of test-3.txt"
 grep -q 'Recording: test-3.txt' "$folder/card" || fail "test-3.txt is not named"
+# Nobody said what the wire weighs.
+[ -e "$folder/fit/cards/mine.mujoco.xml" ] && fail "a chain without a mass"
+grep -q '<b>mine</b>, no card for mujoco: .*mass_per_length' "$folder/fit/report.html" ||
+    fail "the pages do not tell the card that is missing"
 
 rm "$folder/data/test-2.txt"
 run 3 "$folder/c.yaml" -o "$folder/r" --force

@@ -275,6 +275,10 @@ static void cards_are_those_of_the_properties_beside_them(void **state)
         free(written);
         wb_text_release(&card);
     }
+    /* The pages name them. */
+    assert_true(says("once/report.html", "Cards for other programs"));
+    assert_true(says("once/report.html", ".yaml, .calculix.inp"));
+    assert_false(says("once/report.html", "no card for"));
 }
 
 static void the_html_page_needs_no_other_file_and_escapes_what_comes_from_files(void **state)
