@@ -408,9 +408,9 @@ struct wirebench_calibration {
 
 /* Calibrates on n datasets of one wire. `calibration` may be NULL: the default. Datasets of
  * three-point bending have a method of their own. One whose test was excluded from its series is
- * refused (WIREBENCH_ERR_DATA), with who did it and why. wirebench_warnings() has the remarks on data and
- * result. WIREBENCH_INCOMPLETE: the data do not support the hardening rule, a search did not come
- * to its end, or progress stopped it; the properties are there. */
+ * refused (WIREBENCH_ERR_DATA), with who did it and why. wirebench_warnings() has the remarks on
+ * data and result. WIREBENCH_INCOMPLETE: the data do not support the hardening rule, a search did
+ * not come to its end, or progress stopped it; the properties are there. */
 enum wirebench_status wirebench_calibrate(struct wirebench_properties **out,
                                           const struct wirebench_dataset *const *datasets, size_t n,
                                           const struct wirebench_calibration *calibration);
