@@ -69,6 +69,14 @@ static void put_known_datasets(struct wb_text *text, const struct wb_properties_
     }
 }
 
+/* Whether the tests were real ones, and what calibrated them. */
+static void put_origin(struct wb_text *text, const struct wb_test_info *info)
+{
+    wb_text_append(text, "  virtual_rig: %s\n", info->is_virtual ? "true" : "false");
+    wb_text_append(text, "  simulation: %s\n", info->is_simulation ? "true" : "false");
+    wb_text_append(text, "  tool: \"wirebench %s (%s)\"\n", wb_version(), wb_version_revision());
+}
+
 static void put_calibration(struct wb_text *text, const struct wb_calibrate_result *result,
                             const struct wb_calibrate_settings *settings)
 {
@@ -103,9 +111,7 @@ static void put_calibration(struct wb_text *text, const struct wb_calibrate_resu
         put_number(text, "  ", "scatter_rms", result->scatter_rms);
         put_number(text, "  ", "residual_scatter_rms", result->residual_scatter_rms);
     }
-    wb_text_append(text, "  virtual_rig: %s\n", result->info.is_virtual ? "true" : "false");
-    wb_text_append(text, "  simulation: %s\n", result->info.is_simulation ? "true" : "false");
-    wb_text_append(text, "  tool: \"wirebench %s (%s)\"\n", wb_version(), wb_version_revision());
+    put_origin(text, &result->info);
 }
 
 static void put_material(struct wb_text *text, const char *indent,
@@ -307,9 +313,7 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
     wb_text_append(text, "  # over F_max of each specimen, both ways\n");
     put_number(text, "  ", "rms", p->rms);
     wb_text_append(text, "  samples: %d\n", p->n_samples);
-    wb_text_append(text, "  virtual_rig: %s\n", info->is_virtual ? "true" : "false");
-    wb_text_append(text, "  simulation: %s\n", info->is_simulation ? "true" : "false");
-    wb_text_append(text, "  tool: \"wirebench %s (%s)\"\n", wb_version(), wb_version_revision());
+    put_origin(text, info);
     put_settings(text, settings);
 }
 
@@ -442,9 +446,7 @@ static void format_three_point(struct wb_text *text, const struct wb_three_point
     wb_text_append(text, "calibration:\n");
     put_number(text, "  ", "rms", c->misfit);
     wb_text_append(text, "  samples: %d\n", c->n_fitted);
-    wb_text_append(text, "  virtual_rig: %s\n", info->is_virtual ? "true" : "false");
-    wb_text_append(text, "  simulation: %s\n", info->is_simulation ? "true" : "false");
-    wb_text_append(text, "  tool: \"wirebench %s (%s)\"\n", wb_version(), wb_version_revision());
+    put_origin(text, info);
 }
 
 void wb_properties_format_three_point(struct wb_text *text,

@@ -165,8 +165,8 @@ void wb_cards_put_pages(struct wb_document *document, const struct wb_cards *car
     struct wb_document_table *const table =
         wb_document_table(document,
                           "Beside this report; <tt>wirebench export</tt> makes them of the .yaml. "
-                          "Beyond the curvature "
-                          "the law is extrapolated. Ways: those that the data support.",
+                          "Beyond the curvature the law is extrapolated. Ways: those that the data "
+                          "support.",
                           WB_COUNT(columns), columns);
     for (int i = 0; i < cards->n_laws; i++) {
         const struct wb_cards_law *const law = &cards->laws[i];

@@ -58,6 +58,13 @@ static void wait_until_it_stands(struct wb_bend_test *test, struct fixture *fixt
         assert_true(run(test, nothing_yet));
 }
 
+static void hold_and_stand(struct wb_bend_test *test, struct fixture *fixture, const char *phase,
+                           double at_mm)
+{
+    hold_in(test, phase, at_mm);
+    wait_until_it_stands(test, fixture);
+}
+
 /* Of a wire so soft that the way stays below the force limit. */
 static void open_test(struct fixture *fixture, struct wb_bend_test **test)
 {
@@ -75,16 +82,14 @@ static void a_held_stage_stands_and_then_goes_on_with_its_way(void **state)
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_test(fixture, &test);
-    hold_in(test, "down", 8.0);
-    wait_until_it_stands(test, fixture);
+    hold_and_stand(test, fixture, "down", 8.0);
     const double at = fixture->bench->position_mm;
     const int n_readings = fixture->log.n[WB_ROLE_LOAD];
     step_for(test, 0.3);
     assert_close(fixture->bench->position_mm, at, 1e-12);
     assert_true(fixture->log.n[WB_ROLE_LOAD] > n_readings + 10);
     assert_true(wb_bend_test_resume(test));
-    hold_in(test, "up", 18.0);
-    wait_until_it_stands(test, fixture);
+    hold_and_stand(test, fixture, "up", 18.0);
     assert_true(wb_bend_test_resume(test));
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
@@ -116,8 +121,7 @@ static void a_force_that_falls_while_it_is_held_is_no_break(void **state)
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_test(fixture, &test);
-    hold_in(test, "down", 16.0);
-    wait_until_it_stands(test, fixture);
+    hold_and_stand(test, fixture, "down", 16.0);
     fixture->bench->force_mg = fixture->bench->force_mg - 1500;
     step_for(test, 0.2);
     assert_true(wb_bend_test_resume(test));
@@ -170,8 +174,7 @@ static void time_left_stands_still_while_it_is_held(void **state)
     struct wb_bend_test *test;
     struct wb_bend_test_status before, after;
     open_test(fixture, &test);
-    hold_in(test, "up", 18.0);
-    wait_until_it_stands(test, fixture);
+    hold_and_stand(test, fixture, "up", 18.0);
     wb_bend_test_status(test, &before);
     step_for(test, 0.2);
     wb_bend_test_status(test, &after);
@@ -206,8 +209,7 @@ static void a_stop_while_held_ends_in_order(void **state)
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_test(fixture, &test);
-    hold_in(test, "down", 8.0);
-    wait_until_it_stands(test, fixture);
+    hold_and_stand(test, fixture, "down", 8.0);
     wb_bend_test_stop(test);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
@@ -240,8 +242,7 @@ static void limits_are_watched_while_it_is_held(void **state)
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_test(fixture, &test);
-    hold_in(test, "down", 8.0);
-    wait_until_it_stands(test, fixture);
+    hold_and_stand(test, fixture, "down", 8.0);
     fixture->bench->force_mg = 100000;
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
