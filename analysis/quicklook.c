@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/cycle_data.h"
+#include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/plot/figure.h"
 #include "base/file.h"
 #include "base/units.h"

@@ -8,12 +8,12 @@
 #include <gsl/gsl_fit.h>
 
 #include "analysis/align/align.h"
-#include "analysis/calibration/cycle_data.h"
+#include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/dataset/holds.h"
 #include "analysis/plot/figure.h"
 #include "base/file.h"
 #include "base/units.h"
-#include "daq/average.h"
+#include "daq/protocol/average.h"
 
 #define WB_LOG_DOMAIN "series"
 

@@ -11,10 +11,10 @@
 #include "base/reason.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "daq/index.h"
+#include "daq/recording/index.h"
 
 /* Of the first cycle; slope and what is left are of its points
- * (analysis/calibration/cycle_data.h). */
+ * (analysis/calibration/cycle/cycle_data.h). */
 enum wb_series_quantity {
     WB_SERIES_PEAK_FORCE, /* N: largest force of the curve's rows */
     WB_SERIES_STIFFNESS,  /* N/m: least-squares slope up to a deflection of 0.05 of the length */

@@ -6,7 +6,7 @@
 
 #include "base/setting.h"
 #include "cli/command.h"
-#include "daq/stage_job.h"
+#include "daq/acquire/stage_job.h"
 #include "fixtures/virtual/bench.h"
 
 struct wb_stage_options {

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "analysis/calibration/machine_compliance.h"
+#include "analysis/calibration/three_point/machine_compliance.h"
 #include "base/json.h"
 #include "base/units.h"
 #include "cli/command.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/layers.h"
+#include "analysis/calibration/constituents/layers.h"
 #include "base/number.h"
 #include "base/units.h"
 #include "cli/command.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/calibration/cycle_json.h"
+#include "analysis/calibration/cycle/cycle_json.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "cli/command.h"

@@ -2,9 +2,9 @@
 #ifndef WB_CLI_CALIBRATE_CYCLE_H
 #define WB_CLI_CALIBRATE_CYCLE_H
 
-#include "analysis/calibration/cycle_calibrate.h"
-#include "analysis/calibration/cycle_check.h"
-#include "analysis/calibration/cycle_sensitivity.h"
+#include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "analysis/calibration/cycle/cycle_check.h"
+#include "analysis/calibration/cycle/cycle_sensitivity.h"
 
 struct wb_calibrate_cycle {
     struct wb_cycle_calibrate_settings settings;

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "analysis/calibration/tensile.h"
-#include "analysis/calibration/tensile_material.h"
+#include "analysis/calibration/constituents/tensile.h"
+#include "analysis/calibration/constituents/tensile_material.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/units.h"

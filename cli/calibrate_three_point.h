@@ -2,7 +2,7 @@
 #ifndef WB_CLI_CALIBRATE_THREE_POINT_H
 #define WB_CLI_CALIBRATE_THREE_POINT_H
 
-#include "analysis/calibration/three_point_calibrate.h"
+#include "analysis/calibration/three_point/three_point_calibrate.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 

@@ -11,8 +11,8 @@
 #include "analysis/report/certificate.h"
 #include "base/number.h"
 #include "base/units.h"
-#include "daq/cell_calibration.h"
-#include "daq/check_log.h"
+#include "daq/protocol/cell_calibration.h"
+#include "daq/test/check_log.h"
 
 #define WB_LOG_DOMAIN "stage"
 
@@ -25,7 +25,7 @@ struct check {
     bool is_series;
     int n;
     double masses[WB_RIG_MASSES]; /* kg */
-    struct wb_mass_check_point points[WB_RIG_MASSES];
+    struct wb_cell_point points[WB_RIG_MASSES];
     struct wb_cell_deviation single;
     struct wb_cell_calibration series;
     bool passed;

@@ -3,7 +3,7 @@
 #define WB_CLI_CHECK_CELL_H
 
 #include "cli/bench_options.h"
-#include "daq/rig.h"
+#include "daq/protocol/rig.h"
 
 /* Asks for the masses, prints and logs the outcome, writes the certificate. Returns an exit code:
  * WB_EXIT_FAILED also where the cell did not pass. */

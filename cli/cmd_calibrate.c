@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/calibrate.h"
-#include "analysis/calibration/method.h"
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/paper/calibrate.h"
+#include "analysis/calibration/properties/method.h"
+#include "analysis/calibration/properties/properties.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/progress.h"

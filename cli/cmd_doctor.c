@@ -8,8 +8,8 @@
 #include "cli/command.h"
 #include "cli/live_line.h"
 #include "cli/settings.h"
-#include "daq/doctor.h"
-#include "daq/scan.h"
+#include "daq/doctor/doctor.h"
+#include "daq/doctor/scan.h"
 
 #define WB_LOG_DOMAIN "doctor"
 

@@ -11,8 +11,8 @@
 #include "cli/complete.h"
 #include "cli/export_card.h"
 #include "cli/export_hdf5.h"
-#include "daq/export.h"
-#include "daq/replay.h"
+#include "daq/recording/export.h"
+#include "daq/recording/replay.h"
 
 #define WB_LOG_DOMAIN "export"
 

@@ -8,12 +8,12 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/info.h"
-#include "daq/check_log.h"
-#include "daq/index.h"
-#include "daq/recover.h"
-#include "daq/replay.h"
-#include "daq/specimen.h"
-#include "daq/survey.h"
+#include "daq/protocol/specimen.h"
+#include "daq/recording/index.h"
+#include "daq/recording/recover.h"
+#include "daq/recording/replay.h"
+#include "daq/recording/survey.h"
+#include "daq/test/check_log.h"
 
 #define WB_LOG_DOMAIN "info"
 

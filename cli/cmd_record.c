@@ -12,7 +12,7 @@
 #include "cli/record_series.h"
 #include "cli/record_test.h"
 #include "cli/settings.h"
-#include "daq/bend_test.h"
+#include "daq/test/bend_test.h"
 
 #define WB_LOG_DOMAIN "record"
 

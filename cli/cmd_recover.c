@@ -4,7 +4,7 @@
 
 #include "base/units.h"
 #include "cli/command.h"
-#include "daq/recover.h"
+#include "daq/recording/recover.h"
 
 #define WB_LOG_DOMAIN "recover"
 

@@ -8,9 +8,9 @@
 #include "cli/bench_options.h"
 #include "cli/live_line.h"
 #include "cli/settings.h"
-#include "daq/acquisition.h"
-#include "daq/replay.h"
-#include "daq/survey.h"
+#include "daq/acquire/acquisition.h"
+#include "daq/recording/replay.h"
+#include "daq/recording/survey.h"
 
 #define WB_LOG_DOMAIN "replay"
 

@@ -10,7 +10,7 @@
 #include "base/interrupt.h"
 #include "cli/bench_options.h"
 #include "cli/settings.h"
-#include "daq/acquisition.h"
+#include "daq/acquire/acquisition.h"
 
 #define WB_LOG_DOMAIN "rig"
 

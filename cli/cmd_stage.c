@@ -11,8 +11,8 @@
 #include "cli/complete.h"
 #include "cli/live_line.h"
 #include "cli/settings.h"
-#include "daq/acquisition.h"
-#include "daq/rig.h"
+#include "daq/acquire/acquisition.h"
+#include "daq/protocol/rig.h"
 
 #define WB_LOG_DOMAIN "stage"
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "analysis/validation/validate.h"
 #include "analysis/validation/validate_json.h"
 #include "analysis/validation/validate_tables.h"

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "daq/survey.h"
+#include "daq/recording/survey.h"
 
 #define WB_LOG_DOMAIN "verify"
 

@@ -8,7 +8,7 @@
 #include "analysis/dataset/hdf5_file.h"
 #include "base/hash.h"
 #include "base/version.h"
-#include "daq/sample_columns.h"
+#include "daq/recording/sample_columns.h"
 
 #define WB_LOG_DOMAIN "export"
 

@@ -10,7 +10,7 @@
 #include "cli/command.h"
 #include "cli/complete.h"
 #include "cli/import.h"
-#include "daq/take_reader.h"
+#include "daq/take/take_reader.h"
 
 #define WB_LOG_DOMAIN "import"
 

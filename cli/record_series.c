@@ -18,8 +18,8 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/record_test.h"
-#include "daq/recording.h"
-#include "daq/series.h"
+#include "daq/recording/recording.h"
+#include "daq/test/series.h"
 #include "live/live_print.h"
 
 #define WB_LOG_DOMAIN "series"

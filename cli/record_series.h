@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "cli/record_views.h"
-#include "daq/bend_test.h"
+#include "daq/test/bend_test.h"
 
 struct wb_record_series {
     const char *path;                 /* of the series' file */

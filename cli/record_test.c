@@ -10,8 +10,8 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/live_line.h"
-#include "daq/acquisition.h"
-#include "daq/specimen.h"
+#include "daq/acquire/acquisition.h"
+#include "daq/protocol/specimen.h"
 #include "fe/model/wire.h"
 
 #define WB_LOG_DOMAIN "record"

@@ -6,7 +6,7 @@
 
 #include "base/status.h"
 #include "cli/record_views.h"
-#include "daq/bend_test.h"
+#include "daq/test/bend_test.h"
 
 /* Runs the test with its views, on the terminal as well; sees that Ctrl-C stops the stage first.
  * The request receives what is known of the wire and what the views need. Says how the test

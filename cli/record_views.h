@@ -16,7 +16,7 @@
 #include <termios.h>
 
 #include "base/text.h"
-#include "daq/bend_test.h"
+#include "daq/test/bend_test.h"
 #include "fe/model/wire.h"
 #include "live/live_feed.h"
 #include "live/live_page.h"

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/cycle_check.h"
-#include "analysis/calibration/method.h"
+#include "analysis/calibration/cycle/cycle_check.h"
+#include "analysis/calibration/properties/method.h"
 #include "analysis/dataset/exclusion.h"
 #include "library/handles.h"
 #include "library/options.h"

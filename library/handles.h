@@ -2,7 +2,7 @@
 #ifndef WB_LIBRARY_HANDLES_H
 #define WB_LIBRARY_HANDLES_H
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "analysis/cards/card_source.h"
 #include "analysis/dataset/dataset.h"
 #include "analysis/dataset/dataset_columns.h"

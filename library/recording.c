@@ -6,9 +6,9 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/units.h"
-#include "daq/replay.h"
-#include "daq/sample_columns.h"
-#include "daq/survey.h"
+#include "daq/recording/replay.h"
+#include "daq/recording/sample_columns.h"
+#include "daq/recording/survey.h"
 #include "library/call.h"
 
 #define WB_LOG_DOMAIN "library"

@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "daq/interlock.h"
-#include "daq/specimen.h"
+#include "daq/acquire/interlock.h"
+#include "daq/protocol/specimen.h"
 
 #define WB_LIVE_FRAME_VERSION 1
 #define WB_LIVE_FRAME_POINTS 64 /* of the curve, in one frame */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "daq/interlock.h"
+#include "daq/acquire/interlock.h"
 #include "fe/rod/section.h"
 #include "fe/trial/loading_steps.h"
 

@@ -4,8 +4,8 @@
 #define WB_LIVE_LIVE_PLAN_H
 
 #include "base/status.h"
-#include "daq/rig.h"
-#include "daq/specimen.h"
+#include "daq/protocol/rig.h"
+#include "daq/protocol/specimen.h"
 #include "fe/model/wire.h"
 #include "live/live_frame.h"
 

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "base/units.h"
-#include "daq/marker_check.h"
+#include "daq/acquire/marker_check.h"
 
 /* Looking for markers is slow, following them is not. */
 #define LOOK_EVERY 12

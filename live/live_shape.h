@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "daq/sample.h"
-#include "daq/specimen.h"
+#include "daq/protocol/sample.h"
+#include "daq/protocol/specimen.h"
 
 /* All zero is not started. */
 struct wb_live_shape {

@@ -3,9 +3,9 @@
 #ifndef WB_LIVE_LIVE_SOURCE_H
 #define WB_LIVE_LIVE_SOURCE_H
 
-#include "daq/bend_test.h"
-#include "daq/rig.h"
-#include "daq/specimen.h"
+#include "daq/protocol/rig.h"
+#include "daq/protocol/specimen.h"
+#include "daq/test/bend_test.h"
 #include "live/live_feed.h"
 #include "live/live_shape.h"
 

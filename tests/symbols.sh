@@ -46,6 +46,8 @@ for archive in "$@"; do
             inner = stem
             # Meson writes the folder before the name.
             sub(/^(dataset|align|import|calibration|cards|validation|plot|predict|compare)_/, "", inner)
+            sub(/^(law|paper|cycle|three_point|constituents|properties)_/, "", inner)
+            sub(/^(stream|protocol|take|recording|acquire|test|doctor)_/, "", inner)
             if (!belongs(stem, $2) && !(inner != stem && belongs(inner, $2)))
                 print $1 " " $2
         }' | sort -u)

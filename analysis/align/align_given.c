@@ -10,7 +10,7 @@
 #include "base/hash.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "daq/average.h"
+#include "daq/protocol/average.h"
 
 #define WB_LOG_DOMAIN "align"
 

@@ -9,11 +9,11 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/units.h"
-#include "daq/foreign.h"
-#include "daq/index.h"
-#include "daq/loss.h"
-#include "daq/recording_foreign.h"
-#include "daq/recover.h"
+#include "daq/protocol/loss.h"
+#include "daq/recording/foreign.h"
+#include "daq/recording/index.h"
+#include "daq/recording/recording_foreign.h"
+#include "daq/recording/recover.h"
 
 #define WB_LOG_DOMAIN "align"
 

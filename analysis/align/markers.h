@@ -14,8 +14,8 @@
 #include <stdint.h>
 
 #include "base/reason.h"
-#include "daq/sample.h"
-#include "daq/specimen.h"
+#include "daq/protocol/sample.h"
+#include "daq/protocol/specimen.h"
 
 /* One frame of candidate points: `n` of them from `first` in the cloud's points. */
 struct wb_point_frame {

@@ -1,15 +1,15 @@
 /* What a card is made of: the properties of a wire, with where they come from.
  *
  * A file is recognised by its content: a wire file (fe/model/wire.h) has `name` and `properties`, a
- * properties file (analysis/calibration/properties.h) has `wire`. What a wire file does not say
- * (intervals, range, datasets) is unknown: NaN, 0 or "".
+ * properties file (analysis/calibration/properties/properties.h) has `wire`. What a wire file does
+ * not say (intervals, range, datasets) is unknown: NaN, 0 or "".
  */
 #ifndef WB_ANALYSIS_CARDS_CARD_SOURCE_H
 #define WB_ANALYSIS_CARDS_CARD_SOURCE_H
 
 #include <stdbool.h>
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"

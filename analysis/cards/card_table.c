@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/bending.h"
+#include "analysis/calibration/law/bending.h"
 #include "analysis/cards/card_curve.h"
 #include "base/json.h"
 #include "base/number.h"

@@ -6,7 +6,7 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/calibration/bending.h"
+#include "analysis/calibration/law/bending.h"
 #include "base/units.h"
 #include "base/version.h"
 

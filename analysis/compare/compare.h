@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "analysis/compare/welch.h"
 #include "base/json.h"
 #include "base/status.h"

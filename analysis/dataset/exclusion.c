@@ -1,6 +1,6 @@
 #include "analysis/dataset/exclusion.h"
 
-#include "daq/index.h"
+#include "daq/recording/index.h"
 
 #define WB_LOG_DOMAIN "dataset"
 

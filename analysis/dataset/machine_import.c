@@ -11,7 +11,7 @@
 #include "base/hash.h"
 #include "base/units.h"
 #include "base/version.h"
-#include "daq/table_columns.h"
+#include "daq/take/table_columns.h"
 
 #define WB_LOG_DOMAIN "import"
 

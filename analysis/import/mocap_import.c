@@ -14,10 +14,10 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/units.h"
-#include "daq/bend_recording.h"
-#include "daq/foreign.h"
-#include "daq/recording_foreign.h"
-#include "daq/take_reader.h"
+#include "daq/recording/foreign.h"
+#include "daq/recording/recording_foreign.h"
+#include "daq/take/take_reader.h"
+#include "daq/test/bend_recording.h"
 
 #define WB_LOG_DOMAIN "import"
 

@@ -14,7 +14,7 @@
 #include "analysis/import/sync.h"
 #include "base/setting.h"
 #include "base/status.h"
-#include "daq/force_table.h"
+#include "daq/take/force_table.h"
 
 struct wb_mocap_import_request {
     const char *take_path;

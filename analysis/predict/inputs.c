@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "base/file.h"
 #include "base/units.h"
 

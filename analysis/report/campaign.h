@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/paper/calibrate.h"
 #include "analysis/report/laboratory.h"
 #include "base/config.h"
 #include "base/file.h"

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/paper/calibrate.h"
 #include "analysis/report/document.h"
 #include "base/status.h"
 #include "base/text.h"

@@ -143,7 +143,7 @@ static void put_points(struct wb_document *document, const struct wb_certificate
                           "taken. Scatter: standard deviation of one reading.",
                           (int)WB_COUNT(columns), columns);
     for (int i = 0; i < certificate->n; i++) {
-        const struct wb_mass_check_point *const point = &certificate->points[i];
+        const struct wb_cell_point *const point = &certificate->points[i];
         const struct wb_cell_deviation deviation = wb_cell_calibration_deviation(
             &certificate->points[0], point, certificate->rig->gravity);
         wb_document_row(table, false);

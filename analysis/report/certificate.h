@@ -1,12 +1,12 @@
 /* The certificate of a load cell's calibration: a PDF of the cell, the masses, what it read, the
- * quantities of daq/cell_calibration.h with their uncertainties and the verdict, and a figure of
- * the deviations on the way up and down. */
+ * quantities of daq/protocol/cell_calibration.h with their uncertainties and the verdict, and a
+ * figure of the deviations on the way up and down. */
 #ifndef WB_ANALYSIS_REPORT_CERTIFICATE_H
 #define WB_ANALYSIS_REPORT_CERTIFICATE_H
 
 #include "base/status.h"
-#include "daq/cell_calibration.h"
-#include "daq/rig.h"
+#include "daq/protocol/cell_calibration.h"
+#include "daq/protocol/rig.h"
 
 struct wb_certificate {
     const struct wb_rig *rig;
@@ -14,7 +14,7 @@ struct wb_certificate {
     double tolerance; /* fraction of the span */
     double seconds;   /* each mass was read so long, s */
     int n;
-    const struct wb_mass_check_point *points; /* (n) */
+    const struct wb_cell_point *points; /* (n) */
     const struct wb_cell_calibration *calibration;
 };
 

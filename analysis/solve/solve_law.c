@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "analysis/calibration/bending.h"
+#include "analysis/calibration/law/bending.h"
 #include "base/file.h"
 #include "base/log.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/three_point_model.h"
+#include "analysis/calibration/three_point/three_point_model.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "validation"

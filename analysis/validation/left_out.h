@@ -10,7 +10,7 @@
 #ifndef WB_ANALYSIS_LEFT_OUT_H
 #define WB_ANALYSIS_LEFT_OUT_H
 
-#include "analysis/calibration/three_point_calibrate.h"
+#include "analysis/calibration/three_point/three_point_calibrate.h"
 #include "base/reason.h"
 #include "base/status.h"
 

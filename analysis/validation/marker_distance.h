@@ -2,7 +2,7 @@
 #ifndef WB_ANALYSIS_MARKER_DISTANCE_H
 #define WB_ANALYSIS_MARKER_DISTANCE_H
 
-#include "analysis/calibration/computed.h"
+#include "analysis/calibration/paper/computed.h"
 #include "analysis/dataset/dataset.h"
 #include "base/status.h"
 

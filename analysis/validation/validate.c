@@ -6,9 +6,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "analysis/calibration/computed.h"
-#include "analysis/calibration/cycle_bow.h"
-#include "analysis/calibration/scatter.h"
+#include "analysis/calibration/cycle/cycle_bow.h"
+#include "analysis/calibration/paper/computed.h"
+#include "analysis/calibration/paper/scatter.h"
 #include "analysis/dataset/errors.h"
 #include "analysis/validation/expected.h"
 #include "analysis/validation/marker_distance.h"
@@ -317,8 +317,8 @@ static enum wb_status validate_cycles(struct wb_validate_result *result,
     return WB_OK;
 }
 
-/* The datasets with the bows that the properties find, see analysis/calibration/cycle_bow.h; their
- * rows are borrowed. A law of a loading alone, whose E is uncertain, leaves the bows to the
+/* The datasets with the bows that the properties find, see analysis/calibration/cycle/cycle_bow.h;
+ * their rows are borrowed. A law of a loading alone, whose E is uncertain, leaves the bows to the
  * alignment, and so does a sample whose first cycle cannot be taken. */
 static enum wb_status find_bows(struct wb_dataset *bent, const struct wb_dataset *const *datasets,
                                 int n, const struct wb_properties *properties,

@@ -21,7 +21,7 @@
 #ifndef WB_ANALYSIS_VALIDATE_H
 #define WB_ANALYSIS_VALIDATE_H
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "analysis/dataset/curve.h"
 #include "analysis/dataset/dataset.h"
 #include "analysis/validation/validate_cycle.h"

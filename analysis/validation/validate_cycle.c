@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/cycle_data.h"
-#include "analysis/calibration/cycle_model.h"
+#include "analysis/calibration/cycle/cycle_data.h"
+#include "analysis/calibration/cycle/cycle_model.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "validate"

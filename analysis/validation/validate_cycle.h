@@ -1,7 +1,7 @@
 /* What properties predict of a test beyond its first loading: the way back, the deflection that is
  * left, and the work that later cycles lose.
  *
- * Each sample is computed by itself (analysis/calibration/cycle_model.h) with the bow of its
+ * Each sample is computed by itself (analysis/calibration/cycle/cycle_model.h) with the bow of its
  * dataset, over the deflections of all its cycles. Tensions are compared less their value at zero
  * deflection on the first loading, measured and computed each with its own, so that an error of the
  * bow does not count as one of the law. Scored is the mean over the samples, as of the loading

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/three_point_model.h"
-#include "analysis/calibration/three_point_place.h"
+#include "analysis/calibration/three_point/three_point_model.h"
+#include "analysis/calibration/three_point/three_point_place.h"
 #include "analysis/dataset/errors.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/validation/validate.h"

@@ -15,8 +15,8 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/properties.h"
-#include "analysis/calibration/three_point_calibrate.h"
+#include "analysis/calibration/properties/properties.h"
+#include "analysis/calibration/three_point/three_point_calibrate.h"
 #include "analysis/dataset/dataset.h"
 #include "analysis/validation/expected.h"
 #include "base/json.h"

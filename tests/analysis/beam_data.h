@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-#include "analysis/calibration/calibrate.h"
-#include "analysis/calibration/computed.h"
+#include "analysis/calibration/paper/calibrate.h"
+#include "analysis/calibration/paper/computed.h"
 #include "analysis/dataset/curve.h"
 #include "analysis/dataset/dataset.h"
 #include "base/log.h"

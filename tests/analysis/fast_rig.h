@@ -8,8 +8,8 @@
 
 #include "analysis/dataset/dataset.h"
 #include "base/status.h"
-#include "daq/rig.h"
-#include "daq/specimen.h"
+#include "daq/protocol/rig.h"
+#include "daq/protocol/specimen.h"
 #include "fe/model/wire.h"
 #include "fixtures/virtual/composite.h"
 #include "fixtures/virtual/truth.h"

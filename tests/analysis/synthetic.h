@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 #include "base/units.h"
-#include "daq/natnet_encode.h"
-#include "daq/recording.h"
+#include "daq/protocol/natnet_encode.h"
+#include "daq/recording/recording.h"
 
 #define SYN_MARKERS 7
 #define SYN_LENGTH 0.085
@@ -317,7 +317,7 @@ static inline void syn_write_mocap(struct syn *syn, struct wb_recording *recordi
         const double u = syn_uniform(syn);
         syn_frame(syn, &frame, i, t, &state);
         size = wb_natnet_encode_frame(bytes, sizeof bytes, version, &frame);
-        /* Those at either end may be on their way: daq/loss.h. */
+        /* Those at either end may be on their way: daq/protocol/loss.h. */
         const bool at_end = i <= 16 || i >= n - 17;
         uint64_t at_ends = 0;
         const bool gone = i > 0 && i < n - 1 &&

@@ -1,7 +1,7 @@
 /* The start check against wires of the virtual rig on which nothing is wrong: all types, lengths of
  * 60 to 150 mm, bows as they are drawn. What stops such a start stops people at work. */
-#include "daq/first_force.h"
-#include "daq/start_check.h"
+#include "daq/test/first_force.h"
+#include "daq/test/start_check.h"
 
 #include <string.h>
 

@@ -6,7 +6,7 @@
 #define FAKE_LOAD_PERIOD_NS (WB_NS_PER_MS * 5 / 4)
 #define FAKE_FRAME_PERIOD_NS (WB_NS_PER_MS * 5 / 6)
 #include "base/interrupt.h"
-#include "daq/stream.h"
+#include "daq/stream/stream.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/folder.h"
 #include "tests/trials.h"

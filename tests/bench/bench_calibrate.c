@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/calibrate.h"
-#include "analysis/calibration/computed.h"
+#include "analysis/calibration/paper/calibrate.h"
+#include "analysis/calibration/paper/computed.h"
 #include "base/units.h"
 #include "tests/bench/clock.h"
 

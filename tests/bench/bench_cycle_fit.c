@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/calibration/calibrate.h"
-#include "analysis/calibration/cycle_calibrate.h"
+#include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "analysis/calibration/paper/calibrate.h"
 #include "base/units.h"
 #include "fe/trial/loading_steps.h"
 #include "tests/analysis/fast_rig.h"

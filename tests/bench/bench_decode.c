@@ -6,8 +6,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "daq/drivers.h"
-#include "daq/natnet_encode.h"
+#include "daq/protocol/drivers.h"
+#include "daq/protocol/natnet_encode.h"
 #include "tests/daq/natnet_example.h"
 
 #define FRAME_GOAL 1e5 /* frames/s: hours of recording at 120 frames/s in seconds */

@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "daq/writer_private.h"
+#include "daq/recording/writer_private.h"
 
 #define N_CHUNKS 300000
 #define BENCH_RATE 220.0 /* chunks/s of a bench: 80 readings, 120 frames, 20 reports */

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
-#include "daq/recording_private.h"
+#include "daq/recording/recording_private.h"
 #include "tests/analysis/synthetic.h"
 #include "tests/own_folder.h"
 

@@ -5,7 +5,7 @@
 #include <sys/wait.h>
 
 #include "base/json.h"
-#include "daq/recording_private.h"
+#include "daq/recording/recording_private.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
 

@@ -4,7 +4,7 @@
 
 #include "base/interrupt_private.h"
 #include "base/log.h"
-#include "daq/bend_test.h"
+#include "daq/test/bend_test.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/daq/sample_log.h"
 #include "tests/folder.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "daq/driver.h"
+#include "daq/protocol/driver.h"
 #include "tests/check.h"
 
 #define COLLECT_MAX 64

@@ -17,10 +17,10 @@
 #include <unistd.h>
 
 #include "base/units.h"
-#include "daq/acquisition.h"
-#include "daq/grbl.h"
-#include "daq/natnet.h"
-#include "daq/natnet_encode.h"
+#include "daq/acquire/acquisition.h"
+#include "daq/protocol/grbl.h"
+#include "daq/protocol/natnet.h"
+#include "daq/protocol/natnet_encode.h"
 #include "tests/check.h"
 #include "tests/daq/grbl_jog.h"
 

@@ -3,7 +3,7 @@
 #ifndef WB_TESTS_DAQ_FUZZ_DRIVER_H
 #define WB_TESTS_DAQ_FUZZ_DRIVER_H
 
-#include "daq/drivers.h"
+#include "daq/protocol/drivers.h"
 #include "tests/daq/fuzz.h"
 
 struct fuzz_total {

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "base/reason.h"
-#include "daq/force_table.h"
+#include "daq/take/force_table.h"
 #include "tests/daq/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "daq/grbl.h"
+#include "daq/protocol/grbl.h"
 
 static void take_stage(void *context, const struct wb_stage_report *report)
 {

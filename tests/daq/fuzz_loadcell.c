@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-#include "daq/drivers_private.h"
-#include "daq/loadcell_preset.h"
+#include "daq/protocol/drivers_private.h"
+#include "daq/protocol/loadcell_preset.h"
 
 /* A hash of everything but the time, which the cuts do change. */
 static void take_load(void *context, const struct wb_load_sample *sample)

@@ -2,7 +2,7 @@
  * survives any sequence of them. Input: major, minor, then the datagram. */
 #include "tests/daq/fuzz_driver.h"
 
-#include "daq/natnet_encode.h"
+#include "daq/protocol/natnet_encode.h"
 #include "tests/daq/natnet_example.h"
 
 static struct wb_natnet_frame frame;

@@ -11,9 +11,9 @@
 
 #include "base/file.h"
 #include "base/log.h"
-#include "daq/recording_private.h"
-#include "daq/recover.h"
-#include "daq/survey.h"
+#include "daq/recording/recording_private.h"
+#include "daq/recording/recover.h"
+#include "daq/recording/survey.h"
 #include "tests/daq/small_test.h"
 #include "tests/folder.h"
 #include "tests/trials.h"

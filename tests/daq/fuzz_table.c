@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "base/text_table.h"
-#include "daq/table_columns.h"
+#include "daq/take/table_columns.h"
 
 static void read_columns(const struct wb_text_table *table, const char *list)
 {

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-#include "daq/take_private.h"
-#include "daq/take_reader.h"
+#include "daq/take/take_private.h"
+#include "daq/take/take_reader.h"
 #include "tests/daq/fuzz.h"
 #include "tests/daq/take_example.h"
 

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "daq/natnet_encode.h"
+#include "daq/protocol/natnet_encode.h"
 
 static inline void natnet_example(struct wb_natnet_frame *frame, int n_markers)
 {

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
-#include "daq/recording.h"
+#include "daq/recording/recording.h"
 #include "tests/check.h"
 #include "tests/folder.h"
 

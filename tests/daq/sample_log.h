@@ -6,10 +6,10 @@
 #include <stdlib.h>
 
 #include "base/text.h"
-#include "daq/driver.h"
-#include "daq/recording.h"
-#include "daq/replay.h"
-#include "daq/rig.h"
+#include "daq/protocol/driver.h"
+#include "daq/protocol/rig.h"
+#include "daq/recording/recording.h"
+#include "daq/recording/replay.h"
 #include "tests/check.h"
 
 struct sample_log {

@@ -4,8 +4,8 @@
 #define WB_TESTS_DAQ_SMALL_TEST_H
 
 #include "base/units.h"
-#include "daq/natnet_encode.h"
-#include "daq/recording.h"
+#include "daq/protocol/natnet_encode.h"
+#include "daq/recording/recording.h"
 #include "tests/check.h"
 #include "tests/daq/natnet_example.h"
 

@@ -1,7 +1,7 @@
 /* A test that its operator holds: what the stage does, what is recorded, and how a hold ends. */
 #include <math.h>
 
-#include "daq/bend_hold.h"
+#include "daq/test/bend_hold.h"
 #include "tests/daq/bend_fixture.h"
 
 static double held_at; /* mm of travel by which the stage is to be held */

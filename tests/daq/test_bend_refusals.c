@@ -1,6 +1,6 @@
 /* What keeps a bending test from starting, or ends it in its first millimetres, each with its one
  * message, against a small bench in a thread. */
-#include "daq/stream.h"
+#include "daq/stream/stream.h"
 #include "tests/daq/bend_fixture.h"
 
 /* --- what keeps it from starting --- */

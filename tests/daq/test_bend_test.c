@@ -5,8 +5,8 @@
 #include <sys/stat.h>
 
 #include "base/interrupt_private.h"
-#include "daq/bend_recording_private.h"
-#include "daq/writer_private.h"
+#include "daq/recording/writer_private.h"
+#include "daq/test/bend_recording_private.h"
 #include "tests/daq/bend_fixture.h"
 
 static bool well_down(const struct wb_bend_test_status *status)

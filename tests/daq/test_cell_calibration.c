@@ -4,7 +4,7 @@
 
 #include "base/config.h"
 #include "base/units.h"
-#include "daq/cell_calibration.h"
+#include "daq/protocol/cell_calibration.h"
 #include "tests/check.h"
 
 #define GRAVITY 9.81
@@ -17,7 +17,7 @@ struct cell {
 };
 
 static int read_masses(const struct cell *cell, const char *text,
-                       struct wb_mass_check_point points[WB_RIG_MASSES])
+                       struct wb_cell_point points[WB_RIG_MASSES])
 {
     double masses[WB_RIG_MASSES], largest = 0.0;
     char problem[160];
@@ -30,18 +30,18 @@ static int read_masses(const struct cell *cell, const char *text,
         const bool down = i > 0 && masses[i] < masses[i - 1];
         const double mass = cell->gain * masses[i] + cell->bend * 4.0 * part * (1.0 - part) +
                             (down ? cell->left : 0.0);
-        points[i] = (struct wb_mass_check_point){.mass = masses[i],
-                                                 .reading = cell->zero + mass * GRAVITY,
-                                                 .sd = 10.0 * ERROR,
-                                                 .n = 100,
-                                                 .uncertainty = ERROR};
+        points[i] = (struct wb_cell_point){.mass = masses[i],
+                                           .reading = cell->zero + mass * GRAVITY,
+                                           .sd = 10.0 * ERROR,
+                                           .n = 100,
+                                           .uncertainty = ERROR};
     }
     return n;
 }
 
 static struct wb_cell_calibration compute(const struct cell *cell, const char *text)
 {
-    struct wb_mass_check_point points[WB_RIG_MASSES];
+    struct wb_cell_point points[WB_RIG_MASSES];
     struct wb_cell_calibration calibration;
     const int n = read_masses(cell, text, points);
     wb_cell_calibration_compute(&calibration, points, n, GRAVITY, 0.01);
@@ -112,7 +112,7 @@ static void what_is_left_on_the_way_down_is_hysteresis_and_zero_return(void **st
 static void repeated_masses_give_the_repeatability(void **state)
 {
     (void)state;
-    struct wb_mass_check_point points[WB_RIG_MASSES];
+    struct wb_cell_point points[WB_RIG_MASSES];
     struct wb_cell_calibration c;
     const double d = 0.02 * WB_G;
     const int n = read_masses(&(struct cell){.gain = 1.0}, "0,10,20,0,10,20,0,10,20,0", points);

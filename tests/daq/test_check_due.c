@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "base/units.h"
-#include "daq/check_due.h"
+#include "daq/test/check_due.h"
 #include "tests/own_folder.h"
 
 /* 2026-01-15T10:00:00Z, by `date -d ... +%s`. */

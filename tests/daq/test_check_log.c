@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/units.h"
-#include "daq/check_log.h"
+#include "daq/test/check_log.h"
 #include "tests/own_folder.h"
 
 static char rig[96], log_path[WB_PATH];

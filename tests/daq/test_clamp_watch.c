@@ -1,5 +1,5 @@
 /* The clamp against the stage, on made-up places of the wire's two ends. */
-#include "daq/clamp_watch.h"
+#include "daq/test/clamp_watch.h"
 
 #include <string.h>
 

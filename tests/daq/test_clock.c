@@ -1,5 +1,5 @@
 /* Device clocks to the host's, on made-up clocks with known offset, skew and latency. */
-#include "daq/clock.h"
+#include "daq/protocol/clock.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* What the first bytes of an instrument that is not understood tell about it. */
-#include "daq/diagnosis.h"
+#include "daq/protocol/diagnosis.h"
 
 #include "tests/check.h"
 

@@ -1,10 +1,10 @@
 /* The bench is looked at while one thing after another is wrong with it: doctor names the thing and
  * the rest is still told. */
-#include "daq/doctor.h"
+#include "daq/doctor/doctor.h"
 
 #include "base/interrupt_private.h"
 #include "base/log.h"
-#include "daq/check_log.h"
+#include "daq/test/check_log.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/folder.h"
 

@@ -8,12 +8,12 @@
 #include <unistd.h>
 
 #include "base/units.h"
-#include "daq/disk_check.h"
-#include "daq/doctor_items.h"
-#include "daq/marker_picture.h"
-#include "daq/network.h"
-#include "daq/port_user.h"
-#include "daq/silence_check.h"
+#include "daq/acquire/disk_check.h"
+#include "daq/acquire/silence_check.h"
+#include "daq/doctor/doctor_items.h"
+#include "daq/doctor/marker_picture.h"
+#include "daq/stream/network.h"
+#include "daq/stream/port_user.h"
 #include "tests/check.h"
 #include "tests/folder.h"
 

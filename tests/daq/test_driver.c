@@ -1,5 +1,5 @@
-#include "daq/drivers.h"
-#include "daq/drivers_private.h"
+#include "daq/protocol/drivers.h"
+#include "daq/protocol/drivers_private.h"
 
 #include "tests/check.h"
 

@@ -1,5 +1,5 @@
 /* The first force of a test, on made-up readings. */
-#include "daq/first_force.h"
+#include "daq/test/first_force.h"
 
 #include <string.h>
 

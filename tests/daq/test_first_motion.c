@@ -1,5 +1,5 @@
 /* The first motion: cameras against stage, on made-up frames. */
-#include "daq/first_motion.h"
+#include "daq/test/first_motion.h"
 
 #include <string.h>
 

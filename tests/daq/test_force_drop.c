@@ -1,5 +1,5 @@
 /* A force that falls on the way down, on made-up readings. */
-#include "daq/force_drop.h"
+#include "daq/test/force_drop.h"
 
 #include <math.h>
 #include <string.h>

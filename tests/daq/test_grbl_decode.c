@@ -1,6 +1,6 @@
 #include <stdlib.h>
 
-#include "daq/grbl.h"
+#include "daq/protocol/grbl.h"
 #include "tests/check.h"
 #include "tests/daq/grbl_jog.h"
 

@@ -1,6 +1,6 @@
 /* The index of recordings: what is read of it, and how it grows. (tests/analysis/report/bench has
  * what campaigns take from it.) */
-#include "daq/index.h"
+#include "daq/recording/index.h"
 
 #include <stdlib.h>
 

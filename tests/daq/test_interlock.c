@@ -1,6 +1,6 @@
 /* The interlock's decisions and the stop that follows, without any port or clock. */
 #include "base/units.h"
-#include "daq/interlock.h"
+#include "daq/acquire/interlock.h"
 #include "tests/check.h"
 
 #define S WB_NS_PER_S

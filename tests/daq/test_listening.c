@@ -1,6 +1,6 @@
 /* Instruments behind a pseudo-terminal whose baud rate counts: at another one they send rubbish and
  * understand nothing. */
-#include "daq/listening.h"
+#include "daq/acquire/listening.h"
 
 #include "base/interrupt_private.h"
 #include "tests/daq/fake_bench.h"

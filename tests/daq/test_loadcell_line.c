@@ -1,5 +1,5 @@
-#include "daq/line_buffer.h"
-#include "daq/loadcell_line.h"
+#include "daq/protocol/line_buffer.h"
+#include "daq/protocol/loadcell_line.h"
 
 #include <stdlib.h>
 

@@ -1,12 +1,12 @@
 /* Presets of load cells: lines of the makers' manuals, and what a rig file gets by their names. */
-#include "daq/loadcell_preset.h"
+#include "daq/protocol/loadcell_preset.h"
 
 #include <stdlib.h>
 
 #include "base/config.h"
 #include "base/file.h"
 #include "base/units.h"
-#include "daq/drivers.h"
+#include "daq/protocol/drivers.h"
 #include "tests/daq/collect.h"
 #include "tests/messages.h"
 

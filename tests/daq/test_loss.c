@@ -1,5 +1,5 @@
 /* Lost, repeated and overtaken samples, counted against what was taken away. */
-#include "daq/loss.h"
+#include "daq/protocol/loss.h"
 
 #include <math.h>
 

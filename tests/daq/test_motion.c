@@ -1,4 +1,4 @@
-#include "daq/motion.h"
+#include "daq/protocol/motion.h"
 
 #include "tests/check.h"
 

@@ -1,6 +1,6 @@
 #include "base/units.h"
-#include "daq/drivers.h"
-#include "daq/natnet_encode.h"
+#include "daq/protocol/drivers.h"
+#include "daq/protocol/natnet_encode.h"
 #include "tests/check.h"
 #include "tests/daq/collect.h"
 #include "tests/daq/natnet_example.h"

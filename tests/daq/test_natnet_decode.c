@@ -1,7 +1,7 @@
 #include <stdlib.h>
 
-#include "daq/natnet.h"
-#include "daq/natnet_encode.h"
+#include "daq/protocol/natnet.h"
+#include "daq/protocol/natnet_encode.h"
 #include "tests/check.h"
 #include "tests/daq/natnet_example.h"
 

@@ -1,6 +1,6 @@
 /* A load cell whose cable comes out and in again, against a small bench in a thread: the test goes
  * on, the gap is told, and no two halves of lines make a reading that was never sent. */
-#include "daq/usb_identity.h"
+#include "daq/stream/usb_identity.h"
 #include "tests/daq/bend_fixture.h"
 #include "tests/trials.h"
 

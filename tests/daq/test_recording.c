@@ -4,7 +4,7 @@
 #include <sys/wait.h>
 
 #include "base/hash.h"
-#include "daq/recording_private.h"
+#include "daq/recording/recording_private.h"
 #include "tests/daq/recording_fixture.h"
 
 static void written_recording_reads_back_exactly(void **state)

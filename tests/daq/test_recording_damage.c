@@ -9,8 +9,8 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include "daq/recording_private.h"
-#include "daq/writer_private.h"
+#include "daq/recording/recording_private.h"
+#include "daq/recording/writer_private.h"
 #include "tests/daq/recording_fixture.h"
 
 static void run_sql(const char *path, const char *sql)

@@ -7,8 +7,8 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "daq/recording_private.h"
-#include "daq/survey.h"
+#include "daq/recording/recording_private.h"
+#include "daq/recording/survey.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
 #include "tests/trials.h"

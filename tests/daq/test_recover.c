@@ -4,9 +4,9 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "daq/recording_salvage.h"
-#include "daq/recover.h"
-#include "daq/survey.h"
+#include "daq/recording/recording_salvage.h"
+#include "daq/recording/recover.h"
+#include "daq/recording/survey.h"
 #include "tests/daq/old_recording.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/trials.h"

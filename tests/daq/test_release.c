@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/units.h"
-#include "daq/release.h"
+#include "daq/acquire/release.h"
 #include "tests/check.h"
 
 #define MS WB_NS_PER_MS

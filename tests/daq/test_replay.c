@@ -2,8 +2,8 @@
 
 #include "base/interrupt_private.h"
 #include "base/progress.h"
-#include "daq/drivers.h"
-#include "daq/replay.h"
+#include "daq/protocol/drivers.h"
+#include "daq/recording/replay.h"
 #include "tests/daq/old_recording.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"

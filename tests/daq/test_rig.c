@@ -1,4 +1,4 @@
-#include "daq/rig.h"
+#include "daq/protocol/rig.h"
 
 #include <stdlib.h>
 #include <unistd.h>

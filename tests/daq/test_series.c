@@ -1,5 +1,5 @@
 /* The file of a series, the names of its recordings, and how far it has come. */
-#include "daq/series.h"
+#include "daq/test/series.h"
 
 #include <stdlib.h>
 

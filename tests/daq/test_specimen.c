@@ -1,4 +1,4 @@
-#include "daq/specimen.h"
+#include "daq/protocol/specimen.h"
 
 #include "tests/messages.h"
 

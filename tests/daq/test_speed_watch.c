@@ -1,5 +1,5 @@
 /* The speed of a motion from the stage's reports. */
-#include "daq/speed_watch.h"
+#include "daq/acquire/speed_watch.h"
 
 #include "base/units.h"
 #include "tests/check.h"

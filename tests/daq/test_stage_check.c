@@ -1,5 +1,5 @@
 /* What the settings of the stage's firmware allow. */
-#include "daq/stage_check.h"
+#include "daq/acquire/stage_check.h"
 
 #include "base/units.h"
 #include "tests/check.h"

@@ -1,5 +1,5 @@
 #include "base/units.h"
-#include "daq/drivers.h"
+#include "daq/protocol/drivers.h"
 #include "tests/check.h"
 #include "tests/daq/collect.h"
 

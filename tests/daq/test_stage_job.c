@@ -2,9 +2,9 @@
  * check of the load cell with a mass. */
 #include "base/interrupt_private.h"
 #include "base/log.h"
-#include "daq/cell_calibration.h"
-#include "daq/mass_check.h"
-#include "daq/stage_job.h"
+#include "daq/acquire/mass_check.h"
+#include "daq/acquire/stage_job.h"
+#include "daq/protocol/cell_calibration.h"
 #include "tests/daq/fake_bench.h"
 
 #define MS WB_NS_PER_MS
@@ -378,7 +378,7 @@ static void release_says_when_it_saw_no_slack(void **state)
 
 /* Runs the program; `hung_mg` are what really hangs, where the program asks for masses_g. */
 static void check(struct fixture *fixture, const double *masses, const int *hung_mg, int n,
-                  struct wb_mass_check_point *points)
+                  struct wb_cell_point *points)
 {
     struct wb_mass_check *check;
     enum wb_mass_check_phase phase;
@@ -397,7 +397,7 @@ static void check(struct fixture *fixture, const double *masses, const int *hung
 
 static struct wb_cell_deviation check_10_g(struct fixture *fixture, int hung_mg)
 {
-    struct wb_mass_check_point points[2];
+    struct wb_cell_point points[2];
     check(fixture, (double[]){0.0, 10.0 * WB_G}, (int[]){0, hung_mg}, 2, points);
     return wb_cell_calibration_deviation(&points[0], &points[1], fixture->rig.gravity);
 }
@@ -420,7 +420,7 @@ static void a_series_is_asked_for_in_turn(void **state)
     struct fixture *const fixture = *state;
     static const double masses[] = {0.0, 5e-3, 10e-3, 0.0};
     static const int hung_mg[] = {0, 5000, 10000, 30};
-    struct wb_mass_check_point points[4];
+    struct wb_cell_point points[4];
     check(fixture, masses, hung_mg, 4, points);
     for (int i = 0; i < 4; i++) {
         const double read = (points[i].reading - points[0].reading) / fixture->rig.gravity;
@@ -455,7 +455,7 @@ static void a_swinging_mass_is_waited_for(void **state)
     }
     assert_int_equal(phase, WB_MASS_CHECK_DONE);
     assert_true(read_ns >= 2500 * MS);
-    const struct wb_mass_check_point *const points = wb_mass_check_points(check);
+    const struct wb_cell_point *const points = wb_mass_check_points(check);
     assert_close((points[1].reading - points[0].reading) / fixture->rig.gravity, 10e-3, 6e-6);
     wb_mass_check_close(check);
 }

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 
 #include "base/units.h"
-#include "daq/marker_check.h"
-#include "daq/remark_gate.h"
-#include "daq/start_check.h"
+#include "daq/acquire/marker_check.h"
+#include "daq/acquire/remark_gate.h"
+#include "daq/test/start_check.h"
 #include "tests/check.h"
 
 #define N 7

@@ -11,8 +11,8 @@
 
 #include "base/progress.h"
 #include "base/units.h"
-#include "daq/recording_private.h"
-#include "daq/writer_private.h"
+#include "daq/recording/recording_private.h"
+#include "daq/recording/writer_private.h"
 #include "tests/daq/fault_vfs.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/trials.h"

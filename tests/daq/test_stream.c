@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
-#include "daq/stream_private.h"
+#include "daq/stream/stream_private.h"
 #include "tests/messages.h"
 
 static int set_up(void **state)

@@ -13,9 +13,9 @@
 
 #include "base/file.h"
 #include "base/log.h"
-#include "daq/acquisition.h"
-#include "daq/recording.h"
-#include "daq/stream.h"
+#include "daq/acquire/acquisition.h"
+#include "daq/recording/recording.h"
+#include "daq/stream/stream.h"
 #include "tests/check.h"
 
 #define PORT "/dev/ttyWB0"

@@ -1,9 +1,9 @@
 /* The survey finds what is missing or damaged, and nothing else; the export writes what is there.
  */
 #include "base/file.h"
-#include "daq/export.h"
-#include "daq/replay.h"
-#include "daq/survey.h"
+#include "daq/recording/export.h"
+#include "daq/recording/replay.h"
+#include "daq/recording/survey.h"
 #include "tests/daq/old_recording.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"

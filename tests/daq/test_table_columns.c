@@ -1,4 +1,4 @@
-#include "daq/table_columns.h"
+#include "daq/take/table_columns.h"
 
 #include <stdlib.h>
 

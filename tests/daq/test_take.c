@@ -1,8 +1,8 @@
 /* Takes of motion capture from files: each format's layouts, oddities and refusals. */
 #include <stdlib.h>
 
-#include "daq/take_private.h"
-#include "daq/take_reader.h"
+#include "daq/take/take_private.h"
+#include "daq/take/take_reader.h"
 #include "tests/daq/take_example.h"
 #include "tests/messages.h"
 

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "daq/force_table.h"
-#include "daq/take_reader.h"
+#include "daq/take/force_table.h"
+#include "daq/take/take_reader.h"
 #include "tests/daq/take_example.h"
 #include "tests/messages.h"
 #include "tests/trials.h"

@@ -1,10 +1,10 @@
 /* The Tic's bytes: examples of Pololu's guide, and what its driver makes of them. */
-#include "daq/tic.h"
+#include "daq/protocol/tic.h"
 
 #include "base/units.h"
-#include "daq/drivers.h"
-#include "daq/interlock.h"
-#include "daq/stage_alarm.h"
+#include "daq/acquire/interlock.h"
+#include "daq/acquire/stage_alarm.h"
+#include "daq/protocol/drivers.h"
 #include "tests/daq/collect.h"
 #include "tests/daq/tic_example.h"
 

@@ -1,7 +1,7 @@
 /* The deflection on the live line: followed from frame to frame, whichever end is called the clamp,
  * through hidden frames and past a stray. */
 #include "base/units.h"
-#include "daq/tip_watch.h"
+#include "daq/test/tip_watch.h"
 #include "tests/check.h"
 
 static const struct wb_specimen specimen = {

@@ -5,7 +5,7 @@
 
 #include "base/progress.h"
 #include "base/units.h"
-#include "daq/writer_private.h"
+#include "daq/recording/writer_private.h"
 #include "tests/daq/recording_fixture.h"
 
 /* A disk that stalls until it is let go. */

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "daq/tic.h"
+#include "daq/protocol/tic.h"
 
 /* As it leaves Pololu, but for a limit switch and the speed. */
 static const struct wb_tic_settings tic_example_usual = {

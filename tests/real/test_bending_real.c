@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/calibration/tensile.h"
+#include "analysis/calibration/constituents/tensile.h"
 #include "analysis/dataset/machine_import.h"
 #include "analysis/dataset/machine_private.h"
 #include "analysis/dataset/test_piece_private.h"

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "base/file.h"
-#include "daq/natnet.h"
-#include "daq/natnet_encode.h"
+#include "daq/protocol/natnet.h"
+#include "daq/protocol/natnet_encode.h"
 #include "tests/check.h"
 
 #define SKIPPED 77

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "base/file.h"
-#include "daq/take_private.h"
-#include "daq/take_reader.h"
+#include "daq/take/take_private.h"
+#include "daq/take/take_reader.h"
 #include "tests/check.h"
 
 #define SKIPPED 77

@@ -9,7 +9,7 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
-#include "daq/acquisition.h"
+#include "daq/acquire/acquisition.h"
 #include "tests/check.h"
 
 enum {

@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "base/random.h"
-#include "daq/drivers.h"
-#include "daq/natnet_encode.h"
-#include "daq/stream.h"
+#include "daq/protocol/drivers.h"
+#include "daq/protocol/natnet_encode.h"
+#include "daq/stream/stream.h"
 #include "fixtures/virtual/sim_mocap_private.h"
 #include "tests/virtual/setup.h"
 

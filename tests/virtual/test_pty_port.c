@@ -4,7 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "daq/stream.h"
+#include "daq/stream/stream.h"
 #include "tests/check.h"
 
 static struct wb_stream *open_stream(const struct wb_pty_port *port)

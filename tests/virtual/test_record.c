@@ -5,7 +5,7 @@
 
 #include "base/log.h"
 #include "base/units.h"
-#include "daq/bend_test.h"
+#include "daq/test/bend_test.h"
 #include "fixtures/virtual/bench.h"
 #include "tests/daq/sample_log.h"
 #include "tests/folder.h"

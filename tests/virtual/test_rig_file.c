@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "daq/rig.h"
+#include "daq/protocol/rig.h"
 #include "tests/check.h"
 
 static const struct wb_rig_file file = {

@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-#include "daq/drivers.h"
-#include "daq/loadcell_preset.h"
+#include "daq/protocol/drivers.h"
+#include "daq/protocol/loadcell_preset.h"
 #include "tests/virtual/setup.h"
 
 struct heard {

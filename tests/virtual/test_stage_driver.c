@@ -4,8 +4,8 @@
 
 #include "base/log.h"
 #include "base/units.h"
-#include "daq/drivers.h"
-#include "daq/jog_feed.h"
+#include "daq/protocol/drivers.h"
+#include "daq/protocol/jog_feed.h"
 #include "fixtures/virtual/sim_stage.h"
 #include "tests/check.h"
 #include "tests/trials.h"

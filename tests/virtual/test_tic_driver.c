@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/units.h"
-#include "daq/drivers.h"
+#include "daq/protocol/drivers.h"
 #include "fixtures/virtual/sim_tic.h"
 #include "tests/messages.h"
 

@@ -8,7 +8,7 @@
 
 #include "base/config.h"
 #include "base/units.h"
-#include "daq/index.h"
+#include "daq/recording/index.h"
 
 #define WB_LOG_DOMAIN "campaign"
 

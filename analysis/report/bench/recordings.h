@@ -57,7 +57,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
-#include "daq/index.h"
+#include "daq/recording/index.h"
 #include "fe/model/wire.h"
 
 /* One recording that the campaign wants. */

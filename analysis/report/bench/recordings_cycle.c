@@ -5,8 +5,8 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/calibration/bending.h"
-#include "analysis/calibration/cycle_json.h"
+#include "analysis/calibration/cycle/cycle_json.h"
+#include "analysis/calibration/law/bending.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 

@@ -9,12 +9,12 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/cycle_calibrate.h"
-#include "analysis/calibration/cycle_check.h"
-#include "analysis/calibration/cycle_later.h"
-#include "analysis/calibration/cycle_sensitivity.h"
-#include "analysis/calibration/cycle_valley.h"
-#include "analysis/calibration/moment_curvature.h"
+#include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "analysis/calibration/cycle/cycle_check.h"
+#include "analysis/calibration/cycle/cycle_later.h"
+#include "analysis/calibration/cycle/cycle_sensitivity.h"
+#include "analysis/calibration/cycle/cycle_valley.h"
+#include "analysis/calibration/cycle/moment_curvature.h"
 #include "analysis/dataset/dataset.h"
 #include "base/json.h"
 #include "base/reason.h"

@@ -13,7 +13,7 @@
 #include "analysis/report/bench/recordings_results_private.h"
 #include "analysis/report/reasons.h"
 #include "base/interrupt.h"
-#include "daq/recording.h"
+#include "daq/recording/recording.h"
 
 #define WB_LOG_DOMAIN "report"
 

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/paper/calibrate.h"
 #include "analysis/dataset/dataset.h"
 #include "analysis/report/bench/recordings.h"
 #include "analysis/report/bench/recordings_cycle.h"
@@ -15,8 +15,8 @@
 #include "analysis/validation/validate.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "daq/rig.h"
-#include "daq/specimen.h"
+#include "daq/protocol/rig.h"
+#include "daq/protocol/specimen.h"
 
 /* One recording as the report knows it. */
 struct wb_recordings_results_test {

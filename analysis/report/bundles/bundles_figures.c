@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "analysis/report/draw/figures_surface.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/computed.h"
+#include "analysis/calibration/paper/computed.h"
 #include "analysis/report/reasons.h"
 #include "base/interrupt.h"
 

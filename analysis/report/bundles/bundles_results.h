@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/paper/calibrate.h"
 #include "analysis/report/bundles/bundles.h"
 #include "analysis/report/bundles/bundles_run.h"
 #include "analysis/report/bundles/bundles_section.h"

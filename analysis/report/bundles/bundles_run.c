@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/computed.h"
+#include "analysis/calibration/paper/computed.h"
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/errors.h"
 #include "base/units.h"

@@ -28,7 +28,7 @@
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_H
 
-#include "analysis/calibration/cable.h"
+#include "analysis/calibration/constituents/cable.h"
 #include "analysis/dataset/machine.h"
 #include "analysis/dataset/test_piece.h"
 #include "analysis/report/campaign.h"

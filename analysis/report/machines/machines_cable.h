@@ -1,9 +1,10 @@
 /* The groups of a campaign that are layers of one cable, compared at equal curvature: where each
- * lies between wires that slide and wires that are bonded (analysis/calibration/cable.h). */
+ * lies between wires that slide and wires that are bonded
+ * (analysis/calibration/constituents/cable.h). */
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_CABLE_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_CABLE_H
 
-#include "analysis/calibration/cable.h"
+#include "analysis/calibration/constituents/cable.h"
 #include "analysis/report/machines/machines.h"
 #include "analysis/report/machines/machines_test.h"
 

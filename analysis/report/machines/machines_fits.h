@@ -3,7 +3,7 @@
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "analysis/report/machines/machines.h"
 #include "analysis/report/machines/machines_test.h"
 #include "analysis/validation/left_out.h"

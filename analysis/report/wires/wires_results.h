@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/paper/calibrate.h"
 #include "analysis/report/kind.h"
 #include "analysis/report/verdict.h"
 #include "analysis/report/wires/wires.h"

@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/log.h"
-#include "daq/survey.h"
+#include "daq/recording/survey.h"
 #include "tests/analysis/synthetic.h"
 #include "tests/messages.h"
 #include "tests/own_folder.h"

@@ -1,5 +1,5 @@
 /* What a law says of a wire under pure bending, against closed forms of the circle. */
-#include "analysis/calibration/bending.h"
+#include "analysis/calibration/law/bending.h"
 #include "tests/check.h"
 
 #define DIAMETER 1.25e-3

@@ -1,5 +1,5 @@
 /* A cable between sliding and bonded wires, against closed forms and made-up tests. */
-#include "analysis/calibration/cable.h"
+#include "analysis/calibration/constituents/cable.h"
 
 #include "base/units.h"
 #include "tests/check.h"

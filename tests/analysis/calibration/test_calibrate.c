@@ -1,7 +1,7 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/calibration/calibrate.h"
-#include "analysis/calibration/first_guess.h"
+#include "analysis/calibration/paper/calibrate.h"
+#include "analysis/calibration/paper/first_guess.h"
 
 static const double mm = WB_MM;
 

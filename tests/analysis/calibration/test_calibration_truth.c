@@ -9,11 +9,11 @@
 #include <gsl/gsl_errno.h>
 
 #include "analysis/align/align.h"
-#include "analysis/calibration/bending.h"
-#include "analysis/calibration/calibrate.h"
-#include "analysis/calibration/cycle_bow.h"
-#include "analysis/calibration/cycle_calibrate.h"
-#include "analysis/calibration/cycle_model.h"
+#include "analysis/calibration/cycle/cycle_bow.h"
+#include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "analysis/calibration/cycle/cycle_model.h"
+#include "analysis/calibration/law/bending.h"
+#include "analysis/calibration/paper/calibrate.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "fe/trial/cantilever.h"

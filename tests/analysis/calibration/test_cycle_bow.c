@@ -1,7 +1,7 @@
 /* The bow that a law finds from the first tension, against beams whose bow is known. */
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/calibration/cycle_bow.h"
+#include "analysis/calibration/cycle/cycle_bow.h"
 #include "base/json.h"
 
 enum {

@@ -3,7 +3,7 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/calibration/cycle_calibrate.h"
+#include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "base/units.h"
 #include "tests/analysis/fast_rig.h"
 #include "tests/check.h"

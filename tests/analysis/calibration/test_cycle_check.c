@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/cycle_calibrate.h"
-#include "analysis/calibration/cycle_check_private.h"
+#include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "analysis/calibration/cycle/cycle_check_private.h"
 #include "base/units.h"
 #include "tests/analysis/fast_rig.h"
 #include "tests/check.h"

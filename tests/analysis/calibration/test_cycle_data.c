@@ -1,7 +1,7 @@
 /* Points of a first cycle: tests are made up row by row, so that what lies behind them is known. */
 #include <stdlib.h>
 
-#include "analysis/calibration/cycle_data.h"
+#include "analysis/calibration/cycle/cycle_data.h"
 #include "base/units.h"
 #include "tests/check.h"
 

@@ -3,8 +3,8 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "analysis/calibration/cycle_fit.h"
-#include "analysis/calibration/cycle_model.h"
+#include "analysis/calibration/cycle/cycle_fit.h"
+#include "analysis/calibration/cycle/cycle_model.h"
 #include "base/units.h"
 #include "tests/check.h"
 

@@ -2,8 +2,8 @@
  * that the data do not say. */
 #include <math.h>
 
-#include "analysis/calibration/cycle_json.h"
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/cycle/cycle_json.h"
+#include "analysis/calibration/properties/properties.h"
 #include "base/units.h"
 #include "tests/analysis/calibration/properties_path.h"
 #include "tests/check.h"

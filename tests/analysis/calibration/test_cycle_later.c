@@ -1,9 +1,9 @@
 /* Later cycles against a test that the beam made itself, and the valley of its first loading. */
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/calibration/cycle_later.h"
-#include "analysis/calibration/cycle_model.h"
-#include "analysis/calibration/cycle_valley.h"
+#include "analysis/calibration/cycle/cycle_later.h"
+#include "analysis/calibration/cycle/cycle_model.h"
+#include "analysis/calibration/cycle/cycle_valley.h"
 
 enum {
     CYCLES = 3,

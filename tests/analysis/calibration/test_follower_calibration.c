@@ -4,9 +4,9 @@
 
 #include <unistd.h>
 
-#include "analysis/calibration/calibrate.h"
-#include "analysis/calibration/first_guess.h"
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/paper/calibrate.h"
+#include "analysis/calibration/paper/first_guess.h"
+#include "analysis/calibration/properties/properties.h"
 #include "analysis/validation/validate_private.h"
 #include "base/file.h"
 

@@ -1,6 +1,6 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/calibration/calibrate_private.h"
+#include "analysis/calibration/paper/calibrate_private.h"
 
 #define WB_LOG_DOMAIN "test"
 

@@ -1,5 +1,5 @@
 /* Wires of layers against closed forms. */
-#include "analysis/calibration/layers.h"
+#include "analysis/calibration/constituents/layers.h"
 
 #include "base/file.h"
 #include "base/units.h"

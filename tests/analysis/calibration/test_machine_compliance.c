@@ -1,5 +1,5 @@
 /* The compliance of a machine from steel bars that were computed on it. */
-#include "analysis/calibration/machine_compliance.h"
+#include "analysis/calibration/three_point/machine_compliance.h"
 
 #include <stdlib.h>
 

@@ -1,13 +1,13 @@
-#include "analysis/calibration/moment_curvature.h"
+#include "analysis/calibration/cycle/moment_curvature.h"
 
-#include "analysis/calibration/cycle_model.h"
+#include "analysis/calibration/cycle/cycle_model.h"
 
 #include <stdlib.h>
 
 #include <gsl/gsl_errno.h>
 
-#include "analysis/calibration/bending.h"
-#include "analysis/calibration/cycle_fit.h"
+#include "analysis/calibration/cycle/cycle_fit.h"
+#include "analysis/calibration/law/bending.h"
 #include "base/units.h"
 #include "fe/rod/fibres.h"
 #include "fe/rod/section.h"

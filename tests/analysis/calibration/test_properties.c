@@ -1,6 +1,6 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/properties/properties.h"
 #include "tests/analysis/calibration/properties_path.h"
 
 static struct wb_calibrate_result some_result(void)

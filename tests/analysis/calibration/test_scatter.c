@@ -1,6 +1,6 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/calibration/scatter.h"
+#include "analysis/calibration/paper/scatter.h"
 
 static const double mm = WB_MM;
 static const struct wb_computed_settings settings = {.n_elements = BEAM_ELEMENTS};

@@ -1,11 +1,11 @@
 /* Tensile curves of known laws, made in closed form: of plastic strain ep the true stress is
  * sigma = sigma_Y + K ep^n, the true strain ep + sigma/E, so that e = exp(eps) - 1 and
  * S = sigma / (1 + e). */
-#include "analysis/calibration/tensile.h"
+#include "analysis/calibration/constituents/tensile.h"
 
 #include <stdlib.h>
 
-#include "analysis/calibration/tensile_material.h"
+#include "analysis/calibration/constituents/tensile_material.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "fe/material/material_file.h"

@@ -1,9 +1,9 @@
-#include "analysis/calibration/three_point_calibrate.h"
+#include "analysis/calibration/three_point/three_point_calibrate.h"
 
 #include <stdlib.h>
 
-#include "analysis/calibration/bending.h"
-#include "analysis/calibration/properties.h"
+#include "analysis/calibration/law/bending.h"
+#include "analysis/calibration/properties/properties.h"
 #include "tests/analysis/calibration/properties_path.h"
 #include "tests/analysis/three_point_data.h"
 

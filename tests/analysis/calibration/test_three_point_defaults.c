@@ -1,8 +1,8 @@
 /* What the defaults of the three-point fit are worth beside others: bias and coverage of EI and of
  * moments over made-up tests with noise, a zero, a first contact and seating; and of tests with a
  * way back, what their laws predict of another one's: its force and the deflection that is left. */
-#include "analysis/calibration/bending.h"
-#include "analysis/calibration/three_point_calibrate.h"
+#include "analysis/calibration/law/bending.h"
+#include "analysis/calibration/three_point/three_point_calibrate.h"
 
 #include "analysis/validation/validate_three_point.h"
 #include "base/units.h"

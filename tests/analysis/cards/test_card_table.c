@@ -1,7 +1,7 @@
 /* Tables read back: JSON and CSV hold the same numbers, and those of the properties. */
 #include <stdlib.h>
 
-#include "analysis/calibration/bending.h"
+#include "analysis/calibration/law/bending.h"
 #include "analysis/cards/card_curve.h"
 #include "base/json.h"
 #include "tests/analysis/cards/wires.h"

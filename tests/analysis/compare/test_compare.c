@@ -3,7 +3,7 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/calibration/bending.h"
+#include "analysis/calibration/law/bending.h"
 #include "analysis/compare/compare.h"
 #include "base/units.h"
 

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/cycle_fit.h"
-#include "analysis/calibration/first_guess.h"
+#include "analysis/calibration/cycle/cycle_fit.h"
+#include "analysis/calibration/paper/first_guess.h"
 #include "analysis/dataset/curve.h"
 #include "analysis/validation/validate.h"
 #include "base/log.h"

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "analysis/report/bench/recordings_kind.h"
-#include "daq/index.h"
+#include "daq/recording/index.h"
 #include "tests/analysis/report/report_folder.h"
 
 #define SHA_A "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "analysis/align/align.h"
-#include "analysis/calibration/cycle_model.h"
+#include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/cards/card.h"
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_kind.h"

@@ -1,0 +1,186 @@
+#include "analysis/calibration/constituents/layers.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/config.h"
+#include "base/units.h"
+#include "fe/rod/fibres.h"
+#include "fe/rod/section.h"
+
+#define WB_LOG_DOMAIN "layers"
+
+/* Strips over a diameter: the moment of a plastic section is then good to 1e-3. */
+#define STRIPS 200
+
+static const struct wb_setting rows[] = {
+    {.name = "conductor_diameter_mm",
+     .unit = "mm",
+     .offset = offsetof(struct wb_layers, conductor_diameter),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1000.0,
+     .otherwise = "none",
+     .option = "conductor-diameter-mm",
+     .argument = "D",
+     .help = "Diameter of the conductor, of strands that of their circle"},
+    {.name = "outer_diameter_mm",
+     .unit = "mm",
+     .offset = offsetof(struct wb_layers, outer_diameter),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1000.0,
+     .otherwise = "the conductor's",
+     .option = "outer-diameter-mm",
+     .argument = "D",
+     .help = "Outer diameter of the jacket"},
+    {.name = "strands",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_layers, strands),
+     .least = 1,
+     .largest = 100000,
+     .otherwise = "solid",
+     .option = "strands",
+     .argument = "N",
+     .help = "Strands of the conductor"},
+    {.name = "strand_diameter_mm",
+     .unit = "mm",
+     .offset = offsetof(struct wb_layers, strand_diameter),
+     .scale = WB_MM,
+     .least = 1e-4,
+     .largest = 1000.0,
+     .otherwise = "none",
+     .option = "strand-diameter-mm",
+     .argument = "D",
+     .help = "Diameter of a strand"},
+};
+const struct wb_setting_table wb_layers_table = {.rows = rows, .n = WB_COUNT(rows)};
+
+static double area_of(double diameter)
+{
+    return 0.25 * M_PI * diameter * diameter;
+}
+
+static double second_moment_of(double diameter)
+{
+    return M_PI * pow(diameter, 4.0) / 64.0;
+}
+
+static bool has_jacket(const struct wb_layers *layers)
+{
+    return layers->outer_diameter > layers->conductor_diameter;
+}
+
+static enum wb_status check(const struct wb_layers *layers, struct wb_reason *why)
+{
+    if (!(layers->conductor_diameter > 0.0) ||
+        !(layers->outer_diameter >= layers->conductor_diameter))
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "the outer diameter (%g mm) must be no less than the conductor's (%g mm)",
+                          layers->outer_diameter / WB_MM, layers->conductor_diameter / WB_MM);
+    if (layers->strands < 0 || (layers->strands > 0) != (layers->strand_diameter > 0.0))
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "strands and their diameter go together: expected both or none");
+    if (layers->strands > 0 && wb_layers_fill(layers) > 1.0)
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "%d strands of %g mm do not fit into a circle of %g mm", layers->strands,
+                          layers->strand_diameter / WB_MM, layers->conductor_diameter / WB_MM);
+    return WB_OK;
+}
+
+double wb_layers_fill(const struct wb_layers *layers)
+{
+    if (layers->strands == 0)
+        return 1.0;
+    return layers->strands * area_of(layers->strand_diameter) / area_of(layers->conductor_diameter);
+}
+
+double wb_layers_rigidity(const struct wb_layers *layers, bool sliding)
+{
+    const bool strands_slide = sliding && layers->strands > 0;
+    const double conductor =
+        strands_slide ? layers->strands * second_moment_of(layers->strand_diameter)
+                      : wb_layers_fill(layers) * second_moment_of(layers->conductor_diameter);
+    const double jacket =
+        second_moment_of(layers->outer_diameter) - second_moment_of(layers->conductor_diameter);
+    const double of_conductor = layers->conductor.youngs_modulus * conductor;
+    return has_jacket(layers) ? of_conductor + layers->jacket.youngs_modulus * jacket
+                              : of_conductor;
+}
+
+double wb_layers_poissons_ratio(const struct wb_layers *layers)
+{
+    const double metal = wb_layers_fill(layers) * area_of(layers->conductor_diameter);
+    const double jacket = area_of(layers->outer_diameter) - area_of(layers->conductor_diameter);
+    if (!has_jacket(layers))
+        return layers->conductor.poissons_ratio;
+    return (layers->conductor.poissons_ratio * metal + layers->jacket.poissons_ratio * jacket) /
+           (metal + jacket);
+}
+
+/* --- moments --- */
+
+/* Adds `times` the moments of a section. Its fibres lie symmetrically and the first loading is the
+ * same to both sides, so that the axis does not move: no axial strain is to be found. */
+static enum wb_status add_moments(const struct wb_section *section, double times,
+                                  const double *curvature, int n, double *moment)
+{
+    struct wb_fibres *fibres;
+    WB_TRY(wb_fibres_create(&fibres, section));
+    const size_t size = wb_fibres_history_size(fibres);
+    double *const before = calloc(2 * size + 1, sizeof *before);
+    enum wb_status status = WB_OK;
+    if (!before)
+        status = wb_fail(WB_ERR_MEMORY, "out of memory for a section");
+    for (int i = 0; status == WB_OK && i < n; i++) {
+        struct wb_fibres_response response;
+        wb_fibres_respond(fibres, 0.0, curvature[i], before, before + size, &response);
+        moment[i] += times * response.M;
+    }
+    free(before);
+    wb_fibres_destroy(fibres);
+    return status;
+}
+
+static enum wb_status add_rings(struct wb_section *section, const struct wb_layers *layers,
+                                bool with_conductor)
+{
+    wb_section_init_empty(section);
+    if (with_conductor)
+        WB_TRY(wb_section_add_ring(section, 0.0, layers->conductor_diameter, &layers->conductor,
+                                   wb_layers_fill(layers), STRIPS));
+    if (has_jacket(layers))
+        WB_TRY(wb_section_add_ring(section, layers->conductor_diameter, layers->outer_diameter,
+                                   &layers->jacket, 1.0, STRIPS));
+    return WB_OK;
+}
+
+static enum wb_status add_strands(const struct wb_layers *layers, const double *curvature, int n,
+                                  double *moment)
+{
+    struct wb_section section;
+    WB_TRY(wb_section_init_circle(&section, layers->strand_diameter, &layers->conductor, STRIPS));
+    const enum wb_status status = add_moments(&section, layers->strands, curvature, n, moment);
+    wb_section_release(&section);
+    return status;
+}
+
+enum wb_status wb_layers_moments(const struct wb_layers *layers, bool sliding,
+                                 const double *curvature, int n, double *moment,
+                                 struct wb_reason *why)
+{
+    const bool strands_slide = sliding && layers->strands > 0;
+    struct wb_section section;
+    WB_TRY(check(layers, why));
+    for (int i = 0; i < n; i++)
+        moment[i] = 0.0;
+    if (strands_slide)
+        WB_TRY(add_strands(layers, curvature, n, moment));
+    if (strands_slide && !has_jacket(layers))
+        return WB_OK;
+    enum wb_status status = add_rings(&section, layers, !strands_slide);
+    if (status == WB_OK)
+        status = add_moments(&section, 1.0, curvature, n, moment);
+    wb_section_release(&section);
+    return status;
+}

@@ -1,0 +1,842 @@
+#include "analysis/calibration/cycle/cycle_calibrate.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_errno.h>
+
+#include "analysis/calibration/paper/first_guess.h"
+#include "analysis/calibration/paper/first_guess_private.h"
+#include "base/progress.h"
+#include "base/units.h"
+#include "base/workers.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+const double wb_cycle_moment_parts[WB_CYCLE_MOMENTS] = {0.05, 0.1, 0.3, 0.6, 1.0};
+
+/* Deflection over length at which eqs. 10 and 11 give the law from which all fits start. */
+static const double elastic_zone = 0.05;
+/* Deflection over length from there on in which the slope past yield is taken, and the smallest
+ * exponent made of it. */
+static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
+/* Candidates count up to this many times the best misfit. */
+static const double counts_up_to = 2.0;
+/* Standard errors of a fit on either side of a candidate's number. */
+static const double range_errors = 2.0;
+/* And at most this much of a logarithm, a factor of ten: beyond it nothing is known, and the slopes
+ * that errors are made of mean nothing. */
+static const double largest_range = 2.3;
+/* Level of the F-tests, coverage of the intervals. */
+static const double f_level = 0.01, coverage = 0.95;
+/* A fit that stays this many times above the best misfit of the specimen is given up. */
+static const double hopeless_ratio = 4.0, hopeless_least = 5e-3;
+/* When K and n get digits. */
+static const double largest_ln_strength_error = 0.10, largest_exponent_error = 0.03;
+static const double wanted_precision = 0.05;
+
+enum {
+    MOST_THREADS = 16,
+    MOST_SPECIMENS_NEEDED = 1000
+};
+
+static const struct wb_setting rows[] = {
+    {.name = "pooled_deviation",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, pooled_deviation),
+     .least = 1e-4,
+     .largest = 1.0,
+     .otherwise = "of these specimens",
+     .option = "pooled-deviation",
+     .argument = "S",
+     .help = "Standard deviation of ln(EI) between specimens, pooled over several wires"},
+    {.name = "pooled_degrees",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, pooled_degrees),
+     .least = 1,
+     .largest = 100000,
+     .otherwise = "none",
+     .option = "pooled-degrees",
+     .argument = "N",
+     .help = "Degrees of freedom of --pooled-deviation"},
+    {.name = "threads",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, threads),
+     .least = 1,
+     .largest = MOST_THREADS,
+     .otherwise = "as many as processors",
+     .option = "threads",
+     .argument = "N",
+     .help = "Threads to compute on"},
+};
+
+const struct wb_setting_table wb_cycle_calibrate_tables[WB_CYCLE_CALIBRATE_TABLES] = {
+    {.rows = wb_cycle_fit_rows,
+     .n = WB_CYCLE_FIT_ROWS,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, fit)},
+    {.rows = wb_cycle_data_rows,
+     .n = WB_CYCLE_DATA_ROWS,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, data)},
+    {.rows = rows, .n = WB_COUNT(rows)},
+};
+
+void wb_cycle_calibrate_default_settings(struct wb_cycle_calibrate_settings *settings)
+{
+    *settings = (struct wb_cycle_calibrate_settings){.threads = 0};
+    wb_cycle_fit_default_settings(&settings->fit);
+    for (int t = 1; t < WB_CYCLE_CALIBRATE_TABLES; t++)
+        wb_setting_fill(&wb_cycle_calibrate_tables[t],
+                        (char *)settings + wb_cycle_calibrate_tables[t].offset);
+}
+
+void wb_cycle_calibrate_settings_text(const struct wb_cycle_calibrate_settings *settings,
+                                      struct wb_text *text)
+{
+    for (int t = 0; t < WB_CYCLE_CALIBRATE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_cycle_calibrate_tables[t];
+        for (size_t i = 0; i < table->n; i++) {
+            const struct wb_setting *const row = &table->rows[i];
+            const char *const at = (const char *)settings + table->offset;
+            char value[WB_SETTING_VALUE];
+            wb_setting_format(row, at, value);
+            wb_text_append(text, "%s%s %s", t + (int)i > 0 ? ", " : "", row->name,
+                           row->otherwise && !wb_setting_is_given(row, at) ? row->otherwise
+                                                                           : value);
+        }
+    }
+}
+
+/* --- one specimen --- */
+
+/* The loading's tension beyond that at zero deflection, by a line through its points from one
+ * deflection to another; at least three, or as many as there are. */
+static double loading_line(const struct wb_cycle_data *data, double from, double to, double *slope)
+{
+    int begin = 0, end = data->n_loading;
+    while (begin < end - 3 && data->points[begin].deflection < from)
+        begin++;
+    while (end > begin + 3 && data->points[end - 1].deflection > to)
+        end--;
+    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+    for (int i = begin; i < end; i++) {
+        x += data->points[i].deflection / (end - begin);
+        y += (data->points[i].tension - data->zero_tension) / (end - begin);
+    }
+    for (int i = begin; i < end; i++) {
+        const double dx = data->points[i].deflection - x;
+        xx += dx * dx;
+        xy += dx * (data->points[i].tension - data->zero_tension - y);
+    }
+    *slope = xy / xx;
+    return y + *slope * (0.5 * (from + to) - x);
+}
+
+/* The law from which fits start: the closed forms of the paper on the points, from which outliers
+ * have gone. It refuses nothing: a poor start is found by the fit. */
+static void first_law(const struct wb_cycle_data *data, struct wb_law *law)
+{
+    const double length = data->info.length, diameter = data->info.outer_diameter;
+    const double at = fmin(elastic_zone * length, 0.7 * data->top);
+    double slope;
+    double force = loading_line(data, 0.75 * at, 1.25 * at, &slope);
+    if (!(force > 0.0))
+        force = data->max_force * at / data->top;
+    (void)loading_line(data, at, at + slope_zone * length, &slope);
+    const double E = wb_first_guess_modulus(force, at, length, diameter);
+    const double yield = wb_first_guess_stress(force, length, diameter);
+    const double tangent = wb_first_guess_stress(slope, length, diameter) /
+                           wb_first_guess_strain(1.0, length, diameter);
+    const double n = fmin(fmax(tangent / E, smallest_first_exponent), 1.0);
+    const struct wb_material material = {
+        .hardening = WB_HARDENING_ISOTROPIC_POWER,
+        .youngs_modulus = E,
+        .poissons_ratio = data->info.poissons_ratio,
+        .yield_stress = yield,
+        .strength_coefficient = wb_first_guess_strength(E, yield, n),
+        .hardening_exponent = n,
+    };
+    wb_law_init_ludwik(law, &material);
+}
+
+/* The curvature that the deflection between the first two points makes of a straight wire, times
+ * the radius: what yields before is seen in one point alone. */
+static double first_strain(const struct wb_cycle_data *data)
+{
+    const double length = data->info.length;
+    const double deflection = 0.5 * (data->points[0].deflection + data->points[1].deflection);
+    return 1.5 * data->info.outer_diameter * deflection / (length * length);
+}
+
+static double best_misfit(const struct wb_cycle_member *member)
+{
+    double best = (double)INFINITY;
+    for (int c = 0; c < WB_CANDIDATES; c++) {
+        if (member->answers[c].is_fitted)
+            best = fmin(best, member->answers[c].fit.misfit);
+    }
+    return best;
+}
+
+/* Fits a candidate; that the beam cannot follow it is a result. */
+static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
+                              const struct wb_law *start, const struct wb_cycle_grid *grid,
+                              const struct wb_cycle_calibrate_settings *given)
+{
+    struct wb_cycle_answer *const answer = &member->answers[candidate];
+    struct wb_cycle_fit_settings settings = given->fit;
+    if (given->left_out >> candidate & 1U)
+        return WB_OK;
+    const double best = best_misfit(member);
+    if (isfinite(best))
+        settings.hopeless = fmax(hopeless_ratio * best, hopeless_least);
+    const enum wb_status status = wb_cycle_fit_run(&answer->fit, &member->data, candidate, start,
+                                                   grid, &settings, &member->why);
+    if (status == WB_ERR_CONVERGENCE)
+        return WB_OK;
+    answer->is_fitted = status == WB_OK;
+    return status;
+}
+
+static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *member)
+{
+    const struct wb_cycle_fit *best = NULL;
+    for (int c = WB_CANDIDATE_LUDWIK_ISOTROPIC; c <= WB_CANDIDATE_LUDWIK_MIXED; c++) {
+        const struct wb_cycle_answer *const answer = &member->answers[c];
+        if (answer->is_fitted && (!best || answer->fit.misfit < best->misfit))
+            best = &answer->fit;
+    }
+    return best;
+}
+
+/* Ludwik's candidates: kinematic first, which most wires are nearest to. */
+static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct wb_dataset *dataset,
+                                  const struct wb_cycle_calibrate_settings *settings)
+{
+    static const enum wb_candidate order[] = {
+        WB_CANDIDATE_LUDWIK_KINEMATIC, WB_CANDIDATE_LUDWIK_ISOTROPIC, WB_CANDIDATE_LUDWIK_MIXED};
+    const struct wb_cycle_grid none = {0.0, 0.0};
+    struct wb_law start;
+    WB_TRY(wb_cycle_data_take(&member->data, dataset, &settings->data, &member->why));
+    first_law(&member->data, &start);
+    if (member->data.n_loading == member->data.n_points)
+        return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, settings);
+    for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
+        const struct wb_cycle_fit *const near = best_ludwik(member);
+        const bool is_mixed = order[i] == WB_CANDIDATE_LUDWIK_MIXED;
+        WB_TRY(fit_one(member, order[i], is_mixed && near ? &near->law : &start, &none, settings));
+    }
+    return WB_OK;
+}
+
+static enum wb_status fit_parallels(struct wb_cycle_member *member,
+                                    const struct wb_cycle_grid *grid,
+                                    const struct wb_cycle_calibrate_settings *settings)
+{
+    const struct wb_cycle_fit *const near = best_ludwik(member);
+    if (!near || member->data.n_loading == member->data.n_points)
+        return WB_OK;
+    WB_TRY(fit_one(member, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, grid, settings));
+    /* Parts that follow the test with the one rule are nearest to those with both; parts that were
+     * bent out of shape by the wrong rule are farther away than Ludwik's curve. */
+    const struct wb_cycle_answer *const pure = &member->answers[WB_CANDIDATE_PARALLEL_KINEMATIC];
+    const bool is_nearer = pure->is_fitted && pure->fit.misfit < near->misfit;
+    return fit_one(member, WB_CANDIDATE_PARALLEL_MIXED, is_nearer ? &pure->fit.law : &near->law,
+                   grid, settings);
+}
+
+/* --- specimens side by side --- */
+
+struct work {
+    struct wb_cycle_calibration *calibration;
+    const struct wb_dataset *const *datasets;
+    const struct wb_cycle_calibrate_settings *settings;
+    const struct wb_cycle_grid *grid; /* NULL: Ludwik's candidates */
+    int done, all;
+    bool stopped;
+    enum wb_status status; /* the first failure */
+};
+
+static enum wb_status fit_member(void *context, int index)
+{
+    struct work *const work = context;
+    struct wb_cycle_member *const member = &work->calibration->members[index];
+    const double begin = wb_progress_thread_cpu();
+    const enum wb_status status = work->grid
+                                      ? fit_parallels(member, work->grid, work->settings)
+                                      : fit_ludwiks(member, work->datasets[index], work->settings);
+    member->cpu_s += wb_progress_thread_cpu() - begin;
+    return status;
+}
+
+static bool finish_member(void *context, int index, enum wb_status status)
+{
+    struct work *const work = context;
+    (void)index;
+    const struct wb_cycle_calibrate_settings *const s = work->settings;
+    work->done++;
+    if (work->status == WB_OK)
+        work->status = status;
+    work->stopped = s->progress && !s->progress(s->progress_context, work->done, work->all);
+    return !work->stopped;
+}
+
+static enum wb_status work_side_by_side(struct work *work)
+{
+    const struct wb_workers workers = {
+        .n = work->stopped ? 0 : work->calibration->n_members,
+        .n_threads = work->settings->threads,
+        .job = fit_member,
+        .done = finish_member,
+        .context = work,
+    };
+    (void)wb_workers_run(&workers);
+    return work->status;
+}
+
+/* The first specimen that failed tells why. */
+static enum wb_status tell_failure(const struct wb_cycle_calibration *calibration,
+                                   enum wb_status status, struct wb_reason *why)
+{
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_member *const member = &calibration->members[i];
+        if (member->why.text[0] != '\0' && !isfinite(best_misfit(member)))
+            return wb_fail_to(why, status, "%s", member->why.text);
+    }
+    return wb_fail_to(why, status, "the specimens could not be fitted");
+}
+
+/* --- what comes of them --- */
+
+static double outer_radius(const struct wb_cycle_calibration *calibration)
+{
+    return 0.5 * calibration->members[0].data.info.outer_diameter;
+}
+
+static struct wb_cycle_grid find_grid(const struct wb_cycle_calibration *calibration)
+{
+    struct wb_cycle_grid grid = {(double)INFINITY, 0.0};
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_member *const member = &calibration->members[i];
+        const struct wb_cycle_fit *const fit = best_ludwik(member);
+        grid.first_strain = fmin(grid.first_strain, first_strain(&member->data));
+        if (fit)
+            grid.last_strain =
+                fmax(grid.last_strain, outer_radius(calibration) * fit->clamp_curvature);
+    }
+    /* A short test keeps some distance between the two. */
+    grid.last_strain = fmax(grid.last_strain, 5.0 * grid.first_strain);
+    return grid;
+}
+
+static void find_repeat_noise(struct wb_cycle_calibration *calibration, double *degrees)
+{
+    double sum = 0.0;
+    int n = 0;
+    *degrees = 0.0;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_data *const data = &calibration->members[i].data;
+        for (int k = 0; k < data->n_points; k++) {
+            const double d = data->points[k].deviation / data->max_force;
+            sum += d * d;
+            *degrees += fmax(0.0, data->points[k].n_rows - 2);
+            n++;
+        }
+    }
+    calibration->repeat_noise = sqrt(sum / n);
+}
+
+static int count_points(const struct wb_cycle_calibration *calibration)
+{
+    int n = 0;
+    for (int i = 0; i < calibration->n_members; i++)
+        n += calibration->members[i].data.n_points;
+    return n;
+}
+
+static void pool_misfit(const struct wb_cycle_calibration *calibration, struct wb_cycle_rank *rank)
+{
+    double sum = 0.0;
+    int n = 0;
+    rank->is_fitted = true;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_member *const member = &calibration->members[i];
+        const struct wb_cycle_answer *const answer = &member->answers[rank->candidate];
+        if (!answer->is_fitted) {
+            rank->is_fitted = false;
+            return;
+        }
+        sum += member->data.n_points * answer->fit.misfit * answer->fit.misfit;
+        n += member->data.n_points;
+        rank->n_free = answer->fit.n_law;
+    }
+    rank->misfit = sqrt(sum / n);
+}
+
+static double freedom(const struct wb_cycle_calibration *calibration,
+                      const struct wb_cycle_rank *rank)
+{
+    double left = count_points(calibration);
+    for (int i = 0; i < calibration->n_members; i++)
+        left -= calibration->members[i].answers[rank->candidate].fit.n_free;
+    return fmax(1.0, left);
+}
+
+static int by_misfit(const void *a, const void *b)
+{
+    const struct wb_cycle_rank *const x = a, *const y = b;
+    if (x->is_fitted != y->is_fitted)
+        return x->is_fitted ? -1 : 1;
+    return (x->misfit > y->misfit) - (x->misfit < y->misfit);
+}
+
+/* Ranks the candidates and chooses one. */
+static void choose(struct wb_cycle_calibration *calibration)
+{
+    double degrees;
+    find_repeat_noise(calibration, &degrees);
+    calibration->n_ranked = 0;
+    for (int c = 0; c < WB_CANDIDATES; c++) {
+        struct wb_cycle_rank *const rank = &calibration->ranked[c];
+        *rank = (struct wb_cycle_rank){.candidate = c};
+        pool_misfit(calibration, rank);
+        calibration->n_ranked += rank->is_fitted;
+    }
+    qsort(calibration->ranked, WB_CANDIDATES, sizeof calibration->ranked[0], by_misfit);
+
+    const struct wb_cycle_rank *const best = &calibration->ranked[0];
+    int simplest = -1, alike = -1;
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        struct wb_cycle_rank *const rank = &calibration->ranked[i];
+        const double dof = freedom(calibration, rank), ratio = rank->misfit / best->misfit;
+        const double noise = rank->misfit / calibration->repeat_noise;
+        const double corrected = count_points(calibration) / dof;
+        rank->f_ratio = noise * noise * corrected;
+        rank->f_limit = gsl_cdf_fdist_Qinv(f_level, dof, fmax(1.0, degrees));
+        rank->is_rejected = !(rank->f_ratio <= rank->f_limit);
+        rank->counts = ratio <= counts_up_to;
+        const double best_dof = freedom(calibration, best);
+        const bool like_best =
+            ratio * ratio * best_dof / dof <= gsl_cdf_fdist_Qinv(f_level, dof, best_dof);
+        if (!rank->is_rejected &&
+            (simplest < 0 || rank->candidate < calibration->ranked[simplest].candidate))
+            simplest = i;
+        if (like_best && (alike < 0 || rank->candidate < calibration->ranked[alike].candidate))
+            alike = i;
+    }
+    const int chosen = simplest >= 0 ? simplest : alike >= 0 ? alike : 0;
+    calibration->chosen = calibration->ranked[chosen].candidate;
+    calibration->is_supported = calibration->has_unloading && !calibration->is_stopped &&
+                                best->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
+}
+
+/* Numbers of a specimen that are averaged. */
+enum number {
+    RIGIDITY,
+    SPRINGBACK,
+    LOOP_ENERGY,
+    MOMENTS,
+    NUMBERS = MOMENTS + WB_CYCLE_MOMENTS
+};
+
+static double number_of(const struct wb_bending *bending, const double *moment, enum number number)
+{
+    switch (number) {
+    case RIGIDITY:
+        return bending->flexural_rigidity;
+    case SPRINGBACK:
+        return bending->springback;
+    case LOOP_ENERGY:
+        return bending->loop_energy;
+    default:
+        return moment[number - MOMENTS];
+    }
+}
+
+/* Mean of logarithms and its interval. */
+static void average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                    enum number number, const struct wb_cycle_calibrate_settings *settings,
+                    struct wb_estimate *estimate)
+{
+    const int n = calibration->n_members;
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < n; i++) {
+        const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
+        const double x = log(number_of(&answer->bending, answer->moment, number));
+        sum += x;
+        squares += x * x;
+    }
+    const double mean = sum / n;
+    estimate->value = exp(mean);
+    estimate->low = estimate->high = estimate->deviation = (double)NAN;
+    double deviation = n > 1 ? sqrt(fmax(0.0, squares - n * mean * mean) / (n - 1)) : (double)NAN;
+    int degrees = n - 1;
+    if (settings->pooled_deviation > 0.0 && settings->pooled_degrees > 0) {
+        deviation = settings->pooled_deviation;
+        degrees = settings->pooled_degrees;
+    }
+    if (degrees < 1 || !isfinite(deviation))
+        return;
+    const double half = gsl_cdf_tdist_Qinv(0.5 * (1.0 - coverage), degrees) * deviation / sqrt(n);
+    estimate->deviation = deviation;
+    estimate->low = exp(mean - half);
+    estimate->high = exp(mean + half);
+}
+
+/* Root mean square over the specimens. */
+static double fit_error(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                        enum number number)
+{
+    double squares = 0.0;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
+        const double error = number_of(&answer->bending_error, answer->moment_error, number);
+        squares += error * error;
+    }
+    return sqrt(squares / calibration->n_members);
+}
+
+/* The chosen law's number with the range over the candidates that count. */
+static void estimate_number(struct wb_cycle_calibration *calibration, enum number number,
+                            const struct wb_cycle_calibrate_settings *settings,
+                            struct wb_estimate *estimate)
+{
+    average(calibration, calibration->chosen, number, settings, estimate);
+    estimate->candidates_low = estimate->candidates_high = estimate->value;
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        const enum wb_candidate candidate = calibration->ranked[i].candidate;
+        struct wb_estimate other;
+        if (!calibration->ranked[i].counts)
+            continue;
+        average(calibration, candidate, number, settings, &other);
+        const double error =
+            fmin(range_errors * fit_error(calibration, candidate, number), largest_range);
+        estimate->candidates_low = fmin(estimate->candidates_low, other.value * exp(-error));
+        estimate->candidates_high = fmax(estimate->candidates_high, other.value * exp(error));
+    }
+}
+
+static void add_square(double *sum, double moved, double value, double moved_by)
+{
+    const double difference = value > 0.0 ? (moved / value - 1.0) / moved_by : 0.0;
+    *sum += difference * difference;
+}
+
+/* Errors of the logarithms of an answer, of what the moved laws make of its numbers. */
+static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double diameter,
+                                         const struct wb_cycle_calibration *calibration)
+{
+    struct wb_bending *const error = &answer->bending_error, bending;
+    double moment[WB_CYCLE_MOMENTS];
+    for (int i = 0; i < answer->fit.n_moved; i++) {
+        const struct wb_law *const law = &answer->fit.moved[i];
+        const double by = answer->fit.moved_by[i];
+        WB_TRY(wb_bending_describe(law, diameter, calibration->largest_curvature, &bending));
+        WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature, moment));
+        add_square(&error->flexural_rigidity, bending.flexural_rigidity,
+                   answer->bending.flexural_rigidity, by);
+        add_square(&error->springback, bending.springback, answer->bending.springback, by);
+        add_square(&error->loop_energy, bending.loop_energy, answer->bending.loop_energy, by);
+        for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+            add_square(&answer->moment_error[k], moment[k], answer->moment[k], by);
+    }
+    error->flexural_rigidity = sqrt(error->flexural_rigidity);
+    error->springback = sqrt(error->springback);
+    error->loop_energy = sqrt(error->loop_energy);
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        answer->moment_error[k] = sqrt(answer->moment_error[k]);
+    return WB_OK;
+}
+
+static bool candidate_counts(const struct wb_cycle_calibration *calibration,
+                             enum wb_candidate candidate)
+{
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        if (calibration->ranked[i].candidate == candidate)
+            return calibration->ranked[i].counts;
+    }
+    return false;
+}
+
+static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
+{
+    double moments[WB_CYCLE_MOMENTS];
+    const double diameter = 2.0 * outer_radius(calibration);
+
+    calibration->largest_curvature = (double)INFINITY;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_answer *const answer =
+            &calibration->members[i].answers[calibration->chosen];
+        calibration->largest_curvature =
+            fmin(calibration->largest_curvature, answer->fit.clamp_curvature);
+    }
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        calibration->curvature[k] = wb_cycle_moment_parts[k] * calibration->largest_curvature;
+    for (int i = 0; i < calibration->n_members; i++) {
+        for (int c = 0; c < WB_CANDIDATES; c++) {
+            struct wb_cycle_answer *const answer = &calibration->members[i].answers[c];
+            if (!answer->is_fitted)
+                continue;
+            WB_TRY(wb_bending_describe(&answer->fit.law, diameter, calibration->largest_curvature,
+                                       &answer->bending));
+            WB_TRY(wb_bending_moments(&answer->fit.law, diameter, WB_CYCLE_MOMENTS,
+                                      calibration->curvature, moments));
+            memcpy(answer->moment, moments, sizeof moments);
+            if (candidate_counts(calibration, c))
+                WB_TRY(find_answer_errors(answer, diameter, calibration));
+        }
+    }
+    return WB_OK;
+}
+
+/* The law of the product. Of parallel parts the means: together they carry the mean of what the
+ * specimens carry. A part that one specimen has and another nearly not would be gone in the mean of
+ * the logarithms. Of Ludwik's law the means of the logarithms of what it is made of. */
+static void average_law(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                        struct wb_law *average)
+{
+    const int n = calibration->n_members;
+    const struct wb_law *const first = &calibration->members[0].answers[candidate].fit.law;
+    double share = 0.0, E = 0.0, yield = 0.0, hardening = 0.0, exponent = 0.0;
+    double moduli[WB_LAW_MOST_PARTS] = {0.0};
+    /* K goes with n; the stress that hardening adds at this plastic strain does not. */
+    const double plastic = 3e-3;
+
+    for (int i = 0; i < n; i++) {
+        const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
+        share += law->isotropic_share / n;
+        for (int k = 0; k < law->n_parts; k++)
+            moduli[k] += law->parts[k].modulus / n;
+        if (law->form == WB_LAW_LUDWIK) {
+            const struct wb_material *const m = &law->material;
+            E += log(m->youngs_modulus) / n;
+            yield += log(m->yield_stress) / n;
+            hardening += log(m->strength_coefficient * pow(plastic, m->hardening_exponent)) / n;
+            exponent += log(m->hardening_exponent) / n;
+        }
+    }
+    if (first->form == WB_LAW_PARALLEL) {
+        struct wb_law_part parts[WB_LAW_MOST_PARTS];
+        for (int k = 0; k < first->n_parts; k++)
+            parts[k] = (struct wb_law_part){moduli[k], first->parts[k].yield_strain};
+        wb_law_init_parallel(average, parts, first->n_parts, share, first->material.poissons_ratio);
+        return;
+    }
+    struct wb_material material = first->material;
+    material.youngs_modulus = exp(E);
+    material.yield_stress = exp(yield);
+    material.hardening_exponent = exp(exponent);
+    material.strength_coefficient = exp(hardening) / pow(plastic, material.hardening_exponent);
+    wb_law_init_ludwik(average, &material);
+    average->isotropic_share = share;
+}
+
+static enum wb_status find_equivalents(struct wb_cycle_calibration *calibration)
+{
+    const double diameter = 2.0 * outer_radius(calibration);
+    const double largest = calibration->largest_curvature;
+    if (calibration->law.form == WB_LAW_LUDWIK) {
+        calibration->ludwik = calibration->law.material;
+        calibration->ludwik_misfit = 0.0;
+    } else {
+        WB_TRY(wb_bending_ludwik(&calibration->law, diameter, largest, &calibration->ludwik,
+                                 &calibration->ludwik_misfit));
+    }
+    for (int i = 0; i < calibration->n_members; i++) {
+        struct wb_cycle_member *const member = &calibration->members[i];
+        const struct wb_law *const law = &member->answers[calibration->chosen].fit.law;
+        member->ludwik = law->material;
+        member->ludwik_misfit = 0.0;
+        if (law->form == WB_LAW_PARALLEL)
+            WB_TRY(
+                wb_bending_ludwik(law, diameter, largest, &member->ludwik, &member->ludwik_misfit));
+    }
+    return WB_OK;
+}
+
+static void judge_identifiability(struct wb_cycle_calibration *calibration)
+{
+    bool at_bound = false;
+    calibration->ln_strength_error = calibration->exponent_error = 0.0;
+    calibration->travel_share = (double)INFINITY;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_member *const member = &calibration->members[i];
+        const struct wb_cycle_fit *const fit = &member->answers[calibration->chosen].fit;
+        if (!(fit->ln_strength_error <= calibration->ln_strength_error))
+            calibration->ln_strength_error = fit->ln_strength_error;
+        if (!(fit->exponent_error <= calibration->exponent_error))
+            calibration->exponent_error = fit->exponent_error;
+        at_bound = at_bound || fit->is_at_bound;
+        calibration->travel_share =
+            fmin(calibration->travel_share, member->data.top / member->data.info.length);
+    }
+    const bool enough = calibration->travel_share >= WB_CYCLE_SMALLEST_TRAVEL && !at_bound;
+    calibration->is_strength_identifiable =
+        enough && calibration->ln_strength_error <= largest_ln_strength_error;
+    calibration->is_exponent_identifiable =
+        enough && calibration->exponent_error <= largest_exponent_error;
+}
+
+/* How many specimens make the interval of EI as narrow as wanted. */
+static int specimens_needed(double deviation)
+{
+    if (!(deviation > 0.0))
+        return 0;
+    for (int n = 2; n <= MOST_SPECIMENS_NEEDED; n++) {
+        if (gsl_cdf_tdist_Qinv(0.5 * (1.0 - coverage), n - 1) * deviation / sqrt(n) <=
+            log1p(wanted_precision))
+            return n;
+    }
+    return MOST_SPECIMENS_NEEDED;
+}
+
+static enum wb_status conclude(struct wb_cycle_calibration *calibration,
+                               const struct wb_cycle_calibrate_settings *settings)
+{
+    WB_TRY(describe_answers(calibration));
+    estimate_number(calibration, RIGIDITY, settings, &calibration->rigidity);
+    estimate_number(calibration, SPRINGBACK, settings, &calibration->springback);
+    estimate_number(calibration, LOOP_ENERGY, settings, &calibration->loop_energy);
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        estimate_number(calibration, MOMENTS + k, settings, &calibration->moment[k]);
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        struct wb_cycle_rank *const rank = &calibration->ranked[i];
+        average(calibration, rank->candidate, RIGIDITY, settings, &rank->rigidity);
+        average(calibration, rank->candidate, SPRINGBACK, settings, &rank->springback);
+        average_law(calibration, rank->candidate, &rank->law);
+    }
+    average_law(calibration, calibration->chosen, &calibration->law);
+    WB_TRY(find_equivalents(calibration));
+    judge_identifiability(calibration);
+    calibration->specimens_for_5_percent = specimens_needed(calibration->rigidity.deviation);
+    return WB_OK;
+}
+
+/* --- what is refused --- */
+
+static bool is_same_data(const struct wb_dataset *a, const struct wb_dataset *b)
+{
+    if (a->n_rows != b->n_rows || a->n_rows == 0)
+        return false;
+    for (size_t i = 0; i < a->n_rows; i++) {
+        if (a->rows[i].deflection != b->rows[i].deflection ||
+            a->rows[i].tension != b->rows[i].tension)
+            return false;
+    }
+    return true;
+}
+
+static enum wb_status check_datasets(const struct wb_dataset *const *datasets, int n,
+                                     struct wb_reason *why)
+{
+    if (n < 1)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "no dataset to calibrate on");
+    for (int i = 0; i < n; i++) {
+        const struct wb_test_info *const a = &datasets[0]->info, *const b = &datasets[i]->info;
+        if (strcmp(a->wire, b->wire) != 0 || a->outer_diameter != b->outer_diameter)
+            return wb_fail_to(why, WB_ERR_DATA,
+                              "datasets 1 and %d are of wires '%s', %g mm, and '%s', %g mm: "
+                              "expected one wire",
+                              i + 1, a->wire, a->outer_diameter / WB_MM, b->wire,
+                              b->outer_diameter / WB_MM);
+        for (int k = 0; k < i; k++) {
+            if (is_same_data(datasets[k], datasets[i]))
+                return wb_fail_to(why, WB_ERR_DATA,
+                                  "datasets %d and %d of wire '%s' hold the same readings: a "
+                                  "specimen that is counted twice makes intervals too narrow; "
+                                  "leave one out",
+                                  k + 1, i + 1, a->wire);
+        }
+    }
+    return WB_OK;
+}
+
+static enum wb_status run(struct wb_cycle_calibration *calibration,
+                          const struct wb_dataset *const *datasets,
+                          const struct wb_cycle_calibrate_settings *settings, struct wb_reason *why)
+{
+    struct work work = {
+        .calibration = calibration,
+        .datasets = datasets,
+        .settings = settings,
+        .all = 2 * calibration->n_members,
+        .status = WB_OK,
+    };
+    enum wb_status status = work_side_by_side(&work);
+    if (status != WB_OK)
+        return tell_failure(calibration, status, why);
+    /* Specimens are taken in order, and what was begun was ended. */
+    calibration->n_members = work.done;
+    calibration->has_unloading = true;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_data *const data = &calibration->members[i].data;
+        if (data->n_loading == data->n_points)
+            calibration->has_unloading = false;
+    }
+    const struct wb_cycle_grid grid = find_grid(calibration);
+    work.grid = &grid;
+    if (calibration->has_unloading && !work.stopped)
+        status = work_side_by_side(&work);
+    if (status != WB_OK)
+        return tell_failure(calibration, status, why);
+    calibration->is_stopped = work.done < (calibration->has_unloading ? work.all : work.all / 2);
+    choose(calibration);
+    if (calibration->n_ranked == 0)
+        return tell_failure(calibration, WB_ERR_DATA, why);
+    return conclude(calibration, settings);
+}
+
+enum wb_status wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
+                                      const struct wb_dataset *const *datasets, int n,
+                                      const struct wb_cycle_calibrate_settings *settings,
+                                      struct wb_reason *why)
+{
+    *calibration = (struct wb_cycle_calibration){.n_members = n};
+    /* GSL's own handler aborts; its codes are looked at here. */
+    gsl_set_error_handler_off();
+    WB_TRY(check_datasets(datasets, n, why));
+    calibration->members = calloc((size_t)n, sizeof *calibration->members);
+    if (!calibration->members)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d specimens", n);
+    for (int i = 0; i < n; i++)
+        calibration->members[i].sample = datasets[i]->info.sample;
+    const enum wb_status status = run(calibration, datasets, settings, why);
+    for (int i = 0; i < n; i++)
+        calibration->cpu_s += calibration->members[i].cpu_s;
+    if (status != WB_OK)
+        wb_cycle_calibrate_release(calibration);
+    return status;
+}
+
+void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration)
+{
+    for (int i = 0; calibration->members && i < calibration->n_members; i++) {
+        struct wb_cycle_member *const member = &calibration->members[i];
+        wb_cycle_data_release(&member->data);
+        for (int c = 0; c < WB_CANDIDATES; c++)
+            wb_cycle_fit_release(&member->answers[c].fit);
+    }
+    free(calibration->members);
+    *calibration = (struct wb_cycle_calibration){.members = NULL};
+}
+
+double wb_cycle_calibrate_length(const struct wb_cycle_calibration *calibration)
+{
+    const double length = calibration->members[0].data.info.length;
+    for (int i = 1; i < calibration->n_members; i++) {
+        if (calibration->members[i].data.info.length != length)
+            return (double)NAN;
+    }
+    return length;
+}
+
+bool wb_cycle_calibrate_is_converged(const struct wb_cycle_calibration *calibration)
+{
+    for (int i = 0; i < calibration->n_members; i++) {
+        if (!calibration->members[i].answers[calibration->chosen].fit.is_converged)
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,147 @@
+/* Calibration of one wire on whole cycles: which law and which hardening rule the specimens
+ * support, and what it says with which certainty.
+ *
+ * Each specimen is fitted by itself with each candidate (analysis/cycle_fit.h). A candidate's
+ * misfit is the root mean square of the force residuals of both ways over F_max, pooled over the
+ * specimens. Chosen is the simplest that an F-test against the repeat noise of the readings does
+ * not reject; where all are rejected, the simplest that the same test does not tell from the best.
+ *
+ * A number's interval is that of the mean of its logarithms over the specimens (Student's t, 95 %).
+ * It says nothing of the law: beside it stands the range of the number over all candidates whose
+ * misfit is at most twice the best, each with two standard errors of its fits on either side. What
+ * the law's form cannot follow makes those errors, and what its priors leave open, so that they do
+ * not shrink with more specimens. What all specimens share (gain of the cell, lengths,
+ * counterweight, diameter) leaves no trace in the data and is in neither.
+ */
+#ifndef WB_ANALYSIS_CYCLE_CALIBRATE_H
+#define WB_ANALYSIS_CYCLE_CALIBRATE_H
+
+#include <stdbool.h>
+
+#include "analysis/calibration/cycle/cycle_data.h"
+#include "analysis/calibration/cycle/cycle_fit.h"
+#include "analysis/calibration/law/bending.h"
+#include "analysis/dataset/dataset.h"
+#include "base/reason.h"
+#include "base/setting.h"
+#include "base/status.h"
+
+enum {
+    WB_CYCLE_MOMENTS = 5
+};
+
+/* Deflection over length that K and n need. */
+#define WB_CYCLE_SMALLEST_TRAVEL 0.35
+
+/* Parts of the largest curvature at which the moment is reported. */
+extern const double wb_cycle_moment_parts[WB_CYCLE_MOMENTS];
+
+/* A number with what is known of it. */
+struct wb_estimate {
+    double value;                           /* exp of the mean of ln over specimens */
+    double low, high;                       /* interval of 95 %; NaN with one specimen */
+    double candidates_low, candidates_high; /* over the candidates that cannot be excluded */
+    double deviation;                       /* s of ln over specimens (or pooled); NaN: unknown */
+};
+
+/* What a candidate gives for one specimen. */
+struct wb_cycle_answer {
+    bool is_fitted;
+    struct wb_cycle_fit fit;
+    struct wb_bending bending;
+    double moment[WB_CYCLE_MOMENTS]; /* N m */
+    /* Standard errors of the logarithms by the residuals of the fit; 0 of candidates that do not
+     * count. */
+    struct wb_bending bending_error;
+    double moment_error[WB_CYCLE_MOMENTS];
+};
+
+/* A hardening rule is supported by fits of loading and unloading up to this misfit. */
+#define WB_CYCLE_LARGEST_SUPPORTED 5e-3
+
+struct wb_cycle_member {
+    int sample;
+    struct wb_cycle_data data;
+    struct wb_cycle_answer answers[WB_CANDIDATES];
+    struct wb_material ludwik; /* that bends alike on a first loading */
+    double ludwik_misfit;      /* 1, of ln M */
+    struct wb_reason why;      /* where nothing could be fitted */
+    double cpu_s;
+};
+
+struct wb_cycle_rank {
+    enum wb_candidate candidate;
+    bool is_fitted; /* for all specimens */
+    double misfit;
+    double f_ratio;   /* of the F-test against the repeat noise, */
+    double f_limit;   /* and what it may be, at 1 % */
+    bool is_rejected; /* by it */
+    bool counts;      /* misfit at most twice the best: its numbers are in the ranges */
+    int n_free;       /* of the law */
+    struct wb_estimate rigidity, springback; /* without the ranges */
+    struct wb_law law; /* means of the specimens' numbers, as those of the chosen one */
+};
+
+struct wb_cycle_calibration {
+    int n_members;
+    struct wb_cycle_member *members; /* (n_members), owned */
+    bool has_unloading;
+    double repeat_noise;                        /* of a point, over F_max */
+    struct wb_cycle_rank ranked[WB_CANDIDATES]; /* best first; those not fitted last */
+    int n_ranked;
+    enum wb_candidate chosen;
+    bool is_supported; /* the best misfit is at most 0.5 % of F_max, and unloading was fitted */
+    /* `progress` said so before all candidates were fitted to all specimens: the members are those
+     * that were, and nothing is decided of the rule. */
+    bool is_stopped;
+    double largest_curvature; /* 1/m: smallest of the specimens' largest */
+    struct wb_estimate rigidity, springback, loop_energy; /* N m2, 1, J/m */
+    double curvature[WB_CYCLE_MOMENTS];
+    struct wb_estimate moment[WB_CYCLE_MOMENTS];
+    struct wb_law law; /* means over the specimens */
+    struct wb_material
+        ludwik; /* its equivalent; the law itself where that is Ludwik's, isotropic */
+    double ludwik_misfit;
+    bool is_strength_identifiable, is_exponent_identifiable; /* K, n of a Ludwik law */
+    double ln_strength_error, exponent_error;                /* largest of the specimens' */
+    double travel_share;                                     /* smallest travel over length */
+    int specimens_for_5_percent; /* specimens that EI within 5 % needs; 0: unknown */
+    double cpu_s;
+};
+
+struct wb_cycle_calibrate_settings {
+    struct wb_cycle_data_settings data;
+    struct wb_cycle_fit_settings fit;
+    unsigned left_out;       /* bit 1 << candidate: is not fitted */
+    double pooled_deviation; /* s of ln(EI) pooled over other wires; 0: of these specimens */
+    int pooled_degrees;      /* its degrees of freedom */
+    int threads;             /* 0: as many as there are processors */
+    bool (*progress)(void *context, int done, int all); /* NULL; false stops */
+    void *progress_context;
+};
+/* Their rows, but progress; the tables' offsets count from the struct. */
+enum {
+    WB_CYCLE_CALIBRATE_TABLES = 3
+};
+extern const struct wb_setting_table wb_cycle_calibrate_tables[WB_CYCLE_CALIBRATE_TABLES];
+void wb_cycle_calibrate_default_settings(struct wb_cycle_calibrate_settings *settings);
+
+/* Appends "name value, name value ..." of all rows, in the rows' units. */
+void wb_cycle_calibrate_settings_text(const struct wb_cycle_calibrate_settings *settings,
+                                      struct wb_text *text);
+
+/* Calibrates on n datasets of one wire. The same data twice, another wire's, or none that can be
+ * fitted: WB_ERR_DATA. `why` receives the reason; NULL: it is logged. Being stopped is a result. */
+WB_MUST_CHECK enum wb_status
+wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
+                       const struct wb_dataset *const *datasets, int n,
+                       const struct wb_cycle_calibrate_settings *settings, struct wb_reason *why);
+void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration);
+
+/* The specimens' length, m; NaN where it is not the same. */
+double wb_cycle_calibrate_length(const struct wb_cycle_calibration *calibration);
+
+/* Whether the chosen law's fit converged for all specimens. */
+bool wb_cycle_calibrate_is_converged(const struct wb_cycle_calibration *calibration);
+
+#endif

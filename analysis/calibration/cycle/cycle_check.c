@@ -1,0 +1,681 @@
+#include "analysis/calibration/cycle/cycle_check.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/calibration/cycle/cycle_check_private.h"
+#include "analysis/calibration/cycle/cycle_fit.h"
+#include "analysis/calibration/cycle/cycle_model.h"
+#include "analysis/dataset/fit.h"
+#include "analysis/dataset/holds.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "check"
+
+/* --- of rows --- */
+
+/* No wire deflects by more than its length; a taut one never reaches it. */
+static const double most_deflection = 1.2;
+/* A travel below this part of the length is no test: the paper reads E at 0.05. */
+static const double least_travel = 0.05;
+/* Metres read as millimetres leave this part of the length at most, where a test leaves more. */
+static const double metres_travel = 0.005;
+/* The tension at zero deflection is the counterweight's and the wire's weight and what its bow
+ * carries, some times as much at most. 1000 times as much are millinewtons, 102 grams. */
+static const double most_weights = 50.0, millinewtons = 400.0;
+/* The largest tension is at least the weights; this part of them are kilonewtons. */
+static const double least_weights = 0.05;
+/* Without weights to compare with: no metal bends like a rod of more than steel's 210 GPa, no
+ * conductor with its jacket like one of less than this. */
+static const double most_modulus = 300e9, least_modulus = 5e6;
+/* At zero deflection a marker lies where its arc length says, but for the bow: within half a per
+ * cent. EI goes with the length cubed: 2 % are 6 % of EI, 5 % are 16 %. */
+static const double doubtful_length = 0.02, unusable_length = 0.05;
+/* Deflection over length up to which that is looked at. */
+static const double near_zero = 0.03;
+
+/* --- of fits --- */
+
+/* K and n need 0.35 of the length; the law below 0.2 is little more than EI. */
+static const double full_travel = 0.35, short_travel = 0.20;
+/* The level of zero deflection is known to 0.1 mm (two markers): beyond three times that it was
+ * wrong, or made up for something else. Two with a bow that disagrees. */
+static const double level_deviation = 0.1 * WB_MM;
+static const double level_limit = 3.0, level_limit_with_bow = 2.0;
+/* A law with a larger misfit may move level and bow by what it does not follow. */
+static const double largest_followed = 5e-3;
+/* Measured and computed force at zero deflection, over the largest force. */
+static const double zero_share = 0.01;
+/* Below this tension (N) the strand may hang slack and says nothing. */
+static const double slack = 2.5e-3;
+/* Standard deviations between two estimates of the bow; and how well an alignment knows it that
+ * does not say. */
+static const double bow_limit = 3.0, bow_deviation = 0.3 * WB_MM;
+/* A misfit beyond this part of the largest force; or this many times the noise of the readings. */
+static const double misfit_share = 0.01, misfit_noise = 3.0;
+/* Standard deviations of ln(EI) between a specimen and the others. Those are few, and their
+ * deviation is known poorly: no smaller one than this counts. Specimens cut from one reel differ
+ * by 2 to 7 %. */
+static const double rigidity_limit = 4.0, least_deviation = 0.05;
+/* Rows left out as outliers beyond this part are no longer stray ones. */
+static const double outlier_share = 0.02;
+/* Lengths tried, over the labelled one, and what a better one must bring down misfit and level to.
+ */
+static const double other_lengths[] = {1.08, 1.18, 1.28};
+static const double better_fit = 0.6, better_level = 0.5;
+
+const char *wb_cycle_check_severity_name(enum wb_cycle_check_severity severity)
+{
+    static const char *const names[] = {"note", "doubt", "unusable"};
+    return names[severity];
+}
+
+static void __attribute__((format(printf, 4, 5)))
+say(struct wb_cycle_remarks *remarks, enum wb_cycle_check_severity severity, int sample,
+    const char *format, ...)
+{
+    if (remarks->n == WB_CYCLE_MOST_REMARKS)
+        return;
+    struct wb_cycle_remark *const remark = &remarks->items[remarks->n++];
+    va_list arguments;
+    remark->severity = severity;
+    remark->sample = sample;
+    va_start(arguments, format);
+    vsnprintf(remark->text, sizeof remark->text, format, arguments);
+    va_end(arguments);
+}
+
+const struct wb_cycle_remark *wb_cycle_check_find(const struct wb_cycle_remarks *remarks,
+                                                  enum wb_cycle_check_severity severity)
+{
+    for (int i = 0; i < remarks->n; i++) {
+        if (remarks->items[i].severity >= severity)
+            return &remarks->items[i];
+    }
+    return NULL;
+}
+
+enum wb_status wb_cycle_check_refuse(const struct wb_cycle_remarks *remarks, struct wb_reason *why)
+{
+    const struct wb_cycle_remark *const remark = wb_cycle_check_find(remarks, WB_CHECK_UNUSABLE);
+    return remark ? wb_fail_to(why, WB_ERR_DATA, "%s", remark->text) : WB_OK;
+}
+
+/* --- rows of the first loading --- */
+
+struct loading {
+    const struct wb_dataset *dataset;
+    size_t n;
+    double *memory;       /* workspace of as many numbers as there are rows of either kind, owned */
+    double top;           /* m */
+    double zero, largest; /* N: tension at zero deflection, and the largest */
+    double stiffness;     /* N/m, of a chord over the first third; NaN: none */
+};
+
+static bool is_loading(const struct wb_row *row)
+{
+    return row->cycle == 1 && row->phase == WB_PHASE_LOAD && isfinite(row->deflection) &&
+           isfinite(row->tension);
+}
+
+/* All but the largest hundredth: single wild readings are not asked. */
+static double nearly_largest(double *values, size_t n)
+{
+    wb_fit_sort(values, n);
+    return n > 0 ? values[n - 1 - n / 100] : (double)NAN;
+}
+
+/* Median tension at deflections between two, and their middle. */
+static double tension_between(const struct loading *loading, double from, double to)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < loading->dataset->n_rows; i++) {
+        const struct wb_row *const row = &loading->dataset->rows[i];
+        if (is_loading(row) && row->deflection >= from && row->deflection <= to)
+            loading->memory[n++] = row->tension;
+    }
+    return wb_fit_median(loading->memory, n);
+}
+
+static void look_at_loading(struct loading *loading)
+{
+    const struct wb_dataset *const dataset = loading->dataset;
+    loading->n = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        if (is_loading(&dataset->rows[i]))
+            loading->memory[loading->n++] = dataset->rows[i].deflection;
+    }
+    const double top = loading->top = nearly_largest(loading->memory, loading->n);
+    size_t n = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        if (is_loading(&dataset->rows[i]))
+            loading->memory[n++] = dataset->rows[i].tension;
+    }
+    loading->largest = nearly_largest(loading->memory, n);
+    loading->zero = tension_between(loading, -0.02 * top, 0.04 * top);
+    loading->stiffness = (tension_between(loading, 0.2 * top, 0.3 * top) -
+                          tension_between(loading, 0.0, 0.1 * top)) /
+                         (0.2 * top);
+}
+
+/* How far from the clamp markers lie over their arc lengths, and the tip over the length: medians
+ * near zero deflection, that which is farther from 1; NaN where there are neither. */
+static double length_seen(const struct loading *loading)
+{
+    const struct wb_dataset *const dataset = loading->dataset;
+    const double length = dataset->info.length;
+    double turn = (double)INFINITY;
+    size_t n = 0;
+    for (size_t i = 0; i < dataset->n_rows && !isfinite(turn); i++) {
+        if (dataset->rows[i].phase == WB_PHASE_UNLOAD)
+            turn = dataset->rows[i].t;
+    }
+    for (size_t i = 0; i < dataset->n_shape_rows; i++) {
+        const struct wb_shape_row *const row = &dataset->shape_rows[i];
+        if (row->t < turn && fabs(row->deflection) < near_zero * length && row->s > 0.5 * length)
+            loading->memory[n++] = row->x / row->s;
+    }
+    const double markers = wb_fit_median(loading->memory, n);
+    n = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (is_loading(row) && fabs(row->deflection) < near_zero * length && isfinite(row->tip_x))
+            loading->memory[n++] = row->tip_x / length;
+    }
+    const double tip = wb_fit_median(loading->memory, n);
+    return fabs(markers - 1.0) > fabs(tip - 1.0) || !isfinite(tip) ? markers : tip;
+}
+
+/* The weights that the strand carries at zero deflection, N. */
+static double weights(const struct wb_test_info *info)
+{
+    return info->gravity * (info->counterweight + 0.375 * info->mass_per_length * info->length);
+}
+
+/* Each of these says one thing and returns whether it did. */
+
+static bool check_deflections(struct wb_cycle_remarks *remarks, const struct loading *loading)
+{
+    const struct wb_test_info *const info = &loading->dataset->info;
+    const double share = loading->top / info->length;
+
+    if (share > most_deflection) {
+        say(remarks, WB_CHECK_UNUSABLE, info->sample,
+            "wire '%s', sample %d: the deflection reaches %.4g mm, the wire is %g mm long: %s? "
+            "Expected deflection_mm in millimetres, and the length as tested",
+            info->wire, info->sample, loading->top / WB_MM, info->length / WB_MM,
+            share < 1e3 * most_deflection && share > 1e3 * metres_travel
+                ? "are the deflections in micrometres"
+                : "is one of them wrong");
+        return true;
+    }
+    if (share < metres_travel && 1e3 * share > least_travel && 1e3 * share < most_deflection) {
+        say(remarks, WB_CHECK_UNUSABLE, info->sample,
+            "wire '%s', sample %d: the deflection ends at %.4g mm on a wire of %g mm: are the "
+            "deflections in metres? Expected deflection_mm in millimetres",
+            info->wire, info->sample, loading->top / WB_MM, info->length / WB_MM);
+        return true;
+    }
+    if (share < least_travel) {
+        say(remarks, WB_CHECK_UNUSABLE, info->sample,
+            "wire '%s', sample %d: the first loading ends at %.2f mm of deflection, %.2f of the "
+            "length: nothing can be told from so little; at least %.1f mm give EI, %.0f mm the "
+            "law: test with a longer travel",
+            info->wire, info->sample, loading->top / WB_MM, share,
+            least_travel * info->length / WB_MM, full_travel * info->length / WB_MM);
+        return true;
+    }
+    return false;
+}
+
+static bool check_forces(struct wb_cycle_remarks *remarks, const struct loading *loading)
+{
+    const struct wb_test_info *const info = &loading->dataset->info;
+    const double carried = weights(info);
+    const double second_moment = M_PI * pow(info->outer_diameter, 4) / 64.0;
+    const double modulus = loading->stiffness * pow(info->length, 3) / (3.0 * second_moment);
+    const double ratio = carried > 0.0 ? loading->zero / carried : (double)NAN;
+
+    if (ratio > most_weights) {
+        say(remarks, WB_CHECK_UNUSABLE, info->sample,
+            "wire '%s', sample %d: the tension at zero deflection is %.4g N, counterweight and "
+            "wire weigh %.4g N, %.0f times less: are the forces in %s? Expected tension_N and "
+            "force_N in newtons, and the counterweight in the rig file in grams",
+            info->wire, info->sample, loading->zero, carried, ratio,
+            ratio > millinewtons ? "millinewtons" : "grams");
+        return true;
+    }
+    if (carried > 0.0 && loading->largest < least_weights * carried) {
+        say(remarks, WB_CHECK_UNUSABLE, info->sample,
+            "wire '%s', sample %d: the tension stays below %.4g N, counterweight and wire alone "
+            "weigh %.4g N: are the forces in kilonewtons, or were the weights tared away? Expected "
+            "tension_N as the strand carries it, in newtons",
+            info->wire, info->sample, loading->largest, carried);
+        return true;
+    }
+    if (modulus > most_modulus || (modulus > 0.0 && modulus < least_modulus)) {
+        say(remarks, WB_CHECK_UNUSABLE, info->sample,
+            "wire '%s', sample %d: the force rises by %.4g N/m, as on a solid rod of %.3g GPa; "
+            "expected %g to %g GPa: are the forces in %s? Expected newtons and millimetres; look "
+            "at diameter (%g mm) and length (%g mm) too",
+            info->wire, info->sample, loading->stiffness, modulus / 1e9, least_modulus / 1e9,
+            most_modulus / 1e9, modulus > most_modulus ? "millinewtons or grams" : "kilonewtons",
+            info->outer_diameter / WB_MM, info->length / WB_MM);
+        return true;
+    }
+    return false;
+}
+
+static bool check_length(struct wb_cycle_remarks *remarks, const struct loading *loading)
+{
+    const struct wb_test_info *const info = &loading->dataset->info;
+    const double seen = length_seen(loading);
+    const double off = fabs(seen - 1.0);
+    if (!(off > doubtful_length))
+        return false;
+    say(remarks, off > unusable_length ? WB_CHECK_UNUSABLE : WB_CHECK_DOUBT, info->sample,
+        "wire '%s', sample %d: at zero deflection the markers stand at %.3f times their distance "
+        "along the wire, "
+        "expected 1 within %g: is the specimen %.1f mm long, not %g? EI goes with the cube of the "
+        "length; measure it from the clamp to the strand",
+        info->wire, info->sample, seen, doubtful_length, seen * info->length / WB_MM,
+        info->length / WB_MM);
+    return off > unusable_length;
+}
+
+/* That the points can be taken. */
+static enum wb_status check_points(struct wb_cycle_remarks *remarks,
+                                   const struct wb_dataset *dataset)
+{
+    struct wb_reason why = {.text = ""};
+    struct wb_cycle_data data;
+    const enum wb_status status = wb_cycle_data_take(&data, dataset, NULL, &why);
+    wb_cycle_data_release(&data);
+    if (status == WB_ERR_MEMORY)
+        return wb_fail(status, "%s", why.text);
+    if (status != WB_OK)
+        say(remarks, WB_CHECK_UNUSABLE, dataset->info.sample, "%s", why.text);
+    return WB_OK;
+}
+
+enum wb_status wb_cycle_check_data(struct wb_cycle_remarks *remarks,
+                                   const struct wb_dataset *const *datasets, int n)
+{
+    for (int i = 0; i < n; i++) {
+        struct loading loading = {.dataset = datasets[i]};
+        const size_t most = datasets[i]->n_rows + datasets[i]->n_shape_rows + 1;
+        loading.memory = calloc(most, sizeof *loading.memory);
+        if (!loading.memory)
+            return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows", most);
+        look_at_loading(&loading);
+        /* The plainest first: a wrong unit makes everything that follows look wrong. */
+        const bool told =
+            loading.n > 0 && (check_deflections(remarks, &loading) ||
+                              check_forces(remarks, &loading) || check_length(remarks, &loading));
+        free(loading.memory);
+        if (!told)
+            WB_TRY(check_points(remarks, datasets[i]));
+    }
+    return WB_OK;
+}
+
+/* --- fits --- */
+
+struct specimen {
+    const struct wb_cycle_member *member;
+    const struct wb_cycle_data *data;
+    const struct wb_dataset *dataset;
+    const struct wb_cycle_fit *fit; /* of the chosen law */
+    const char *wire;
+    int sample;
+};
+
+/* The bow of the alignment and its standard deviation, m; false where it gave none. */
+static bool aligned_bow(const struct wb_dataset *dataset, double *bow, double *deviation)
+{
+    const struct wb_test_info *const info = &dataset->info;
+    const struct wb_json *const checks =
+        dataset->document ? wb_json_get(dataset->document, "checks") : NULL;
+    const struct wb_json *const shape = checks ? wb_json_get(checks, "natural_shape") : NULL;
+    double told;
+    *bow = 0.0;
+    for (int i = 0; i < info->n_natural_shape; i++)
+        *bow += info->natural_shape[i] * info->length / (i + 2);
+    *deviation = shape && wb_json_get_number(shape, "bow_uncertainty_mm", &told) && told > 0.0
+                     ? told * WB_MM
+                     : bow_deviation;
+    return info->n_natural_shape > 0;
+}
+
+/* The tension that the fitted law gives at zero deflection; NaN where the beam does not get there.
+ */
+static enum wb_status computed_zero(const struct specimen *specimen, double *tension)
+{
+    struct wb_cycle_point zero = {.deflection = 0.0};
+    struct wb_cycle_data one = *specimen->data;
+    const struct wb_cycle_model_settings settings = {0, 0};
+    const struct wb_cycle_specimen own = {specimen->fit->bow_angle, specimen->fit->level,
+                                          specimen->fit->uneven_angle};
+    struct wb_cycle_model *model;
+    struct wb_cycle_run run;
+    one.points = &zero;
+    one.n_points = one.n_loading = 1;
+    one.n_places = 0;
+    *tension = (double)NAN;
+    WB_TRY(wb_cycle_model_create(&model, &one, &specimen->fit->law, &settings));
+    const enum wb_status status =
+        wb_cycle_model_run(model, &specimen->fit->law, &own, tension, NULL, &run);
+    wb_cycle_model_destroy(model);
+    return status;
+}
+
+static void check_natural_shape(struct wb_cycle_remarks *remarks, const struct specimen *s)
+{
+    const struct wb_cycle_bow bow = wb_cycle_fit_bow(s->fit, s->dataset->info.length);
+    if (s->dataset->info.n_natural_shape > 0)
+        return;
+    say(remarks, WB_CHECK_NOTE, s->sample,
+        "wire '%s', sample %d: the dataset has no natural shape; the fit found a bow of %.2f mm "
+        "(standard error %.2f mm) by itself, but nothing confirms it: align the recording again",
+        s->wire, s->sample, bow.tip / WB_MM, bow.deviation / WB_MM);
+}
+
+static void check_travel(struct wb_cycle_remarks *remarks, const struct specimen *s)
+{
+    const double length = s->dataset->info.length, share = s->data->top / length;
+    if (share >= full_travel)
+        return;
+    say(remarks, share < short_travel ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
+        "wire '%s', sample %d: the travel ends at %.1f mm, %.2f of the length: EI may be used "
+        "(to some 15 %%), K and n are not identifiable, and beyond a curvature of %.1f /m the law "
+        "is not known; expected %.2f of the length: a travel of %.0f mm would mend it",
+        s->wire, s->sample, s->data->top / WB_MM, share, s->fit->clamp_curvature, full_travel,
+        ceil(full_travel * length / WB_MM));
+}
+
+static void check_outliers(struct wb_cycle_remarks *remarks, const struct specimen *s)
+{
+    long rows = s->data->n_outliers;
+    for (int i = 0; i < s->data->n_points; i++)
+        rows += s->data->points[i].n_rows;
+    if (s->data->n_outliers == 0 && s->fit->n_outliers == 0)
+        return;
+    const bool many = s->data->n_outliers > outlier_share * (double)rows;
+    say(remarks, many ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
+        "wire '%s', sample %d: %d of %ld rows were left out as outliers, %d of %d points weighted "
+        "down%s",
+        s->wire, s->sample, s->data->n_outliers, rows, s->fit->n_outliers, s->data->n_points,
+        many ? ": expected at most 2 % of the rows; look for knocks, a loose plug, lost markers"
+             : "");
+}
+
+static void check_misfit(struct wb_cycle_remarks *remarks, const struct specimen *s)
+{
+    double sum = 0.0;
+    for (int i = 0; i < s->data->n_points; i++)
+        sum += pow(s->data->points[i].deviation / s->data->max_force, 2);
+    const double noise = sqrt(sum / s->data->n_points);
+    if (s->fit->misfit <= fmax(misfit_share, misfit_noise * noise))
+        return;
+    say(remarks, WB_CHECK_DOUBT, s->sample,
+        "wire '%s', sample %d: the best law misses the force by %.2f %% of the largest (loading "
+        "%.2f, unloading %.2f), expected at most %.2f %%: slip in the clamp, creep, a wrong length "
+        "or zero, or a wire that no law here describes; look at the residuals and test another "
+        "specimen",
+        s->wire, s->sample, 100.0 * s->fit->misfit, 100.0 * s->fit->loading_misfit,
+        100.0 * s->fit->unloading_misfit, 100.0 * fmax(misfit_share, misfit_noise * noise));
+}
+
+/* Refits with other lengths, longer where the level is too high. *better is the length that fits
+ * clearly better; 0: none. */
+static enum wb_status find_length(const struct specimen *s, double *better)
+{
+    const struct wb_cycle_answer *const answers = s->member->answers;
+    const enum wb_candidate candidate = answers[WB_CANDIDATE_LUDWIK_KINEMATIC].is_fitted
+                                            ? WB_CANDIDATE_LUDWIK_KINEMATIC
+                                            : WB_CANDIDATE_LUDWIK_ISOTROPIC;
+    const struct wb_cycle_grid none = {0.0, 0.0};
+    struct wb_cycle_fit_settings settings;
+    const struct wb_cycle_fit *const labelled = &answers[candidate].fit;
+    double least = better_fit * labelled->misfit;
+
+    *better = 0.0;
+    if (!answers[candidate].is_fitted)
+        return WB_OK;
+    wb_cycle_fit_default_settings(&settings);
+    for (size_t i = 0; i < sizeof other_lengths / sizeof other_lengths[0]; i++) {
+        const double ratio = labelled->level > 0.0 ? other_lengths[i] : 1.0 / other_lengths[i];
+        struct wb_cycle_data data = *s->data;
+        struct wb_law start = labelled->law;
+        struct wb_cycle_fit fit;
+        struct wb_reason why;
+        data.info.length *= ratio;
+        /* The same stiffness and yield force of the longer wire. */
+        start.material.youngs_modulus *= pow(ratio, 3);
+        start.material.yield_stress *= ratio;
+        const enum wb_status status =
+            wb_cycle_fit_run(&fit, &data, candidate, &start, &none, &settings, &why);
+        if (status == WB_ERR_MEMORY)
+            return status;
+        if (status != WB_OK)
+            continue;
+        if (fit.misfit < least && fabs(fit.level) < better_level * fabs(labelled->level)) {
+            least = fit.misfit;
+            *better = data.info.length;
+        }
+        wb_cycle_fit_release(&fit);
+    }
+    return WB_OK;
+}
+
+/* Level, force at zero deflection and bow hang together: a wrong zero of force or counterweight
+ * moves all three, a wrong zero of deflection leaves the bow. */
+static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct specimen *s,
+                                  bool length_is_seen)
+{
+    const struct wb_cycle_data *const data = s->data;
+    const double length = data->info.length, level = s->fit->level;
+    const struct wb_cycle_bow bow = wb_cycle_fit_bow(s->fit, length);
+    double zero, bow_before, deviation, better = 0.0;
+
+    WB_TRY(computed_zero(s, &zero));
+    /* Behind the first points, where the strand still takes the load over from the rest. */
+    const struct wb_cycle_point *const low = &data->points[3], *const high = &data->points[7];
+    const double stiffness = (high->tension - low->tension) / (high->deflection - low->deflection);
+    /* Nothing is wrong that the level may explain. */
+    const double limit =
+        fmax(zero_share * data->max_force, level_limit * level_deviation * fmax(stiffness, 0.0));
+    const bool has_bow = aligned_bow(s->dataset, &bow_before, &deviation);
+    const double apart = fabs(bow.tip - bow_before) / hypot(deviation, bow.deviation);
+    const bool bow_off = has_bow && apart > bow_limit;
+    const bool zero_off =
+        zero > slack && data->zero_tension > slack && fabs(data->zero_tension - zero) > limit;
+    const bool level_off =
+        fabs(level) > (bow_off ? level_limit_with_bow : level_limit) * level_deviation;
+    if (!level_off && !zero_off) {
+        if (bow_off)
+            say(remarks, WB_CHECK_NOTE, s->sample,
+                "wire '%s', sample %d: the bow of the alignment is %.2f mm, that of the fit %.2f "
+                "mm, %.1f standard deviations apart, expected at most %g; force and level at zero "
+                "agree with the fit's",
+                s->wire, s->sample, bow_before / WB_MM, bow.tip / WB_MM, apart, bow_limit);
+        return WB_OK;
+    }
+    if (!length_is_seen)
+        WB_TRY(find_length(s, &better));
+    if (better > 0.0) {
+        say(remarks, WB_CHECK_DOUBT, s->sample,
+            "wire '%s', sample %d: a length of about %.0f mm fits clearly better than the %g mm "
+            "it is labelled with: measure it; EI goes with the cube of the length",
+            s->wire, s->sample, better / WB_MM, length / WB_MM);
+        return WB_OK;
+    }
+    char bows[160] = "";
+    if (has_bow)
+        snprintf(bows, sizeof bows,
+                 "; bow %.2f mm, %.2f mm by the alignment (%.1f standard "
+                 "deviations apart, expected at most %g)",
+                 bow.tip / WB_MM, bow_before / WB_MM, apart, bow_limit);
+    say(remarks, WB_CHECK_DOUBT, s->sample,
+        "wire '%s', sample %d: %s is wrong: at zero deflection the tension is %.2f mN, the law's "
+        "%.2f mN (expected within %.2f mN), and zero deflection lies %.2f mm off (expected within "
+        "%.1f mm)%s; %s%s",
+        s->wire, s->sample,
+        bow_off ? "the zero of force or the counterweight" : "the zero of deflection, or of force,",
+        data->zero_tension / WB_MN, zero / WB_MN, limit / WB_MN, level / WB_MM,
+        level_limit * level_deviation / WB_MM, bows,
+        bow_off ? "weigh the counterweight, tare the cell with nothing on it and record again"
+                : "look at the markers of clamp and tip and their offset from the axis, then at "
+                  "tare and counterweight",
+        s->fit->misfit > largest_followed
+            ? "; where all specimens say so, the law itself may not follow this wire"
+            : "");
+    return WB_OK;
+}
+
+static bool is_length_seen(const struct wb_dataset *dataset)
+{
+    if (dataset->n_shape_rows > 0)
+        return true;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        if (isfinite(dataset->rows[i].tip_x))
+            return true;
+    }
+    return false;
+}
+
+/* --- specimens against each other --- */
+
+static double ln_rigidity(const struct wb_cycle_calibration *calibration, int i)
+{
+    return log(calibration->members[i].answers[calibration->chosen].bending.flexural_rigidity);
+}
+
+static void check_others(struct wb_cycle_remarks *remarks,
+                         const struct wb_cycle_calibration *calibration)
+{
+    const int n = calibration->n_members;
+    const char *const wire = calibration->members[0].data.info.wire;
+    if (n == 1) {
+        say(remarks, WB_CHECK_NOTE, 0,
+            "wire '%s': one sample (%d) says nothing of how specimens differ: there is no interval "
+            "for the product; test at least three",
+            wire, calibration->members[0].sample);
+        return;
+    }
+    if (n == 2) {
+        const double apart = ln_rigidity(calibration, 0) - ln_rigidity(calibration, 1);
+        if (fabs(apart) > rigidity_limit * M_SQRT2 * least_deviation)
+            say(remarks, WB_CHECK_DOUBT, 0,
+                "wire '%s': EI of samples %d and %d differ by %.0f %%, expected at most %.0f %%: "
+                "is one of another wire, or its length wrong? A third will tell which",
+                wire, calibration->members[0].sample, calibration->members[1].sample,
+                100.0 * expm1(fabs(apart)),
+                100.0 * expm1(rigidity_limit * M_SQRT2 * least_deviation));
+        return;
+    }
+    /* Each against all others, without itself: one that is far off hides in a common deviation. The
+     * farthest is told; beside it the others would look odd. */
+    int farthest = -1;
+    double most = rigidity_limit, off = 0.0, allowed = 0.0;
+    for (int i = 0; i < n; i++) {
+        double sum = 0.0, squares = 0.0;
+        for (int k = 0; k < n; k++) {
+            const double x = ln_rigidity(calibration, k);
+            sum += k == i ? 0.0 : x;
+            squares += k == i ? 0.0 : x * x;
+        }
+        const double mean = sum / (n - 1);
+        const double own = sqrt(fmax(0.0, squares - (n - 1) * mean * mean) / (n - 2));
+        const double deviation = fmax(own, least_deviation);
+        const double away = ln_rigidity(calibration, i) - mean;
+        if (fabs(away) / deviation > most) {
+            most = fabs(away) / deviation;
+            farthest = i;
+            off = away;
+            allowed = rigidity_limit * deviation;
+        }
+    }
+    if (farthest >= 0)
+        say(remarks, WB_CHECK_DOUBT, calibration->members[farthest].sample,
+            "wire '%s', sample %d: EI is %.0f %% %s than the others', expected within %.0f %%: is "
+            "it of this wire, its length right, and clamped as the others? Leave it out or test it "
+            "again",
+            wire, calibration->members[farthest].sample, 100.0 * fabs(expm1(off)),
+            off > 0.0 ? "higher" : "lower", 100.0 * expm1(allowed));
+}
+
+static void check_holds(struct wb_cycle_remarks *remarks, const struct specimen *s)
+{
+    double seconds;
+    const int n = wb_holds_of_bent_wire(s->dataset, &seconds);
+    if (n > 0)
+        say(remarks, WB_CHECK_DOUBT, s->sample,
+            "wire '%s', sample %d: the test was held %d time%s, for %.0f s in all, while the wire "
+            "was bent: it relaxed, and no law here knows of that. Leave it out or test it again "
+            "without a hold",
+            s->wire, s->sample, n, n == 1 ? "" : "s", seconds);
+}
+
+enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
+                                  const struct wb_cycle_calibration *calibration,
+                                  const struct wb_dataset *const *datasets)
+{
+    const char *const wire = calibration->members[0].data.info.wire;
+    if (!calibration->has_unloading)
+        say(remarks, WB_CHECK_NOTE, 0,
+            "wire '%s': there is no way back in the data of all specimens: the hardening rule is "
+            "untested and EI known poorly; record the return to zero force too",
+            wire);
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_member *const member = &calibration->members[i];
+        const struct specimen specimen = {
+            .member = member,
+            .data = &member->data,
+            .dataset = datasets[i],
+            .fit = &member->answers[calibration->chosen].fit,
+            .wire = wire,
+            .sample = member->sample,
+        };
+        check_travel(remarks, &specimen);
+        check_holds(remarks, &specimen);
+        check_natural_shape(remarks, &specimen);
+        WB_TRY(check_zeros(remarks, &specimen, is_length_seen(datasets[i])));
+        check_misfit(remarks, &specimen);
+        check_outliers(remarks, &specimen);
+    }
+    check_others(remarks, calibration);
+    return WB_OK;
+}
+
+enum wb_status wb_cycle_check_calibrate(struct wb_cycle_calibration *calibration,
+                                        struct wb_cycle_remarks *remarks,
+                                        const struct wb_dataset *const *datasets, int n,
+                                        const struct wb_cycle_calibrate_settings *settings,
+                                        struct wb_reason *why)
+{
+    *remarks = (struct wb_cycle_remarks){.n = 0};
+    *calibration = (struct wb_cycle_calibration){.n_members = 0};
+    WB_TRY(wb_cycle_check_data(remarks, datasets, n));
+    WB_TRY(wb_cycle_check_refuse(remarks, why));
+    WB_TRY(wb_cycle_calibrate_run(calibration, datasets, n, settings, why));
+    enum wb_status status = wb_cycle_check_run(remarks, calibration, datasets);
+    if (status == WB_OK)
+        status = wb_cycle_check_refuse(remarks, why);
+    if (status != WB_OK)
+        wb_cycle_calibrate_release(calibration);
+    return status;
+}
+
+void wb_cycle_check_put(struct wb_json *array, const struct wb_cycle_remarks *remarks)
+{
+    for (int i = 0; i < remarks->n; i++) {
+        const struct wb_cycle_remark *const remark = &remarks->items[i];
+        struct wb_json *const item = wb_json_append_object(array);
+        wb_json_set_text(item, "severity", wb_cycle_check_severity_name(remark->severity));
+        wb_json_set_number(item, "sample", remark->sample > 0 ? remark->sample : (double)NAN);
+        wb_json_set_text(item, "text", remark->text);
+    }
+}

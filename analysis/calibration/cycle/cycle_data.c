@@ -1,0 +1,491 @@
+#include "analysis/calibration/cycle/cycle_data.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/dataset/fit.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "cycle"
+
+enum {
+    FEWEST_ROWS = 4,   /* in a bin */
+    FEWEST_POINTS = 8, /* of a loading */
+    MOST_MARKERS = 64,
+    MOST_POINTS = 4000
+};
+
+/* Rows farther from the line than this many standard deviations of the others are left out. */
+static const double far_off = 4.5;
+/* A single row can be so far off that it tilts the line and hides behind it. Rows this many
+ * standard deviations off a line by medians, which none of them tilts, never enter; the medians of
+ * a few rows are rough, hence the wide berth. */
+static const double out_of_bounds = 15.0;
+
+const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS] = {
+    {.name = "data_step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, step),
+     .scale = WB_MM,
+     .least = 0.1,
+     .largest = 20.0,
+     .fallback = 1.0,
+     .option = "data-step-mm",
+     .argument = "H",
+     .help = "Deflection step of the points"},
+    {.name = "fine_step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, fine_step),
+     .scale = WB_MM,
+     .least = 0.05,
+     .largest = 20.0,
+     .fallback = 0.5,
+     .option = "fine-step-mm",
+     .argument = "H",
+     .help = "Step of the first points of either way"},
+    {.name = "fine_reach_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, fine_reach),
+     .scale = WB_MM,
+     .least = 0.1,
+     .largest = 1e3,
+     .fallback = 4.0,
+     .option = "fine-reach-mm",
+     .argument = "D",
+     .help = "How far the fine step goes"},
+    {.name = "turn_distance_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, turn_distance),
+     .scale = WB_MM,
+     .least = 0.01,
+     .largest = 100.0,
+     .fallback = 0.5,
+     .option = "turn-distance-mm",
+     .argument = "D",
+     .help = "Distance below the turn where the way back begins"},
+    {.name = "smallest_tension_mN",
+     .unit = "mN",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, smallest_tension),
+     .scale = 1e-3,
+     .least = 1e-3,
+     .largest = 1e6,
+     .fallback = 2.5,
+     .option = "smallest-tension-mn",
+     .argument = "F",
+     .help = "Tension at which the way back ends"},
+    {.name = "marker_step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, marker_step),
+     .scale = WB_MM,
+     .least = 0.1,
+     .largest = 1e3,
+     .fallback = 4.0,
+     .option = "marker-step-mm",
+     .argument = "H",
+     .help = "Deflection step of the markers' places"},
+};
+
+/* Rows of a way in their order; room for all of a test's. */
+struct rows {
+    size_t n;
+    double *x, *y;  /* deflection and tension; or what else is drawn over the deflection */
+    double *smooth; /* deflection with less noise, by which rows are put into bins */
+    double *sorted; /* workspace */
+    size_t n_line;
+    double *line_x, *line_y; /* (n_line) what a line was drawn through last, less the means */
+};
+
+static bool take_memory(struct rows *rows, size_t most)
+{
+    double *const memory = calloc(6 * (most + 1), sizeof *memory);
+    *rows = (struct rows){.x = memory,
+                          .y = memory + (most + 1),
+                          .smooth = memory + 2 * (most + 1),
+                          .sorted = memory + 3 * (most + 1),
+                          .line_x = memory + 4 * (most + 1),
+                          .line_y = memory + 5 * (most + 1)};
+    return memory;
+}
+
+/* A line by medians: the slope of rows half the stretch apart, then the height. Returns the median
+ * distance of rows from it, as a standard deviation. */
+static double rough_line(struct rows *rows, size_t begin, size_t end, struct wb_fit_line *line)
+{
+    const size_t n = end - begin, half = n / 2;
+    size_t pairs = 0;
+    for (size_t i = begin; i + half < end; i++) {
+        const double dx = rows->x[i + half] - rows->x[i];
+        if (dx != 0.0)
+            rows->sorted[pairs++] = (rows->y[i + half] - rows->y[i]) / dx;
+    }
+    line->slope = pairs > 0 ? wb_fit_median(rows->sorted, pairs) : 0.0;
+    for (size_t i = begin; i < end; i++)
+        rows->sorted[i - begin] = rows->y[i] - line->slope * rows->x[i];
+    line->value = wb_fit_median(rows->sorted, n);
+    for (size_t i = begin; i < end; i++)
+        rows->sorted[i - begin] = fabs(rows->y[i] - line->slope * rows->x[i] - line->value);
+    return 1.4826 * wb_fit_median(rows->sorted, n);
+}
+
+/* Rows from `begin` to `end` without those far off a straight line of y over x. Their means belong
+ * together whatever the noise of x is, which would make a line's value at a given x too flat.
+ * Returns how many are left; *error is that of the mean of y for the mean of x. */
+static size_t mean_of(struct rows *rows, size_t begin, size_t end, double *x, double *y,
+                      double *error)
+{
+    struct wb_fit_line line = {0};
+    double mean_x = 0.0, mean_y = 0.0;
+    size_t kept = 0;
+
+    if (end < begin + FEWEST_ROWS)
+        return 0;
+    for (int pass = 0; pass < 3; pass++) {
+        double limit;
+        if (pass == 0) {
+            limit = out_of_bounds * rough_line(rows, begin, end, &line);
+        } else {
+            for (size_t i = begin; i < end; i++)
+                rows->sorted[i - begin] =
+                    fabs(rows->y[i] - mean_y - line.slope * (rows->x[i] - mean_x) - line.value);
+            limit = far_off * 1.4826 * wb_fit_median(rows->sorted, end - begin);
+        }
+        double sum_x = 0.0, sum_y = 0.0;
+        const double center_x = mean_x, center_y = mean_y;
+        kept = 0;
+        for (size_t i = begin; i < end; i++) {
+            const double off =
+                rows->y[i] - center_y - line.slope * (rows->x[i] - center_x) - line.value;
+            if (fabs(off) > limit)
+                continue;
+            rows->line_x[kept] = rows->x[i];
+            rows->line_y[kept++] = rows->y[i];
+            sum_x += rows->x[i];
+            sum_y += rows->y[i];
+        }
+        if (kept < FEWEST_ROWS)
+            return 0;
+        mean_x = sum_x / (double)kept;
+        mean_y = sum_y / (double)kept;
+        for (size_t i = 0; i < kept; i++) {
+            rows->line_x[i] -= mean_x;
+            rows->line_y[i] -= mean_y;
+        }
+        if (!wb_fit_line(rows->line_x, rows->line_y, kept, &line))
+            return 0;
+    }
+    *x = mean_x;
+    *y = mean_y;
+    *error = line.residual / sqrt((double)kept);
+    rows->n_line = kept;
+    return kept;
+}
+
+static bool is_on_way(const struct wb_row *row, int cycle, bool unloading)
+{
+    return row->cycle == cycle && row->phase == (unloading ? WB_PHASE_UNLOAD : WB_PHASE_LOAD) &&
+           isfinite(row->deflection) && isfinite(row->tension);
+}
+
+/* Slope of y over x of the rows that mean_of() left. */
+static double slope_of(const struct rows *rows)
+{
+    double xx = 0.0, xy = 0.0;
+    for (size_t i = 0; i < rows->n_line; i++) {
+        xx += rows->line_x[i] * rows->line_x[i];
+        xy += rows->line_x[i] * rows->line_y[i];
+    }
+    return xx > 0.0 ? xy / xx : 0.0;
+}
+
+/* Takes the rows of a way and smooths their deflection over half a fine step. */
+static void gather(struct rows *rows, const struct wb_dataset *dataset, int cycle, bool unloading,
+                   double fine_step)
+{
+    double low = (double)INFINITY, high = -(double)INFINITY;
+    rows->n = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (!is_on_way(row, cycle, unloading))
+            continue;
+        rows->x[rows->n] = row->deflection;
+        rows->y[rows->n++] = row->tension;
+        low = fmin(low, row->deflection);
+        high = fmax(high, row->deflection);
+    }
+    const double in_step = (double)rows->n * fine_step / (high - low);
+    const size_t half = (size_t)fmin(fmax(0.25 * in_step, 0.0), 50.0);
+    for (size_t i = 0; i < rows->n; i++) {
+        const size_t reach = i < half ? i : rows->n - 1 - i < half ? rows->n - 1 - i : half;
+        double sum = 0.0;
+        for (size_t k = i - reach; k <= i + reach; k++)
+            sum += rows->x[k];
+        rows->smooth[i] = sum / (double)(2 * reach + 1);
+    }
+}
+
+/* A point of each bin on a way from `first` to `last`: bins of the fine step at first, where the
+ * wire is elastic and its stiffness changes least, then of the step. */
+static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dataset,
+                        struct rows *rows, const struct wb_cycle_data_settings *s, double first,
+                        double last)
+{
+    const bool unloading = last < first;
+    const double sense = unloading ? -1.0 : 1.0;
+    double done = 0.0, step = s->fine_step;
+    size_t begin = 0;
+
+    gather(rows, dataset, s->cycle, unloading, s->fine_step);
+    while (data->n_points < MOST_POINTS) {
+        step = done < s->fine_reach - 1e-9 ? s->fine_step : s->step;
+        if (done + step > fabs(last - first) + 1e-9)
+            return;
+        while (begin < rows->n && sense * (rows->smooth[begin] - first) < done)
+            begin++;
+        done += step;
+        size_t end = begin;
+        while (end < rows->n && sense * (rows->smooth[end] - first) < done)
+            end++;
+        struct wb_cycle_point point = {.is_unloading = unloading};
+        const size_t kept =
+            mean_of(rows, begin, end, &point.deflection, &point.tension, &point.deviation);
+        if (kept == 0)
+            continue;
+        if (unloading && point.tension < s->smallest_tension)
+            return;
+        point.n_rows = (int)kept;
+        data->n_outliers += (int)(end - begin - kept);
+        data->points[data->n_points++] = point;
+        begin = end;
+    }
+}
+
+/* The same of a simulation: each row is a point. Without a strand its force may push. */
+static void take_rows(struct wb_cycle_data *data, const struct wb_dataset *dataset,
+                      struct rows *rows, const struct wb_cycle_data_settings *s, double first,
+                      double last)
+{
+    const bool unloading = last < first;
+    const double least = fmin(first, last) + (unloading ? 0.0 : 0.5 * s->fine_step);
+    (void)rows;
+    for (size_t i = 0; i < dataset->n_rows && data->n_points < MOST_POINTS; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (is_on_way(row, s->cycle, unloading) && row->deflection >= least - 1e-9 &&
+            row->deflection <= fmax(first, last) + 1e-9)
+            data->points[data->n_points++] = (struct wb_cycle_point){.deflection = row->deflection,
+                                                                     .tension = row->tension,
+                                                                     .is_unloading = unloading,
+                                                                     .n_rows = 1};
+    }
+}
+
+static double turn_of(const struct wb_dataset *dataset, int cycle)
+{
+    double top = -HUGE_VAL;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        if (is_on_way(&dataset->rows[i], cycle, false))
+            top = fmax(top, dataset->rows[i].deflection);
+    }
+    return top;
+}
+
+/* Tension where the deflection crosses zero, on the first loading. */
+static double tension_at_zero(const struct wb_dataset *dataset)
+{
+    double sum = 0.0;
+    long n = 0;
+    /* The alignment subtracted it from the vertical part of the tension. Near zero deflection the
+     * strand hangs straight down and the two are the same. */
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (!is_on_way(row, 1, false) || !isfinite(row->force) ||
+            !(fabs(row->deflection) < 2 * WB_MM))
+            continue;
+        sum += row->tension - row->force;
+        n++;
+    }
+    return n > 0 ? sum / (double)n : 0.0;
+}
+
+/* Where the way back crosses the tension of zero deflection. */
+static double residual_of(const struct wb_cycle_data *data)
+{
+    for (int i = data->n_loading; i + 1 < data->n_points; i++) {
+        const struct wb_cycle_point *const a = &data->points[i], *const b = a + 1;
+        if (a->tension >= data->zero_tension && b->tension < data->zero_tension)
+            return b->deflection + (a->deflection - b->deflection) *
+                                       (data->zero_tension - b->tension) /
+                                       (a->tension - b->tension);
+    }
+    return (double)NAN;
+}
+
+/* Places of inner markers at every few points: lines of x and y over the deflection through the
+ * frames around. */
+static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dataset,
+                        struct rows *rows, const struct wb_cycle_data_settings *s)
+{
+    enum {
+        AXES = 2
+    };
+    const double length = data->info.length;
+    double arc[MOST_MARKERS];
+    int markers[MOST_MARKERS], n = 0;
+
+    for (size_t i = 0; i < dataset->n_shape_rows; i++) {
+        const struct wb_shape_row *const row = &dataset->shape_rows[i];
+        bool known = !(row->s > 0.01 * length && row->s < 0.99 * length);
+        for (int k = 0; k < n && !known; k++)
+            known = markers[k] == row->marker;
+        if (known || n == MOST_MARKERS)
+            continue;
+        markers[n] = row->marker;
+        arc[n++] = row->s;
+    }
+    /* The time of the turn tells the frames of the way back. */
+    double turn = (double)INFINITY;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        if (is_on_way(&dataset->rows[i], 1, true)) {
+            turn = dataset->rows[i].t;
+            break;
+        }
+    }
+    double end = (double)INFINITY;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        if (dataset->rows[i].cycle > 1) {
+            end = dataset->rows[i].t;
+            break;
+        }
+    }
+    double next = 0.0;
+    for (int p = 0; p < data->n_points; p++) {
+        const struct wb_cycle_point *const point = &data->points[p];
+        const double way = point->is_unloading ? data->top - point->deflection : point->deflection;
+        if (p == 0 || p == data->n_loading)
+            next = 0.0;
+        if (way < next)
+            continue;
+        next = way + s->marker_step;
+        for (int m = 0; m < n; m++) {
+            struct wb_cycle_place place = {.point = p, .marker = m, .s = arc[m]};
+            double value[AXES], at, error;
+            bool good = true;
+            for (int axis = 0; axis < AXES && good; axis++) {
+                rows->n = 0;
+                for (size_t i = 0; i < dataset->n_shape_rows; i++) {
+                    const struct wb_shape_row *const row = &dataset->shape_rows[i];
+                    if (row->marker != markers[m] || (row->t >= turn) != point->is_unloading ||
+                        row->t >= end ||
+                        !(fabs(row->deflection - point->deflection) < 1.6 * s->step))
+                        continue;
+                    rows->x[rows->n] = row->deflection;
+                    rows->y[rows->n++] = axis == 0 ? row->x : row->y;
+                }
+                good = mean_of(rows, 0, rows->n, &at, &value[axis], &error) > 0;
+                /* A marker moves a part of what the tip does; over so short a way in a line. */
+                if (good)
+                    value[axis] += slope_of(rows) * (point->deflection - at);
+            }
+            if (!good)
+                continue;
+            place.x = value[0];
+            place.y = value[1];
+            data->places[data->n_places++] = place;
+        }
+    }
+    data->n_markers = n;
+}
+
+/* What is given, and the default of what is 0. */
+static struct wb_cycle_data_settings filled(const struct wb_cycle_data_settings *given)
+{
+    const struct wb_setting_table table = {.rows = wb_cycle_data_rows, .n = WB_CYCLE_DATA_ROWS};
+    struct wb_cycle_data_settings all;
+    wb_setting_fill(&table, &all);
+    for (size_t i = 0; i < table.n; i++) {
+        const size_t at = table.rows[i].offset;
+        if (wb_setting_is_given(&table.rows[i], given))
+            memcpy((char *)&all + at, (const char *)given + at, sizeof(double));
+    }
+    return all;
+}
+
+static enum wb_status take(struct wb_cycle_data *data, const struct wb_dataset *dataset,
+                           struct rows *rows, const struct wb_cycle_data_settings *given,
+                           struct wb_reason *why)
+{
+    struct wb_cycle_data_settings s = filled(given);
+    s.cycle = given->cycle > 0 ? given->cycle : 1;
+    const char *const wire = data->info.wire;
+
+    data->top = turn_of(dataset, s.cycle);
+    if (!(data->top > 0.0))
+        return wb_fail_to(why, WB_ERR_DATA, "wire '%s', sample %d: cycle %d has no loading", wire,
+                          data->info.sample, s.cycle);
+    data->zero_tension = tension_at_zero(dataset);
+    void (*const way)(struct wb_cycle_data *, const struct wb_dataset *, struct rows *,
+                      const struct wb_cycle_data_settings *, double, double) =
+        data->info.is_simulation ? take_rows : take_points;
+    way(data, dataset, rows, &s, 0.0, data->top);
+    data->n_loading = data->n_points;
+    if (data->n_loading < FEWEST_POINTS)
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s', sample %d: the loading of cycle %d makes %d points of %g mm: "
+                          "expected at least %d",
+                          wire, data->info.sample, s.cycle, data->n_loading, s.step / WB_MM,
+                          FEWEST_POINTS);
+    way(data, dataset, rows, &s, data->top - s.turn_distance, 0.0);
+    if (data->n_points - data->n_loading < FEWEST_POINTS)
+        data->n_points = data->n_loading;
+    for (int i = 0; i < data->n_points; i++)
+        data->max_force = fmax(data->max_force, data->points[i].tension - data->zero_tension);
+    if (!(data->max_force > 0.0))
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s', sample %d: the tension does not rise with the deflection: "
+                          "expected a loading",
+                          wire, data->info.sample);
+    data->residual_deflection = residual_of(data);
+    if (s.cycle == 1)
+        take_places(data, dataset, rows, &s);
+    return WB_OK;
+}
+
+enum wb_status wb_cycle_data_take(struct wb_cycle_data *data, const struct wb_dataset *dataset,
+                                  const struct wb_cycle_data_settings *settings,
+                                  struct wb_reason *why)
+{
+    const struct wb_cycle_data_settings defaults = {0};
+    struct rows rows;
+    *data = (struct wb_cycle_data){.info = dataset->info};
+    if (dataset->info.is_follower || dataset->info.is_general)
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s', sample %d: the tip is not raised by a strand or a vertical "
+                          "force: expected such a test",
+                          dataset->info.wire, dataset->info.sample);
+    const size_t most = dataset->n_rows + dataset->n_shape_rows;
+    data->points = calloc(MOST_POINTS, sizeof *data->points);
+    data->places = calloc(dataset->n_shape_rows + 1, sizeof *data->places);
+    if (!data->points || !data->places || !take_memory(&rows, most)) {
+        wb_cycle_data_release(data);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", most);
+    }
+    const enum wb_status status = take(data, dataset, &rows, settings ? settings : &defaults, why);
+    free(rows.x);
+    if (status != WB_OK)
+        wb_cycle_data_release(data);
+    return status;
+}
+
+void wb_cycle_data_release(struct wb_cycle_data *data)
+{
+    free(data->points);
+    free(data->places);
+    *data = (struct wb_cycle_data){0};
+}

@@ -1,0 +1,1028 @@
+#include "analysis/calibration/cycle/cycle_fit.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_matrix.h>
+#include <gsl/gsl_multifit_nlinear.h>
+
+#include "analysis/calibration/cycle/cycle_model.h"
+#include "analysis/dataset/fit.h"
+#include "analysis/dataset/least_squares.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "cycle"
+
+/* Plastic strain at which the hardening stress of Ludwik's law is a free number: amidst those of a
+ * test, where it is known best. */
+static const double middle_plastic_strain = 3e-3;
+/* Largest exponents. */
+static const double largest_exponent = 1.5;           /* isotropic */
+static const double largest_kinematic_exponent = 1.0; /* beyond, work would come from nowhere */
+/* A logistic number beyond this is at its bound. */
+static const double at_bound = 4.6; /* 1 % of the range */
+/* Where the logistic share of mixed hardening starts from a law with a pure rule. Parts that
+ * follow a test kinematically lie nearer to those with both rules than Ludwik's isotropic law. */
+static const double kinematic_start = -3.0, isotropic_start = 1.5;
+/* Weak prior of logistic numbers, so that one that the data do not know stays finite. */
+static const double logistic_prior = 4.0;
+/* Weak prior of ln(yield stress) beside that of the hardening stress: a step of the search that
+ * takes the yield stress to nothing is none that it comes back from, as all slopes are zero there.
+ */
+static const double yield_prior = 4.0;
+/* Steps of the differences that give the slopes, in units of the free numbers' scales. */
+static const double difference = 1e-3;
+/* Slopes are carried on over a step (Broyden 1965) where they foretold the change of the residuals
+ * up to this part of it. */
+static const double foretold = 0.3;
+/* Over a step that changes no number by more than this they stay as they are. */
+static const double near = 0.03;
+/* Huber's limit and where a point counts as an outlier, in standard deviations of the residuals. */
+static const double huber_limit = 2.5;
+/* It has arrived when the next step changes no number by more than this, or the sum of squares by
+ * less than this part. */
+static const double arrived = 2e-4;
+static const double settled_sum = 1e-4;
+/* A gain of an iteration below this part is too slow for a fit that is far off. */
+static const double slow_gain = 0.1;
+static const int first_judged = 3;
+/* Where a group of residuals is left out, a number that nothing else tells stays finite by a prior
+ * of this weight; and a standard error is at least the root of this. Units of the free numbers. */
+static const double know_nothing = 1e-6, surest = 1e-12;
+/* A law is moved by this many standard errors, and no number by more than that: a part that is
+ * nearly nothing grows by powers over a whole one, which the errors to first order mean nothing of.
+ */
+static const double moved_by = 0.01, farthest = 1.0;
+/* Residual of a run that does not reach its end: far above any other. */
+static const double lost_residual = 1e4;
+
+struct candidate {
+    const char *name;
+    enum wb_law_form form;
+    bool is_mixed;
+    double isotropic_share;
+};
+
+static const struct candidate candidates[WB_CANDIDATES] = {
+    [WB_CANDIDATE_LUDWIK_ISOTROPIC] = {"Ludwik, isotropic", WB_LAW_LUDWIK, false, 1.0},
+    [WB_CANDIDATE_LUDWIK_KINEMATIC] = {"Ludwik, kinematic", WB_LAW_LUDWIK, false, 0.0},
+    [WB_CANDIDATE_LUDWIK_MIXED] = {"Ludwik, mixed", WB_LAW_LUDWIK, true, 0.5},
+    [WB_CANDIDATE_PARALLEL_KINEMATIC] = {"parallel parts, kinematic", WB_LAW_PARALLEL, false, 0.0},
+    [WB_CANDIDATE_PARALLEL_MIXED] = {"parallel parts, mixed", WB_LAW_PARALLEL, true, 0.5},
+};
+
+const char *wb_candidate_name(enum wb_candidate candidate)
+{
+    return candidates[candidate].name;
+}
+
+#define AT(field) offsetof(struct wb_cycle_fit_settings, field)
+
+const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS] = {
+    {.name = "force_noise_mN",
+     .unit = "mN",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(force_noise),
+     .scale = 1e-3,
+     .least = 1e-6,
+     .largest = 1e6,
+     .fallback = 0.03,
+     .option = "force-noise-mn",
+     .argument = "F",
+     .help = "Noise of a force: a point weighs one over the larger of this and of --force-share"},
+    {.name = "force_share",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(force_share),
+     .least = 1e-6,
+     .largest = 1.0,
+     .fallback = 2e-3,
+     .option = "force-share",
+     .argument = "R",
+     .help = "The same as a part of the largest force"},
+    {.name = "marker_noise_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(place_noise),
+     .scale = WB_MM,
+     .least = 1e-4,
+     .largest = 1e6,
+     .fallback = 0.1,
+     .option = "marker-noise-mm",
+     .argument = "D",
+     .help = "Noise of a marker's place"},
+    {.name = "marker_offset_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(offset_prior),
+     .scale = WB_MM,
+     .least = 1e-4,
+     .largest = 100.0,
+     .fallback = 0.07,
+     .option = "marker-offset-mm",
+     .argument = "D",
+     .help = "Prior of a marker's constant distance from the axis"},
+    {.name = "level_prior_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(level_prior),
+     .scale = WB_MM,
+     .least = 1e-4,
+     .largest = 100.0,
+     .fallback = 0.1,
+     .option = "level-prior-mm",
+     .argument = "D",
+     .help = "Prior of the level of zero deflection"},
+    {.name = "uneven_prior_rad",
+     .unit = "rad",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(uneven_prior),
+     .least = 1e-6,
+     .largest = 10.0,
+     .fallback = 0.05,
+     .option = "uneven-prior-rad",
+     .argument = "A",
+     .help = "Prior of the angle by which a specimen is bent unevenly by nature"},
+    {.name = "modulus_prior",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(modulus_prior),
+     .least = 1e-2,
+     .largest = 1e3,
+     .fallback = 4.0,
+     .option = "modulus-prior",
+     .argument = "X",
+     .help = "Prior of the second differences of the logarithms of the moduli of parts that yield"},
+    {.name = "search_elements",
+     .type = WB_SETTING_INTEGER,
+     .offset = AT(n_elements),
+     .least = 4,
+     .largest = 500,
+     .fallback = 12,
+     .option = "search-elements",
+     .argument = "N",
+     .help = "Beam elements of the search"},
+    {.name = "final_elements",
+     .type = WB_SETTING_INTEGER,
+     .offset = AT(n_final_elements),
+     .least = 4,
+     .largest = 500,
+     .fallback = 50,
+     .option = "final-elements",
+     .argument = "N",
+     .help = "Beam elements of the last run"},
+    {.name = "section_fibres",
+     .type = WB_SETTING_INTEGER,
+     .offset = AT(n_fibres),
+     .least = 4,
+     .largest = 1000,
+     .fallback = 20,
+     .option = "section-fibres",
+     .argument = "N",
+     .help = "Fibres over the diameter"},
+    {.name = "fit_iterations",
+     .type = WB_SETTING_INTEGER,
+     .offset = AT(max_iterations),
+     .least = 1,
+     .largest = 10000,
+     .fallback = 40,
+     .option = "fit-iterations",
+     .argument = "N",
+     .help = "Most iterations of a fit"},
+};
+
+#undef AT
+
+void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings)
+{
+    const struct wb_setting_table table = {.rows = wb_cycle_fit_rows, .n = WB_CYCLE_FIT_ROWS};
+    *settings = (struct wb_cycle_fit_settings){.hopeless = 0.0};
+    wb_setting_fill(&table, settings);
+}
+
+/* Free numbers of the specimen, behind those of the law. */
+enum {
+    BOW,
+    LEVEL,
+    UNEVEN, /* the last: without places it is not free */
+    OF_SPECIMEN
+};
+
+struct problem {
+    const struct wb_cycle_data *data;
+    const struct wb_cycle_fit_settings *settings;
+    const struct candidate *candidate;
+    const struct wb_cycle_grid *grid;
+    struct wb_cycle_model *model;
+    double poissons_ratio;
+    int n_law, n_free, n_residuals;
+    double start[WB_FIT_MOST_FREE]; /* the free numbers are counted from here, in units of scale */
+    double scale[WB_FIT_MOST_FREE];
+    double start_modulus[WB_FIT_PARTS];  /* Pa */
+    double *tension, *distance, *weight; /* weight: (n_points), of Huber */
+    double last_x[WB_FIT_MOST_FREE];     /* where the residuals were asked for last, */
+    double *last;                        /* and they; (n_residuals) */
+    bool has_last;
+    gsl_matrix *slopes;                     /* (n_residuals, n_free), */
+    double slopes_x[WB_FIT_MOST_FREE];      /* there, */
+    double *slopes_f;                       /* beside these residuals; (n_residuals) */
+    double differences_x[WB_FIT_MOST_FREE]; /* where differences were taken last */
+    bool has_slopes, are_differences;       /* false: carried on from earlier ones */
+    bool moved_by_differences;              /* those of the last step */
+    double force_scale;                     /* N */
+    struct wb_cycle_run run;
+    int runs;
+    enum wb_status status;
+};
+
+/* Forces alone do not tell an unevenly bent wire from one with another law. */
+static bool has_places(const struct wb_cycle_data *data)
+{
+    return data->n_places > 0;
+}
+
+static double logistic(double x)
+{
+    return 1.0 / (1.0 + exp(-x));
+}
+
+static double largest_exponent_of(const struct candidate *c)
+{
+    return c->is_mixed || c->isotropic_share < 1.0 ? largest_kinematic_exponent : largest_exponent;
+}
+
+/* ln E, ln sigma_Y, ln(hardening stress at the middle), logistic exponent; or moduli over those of
+ * the start, see wb_least_squares_positive(); and the logistic share of mixed hardening. */
+static void law_of(const struct problem *p, const double *free, struct wb_law *law)
+{
+    const struct candidate *const c = p->candidate;
+    const double share = c->is_mixed ? logistic(free[p->n_law - 1]) : c->isotropic_share;
+
+    if (c->form == WB_LAW_LUDWIK) {
+        const double n = largest_exponent_of(c) * logistic(free[3]);
+        const struct wb_material material = {
+            .hardening = WB_HARDENING_ISOTROPIC_POWER,
+            .youngs_modulus = exp(free[0]),
+            .poissons_ratio = p->poissons_ratio,
+            .yield_stress = exp(free[1]),
+            .strength_coefficient = exp(free[2]) / pow(middle_plastic_strain, n),
+            .hardening_exponent = n,
+        };
+        wb_law_init_ludwik(law, &material);
+        law->isotropic_share = share;
+        return;
+    }
+    struct wb_law_part parts[WB_FIT_PARTS];
+    const double ratio = p->grid->last_strain / p->grid->first_strain;
+    for (int i = 0; i < WB_FIT_PARTS; i++) {
+        parts[i].modulus = p->start_modulus[i] * wb_least_squares_positive(free[i]);
+        parts[i].yield_strain =
+            i == WB_FIT_PARTS - 1
+                ? (double)INFINITY
+                : p->grid->first_strain * pow(ratio, (double)i / (WB_FIT_PARTS - 1));
+    }
+    wb_law_init_parallel(law, parts, WB_FIT_PARTS, share, p->poissons_ratio);
+}
+
+/* Free numbers of the law nearest to the given one. */
+static void start_from(struct problem *p, const struct wb_law *law)
+{
+    const struct candidate *const c = p->candidate;
+
+    if (c->form == WB_LAW_LUDWIK) {
+        const struct wb_material *const m = &law->material;
+        const double n = m->hardening_exponent;
+        const double most = largest_exponent_of(c);
+        const double part = fmin(fmax(n / most, 0.05), 0.95);
+        p->start[0] = log(m->youngs_modulus);
+        p->start[1] = log(m->yield_stress);
+        p->start[2] = log(m->strength_coefficient * pow(middle_plastic_strain, n));
+        p->start[3] = log(part / (1.0 - part));
+    } else {
+        /* Slopes of the given curve's chords between the yield strains. */
+        const double ratio =
+            pow(p->grid->last_strain / p->grid->first_strain, 1.0 / (WB_FIT_PARTS - 1));
+        double strain = p->grid->first_strain, stress = wb_law_virgin_stress(law, strain, NULL);
+        double slope = stress / strain;
+        for (int i = 0; i < WB_FIT_PARTS; i++) {
+            const double next_strain = strain * ratio;
+            const double next_stress = wb_law_virgin_stress(law, next_strain, NULL);
+            const double next = (next_stress - stress) / (next_strain - strain);
+            const double modulus = i == WB_FIT_PARTS - 1 ? slope : slope - next;
+            p->start_modulus[i] = fmax(modulus, 1e-2 * law->material.youngs_modulus);
+            p->start[i] = 0.0;
+            slope = next;
+            strain = next_strain;
+            stress = next_stress;
+        }
+    }
+    /* From the side of the pure rule that was nearer. */
+    if (c->is_mixed)
+        p->start[p->n_law - 1] = law->isotropic_share == 1.0   ? isotropic_start
+                                 : law->isotropic_share == 0.0 ? kinematic_start
+                                                               : 0.0;
+    for (int i = 0; i < p->n_law; i++)
+        p->scale[i] = 1.0;
+    double *const start = p->start + p->n_law, *const scale = p->scale + p->n_law;
+    start[BOW] = p->data->info.n_natural_shape > 0 ? p->data->info.natural_shape[0] : 0.0;
+    scale[BOW] = 0.01;
+    start[LEVEL] = 0.0;
+    scale[LEVEL] = 0.1 * WB_MM;
+    start[UNEVEN] = 0.0;
+    scale[UNEVEN] = 0.01;
+}
+
+static void absolute(const struct problem *p, const double *x, double *free)
+{
+    for (int i = 0; i < p->n_law + OF_SPECIMEN; i++)
+        free[i] = p->start[i] + (i < p->n_free ? p->scale[i] * x[i] : 0.0);
+}
+
+static struct wb_cycle_specimen specimen_of(const struct problem *p, const double *free)
+{
+    const double *const own = free + p->n_law;
+    return (struct wb_cycle_specimen){
+        .bow_angle = own[BOW], .level = own[LEVEL], .uneven_angle = own[UNEVEN]};
+}
+
+/* Distances of places less each marker's own offset; the offset that makes the sum of squares
+ * smallest, its prior included, is known in closed form. Returns the index behind the residuals. */
+static int place_residuals(struct problem *p, double *r)
+{
+    const struct wb_cycle_data *const data = p->data;
+    const double noise = p->settings->place_noise, prior = p->settings->offset_prior;
+    int at = 0;
+
+    for (int m = 0; m < data->n_markers; m++) {
+        double sum = 0.0;
+        int n = 0;
+        for (int i = 0; i < data->n_places; i++) {
+            if (data->places[i].marker == m) {
+                sum += p->distance[i];
+                n++;
+            }
+        }
+        const double offset = sum / (noise * noise) / (n / (noise * noise) + 1.0 / (prior * prior));
+        for (int i = 0; i < data->n_places; i++) {
+            if (data->places[i].marker == m)
+                r[at++] = (p->distance[i] - offset) / noise;
+        }
+        r[at++] = offset / prior;
+    }
+    return at;
+}
+
+static int prior_residuals(const struct problem *p, const double *free, const struct wb_law *law,
+                           double *r)
+{
+    const struct candidate *const c = p->candidate;
+    int at = 0;
+
+    r[at++] = free[p->n_law + LEVEL] / p->settings->level_prior;
+    r[at++] = free[p->n_law + UNEVEN] / p->settings->uneven_prior;
+    if (c->form == WB_LAW_PARALLEL) {
+        at += wb_least_squares_smooth_parts(law->parts, WB_FIT_PARTS, p->settings->modulus_prior,
+                                            r + at);
+    } else {
+        r[at++] = (free[1] - free[2]) / yield_prior;
+        r[at++] = free[3] / logistic_prior;
+    }
+    if (c->is_mixed)
+        r[at++] = free[p->n_law - 1] / logistic_prior;
+    return at;
+}
+
+/* Residuals at the free numbers x. */
+static int residuals(struct problem *p, const double *x, double *r)
+{
+    const struct wb_cycle_data *const data = p->data;
+    double free[WB_FIT_MOST_FREE];
+    struct wb_law law;
+
+    absolute(p, x, free);
+    law_of(p, free, &law);
+    const struct wb_cycle_specimen specimen = specimen_of(p, free);
+    struct wb_reason why;
+    bool reached = wb_law_check(&law, &why) == WB_OK;
+    if (reached) {
+        p->runs++;
+        p->status = wb_cycle_model_run(p->model, &law, &specimen, p->tension, p->distance, &p->run);
+        if (p->status != WB_OK)
+            return GSL_EFAILED;
+        reached = p->run.reached;
+    }
+    if (!reached) {
+        for (int i = 0; i < p->n_residuals; i++)
+            r[i] = lost_residual;
+        return GSL_SUCCESS;
+    }
+    for (int i = 0; i < data->n_points; i++)
+        r[i] = sqrt(p->weight[i]) * (p->tension[i] - data->points[i].tension) / p->force_scale;
+    int at = data->n_points;
+    at += place_residuals(p, r + at);
+    at += prior_residuals(p, free, &law, r + at);
+    return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
+}
+
+static size_t bytes_of(const struct problem *p)
+{
+    return (size_t)p->n_residuals * sizeof *p->last;
+}
+
+static bool is_at(const struct problem *p, const double *x, const gsl_vector *there)
+{
+    return memcmp(x, there->data, (size_t)p->n_free * sizeof *x) == 0;
+}
+
+static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
+{
+    struct problem *const p = context;
+    if (p->has_last && is_at(p, p->last_x, x)) {
+        memcpy(f->data, p->last, bytes_of(p));
+        return GSL_SUCCESS;
+    }
+    const int status = residuals(p, x->data, f->data);
+    memcpy(p->last_x, x->data, (size_t)p->n_free * sizeof *p->last_x);
+    memcpy(p->last, f->data, bytes_of(p));
+    p->has_last = status == GSL_SUCCESS;
+    return status;
+}
+
+/* Differences from the residuals at x. */
+static int find_slopes(struct problem *p, const double *x)
+{
+    double moved[WB_FIT_MOST_FREE];
+    double *const other = calloc((size_t)p->n_residuals, sizeof *other);
+    int status = other ? GSL_SUCCESS : GSL_ENOMEM;
+    for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
+        memcpy(moved, x, (size_t)p->n_free * sizeof *moved);
+        moved[k] += difference;
+        status = residuals(p, moved, other);
+        for (int i = 0; i < p->n_residuals; i++)
+            gsl_matrix_set(p->slopes, (size_t)i, (size_t)k, (other[i] - p->last[i]) / difference);
+    }
+    free(other);
+    return status;
+}
+
+/* The slopes that are known, changed by as little as makes them foretell the step from there to x.
+ * False, and they are as they were, where they foretell it badly. */
+static bool carry_slopes(struct problem *p, const double *x)
+{
+    double step[WB_FIT_MOST_FREE];
+    double length = 0.0, largest = 0.0, missed = 0.0, changed = 0.0;
+    for (int k = 0; k < p->n_free; k++) {
+        step[k] = x[k] - p->slopes_x[k];
+        length += step[k] * step[k];
+        largest = fmax(largest, fabs(step[k]));
+    }
+    if (largest < near)
+        return true;
+    double *const miss = p->slopes_f; /* replaced by those at x anyway */
+    for (int i = 0; i < p->n_residuals; i++) {
+        const double change = p->last[i] - p->slopes_f[i];
+        miss[i] = change;
+        for (int k = 0; k < p->n_free; k++)
+            miss[i] -= gsl_matrix_get(p->slopes, (size_t)i, (size_t)k) * step[k];
+        missed += miss[i] * miss[i];
+        changed += change * change;
+    }
+    if (missed > foretold * foretold * changed)
+        return false;
+    for (int i = 0; i < p->n_residuals; i++) {
+        for (int k = 0; k < p->n_free; k++)
+            *gsl_matrix_ptr(p->slopes, (size_t)i, (size_t)k) += miss[i] * step[k] / length;
+    }
+    p->are_differences = false;
+    return true;
+}
+
+/* Most steps are short, and the slopes change little over them: a run of the beam for each free
+ * number is saved where they are carried on. */
+static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
+{
+    struct problem *const p = context;
+    int status = GSL_SUCCESS;
+    if (!p->has_last || !is_at(p, p->last_x, x))
+        return GSL_ESANITY;
+    p->moved_by_differences = p->are_differences;
+    if (!p->has_slopes || (!is_at(p, p->slopes_x, x) && !carry_slopes(p, x->data))) {
+        status = find_slopes(p, x->data);
+        p->has_slopes = p->are_differences = status == GSL_SUCCESS;
+        memcpy(p->differences_x, x->data, (size_t)p->n_free * sizeof *p->differences_x);
+    }
+    memcpy(p->slopes_x, x->data, (size_t)p->n_free * sizeof *p->slopes_x);
+    memcpy(p->slopes_f, p->last, bytes_of(p));
+    gsl_matrix_memcpy(J, p->slopes);
+    return status;
+}
+
+/* What is known of a point's residual is that of another weight. */
+static void weigh_again(struct problem *p, int i, double ratio)
+{
+    gsl_vector_view slopes = gsl_matrix_row(p->slopes, (size_t)i);
+    gsl_vector_scale(&slopes.vector, ratio);
+    p->slopes_f[i] *= ratio;
+    p->last[i] *= ratio;
+}
+
+static void set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
+{
+    const int n = p->data->n_points;
+    double *const sizes = calloc((size_t)n, sizeof *sizes);
+    *n_outliers = 0;
+    if (!sizes)
+        return;
+    double *const raw = p->tension; /* free to use until the next run */
+    for (int i = 0; i < n; i++) {
+        raw[i] = fabs(gsl_vector_get(f, (size_t)i)) / sqrt(p->weight[i]);
+        sizes[i] = raw[i];
+    }
+    const double limit = huber_limit * fmax(1.4826 * wb_fit_median(sizes, (size_t)n), 1.0);
+    for (int i = 0; i < n; i++) {
+        const double before = p->weight[i];
+        p->weight[i] = raw[i] > limit ? limit / raw[i] : 1.0;
+        *n_outliers += p->weight[i] < 0.5;
+        weigh_again(p, i, sqrt(p->weight[i] / before));
+    }
+    free(sizes);
+}
+
+/* RMS of the force residuals over the largest force. */
+static double force_misfit(const struct problem *p, const gsl_vector *f)
+{
+    const int n = p->data->n_points;
+    double sum = 0.0;
+    for (int i = 0; i < n; i++)
+        sum += gsl_vector_get(f, (size_t)i) * gsl_vector_get(f, (size_t)i) / p->weight[i];
+    return sqrt(sum / n) * p->force_scale / p->data->max_force;
+}
+
+/* Begins again where it is, with differences for slopes. */
+static bool renew_slopes(struct problem *p, gsl_multifit_nlinear_workspace *w)
+{
+    double at[WB_FIT_MOST_FREE];
+    const gsl_vector_view x = gsl_vector_view_array(at, (size_t)p->n_free);
+    memcpy(at, w->x->data, (size_t)p->n_free * sizeof *at);
+    p->has_slopes = false;
+    return gsl_multifit_nlinear_init(&x.vector, w->fdf, w) == GSL_SUCCESS;
+}
+
+/* The errors hang on the slopes at the end: differences, taken there or near. */
+static bool finish_slopes(struct problem *p, gsl_multifit_nlinear_workspace *w)
+{
+    double farthest_off = 0.0;
+    for (int k = 0; k < p->n_free; k++)
+        farthest_off =
+            fmax(farthest_off, fabs(gsl_vector_get(w->x, (size_t)k) - p->differences_x[k]));
+    return (p->are_differences && farthest_off < near) || renew_slopes(p, w);
+}
+
+struct fitted {
+    struct problem *problem;
+    gsl_multifit_nlinear_workspace *workspace;
+};
+
+/* A fit that is far off and comes nearer too slowly. */
+static bool is_hopeless(void *context, int iteration, double gain)
+{
+    const struct fitted *const f = context;
+    const double limit = f->problem->settings->hopeless;
+    return iteration >= first_judged && gain < slow_gain && limit > 0.0 &&
+           force_misfit(f->problem, f->workspace->f) > limit;
+}
+
+/* Slopes that were carried on may be too poor for a better step: the end is where differences find
+ * none. */
+static bool takes_differences(void *context, bool moved)
+{
+    const struct fitted *const f = context;
+    const struct problem *const p = f->problem;
+    const bool were_differences = moved ? p->moved_by_differences : p->are_differences;
+    return !were_differences && renew_slopes(f->problem, f->workspace);
+}
+
+/* Iterates to the end; false when the iterations ran out. */
+static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *iterations)
+{
+    struct fitted fitted = {p, w};
+    const struct wb_least_squares_search search = {
+        .max_iterations = p->settings->max_iterations,
+        .smallest_step = arrived,
+        .smallest_gain = settled_sum,
+        .status = &p->status,
+        .gives_up = is_hopeless,
+        .goes_on = takes_differences,
+        .context = &fitted,
+    };
+    return wb_least_squares_iterate(w, &search, iterations);
+}
+
+enum {
+    IS_PRIOR = -1 /* a residual of no group */
+};
+
+/* Begins a new group of residuals at each change of sign. Returns the index behind the last. */
+static int group_rows(const gsl_vector *f, int at, int n, int *group, int *n_groups)
+{
+    for (int i = at; i < at + n; i++) {
+        *n_groups += i == at || (gsl_vector_get(f, (size_t)i) < 0.0) !=
+                                    (gsl_vector_get(f, (size_t)i - 1) < 0.0);
+        group[i] = *n_groups - 1;
+    }
+    return at + n;
+}
+
+/* Groups residuals that tell the same: those of one sign in a row, of one branch or one marker.
+ * Returns how many there are. */
+static int group_residuals(const struct problem *p, const gsl_vector *f, int *group)
+{
+    const struct wb_cycle_data *const data = p->data;
+    int n_groups = 0;
+    for (int i = 0; i < p->n_residuals; i++)
+        group[i] = IS_PRIOR;
+    int at = group_rows(f, 0, data->n_loading, group, &n_groups);
+    at = group_rows(f, at, data->n_points - data->n_loading, group, &n_groups);
+    for (int m = 0; m < data->n_markers; m++) {
+        int n = 0;
+        for (int i = 0; i < data->n_places; i++)
+            n += data->places[i].marker == m;
+        at = group_rows(f, at, n, group, &n_groups) + 1; /* behind its offset's prior */
+    }
+    return n_groups;
+}
+
+/* Adds to the covariance what the free numbers owe to one group of residuals: how they change, to
+ * first order, when it is left out. `squares` are the sums of the slopes' products; `rest` is
+ * workspace. */
+static bool add_group(const gsl_matrix *J, const gsl_vector *f, const int *group, int left_out,
+                      const gsl_matrix *squares, gsl_matrix *rest, gsl_matrix *covariance)
+{
+    double numbers[WB_FIT_MOST_FREE] = {0.0};
+    gsl_vector_view change = gsl_vector_view_array(numbers, J->size2);
+    gsl_matrix_memcpy(rest, squares);
+    for (size_t i = 0; i < J->size1; i++) {
+        if (group[i] != left_out)
+            continue;
+        const gsl_vector_const_view slopes = gsl_matrix_const_row(J, i);
+        gsl_blas_dsyr(CblasLower, -1.0, &slopes.vector, rest);
+        gsl_blas_daxpy(gsl_vector_get(f, i), &slopes.vector, &change.vector);
+    }
+    return gsl_linalg_cholesky_decomp1(rest) == GSL_SUCCESS &&
+           gsl_linalg_cholesky_svx(rest, &change.vector) == GSL_SUCCESS &&
+           gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
+}
+
+/* What they owe to the priors, which are as far off as their standard deviations say. */
+static bool add_priors(const gsl_matrix *J, const int *group, const gsl_matrix *squares,
+                       gsl_matrix *rest, gsl_matrix *covariance)
+{
+    gsl_matrix_memcpy(rest, squares);
+    bool good = gsl_linalg_cholesky_decomp1(rest) == GSL_SUCCESS;
+    for (size_t i = 0; i < J->size1 && good; i++) {
+        double numbers[WB_FIT_MOST_FREE];
+        gsl_vector_view change = gsl_vector_view_array(numbers, J->size2);
+        if (group[i] != IS_PRIOR)
+            continue;
+        gsl_matrix_get_row(&change.vector, J, i);
+        good = gsl_linalg_cholesky_svx(rest, &change.vector) == GSL_SUCCESS &&
+               gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
+    }
+    return good;
+}
+
+/* The covariance of the free numbers: of the readings by the jackknife (Tukey 1958), each group of
+ * residuals left out once, and of the priors. Where the law's form cannot follow the test, large
+ * residuals of one sign stand side by side, and the numbers that hang on them are uncertain; others
+ * need not be. What the readings do not reach, as the virgin curve below the curvature that a wire
+ * has at zero deflection, hangs on the priors. Of noise alone, groups by sign make a standard error
+ * half as large again as it is. */
+static bool find_covariance(const struct problem *p, const gsl_vector *f, const gsl_matrix *J,
+                            gsl_matrix *covariance)
+{
+    const size_t n = (size_t)p->n_free;
+    gsl_matrix *const squares = gsl_matrix_alloc(n, n), *const rest = gsl_matrix_alloc(n, n);
+    int *const group = calloc((size_t)p->n_residuals, sizeof *group);
+    bool good = squares && rest && group;
+    if (good) {
+        const int n_groups = group_residuals(p, f, group);
+        gsl_matrix_set_identity(squares);
+        gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);
+        gsl_matrix_set_identity(covariance);
+        gsl_matrix_scale(covariance, surest);
+        for (int g = 0; g < n_groups && good; g++)
+            good = add_group(J, f, group, g, squares, rest, covariance);
+        good = good && add_priors(J, group, squares, rest, covariance);
+    }
+    gsl_matrix_free(squares);
+    gsl_matrix_free(rest);
+    free(group);
+    return good;
+}
+
+/* The law moved along the columns of the covariance's triangular factor, which the covariance is
+ * destroyed for. */
+static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *covariance,
+                     struct wb_cycle_fit *fit)
+{
+    double free[WB_FIT_MOST_FREE], step[WB_FIT_MOST_FREE];
+    struct wb_reason why;
+    fit->n_moved = 0;
+    if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
+        return;
+    for (int k = 0; k < p->n_law; k++) {
+        const gsl_vector_view side = gsl_matrix_column(covariance, (size_t)k);
+        double largest = 0.0;
+        for (int i = k; i < p->n_free; i++)
+            largest = fmax(largest, fabs(gsl_vector_get(&side.vector, (size_t)i)));
+        const double by = fmin(moved_by, farthest / largest);
+        for (int i = 0; i < p->n_free; i++)
+            step[i] = gsl_vector_get(x, (size_t)i) +
+                      (i < k ? 0.0 : by * gsl_vector_get(&side.vector, (size_t)i));
+        absolute(p, step, free);
+        law_of(p, free, &fit->moved[fit->n_moved]);
+        fit->moved_by[fit->n_moved] = by;
+        fit->n_moved += wb_law_check(&fit->moved[fit->n_moved], &why) == WB_OK;
+    }
+}
+
+/* Correlations of the law's numbers. Ludwik's are turned into those of K and n, which fits do not
+ * count in; a part's own scale does not matter. */
+static void find_correlations(const struct problem *p, const gsl_matrix *covariance,
+                              struct wb_cycle_fit *fit)
+{
+    double turn[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW] = {{0.0}}, c[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
+    const int n = p->n_law;
+    for (int i = 0; i < n; i++)
+        turn[i][i] = 1.0;
+    if (p->candidate->form == WB_LAW_LUDWIK) {
+        const double exponent = fit->law.material.hardening_exponent;
+        turn[3][3] = exponent * (1.0 - exponent / largest_exponent_of(p->candidate));
+        turn[2][3] = -turn[3][3] * log(middle_plastic_strain);
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            c[i][j] = 0.0;
+            for (int k = 0; k < n; k++) {
+                for (int l = 0; l < n; l++)
+                    c[i][j] +=
+                        turn[i][k] * turn[j][l] * gsl_matrix_get(covariance, (size_t)k, (size_t)l);
+            }
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++)
+            fit->correlation[i][j] = c[i][j] / sqrt(c[i][i] * c[j][j]);
+    }
+    fit->n_numbers = n;
+}
+
+const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text[24])
+{
+    static const char *const ludwik[] = {"E", "sigma_Y", "K", "n"};
+    const bool is_ludwik = fit->law.form == WB_LAW_LUDWIK;
+    if (i >= (is_ludwik ? 4 : fit->law.n_parts))
+        snprintf(text, 24, "isotropic share");
+    else if (is_ludwik)
+        snprintf(text, 24, "%s", ludwik[i]);
+    else
+        snprintf(text, 24, "part %d", i + 1);
+    return text;
+}
+
+bool wb_cycle_fit_strongest(const struct wb_cycle_fit *fit, int *one, int *other)
+{
+    double strongest = -1.0;
+    for (int i = 0; i < fit->n_numbers; i++) {
+        for (int j = 0; j < i; j++) {
+            if (fabs(fit->correlation[i][j]) > strongest) {
+                strongest = fabs(fit->correlation[i][j]);
+                *one = j;
+                *other = i;
+            }
+        }
+    }
+    return strongest >= 0.0;
+}
+
+/* Standard errors from the curvature of the sum of squares, scaled by what is left of it. */
+static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace *w,
+                        struct wb_cycle_fit *fit)
+{
+    gsl_matrix *const covariance = gsl_matrix_alloc((size_t)p->n_free, (size_t)p->n_free);
+    double sum;
+    fit->ln_strength_error = fit->exponent_error = fit->bow_angle_error = (double)NAN;
+    if (!covariance)
+        return;
+    gsl_blas_ddot(w->f, w->f, &sum);
+    if (gsl_multifit_nlinear_covar(w->J, 0.0, covariance) == GSL_SUCCESS) {
+        const double variance = sum / fmax(1.0, p->n_residuals - p->n_free);
+        const size_t bow = (size_t)p->n_law;
+        fit->bow_angle_error =
+            p->scale[bow] * sqrt(variance * gsl_matrix_get(covariance, bow, bow));
+        if (p->candidate->form == WB_LAW_LUDWIK) {
+            /* ln K = ln h - n ln(middle), n by its logistic number. */
+            const double n = fit->law.material.hardening_exponent;
+            const double slope = n * (1.0 - n / largest_exponent_of(p->candidate));
+            const double a = 1.0, b = -slope * log(middle_plastic_strain);
+            const double hh = gsl_matrix_get(covariance, 2, 2);
+            const double hn = gsl_matrix_get(covariance, 2, 3);
+            const double nn = gsl_matrix_get(covariance, 3, 3);
+            fit->exponent_error = slope * sqrt(variance * nn);
+            fit->ln_strength_error =
+                sqrt(variance * fmax(0.0, a * a * hh + 2.0 * a * b * hn + b * b * nn));
+        }
+        find_correlations(p, covariance, fit);
+    }
+    if (find_covariance(p, w->f, w->J, covariance))
+        move_law(p, w->x, covariance, fit);
+    gsl_matrix_free(covariance);
+}
+
+static void find_misfits(struct wb_cycle_fit *fit, struct problem *p)
+{
+    const struct wb_cycle_data *const data = p->data;
+    double sums[2] = {0.0, 0.0};
+    int counts[2] = {0, 0};
+
+    for (int i = 0; i < data->n_points; i++) {
+        const double r = fit->tension[i] - data->points[i].tension;
+        const int branch = data->points[i].is_unloading;
+        sums[branch] += r * r;
+        counts[branch]++;
+    }
+    fit->misfit = sqrt((sums[0] + sums[1]) / data->n_points) / data->max_force;
+    fit->loading_misfit = sqrt(sums[0] / counts[0]) / data->max_force;
+    fit->unloading_misfit =
+        counts[1] > 0 ? sqrt(sums[1] / counts[1]) / data->max_force : (double)NAN;
+
+    double *const r = calloc((size_t)(data->n_places + data->n_markers + 1), sizeof *r);
+    double sum = 0.0;
+    int n = r ? place_residuals(p, r) : 0;
+    for (int i = 0; i < n; i++)
+        sum += r[i] * r[i];
+    fit->place_rms =
+        data->n_places > 0 ? p->settings->place_noise * sqrt(sum / data->n_places) : (double)NAN;
+    free(r);
+}
+
+static int count_residuals(const struct problem *p)
+{
+    const struct candidate *const c = p->candidate;
+    return p->data->n_points + p->data->n_places + p->data->n_markers + 2 +
+           (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS - 3 : 2) + c->is_mixed;
+}
+
+/* The last run, with more elements. */
+static enum wb_status run_finely(struct wb_cycle_fit *fit, struct problem *p, struct wb_reason *why)
+{
+    const struct wb_cycle_model_settings how = {p->settings->n_final_elements,
+                                                p->settings->n_fibres};
+    const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
+    struct wb_cycle_model *fine;
+    WB_TRY(wb_cycle_model_create(&fine, p->data, &fit->law, &how));
+    const enum wb_status status =
+        wb_cycle_model_run(fine, &fit->law, &specimen, fit->tension, p->distance, &p->run);
+    wb_cycle_model_destroy(fine);
+    p->runs++;
+    if (status == WB_OK && !p->run.reached)
+        return wb_fail_to(why, WB_ERR_CONVERGENCE,
+                          "wire '%s', sample %d: %s: the beam of %d elements does not come to the "
+                          "end of the cycle",
+                          p->data->info.wire, p->data->info.sample, p->candidate->name,
+                          p->settings->n_final_elements);
+    return status;
+}
+
+static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
+                             gsl_multifit_nlinear_workspace *w, struct wb_reason *why)
+{
+    gsl_multifit_nlinear_fdf fdf = {
+        .f = gsl_residuals,
+        .df = gsl_slopes,
+        .n = (size_t)p->n_residuals,
+        .p = (size_t)p->n_free,
+        .params = p,
+    };
+    double at[WB_FIT_MOST_FREE] = {0.0};
+    double free_numbers[WB_FIT_MOST_FREE];
+    gsl_vector_view x = gsl_vector_view_array(at, (size_t)p->n_free);
+    const int started = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
+    if (p->status != WB_OK)
+        return p->status;
+    if (started != GSL_SUCCESS || !p->run.reached)
+        return wb_fail_to(why, WB_ERR_CONVERGENCE,
+                          "wire '%s', sample %d: %s: the beam does not come to the end of the "
+                          "cycle from the first guess",
+                          p->data->info.wire, p->data->info.sample, p->candidate->name);
+    for (int pass = 0; pass < 3; pass++) {
+        const int before = fit->n_outliers;
+        fit->is_converged = iterate(p, w, &fit->iterations);
+        if (p->status != WB_OK)
+            return p->status;
+        set_weights(p, w->f, &fit->n_outliers);
+        if (!fit->is_converged || (pass > 0 ? fit->n_outliers == before : fit->n_outliers == 0))
+            break;
+        memcpy(at, w->x->data, (size_t)p->n_free * sizeof *at);
+        if (gsl_multifit_nlinear_init(&x.vector, &fdf, w) != GSL_SUCCESS)
+            break;
+    }
+    absolute(p, w->x->data, free_numbers);
+    law_of(p, free_numbers, &fit->law);
+    const struct wb_cycle_specimen specimen = specimen_of(p, free_numbers);
+    fit->bow_angle = specimen.bow_angle;
+    fit->level = specimen.level;
+    fit->uneven_angle = specimen.uneven_angle;
+    fit->is_at_bound = (p->candidate->form == WB_LAW_LUDWIK && fabs(free_numbers[3]) > at_bound) ||
+                       (p->candidate->is_mixed && fabs(free_numbers[p->n_law - 1]) > at_bound);
+    if (!finish_slopes(p, w))
+        return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: %s: no slopes at the end",
+                          p->data->info.wire, p->data->info.sample, p->candidate->name);
+    find_errors(p, w, fit);
+    WB_TRY(run_finely(fit, p, why));
+    fit->clamp_curvature = p->run.clamp_curvature;
+    fit->first_curvature = p->run.first_curvature;
+    find_misfits(fit, p);
+    return WB_OK;
+}
+
+enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
+                                enum wb_candidate candidate, const struct wb_law *start,
+                                const struct wb_cycle_grid *grid,
+                                const struct wb_cycle_fit_settings *settings, struct wb_reason *why)
+{
+    const clock_t begin = clock();
+    const struct candidate *const c = &candidates[candidate];
+    struct problem p = {
+        .data = data,
+        .settings = settings,
+        .candidate = c,
+        .grid = grid,
+        .poissons_ratio = start->material.poissons_ratio,
+        .n_law = (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS : 4) + c->is_mixed,
+    };
+    p.n_free = p.n_law + 2 + has_places(data);
+    p.n_residuals = count_residuals(&p);
+    p.force_scale = fmax(settings->force_noise, settings->force_share * data->max_force);
+    *fit = (struct wb_cycle_fit){.candidate = candidate, .n_free = p.n_free, .n_law = p.n_law};
+    start_from(&p, start);
+
+    const double no_step[WB_FIT_MOST_FREE] = {0.0};
+    double free_numbers[WB_FIT_MOST_FREE];
+    struct wb_law law;
+    absolute(&p, no_step, free_numbers);
+    law_of(&p, free_numbers, &law);
+
+    const size_t points = (size_t)data->n_points;
+    const struct wb_cycle_model_settings how = {settings->n_elements, settings->n_fibres};
+    p.tension = calloc(points, sizeof *p.tension);
+    p.weight = calloc(points, sizeof *p.weight);
+    p.distance = calloc((size_t)data->n_places + 1, sizeof *p.distance);
+    p.last = calloc((size_t)p.n_residuals, sizeof *p.last);
+    p.slopes_f = calloc((size_t)p.n_residuals, sizeof *p.slopes_f);
+    p.slopes = gsl_matrix_calloc((size_t)p.n_residuals, (size_t)p.n_free);
+    fit->tension = calloc(points, sizeof *fit->tension);
+    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
+    enum wb_status status = WB_OK;
+    if (!p.tension || !p.weight || !p.distance || !p.last || !p.slopes_f || !p.slopes ||
+        !fit->tension || !w)
+        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);
+    for (int i = 0; status == WB_OK && i < data->n_points; i++)
+        p.weight[i] = 1.0;
+    if (status == WB_OK)
+        status = wb_cycle_model_create(&p.model, data, &law, &how);
+    if (status == WB_OK)
+        status = search(fit, &p, w, why);
+    fit->runs = p.runs;
+    if (w)
+        gsl_multifit_nlinear_free(w);
+    wb_cycle_model_destroy(p.model);
+    free(p.tension);
+    free(p.weight);
+    free(p.distance);
+    free(p.last);
+    free(p.slopes_f);
+    gsl_matrix_free(p.slopes);
+    fit->cpu_s = (double)(clock() - begin) / CLOCKS_PER_SEC;
+    if (status != WB_OK)
+        wb_cycle_fit_release(fit);
+    return status;
+}
+
+struct wb_cycle_bow wb_cycle_fit_bow(const struct wb_cycle_fit *fit, double length)
+{
+    return (struct wb_cycle_bow){.tip = 0.5 * fit->bow_angle * length,
+                                 .deviation = 0.5 * fit->bow_angle_error * length,
+                                 .uneven = 0.125 * fit->uneven_angle * length};
+}
+
+void wb_cycle_fit_release(struct wb_cycle_fit *fit)
+{
+    free(fit->tension);
+    fit->tension = NULL;
+}

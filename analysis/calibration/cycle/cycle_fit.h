@@ -1,0 +1,125 @@
+/* A law fitted to the first cycle of one specimen, loading and unloading together.
+ *
+ * Least squares (GSL multifit_nlinear, Powell's dogleg) on the tension of both branches and
+ * the places of the markers. Free are the law's numbers and those of the specimen: how it is bent
+ * by nature, evenly and unevenly, and the level of zero deflection. Each marker sits a constant
+ * distance off the axis, which is eliminated (variable projection). Points far off are weighted
+ * down (Huber) and counted.
+ *
+ * Loading alone leaves E and the hardening rule open: a wire that yields early and hardens bends up
+ * like one that is soft. The way back tells them apart.
+ */
+#ifndef WB_ANALYSIS_CYCLE_FIT_H
+#define WB_ANALYSIS_CYCLE_FIT_H
+
+#include <stdbool.h>
+
+#include "analysis/calibration/cycle/cycle_data.h"
+#include "base/reason.h"
+#include "base/setting.h"
+#include "base/status.h"
+#include "fe/material/law.h"
+
+/* Laws that may be fitted, the simplest first. */
+enum wb_candidate {
+    WB_CANDIDATE_LUDWIK_ISOTROPIC,
+    WB_CANDIDATE_LUDWIK_KINEMATIC,
+    WB_CANDIDATE_LUDWIK_MIXED,
+    WB_CANDIDATE_PARALLEL_KINEMATIC,
+    WB_CANDIDATE_PARALLEL_MIXED,
+    WB_CANDIDATES
+};
+
+/* "Ludwik, isotropic", ... */
+const char *wb_candidate_name(enum wb_candidate candidate);
+
+enum {
+    WB_FIT_PARTS = 7,     /* parallel parts, the last elastic */
+    WB_FIT_MOST_LAW = 8,  /* free numbers of a law */
+    WB_FIT_MOST_FREE = 11 /* and of the specimen */
+};
+
+struct wb_cycle_fit_settings {
+    double force_noise;   /* N: weight of a point is one over the larger of this, */
+    double force_share;   /* and of this part of the largest force */
+    double place_noise;   /* m, of a marker's place */
+    double offset_prior;  /* m: standard deviation of a marker's constant offset, */
+    double level_prior;   /* m: of the level of zero deflection, */
+    double uneven_prior;  /* rad: of how unevenly it is bent by nature; without places it is not */
+    double modulus_prior; /* 1: of the second difference of ln(modulus) of parts that yield */
+    int n_elements;       /* while searching */
+    int n_final_elements; /* of the last run */
+    int n_fibres;         /* over the diameter */
+    int max_iterations;
+    double hopeless; /* a fit whose misfit stays above this is ended early; 0: none is */
+};
+/* Rows of all but `hopeless`, with range and default. */
+enum {
+    WB_CYCLE_FIT_ROWS = 11
+};
+extern const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS];
+void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
+
+/* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain between the
+ * first two points of the data to that at the last, where the elastic part's would stand. */
+struct wb_cycle_grid {
+    double first_strain, last_strain;
+};
+
+struct wb_cycle_fit {
+    enum wb_candidate candidate;
+    struct wb_law law;
+    double bow_angle, bow_angle_error; /* rad */
+    double level;                      /* m */
+    double uneven_angle;               /* rad; 0 without places */
+    bool is_converged;                 /* else the iterations ran out */
+    bool is_at_bound;                  /* an exponent or a share at the end of its range */
+    double misfit;                     /* RMS of the force residuals over the largest force, */
+    double loading_misfit, unloading_misfit; /* of either branch; NaN: none */
+    double place_rms;                        /* m, after the markers' offsets; NaN without places */
+    double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
+                                                 specimen's own residuals; NaN of parallel parts */
+    /* The law moved a little in each of independent directions, by this many standard errors. What
+     * is computed with it has a variance: the sum of the squares of its differences over these. */
+    int n_moved;
+    double moved_by[WB_FIT_MOST_FREE];
+    struct wb_law moved[WB_FIT_MOST_FREE];
+    /* How the law's numbers hang together in this fit: of ln E, ln sigma_Y, ln K and n, or of the
+     * parts' moduli; then of the isotropic share where that is free. NaN unknown. */
+    int n_numbers;
+    double correlation[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
+    double clamp_curvature; /* 1/m, largest */
+    double first_curvature; /* 1/m, at the first point */
+    int n_free, n_law;      /* numbers fitted; of them the law's */
+    int n_outliers;         /* points weighted by less than half */
+    int runs, iterations;
+    double cpu_s;
+    /* (data->n_points) computed tension of the last run, N; owned; NULL where it failed */
+    double *tension;
+};
+
+/* Fits one candidate. `start` gives a law near by (Ludwik's), from which all start; `grid` is used
+ * by parallel parts. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted.
+ * WB_ERR_CONVERGENCE where the beam cannot compute the start; `why` receives it, NULL: logged. */
+WB_MUST_CHECK enum wb_status
+wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
+                 enum wb_candidate candidate, const struct wb_law *start,
+                 const struct wb_cycle_grid *grid, const struct wb_cycle_fit_settings *settings,
+                 struct wb_reason *why);
+
+/* "E", "part 3", "isotropic share": number `i` of the correlations. */
+const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text[24]);
+
+/* The pair of numbers that hang together most; false where that is not known. */
+bool wb_cycle_fit_strongest(const struct wb_cycle_fit *fit, int *one, int *other);
+
+/* The natural shape of a fitted specimen of a length, m: offset of the tip, its standard error, and
+ * how far the middle lies off that of an even curvature. */
+struct wb_cycle_bow {
+    double tip, deviation, uneven;
+};
+struct wb_cycle_bow wb_cycle_fit_bow(const struct wb_cycle_fit *fit, double length);
+
+void wb_cycle_fit_release(struct wb_cycle_fit *fit); /* accepts a zeroed one */
+
+#endif

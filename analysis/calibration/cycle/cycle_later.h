@@ -1,0 +1,43 @@
+/* Later cycles of a test, predicted by a law that was fitted to its first one.
+ *
+ * The fit never sees them, so they say whether the hardening rule holds: the beam goes through the
+ * first cycle and all that follow, with the specimen's own law, bow and level.
+ */
+#ifndef WB_ANALYSIS_CYCLE_LATER_H
+#define WB_ANALYSIS_CYCLE_LATER_H
+
+#include "analysis/calibration/cycle/cycle_data.h"
+#include "analysis/calibration/cycle/cycle_fit.h"
+#include "analysis/dataset/dataset.h"
+#include "base/reason.h"
+#include "base/status.h"
+
+struct wb_cycle_later_point {
+    int cycle; /* from 2 */
+    bool is_unloading;
+    double deflection;         /* m */
+    double measured, computed; /* N, tension; computed is NaN beyond where the beam came to */
+};
+
+struct wb_cycle_later {
+    int sample;
+    int n_cycles; /* of the test, the first included; below 2: no points */
+    int n;
+    struct wb_cycle_later_point *points;     /* (n), owned, in the order of the test */
+    double rms;                              /* of computed less measured, over the largest force */
+    double measured_energy, computed_energy; /* J, lost in a later cycle, their mean */
+};
+
+/* How many cycles a dataset has. */
+int wb_cycle_later_count(const struct wb_dataset *dataset);
+
+/* Of the dataset that `data` was taken from. Rows with less than `data`'s smallest tension are left
+ * out. `why` receives the reason of a failure; NULL: it is logged. */
+WB_MUST_CHECK enum wb_status wb_cycle_later_predict(struct wb_cycle_later *later,
+                                                    const struct wb_dataset *dataset,
+                                                    const struct wb_cycle_data *data,
+                                                    const struct wb_cycle_fit *fit,
+                                                    struct wb_reason *why);
+void wb_cycle_later_release(struct wb_cycle_later *later); /* accepts a zeroed one */
+
+#endif

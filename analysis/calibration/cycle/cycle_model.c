@@ -1,0 +1,137 @@
+#include "analysis/calibration/cycle/cycle_model.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "fe/rod/section.h"
+#include "fe/trial/cantilever.h"
+
+#define WB_LOG_DOMAIN "cycle"
+
+struct wb_cycle_model {
+    const struct wb_cycle_data *data;
+    struct wb_test_info info; /* the natural curvature's context */
+    struct wb_section section;
+    struct wb_cantilever *cantilever;
+};
+
+enum wb_status wb_cycle_model_create(struct wb_cycle_model **out, const struct wb_cycle_data *data,
+                                     const struct wb_law *law,
+                                     const struct wb_cycle_model_settings *settings)
+{
+    *out = NULL;
+    struct wb_cycle_model *const model = calloc(1, sizeof *model);
+    if (!model)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a computed cycle");
+    model->data = data;
+    model->info = data->info;
+    enum wb_status status =
+        wb_section_init_law(&model->section, data->info.outer_diameter, law, settings->n_fibres);
+    if (status == WB_OK) {
+        struct wb_cantilever_model beam;
+        wb_cantilever_default_model(&beam);
+        beam.section = &model->section;
+        beam.length = data->info.length;
+        beam.n_elements = settings->n_elements;
+        beam.strand_length = data->info.strand_length;
+        beam.counterweight = data->info.counterweight;
+        beam.mass_per_length = data->info.mass_per_length;
+        beam.gravity_y = -data->info.gravity;
+        status = wb_cantilever_create(&model->cantilever, &beam, NULL);
+    }
+    if (status != WB_OK) {
+        wb_cycle_model_destroy(model);
+        return status;
+    }
+    *out = model;
+    return WB_OK;
+}
+
+void wb_cycle_model_destroy(struct wb_cycle_model *model)
+{
+    if (!model)
+        return;
+    wb_cantilever_destroy(model->cantilever);
+    wb_section_release(&model->section);
+    free(model);
+}
+
+static enum wb_status move(struct wb_cycle_model *model, double deflection,
+                           struct wb_cantilever_point *point, bool *reached)
+{
+    WB_TRY(wb_cantilever_move(model->cantilever, WB_CONTROL_DEFLECTION, deflection, point));
+    *reached = point->end == WB_CANTILEVER_CONVERGED && isfinite(point->tension);
+    return WB_OK;
+}
+
+void wb_cycle_model_bend(const struct wb_cycle_specimen *specimen, struct wb_test_info *info)
+{
+    info->n_natural_shape = 2;
+    info->natural_shape[0] = specimen->bow_angle + 2.0 * specimen->uneven_angle;
+    info->natural_shape[1] = -3.0 * specimen->uneven_angle;
+}
+
+/* Curvature at the clamp beyond the natural one, from the turn of a short piece. */
+static double clamp_curvature(const struct wb_cycle_model *model)
+{
+    const double s[2] = {0.0, model->info.length / 400.0};
+    double x[2], y[2], angle[2];
+    wb_cantilever_shape(model->cantilever, 2, s, x, y, angle);
+    return (angle[1] - angle[0]) / s[1] -
+           wb_dataset_natural_curvature((void *)&model->info, 0.5 * s[1]);
+}
+
+/* How far a place lies above the axis, along its normal. */
+static double distance_of(const struct wb_cycle_model *model, const struct wb_cycle_place *place)
+{
+    double x, y, angle;
+    wb_cantilever_shape(model->cantilever, 1, &place->s, &x, &y, &angle);
+    return (place->y - y) * cos(angle) - (place->x - x) * sin(angle);
+}
+
+double wb_cycle_model_rest(const struct wb_test_info *info)
+{
+    return isfinite(info->rest_level) ? fmin(info->rest_level, 0.0) : 0.0;
+}
+
+enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_law *law,
+                                  const struct wb_cycle_specimen *specimen, double *tension,
+                                  double *distance, struct wb_cycle_run *run)
+{
+    const struct wb_cycle_data *const data = model->data;
+    struct wb_cantilever_point point;
+    int place = 0;
+    bool reached;
+
+    *run = (struct wb_cycle_run){0};
+    wb_cycle_model_bend(specimen, &model->info);
+    WB_TRY(
+        wb_cantilever_set_curvature(model->cantilever, wb_dataset_natural_curvature, &model->info));
+    WB_TRY(wb_cantilever_set_law(model->cantilever, law));
+    for (int i = 0; i < data->n_points; i++)
+        tension[i] = (double)NAN;
+    for (int i = 0; distance && i < data->n_places; i++)
+        distance[i] = (double)NAN;
+
+    /* The rest carries the tip before the strand does; to the wire it is the same. */
+    const double rest = wb_cycle_model_rest(&data->info);
+    WB_TRY(move(model, rest - specimen->level, &point, &reached));
+    for (int i = 0; i < data->n_points && reached; i++) {
+        WB_TRY(move(model, data->points[i].deflection - specimen->level, &point, &reached));
+        if (!reached)
+            break;
+        tension[i] = point.tension;
+        const double curvature = clamp_curvature(model);
+        if (i == 0)
+            run->first_curvature = curvature;
+        run->clamp_curvature = fmax(run->clamp_curvature, curvature);
+        for (; distance && place < data->n_places && data->places[place].point == i; place++)
+            distance[place] = distance_of(model, &data->places[place]);
+        if (i == data->n_loading - 1 && data->n_points > data->n_loading) {
+            WB_TRY(move(model, data->top - specimen->level, &point, &reached));
+            run->clamp_curvature = fmax(run->clamp_curvature, clamp_curvature(model));
+        }
+    }
+    run->reached = reached;
+    return WB_OK;
+}

@@ -1,0 +1,243 @@
+#include "analysis/calibration/law/bending.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_matrix.h>
+#include <gsl/gsl_multifit_nlinear.h>
+#include <gsl/gsl_vector.h>
+
+#include "fe/rod/fibres.h"
+#include "fe/rod/section.h"
+
+#define WB_LOG_DOMAIN "bending"
+
+enum {
+    STRIPS = 100,
+    LOOP_STEPS = 200, /* from straight to bent */
+    EQUIVALENT_POINTS = 40,
+    EQUIVALENT_FREE = 4
+};
+
+/* The first of the curvatures of the equivalent, over the largest. */
+static const double first_of_equivalent = 0.01;
+/* Plastic strain at which its hardening stress is a free number; its largest exponent. */
+/* Of numbers that make no law: far above any other. */
+static const double lost_residual = 1e3;
+static const double middle_plastic_strain = 3e-3, largest_exponent = 1.5;
+
+/* A section point with its history. */
+struct point {
+    struct wb_section section;
+    struct wb_fibres *fibres;
+    double *before, *after;
+    size_t size;
+};
+
+static enum wb_status make_point(struct point *p, const struct wb_law *law, double diameter)
+{
+    *p = (struct point){.before = NULL};
+    WB_TRY(wb_section_init_law(&p->section, diameter, law, STRIPS));
+    enum wb_status status = wb_fibres_create(&p->fibres, &p->section);
+    if (status == WB_OK) {
+        p->size = wb_fibres_history_size(p->fibres);
+        p->before = calloc(p->size, sizeof *p->before);
+        p->after = calloc(p->size, sizeof *p->after);
+        if (!p->before || !p->after)
+            status = wb_fail(WB_ERR_MEMORY, "no memory for a section");
+    }
+    return status;
+}
+
+static void release_point(struct point *p)
+{
+    wb_fibres_destroy(p->fibres);
+    wb_section_release(&p->section);
+    free(p->before);
+    free(p->after);
+}
+
+/* Moment at a curvature from the last one that was kept. */
+static double moment_at(struct point *p, double curvature)
+{
+    struct wb_fibres_response r;
+    wb_fibres_respond(p->fibres, 0.0, curvature, p->before, p->after, &r);
+    return r.M;
+}
+
+static double keep_moment(struct point *p, double curvature)
+{
+    const double M = moment_at(p, curvature);
+    double *const old = p->before;
+    p->before = p->after;
+    p->after = old;
+    return M;
+}
+
+/* Where the moment is gone on the way back from the largest curvature. */
+static double residual_curvature(struct point *p, double largest)
+{
+    double low = 0.0, high = largest;
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        if (moment_at(p, middle) > 0.0)
+            high = middle;
+        else
+            low = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+/* Work of a way in equal steps, by the trapezoidal rule. */
+static double work_of(struct point *p, double from, double to, double *M)
+{
+    double work = 0.0;
+    for (int i = 1; i <= LOOP_STEPS; i++) {
+        const double next = keep_moment(p, from + (to - from) * i / LOOP_STEPS);
+        work += 0.5 * (*M + next) * (to - from) / LOOP_STEPS;
+        *M = next;
+    }
+    return work;
+}
+
+enum wb_status wb_bending_describe(const struct wb_law *law, double diameter, double largest,
+                                   struct wb_bending *bending)
+{
+    struct point p;
+    const enum wb_status status = make_point(&p, law, diameter);
+    if (status == WB_OK) {
+        bending->flexural_rigidity = wb_fibres_bending_stiffness(p.fibres);
+        double M = keep_moment(&p, largest);
+        bending->springback = residual_curvature(&p, largest) / largest;
+        bending->loop_energy = work_of(&p, largest, 0.0, &M);
+        bending->loop_energy += work_of(&p, 0.0, largest, &M);
+    }
+    release_point(&p);
+    return status;
+}
+
+enum wb_status wb_bending_moments(const struct wb_law *law, double diameter, int n,
+                                  const double *curvature, double *moment)
+{
+    struct point p;
+    const enum wb_status status = make_point(&p, law, diameter);
+    for (int i = 0; i < n && status == WB_OK; i++)
+        moment[i] = moment_at(&p, curvature[i]);
+    release_point(&p);
+    return status;
+}
+
+/* --- the equivalent of Ludwik's form --- */
+
+struct equivalent {
+    double diameter, poissons_ratio;
+    double curvature[EQUIVALENT_POINTS], moment[EQUIVALENT_POINTS];
+    struct wb_material material;
+    enum wb_status status;
+};
+
+static int equivalent_residuals(const gsl_vector *x, void *context, gsl_vector *f)
+{
+    struct equivalent *const e = context;
+    double M[EQUIVALENT_POINTS];
+    struct wb_reason why;
+    struct wb_law law;
+    const double n = largest_exponent / (1.0 + exp(-gsl_vector_get(x, 3)));
+    e->material = (struct wb_material){
+        .hardening = WB_HARDENING_ISOTROPIC_POWER,
+        .youngs_modulus = exp(gsl_vector_get(x, 0)),
+        .poissons_ratio = e->poissons_ratio,
+        .yield_stress = exp(gsl_vector_get(x, 1)),
+        .strength_coefficient = exp(gsl_vector_get(x, 2)) / pow(middle_plastic_strain, n),
+        .hardening_exponent = n,
+    };
+    wb_law_init_ludwik(&law, &e->material);
+    if (wb_law_check(&law, &why) != WB_OK) {
+        gsl_vector_set_all(f, lost_residual);
+        return GSL_SUCCESS;
+    }
+    e->status = wb_bending_moments(&law, e->diameter, EQUIVALENT_POINTS, e->curvature, M);
+    if (e->status != WB_OK)
+        return GSL_EFAILED;
+    for (size_t i = 0; i < EQUIVALENT_POINTS; i++)
+        gsl_vector_set(f, i, log(M[i] / e->moment[i]));
+    return GSL_SUCCESS;
+}
+
+static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law *law,
+                                      double *misfit)
+{
+    gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
+    /* K and n lie in a valley so flat that the noise of one-sided differences shows in them. */
+    parameters.fdtype = GSL_MULTIFIT_NLINEAR_CTRDIFF;
+    parameters.h_df = 1e-4;
+    gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
+        gsl_multifit_nlinear_trust, &parameters, EQUIVALENT_POINTS, EQUIVALENT_FREE);
+    if (!w)
+        return wb_fail(WB_ERR_MEMORY, "no memory for an equivalent law");
+    gsl_multifit_nlinear_fdf fdf = {
+        .f = equivalent_residuals, .n = EQUIVALENT_POINTS, .p = EQUIVALENT_FREE, .params = e};
+    /* It starts with the stiffness of a small bend and yields where a first loading has lost a
+     * tenth of it. */
+    const double R = 0.5 * e->diameter;
+    const double E = law->material.youngs_modulus;
+    int yields = 0;
+    while (yields < EQUIVALENT_POINTS - 1 &&
+           e->moment[yields] / e->curvature[yields] > 0.9 * e->moment[0] / e->curvature[0])
+        yields++;
+    const double last_strain = R * e->curvature[EQUIVALENT_POINTS - 1];
+    double start[EQUIVALENT_FREE] = {
+        log(E), log(E * R * e->curvature[yields]),
+        log(fmax(wb_law_virgin_stress(law, 0.3 * last_strain, NULL), 1e-3 * E * last_strain)), 0.3};
+    const gsl_vector_view x = gsl_vector_view_array(start, EQUIVALENT_FREE);
+    int info = 0;
+    int code = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
+    if (code == GSL_SUCCESS)
+        code = gsl_multifit_nlinear_driver(200, 1e-12, 1e-15, 0.0, NULL, NULL, &info, w);
+    if (e->status == WB_OK) {
+        /* The last evaluation need not have been the best. */
+        (void)equivalent_residuals(w->x, e, w->f);
+        double sum = 0.0;
+        for (size_t i = 0; i < EQUIVALENT_POINTS; i++)
+            sum += gsl_vector_get(w->f, i) * gsl_vector_get(w->f, i);
+        *misfit = sqrt(sum / EQUIVALENT_POINTS);
+    }
+    gsl_multifit_nlinear_free(w);
+    return e->status;
+}
+
+static void choose_curvatures(double largest, double curvature[EQUIVALENT_POINTS])
+{
+    for (int i = 0; i < EQUIVALENT_POINTS; i++)
+        curvature[i] =
+            largest * pow(first_of_equivalent, 1.0 - (double)i / (EQUIVALENT_POINTS - 1));
+}
+
+enum wb_status wb_bending_ludwik(const struct wb_law *law, double diameter, double largest,
+                                 struct wb_material *equivalent, double *misfit)
+{
+    struct equivalent e = {
+        .diameter = diameter, .poissons_ratio = law->material.poissons_ratio, .status = WB_OK};
+    choose_curvatures(largest, e.curvature);
+    WB_TRY(wb_bending_moments(law, diameter, EQUIVALENT_POINTS, e.curvature, e.moment));
+    WB_TRY(find_equivalent(&e, law, misfit));
+    *equivalent = e.material;
+    return WB_OK;
+}
+
+enum wb_status wb_bending_compare(const struct wb_law *law, const struct wb_material *material,
+                                  double diameter, double largest, double *difference)
+{
+    double curvature[EQUIVALENT_POINTS], moment[EQUIVALENT_POINTS], other[EQUIVALENT_POINTS];
+    struct wb_law ludwik;
+    wb_law_init_ludwik(&ludwik, material);
+    choose_curvatures(largest, curvature);
+    WB_TRY(wb_bending_moments(law, diameter, EQUIVALENT_POINTS, curvature, moment));
+    WB_TRY(wb_bending_moments(&ludwik, diameter, EQUIVALENT_POINTS, curvature, other));
+    *difference = 0.0;
+    for (int i = 0; i < EQUIVALENT_POINTS; i++)
+        *difference = fmax(*difference, fabs(other[i] / moment[i] - 1.0));
+    return WB_OK;
+}

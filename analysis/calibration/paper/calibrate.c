@@ -1,0 +1,751 @@
+#include "analysis/calibration/paper/calibrate.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_multimin.h>
+
+#include "analysis/calibration/paper/bow_correction.h"
+#include "analysis/calibration/paper/calibrate_private.h"
+#include "analysis/calibration/paper/computed.h"
+#include "analysis/calibration/paper/first_guess.h"
+#include "analysis/calibration/paper/jackknife.h"
+#include "analysis/calibration/paper/refit.h"
+#include "analysis/calibration/paper/scatter.h"
+#include "analysis/dataset/errors.h"
+#include "base/progress.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+/* Edges of the paper's simplex: 5 % of K0 and of n0. */
+#define SIMPLEX_STEP 0.05
+/* Where a material may lie; outside the error is a penalty. */
+#define SMALLEST_EXPONENT 0.01
+#define LARGEST_EXPONENT 1.5
+#define SMALLEST_STRENGTH_RATIO 1e-6 /* K over K0 */
+#define LARGEST_STRENGTH_RATIO 1e6
+/* Error of a point outside, or that a beam could not compute: far above any error of a curve. */
+#define PENALTY 10.0
+/* A test whose largest force is above this part of the linear elastic prediction has not yielded.
+ */
+#define ELASTIC_SHARE 0.95
+
+/* Bows beyond this part of the length bias eqs. 10 and 11 by more than a few percent. */
+#define LARGE_BOW 0.01
+/* So near to a bound of the search the optimum lies at it. */
+#define AT_BOUND 1e-3
+/* Passes of the correction for the bows. */
+#define BOW_PASSES 2
+
+/* What one evaluation of the error needs. */
+struct objective {
+    struct wb_computed *computed;
+    const struct wb_curve *curve;
+    int n;                       /* points of it that are compared */
+    struct wb_material material; /* with K and n of the last evaluation */
+    double first_strength, first_exponent;
+    double *value;         /* (curve->n) */
+    enum wb_status status; /* of the last evaluation that failed other than by convergence */
+    struct wb_reason *why; /* NULL: failures are logged */
+    int evaluations, failed;
+};
+
+static const struct wb_setting rows[] = {
+    {.name = "elastic_zone",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, elastic_zone),
+     .least = 1e-3,
+     .largest = 0.3,
+     .fallback = 0.05,
+     .option = "elastic-zone",
+     .argument = "R",
+     .help = "Deflection over length for E, eq. 10",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "yield_point",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, yield_point),
+     .least = 1e-3,
+     .largest = 0.3,
+     .otherwise = "as the elastic zone",
+     .option = "yield-point",
+     .argument = "R",
+     .help = "Deflection over length for the yield stress, eq. 11; the paper's tables show 0.04",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, step),
+     .scale = WB_MM,
+     .least = 1e-2,
+     .largest = 100.0,
+     .fallback = 0.5,
+     .option = "step-mm",
+     .argument = "H",
+     .help = "Deflection step of the comparison",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "straight",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, straight),
+     .option = "straight",
+     .help = "Ignore the natural shape (bow) of the samples",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "restart",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, restart),
+     .fallback = true,
+     .option = "no-restart",
+     .help = "Do not start once more from the optimum",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "elements",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, n_elements),
+     .least = 2,
+     .largest = 2000,
+     .fallback = 50,
+     .option = "elements",
+     .argument = "N",
+     .help = "Beam elements",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "fibres",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, n_fibres),
+     .least = 4,
+     .largest = 1000,
+     .fallback = 20,
+     .option = "fibres",
+     .argument = "N",
+     .help = "Fibres over the diameter",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "size_tolerance",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, size_tolerance),
+     .least = 1e-12,
+     .largest = 0.05,
+     .fallback = 1e-4,
+     .option = "size-tolerance",
+     .argument = "X",
+     .help = "Stop when the simplex is smaller, in units of K0 and n0",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
+    {.name = "error_tolerance",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, error_tolerance),
+     .least = 0.0,
+     .largest = 1.0,
+     .fallback = 1e-4,
+     .option = "error-tolerance",
+     .argument = "X",
+     .help = "Stop when the error is smaller, over F_max",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
+    {.name = "max_iterations",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, max_iterations),
+     .least = 1,
+     .largest = 100000,
+     .fallback = 200,
+     .option = "max-iterations",
+     .argument = "N",
+     .help = "Stop after N iterations of a simplex",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "bow_corrected",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, bow_corrected),
+     .option = "bow-corrected",
+     .help = "Take what the samples' bows make of eqs. 10 and 11 out of E and the yield stress",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN},
+    {.name = "youngs_modulus_MPa",
+     .unit = "MPa",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, youngs_modulus),
+     .scale = WB_MPA,
+     .least = 1e-3,
+     .largest = 1e7,
+     .otherwise = "eq. 10",
+     .option = "youngs-modulus-mpa",
+     .argument = "E",
+     .help = "Young's modulus",
+     .applies = WB_CALIBRATE_COMMAND},
+    {.name = "yield_stress_MPa",
+     .unit = "MPa",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, yield_stress),
+     .scale = WB_MPA,
+     .least = 1e-6,
+     .largest = 1e7,
+     .otherwise = "eq. 11",
+     .option = "yield-stress-mpa",
+     .argument = "S",
+     .help = "Yield stress",
+     .applies = WB_CALIBRATE_COMMAND},
+    {.name = "force_step_N",
+     .unit = "N",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, force_step),
+     .least = 1e-9,
+     .largest = 1e6,
+     .otherwise = "a step for each row, at most 100",
+     .option = "force-step-n",
+     .argument = "H",
+     .help = "Force step of the comparison of tests with a follower force, whose deflections are "
+             "compared at equal forces",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
+    {.name = "largest_deflection_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, largest_deflection),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1e6,
+     .otherwise = "nothing",
+     .option = "largest-deflection-mm",
+     .argument = "D",
+     .help = "Leave out what comes later in the loading",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
+};
+
+const struct wb_setting_table wb_calibrate_table = {.rows = rows, .n = WB_COUNT(rows)};
+
+void wb_calibrate_default_settings(struct wb_calibrate_settings *settings)
+{
+    *settings = (struct wb_calibrate_settings){.progress = NULL};
+    wb_setting_fill(&wb_calibrate_table, settings);
+}
+
+struct wb_calibrate_settings
+wb_calibrate_settings_meant(const struct wb_calibrate_settings *settings)
+{
+    struct wb_calibrate_settings meant = *settings;
+    if (!(meant.yield_point > 0.0))
+        meant.yield_point = meant.elastic_zone;
+    return meant;
+}
+
+const char *wb_calibrate_end_text(enum wb_calibrate_end end)
+{
+    switch (end) {
+    case WB_CALIBRATE_SIZE:
+        return "the simplex became small";
+    case WB_CALIBRATE_ERROR:
+        return "the error became small";
+    case WB_CALIBRATE_ITERATIONS:
+        return "the iterations ran out";
+    case WB_CALIBRATE_STOPPED:
+        return "stopped by the caller";
+    }
+    return "unknown";
+}
+
+static void silence_gsl(void)
+{
+    gsl_set_error_handler_off();
+}
+
+/* The grid on which these settings compare. */
+static struct wb_curve_grid grid_of(const struct wb_calibrate_settings *settings)
+{
+    return (struct wb_curve_grid){.step = settings->step,
+                                  .force_step = settings->force_step,
+                                  .largest_deflection = settings->largest_deflection};
+}
+
+static double yield_point(const struct wb_calibrate_settings *settings)
+{
+    return wb_calibrate_settings_meant(settings).yield_point;
+}
+
+static struct wb_computed_settings computed_settings(const struct wb_calibrate_settings *settings,
+                                                     struct wb_reason *why)
+{
+    return (struct wb_computed_settings){settings->straight, settings->n_elements,
+                                         settings->n_fibres, why};
+}
+
+/* How far outside the domain a point lies, 0 inside. */
+static double violation(double strength_ratio, double exponent)
+{
+    double outside = 0.0;
+    outside += fmax(0.0, SMALLEST_STRENGTH_RATIO - strength_ratio);
+    outside += fmax(0.0, strength_ratio / LARGEST_STRENGTH_RATIO - 1.0);
+    outside += fmax(0.0, SMALLEST_EXPONENT - exponent);
+    outside += fmax(0.0, exponent - LARGEST_EXPONENT);
+    return outside;
+}
+
+/* E_L2 over F_max sqrt(delta_max), or its like, at (K/K0, n/n0). Always finite: a penalty grows
+ * with the distance to the domain, and with the part of the curve that a beam did not reach, so
+ * that the simplex finds its way back. */
+static double evaluate(const gsl_vector *at, void *parameters)
+{
+    struct objective *const objective = parameters;
+    const struct wb_curve *const curve = objective->curve;
+    const double ratio = gsl_vector_get(at, 0);
+    const double exponent = gsl_vector_get(at, 1) * objective->first_exponent;
+    const double outside = violation(ratio, exponent);
+    if (outside > 0.0 || !isfinite(outside))
+        return PENALTY * (2.0 + fmin(outside, 1e6));
+    objective->material.strength_coefficient = ratio * objective->first_strength;
+    objective->material.hardening_exponent = exponent;
+    int reached = 0;
+    const enum wb_status status =
+        wb_computed_curve(objective->computed, &objective->material, objective->n, curve->step,
+                          objective->value, &reached);
+    objective->evaluations++;
+    if (status != WB_OK)
+        objective->status = status;
+    if (status != WB_OK || reached < objective->n) {
+        objective->failed++;
+        return PENALTY * (2.0 - (double)reached / objective->n);
+    }
+    return wb_errors_relative_l2(objective->n, curve->step, curve->value, objective->value,
+                                 wb_curve_scale(curve));
+}
+
+static enum wb_status add_step(struct wb_calibrate_result *result,
+                               const struct objective *objective, const gsl_vector *best,
+                               double error, double size)
+{
+    const size_t n = (size_t)result->n_path;
+    struct wb_calibrate_step *const path = realloc(result->path, (n + 1) * sizeof *path);
+    if (!path)
+        return wb_fail_to(objective->why, WB_ERR_MEMORY, "no memory for the optimiser's path");
+    path[n] = (struct wb_calibrate_step){
+        .strength_coefficient = gsl_vector_get(best, 0) * objective->first_strength,
+        .hardening_exponent = gsl_vector_get(best, 1) * objective->first_exponent,
+        .error = error,
+        .size = size,
+    };
+    result->path = path;
+    result->n_path++;
+    return WB_OK;
+}
+
+/* Iterates one simplex until it is small, the error is, or the iterations or the caller's patience
+ * run out. */
+static enum wb_status iterate(struct wb_calibrate_result *result, struct objective *objective,
+                              gsl_multimin_fminimizer *minimizer, double first_error,
+                              const struct wb_calibrate_settings *settings)
+{
+    const gsl_vector *const best = gsl_multimin_fminimizer_x(minimizer);
+    for (int i = 0;; i++) {
+        const double size = gsl_multimin_fminimizer_size(minimizer);
+        /* GSL knows no minimum before the first iteration. */
+        const double error = i == 0 ? first_error : gsl_multimin_fminimizer_minimum(minimizer);
+        if (objective->status != WB_OK)
+            return objective->status;
+        WB_TRY(add_step(result, objective, best, error, size));
+        if (settings->progress &&
+            !settings->progress(settings->progress_context, objective->evaluations, error, size)) {
+            result->end = WB_CALIBRATE_STOPPED;
+            return WB_OK;
+        }
+        if (error < settings->error_tolerance) {
+            result->end = WB_CALIBRATE_ERROR;
+            return WB_OK;
+        }
+        if (size < settings->size_tolerance) {
+            result->end = WB_CALIBRATE_SIZE;
+            return WB_OK;
+        }
+        if (i >= settings->max_iterations) {
+            result->end = WB_CALIBRATE_ITERATIONS;
+            return WB_OK;
+        }
+        /* The only failure is a contraction that hits a non-finite value, which evaluate() never
+         * returns. */
+        if (gsl_multimin_fminimizer_iterate(minimizer) != GSL_SUCCESS)
+            return wb_fail_to(objective->why, WB_ERR_CONVERGENCE, "the simplex could not go on");
+    }
+}
+
+/* One simplex from (K/K0, n/n0) = `at`, with edges of 5 % of each; the optimum goes back into
+ * `at`. */
+static enum wb_status minimise(struct wb_calibrate_result *result, struct objective *objective,
+                               double at[2], const struct wb_calibrate_settings *settings)
+{
+    gsl_multimin_fminimizer *const minimizer =
+        gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, 2);
+    gsl_vector *const start = gsl_vector_alloc(2);
+    gsl_vector *const edges = gsl_vector_alloc(2);
+    gsl_multimin_function function = {evaluate, 2, objective};
+    enum wb_status status = WB_OK;
+    double first_error = 0.0;
+    if (!minimizer || !start || !edges) {
+        status = wb_fail_to(objective->why, WB_ERR_MEMORY, "no memory for the simplex");
+    } else {
+        for (size_t i = 0; i < 2; i++) {
+            gsl_vector_set(start, i, at[i]);
+            gsl_vector_set(edges, i, SIMPLEX_STEP * at[i]);
+        }
+        first_error = evaluate(start, objective);
+        if (gsl_multimin_fminimizer_set(minimizer, &function, start, edges) != GSL_SUCCESS)
+            status = wb_fail_to(objective->why, WB_ERR_CONVERGENCE,
+                                "the first simplex could not be made");
+    }
+    if (status == WB_OK)
+        status = iterate(result, objective, minimizer, first_error, settings);
+    if (status == WB_OK) {
+        const gsl_vector *const best = gsl_multimin_fminimizer_x(minimizer);
+        at[0] = gsl_vector_get(best, 0);
+        at[1] = gsl_vector_get(best, 1);
+        if (result->path[result->n_path - 1].error >= PENALTY &&
+            result->end != WB_CALIBRATE_STOPPED)
+            status = wb_fail_to(objective->why, WB_ERR_CONVERGENCE,
+                                "wire '%s': the beam converges nowhere around the first guess "
+                                "(K0 = %.4g MPa, n0 = %.4g)",
+                                result->info.wire, objective->first_strength / WB_MPA,
+                                objective->first_exponent);
+    }
+    if (minimizer)
+        gsl_multimin_fminimizer_free(minimizer);
+    if (start)
+        gsl_vector_free(start);
+    if (edges)
+        gsl_vector_free(edges);
+    return status;
+}
+
+/* The force at the end falls short of the elastic one. */
+static enum wb_status check_share(const struct objective *objective,
+                                  const struct wb_test_info *info)
+{
+    const struct wb_curve *const curve = objective->curve;
+    const double predicted = objective->value[curve->n - 1];
+    const double share = curve->force[curve->n - 1] / predicted;
+    if (predicted > 0.0 && share > ELASTIC_SHARE)
+        return wb_fail_to(
+            objective->why, WB_ERR_DATA,
+            "wire '%s': yield is not reached: at %.2f mm the force is still %.0f %% of "
+            "the linear elastic prediction's",
+            info->wire, curve->max_deflection / WB_MM, 100.0 * share);
+    return WB_OK;
+}
+
+/* The deflection under a follower force leaves the elastic one somewhere; at the end it may meet it
+ * again, curled up. */
+static enum wb_status check_leaves(const struct objective *objective,
+                                   const struct wb_test_info *info)
+{
+    const struct wb_curve *const curve = objective->curve;
+    double apart = 0.0, highest = 0.0;
+    for (int i = 0; i < curve->n; i++) {
+        apart = fmax(apart, fabs(curve->deflection[i] - objective->value[i]));
+        highest = fmax(highest, fabs(objective->value[i]));
+    }
+    if (apart < (1.0 - ELASTIC_SHARE) * highest)
+        return wb_fail_to(objective->why, WB_ERR_DATA,
+                          "wire '%s': yield is not reached: up to %.4g N the deflection is within "
+                          "%.2f mm of the linear elastic prediction's",
+                          info->wire, curve->max_force, apart / WB_MM);
+    return WB_OK;
+}
+
+/* Refuses a test that follows the linear elastic prediction to its end. */
+static enum wb_status check_yielded(struct objective *objective, const struct wb_test_info *info)
+{
+    struct wb_material elastic = objective->material;
+    const struct wb_curve *const curve = objective->curve;
+    int reached = 0;
+    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+    WB_TRY(wb_computed_curve(objective->computed, &elastic, curve->n, curve->step, objective->value,
+                             &reached));
+    objective->evaluations++;
+    if (reached < curve->n)
+        return WB_OK;
+    return curve->is_follower ? check_leaves(objective, info) : check_share(objective, info);
+}
+
+static void take_optimum(struct wb_calibrate_result *result, const struct objective *objective,
+                         const double at[2])
+{
+    result->material = objective->material;
+    result->material.strength_coefficient = at[0] * objective->first_strength;
+    result->material.hardening_exponent = at[1] * objective->first_exponent;
+    result->evaluations = objective->evaluations;
+    result->failed_evaluations = objective->failed;
+}
+
+/* Points up to the largest deflection of a follower test; all points otherwise. */
+static int rising_points(const struct wb_curve *curve)
+{
+    int n = curve->n;
+    while (curve->is_follower && n > 2 && curve->deflection[n - 1] < curve->max_deflection)
+        n--;
+    return n;
+}
+
+/* Nelder-Mead, then once more from the optimum. Where a follower test goes beyond its largest
+ * deflection, it is first sought up to there: a curled wire's tip comes down again to where a far
+ * stiffer one's still goes up, and between them the error has a ridge. */
+static enum wb_status optimise(struct wb_calibrate_result *result, struct objective *objective,
+                               const struct wb_calibrate_settings *settings)
+{
+    double at[2] = {1.0, 1.0};
+    objective->n = rising_points(objective->curve);
+    if (objective->n < objective->curve->n)
+        WB_TRY(minimise(result, objective, at, settings));
+    objective->n = objective->curve->n;
+    if (result->n_path == 0 || result->end != WB_CALIBRATE_STOPPED)
+        WB_TRY(minimise(result, objective, at, settings));
+    result->start_of_restart = result->n_path;
+    if (settings->restart && result->end != WB_CALIBRATE_STOPPED &&
+        result->end != WB_CALIBRATE_ERROR) {
+        const double before[2] = {at[0], at[1]};
+        WB_TRY(minimise(result, objective, at, settings));
+        result->restarted = true;
+        result->restart_moved = fmax(fabs(at[0] / before[0] - 1.0), fabs(at[1] / before[1] - 1.0));
+    }
+    take_optimum(result, objective, at);
+    return WB_OK;
+}
+
+/* Multiplies E and sigma_Y, where they are not given, by the ratio of two closed forms. */
+static void scale_closed_forms(struct wb_material *material, const struct wb_first_guess *measured,
+                               const struct wb_first_guess *computed,
+                               const struct wb_calibrate_settings *settings)
+{
+    if (settings->youngs_modulus <= 0.0)
+        material->youngs_modulus *= measured->youngs_modulus / computed->youngs_modulus;
+    if (settings->yield_stress <= 0.0)
+        material->yield_stress *= measured->yield_stress / computed->yield_stress;
+}
+
+/* Takes what the bows make of eqs. 10 and 11 out of E and sigma_Y, by the ratio of measured to
+ * computed, and seeks K and n again from where they are. */
+static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
+                                       struct objective *objective,
+                                       const struct wb_bow_samples *samples,
+                                       const struct wb_first_guess *measured,
+                                       const struct wb_calibrate_settings *settings)
+{
+    for (int pass = 0; pass < BOW_PASSES && result->end != WB_CALIBRATE_STOPPED; pass++) {
+        struct wb_first_guess computed;
+        double at[2] = {1.0, 1.0};
+        WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material,
+                                       &objective->evaluations, objective->why));
+        objective->material = result->material;
+        scale_closed_forms(&objective->material, measured, &computed, settings);
+        objective->first_strength = result->material.strength_coefficient;
+        objective->first_exponent = result->material.hardening_exponent;
+        WB_TRY(minimise(result, objective, at, settings));
+        take_optimum(result, objective, at);
+    }
+    result->bow_corrected = true;
+    return WB_OK;
+}
+
+/* The final law on every point of the grid: eqs. 18 and 19. */
+static enum wb_status judge(struct wb_calibrate_result *result, struct objective *objective)
+{
+    const struct wb_curve *const curve = objective->curve;
+    int reached = 0;
+    WB_TRY(wb_computed_curve(objective->computed, &result->material, curve->n, curve->step,
+                             objective->value, &reached));
+    result->evaluations++;
+    wb_errors_curve(curve->n, curve->value, objective->value, wb_curve_scale(curve),
+                    objective->value);
+    result->rms = wb_errors_rms(curve->n, objective->value);
+    result->max_error = wb_errors_largest(curve->n, objective->value);
+    result->scatter_rms = wb_curve_scatter(curve);
+    result->n_samples = curve->n_samples;
+    result->max_force = curve->max_force;
+    result->max_deflection = curve->max_deflection;
+    return WB_OK;
+}
+
+static double bow_spread(const struct wb_dataset *const *datasets, int n)
+{
+    double known = 0.0, mean = 0.0, squares = 0.0;
+    for (int i = 0; i < n; i++) {
+        if (datasets[i]->info.n_natural_shape == 0)
+            continue;
+        known += 1.0;
+        mean += wb_dataset_bow(&datasets[i]->info);
+    }
+    for (int i = 0; i < n; i++) {
+        const double off = wb_dataset_bow(&datasets[i]->info) - mean / fmax(known, 1.0);
+        squares += datasets[i]->info.n_natural_shape > 0 ? off * off : 0.0;
+    }
+    return known > 1.0 ? sqrt(squares / (known - 1.0)) : 0.0;
+}
+
+int wb_calibrate_remarks(const struct wb_calibrate_result *result,
+                         const char *remarks[WB_CALIBRATE_MOST_REMARKS])
+{
+    int n = 0;
+    const struct wb_material *const m = &result->material;
+    const double ratio = m->strength_coefficient / result->first_strength_coefficient;
+    const double large = LARGE_BOW * result->info.length;
+    if (!result->bow_corrected &&
+        (fabs(wb_dataset_bow(&result->info)) > large || result->bow_spread > large))
+        remarks[n++] = "+- does not hold the bias of eqs. 10 and 11 from the samples' bows";
+    if (m->hardening_exponent > 1.0)
+        remarks[n++] = "n is above 1: the stress rises ever faster with the strain, which no metal "
+                       "does; K and n are numbers of a fit";
+    if (m->hardening_exponent < SMALLEST_EXPONENT * (1.0 + AT_BOUND) ||
+        m->hardening_exponent > LARGEST_EXPONENT * (1.0 - AT_BOUND) ||
+        ratio < SMALLEST_STRENGTH_RATIO * (1.0 + AT_BOUND) ||
+        ratio > LARGEST_STRENGTH_RATIO * (1.0 - AT_BOUND))
+        remarks[n++] = "K or n ended at a bound of the search: no optimum was found";
+    return n;
+}
+
+/* --- uncertainties --- */
+
+struct leaving_out {
+    const struct wb_calibrate_settings *settings;
+    int *evaluations;
+};
+
+/* E and sigma_Y from eqs. 10 and 11 of the samples' own curve as ever; K and n from those of
+ * `material` on. */
+static enum wb_status refit_curve(const struct leaving_out *how,
+                                  const struct wb_bow_samples *samples,
+                                  struct wb_material *material, bool *settled,
+                                  struct wb_reason *why)
+{
+    const struct wb_calibrate_settings *const settings = how->settings;
+    struct wb_computed *computed;
+    struct wb_test_info info;
+    struct wb_first_guess guess;
+    wb_curve_mean_info(samples->datasets, samples->n, &info);
+    WB_TRY(wb_first_guess_run(&guess, samples->curve, &info, samples->elastic_zone,
+                              samples->yield_point, why));
+    struct wb_first_guess before = {.youngs_modulus = material->youngs_modulus,
+                                    .yield_stress = material->yield_stress};
+    if (settings->bow_corrected && !settings->straight)
+        WB_TRY(wb_bow_correction_guess(&before, samples, material, how->evaluations, why));
+    scale_closed_forms(material, &guess, &before, settings);
+    WB_TRY(wb_computed_create(&computed, &info, material, samples->how));
+    const enum wb_status status =
+        wb_refit_run(material, settled, computed, samples->curve, how->evaluations);
+    wb_computed_destroy(computed);
+    return status;
+}
+
+static enum wb_status refit_samples(void *context, const struct wb_dataset *const *datasets, int n,
+                                    struct wb_material *material, bool *settled,
+                                    struct wb_reason *why)
+{
+    const struct leaving_out *const how = context;
+    const struct wb_curve_grid grid = grid_of(how->settings);
+    const struct wb_computed_settings computed = computed_settings(how->settings, why);
+    struct wb_curve curve;
+    *settled = false;
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
+    const struct wb_bow_samples samples = {
+        datasets, n, &curve, how->settings->elastic_zone, yield_point(how->settings), &computed};
+    const enum wb_status status = refit_curve(how, &samples, material, settled, why);
+    wb_curve_release(&curve);
+    return status;
+}
+
+enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
+                                       const struct wb_dataset *const *datasets, int n,
+                                       const struct wb_calibrate_settings *settings,
+                                       struct wb_reason *why)
+{
+    struct leaving_out how = {settings, &result->evaluations};
+    const struct wb_jackknife_refit refit = {refit_samples, &how};
+    return wb_jackknife_run(result->deviation, datasets, n, &result->material, &refit, why);
+}
+
+/* --- all --- */
+
+static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
+                                      const struct wb_curve *curve,
+                                      const struct wb_dataset *const *datasets, int n,
+                                      const struct wb_calibrate_settings *settings,
+                                      struct wb_reason *why)
+{
+    struct wb_first_guess guess;
+    wb_curve_mean_info(datasets, n, &result->info);
+    wb_curve_warn_unknown_shapes(datasets, n);
+    result->bow_spread = bow_spread(datasets, n);
+    WB_TRY(wb_first_guess_run(&guess, curve, &result->info, settings->elastic_zone,
+                              yield_point(settings), why));
+    result->first_strength_coefficient = guess.strength_coefficient;
+    result->first_hardening_exponent = guess.hardening_exponent;
+    struct objective objective = {
+        .curve = curve,
+        .material = {.hardening = WB_HARDENING_ISOTROPIC_POWER,
+                     .youngs_modulus = guess.youngs_modulus,
+                     .poissons_ratio = result->info.poissons_ratio,
+                     .yield_stress = guess.yield_stress,
+                     .strength_coefficient = guess.strength_coefficient,
+                     .hardening_exponent = guess.hardening_exponent},
+        .first_strength = guess.strength_coefficient,
+        .first_exponent = guess.hardening_exponent,
+        .why = why,
+    };
+    if (settings->youngs_modulus > 0.0)
+        objective.material.youngs_modulus = settings->youngs_modulus;
+    if (settings->yield_stress > 0.0)
+        objective.material.yield_stress = settings->yield_stress;
+    const struct wb_computed_settings how = computed_settings(settings, why);
+    objective.value = malloc((size_t)curve->n * sizeof *objective.value);
+    if (!objective.value)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", curve->n);
+    enum wb_status status =
+        wb_computed_create(&objective.computed, &result->info, &objective.material, &how);
+    if (status == WB_OK)
+        status = check_yielded(&objective, &result->info);
+    if (status == WB_OK)
+        status = optimise(result, &objective, settings);
+    if (status == WB_OK && settings->bow_corrected && !settings->straight) {
+        const struct wb_bow_samples samples = {
+            datasets, n, curve, settings->elastic_zone, yield_point(settings), &how};
+        status = correct_for_bows(result, &objective, &samples, &guess, settings);
+    }
+    if (status == WB_OK)
+        status = judge(result, &objective);
+    if (status == WB_OK)
+        status = wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve,
+                                     &result->material, &how);
+    wb_computed_destroy(objective.computed);
+    free(objective.value);
+    if (status == WB_OK && result->end != WB_CALIBRATE_STOPPED)
+        status = wb_calibrate_deviations(result, datasets, n, settings, why);
+    return status;
+}
+
+enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
+                                const struct wb_dataset *const *datasets, int n,
+                                const struct wb_calibrate_settings *settings, struct wb_reason *why)
+{
+    /* GSL's default handler aborts the program. */
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, silence_gsl);
+    const double started = wb_progress_thread_cpu();
+    WB_TRY(wb_setting_check(&wb_calibrate_table, settings, why));
+    struct wb_calibrate_result made = {0};
+    struct wb_curve curve;
+    for (int k = 0; k < 4; k++)
+        made.deviation[k] = (double)NAN;
+    const struct wb_curve_grid grid = grid_of(settings);
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
+    const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings, why);
+    wb_curve_release(&curve);
+    if (status != WB_OK) {
+        wb_calibrate_result_release(&made);
+        return status;
+    }
+    made.cpu_s = wb_progress_thread_cpu() - started;
+    *result = made;
+    return WB_OK;
+}
+
+void wb_calibrate_result_release(struct wb_calibrate_result *result)
+{
+    free(result->path);
+    result->path = NULL;
+    result->n_path = 0;
+}

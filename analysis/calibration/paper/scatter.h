@@ -1,0 +1,22 @@
+/* The part of the scatter between samples that their bows do not explain. For each sample the curve
+ * predicted with its own natural shape is subtracted from the measured one; the scatter of these
+ * differences is what is left. */
+#ifndef WB_ANALYSIS_SCATTER_H
+#define WB_ANALYSIS_SCATTER_H
+
+#include "analysis/calibration/paper/computed.h"
+#include "analysis/dataset/curve.h"
+#include "analysis/dataset/dataset.h"
+#include "base/status.h"
+
+/* At each point of the grid the standard deviation of these differences is taken over the samples
+ * (n - 1); *rms receives its root mean square over the grid, divided by wb_curve_scale() of
+ * `curve`, the average of all samples. 0 with one sample; NaN when a prediction does not converge
+ * over the whole of `curve`. */
+WB_MUST_CHECK enum wb_status wb_scatter_residual(double *rms,
+                                                 const struct wb_dataset *const *datasets, int n,
+                                                 const struct wb_curve *curve,
+                                                 const struct wb_material *material,
+                                                 const struct wb_computed_settings *settings);
+
+#endif

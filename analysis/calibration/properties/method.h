@@ -1,0 +1,28 @@
+/* Which method calibrates datasets where nobody names one: for the command and the library. */
+#ifndef WB_ANALYSIS_CALIBRATION_METHOD_H
+#define WB_ANALYSIS_CALIBRATION_METHOD_H
+
+#include "analysis/dataset/dataset.h"
+#include "base/reason.h"
+#include "base/status.h"
+
+enum wb_method {
+    WB_METHOD_CYCLE,       /* analysis/calibration/cycle/cycle_calibrate.h */
+    WB_METHOD_PAPER,       /* analysis/calibration/paper/calibrate.h */
+    WB_METHOD_THREE_POINT, /* analysis/calibration/three_point/three_point_calibrate.h */
+    WB_METHODS
+};
+
+/* "cycle", "paper", "three-point". */
+const char *wb_method_name(enum wb_method method);
+
+/* Datasets of three-point bending have one method, a follower force among cantilevers asks for the
+ * paper's, all others are calibrated on whole cycles. WB_ERR_DATA where tests of both kinds are
+ * together; `names` are those of the n datasets, at least one, in the message, which `why` receives
+ * (NULL: logged). */
+WB_MUST_CHECK enum wb_status wb_method_choose(enum wb_method *method,
+                                              const struct wb_dataset *const *datasets,
+                                              const char *const *names, int n,
+                                              struct wb_reason *why);
+
+#endif

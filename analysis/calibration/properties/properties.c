@@ -1,0 +1,196 @@
+#include "analysis/calibration/properties/properties_private.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "base/version.h"
+
+static const struct wb_estimate unknown_estimate = {(double)NAN, (double)NAN, (double)NAN,
+                                                    (double)NAN, (double)NAN, (double)NAN};
+
+void wb_properties_make_unknown(struct wb_properties *properties)
+{
+    *properties = (struct wb_properties){.n_samples = 0};
+    for (int k = 0; k < 4; k++)
+        properties->deviation[k] = (double)NAN;
+    properties->calibration_length = properties->rms = (double)NAN;
+    properties->scatter_rms = properties->residual_scatter_rms = (double)NAN;
+    properties->ludwik_misfit = properties->largest_curvature = (double)NAN;
+    properties->stiffness_deviation = (double)NAN;
+    properties->rigidity = properties->springback = properties->loop_energy = unknown_estimate;
+    for (int k = 0; k < WB_PROPERTIES_MOST_MOMENTS; k++)
+        properties->moment[k] = unknown_estimate;
+}
+
+const char *const wb_properties_methods[] = {"cycle", "paper", "three-point", NULL};
+
+static void set_origin(struct wb_properties *properties, const struct wb_test_info *info,
+                       enum wb_properties_method method)
+{
+    properties->is_virtual = info->is_virtual;
+    properties->is_simulation = info->is_simulation;
+    snprintf(properties->method, sizeof properties->method, "%s", wb_properties_methods[method]);
+    snprintf(properties->tool, sizeof properties->tool, "wirebench %s (%s)", wb_version(),
+             wb_version_revision());
+}
+
+void wb_properties_from_result(const struct wb_calibrate_result *result,
+                               struct wb_properties *properties)
+{
+    wb_properties_make_unknown(properties);
+    snprintf(properties->wire, sizeof properties->wire, "%s", result->info.wire);
+    properties->outer_diameter = result->info.outer_diameter;
+    properties->mass_per_length = result->info.mass_per_length;
+    properties->material = result->material;
+    memcpy(properties->deviation, result->deviation, sizeof properties->deviation);
+    properties->calibration_length = result->info.length;
+    properties->rms = result->rms;
+    properties->scatter_rms = result->n_samples > 1 ? result->scatter_rms : (double)NAN;
+    properties->residual_scatter_rms =
+        result->n_samples > 1 ? result->residual_scatter_rms : (double)NAN;
+    properties->n_samples = result->n_samples;
+    set_origin(properties, &result->info, WB_PROPERTIES_METHOD_PAPER);
+    wb_law_init_ludwik(&properties->law, &result->material);
+}
+
+void wb_properties_from_wire(const struct wb_wire *wire, struct wb_properties *properties)
+{
+    wb_properties_make_unknown(properties);
+    snprintf(properties->wire, sizeof properties->wire, "%s", wire->name);
+    properties->outer_diameter = wire->outer_diameter;
+    properties->mass_per_length = wb_wire_mass_per_length(wire);
+    properties->material = wire->material;
+    properties->law = wire->law;
+}
+
+/* Where the data refute the rule, only the range over the candidates is known. */
+static struct wb_estimate known(const struct wb_cycle_calibration *calibration,
+                                const struct wb_estimate *estimate)
+{
+    struct wb_estimate known = *estimate;
+    known.deviation = (double)NAN;
+    if (calibration->has_unloading && !calibration->is_supported)
+        known.value = known.low = known.high = (double)NAN;
+    return known;
+}
+
+/* By a way back, and to the end. */
+static bool is_rule_tested(const struct wb_cycle_calibration *calibration)
+{
+    return calibration->has_unloading && !calibration->is_stopped;
+}
+
+static void keep_specimen(const struct wb_cycle_calibration *calibration,
+                          const struct wb_cycle_member *member,
+                          struct wb_properties_specimen *specimen)
+{
+    const struct wb_cycle_fit *const fit = &member->answers[calibration->chosen].fit;
+    const double length = member->data.info.length;
+    const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, length);
+    *specimen = (struct wb_properties_specimen){
+        .sample = member->sample,
+        .length = length,
+        .bow = bow.tip,
+        .bow_deviation = bow.deviation,
+        .uneven_bow = bow.uneven,
+        .level = fit->level,
+        .misfit = fit->misfit,
+        .ludwik = member->ludwik,
+        .ludwik_misfit = member->ludwik_misfit,
+    };
+}
+
+static double misfit_of_chosen(const struct wb_cycle_calibration *calibration)
+{
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        if (calibration->ranked[i].candidate == calibration->chosen)
+            return calibration->ranked[i].misfit;
+    }
+    return (double)NAN;
+}
+
+int wb_properties_units(const struct wb_properties *properties)
+{
+    return properties->n_series > 1 ? properties->n_series : properties->n_samples;
+}
+
+void wb_properties_find_deviation(struct wb_properties *properties)
+{
+    const int n = wb_properties_units(properties), at = properties->n_moments / 2;
+    if (n < 2 || properties->n_moments < 1)
+        return;
+    const struct wb_estimate *const moment = &properties->moment[at];
+    properties->stiffness_deviation =
+        0.5 * log(moment->high / moment->low) * sqrt(n) / gsl_cdf_tdist_Qinv(0.025, n - 1);
+}
+
+void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
+                              struct wb_properties *properties)
+{
+    const struct wb_test_info *const info = &calibration->members[0].data.info;
+    wb_properties_make_unknown(properties);
+    snprintf(properties->wire, sizeof properties->wire, "%s", info->wire);
+    properties->outer_diameter = info->outer_diameter;
+    properties->mass_per_length = info->mass_per_length;
+    properties->material = calibration->ludwik;
+    properties->calibration_length = wb_cycle_calibrate_length(calibration);
+    properties->rms = misfit_of_chosen(calibration);
+    properties->n_samples = calibration->n_members;
+    set_origin(properties, info, WB_PROPERTIES_METHOD_CYCLE);
+    properties->law = calibration->law;
+    properties->ludwik_misfit = calibration->ludwik_misfit;
+    properties->largest_curvature = calibration->largest_curvature;
+    properties->rigidity = known(calibration, &calibration->rigidity);
+    if (calibration->has_unloading) {
+        properties->springback = known(calibration, &calibration->springback);
+        properties->loop_energy = known(calibration, &calibration->loop_energy);
+    }
+    properties->is_rule_tested = is_rule_tested(calibration);
+    properties->is_rule_supported = calibration->is_supported;
+    properties->n_moments = WB_CYCLE_MOMENTS;
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
+        properties->curvature[k] = calibration->curvature[k];
+        properties->moment[k] = known(calibration, &calibration->moment[k]);
+    }
+    wb_properties_find_deviation(properties);
+    const int n = calibration->n_members;
+    properties->n_specimens = n < WB_PROPERTIES_MOST_SPECIMENS ? n : WB_PROPERTIES_MOST_SPECIMENS;
+    for (int i = 0; i < properties->n_specimens; i++)
+        keep_specimen(calibration, &calibration->members[i], &properties->specimens[i]);
+}
+
+/* All tests have a way back, and the law follows both ways. */
+static bool has_tested_rule(const struct wb_three_point_calibration *c)
+{
+    return c->is_rigidity_identifiable;
+}
+
+void wb_properties_from_three_point(const struct wb_three_point_calibration *c,
+                                    struct wb_properties *properties)
+{
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    wb_properties_make_unknown(properties);
+    snprintf(properties->wire, sizeof properties->wire, "%s", info->wire);
+    properties->outer_diameter = info->outer_diameter;
+    properties->mass_per_length = info->mass_per_length;
+    properties->material = c->ludwik;
+    properties->rms = c->misfit;
+    properties->n_samples = c->n_fitted;
+    properties->n_series = c->n_series;
+    set_origin(properties, info, WB_PROPERTIES_METHOD_THREE_POINT);
+    properties->law = c->law;
+    properties->ludwik_misfit = c->ludwik_misfit;
+    properties->largest_curvature = c->largest_curvature;
+    if (c->is_rigidity_identifiable)
+        properties->rigidity = c->rigidity;
+    properties->is_rule_tested = has_tested_rule(c);
+    properties->is_rule_supported = has_tested_rule(c) && c->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
+    properties->n_moments = WB_THREE_POINT_MOMENTS;
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
+        properties->curvature[k] = c->curvature[k];
+        properties->moment[k] = c->moment[k];
+    }
+}

@@ -1,0 +1,29 @@
+/* Between the values of properties, and their reading and writing. */
+#ifndef WB_ANALYSIS_PROPERTIES_PRIVATE_H
+#define WB_ANALYSIS_PROPERTIES_PRIVATE_H
+
+#include "analysis/calibration/properties/properties.h"
+
+/* N mm2 in one N m2; N mm in one N m; mJ/m in one J/m. */
+#define N_MM2 1e-6
+#define N_MM 1e-3
+#define MILLI 1e-3
+
+enum wb_properties_method {
+    WB_PROPERTIES_METHOD_CYCLE,
+    WB_PROPERTIES_METHOD_PAPER,
+    WB_PROPERTIES_METHOD_THREE_POINT
+};
+/* As the key `method` has them; NULL ends them. */
+extern const char *const wb_properties_methods[];
+
+/* All that no source of properties needs to know. */
+void wb_properties_make_unknown(struct wb_properties *properties);
+/* How far specimens differ, from the interval of a moment well within the data: EI carries more of
+ * the fits' own noise. */
+void wb_properties_find_deviation(struct wb_properties *properties);
+/* Those of a calibration on three-point bending tests, without their specimens. */
+void wb_properties_from_three_point(const struct wb_three_point_calibration *c,
+                                    struct wb_properties *properties);
+
+#endif

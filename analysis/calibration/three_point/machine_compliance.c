@@ -1,0 +1,368 @@
+#include "analysis/calibration/three_point/machine_compliance.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "analysis/calibration/three_point/three_point_calibrate.h"
+#include "analysis/calibration/three_point/three_point_model.h"
+#include "analysis/dataset/fit.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "compliance"
+
+#define AT(field) offsetof(struct wb_machine_compliance_settings, field)
+
+static const struct wb_setting rows[] = {
+    {.name = "rigidity_N_mm2",
+     .unit = "N mm2",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(rigidity),
+     .scale = 1e-6,
+     .least = 1e-6,
+     .largest = 1e15,
+     .otherwise = "required",
+     .option = "rigidity-n-mm2",
+     .argument = "EI",
+     .help = "Flexural rigidity of the bar"},
+    {.name = "rigidity_error",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(rigidity_error),
+     .least = 1e-6,
+     .largest = 1.0,
+     .fallback = 0.02,
+     .option = "rigidity-error",
+     .argument = "R",
+     .help = "Part of the rigidity by which it may be off (95 %)"},
+    {.name = "from_force",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(from_force),
+     .least = 0.01,
+     .largest = 0.9,
+     .fallback = 0.2,
+     .option = "from-force",
+     .argument = "R",
+     .help = "Part of the largest force below which readings serve not: the bar is seating"},
+};
+
+#undef AT
+
+const struct wb_setting_table wb_machine_compliance_table = {.rows = rows, .n = WB_COUNT(rows)};
+
+enum {
+    LEAST_READINGS = 10,
+    ELEMENTS = 32 /* of half the bar */
+};
+
+static const double coverage = 0.95;
+/* Part of a line's rise over either half of its forces by which it may be curved; the way back may
+ * be off by as much in slope, and in travel. */
+static const double most_curved = 0.03;
+/* Part of the largest force above which the way back does not count: friction turns there. */
+static const double below_turn = 0.9;
+/* Standard deviations that are no difference. */
+static const double noises = 3.0;
+static const double poissons_ratio = 0.3; /* of a metal: shear of a bar on a short span */
+
+/* The readings of one way whose force counts, and what lies between their travel and the bar's
+ * deflection. */
+struct readings {
+    int n;
+    double *travel, *force, *rest;
+};
+
+struct test {
+    double zero, largest; /* N */
+    struct readings up, back;
+};
+
+static void take(struct readings *r, const struct wb_row *row, double force)
+{
+    r->travel[r->n] = row->deflection;
+    r->force[r->n++] = force;
+}
+
+static bool collect(struct test *test, const struct wb_dataset *dataset, double from_force)
+{
+    size_t n = 0, top = 0;
+    while (n < dataset->n_rows && dataset->rows[n].cycle == dataset->rows[0].cycle)
+        n++;
+    double *const room = calloc(6 * n + 1, sizeof *room);
+    *test = (struct test){
+        .zero = HUGE_VAL,
+        .up = {.travel = room, .force = room + n, .rest = room + 2 * n},
+        .back = {.travel = room + 3 * n, .force = room + 4 * n, .rest = room + 5 * n}};
+    if (!room)
+        return false;
+    /* The way up ends at the largest force, not at the largest travel: a bar that slips forward at
+     * the turn goes on, and its readings there would pass for noise of the way up. */
+    for (size_t i = 0; i < n; i++) {
+        if (dataset->rows[i].force > dataset->rows[top].force)
+            top = i;
+    }
+    for (size_t i = 0; i <= top && i < n; i++)
+        test->zero = fmin(test->zero, dataset->rows[i].force);
+    if (n > 0)
+        test->largest = dataset->rows[top].force - test->zero;
+    for (size_t i = 0; i < n; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        const double force = row->force - test->zero;
+        if (!(force >= from_force * test->largest) || !isfinite(row->deflection))
+            continue;
+        if (i <= top)
+            take(&test->up, row, force);
+        else if (force <= below_turn * test->largest)
+            take(&test->back, row, force);
+    }
+    return true;
+}
+
+/* The bar's deflection under a force, by bisection of its curve. */
+static double deflection_of(const struct wb_three_point_model *model, double force, double most)
+{
+    double low = 0.0, high = most;
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        if (wb_three_point_model_force(model, middle, false) < force)
+            low = middle;
+        else
+            high = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+/* How much the parabola through the readings bends over half their forces, over what the line rises
+ * there. */
+static double curved_part(const struct readings *r, double mean, double slope)
+{
+    double c[3], deviation, reach = 0.0;
+    double *const x = calloc((size_t)r->n, sizeof *x);
+    if (!x)
+        return 0.0;
+    for (int i = 0; i < r->n; i++) {
+        x[i] = r->force[i] - mean;
+        reach = fmax(reach, fabs(x[i]));
+    }
+    const bool found = wb_fit_parabola(x, r->rest, (size_t)r->n, c, &deviation);
+    free(x);
+    return found ? fabs(c[2] * reach / slope) : 0.0;
+}
+
+/* The line of one way. */
+struct slope {
+    double value, error, misfit, curved;
+    double at_zero; /* m, of travel */
+};
+
+static enum wb_status find_slope(struct slope *slope, const struct readings *r,
+                                 const struct wb_three_point_model *model, double most)
+{
+    struct wb_fit_line line;
+    double mean = 0.0, spread = 0.0;
+    int signs = 1;
+    for (int i = 0; i < r->n; i++) {
+        r->rest[i] = r->travel[i] - deflection_of(model, r->force[i], most);
+        mean += r->force[i] / r->n;
+    }
+    if (!wb_fit_line(r->force, r->rest, (size_t)r->n, &line))
+        return WB_ERR_DATA;
+    for (int i = 0; i < r->n; i++) {
+        const double off = r->rest[i] - line.value - line.slope * r->force[i];
+        const double before =
+            i > 0 ? r->rest[i - 1] - line.value - line.slope * r->force[i - 1] : off;
+        signs += (off < 0.0) != (before < 0.0);
+        spread += pow(r->force[i] - mean, 2);
+    }
+    slope->value = line.slope;
+    slope->at_zero = line.value;
+    slope->misfit = line.residual;
+    slope->error = line.residual * sqrt(fmax(1.0, 0.5 * r->n / signs) / spread);
+    slope->curved = curved_part(r, mean, line.slope);
+    return WB_OK;
+}
+
+static enum wb_status check(const struct wb_dataset *const *datasets, int n,
+                            const struct wb_machine_compliance_settings *s, struct wb_reason *why)
+{
+    const struct wb_test_info *const a = &datasets[0]->info;
+    if (!(s->rigidity > 0.0))
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "the bar's flexural rigidity is missing: --rigidity-n-mm2 (E pi d^4 / 64 "
+                          "of a round one)");
+    for (int i = 0; i < n; i++) {
+        const struct wb_test_info *const b = &datasets[i]->info;
+        if (b->kind != WB_TEST_THREE_POINT)
+            return wb_fail_to(why, WB_ERR_DATA, "'%s' is no three-point bending test", b->wire);
+        if (strcmp(a->wire, b->wire) != 0 || a->outer_diameter != b->outer_diameter ||
+            a->length != b->length || a->machine.roller_radius != b->machine.roller_radius)
+            return wb_fail_to(why, WB_ERR_DATA,
+                              "tests of '%s' and of '%s': expected one bar on one bench", a->wire,
+                              b->wire);
+    }
+    return WB_OK;
+}
+
+/* Mean over the tests with the bench's friction. */
+struct mean {
+    double slope, deviation, error, misfit, of_bar, curved;
+    /* Of the ways back: their mean slope and its error, what is left at the least force, the
+     * largest travel from zero force. NaN: not all tests have one. */
+    double back, back_error, left, most_travel;
+    double strain; /* of the bar, largest */
+};
+
+/* Adds the way back of one test to the sums. */
+static enum wb_status add_back(struct mean *mean, const struct test *test, int n,
+                               const struct slope *up, const struct wb_three_point_model *model,
+                               double most)
+{
+    struct slope back;
+    if (test->back.n < LEAST_READINGS)
+        mean->back = (double)NAN;
+    if (!isfinite(mean->back))
+        return WB_OK;
+    WB_TRY(find_slope(&back, &test->back, model, most));
+    const double least = test->up.force[0];
+    mean->back += back.value / n;
+    mean->back_error = hypot(mean->back_error, hypot(back.error, up->error) / n);
+    mean->left += (back.at_zero - up->at_zero + (back.value - up->value) * least) / n;
+    return WB_OK;
+}
+
+static enum wb_status find_mean(struct mean *mean, const struct test *all, int n,
+                                const struct wb_test_info *info,
+                                const struct wb_three_point_bench *bench, double rigidity,
+                                struct wb_reason *why)
+{
+    const double d = info->outer_diameter, span = info->length;
+    const struct wb_law_part part = {rigidity * 64.0 / (M_PI * pow(d, 4)), (double)INFINITY};
+    struct wb_three_point_model *model;
+    struct wb_three_point_run run = {.reached = false};
+    struct wb_law law;
+    double largest = 0.0, sum = 0.0, squares = 0.0, misfits = 0.0;
+    *mean = (struct mean){.of_bar = pow(span, 3) / (48.0 * rigidity)};
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, all[i].largest);
+    const double most = 1.1 * largest * mean->of_bar;
+    wb_law_init_parallel(&law, &part, 1, 0.0, poissons_ratio);
+    WB_TRY(wb_three_point_model_create(&model, info, bench, &law, ELEMENTS));
+    enum wb_status status = wb_three_point_model_run(model, &law, 0.0, most, false, &run);
+    if (status == WB_OK && !run.reached)
+        status = wb_fail_to(why, WB_ERR_DATA,
+                            "a bar of %.4g N mm2 under %.4g N bends beyond %.3g mm (%s): it is no "
+                            "stiff one",
+                            rigidity / 1e-6, largest, run.travel / WB_MM,
+                            wb_three_point_bending_end_name(run.end));
+    for (int i = 0; i < n && status == WB_OK; i++) {
+        struct slope slope;
+        status = find_slope(&slope, &all[i].up, model, 1.5 * most);
+        if (status == WB_OK)
+            status = add_back(mean, &all[i], n, &slope, model, 1.5 * most);
+        if (status != WB_OK) {
+            (void)wb_fail_to(why, status, "test %d of '%s': its force does not vary", i + 1,
+                             info->wire);
+            break;
+        }
+        sum += slope.value;
+        squares += slope.value * slope.value;
+        misfits += slope.misfit * slope.misfit;
+        mean->error = slope.error;
+        mean->curved = fmax(mean->curved, slope.curved);
+        mean->most_travel =
+            fmax(mean->most_travel,
+                 deflection_of(model, all[i].largest, 1.5 * most) + slope.value * all[i].largest);
+    }
+    mean->strain = 0.5 * d * run.largest_curvature / 1.1; /* computed up to 1.1 of its deflection */
+    wb_three_point_model_destroy(model);
+    mean->slope = sum / n;
+    mean->misfit = sqrt(misfits / n);
+    mean->deviation =
+        n > 1 ? sqrt(fmax(0.0, squares - n * mean->slope * mean->slope) / (n - 1)) : 0.0;
+    return status;
+}
+
+/* Friction holds the bar back either way, so that the ways differ by twice what it does to one. */
+static void judge_back(struct wb_machine_compliance *result, const struct mean *mean)
+{
+    result->has_way_back = isfinite(mean->back);
+    result->comes_back = true;
+    result->value_back = mean->back;
+    result->left = result->has_way_back ? mean->left : (double)NAN;
+    result->most_travel = mean->most_travel;
+    result->strain = mean->strain;
+    if (!result->has_way_back)
+        return;
+    const double of_slope = most_curved * (mean->of_bar + mean->slope) + 2.0 * result->of_friction +
+                            noises * mean->back_error;
+    const double of_travel = most_curved * mean->most_travel + noises * mean->misfit;
+    result->comes_back =
+        fabs(mean->back - mean->slope) <= of_slope && fabs(mean->left) <= of_travel;
+}
+
+static enum wb_status find(struct wb_machine_compliance *result, const struct test *all, int n,
+                           const struct wb_test_info *info,
+                           const struct wb_machine_compliance_settings *s, struct wb_reason *why)
+{
+    struct wb_three_point_variant ends[WB_THREE_POINT_VARIANTS];
+    struct wb_three_point_bench bench;
+    struct mean mean, low, high;
+    wb_three_point_calibrate_bench(&info->machine, &bench, ends);
+    bench.compliance = 0.0;
+    WB_TRY(find_mean(&mean, all, n, info, &bench, s->rigidity, why));
+    bench.friction = ends[0].value;
+    WB_TRY(find_mean(&low, all, n, info, &bench, s->rigidity, why));
+    bench.friction = ends[1].value;
+    WB_TRY(find_mean(&high, all, n, info, &bench, s->rigidity, why));
+    *result = (struct wb_machine_compliance){
+        .value = mean.slope,
+        .of_bar = mean.of_bar,
+        .of_readings =
+            n > 1 ? gsl_cdf_tdist_Qinv(0.5 * (1.0 - coverage), n - 1) * mean.deviation / sqrt(n)
+                  : 2.0 * mean.error,
+        .of_rigidity = s->rigidity_error * mean.of_bar,
+        .of_friction = 0.5 * fabs(high.slope - low.slope),
+        .misfit = mean.misfit,
+        .n_tests = n,
+    };
+    const double half = sqrt(pow(result->of_readings, 2) + pow(result->of_rigidity, 2) +
+                             pow(result->of_friction, 2));
+    result->low = result->value - half;
+    result->high = result->value + half;
+    result->is_straight = mean.curved <= most_curved;
+    judge_back(result, &mean);
+    result->is_told = result->low > 0.0 && result->is_straight && result->comes_back;
+    return WB_OK;
+}
+
+enum wb_status wb_machine_compliance_find(struct wb_machine_compliance *result,
+                                          const struct wb_dataset *const *datasets, int n,
+                                          const struct wb_machine_compliance_settings *settings,
+                                          struct wb_reason *why)
+{
+    if (n < 1)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "expected at least one test");
+    WB_TRY(check(datasets, n, settings, why));
+    struct test *const all = calloc((size_t)n, sizeof *all);
+    if (!all)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", n);
+    enum wb_status status = WB_OK;
+    for (int i = 0; i < n && status == WB_OK; i++) {
+        if (!collect(&all[i], datasets[i], settings->from_force))
+            status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", datasets[i]->n_rows);
+        else if (all[i].up.n < LEAST_READINGS)
+            status = wb_fail_to(why, WB_ERR_DATA,
+                                "test %d of '%s': %d readings above %g of the largest force: "
+                                "expected at least %d",
+                                i + 1, datasets[i]->info.wire, all[i].up.n, settings->from_force,
+                                LEAST_READINGS);
+    }
+    if (status == WB_OK)
+        status = find(result, all, n, &datasets[0]->info, settings, why);
+    for (int i = 0; i < n; i++)
+        free(all[i].up.travel);
+    free(all);
+    return status;
+}

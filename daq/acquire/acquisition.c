@@ -1,0 +1,980 @@
+#include "daq/acquire/acquisition.h"
+#include "daq/acquire/acquisition_private.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <poll.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#include "base/interrupt.h"
+#include "base/units.h"
+#include "daq/acquire/remark_gate.h"
+#include "daq/protocol/drivers.h"
+#include "daq/stream/stream.h"
+
+#define WB_LOG_DOMAIN "acquisition"
+
+/* Drivers are promised a tick at least every 20 ms; this also bounds how late Ctrl-C is seen. */
+#define TICK_NS (20 * WB_NS_PER_MS)
+/* Reads of one stream in one step, so that a flood on one cannot starve the others. */
+#define READS_A_STEP 64
+/* Being late by more than this is a stall. */
+#define STALL_NS (30 * WB_NS_PER_MS)
+/* A stall that is told: the stage may have gone on for a whole second, unwatched. */
+#define TOLD_STALL_NS (1000 * WB_NS_PER_MS)
+#define LASTING_LOSS_NS (500 * WB_NS_PER_MS)
+#define RATE_PERIOD_NS (500 * WB_NS_PER_MS)
+/* Between two looks for a port that went away. */
+#define LOOK_AGAIN_NS (100 * WB_NS_PER_MS)
+
+/* One open stream with its driver. */
+struct line {
+    struct wb_acquisition *owner;
+    enum wb_role role;
+    const struct wb_driver *driver;
+    void *state;
+    struct wb_stream *stream;
+    int id; /* in the recording */
+    bool reported_lost, told_loss;
+    int64_t losing_ns;      /* since then samples are missing; 0: none are */
+    int64_t write_again_ns; /* after a port that took no bytes: not before */
+    int64_t gone_ns;        /* when its device went away, */
+    int64_t look_again_ns;  /* and when it is looked for again */
+    uint64_t counted;       /* valid samples so far */
+    uint64_t rate_from;     /* counted at rate_ns */
+    int64_t rate_ns;
+    bool has_rate;
+    struct wb_remark_gate gate;
+    uint64_t kernel_drops; /* datagrams the kernel lost, as far as told */
+    struct wb_loss loss;   /* by frames' stamps, or by the arrival of lines */
+};
+
+struct wb_acquisition {
+    struct wb_rig rig;
+    struct wb_sink sinks[2]; /* see every sample, in this order */
+    struct wb_writer *writer;
+    int n_lines;
+    struct line lines[WB_INTERLOCK_ROLES];
+    struct line *by_role[WB_INTERLOCK_ROLES];
+    struct wb_interlock interlock;
+    struct wb_stop stop;
+    bool moving, started, hold_sent;
+    enum wb_stop_state reported_stop;
+    struct wb_acquisition_latest latest;
+    int64_t next_tick_ns;
+    int64_t woken_ns;   /* end of the last wait for bytes */
+    int64_t storage_ns; /* from then on what came was not on the disk */
+    int64_t deaf_ns;    /* of all time since the start: nobody listened */
+    struct wb_outbox outbox;
+    uint8_t buffer[WB_STREAM_READ_MAX];
+};
+
+/* An event for the recording, if there is one. */
+static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *text)
+{
+    if (a->writer)
+        wb_writer_push_event(a->writer, t_ns, kind, text);
+}
+
+int64_t wb_acquisition_now_ns(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (int64_t)time.tv_sec * WB_NS_PER_S + time.tv_nsec;
+}
+
+void wb_acquisition_raise_priority(void)
+{
+    if (setpriority(PRIO_PROCESS, 0, -15) != 0)
+        wb_debug("the priority stays as it is: %s", strerror(errno));
+}
+
+bool wb_acquisition_marker_measured(const struct wb_marker *marker)
+{
+    return (marker->params & (WB_MARKER_OCCLUDED | WB_MARKER_MODEL_FILLED)) == 0;
+}
+
+void wb_acquisition_event(struct wb_acquisition *a, const char *kind, const char *format, ...)
+{
+    char text[sizeof((struct wb_event *)0)->text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    push_event(a, wb_acquisition_now_ns(), kind, text);
+}
+
+/* --- sending --- */
+
+/* A stage that went away is not asked again; its silence is then known, not waited for. A load cell
+ * may come back: what its silence allows is left to it. */
+static void lose_device(struct line *line)
+{
+    struct wb_acquisition *const a = line->owner;
+    a->latest.stream[line->role].gone = true;
+    line->gone_ns = wb_acquisition_now_ns();
+    line->look_again_ns = line->gone_ns + LOOK_AGAIN_NS;
+    if (line->role == WB_ROLE_STAGE)
+        a->interlock.lost[line->role] = true;
+}
+
+/* False when a write would have to wait: asked before all writes that are not urgent, because
+ * waiting for one instrument must not delay the hold byte to another. */
+static bool takes_bytes(const struct line *line)
+{
+    int descriptors[2];
+    if (wb_stream_descriptors(line->stream, descriptors) == 0)
+        return true;
+    struct pollfd polled = {.fd = descriptors[0], .events = POLLOUT};
+    return poll(&polled, 1, 0) > 0;
+}
+
+/* Writes what a driver put into the outbox, and empties it. A port that takes no bytes is left
+ * alone for a second, so that waiting for it cannot hold up the others; urgent bytes are always
+ * tried. */
+static enum wb_status send_outbox(struct line *line, bool urgent)
+{
+    struct wb_acquisition *const a = line->owner;
+    struct wb_outbox *const outbox = &a->outbox;
+    enum wb_status status = WB_OK;
+    const int64_t now_ns = wb_acquisition_now_ns();
+    size_t begin = 0;
+    if (a->latest.stream[line->role].gone)
+        status = WB_ERR_IO;
+    else if (!urgent && now_ns < line->write_again_ns)
+        status = WB_ERR_TIMEOUT;
+    else if (!urgent && outbox->n_entries > 0 && !takes_bytes(line)) {
+        line->write_again_ns = now_ns + WB_NS_PER_S;
+        status = WB_ERR_TIMEOUT;
+    }
+    for (size_t i = 0; status == WB_OK && i < outbox->n_entries; i++) {
+        status = wb_stream_write(line->stream, outbox->bytes + begin, outbox->ends[i] - begin);
+        begin = outbox->ends[i];
+        if (status == WB_ERR_TIMEOUT)
+            line->write_again_ns = now_ns + WB_NS_PER_S;
+        /* A datagram that finds no listener is not the end of a network stream. */
+        else if (status != WB_OK && line->role != WB_ROLE_MOCAP)
+            lose_device(line);
+    }
+    wb_outbox_clear(outbox);
+    return status;
+}
+
+static enum wb_status send_command(struct line *line, enum wb_stage_command command,
+                                   double distance, double speed)
+{
+    struct wb_acquisition *const a = line->owner;
+    wb_outbox_clear(&a->outbox);
+    const enum wb_status status =
+        line->driver->command(line->state, command, distance, speed, &a->outbox);
+    if (status != WB_OK) {
+        wb_outbox_clear(&a->outbox);
+        return status;
+    }
+    const bool urgent = command == WB_STAGE_COMMAND_HOLD || command == WB_STAGE_COMMAND_SOFT_RESET;
+    return send_outbox(line, urgent);
+}
+
+/* --- stopping --- */
+
+/* The interlock has just tripped: the hold byte goes out before anything else. */
+static void hold_now(struct wb_acquisition *a)
+{
+    if (a->stop.state != WB_STOP_NONE)
+        return;
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    enum wb_status status = WB_OK;
+    if (stage && a->moving)
+        status = send_command(stage, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
+    a->hold_sent = status == WB_OK;
+    const int64_t now_ns = wb_acquisition_now_ns();
+    if (!stage || !a->moving)
+        wb_stop_settle(&a->stop, WB_STOP_STANDING, now_ns);
+    else
+        wb_stop_begin(&a->stop, now_ns);
+    if (stage && a->latest.stream[WB_ROLE_STAGE].gone && a->moving)
+        wb_stop_settle(&a->stop, WB_STOP_FAILED, now_ns);
+    if (a->interlock.reason != WB_INTERLOCK_INTERRUPT)
+        push_event(a, a->interlock.t_ns, "limit", a->interlock.text);
+    char text[200];
+    if (stage && a->moving && status == WB_OK) {
+        snprintf(text, sizeof text, "{\"reason\": \"%s\", \"latency_ms\": %.3f}",
+                 wb_interlock_reason_name(a->interlock.reason),
+                 (double)(now_ns - a->interlock.t_ns) / 1e6);
+        push_event(a, now_ns, "hold", text);
+    } else if (stage && a->moving) {
+        push_event(a, now_ns, "hold", "the hold byte could not be sent to the stage");
+    }
+}
+
+/* Once, when the stop is over: what came of it. */
+static void report_stop(struct wb_acquisition *a)
+{
+    if (!wb_stop_over(&a->stop) || a->reported_stop == a->stop.state)
+        return;
+    a->reported_stop = a->stop.state;
+    if (!a->moving)
+        return;
+    char text[200];
+    if (a->stop.state == WB_STOP_STANDING) {
+        snprintf(text, sizeof text, "{\"confirmed_ms\": %.3f, \"soft_reset\": %s}",
+                 (double)(a->stop.confirmed_ns - a->stop.hold_ns) / 1e6,
+                 a->stop.reset_ns ? "true" : "false");
+        a->moving = false;
+        push_event(a, a->stop.confirmed_ns, "stopped", text);
+    } else {
+        push_event(a, a->stop.confirmed_ns, "stopped",
+                   "not confirmed: the stage may still be moving");
+    }
+}
+
+/* What is due of a stop that is under way. */
+static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
+{
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    if (!stage || a->stop.state == WB_STOP_NONE)
+        return;
+    const bool was_over = wb_stop_over(&a->stop);
+    enum wb_status status = WB_OK;
+    switch (wb_stop_tick(&a->stop, now_ns)) {
+    case WB_STOP_DO_ASK:
+        if (a->stop.state == WB_STOP_HOLDING && !a->hold_sent)
+            a->hold_sent = send_command(stage, WB_STAGE_COMMAND_HOLD, 0.0, 0.0) == WB_OK;
+        status = send_command(stage, WB_STAGE_COMMAND_STATUS, 0.0, 0.0);
+        break;
+    case WB_STOP_DO_RESET:
+        status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
+        wb_warn("the stage did not confirm the feed hold within %d ms: a soft reset stops it",
+                (int)(WB_STOP_CONFIRM_NS / WB_NS_PER_MS));
+        push_event(a, wb_acquisition_now_ns(), "reset",
+                   status == WB_OK ? "hold not confirmed in time: soft reset sent"
+                                   : "the soft reset could not be sent");
+        break;
+    case WB_STOP_DO_NOTHING:
+        break;
+    }
+    if (!was_over && a->latest.stream[WB_ROLE_STAGE].gone)
+        wb_stop_settle(&a->stop, WB_STOP_FAILED, now_ns);
+    report_stop(a);
+}
+
+void wb_acquisition_stop(struct wb_acquisition *a, enum wb_interlock_reason reason,
+                         const char *text)
+{
+    if (wb_interlock_trip(&a->interlock, reason, wb_acquisition_now_ns(), text))
+        hold_now(a);
+}
+
+void wb_acquisition_clear_stop(struct wb_acquisition *a)
+{
+    const struct wb_interlock_settings settings = a->interlock.settings;
+    bool lost[WB_INTERLOCK_ROLES];
+    memcpy(lost, a->interlock.lost, sizeof lost);
+    wb_interlock_init(&a->interlock, &settings, wb_acquisition_now_ns());
+    memcpy(a->interlock.lost, lost, sizeof lost);
+    memset(&a->stop, 0, sizeof a->stop);
+    a->reported_stop = WB_STOP_NONE;
+}
+
+/* --- the caller's side of stage and interlock --- */
+
+void wb_acquisition_arm(struct wb_acquisition *a, const struct wb_interlock_settings *settings,
+                        double start_position)
+{
+    const enum wb_interlock_reason reason = a->interlock.reason;
+    if (reason != WB_INTERLOCK_NONE)
+        return;
+    wb_interlock_init(&a->interlock, settings, wb_acquisition_now_ns());
+    a->interlock.armed = true;
+    if (!isfinite(start_position) && a->latest.has_stage)
+        start_position = a->latest.stage.position;
+    a->interlock.start_position = start_position;
+    /* Streams that were not opened send nothing. */
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
+        if (!a->by_role[role])
+            a->interlock.settings.stream_lost_ns[role] = 0;
+}
+
+void wb_acquisition_disarm(struct wb_acquisition *a)
+{
+    a->interlock.armed = false;
+}
+
+void wb_acquisition_set_tare(struct wb_acquisition *a, double tare)
+{
+    a->interlock.tare = tare;
+}
+
+const struct wb_interlock *wb_acquisition_interlock(const struct wb_acquisition *a)
+{
+    return &a->interlock;
+}
+
+enum wb_status wb_acquisition_command(struct wb_acquisition *a, enum wb_stage_command command,
+                                      double distance, double speed)
+{
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    if (!stage)
+        return wb_fail(WB_ERR_UNSUPPORTED, "no stage is open");
+    if (a->stop.state != WB_STOP_NONE && command != WB_STAGE_COMMAND_STATUS)
+        return WB_ERR_ARGUMENT;
+    const bool moves = command == WB_STAGE_COMMAND_JOG || command == WB_STAGE_COMMAND_HOME;
+    const bool was_moving = a->moving;
+    if (command != WB_STAGE_COMMAND_STATUS)
+        a->latest.stage_error[0] = '\0';
+    /* Set first: a command that may have left in part counts as moving. */
+    a->moving = a->moving || moves;
+    const enum wb_status status = send_command(stage, command, distance, speed);
+    if (status == WB_ERR_BUSY)
+        a->moving = was_moving;
+    return status;
+}
+
+void wb_acquisition_motion_ended(struct wb_acquisition *a)
+{
+    a->moving = false;
+}
+
+bool wb_acquisition_moving(const struct wb_acquisition *a)
+{
+    return a->moving;
+}
+
+const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *a)
+{
+    return &a->stop;
+}
+
+/* --- receiving: what the drivers deliver --- */
+
+/* To both sinks. */
+#define PASS_ON(a, member, ...)                                                                    \
+    do {                                                                                           \
+        for (int i_ = 0; i_ < 2; i_++)                                                             \
+            if ((a)->sinks[i_].member)                                                             \
+                (a)->sinks[i_].member((a)->sinks[i_].context, __VA_ARGS__);                        \
+    } while (0)
+
+static void on_load(void *context, const struct wb_load_sample *sample)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    if (wb_interlock_load(&a->interlock, sample))
+        hold_now(a);
+    a->latest.stream[WB_ROLE_LOAD].samples++;
+    a->latest.unit_contradicts = sample->unit_contradicts;
+    wb_loss_add(&line->loss, wb_seconds_from_ns(sample->t_ns));
+    if (sample->valid) {
+        line->counted++;
+        a->latest.has_load = true;
+        a->latest.load = *sample;
+    }
+    PASS_ON(a, load, sample);
+}
+
+static void on_mocap(void *context, const struct wb_mocap_frame *frame)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    wb_interlock_mocap(&a->interlock, frame->t_ns);
+    wb_loss_add(&line->loss, frame->t_device);
+    a->latest.stream[WB_ROLE_MOCAP].samples++;
+    line->counted++;
+    a->latest.has_mocap = true;
+    a->latest.mocap_ns = frame->t_ns;
+    a->latest.markers_seen = 0;
+    for (int i = 0; i < frame->n_markers; i++)
+        if (wb_acquisition_marker_measured(&frame->markers[i]))
+            a->latest.markers_seen++;
+    PASS_ON(a, mocap, frame);
+}
+
+static void on_stage(void *context, const struct wb_stage_report *report)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    if (wb_interlock_stage(&a->interlock, report))
+        hold_now(a);
+    wb_stop_report(&a->stop, report);
+    a->latest.stream[WB_ROLE_STAGE].samples++;
+    line->counted++;
+    a->latest.has_stage = true;
+    a->latest.stage = *report;
+    a->latest.stage_reports++;
+    PASS_ON(a, stage, report);
+}
+
+static void on_settings(void *context, const struct wb_stage_settings *settings)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    a->latest.has_settings = true;
+    a->latest.settings = *settings;
+    if (a->writer)
+        wb_writer_push_meta(a->writer, "stage_settings", settings->text);
+    PASS_ON(a, settings, settings);
+}
+
+static void on_probe(void *context, const struct wb_clock_probe *probe)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    const int64_t rtt_ns = probe->t_received_ns - probe->t_sent_ns;
+    if (a->writer)
+        (void)wb_writer_push_clock(a->writer, line->id, probe->t_sent_ns + rtt_ns / 2,
+                                   probe->t_device, rtt_ns);
+    PASS_ON(a, probe, probe);
+}
+
+static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
+                      const char *text)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    if (line->role == WB_ROLE_STAGE && level <= WB_LOG_WARNING)
+        snprintf(a->latest.stage_error, sizeof a->latest.stage_error, "%s", text);
+    unsigned held;
+    const bool store = wb_remark_gate_store(&line->gate, t_ns, &held);
+    if (held > 0) {
+        char more[96];
+        snprintf(more, sizeof more,
+                 "%u more remarks on the %s stream came within the same second and are not stored",
+                 held, wb_role_name(line->role));
+        push_event(a, t_ns, "remarks", more);
+    }
+    if (store)
+        push_event(a, t_ns, kind, text);
+    /* Chatter is for the recording; what hints at trouble is for the operator too. */
+    if (level > WB_LOG_WARNING)
+        wb_debug("%s: %s", wb_role_name(line->role), text);
+    else if (wb_remark_gate_show(&line->gate, t_ns, kind))
+        wb_warn("%s: %s", wb_role_name(line->role), text);
+    PASS_ON(a, remark, level, t_ns, kind, text);
+}
+
+/* Datagrams that the kernel threw away never reached us: the recording says so. */
+static void note_kernel_drops(struct line *line, int64_t t_ns)
+{
+    const uint64_t drops = wb_stream_kernel_drops(line->stream);
+    if (drops == line->kernel_drops)
+        return;
+    char text[120];
+    snprintf(text, sizeof text,
+             "the %s stream lost %" PRIu64
+             " datagrams: this computer did not read them in time; close other programs",
+             wb_role_name(line->role), drops - line->kernel_drops);
+    line->kernel_drops = drops;
+    push_event(line->owner, t_ns, "drop", text);
+    wb_warn("%s", text);
+}
+
+static struct wb_sink sink_of(struct line *line)
+{
+    return (struct wb_sink){.context = line,
+                            .load = on_load,
+                            .mocap = on_mocap,
+                            .stage = on_stage,
+                            .settings = on_settings,
+                            .probe = on_probe,
+                            .remark = on_remark};
+}
+
+static void read_line(struct line *line)
+{
+    struct wb_acquisition *const a = line->owner;
+    struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
+    const struct wb_sink sink = sink_of(line);
+    a->latest.telling = line->role;
+    for (int i = 0; i < READS_A_STEP && !state->gone; i++) {
+        size_t n = 0;
+        const enum wb_status status = wb_stream_read(line->stream, a->buffer, sizeof a->buffer, &n);
+        if (status != WB_OK) {
+            if (line->role != WB_ROLE_MOCAP)
+                lose_device(line);
+            return;
+        }
+        if (n == 0)
+            return;
+        /* Not the wake-up's time: where this process stalls between the two, the read also takes
+         * what came meanwhile, and a stamp before the arrival is one that no clock fit can bear. */
+        const int64_t t_ns = wb_acquisition_now_ns();
+        note_kernel_drops(line, t_ns);
+        state->chunks++;
+        state->bytes += n;
+        wb_diagnosis_add(&state->heard, a->buffer, n);
+        if (a->writer)
+            (void)wb_writer_push_chunk(a->writer, line->id, t_ns, a->buffer, n);
+        line->driver->receive(line->state, t_ns, a->buffer, n, &sink);
+    }
+}
+
+/* --- the loop --- */
+
+/* Questions and greetings: what became of them shows in what comes back. A failed write was told,
+ * and a device that went away is noted. */
+static void send_or_note(struct line *line)
+{
+    if (send_outbox(line, false) != WB_OK)
+        wb_debug("the %s took no bytes", wb_role_name(line->role));
+}
+
+/* What could not be set at the port. */
+static void tell_caution(const struct line *line, int64_t now_ns)
+{
+    const char *const caution = wb_stream_caution(line->stream);
+    if (!caution[0])
+        return;
+    wb_warn("%s: %s", wb_role_name(line->role), caution);
+    push_event(line->owner, now_ns, "latency", caution);
+}
+
+/* A load cell's port that went away may be plugged in again, and is greeted as at the start. A
+ * chunk without bytes tells every decoder that what follows does not belong to what came before. */
+static void look_again(struct line *line, int64_t now_ns)
+{
+    struct wb_acquisition *const a = line->owner;
+    const struct wb_sink sink = sink_of(line);
+    if (line->role != WB_ROLE_LOAD || now_ns < line->look_again_ns)
+        return;
+    line->look_again_ns = now_ns + LOOK_AGAIN_NS;
+    if (!wb_stream_reopen(line->stream))
+        return;
+    char text[240];
+    snprintf(text, sizeof text,
+             "the load cell's port came back after %.2f s: an indicator that was without power "
+             "has another zero, look at the force at the end of the test",
+             wb_seconds_from_ns(now_ns - line->gone_ns));
+    push_event(a, now_ns, "reconnected", text);
+    wb_warn("%s", text);
+    a->latest.stream[line->role].gone = false;
+    line->write_again_ns = 0;
+    tell_caution(line, now_ns);
+    if (a->writer)
+        (void)wb_writer_push_chunk(a->writer, line->id, now_ns, "", 0);
+    line->driver->receive(line->state, now_ns, NULL, 0, &sink);
+    wb_outbox_clear(&a->outbox);
+    line->driver->start(line->state, now_ns, &a->outbox);
+    send_or_note(line);
+}
+
+static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
+{
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        if (a->latest.stream[line->role].gone)
+            look_again(line, now_ns);
+        if (a->latest.stream[line->role].gone)
+            continue;
+        wb_outbox_clear(&a->outbox);
+        line->driver->tick(line->state, now_ns, &a->outbox);
+        send_or_note(line);
+    }
+    /* A late tick is not made up for, or a stall would end in a burst. */
+    a->next_tick_ns += TICK_NS;
+    if (a->next_tick_ns <= now_ns)
+        a->next_tick_ns = now_ns + TICK_NS;
+}
+
+/* Once, where it lasts: a frame that is overtaken is missing only until it comes. */
+static void tell_loss(struct line *line, int64_t now_ns)
+{
+    const struct wb_acquisition_stream_state *const state = &line->owner->latest.stream[line->role];
+    const char *const name = wb_role_name(line->role);
+    char text[160];
+    if (!state->is_losing)
+        line->losing_ns = 0;
+    else if (line->losing_ns == 0)
+        line->losing_ns = now_ns;
+    if (line->losing_ns == 0 || now_ns - line->losing_ns < LASTING_LOSS_NS || line->told_loss)
+        return;
+    line->told_loss = true;
+    snprintf(text, sizeof text, "%s: of %" PRIu64 " samples %" PRIu64 " never came", name,
+             state->loss.received + state->loss.missing, state->loss.missing);
+    push_event(line->owner, now_ns, "loss", text);
+    wb_warn("samples of the %s stream are lost on the way: %" PRIu64 " so far", name,
+            state->loss.missing);
+}
+
+static void note_losses(struct wb_acquisition *a, int64_t now_ns)
+{
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
+        const bool lost = a->interlock.lost[line->role] || state->gone;
+        if (lost != line->reported_lost) {
+            push_event(a, now_ns, lost ? "stream_lost" : "stream_found", wb_role_name(line->role));
+            /* A device that went away has been told already. */
+            if (lost && !state->gone)
+                wb_warn("the %s stream is lost: nothing valid comes from %s",
+                        wb_role_name(line->role), wb_stream_address(line->stream));
+            else if (!lost)
+                wb_info("the %s stream is back", wb_role_name(line->role));
+            line->reported_lost = lost;
+        }
+        state->lost = lost;
+        state->loss = wb_loss_counts(&line->loss);
+        state->is_losing = wb_loss_is_told(&line->loss);
+        tell_loss(line, now_ns);
+        state->ready = !state->gone && line->driver->ready(line->state);
+        state->drops = line->kernel_drops;
+        if (a->writer)
+            state->drops += wb_writer_drops(a->writer, line->id);
+    }
+}
+
+static void note_rates(struct wb_acquisition *a, int64_t now_ns)
+{
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        const int64_t lasted_ns = now_ns - line->rate_ns;
+        if (lasted_ns < RATE_PERIOD_NS)
+            continue;
+        const double rate =
+            (double)(line->counted - line->rate_from) / wb_seconds_from_ns(lasted_ns);
+        double *const smooth = &a->latest.stream[line->role].rate;
+        *smooth = line->has_rate ? *smooth + 0.5 * (rate - *smooth) : rate;
+        line->has_rate = line->has_rate || rate > 0.0;
+        line->rate_from = line->counted;
+        line->rate_ns = now_ns;
+    }
+}
+
+/* Told from here on: flushes are due ten times a second. */
+#define STORAGE_LAG_NS (800 * WB_NS_PER_MS)
+
+/* A disk that takes nothing, or too slowly. The test goes on: what came is in memory. */
+static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
+{
+    if (!a->writer)
+        return;
+    struct wb_writer_state *const state = &a->latest.storage;
+    wb_writer_state(a->writer, state);
+    const bool late = state->failing != WB_OK || state->lag_ns > STORAGE_LAG_NS;
+    if (late && !a->latest.is_storage_late) {
+        a->storage_ns = now_ns - state->lag_ns;
+        push_event(a, now_ns, "storage",
+                   state->failing != WB_OK ? "the disk takes nothing; what comes is in memory"
+                                           : "the disk is late; what comes is in memory");
+        wb_warn("%s: what came in the last %.1f s is in memory only%s",
+                state->failing != WB_OK ? "the disk takes nothing" : "the disk is late",
+                wb_seconds_from_ns(state->lag_ns),
+                state->failing != WB_OK ? "; make room on it while the test goes on" : "");
+    } else if (!late && a->latest.is_storage_late) {
+        char text[120];
+        snprintf(text, sizeof text, "all is on the disk again, after %.1f s",
+                 wb_seconds_from_ns(now_ns - a->storage_ns));
+        push_event(a, now_ns, "storage", text);
+        wb_warn("%s", text);
+    }
+    a->latest.is_storage_late = late;
+}
+
+/* As long as its silence is allowed. */
+static bool may_come_back(const struct line *line)
+{
+    const struct wb_interlock *const interlock = &line->owner->interlock;
+    return line->role == WB_ROLE_LOAD && interlock->settings.stream_lost_ns[line->role] > 0 &&
+           !wb_interlock_expires(interlock, line->role, wb_acquisition_now_ns());
+}
+
+/* What no sample shows but silence: devices that went away, a full disk, Ctrl-C. */
+static void check_rest(struct wb_acquisition *a)
+{
+    if (!a->interlock.armed || a->interlock.reason != WB_INTERLOCK_NONE)
+        return;
+    if (wb_interrupted()) {
+        wb_acquisition_stop(a, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
+        return;
+    }
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        if (!a->latest.stream[line->role].gone || may_come_back(line))
+            continue;
+        char text[WB_INTERLOCK_TEXT];
+        snprintf(text, sizeof text, "the %s's port %s went away: check its cable and power",
+                 line->role == WB_ROLE_LOAD ? "load cell" : "stage",
+                 wb_stream_address(line->stream));
+        wb_acquisition_stop(a, WB_INTERLOCK_STREAM_LOST, text);
+        return;
+    }
+    if (a->writer && wb_writer_status(a->writer) != WB_OK)
+        wb_acquisition_stop(a, WB_INTERLOCK_DISK,
+                            "the recording cannot be written: the disk takes nothing, and the "
+                            "memory that keeps what comes is nearly full");
+}
+
+/* Silence up to `heard_ns`, which is a time before the streams were read: what comes later may wait
+ * to be read. And before a stream is called lost, it is read once more: a process can be kept from
+ * running just between waking up and looking at the clock. */
+static void judge_silence(struct wb_acquisition *a, int64_t heard_ns)
+{
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        if (wb_interlock_expires(&a->interlock, line->role, heard_ns))
+            read_line(line);
+    }
+    if (wb_interlock_tick(&a->interlock, heard_ns))
+        hold_now(a);
+}
+
+/* Time in which this process was kept from running, or from waiting for bytes, says nothing about
+ * the instruments: those that are asked for each sample could not be asked. It does not count as
+ * their silence. */
+static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
+{
+    if (stalled_ns < STALL_NS)
+        return;
+    a->deaf_ns += stalled_ns;
+    wb_interlock_forgive(&a->interlock, stalled_ns);
+    if (stalled_ns < TOLD_STALL_NS || !a->interlock.armed)
+        return;
+    char text[160];
+    snprintf(text, sizeof text,
+             "the recorder stood still for %.1f s: no limit was watched in that time",
+             wb_seconds_from_ns(stalled_ns));
+    push_event(a, wb_acquisition_now_ns(), "stall", text);
+    wb_warn("%s", text);
+}
+
+static int64_t earlier(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Polls all descriptors until `deadline_ns`; marks the lines that have something to read. */
+static enum wb_status wait_for_bytes(struct wb_acquisition *a, int64_t deadline_ns,
+                                     bool readable[WB_INTERLOCK_ROLES], int64_t *woken_ns)
+{
+    struct pollfd polled[2 * WB_INTERLOCK_ROLES];
+    int owner[2 * WB_INTERLOCK_ROLES];
+    nfds_t n_polled = 0;
+    for (int i = 0; i < a->n_lines; i++) {
+        int descriptors[2];
+        readable[i] = false;
+        if (a->latest.stream[a->lines[i].role].gone)
+            continue;
+        const int n = wb_stream_descriptors(a->lines[i].stream, descriptors);
+        readable[i] = n == 0; /* a memory stream is simply asked */
+        for (int k = 0; k < n; k++) {
+            polled[n_polled] = (struct pollfd){.fd = descriptors[k], .events = POLLIN};
+            owner[n_polled++] = i;
+        }
+    }
+    int64_t left_ns = deadline_ns - wb_acquisition_now_ns();
+    if (left_ns < 0)
+        left_ns = 0;
+    const struct timespec timeout = {.tv_sec = left_ns / WB_NS_PER_S,
+                                     .tv_nsec = left_ns % WB_NS_PER_S};
+    const int n_ready = ppoll(polled, n_polled, &timeout, NULL);
+    *woken_ns = wb_acquisition_now_ns();
+    if (n_ready < 0 && errno != EINTR)
+        return wb_fail(WB_ERR_IO, "cannot wait for the instruments: %s", strerror(errno));
+    for (nfds_t k = 0; n_ready > 0 && k < n_polled; k++)
+        if (polled[k].revents != 0)
+            readable[owner[k]] = true;
+    return WB_OK;
+}
+
+enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t timeout_ns)
+{
+    bool readable[WB_INTERLOCK_ROLES];
+    int64_t woken_ns;
+    const int64_t begun_ns = wb_acquisition_now_ns();
+    int64_t deadline_ns = begun_ns + (timeout_ns > 0 ? timeout_ns : 0);
+    deadline_ns = earlier(deadline_ns, a->next_tick_ns);
+    deadline_ns = earlier(deadline_ns, wb_interlock_deadline(&a->interlock));
+    deadline_ns = earlier(deadline_ns, wb_stop_deadline(&a->stop));
+    if (wait_for_bytes(a, deadline_ns, readable, &woken_ns) != WB_OK)
+        return WB_ACQUISITION_FAILED;
+    /* From the last waking up to the beginning of this wait, and from its end to waking up. */
+    forgive_stall(a,
+                  begun_ns - a->woken_ns + (woken_ns > deadline_ns ? woken_ns - deadline_ns : 0));
+    a->woken_ns = woken_ns;
+    for (int i = 0; i < a->n_lines; i++)
+        if (readable[i])
+            read_line(&a->lines[i]);
+    check_rest(a);
+    judge_silence(a, woken_ns);
+    const int64_t now_ns = wb_acquisition_now_ns();
+    follow_stop(a, now_ns);
+    if (now_ns >= a->next_tick_ns)
+        tick_lines(a, now_ns);
+    note_losses(a, now_ns);
+    note_rates(a, now_ns);
+    watch_storage(a, now_ns);
+    for (int i = 0; i < a->n_lines; i++)
+        if (!a->latest.stream[a->lines[i].role].gone)
+            return WB_ACQUISITION_CONTINUE;
+    return WB_ACQUISITION_DONE;
+}
+
+/* --- opening and closing --- */
+
+/* A stage that loses its position whenever a command opens its port would have to be homed each
+ * time. */
+static bool must_keep_dtr(const char *address)
+{
+    return strncmp(address, "serial:", 7) == 0 && !strstr(address, ",dtr=");
+}
+
+static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, const char *address,
+                                const char *protocol, struct wb_reason *why)
+{
+    struct line *const line = &a->lines[a->n_lines];
+    line->owner = a;
+    line->role = role;
+    wb_loss_init(&line->loss, role == WB_ROLE_MOCAP, 0.0);
+    line->id = a->n_lines;
+    line->driver = wb_drivers_find(role, protocol);
+    if (!line->driver)
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED, "the %s protocol '%s' is not known",
+                          wb_role_name(role), protocol);
+    line->state = calloc(1, line->driver->state_size);
+    if (!line->state)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for the %s driver", protocol);
+    enum wb_status status = line->driver->init(line->state, &a->rig);
+    char kept[WB_RIG_TEXT + 16];
+    snprintf(kept, sizeof kept, "%s%s", address,
+             role == WB_ROLE_STAGE && must_keep_dtr(address) ? ",dtr=keep" : "");
+    if (status == WB_OK)
+        status = wb_stream_open_with_reason(&line->stream, kept, why);
+    if (status != WB_OK) {
+        free(line->state);
+        memset(line, 0, sizeof *line);
+        return status;
+    }
+    a->n_lines++; /* from here on closing frees it */
+    a->by_role[role] = line;
+    a->latest.stream[role].open = true;
+    a->latest.stream[role].caution = wb_stream_caution(line->stream);
+    return WB_OK;
+}
+
+/* Opens what is wanted and can be opened; the status of the first that cannot. `why` by role, or
+ * NULL: the first failure is logged and ends it. */
+static enum wb_status open_lines(struct wb_acquisition *a, unsigned roles, struct wb_reason *why)
+{
+    const struct wb_rig *const rig = &a->rig;
+    const struct {
+        const char *address, *protocol;
+    } lines[WB_INTERLOCK_ROLES] = {
+        [WB_ROLE_LOAD] = {rig->load_cell.address, rig->load_cell.protocol},
+        [WB_ROLE_MOCAP] = {rig->mocap.address, rig->mocap.protocol},
+        [WB_ROLE_STAGE] = {rig->stage.address, rig->stage.protocol},
+    };
+    enum wb_status first = WB_OK;
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
+        if (!(roles & 1u << role))
+            continue;
+        const enum wb_status status = open_line(a, (enum wb_role)role, lines[role].address,
+                                                lines[role].protocol, why ? &why[role] : NULL);
+        first = first == WB_OK ? status : first;
+        if (status != WB_OK && !why)
+            break;
+    }
+    return first;
+}
+
+static enum wb_status create(struct wb_acquisition **out, const struct wb_rig *rig,
+                             const struct wb_sink *sink)
+{
+    struct wb_acquisition *const a = calloc(1, sizeof *a);
+    if (!a)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the acquisition");
+    a->rig = *rig;
+    if (sink)
+        a->sinks[0] = *sink;
+    *out = a;
+    return WB_OK;
+}
+
+enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_rig *rig,
+                                   unsigned roles, const struct wb_sink *sink)
+{
+    struct wb_acquisition *a;
+    WB_TRY(create(&a, rig, sink));
+    const enum wb_status status = open_lines(a, roles, NULL);
+    if (status != WB_OK) {
+        wb_acquisition_close(a);
+        return status;
+    }
+    *out = a;
+    return WB_OK;
+}
+
+enum wb_status wb_acquisition_open_each(struct wb_acquisition **out, const struct wb_rig *rig,
+                                        unsigned roles, const struct wb_sink *sink,
+                                        struct wb_reason why[WB_INTERLOCK_ROLES])
+{
+    struct wb_acquisition *a;
+    WB_TRY(create(&a, rig, sink));
+    if (open_lines(a, roles, why) == WB_ERR_MEMORY) {
+        wb_acquisition_close(a);
+        return wb_fail(WB_ERR_MEMORY, "no memory for the acquisition");
+    }
+    *out = a;
+    return WB_OK;
+}
+
+void wb_acquisition_also_tell(struct wb_acquisition *a, const struct wb_sink *sink)
+{
+    a->sinks[1] = *sink;
+}
+
+int wb_acquisition_stream(const struct wb_acquisition *a, enum wb_role role)
+{
+    return a->by_role[role] ? a->by_role[role]->id : -1;
+}
+
+void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
+{
+    struct wb_interlock_settings unwatched;
+    memset(&unwatched, 0, sizeof unwatched);
+    const int64_t now_ns = wb_acquisition_now_ns();
+    a->writer = writer;
+    a->started = true;
+    a->next_tick_ns = now_ns + TICK_NS;
+    a->woken_ns = now_ns;
+    wb_interlock_init(&a->interlock, &unwatched, now_ns);
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        line->rate_ns = now_ns;
+        tell_caution(line, now_ns);
+        wb_outbox_clear(&a->outbox);
+        line->driver->start(line->state, now_ns, &a->outbox);
+        send_or_note(line);
+    }
+}
+
+void wb_acquisition_close(struct wb_acquisition *a)
+{
+    if (!a)
+        return;
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        if (a->started && line->driver->stop && !a->latest.stream[line->role].gone) {
+            wb_outbox_clear(&a->outbox);
+            line->driver->stop(line->state, &a->outbox);
+            send_or_note(line);
+        }
+        wb_stream_close(line->stream);
+        free(line->state);
+    }
+    free(a);
+}
+
+int64_t wb_acquisition_heard_ns(const struct wb_acquisition *a)
+{
+    return a->woken_ns - a->deaf_ns;
+}
+
+const struct wb_acquisition_latest *wb_acquisition_latest(const struct wb_acquisition *a)
+{
+    return &a->latest;
+}

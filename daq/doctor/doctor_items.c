@@ -1,0 +1,500 @@
+#include "daq/doctor/doctor_items.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "daq/acquire/silence_check.h"
+#include "daq/acquire/stage_check.h"
+#include "daq/protocol/natnet_watch.h"
+#include "daq/test/check_log.h"
+
+/* A rate may differ from the announced one by so much of it. */
+#define RATE_SHARE 0.05
+/* Of the cell's capacity over one test: more drift is told. */
+#define DRIFT_SHARE 0.01
+/* Standard errors by which a drift is more than chance. */
+#define DRIFT_ERRORS 5.0
+/* s of the rig's time: frames that usually are later are told. */
+#define LATE_FRAMES 10e-3
+/* s: the cameras' clock is known worse than that. */
+#define CLOCK_UNCERTAINTY 2e-3
+/* A clock that runs faster or slower than that is told: quartz keeps within 100 ppm. */
+#define CLOCK_DRIFT (200.0 * WB_PPM)
+/* A wire at rest lies level: within so much, its bow and a clamp set by eye are allowed. */
+#define LEVEL (10.0 * WB_DEGREE)
+#define LEAST_FULL_FRAMES 5
+/* Checks of the load cell count for so long, days. */
+#define CHECK_DAYS 31
+
+struct wb_doctor_item *wb_doctor_add(struct wb_doctor_report *report, const char *name,
+                                     enum wb_doctor_verdict verdict)
+{
+    struct wb_doctor_item *const item =
+        &report->items[report->n < WB_DOCTOR_ITEMS ? report->n++ : WB_DOCTOR_ITEMS - 1];
+    item->name = name;
+    item->verdict = verdict;
+    item->text[0] = '\0';
+    return item;
+}
+
+double wb_doctor_test_duration(const struct wb_bend_test_request *test, const struct wb_rig *rig)
+{
+    const double cycle = 2.0 * test->travel / rig->stage.speed + test->rest_time;
+    return (test->check_time + test->tare_time + test->cycles * cycle) / rig->time_scale;
+}
+
+/* What a finding is made of. */
+struct look {
+    const struct wb_doctor_seen *seen;
+    const struct wb_bend_test_request *test;
+    const struct wb_rig *rig;
+    const struct wb_acquisition_latest *latest;
+    struct wb_doctor_report *report;
+};
+
+static void add(const struct look *look, const char *name, enum wb_doctor_verdict verdict,
+                const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+static void add(const struct look *look, const char *name, enum wb_doctor_verdict verdict,
+                const char *format, ...)
+{
+    struct wb_doctor_item *const item = wb_doctor_add(look->report, name, verdict);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(item->text, sizeof item->text, format, arguments);
+    va_end(arguments);
+}
+
+/* One of record's checks, which wrote `text` where it does not pass. */
+static void add_check(const struct look *look, const char *name, bool passed, const char *ready,
+                      const char *text)
+{
+    add(look, name, passed ? WB_DOCTOR_READY : WB_DOCTOR_NOT_READY, "%s", passed ? ready : text);
+}
+
+static const struct wb_acquisition_stream_state *stream(const struct look *look, enum wb_role role)
+{
+    return &look->latest->stream[role];
+}
+
+/* Whether the instrument was opened and is heard; else its finding is added. */
+static bool is_heard(const struct look *look, enum wb_role role, const char *name)
+{
+    char text[WB_SILENCE_TEXT];
+    const struct wb_reason *const why = &look->seen->opening[role];
+    if (!stream(look, role)->open)
+        add(look, name, WB_DOCTOR_NOT_READY, "%s",
+            why->text[0] ? why->text : "it cannot be opened: the message before says why");
+    else if (stream(look, role)->gone)
+        add(look, name, WB_DOCTOR_NOT_READY, "its port went away: check its cable and power");
+    else if (!wb_silence_check(role, look->latest, look->rig, look->seen->waited, text))
+        add(look, name, WB_DOCTOR_NOT_READY, "%s", text);
+    else
+        return true;
+    return false;
+}
+
+static void add_latency(const struct look *look, enum wb_role role, const char *name)
+{
+    const char *const caution = stream(look, role)->caution;
+    if (caution && caution[0])
+        add(look, name, WB_DOCTOR_NOT_READY, "%s", caution);
+}
+
+/* What a driver remarked and no other finding tells. */
+static void add_remarks(const struct look *look, enum wb_role role, const char *name,
+                        const char *const told[])
+{
+    for (int i = 0; i < look->seen->n_remarks[role]; i++) {
+        const struct wb_doctor_remark *const remark = &look->seen->remarks[role][i];
+        bool is_told = remark->level > WB_LOG_WARNING;
+        for (int k = 0; told[k]; k++)
+            is_told = is_told || strcmp(remark->kind, told[k]) == 0;
+        if (!is_told)
+            add(look, name, WB_DOCTOR_NOTE, "%s", remark->text);
+    }
+}
+
+/* --- load cell --- */
+
+static void judge_drift(const struct look *look)
+{
+    double error;
+    const double slope = wb_doctor_trend_slope(&look->seen->trend, &error);
+    const double capacity = look->rig->load_cell.capacity;
+    const double duration = wb_doctor_test_duration(look->test, look->rig);
+    const double per_minute = slope / look->rig->time_scale * 60.0;
+    if (fabs(slope) > DRIFT_ERRORS * error && fabs(slope) * duration > DRIFT_SHARE * capacity)
+        add(look, "drift", WB_DOCTOR_NOTE,
+            "the zero drifts by %+.2f mN/min, %.1f %% of the capacity over a test: let the cell "
+            "warm up, keep draughts off, let the strand hang still",
+            per_minute / WB_MN, fabs(slope) * duration / capacity / WB_PERCENT);
+    else
+        add(look, "drift", WB_DOCTOR_READY, "%+.1f mN/min, +- %.1f", per_minute / WB_MN,
+            DRIFT_ERRORS * error / look->rig->time_scale * 60.0 / WB_MN);
+}
+
+static void judge_zero(const struct look *look)
+{
+    const struct wb_start_check *const check = &look->seen->check;
+    const struct wb_doctor_remark *const overload =
+        wb_doctor_seen_remark(look->seen, WB_ROLE_LOAD, "overload");
+    char text[WB_START_CHECK_TEXT], ready[120];
+    if (overload) {
+        add(look, "zero", WB_DOCTOR_NOT_READY,
+            "%s: is it overloaded, unplugged from its indicator, or load_cell.unit, scale or "
+            "capacity_g wrong?",
+            overload->text);
+        return;
+    }
+    snprintf(ready, sizeof ready, "%.2f mN, noise %.3f mN", check->load.mean / WB_MN,
+             wb_average_deviation(&check->load) / WB_MN);
+    add_check(look, "zero", wb_start_check_zero(check, look->rig, look->test->rig_path, text),
+              ready, text);
+    if (check->load.n > 1 && look->seen->trend.lowest == look->seen->trend.highest)
+        add(look, "zero", WB_DOCTOR_NOTE,
+            "all %" PRId64 " readings are the same to the last digit: does the instrument hold its "
+            "display, or round too coarsely?",
+            check->load.n);
+}
+
+static void judge_last_check(const struct look *look)
+{
+    char line[WB_CHECK_LOG_LINE], text[WB_CHECK_LOG_LINE];
+    const char *const path = look->test->rig_path, *const serial =
+                                                       look->rig->load_cell.serial_number;
+    struct wb_check_log_entry entry;
+    wb_check_log_last(path, line);
+    if (!line[0] || !wb_check_log_parse(line, &entry)) {
+        add(look, "last check", WB_DOCTOR_NOTE,
+            "the load cell was never compared with a known mass: run 'wirebench stage %s check'",
+            path);
+        return;
+    }
+    wb_check_log_describe(&entry, text);
+    const double days = wb_check_log_age(&entry) / 86400.0;
+    if (!entry.passed)
+        add(look, "last check", WB_DOCTOR_NOT_READY,
+            "%s: mend the cell or its scale, then run 'wirebench stage %s check' again", text,
+            path);
+    else if (serial[0] && strcmp(entry.serial_number, serial) != 0)
+        add(look, "last check", WB_DOCTOR_NOTE,
+            "%s, but load_cell.serial_number is %s: run 'wirebench stage %s check'", text, serial,
+            path);
+    else if (days > CHECK_DAYS)
+        add(look, "last check", WB_DOCTOR_NOTE, "%s, %.0f days ago: run 'wirebench stage %s check'",
+            text, days, path);
+    else
+        add(look, "last check", WB_DOCTOR_READY, "%s", text);
+}
+
+static void judge_load_cell(const struct look *look)
+{
+    static const char *const told[] = {"unit", "overload", NULL};
+    const struct wb_acquisition_stream_state *const state = stream(look, WB_ROLE_LOAD);
+    const char *const path = look->test->rig_path;
+    char text[WB_START_CHECK_TEXT], ready[64] = "as load_cell.unit says";
+    /* In kg for g all readings may be beyond the range: before it is said that none came. */
+    const bool contradicts = look->latest->unit_contradicts;
+    if (!contradicts && !is_heard(look, WB_ROLE_LOAD, "load cell")) {
+        add_remarks(look, WB_ROLE_LOAD, "load cell", told);
+        return;
+    }
+    const int64_t n = look->seen->check.load.n;
+    const double rate = (double)n / fmax(look->seen->listened, 1e-3);
+    const double asked = look->rig->load_cell.poll_period_ns > 0
+                             ? 1.0 / wb_seconds_from_ns(look->rig->load_cell.poll_period_ns)
+                             : 0.0;
+    if (contradicts)
+        add(look, "load cell", WB_DOCTOR_READY, "it answers");
+    else if (n < 10)
+        add(look, "load cell", WB_DOCTOR_NOT_READY,
+            "only %" PRId64 " readings came in %.1f s: let it print more often, or ask for it "
+            "(load_cell.poll_period_ms)",
+            n, look->seen->listened);
+    else if (state->is_losing)
+        add(look, "load cell", WB_DOCTOR_NOT_READY,
+            "%.2g %% of its lines never came: look at its cable, and at what else this computer "
+            "does",
+            wb_loss_share(&state->loss) / WB_PERCENT);
+    else if (asked > 0.0 && rate < (1.0 - 2.0 * RATE_SHARE) * asked)
+        add(look, "load cell", WB_DOCTOR_NOTE,
+            "%.1f readings/s come, it is asked for %.1f: raise load_cell.poll_period_ms", rate,
+            asked);
+    else
+        add(look, "load cell", WB_DOCTOR_READY, "%.1f readings/s", rate);
+    add_latency(look, WB_ROLE_LOAD, "load cell");
+    add_remarks(look, WB_ROLE_LOAD, "load cell", told);
+    if (!look->rig->load_cell.unit[0])
+        snprintf(ready, sizeof ready, "taken from its lines");
+    add_check(look, "unit", wb_start_check_unit(contradicts, look->rig, path, text), ready, text);
+    if (n > 0 && !contradicts) {
+        judge_zero(look);
+        judge_drift(look);
+    }
+}
+
+/* --- cameras --- */
+
+static void judge_frames(const struct look *look)
+{
+    const struct wb_acquisition_stream_state *const state = stream(look, WB_ROLE_MOCAP);
+    const struct wb_loss_counts *const loss = &state->loss;
+    const double rate = (double)look->seen->n_frames / fmax(look->seen->listened, 1e-3);
+    const double announced = look->rig->mocap.frame_rate * look->rig->time_scale;
+    const double sent = loss->period > 0.0 ? look->rig->time_scale / loss->period : rate;
+    const struct wb_doctor_remark *const remark =
+        wb_doctor_seen_remark(look->seen, WB_ROLE_MOCAP, "rate");
+    if (look->seen->n_frames < 10)
+        add(look, "frames", WB_DOCTOR_NOT_READY,
+            "only %ld frames came in %.1f s: look at the network and at the camera rate",
+            look->seen->n_frames, look->seen->listened);
+    else if (state->is_losing)
+        add(look, "frames", WB_DOCTOR_NOT_READY,
+            "%.2g %% of the frames never came, %" PRIu64 " in %" PRIu64
+            " places: connect by cable, not by radio, look at the switch and at what else this "
+            "computer does",
+            wb_loss_share(loss) / WB_PERCENT, loss->missing, loss->gaps);
+    else if (remark && remark->level <= WB_LOG_WARNING)
+        add(look, "frames", WB_DOCTOR_NOT_READY,
+            "%s: set the cameras' rate, or mocap.frame_rate_hz", remark->text);
+    else if (announced > 0.0 && fabs(sent - announced) > RATE_SHARE * announced)
+        add(look, "frames", WB_DOCTOR_NOT_READY,
+            "%.1f frames/s are sent, mocap.frame_rate_hz says %g: set one of the two right", sent,
+            look->rig->mocap.frame_rate);
+    else
+        add(look, "frames", WB_DOCTOR_READY, "%.1f frames/s, %" PRIu64 " lost", rate,
+            loss->missing);
+    if (loss->repeated > 0)
+        add(look, "frames", WB_DOCTOR_NOTE,
+            "%" PRIu64 " of %" PRIu64 " frames arrive twice: is the server reached by two network "
+            "cards, or is the group sent back by a switch? They do no harm",
+            loss->repeated, loss->received + loss->repeated);
+    if (loss->overtaken > 0)
+        add(look, "frames", WB_DOCTOR_NOTE,
+            "%" PRIu64 " of %" PRIu64 " frames arrive after the next one: is there more than one "
+            "way through the network? They are put in order by the server's stamps",
+            loss->overtaken, loss->received);
+}
+
+static void judge_lateness(const struct look *look)
+{
+    const struct wb_doctor_seen *const seen = look->seen;
+    struct wb_clock_line line;
+    const double scale = look->rig->time_scale;
+    if (seen->n_stamps < 10 || wb_clock_fit_envelope(&line, seen->stamps, seen->arrivals,
+                                                     seen->n_stamps, 1.0 / scale, 2.0) != WB_OK)
+        return;
+    const double late = line.scatter * scale;
+    if (late > LATE_FRAMES)
+        add(look, "delay", WB_DOCTOR_NOTE,
+            "frames usually arrive %.0f ms later than the quickest one: limits are watched so much "
+            "later; look at the network (radio, energy saving of the card) and at what else both "
+            "computers do",
+            late * 1e3);
+    else
+        add(look, "delay", WB_DOCTOR_READY, "frames arrive within %.1f ms of each other, usually",
+            late * 1e3);
+}
+
+static void judge_clock(const struct look *look)
+{
+    const struct wb_doctor_seen *const seen = look->seen;
+    struct wb_clock_line line;
+    const double scale = look->rig->time_scale;
+    if (seen->n_probes == 0 ||
+        wb_clock_fit_probes(&line, seen->probes, seen->n_probes, 1.0 / scale) != WB_OK) {
+        add(look, "clock", WB_DOCTOR_NOTE,
+            "the server does not tell its clock (NatNet before 3.0, or no echo): the earliest "
+            "arrivals align it, with a constant error that is not known");
+        return;
+    }
+    /* The rig's fast clock against the host's. */
+    const double drift = 1.0 / (line.slope * scale) - 1.0;
+    const double error = isfinite(line.slope_uncertainty) ? line.slope_uncertainty * scale : 0.0;
+    if (line.uncertainty > CLOCK_UNCERTAINTY)
+        add(look, "clock", WB_DOCTOR_NOTE,
+            "the cameras' clock is known to %.1f ms only: the network's round trips are long; "
+            "connect by cable",
+            line.uncertainty * 1e3);
+    else if (fabs(drift) > CLOCK_DRIFT + 3.0 * error)
+        add(look, "clock", WB_DOCTOR_NOTE,
+            "the cameras' clock runs %+.0f ppm against this computer's: one of the two is being "
+            "set; alignment follows it",
+            drift / WB_PPM);
+    else
+        add(look, "clock", WB_DOCTOR_READY,
+            "offset known to %.2f ms, scatter %.3f ms of %zu probes", line.uncertainty * 1e3,
+            line.scatter * 1e3, line.n_points);
+}
+
+static void judge_mode(const struct look *look)
+{
+    const struct wb_doctor_seen *const seen = look->seen;
+    const struct wb_doctor_remark *const restart =
+        wb_doctor_seen_remark(seen, WB_ROLE_MOCAP, "restart");
+    const struct wb_doctor_remark *const mode = wb_doctor_seen_remark(seen, WB_ROLE_MOCAP, "mode");
+    if (restart)
+        add(look, "live", WB_DOCTOR_NOT_READY,
+            "%s: does it play back a take in a loop? Set Motive to live", restart->text);
+    else if (mode)
+        add(look, "live", WB_DOCTOR_NOTE, "%s: set Motive to live", mode->text);
+    else
+        add(look, "live", WB_DOCTOR_READY, "nothing says that a take is played back");
+}
+
+/* The wire's ends as means of the frames that show all markers: false where there are too few. */
+static bool find_tilt(const struct look *look, int axis, double *tilt)
+{
+    const struct wb_start_check *const check = &look->seen->check;
+    const int last = look->seen->specimen->n_markers - 1;
+    double way[3], length = 0.0;
+    if (check->n_full < LEAST_FULL_FRAMES)
+        return false;
+    for (int k = 0; k < 3; k++) {
+        way[k] = check->place[last][k].mean - check->place[0][k].mean;
+        length += way[k] * way[k];
+    }
+    *tilt = asin(fabs(way[axis]) / sqrt(length));
+    return true;
+}
+
+/* At rest a wire that lies level tells which axes are not upwards, and no more. */
+static void judge_up(const struct look *look)
+{
+    const char up = look->rig->mocap.up, other = up == 'y' ? 'z' : 'y';
+    double tilt, other_tilt;
+    if (!find_tilt(look, up - 'x', &tilt) || !find_tilt(look, other - 'x', &other_tilt))
+        add(look, "up axis", WB_DOCTOR_UNKNOWN, "not all markers are seen");
+    else if (tilt > LEVEL && other_tilt <= LEVEL)
+        add(look, "up axis", WB_DOCTOR_NOT_READY,
+            "the wire rises by %.0f degrees along mocap.up, %c, and lies level along %c: set "
+            "mocap.up: %c, or Motive's up axis",
+            tilt / WB_DEGREE, up, other, other);
+    else if (tilt > LEVEL)
+        add(look, "up axis", WB_DOCTOR_NOT_READY,
+            "the wire rises by %.0f degrees along mocap.up, %c, and by %.0f along %c: clamp it "
+            "level, or set Motive's ground plane",
+            tilt / WB_DEGREE, up, other_tilt / WB_DEGREE, other);
+    else if (other_tilt > LEVEL)
+        add(look, "up axis", WB_DOCTOR_READY, "%c: the wire lies level to it within %.0f degrees",
+            up, ceil(tilt / WB_DEGREE));
+    else
+        add(look, "up axis", WB_DOCTOR_UNKNOWN,
+            "the wire lies along x, and at rest does not tell %c from %c: record compares the "
+            "first 2 mm with the stage; turn the bench or the ground plane by 30 degrees to know "
+            "it here",
+            up, other);
+}
+
+static void judge_markers(const struct look *look)
+{
+    const struct wb_start_check *const check = &look->seen->check;
+    const struct wb_specimen *const specimen = look->seen->specimen;
+    char text[WB_START_CHECK_TEXT], ready[96];
+    if (!specimen) {
+        add(look, "markers", WB_DOCTOR_UNKNOWN,
+            "%d are seen; give the specimen file to compare them with it",
+            look->seen->frame_measured);
+        return;
+    }
+    snprintf(ready, sizeof ready, "all %d of the specimen are seen", specimen->n_markers);
+    const bool seen = wb_start_check_markers(check, specimen, text);
+    add_check(look, "markers", seen, ready, text);
+    if (seen && check->n_full < LEAST_FULL_FRAMES)
+        add(look, "scale", WB_DOCTOR_NOT_READY,
+            "hardly a frame shows all markers at once: mend the cameras' view of the wire");
+    else if (seen) {
+        snprintf(ready, sizeof ready, "the markers lie %g mm apart, as the file says",
+                 specimen->length / WB_MM);
+        add_check(look, "scale", wb_start_check_chain(check, specimen, look->rig, text), ready,
+                  text);
+    }
+    judge_up(look);
+}
+
+static void judge_cameras(const struct look *look)
+{
+    static const char *const told[] = {"rate", "restart", "mode", NULL};
+    if (!is_heard(look, WB_ROLE_MOCAP, "cameras")) {
+        add_remarks(look, WB_ROLE_MOCAP, "cameras", told);
+        return;
+    }
+    const struct wb_doctor_remark *const server =
+        wb_doctor_seen_remark(look->seen, WB_ROLE_MOCAP, "connected");
+    add(look, "cameras", WB_DOCTOR_READY, "%s", server ? server->text : "the server answers");
+    add_remarks(look, WB_ROLE_MOCAP, "cameras", told);
+    judge_frames(look);
+    judge_lateness(look);
+    judge_clock(look);
+    judge_mode(look);
+    judge_markers(look);
+}
+
+/* --- stage --- */
+
+static void judge_settings(const struct look *look)
+{
+    const struct wb_acquisition_latest *const latest = look->latest;
+    struct wb_reason why = {0};
+    char text[WB_INTERLOCK_TEXT], ready[160];
+    if (wb_bend_test_check_request(look->test, look->rig, &why) != WB_OK) {
+        add(look, "travel", WB_DOCTOR_NOT_READY, "%s", why.text);
+        return;
+    }
+    if (!latest->has_settings) {
+        add(look, "travel", WB_DOCTOR_UNKNOWN,
+            "the stage does not tell its settings: its largest speed and travel are not checked");
+        return;
+    }
+    snprintf(ready, sizeof ready, "%g mm at %g mm/s can be done%s", look->test->travel / WB_MM,
+             look->rig->stage.speed / WB_MM,
+             strstr(latest->settings.text, "$22=0")   ? "; no homing ($22=0)"
+             : strstr(latest->settings.text, "$22=1") ? "; homing is on ($22=1)"
+                                                      : "");
+    add_check(look, "travel",
+              wb_stage_check_test(&latest->settings, look->rig, latest->stage.position,
+                                  look->test->travel, text),
+              ready, text);
+}
+
+static void judge_stage(const struct look *look)
+{
+    static const char *const told[] = {"alarm", "locked", "reset", NULL};
+    const char *const path = look->test->rig_path;
+    char text[WB_START_CHECK_TEXT], ready[96];
+    if (!is_heard(look, WB_ROLE_STAGE, "stage")) {
+        add_remarks(look, WB_ROLE_STAGE, "stage", told);
+        return;
+    }
+    snprintf(ready, sizeof ready, "idle at the machine position %.3f mm",
+             look->latest->stage.position / WB_MM);
+    const bool idle = wb_start_check_stage(&look->latest->stage, path, text);
+    add_check(look, "stage", idle, ready, text);
+    if (idle && look->latest->stage.was_reset)
+        add(look, "stage", WB_DOCTOR_NOTE,
+            "its controller started anew when the port was opened, and does not know where it "
+            "stands: a test counts its travel from there; where limits of the firmware shall hold, "
+            "run "
+            "'wirebench stage %s home' without the specimen",
+            path);
+    add_latency(look, WB_ROLE_STAGE, "stage");
+    add_remarks(look, WB_ROLE_STAGE, "stage", told);
+    if (idle)
+        judge_settings(look);
+}
+
+void wb_doctor_judge(const struct wb_doctor_seen *seen, const struct wb_bend_test_request *test,
+                     struct wb_doctor_report *report)
+{
+    const struct look look = {
+        .seen = seen, .test = test, .rig = seen->rig, .latest = &seen->latest, .report = report};
+    judge_load_cell(&look);
+    judge_last_check(&look);
+    judge_cameras(&look);
+    judge_stage(&look);
+}

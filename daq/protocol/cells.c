@@ -1,0 +1,240 @@
+#include "daq/protocol/cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/number.h"
+
+/* --- lines --- */
+
+/* 1 or 2 for UTF-16 with the low or the high byte first, 0 for bytes. Without a mark, ASCII in
+ * UTF-16 has a zero in every other byte. */
+static int utf16_order(const uint8_t *bytes, size_t n, size_t *skip)
+{
+    *skip = 2;
+    if (n >= 2 && bytes[0] == 0xff && bytes[1] == 0xfe)
+        return 1;
+    if (n >= 2 && bytes[0] == 0xfe && bytes[1] == 0xff)
+        return 2;
+    *skip = 0;
+    size_t zeros[2] = {0};
+    const size_t looked_at = n < 64 ? n / 2 * 2 : 64;
+    for (size_t i = 0; i < looked_at; i++)
+        zeros[i % 2] += bytes[i] == 0;
+    if (looked_at < 4)
+        return 0;
+    if (zeros[1] == looked_at / 2 && zeros[0] == 0)
+        return 1;
+    return zeros[0] == looked_at / 2 && zeros[1] == 0 ? 2 : 0;
+}
+
+bool wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, size_t n)
+{
+    size_t skip;
+    const int order = utf16_order(bytes, n, &skip);
+    *lines = (struct wb_cells_lines){.at = (const char *)bytes, .end = (const char *)bytes + n};
+    if (order == 0) {
+        if (n >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0)
+            lines->at += 3;
+        return true;
+    }
+    const size_t n_units = (n - skip) / 2;
+    char *const text = malloc(n_units + 1);
+    if (!text)
+        return false;
+    for (size_t i = 0; i < n_units; i++) {
+        const uint8_t *const unit = bytes + skip + 2 * i;
+        const uint8_t low = unit[order == 1 ? 0 : 1], high = unit[order == 1 ? 1 : 0];
+        text[i] = high == 0 && low < 0x80 ? (char)low : '?';
+    }
+    lines->converted = text;
+    lines->at = text;
+    lines->end = text + n_units;
+    return true;
+}
+
+/* The next CR before the next LF; NULL: none. */
+static const char *find_cr(const struct wb_cells_lines *lines, const char *from)
+{
+    return memchr(from, '\r', (size_t)(lines->lf - from));
+}
+
+bool wb_cells_lines_next(struct wb_cells_lines *lines, const char **line, size_t *n)
+{
+    if (lines->at == lines->end)
+        return false;
+    const char *const from = lines->at;
+    if (!lines->lf || lines->lf < from) {
+        lines->lf = memchr(from, '\n', (size_t)(lines->end - from));
+        if (!lines->lf)
+            lines->lf = lines->end;
+    }
+    const char *end = lines->lf < lines->end ? lines->lf : NULL;
+    const char *const cr = find_cr(lines, from);
+    lines->terminated = true;
+    if (cr) {
+        /* All that is between a CR and its LF is CR, or the CR ends a line by itself. */
+        const char *next = cr;
+        while (next < lines->end && *next == '\r')
+            next++;
+        if (next == end)
+            next++;
+        else
+            next = cr + 1;
+        lines->at = next;
+        end = cr;
+    } else if (end) {
+        lines->at = end + 1;
+    } else {
+        end = lines->end;
+        lines->at = end;
+        lines->terminated = false;
+    }
+    *line = from;
+    *n = (size_t)(end - from);
+    lines->number++;
+    return true;
+}
+
+void wb_cells_lines_release(struct wb_cells_lines *lines)
+{
+    free(lines->converted);
+    lines->converted = NULL;
+}
+
+/* --- cells --- */
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\0';
+}
+
+static void trim(const char **cell, size_t *n)
+{
+    while (*n > 0 && is_blank((*cell)[*n - 1]))
+        --*n;
+    while (*n > 0 && is_blank(**cell)) {
+        ++*cell;
+        --*n;
+    }
+}
+
+void wb_cells_begin(struct wb_cells *cells, const char *line, size_t n, char delimiter)
+{
+    if (delimiter == ' ')
+        trim(&line, &n);
+    *cells = (struct wb_cells){.at = line, .end = line + n, .delimiter = delimiter};
+    if (delimiter == ' ' && n == 0)
+        cells->at = NULL;
+}
+
+static const char *find_end(const struct wb_cells *cells)
+{
+    const char *at = cells->at;
+    if (cells->delimiter == ' ') {
+        while (at < cells->end && !is_blank(*at))
+            at++;
+        return at;
+    }
+    /* A quoted cell may hold delimiters. */
+    while (at < cells->end && (*at == ' ' || *at == '\0'))
+        at++;
+    if (at < cells->end && *at == '"') {
+        const char *const closing = memchr(at + 1, '"', (size_t)(cells->end - at - 1));
+        at = closing ? closing : at;
+    }
+    while (at < cells->end && *at != cells->delimiter)
+        at++;
+    return at;
+}
+
+bool wb_cells_next(struct wb_cells *cells, const char **cell, size_t *n)
+{
+    if (!cells->at)
+        return false;
+    const char *end = find_end(cells);
+    *cell = cells->at;
+    *n = (size_t)(end - cells->at);
+    trim(cell, n);
+    if (*n >= 2 && **cell == '"' && (*cell)[*n - 1] == '"') {
+        ++*cell;
+        *n -= 2;
+        trim(cell, n);
+    }
+    cells->column++;
+    if (end == cells->end) {
+        cells->at = NULL;
+    } else {
+        end++;
+        while (cells->delimiter == ' ' && end < cells->end && is_blank(*end))
+            end++;
+        cells->at = end;
+    }
+    return true;
+}
+
+bool wb_cells_blank(const char *line, size_t n, char delimiter)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!is_blank(line[i]) && line[i] != delimiter && line[i] != '"')
+            return false;
+    return true;
+}
+
+bool wb_cells_equal(const char *cell, size_t n, const char *word)
+{
+    return n == strlen(word) && strncasecmp(cell, word, n) == 0;
+}
+
+bool wb_cells_begins(const char *cell, size_t n, const char *word)
+{
+    return n >= strlen(word) && strncasecmp(cell, word, strlen(word)) == 0;
+}
+
+/* --- numbers --- */
+
+static bool slow_number(const char *cell, size_t n, char comma, double *value)
+{
+    char text[64];
+    if (n >= sizeof text)
+        return false;
+    for (size_t i = 0; i < n; i++)
+        text[i] = comma && cell[i] == comma ? '.' : cell[i];
+    text[n] = '\0';
+    return strlen(text) == n && wb_number_parse(text, value);
+}
+
+bool wb_cells_number(const char *cell, size_t n, char comma, double *value)
+{
+    static const double powers[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                    1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+    const char *at = cell;
+    const char *const end = cell + n;
+    const bool negative = n > 0 && *at == '-';
+    at += n > 0 && (*at == '-' || *at == '+');
+    uint64_t digits = 0;
+    int n_digits = 0, n_decimals = 0;
+    bool point = false;
+    for (; at < end; at++) {
+        const unsigned digit = (unsigned)*at - '0';
+        if (digit <= 9) {
+            digits = 10 * digits + digit;
+            n_digits++;
+            n_decimals += point;
+        } else if (!point && (*at == '.' || (comma && *at == comma))) {
+            point = true;
+        } else {
+            return slow_number(cell, n, comma, value);
+        }
+    }
+    if (n_digits == 0)
+        return false;
+    /* Both are exact up to here, so that their quotient is the nearest double. */
+    if (n_digits > 15)
+        return slow_number(cell, n, comma, value);
+    const double magnitude = (double)digits / powers[n_decimals];
+    *value = negative ? -magnitude : magnitude;
+    return true;
+}

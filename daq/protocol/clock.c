@@ -1,0 +1,427 @@
+#include "daq/protocol/clock.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "base/units.h"
+
+#define BURST_NS WB_NS_PER_S
+#define LEAST_PROBE_SPAN 2.0 /* s */
+/* Within this time of the host a delay has passed and stamps are on time again. */
+#define SETTLING_NS (5 * WB_NS_PER_S)
+
+int64_t wb_clock_line_host_ns(const struct wb_clock_line *line, double device)
+{
+    /* A far extrapolation (a damaged stamp) must not leave what an int64_t holds. */
+    const double seconds = line->slope * (device - line->device_zero);
+    if (!(fabs(seconds) < 1e9))
+        return line->host_zero_ns;
+    return line->host_zero_ns + wb_ns_from_seconds(seconds);
+}
+
+/* --- robust line --- */
+
+struct point {
+    double x, y;  /* device s and host s, both since the first point */
+    double width; /* round trip, s */
+};
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Median of n > 0 values, which are sorted in place. */
+static double median(double *values, size_t n)
+{
+    qsort(values, n, sizeof *values, compare_doubles);
+    return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+struct fit {
+    double mean_x, mean_y, slope;
+    double sum_weight, sum_xx; /* weighted, about the mean */
+};
+
+/* Weighted line; a given slope is kept when `fixed`. */
+static void fit_weighted(const struct point *points, const double *weights, size_t n, bool fixed,
+                         struct fit *fit)
+{
+    double sum = 0.0, sum_x = 0.0, sum_y = 0.0, xx = 0.0, xy = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += weights[i];
+        sum_x += weights[i] * points[i].x;
+        sum_y += weights[i] * points[i].y;
+    }
+    fit->mean_x = sum_x / sum;
+    fit->mean_y = sum_y / sum;
+    for (size_t i = 0; i < n; i++) {
+        const double dx = points[i].x - fit->mean_x;
+        xx += weights[i] * dx * dx;
+        xy += weights[i] * dx * (points[i].y - fit->mean_y);
+    }
+    if (!fixed)
+        fit->slope = xy / xx;
+    fit->sum_weight = sum;
+    fit->sum_xx = xx;
+}
+
+static double residual(const struct fit *fit, const struct point *point)
+{
+    return point->y - fit->mean_y - fit->slope * (point->x - fit->mean_x);
+}
+
+/* Huber's weights from residuals: 1 within 1.345 robust standard deviations, falling beyond. */
+static void set_weights(const struct fit *fit, const struct point *points, size_t n,
+                        double *weights, double *work)
+{
+    for (size_t i = 0; i < n; i++)
+        work[i] = fabs(residual(fit, &points[i]));
+    const double scale = fmax(1.4826 * median(work, n), 1e-9);
+    for (size_t i = 0; i < n; i++) {
+        const double limit = 1.345 * scale, distance = fabs(residual(fit, &points[i]));
+        weights[i] = distance <= limit ? 1.0 : limit / distance;
+    }
+}
+
+/* Fits and tells the weighted standard deviation. `weights` and `work` are scratch of n each. */
+static double fit_robust(const struct point *points, size_t n, bool fixed, struct fit *fit,
+                         double *weights, double *work)
+{
+    for (size_t i = 0; i < n; i++)
+        weights[i] = 1.0;
+    fit_weighted(points, weights, n, fixed, fit);
+    for (int iteration = 0; iteration < 20; iteration++) {
+        set_weights(fit, points, n, weights, work);
+        fit_weighted(points, weights, n, fixed, fit);
+    }
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++)
+        sum += weights[i] * residual(fit, &points[i]) * residual(fit, &points[i]);
+    return sqrt(sum / fit->sum_weight);
+}
+
+/* --- probes --- */
+
+static int compare_probes(const void *a, const void *b)
+{
+    const struct wb_clock_probe *const x = a, *const y = b;
+    return (x->t_sent_ns > y->t_sent_ns) - (x->t_sent_ns < y->t_sent_ns);
+}
+
+static int64_t round_trip(const struct wb_clock_probe *probe)
+{
+    return probe->t_received_ns - probe->t_sent_ns;
+}
+
+/* Keeps the probe of the shortest round trip in each second; `probes` is sorted and compacted. */
+static size_t keep_best(struct wb_clock_probe *probes, size_t n)
+{
+    qsort(probes, n, sizeof *probes, compare_probes);
+    size_t n_kept = 0;
+    for (size_t i = 0; i < n;) {
+        size_t best = i, next = i;
+        while (next < n && probes[next].t_sent_ns - probes[i].t_sent_ns < BURST_NS) {
+            if (round_trip(&probes[next]) < round_trip(&probes[best]))
+                best = next;
+            next++;
+        }
+        probes[n_kept++] = probes[best];
+        i = next;
+    }
+    return n_kept;
+}
+
+/* Room for n probes and what is computed from them. */
+struct probe_fit {
+    struct wb_clock_probe *kept;
+    struct point *points;
+    double *weights, *work;
+};
+
+static void fit_kept(struct wb_clock_line *line, const struct probe_fit *room, size_t n,
+                     double nominal_slope)
+{
+    const struct wb_clock_probe *const kept = room->kept;
+    struct point *const points = room->points;
+    const int64_t zero_ns = kept[0].t_sent_ns;
+    for (size_t i = 0; i < n; i++) {
+        points[i].x = kept[i].t_device - kept[0].t_device;
+        points[i].width = wb_seconds_from_ns(round_trip(&kept[i]));
+        points[i].y = wb_seconds_from_ns(kept[i].t_sent_ns - zero_ns) + 0.5 * points[i].width;
+    }
+    const bool fixed =
+        n < 3 || wb_seconds_from_ns(kept[n - 1].t_sent_ns - zero_ns) < LEAST_PROBE_SPAN;
+    struct fit fit = {.slope = nominal_slope};
+    line->scatter = fit_robust(points, n, fixed, &fit, room->weights, room->work);
+    for (size_t i = 0; i < n; i++)
+        room->work[i] = points[i].width;
+    const double own_error = line->scatter / sqrt((double)n);
+    line->device_zero = kept[0].t_device + fit.mean_x;
+    line->host_zero_ns = zero_ns + wb_ns_from_seconds(fit.mean_y);
+    line->slope = fit.slope;
+    line->slope_uncertainty = fixed ? (double)NAN : line->scatter / sqrt(fit.sum_xx);
+    line->uncertainty = 0.5 * median(room->work, n) + own_error;
+    line->n_used = n;
+}
+
+enum wb_status wb_clock_fit_probes(struct wb_clock_line *line, const struct wb_clock_probe *probes,
+                                   size_t n, double nominal_slope)
+{
+    double *const scratch = malloc((2 * n + 1) * sizeof *scratch);
+    const struct probe_fit room = {.kept = malloc((n + 1) * sizeof *room.kept),
+                                   .points = malloc((n + 1) * sizeof *room.points),
+                                   .weights = scratch,
+                                   .work = scratch ? scratch + n : NULL};
+    enum wb_status status = WB_OK;
+    if (!room.kept || !room.points || !scratch) {
+        status = WB_ERR_MEMORY;
+    } else {
+        size_t n_usable = 0;
+        for (size_t i = 0; i < n; i++) {
+            if (isfinite(probes[i].t_device) && round_trip(&probes[i]) >= 0)
+                room.kept[n_usable++] = probes[i];
+        }
+        *line = (struct wb_clock_line){.n_points = n};
+        const size_t n_kept = keep_best(room.kept, n_usable);
+        if (n_kept > 0)
+            fit_kept(line, &room, n_kept, nominal_slope);
+        else
+            status = WB_ERR_DATA;
+    }
+    free(room.kept);
+    free(room.points);
+    free(scratch);
+    return status;
+}
+
+/* --- lower envelope --- */
+
+static double cross(const struct point *o, const struct point *a, const struct point *b)
+{
+    return (a->x - o->x) * (b->y - o->y) - (a->y - o->y) * (b->x - o->x);
+}
+
+/* Lower convex hull of points with ascending x (Andrew's chain), in place. */
+static size_t lower_hull(struct point *points, size_t n)
+{
+    size_t n_hull = 0;
+    for (size_t i = 0; i < n; i++) {
+        while (n_hull >= 2 && cross(&points[n_hull - 2], &points[n_hull - 1], &points[i]) <= 0.0)
+            n_hull--;
+        points[n_hull++] = points[i];
+    }
+    return n_hull;
+}
+
+/* The sum of distances of all points above a line depends on its height at their mean x only, so
+ * the best line below them is the hull's edge there. */
+static void choose_edge(const struct point *hull, size_t n, double mean_x, struct fit *fit)
+{
+    size_t edge = 0;
+    while (edge + 2 < n && hull[edge + 1].x < mean_x)
+        edge++;
+    fit->mean_x = hull[edge].x;
+    fit->mean_y = hull[edge].y;
+    fit->slope = (hull[edge + 1].y - hull[edge].y) / (hull[edge + 1].x - hull[edge].x);
+}
+
+/* With a given slope the lowest point carries the line. */
+static void choose_lowest(const struct point *points, size_t n, struct fit *fit)
+{
+    size_t lowest = 0;
+    for (size_t i = 1; i < n; i++) {
+        if (points[i].y - fit->slope * points[i].x <
+            points[lowest].y - fit->slope * points[lowest].x)
+            lowest = i;
+    }
+    fit->mean_x = points[lowest].x;
+    fit->mean_y = points[lowest].y;
+}
+
+enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *device,
+                                     const int64_t *host_ns, size_t n, double nominal_slope,
+                                     double least_span)
+{
+    if (n == 0)
+        return WB_ERR_DATA;
+    struct point *const points = malloc(n * sizeof *points);
+    double *const lateness = malloc(n * sizeof *lateness);
+    if (!points || !lateness) {
+        free(points);
+        free(lateness);
+        return WB_ERR_MEMORY;
+    }
+    double mean_x = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        points[i] = (struct point){.x = device[i] - device[0],
+                                   .y = wb_seconds_from_ns(host_ns[i] - host_ns[0])};
+        mean_x += points[i].x / (double)n;
+    }
+    struct fit fit = {.slope = nominal_slope};
+    const bool fixed = n < 3 || points[n - 1].x < least_span;
+    size_t n_hull = 1;
+    if (fixed) {
+        choose_lowest(points, n, &fit);
+    } else {
+        n_hull = lower_hull(points, n);
+        choose_edge(points, n_hull, mean_x, &fit);
+    }
+    for (size_t i = 0; i < n; i++)
+        lateness[i] = wb_seconds_from_ns(host_ns[i] - host_ns[0]) - fit.mean_y -
+                      fit.slope * (device[i] - device[0] - fit.mean_x);
+    *line = (struct wb_clock_line){
+        .device_zero = device[0] + fit.mean_x,
+        .host_zero_ns = host_ns[0] + wb_ns_from_seconds(fit.mean_y),
+        .slope = fit.slope,
+        .scatter = median(lateness, n),
+        .uncertainty = (double)NAN,
+        .slope_uncertainty = (double)NAN,
+        .n_points = n,
+        .n_used = n_hull,
+    };
+    /* Both ends of an edge may be early by about the scatter. */
+    if (!fixed)
+        line->slope_uncertainty = line->scatter / (device[n - 1] - device[0]);
+    free(points);
+    free(lateness);
+    return WB_OK;
+}
+
+/* --- segments --- */
+
+/* How much later stamp i arrived than stamp `zero` says it should have, s. */
+static double shift_of(const struct wb_clock_stamps *stamps, size_t i, size_t zero)
+{
+    return wb_seconds_from_ns(stamps->host_ns[i] - stamps->host_ns[zero]) -
+           stamps->nominal_slope * (stamps->device[i] - stamps->device[zero]);
+}
+
+/* Least lateness, over that of stamp `zero`, of stamps first, first + step, ... that arrived within
+ * SETTLING_NS of the first of them. */
+static double least_shift(const struct wb_clock_stamps *stamps, size_t zero, size_t first, int step)
+{
+    double least = HUGE_VAL;
+    for (size_t i = first; i < stamps->n; i += (size_t)step) {
+        if (llabs(stamps->host_ns[i] - stamps->host_ns[first]) > SETTLING_NS)
+            break;
+        least = fmin(least, shift_of(stamps, i, zero));
+    }
+    return least;
+}
+
+/* Whether the stamps from `first` to the last still arrive faster than they were made: a host that
+ * was busy works off what waited when the stamps end. */
+static bool is_catching_up(const struct wb_clock_stamps *stamps, size_t first)
+{
+    const size_t last = stamps->n - 1;
+    const int64_t arrived_ns = stamps->host_ns[last] - stamps->host_ns[first];
+    const double made = stamps->nominal_slope * (stamps->device[last] - stamps->device[first]);
+    return arrived_ns <= SETTLING_NS && wb_seconds_from_ns(arrived_ns) <= 0.5 * made;
+}
+
+size_t wb_clock_split(const struct wb_clock_stamps *stamps, double jump, size_t *starts,
+                      size_t most)
+{
+    size_t n_segments = 0;
+    if (stamps->n > 0 && most > 0)
+        starts[n_segments++] = 0;
+    for (size_t i = 1; i < stamps->n && n_segments < most; i++) {
+        if (fabs(shift_of(stamps, i, i - 1)) <= jump)
+            continue;
+        /* A busy host is late once and catches up; a clock that was set stays so. Index 0 - 1 wraps
+         * beyond n and ends the walk backwards. */
+        const double before = least_shift(stamps, i - 1, i - 1, -1);
+        const double after = least_shift(stamps, i - 1, i, 1);
+        const bool is_late = after > before && is_catching_up(stamps, i);
+        if (!is_late && !(fabs(after - before) <= 0.5 * jump))
+            starts[n_segments++] = i;
+    }
+    return n_segments;
+}
+
+/* Arrivals less a constant rate, s. */
+static double lateness(const int64_t *host_ns, size_t i, size_t zero, double period)
+{
+    return wb_seconds_from_ns(host_ns[i] - host_ns[zero]) - ((double)i - (double)zero) * period;
+}
+
+/* The least lateness of readings first, first + step, ... up to `end` (exclusive), as long as they
+ * arrived within SETTLING_NS of the first of them. */
+static double least_lateness(const int64_t *host_ns, size_t first, size_t end, int step,
+                             size_t zero, double period)
+{
+    double least = HUGE_VAL;
+    for (size_t i = first; i != end; i += (size_t)step) {
+        if (llabs(host_ns[i] - host_ns[first]) > SETTLING_NS)
+            break;
+        least = fmin(least, lateness(host_ns, i, zero, period));
+    }
+    return least;
+}
+
+/* Period of the readings: the median of what windows of them took, which neither a few losses nor
+ * a few delays move. */
+static double typical_period(const int64_t *host_ns, size_t n)
+{
+    enum {
+        MOST = 512,
+        LONG = 200
+    };
+    double periods[MOST];
+    size_t n_periods = 0;
+    if (n < 2)
+        return 0.0;
+    const size_t window = n > 2 * LONG ? LONG : n - 1;
+    const size_t stride = 1 + (n - window) / MOST;
+    for (size_t i = 0; i + window < n && n_periods < MOST; i += stride)
+        periods[n_periods++] =
+            wb_seconds_from_ns(host_ns[i + window] - host_ns[i]) / (double)window;
+    return median(periods, n_periods);
+}
+
+/* How much arrivals usually scatter: the median, over windows, of the largest lateness over the
+ * least. */
+static double usual_jitter(const int64_t *host_ns, size_t n, double period)
+{
+    enum {
+        MOST = 256,
+        WINDOW = 32
+    };
+    double spreads[MOST];
+    size_t n_spreads = 0;
+    const size_t stride = n / WINDOW > MOST ? n / MOST : WINDOW;
+    for (size_t first = 0; first + WINDOW <= n && n_spreads < MOST; first += stride) {
+        double most = -HUGE_VAL, least = HUGE_VAL;
+        for (size_t i = first; i < first + WINDOW; i++) {
+            most = fmax(most, lateness(host_ns, i, first, period));
+            least = fmin(least, lateness(host_ns, i, first, period));
+        }
+        spreads[n_spreads++] = most - least;
+    }
+    return n_spreads > 0 ? median(spreads, n_spreads) : 0.0;
+}
+
+size_t wb_clock_split_readings(const int64_t *host_ns, size_t n, size_t *starts, size_t most)
+{
+    if (n == 0 || most == 0)
+        return 0;
+    const double period = typical_period(host_ns, n);
+    const double jitter = usual_jitter(host_ns, n, period);
+    const double least_shift_s = fmax(fmax(0.8 * period, 3e-3), 1.5 * jitter);
+    size_t n_segments = 0;
+    starts[n_segments++] = 0;
+    for (size_t i = 1; i < n && n_segments < most; i++) {
+        /* A busy host is late now and then and catches up; lost readings are so for good. */
+        if (wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]) < fmax(2.5 * period, 5e-3))
+            continue;
+        const double before =
+            least_lateness(host_ns, i - 1, starts[n_segments - 1] - 1, -1, i, period);
+        const double after = least_lateness(host_ns, i, n, 1, i, period);
+        if (after - before > least_shift_s)
+            starts[n_segments++] = i;
+    }
+    return n_segments;
+}

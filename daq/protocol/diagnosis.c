@@ -1,0 +1,231 @@
+#include "daq/protocol/diagnosis.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "daq/protocol/grbl.h"
+#include "daq/protocol/loadcell_line.h"
+
+#define TEXT_SHARE 0.85  /* of the bytes are printable, or it is no text */
+#define ENDLESS_BYTES 80 /* without a line end */
+
+void wb_diagnosis_add(struct wb_diagnosis *diagnosis, const void *bytes, size_t n)
+{
+    const size_t room = sizeof diagnosis->bytes - diagnosis->n;
+    const size_t taken = n < room ? n : room;
+    memcpy(diagnosis->bytes + diagnosis->n, bytes, taken);
+    diagnosis->n += taken;
+}
+
+static bool is_text(const struct wb_diagnosis *diagnosis)
+{
+    size_t printable = 0;
+    for (size_t i = 0; i < diagnosis->n; i++) {
+        const char c = diagnosis->bytes[i];
+        printable += (c >= 0x20 && c < 0x7f) || c == '\r' || c == '\n' || c == '\t';
+    }
+    return (double)printable >= TEXT_SHARE * (double)diagnosis->n;
+}
+
+static bool begins(const char *line, size_t n, const char *word)
+{
+    return n >= strlen(word) && strncasecmp(line, word, strlen(word)) == 0;
+}
+
+static bool has(const char *line, size_t n, const char *word)
+{
+    for (size_t i = 0; i < n; i++)
+        if (begins(line + i, n - i, word))
+            return true;
+    return false;
+}
+
+/* Of one line of text; OTHER where it says little. */
+static enum wb_diagnosis_kind judge_line(const char *line, size_t n)
+{
+    static const struct wb_rig_load_cell plain = {.scale = 1.0, .sign = 1};
+    struct wb_grbl_line grbl;
+    struct wb_line_reading reading;
+    /* "<Idle,MPos:0.000,...": the reports of 0.9 have commas where those of 1.1 have bars. */
+    if (begins(line, n, "Grbl 0.") || (begins(line, n, "<") && has(line, n, ",MPos:")))
+        return WB_DIAGNOSIS_OLD_GRBL;
+    if (has(line, n, "Marlin") || begins(line, n, "echo:") || begins(line, n, "Error:Printer"))
+        return WB_DIAGNOSIS_MARLIN;
+    wb_grbl_decode(line, n, &grbl);
+    if (grbl.kind == WB_GRBL_LINE_BANNER || grbl.kind == WB_GRBL_LINE_REPORT ||
+        grbl.kind == WB_GRBL_LINE_ALARM)
+        return WB_DIAGNOSIS_GRBL;
+    wb_line_decode(line, n, &plain, &reading);
+    return reading.kind == WB_LINE_VALUE ? WB_DIAGNOSIS_READINGS : WB_DIAGNOSIS_OTHER;
+}
+
+enum wb_diagnosis_kind wb_diagnosis_kind(const struct wb_diagnosis *diagnosis)
+{
+    int readings = 0, others = 0;
+    size_t begin = 0, lines = 0;
+    if (diagnosis->n == 0)
+        return WB_DIAGNOSIS_NOTHING;
+    if (!is_text(diagnosis))
+        return WB_DIAGNOSIS_NOISE;
+    for (size_t i = 0; i < diagnosis->n; i++) {
+        if (diagnosis->bytes[i] != '\n' && diagnosis->bytes[i] != '\r')
+            continue;
+        const enum wb_diagnosis_kind kind = judge_line(diagnosis->bytes + begin, i - begin);
+        if (kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL ||
+            kind == WB_DIAGNOSIS_MARLIN)
+            return kind;
+        /* The first line may be the rest of one. */
+        if (i > begin && lines > 0) {
+            readings += kind == WB_DIAGNOSIS_READINGS;
+            others += kind != WB_DIAGNOSIS_READINGS;
+        }
+        lines += i > begin;
+        begin = i + 1;
+    }
+    if (lines == 0 && diagnosis->n >= ENDLESS_BYTES)
+        return WB_DIAGNOSIS_ENDLESS;
+    return readings >= 2 && readings > others ? WB_DIAGNOSIS_READINGS : WB_DIAGNOSIS_OTHER;
+}
+
+static const char *const swapped =
+    "load_cell.address and stage.address seem to be swapped: exchange them";
+
+/* Lines end, but not as the rig file says. */
+static bool lacks_terminator(const struct wb_diagnosis *load, const struct wb_rig *rig)
+{
+    const char *const told = rig->load_cell.terminator;
+    if (strcmp(told, "crlf") == 0)
+        return !has(load->bytes, load->n, "\r\n");
+    if (strcmp(told, "cr") == 0)
+        return !memchr(load->bytes, '\r', load->n);
+    return strcmp(told, "lf") == 0 && !memchr(load->bytes, '\n', load->n);
+}
+
+/* The second whole line, if it is a number without a unit. */
+static bool is_bare_number(const struct wb_diagnosis *load, const struct wb_rig *rig,
+                           double *number)
+{
+    struct wb_line_reading reading;
+    size_t begin = 0;
+    for (size_t i = 0, lines = 0; i < load->n; i++) {
+        if (load->bytes[i] != '\n' && load->bytes[i] != '\r')
+            continue;
+        if (i > begin && ++lines == 2) {
+            wb_line_decode(load->bytes + begin, i - begin, &rig->load_cell, &reading);
+            *number = reading.value;
+            return reading.kind == WB_LINE_VALUE && reading.unit[0] == '\0';
+        }
+        begin = i + 1;
+    }
+    return false;
+}
+
+/* Numbers that are no forces yet. */
+static void diagnose_numbers(double number, const struct wb_rig *rig, char text[WB_DIAGNOSIS_TEXT])
+{
+    const char *const unit = rig->load_cell.unit;
+    if (unit[0])
+        snprintf(
+            text, WB_DIAGNOSIS_TEXT,
+            "its numbers, such as %g, are beyond the cell as %s: if they are a converter's raw "
+            "counts, set load_cell.scale (%s a count, by a known mass) and load_cell.offset",
+            number, unit, unit);
+    else
+        snprintf(
+            text, WB_DIAGNOSIS_TEXT,
+            "its lines are numbers without a unit, such as %g: set load_cell.unit and, if they "
+            "are a converter's raw counts, load_cell.scale and offset",
+            number);
+}
+
+void wb_diagnosis_load(const struct wb_diagnosis *load, const struct wb_diagnosis *stage,
+                       const struct wb_rig *rig, char text[WB_DIAGNOSIS_TEXT])
+{
+    const enum wb_diagnosis_kind kind = wb_diagnosis_kind(load);
+    const bool is_grbl = kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL;
+    double number;
+    if (is_grbl || wb_diagnosis_kind(stage) == WB_DIAGNOSIS_READINGS)
+        snprintf(text, WB_DIAGNOSIS_TEXT, "%s: %s",
+                 is_grbl ? "a stage answers there" : "a load cell answers at the stage's port",
+                 swapped);
+    else if (kind == WB_DIAGNOSIS_NOTHING)
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "check power and cable, the baud rate in load_cell.address, and whether it sends "
+                 "only when asked (load_cell.poll_command, poll_period_ms)");
+    else if (kind == WB_DIAGNOSIS_NOISE)
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "its bytes are no text: set baud rate and frame (such as 9600,8n1) in "
+                 "load_cell.address as in the instrument's menu");
+    else if (kind == WB_DIAGNOSIS_ENDLESS || lacks_terminator(load, rig))
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "its lines do not end as load_cell.terminator says: set it to any or, where there "
+                 "are no line ends, to idle");
+    else if (is_bare_number(load, rig, &number))
+        diagnose_numbers(number, rig, text);
+    else
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "check load_cell.protocol, its line settings (delimiter, column, decimal_comma) "
+                 "and its unit");
+}
+
+static void diagnose_tic(enum wb_diagnosis_kind kind, char text[WB_DIAGNOSIS_TEXT])
+{
+    if (kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL)
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "it is a GRBL and no Tic: set stage.protocol: grbl, and stage.axis");
+    else
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "%s: check power and cable (TX, RX and ground), the baud rate in stage.address "
+                 "(Tic: 9600 unless changed), and in Tic Control Center that the control mode is "
+                 "Serial / I2C / USB and CRC and 7-bit responses are off",
+                 kind == WB_DIAGNOSIS_NOTHING ? "nothing came" : "what came is no answer of a Tic");
+}
+
+void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *rig,
+                        char text[WB_DIAGNOSIS_TEXT])
+{
+    const enum wb_diagnosis_kind kind = wb_diagnosis_kind(stage);
+    if (strcmp(rig->stage.protocol, "tic") == 0 && kind != WB_DIAGNOSIS_READINGS) {
+        diagnose_tic(kind, text);
+        return;
+    }
+    switch (kind) {
+    case WB_DIAGNOSIS_NOTHING:
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "nothing came: check power and cable, the port and the baud rate in stage.address "
+                 "(GRBL 1.1: 115200), and stage.protocol");
+        break;
+    case WB_DIAGNOSIS_NOISE:
+    case WB_DIAGNOSIS_ENDLESS:
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "its bytes are no lines of text: set the baud rate in stage.address (GRBL 1.1: "
+                 "115200)");
+        break;
+    case WB_DIAGNOSIS_OLD_GRBL:
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "it is a GRBL before 1.1, which has no jog: load GRBL 1.1 onto the controller "
+                 "(stage.protocol %s)",
+                 rig->stage.protocol);
+        break;
+    case WB_DIAGNOSIS_MARLIN:
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "it answers like Marlin, the firmware of 3D printers: stage.protocol %s needs "
+                 "GRBL 1.1 on the controller",
+                 rig->stage.protocol);
+        break;
+    case WB_DIAGNOSIS_READINGS:
+        snprintf(text, WB_DIAGNOSIS_TEXT, "it sends readings of a load cell: %s", swapped);
+        break;
+    case WB_DIAGNOSIS_GRBL:
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "it is a GRBL 1.1 that does not answer '?': check the cable, both directions, and "
+                 "flow= in stage.address");
+        break;
+    case WB_DIAGNOSIS_OTHER:
+        snprintf(text, WB_DIAGNOSIS_TEXT,
+                 "what it sends is not GRBL 1.1: check that stage.address is the stage's port, and "
+                 "stage.protocol");
+        break;
+    }
+}

@@ -1,0 +1,22 @@
+/* The protocols that the program knows. A new one is a file with its `struct wb_driver`, named as
+ * the file, and a line in this list. */
+#ifndef WB_DAQ_DRIVERS_H
+#define WB_DAQ_DRIVERS_H
+
+#include "daq/protocol/driver.h"
+
+#define WB_DRIVERS(X)                                                                              \
+    X(wb_loadcell_generic)                                                                         \
+    X(wb_loadcell_mtsics)                                                                          \
+    X(wb_natnet_client)                                                                            \
+    X(wb_stage_grbl)                                                                               \
+    X(wb_stage_tic)
+
+#define WB_DRIVERS_DECLARE(driver) extern const struct wb_driver driver;
+WB_DRIVERS(WB_DRIVERS_DECLARE)
+#undef WB_DRIVERS_DECLARE
+
+/* By role and protocol name; NULL when there is none. */
+const struct wb_driver *wb_drivers_find(enum wb_role role, const char *protocol);
+
+#endif

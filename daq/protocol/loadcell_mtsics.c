@@ -1,0 +1,160 @@
+/* A balance that speaks MT-SICS: asked once, it streams (SIR), or it is polled (SI). `S` is never
+ * sent: it waits until the load is stable, which in bending is never. */
+#include "daq/protocol/driver.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/number.h"
+#include "daq/protocol/loadcell.h"
+
+/* Splits a line at blanks into at most four words; returns how many there are. */
+static int split(char *text, char *words[4])
+{
+    int n = 0;
+    char *rest = text;
+    for (char *word; (word = strtok_r(n == 0 ? text : NULL, " \t\r", &rest));) {
+        if (n < 4)
+            words[n] = word;
+        n++;
+    }
+    return n;
+}
+
+/* `S S 100.00 g`, `S D 100.00 g`, `S +`, `S -`, `S I`. */
+static void decode_weight(char *const words[4], int n, struct wb_line_reading *reading)
+{
+    const char status = n >= 2 && words[1][1] == '\0' ? words[1][0] : '\0';
+    reading->kind = WB_LINE_REFUSED;
+    reading->reason = "not a weight as MT-SICS writes it";
+    if (n == 2 && (status == '+' || status == '-')) {
+        reading->kind = WB_LINE_OVERLOAD;
+    } else if (n == 2 && status == 'I') {
+        reading->reason = "the balance cannot weigh now";
+    } else if ((n == 4 || n == 3) && (status == 'S' || status == 'D') &&
+               wb_number_parse(words[2], &reading->value)) {
+        reading->unstable = status == 'D';
+        if (n == 4 && strlen(words[3]) >= sizeof reading->unit)
+            return;
+        if (n == 4)
+            strcpy(reading->unit, words[3]);
+        reading->kind = WB_LINE_VALUE;
+    }
+}
+
+/* `I4 A "B123456789"` */
+static void check_serial(const struct wb_loadcell *loadcell, int64_t t_ns, const char *serial,
+                         const struct wb_sink *sink)
+{
+    const char *const expected = loadcell->rig.load_cell.serial_number;
+    char number[64];
+    const size_t quoted = serial[0] == '"';
+    const size_t length = strcspn(serial + quoted, "\"");
+    if (length == 0 || length >= sizeof number)
+        return;
+    memcpy(number, serial + quoted, length);
+    number[length] = '\0';
+    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected",
+                     "the balance with serial number %s answers", number);
+    if (expected[0] && strcmp(expected, number) != 0)
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "serial",
+            "the balance has serial number %s, the rig file names %s: is it the right one?", number,
+            expected);
+}
+
+static void decode_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct wb_sink *sink)
+{
+    const struct wb_line_buffer *const line = &loadcell->line;
+    char text[sizeof line->bytes + 1];
+    char *words[4] = {NULL, NULL, NULL, NULL};
+    struct wb_line_reading reading = {.kind = WB_LINE_REFUSED, .value = (double)NAN};
+    reading.reason = "it is no answer of MT-SICS: check load_cell.protocol";
+    wb_loadcell_printable(line, text, sizeof text);
+    /* Printable copies show a CR as '?'; here it is a blank like any other. */
+    for (size_t i = 0; i < line->n; i++)
+        if (line->bytes[i] == '\r')
+            text[i] = ' ';
+    const int n = split(text, words);
+    if (line->overlong)
+        reading.reason = "it is far too long: check baud rate and parity in load_cell.address";
+    else if (n == 0)
+        return;
+    else if (strcmp(words[0], "S") == 0)
+        decode_weight(words, n, &reading);
+    else if (strcmp(words[0], "ES") == 0)
+        reading.reason = "the balance did not understand a command (syntax)";
+    else if (strcmp(words[0], "ET") == 0)
+        reading.reason = "the balance received a damaged command (transmission)";
+    else if (strcmp(words[0], "EL") == 0)
+        reading.reason = "the balance cannot do what a command asked (logic)";
+    else if (strcmp(words[0], "I4") == 0) {
+        if (n >= 3)
+            check_serial(loadcell, t_ns, words[2], sink);
+        return;
+    }
+    /* Only a line that cannot be read may have been cut off by opening the port amid it: a weight
+     * begins with its status. */
+    if (!loadcell->whole && reading.kind == WB_LINE_REFUSED) {
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "partial",
+                         "the first line may be incomplete and is dropped");
+        return;
+    }
+    wb_loadcell_deliver(loadcell, t_ns, &reading, sink);
+}
+
+static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
+                    const struct wb_sink *sink)
+{
+    struct wb_loadcell *const loadcell = opaque;
+    if (n == 0) {
+        wb_line_buffer_clear(&loadcell->line);
+        loadcell->whole = false;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (!wb_line_buffer_push(&loadcell->line, bytes[i], "crlf"))
+            continue;
+        decode_line(loadcell, t_ns, sink);
+        loadcell->whole = true;
+        loadcell->n_lines++;
+        wb_line_buffer_clear(&loadcell->line);
+    }
+}
+
+static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
+{
+    struct wb_loadcell *const loadcell = opaque;
+    const int64_t period = loadcell->rig.load_cell.poll_period_ns;
+    wb_outbox_add_text(outbox, "I4\r\n");
+    wb_outbox_add_text(outbox, period > 0 ? "SI\r\n" : "SIR\r\n");
+    loadcell->next_ask_ns = now_ns + (period > 0 ? period : WB_LOADCELL_SILENCE_NS);
+}
+
+static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
+{
+    struct wb_loadcell *const loadcell = opaque;
+    if (loadcell->rig.load_cell.poll_period_ns > 0)
+        wb_loadcell_poll(loadcell, now_ns, "SI\r\n", outbox);
+    else
+        wb_loadcell_keep_streaming(loadcell, now_ns, "SIR\r\n", outbox);
+}
+
+static void stop(void *opaque, struct wb_outbox *outbox)
+{
+    /* One immediate weight ends the stream; a reset (@) would also forget the balance's tare. */
+    const struct wb_loadcell *const loadcell = opaque;
+    if (loadcell->rig.load_cell.poll_period_ns == 0)
+        wb_outbox_add_text(outbox, "SI\r\n");
+}
+
+const struct wb_driver wb_loadcell_mtsics = {
+    .name = "mt-sics",
+    .role = WB_ROLE_LOAD,
+    .state_size = sizeof(struct wb_loadcell),
+    .init = wb_loadcell_init,
+    .start = start,
+    .receive = receive,
+    .tick = tick,
+    .ready = wb_loadcell_ready,
+    .stop = stop,
+};

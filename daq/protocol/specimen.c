@@ -1,0 +1,90 @@
+#include "daq/protocol/specimen.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/config.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "specimen"
+
+/* The markers must climb from the clamp to the knot. */
+static enum wb_status check_markers(const struct wb_config_node *list, struct wb_specimen *specimen)
+{
+    const double *const markers = specimen->markers;
+    const int n = specimen->n_markers;
+    if (markers[0] != 0.0)
+        return wb_config_refuse(list, "markers_mm",
+                                "expected 0 first (the marker on the clamp), not %g",
+                                markers[0] / WB_MM);
+    for (int i = 1; i < n; i++)
+        if (!(markers[i] > markers[i - 1]))
+            return wb_config_refuse(list, "markers_mm",
+                                    "expected ascending arc lengths, but %g follows %g",
+                                    markers[i] / WB_MM, markers[i - 1] / WB_MM);
+    if (!(fabs(markers[n - 1] - specimen->length) <= 1e-9))
+        return wb_config_refuse(list, "markers_mm",
+                                "expected the last marker at the strand's knot, length_mm (%g), "
+                                "not at %g",
+                                specimen->length / WB_MM, markers[n - 1] / WB_MM);
+    return WB_OK;
+}
+
+static enum wb_status read_root(const struct wb_config_node *root, struct wb_specimen *specimen)
+{
+    const struct wb_config_node *markers;
+    const struct wb_config_key table[] = {
+        WB_CONFIG_TEXT("wire", specimen->wire),
+        WB_CONFIG_NUMBER("length_mm", &specimen->length, WB_MM, 1.0, 10000.0),
+        WB_CONFIG_INTEGER("sample", &specimen->sample, 1, 100000),
+        WB_CONFIG_NODE("markers_mm", &markers),
+        WB_CONFIG_NUMBER("marker_offset_mm", &specimen->marker_offset, WB_MM, -100.0, 100.0),
+        WB_CONFIG_OPTIONAL_NUMBER("marker_offset_uncertainty_mm",
+                                  &specimen->marker_offset_uncertainty, WB_MM, 0.0, 100.0),
+    };
+    WB_TRY(wb_config_map(root, table, WB_COUNT(table)));
+    if (specimen->wire[0] == '\0')
+        return wb_config_refuse(root, "wire",
+                                "expected the name of a wire, such as type1, or a path");
+    specimen->wire_line = wb_config_line(wb_config_find(root, "wire"));
+    const struct wb_config_key marker = WB_CONFIG_NUMBER("markers_mm", NULL, WB_MM, 0.0, 10000.0);
+    WB_TRY(wb_config_numbers(markers, &marker, 2, WB_SPECIMEN_MAX_MARKERS, specimen->markers,
+                             &specimen->n_markers));
+    return check_markers(markers, specimen);
+}
+
+static enum wb_status take(struct wb_config *config, struct wb_specimen *specimen)
+{
+    struct wb_specimen read;
+    memset(&read, 0, sizeof read);
+    const enum wb_status status = read_root(wb_config_root(config), &read);
+    wb_config_destroy(config);
+    if (status == WB_OK)
+        *specimen = read;
+    return status;
+}
+
+enum wb_status wb_specimen_read(const char *path, struct wb_specimen *specimen)
+{
+    struct wb_config *config;
+    WB_TRY(wb_config_read(&config, path, NULL));
+    return take(config, specimen);
+}
+
+enum wb_status wb_specimen_parse(const char *text, const char *origin, struct wb_specimen *specimen,
+                                 struct wb_reason *why)
+{
+    struct wb_config *config;
+    WB_TRY(wb_config_parse(&config, text, origin, why));
+    return take(config, specimen);
+}
+
+enum wb_status wb_specimen_find_wire(const struct wb_specimen *specimen, const char *specimen_path,
+                                     char path[WB_PATH])
+{
+    char folder[WB_PATH], named_in[WB_PATH + 32];
+    wb_file_folder(folder, specimen_path);
+    snprintf(named_in, sizeof named_in, "%s:%d: wire", specimen_path, specimen->wire_line);
+    return wb_file_find_named(path, "wires", specimen->wire, folder, named_in, NULL);
+}

@@ -1,0 +1,335 @@
+#include "daq/recording/replay.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/hash.h"
+#include "base/interrupt.h"
+#include "base/progress.h"
+#include "base/units.h"
+#include "daq/protocol/drivers.h"
+#include "daq/recording/foreign.h"
+#include "daq/recording/recording_foreign.h"
+#include "daq/stream/stream.h"
+
+#define WB_LOG_DOMAIN "replay"
+
+/* A file of another program, put together again from its pieces. */
+struct file {
+    struct wb_foreign foreign;
+    uint8_t *bytes; /* (foreign.size) owned */
+    size_t n;
+    bool lost; /* a piece is not there: nothing of it can be read */
+};
+
+/* One recorded stream with the driver that decodes it, or the file it holds; both are NULL when
+ * there is none. */
+struct channel {
+    int id;
+    const struct wb_driver *driver;
+    void *state;
+    struct wb_stream *stream;
+    int64_t next_seq; /* of its chunks; -1: one is missing */
+    struct file *file;
+};
+
+struct replay {
+    const struct wb_rig *rig;
+    const struct wb_sink *sink;
+    struct wb_sink counting; /* between the drivers and the sink */
+    struct wb_replay_counts *counts;
+    struct channel *channels;
+    int n_channels;
+    double rate;
+    int64_t first_ns, started_ns; /* the first chunk's time, and when it was played */
+    bool interrupted;
+    uint8_t *buffer;
+};
+
+/* --- counting what passes --- */
+
+static void pass_load(void *context, const struct wb_load_sample *sample)
+{
+    struct replay *replay = context;
+    replay->counts->load_samples++;
+    if (replay->sink->load)
+        replay->sink->load(replay->sink->context, sample);
+}
+
+static void pass_mocap(void *context, const struct wb_mocap_frame *frame)
+{
+    struct replay *replay = context;
+    replay->counts->mocap_frames++;
+    if (replay->sink->mocap)
+        replay->sink->mocap(replay->sink->context, frame);
+}
+
+static void pass_stage(void *context, const struct wb_stage_report *report)
+{
+    struct replay *replay = context;
+    replay->counts->stage_reports++;
+    if (replay->sink->stage)
+        replay->sink->stage(replay->sink->context, report);
+}
+
+static void pass_probe(void *context, const struct wb_clock_probe *probe)
+{
+    struct replay *replay = context;
+    if (replay->sink->probe)
+        replay->sink->probe(replay->sink->context, probe);
+}
+
+static void pass_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
+                        const char *text)
+{
+    struct replay *replay = context;
+    if (replay->sink->remark)
+        replay->sink->remark(replay->sink->context, level, t_ns, kind, text);
+}
+
+/* --- channels --- */
+
+static enum wb_status open_file(struct channel *channel, const char *settings)
+{
+    channel->file = calloc(1, sizeof *channel->file);
+    if (!channel->file)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for a file in the recording");
+    struct wb_reason why = {.text = ""};
+    if (wb_foreign_parse(&channel->file->foreign, settings, &why) != WB_OK) {
+        wb_warn("stream %d is left out: %s", channel->id, why.text);
+        channel->file->lost = true;
+    }
+    return WB_OK;
+}
+
+static enum wb_status open_channel(struct channel *channel,
+                                   const struct wb_recording_stream *recorded, const char *settings,
+                                   const struct wb_rig *rig)
+{
+    channel->id = recorded->id;
+    if (wb_recording_foreign_is(recorded))
+        return open_file(channel, settings);
+    const struct wb_driver *driver = wb_drivers_find(recorded->role, recorded->protocol);
+    if (!driver) {
+        wb_warn("stream %d (%s) speaks the protocol '%s', which is not known here: it is left out",
+                recorded->id, wb_role_name(recorded->role), recorded->protocol);
+        return WB_OK;
+    }
+    WB_TRY(wb_stream_open(&channel->stream, "memory:"));
+    channel->state = calloc(1, driver->state_size ? driver->state_size : 1);
+    if (!channel->state)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the driver '%s'", driver->name);
+    WB_TRY(driver->init(channel->state, rig));
+    channel->driver = driver;
+    return WB_OK;
+}
+
+static enum wb_status open_channels(struct replay *replay, struct wb_recording *recording,
+                                    const struct wb_rig *rig)
+{
+    int n = wb_recording_n_streams(recording);
+    replay->channels = calloc((size_t)n + 1, sizeof *replay->channels);
+    replay->buffer = malloc(WB_STREAM_READ_MAX);
+    if (!replay->channels || !replay->buffer)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the replay");
+    replay->n_channels = n;
+    for (int i = 0; i < n; i++)
+        WB_TRY(open_channel(&replay->channels[i], wb_recording_stream_at(recording, i),
+                            wb_recording_stream_settings(recording, i), rig));
+    return WB_OK;
+}
+
+static void close_channels(struct replay *replay)
+{
+    for (int i = 0; i < replay->n_channels; i++) {
+        free(replay->channels[i].state);
+        wb_stream_close(replay->channels[i].stream);
+        if (replay->channels[i].file)
+            free(replay->channels[i].file->bytes);
+        free(replay->channels[i].file);
+    }
+    free(replay->channels);
+    free(replay->buffer);
+}
+
+static struct channel *find_channel(struct replay *replay, int id)
+{
+    for (int i = 0; i < replay->n_channels; i++) {
+        if (replay->channels[i].id == id)
+            return &replay->channels[i];
+    }
+    return NULL;
+}
+
+/* --- playing --- */
+
+/* Sleeps until the chunk is due; false when interrupted. Gaps of a damaged time stamp are played
+ * like any other: Ctrl-C ends them. */
+static bool wait_until_due(struct replay *replay, int64_t t_ns)
+{
+    if (wb_interrupted())
+        return false;
+    if (!(replay->rate > 0.0))
+        return true;
+    if (replay->started_ns == 0) {
+        replay->first_ns = t_ns;
+        replay->started_ns = wb_progress_now_ns();
+    }
+    /* Chunks come in order of time. */
+    double wait_s = (double)((uint64_t)t_ns - (uint64_t)replay->first_ns) * 1e-9 / replay->rate;
+    int64_t due_ns = replay->started_ns + wb_ns_from_seconds(wait_s < 1e9 ? wait_s : 1e9);
+    struct timespec due = {.tv_sec = (time_t)(due_ns / WB_NS_PER_S),
+                           .tv_nsec = (long)(due_ns % WB_NS_PER_S)};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, NULL) == EINTR) {
+        if (wb_interrupted())
+            return false;
+    }
+    return !wb_interrupted();
+}
+
+static void remark_damage(struct replay *replay, const struct wb_chunk *chunk)
+{
+    char text[160];
+    snprintf(text, sizeof text, "chunk %lld of stream %d is damaged and left out",
+             (long long)chunk->seq, chunk->stream);
+    replay->counts->damaged_chunks++;
+    pass_remark(replay, WB_LOG_WARNING, chunk->t_ns, "damage", text);
+}
+
+static void lose_file(struct replay *replay, struct file *file, int64_t t_ns, const char *reason)
+{
+    char text[1200];
+    if (!file->lost) {
+        snprintf(text, sizeof text, "the file '%s' cannot be read: %s", file->foreign.name, reason);
+        wb_warn("%s", text);
+        pass_remark(replay, WB_LOG_WARNING, t_ns, "damage", text);
+    }
+    file->lost = true;
+}
+
+/* Files whose last piece never came. */
+static void lose_unfinished(struct replay *replay)
+{
+    for (int i = 0; i < replay->n_channels; i++) {
+        struct file *const file = replay->channels[i].file;
+        if (file && !file->lost) {
+            replay->counts->damaged_chunks++;
+            lose_file(replay, file, 0, "pieces of it are not there");
+        }
+    }
+}
+
+/* Adds a piece; with the last one the file is read. */
+static enum wb_status play_piece(struct replay *replay, struct file *file,
+                                 const struct wb_chunk *chunk)
+{
+    char sha256[WB_SHA256_TEXT];
+    struct wb_reason why = {.text = ""};
+    if (file->lost)
+        return WB_OK;
+    if (!file->bytes) /* with the first piece: of a file that is not there none is taken */
+        file->bytes = malloc(file->foreign.size + 1);
+    if (!file->bytes)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the file '%s'", file->foreign.name);
+    if (wb_recording_foreign_unpack(chunk->bytes, chunk->n, file->bytes, &file->n,
+                                    file->foreign.size) != WB_OK) {
+        replay->counts->damaged_chunks++;
+        lose_file(replay, file, chunk->t_ns, "a piece of it is damaged");
+        return WB_OK;
+    }
+    if (file->n < file->foreign.size)
+        return WB_OK;
+    wb_hash_bytes(file->bytes, file->n, sha256);
+    if (strcmp(sha256, file->foreign.sha256) != 0) {
+        replay->counts->damaged_chunks++;
+        lose_file(replay, file, chunk->t_ns, "its bytes are not those that were imported");
+        return WB_OK;
+    }
+    const enum wb_status status =
+        wb_foreign_play(&file->foreign, file->bytes, replay->rig, &replay->counting, &why);
+    if (status == WB_ERR_MEMORY)
+        return wb_fail(status, "%s", why.text);
+    if (status != WB_OK)
+        lose_file(replay, file, chunk->t_ns, why.text);
+    free(file->bytes);
+    file->bytes = NULL;
+    file->lost = true; /* further pieces are none of it */
+    return WB_OK;
+}
+
+static enum wb_status play_chunk(void *context, const struct wb_chunk *chunk)
+{
+    struct replay *replay = context;
+    /* The time of a damaged chunk is none to wait for. */
+    if (chunk->intact && !wait_until_due(replay, chunk->t_ns)) {
+        replay->interrupted = true;
+        return WB_ERR_TIMEOUT; /* ends the walk; wb_replay_run() turns it into WB_OK */
+    }
+    replay->counts->chunks++;
+    replay->counts->bytes += chunk->n;
+    struct channel *channel = find_channel(replay, chunk->stream);
+    if (!chunk->intact) {
+        remark_damage(replay, chunk);
+        if (channel && channel->file)
+            lose_file(replay, channel->file, chunk->t_ns, "a piece of it is damaged");
+        return WB_OK;
+    }
+    if (channel && channel->file)
+        return play_piece(replay, channel->file, chunk);
+    if (!channel || !channel->driver)
+        return WB_OK;
+    /* Two halves of lines around what is missing would make one that no instrument sent. */
+    if (chunk->n == 0 || chunk->seq != channel->next_seq)
+        channel->driver->receive(channel->state, chunk->t_ns, NULL, 0, &replay->counting);
+    channel->next_seq = chunk->seq + 1;
+    if (chunk->n == 0)
+        return WB_OK;
+    WB_TRY(wb_stream_memory_push(channel->stream, chunk->bytes, chunk->n));
+    for (;;) {
+        size_t n = 0;
+        WB_TRY(wb_stream_read(channel->stream, replay->buffer, WB_STREAM_READ_MAX, &n));
+        if (n == 0)
+            return WB_OK;
+        channel->driver->receive(channel->state, chunk->t_ns, replay->buffer, n, &replay->counting);
+    }
+}
+
+enum wb_status wb_replay_run(struct wb_recording *recording, const struct wb_rig *rig,
+                             const struct wb_sink *sink, double rate,
+                             struct wb_replay_counts *counts)
+{
+    struct wb_replay_counts counted = {0};
+    struct replay replay = {.rig = rig, .sink = sink, .rate = rate, .counts = &counted};
+    replay.counting = (struct wb_sink){.context = &replay,
+                                       .load = pass_load,
+                                       .mocap = pass_mocap,
+                                       .stage = pass_stage,
+                                       .probe = pass_probe,
+                                       .remark = pass_remark};
+    enum wb_status status = open_channels(&replay, recording, rig);
+    if (status == WB_OK)
+        status = wb_recording_each_chunk(recording, play_chunk, &replay);
+    if (replay.interrupted)
+        status = WB_OK;
+    else
+        lose_unfinished(&replay);
+    close_channels(&replay);
+    *counts = counted;
+    return status;
+}
+
+enum wb_status wb_replay_rig(struct wb_recording *recording, struct wb_rig *rig)
+{
+    char *text = NULL;
+    enum wb_status status = wb_recording_meta(recording, "rig", &text);
+    if (status == WB_ERR_NOT_FOUND)
+        return wb_fail(WB_ERR_DATA, "the recording does not say which rig made it: without the "
+                                    "rig its bytes cannot be decoded");
+    WB_TRY(status);
+    status = wb_rig_parse(text, "the recording's rig", rig, NULL);
+    free(text);
+    return status;
+}

@@ -1,0 +1,410 @@
+#include "daq/recording/survey.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "daq/recording/recording_foreign.h"
+#include "daq/recording/recover.h"
+#include "daq/recording/replay.h"
+
+#define WB_LOG_DOMAIN "survey"
+
+/* s; the stage reports a few times a second, and a computer may hesitate. */
+#define LEAST_LIMIT 0.6
+
+struct looking {
+    struct wb_survey *survey;
+    int64_t next_seq[WB_SURVEY_STREAMS];
+    /* Time in which no stream brought anything, up to now and up to each stream's last chunk. */
+    double quiet, quiet_before[WB_SURVEY_STREAMS]; /* s */
+    bool has_tare;
+};
+
+static int find_stream(const struct wb_survey *survey, int id)
+{
+    for (int i = 0; i < survey->n_streams; i++) {
+        if (survey->streams[i].id == id)
+            return i;
+    }
+    return -1;
+}
+
+/* Sequence numbers count from 0; a number above the expected one is a gap. */
+static void check_order(struct wb_survey_stream *stream, int64_t *next, int64_t seq)
+{
+    if (seq < *next) {
+        stream->repeated++;
+        return;
+    }
+    if (seq > *next) {
+        stream->missing += (uint64_t)seq - (uint64_t)*next;
+        stream->gaps++;
+    }
+    *next = seq == INT64_MAX ? seq : seq + 1;
+}
+
+/* Between two chunks of any streams, times up to this are the streams' own rhythm. */
+#define SHORTEST_QUIET_NS (100 * WB_NS_PER_MS)
+
+/* Silence of a stream while others went on, until now. */
+static void note_alone(struct looking *looking, int i, int64_t t_ns)
+{
+    struct wb_survey_stream *const stream = &looking->survey->streams[i];
+    const double all = wb_survey_seconds(stream->last_ns, t_ns);
+    const double shared = looking->quiet - looking->quiet_before[i];
+    if (!stream->is_file && stream->chunks > 0 && all < 1e9 &&
+        all - shared > wb_seconds_from_ns(stream->alone_silent_ns))
+        stream->alone_silent_ns = wb_ns_from_seconds(all - shared);
+}
+
+/* Chunks come in order of time, so only damaged stamps are too far apart for an int64_t. */
+static void note_silence(struct wb_survey_stream *stream, int64_t t_ns)
+{
+    uint64_t silence_ns = (uint64_t)t_ns - (uint64_t)stream->last_ns;
+    if (silence_ns > INT64_MAX)
+        silence_ns = INT64_MAX;
+    if ((int64_t)silence_ns > stream->longest_silence_ns)
+        stream->longest_silence_ns = (int64_t)silence_ns;
+}
+
+static void check_time(struct wb_survey *survey, struct wb_survey_stream *stream, int64_t t_ns)
+{
+    if (survey->chunks == 0)
+        survey->first_ns = t_ns;
+    survey->last_ns = t_ns;
+    if (stream->chunks == 0)
+        stream->first_ns = t_ns;
+    else
+        note_silence(stream, t_ns);
+    stream->last_ns = t_ns;
+}
+
+static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
+{
+    struct looking *looking = context;
+    struct wb_survey *survey = looking->survey;
+    int i = find_stream(survey, chunk->stream);
+    if (i < 0) {
+        survey->undeclared++;
+        return WB_OK;
+    }
+    struct wb_survey_stream *stream = &survey->streams[i];
+    survey->damaged += !chunk->intact;
+    stream->damaged += !chunk->intact;
+    /* Of a damaged chunk only what was to be expected is believed. */
+    if (!chunk->intact && chunk->seq != looking->next_seq[i])
+        return WB_OK;
+    check_order(stream, &looking->next_seq[i], chunk->seq);
+    const double quiet = survey->chunks > 0 ? wb_survey_seconds(survey->last_ns, chunk->t_ns) : 0.0;
+    if (survey->n_streams > 1 && quiet > wb_seconds_from_ns(SHORTEST_QUIET_NS) && quiet < 1e6)
+        looking->quiet += quiet;
+    note_alone(looking, i, chunk->t_ns);
+    looking->quiet_before[i] = looking->quiet;
+    check_time(survey, stream, chunk->t_ns);
+    stream->chunks++;
+    stream->bytes += chunk->n;
+    survey->chunks++;
+    survey->bytes += chunk->n;
+    return WB_OK;
+}
+
+static enum wb_status look_at_event(void *context, const struct wb_event *event)
+{
+    struct looking *looking = context;
+    struct wb_survey *survey = looking->survey;
+    survey->events++;
+    /* Before the tare instruments may still be finding their rhythm. */
+    looking->has_tare |= strcmp(event->kind, "tare") == 0;
+    survey->refused_events += looking->has_tare && strcmp(event->kind, "refused") == 0;
+    survey->drop_events += strcmp(event->kind, "drop") == 0;
+    survey->lost_events += strcmp(event->kind, "stream_lost") == 0;
+    return WB_OK;
+}
+
+static enum wb_status look_at_clock(void *context, const struct wb_clock_row *row)
+{
+    (void)row;
+    ((struct wb_survey *)context)->clock_rows++;
+    return WB_OK;
+}
+
+static enum wb_status look_at_meta(void *context, const char *key, const char *value)
+{
+    struct wb_survey *survey = context;
+    if (strcmp(key, "rig") == 0)
+        survey->has_rig = true;
+    else if (strcmp(key, "specimen") == 0)
+        survey->has_specimen = true;
+    else if (strcmp(key, WB_RECOVER_META_FROM) == 0)
+        survey->is_recovered = true;
+    else if (strcmp(key, WB_RECOVER_META_MISSING) == 0)
+        snprintf(survey->recovered_missing, sizeof survey->recovered_missing, "%s", value);
+    else if (strcmp(key, "virtual") == 0)
+        survey->is_virtual = strcmp(value, "true") == 0;
+    else if (strcmp(key, "dropped_chunks") == 0)
+        survey->dropped_chunks = strtoll(value, NULL, 10);
+    return WB_OK;
+}
+
+/* A walk that breaks off is a finding; running out of memory is a failure. */
+static enum wb_status note_walk(struct wb_survey *survey, enum wb_status status)
+{
+    if (status != WB_ERR_DATA)
+        return status;
+    survey->broken = true;
+    return WB_OK;
+}
+
+/* --- samples --- */
+
+/* What frames and lines say of those that never came. */
+struct losses {
+    struct wb_loss load, mocap;
+};
+
+static void count_load(void *context, const struct wb_load_sample *sample)
+{
+    wb_loss_add(&((struct losses *)context)->load, wb_seconds_from_ns(sample->t_ns));
+}
+
+static void count_mocap(void *context, const struct wb_mocap_frame *frame)
+{
+    wb_loss_add(&((struct losses *)context)->mocap, frame->t_device);
+}
+
+static void note_loss(struct wb_survey_stream *stream, const struct wb_loss *loss)
+{
+    stream->loss = wb_loss_counts(loss);
+    stream->is_losing = wb_loss_is_told(loss);
+}
+
+static enum wb_status decode_all(struct wb_recording *recording, struct wb_survey *survey)
+{
+    /* A recording without its rig holds bytes all the same; that is told elsewhere. */
+    struct wb_rig rig;
+    if (!survey->has_rig || wb_replay_rig(recording, &rig) != WB_OK)
+        return WB_OK;
+    struct losses losses;
+    wb_loss_init(&losses.load, false, 0.0);
+    wb_loss_init(&losses.mocap, true, 0.0);
+    struct wb_sink sink = {.context = &losses, .load = count_load, .mocap = count_mocap};
+    struct wb_replay_counts counts;
+    WB_TRY(note_walk(survey, wb_replay_run(recording, &rig, &sink, 0.0, &counts)));
+    survey->decoded = true;
+    const uint64_t samples[] = {[WB_ROLE_LOAD] = counts.load_samples,
+                                [WB_ROLE_MOCAP] = counts.mocap_frames,
+                                [WB_ROLE_STAGE] = counts.stage_reports};
+    for (int i = 0; i < survey->n_streams; i++) {
+        struct wb_survey_stream *stream = &survey->streams[i];
+        stream->samples = samples[stream->role];
+        if (stream->role == WB_ROLE_LOAD)
+            note_loss(stream, &losses.load);
+        else if (stream->role == WB_ROLE_MOCAP)
+            note_loss(stream, &losses.mocap);
+        double seconds = wb_survey_seconds(stream->first_ns, stream->last_ns);
+        stream->rate = seconds > 0.0 ? (double)stream->samples / seconds : 0.0;
+    }
+    return WB_OK;
+}
+
+/* What the rig file calls a lost stream. A stage that rests is asked for its state less often. */
+static void note_limit(struct wb_recording *recording, struct wb_survey *survey)
+{
+    struct wb_rig rig;
+    if (survey->has_rig && wb_replay_rig(recording, &rig) == WB_OK)
+        survey->silence_limit_ns =
+            wb_ns_from_seconds(fmax(rig.limits.stream_lost / rig.time_scale, LEAST_LIMIT));
+}
+
+enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct wb_survey *survey)
+{
+    memset(survey, 0, sizeof *survey);
+    survey->dropped_chunks = -1;
+    survey->closed = wb_recording_is_complete(recording);
+    survey->cut_short = wb_recording_is_cut_short(recording);
+    (void)wb_recording_log_problem(recording, survey->log_problem, sizeof survey->log_problem);
+    int n = wb_recording_n_streams(recording);
+    for (int i = 0; i < n && i < WB_SURVEY_STREAMS; i++) {
+        const struct wb_recording_stream *stream = wb_recording_stream_at(recording, i);
+        survey->streams[i] = (struct wb_survey_stream){
+            .id = stream->id, .role = stream->role, .is_file = wb_recording_foreign_is(stream)};
+        survey->n_streams++;
+    }
+    struct looking looking = {.survey = survey};
+    WB_TRY(note_walk(survey, wb_recording_each_meta(recording, look_at_meta, survey)));
+    WB_TRY(note_walk(survey, wb_recording_each_chunk(recording, look_at_chunk, &looking)));
+    for (int i = 0; i < survey->n_streams; i++) {
+        survey->missing += survey->streams[i].missing;
+        note_alone(&looking, i, survey->last_ns); /* to the end */
+    }
+    note_limit(recording, survey);
+    WB_TRY(note_walk(survey, wb_recording_each_event(recording, look_at_event, &looking)));
+    WB_TRY(note_walk(survey, wb_recording_each_clock(recording, look_at_clock, survey)));
+    WB_TRY(wb_recording_check(recording, &survey->check));
+    survey->broken |= survey->check.is_broken;
+    return decode ? decode_all(recording, survey) : WB_OK;
+}
+
+double wb_survey_duration(const struct wb_survey *survey)
+{
+    return wb_survey_seconds(survey->first_ns, survey->last_ns);
+}
+
+double wb_survey_seconds(int64_t from_ns, int64_t to_ns)
+{
+    if (to_ns < from_ns)
+        return -wb_survey_seconds(to_ns, from_ns);
+    return (double)((uint64_t)to_ns - (uint64_t)from_ns) * 1e-9;
+}
+
+/* --- what is wrong --- */
+
+#define FILE_PROBLEMS 11
+#define ROW_PROBLEMS 5
+#define STREAM_PROBLEMS 6
+
+static const char *plural(uint64_t n)
+{
+    return n == 1 ? "" : "s";
+}
+
+static bool stream_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+{
+    const struct wb_survey_stream *const stream = &survey->streams[which / STREAM_PROBLEMS];
+    const char *role = wb_role_name(stream->role);
+    switch (which % STREAM_PROBLEMS) {
+    case 0:
+        snprintf(text, size, "%s stream %d: nothing was received", role, stream->id);
+        return stream->chunks == 0 && !survey->cut_short;
+    case 1:
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s damaged (CRC-32)", role, stream->id,
+                 stream->damaged, plural(stream->damaged));
+        return stream->damaged > 0 && !survey->check.is_protected; /* told with the other rows */
+    case 2:
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s missing in %" PRIu64 " place%s",
+                 role, stream->id, stream->missing, plural(stream->missing), stream->gaps,
+                 plural(stream->gaps));
+        return stream->missing > 0;
+    case 3:
+        snprintf(text, size, "%s stream %d: silent for %.2f s, the limit is %.2f s", role,
+                 stream->id, wb_seconds_from_ns(stream->alone_silent_ns),
+                 wb_seconds_from_ns(survey->silence_limit_ns));
+        return survey->silence_limit_ns > 0 && stream->alone_silent_ns > survey->silence_limit_ns;
+    case 4:
+        snprintf(text, size,
+                 "%s stream %d: %.2g %% of its %s never came: %" PRIu64 " in %" PRIu64
+                 " place%s, the longest of %.3g s",
+                 role, stream->id, wb_loss_share(&stream->loss) / WB_PERCENT,
+                 stream->role == WB_ROLE_MOCAP ? "frames" : "lines", stream->loss.missing,
+                 stream->loss.gaps, plural(stream->loss.gaps), stream->loss.longest_gap);
+        return stream->is_losing;
+    default:
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s repeated or out of order", role,
+                 stream->id, stream->repeated, plural(stream->repeated));
+        return stream->repeated > 0;
+    }
+}
+
+static bool row_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+{
+    const struct wb_recording_check *const check = &survey->check;
+    if (!check->is_protected)
+        return false;
+    switch (which) {
+    case 0:
+        snprintf(text, size, "%" PRIu64 " row%s damaged (CRC-32): %s", check->damaged,
+                 check->damaged == 1 ? " is" : "s are", check->damaged_where);
+        return check->damaged > 0;
+    case 1:
+        snprintf(text, size, "%" PRIu64 " row%s missing: %s", check->lost,
+                 check->lost == 1 ? " is" : "s are", check->lost_where);
+        return check->lost > 0;
+    case 2:
+        snprintf(text, size, "%" PRIu64 " row%s not in the place of writing: %s", check->displaced,
+                 check->displaced == 1 ? " is" : "s are", check->displaced_where);
+        return check->displaced > 0;
+    case 3:
+        snprintf(text, size, "%" PRIu64 " row%s behind the end that closing wrote",
+                 check->after_digest, check->after_digest == 1 ? " stands" : "s stand");
+        return check->after_digest > 0;
+    default:
+        snprintf(text, size, "the digest of all rows is not what closing wrote");
+        return check->is_closed && !check->digest_fits && check->damaged == 0 && check->lost == 0 &&
+               check->displaced == 0;
+    }
+}
+
+static bool file_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+{
+    switch (which) {
+    case 0:
+        snprintf(text, size, "%s",
+                 survey->cut_short ? "the file is cut short: look for the original"
+                                   : "it was not closed properly: a crash, a power cut, a full "
+                                     "disk, or it is still being recorded");
+        return !survey->closed;
+    case 1:
+        snprintf(text, size, "the database is damaged: not all rows can be read");
+        /* Damaged rows are named one by one. */
+        return survey->broken && !survey->cut_short &&
+               (survey->check.is_broken || survey->check.damaged == 0);
+    case 2:
+        snprintf(text, size, "the recording lists no stream of any instrument");
+        return survey->n_streams == 0;
+    case 3:
+        snprintf(text, size, "%" PRIu64 " chunk%s of no declared stream", survey->undeclared,
+                 plural(survey->undeclared));
+        return survey->undeclared > 0;
+    case 4:
+        snprintf(text, size, "drops noted while recording: %" PRIu64 " (%" PRId64 " chunk%s)",
+                 survey->drop_events, survey->dropped_chunks < 0 ? 0 : survey->dropped_chunks,
+                 survey->dropped_chunks == 1 ? "" : "s");
+        return survey->drop_events > 0 || survey->dropped_chunks > 0;
+    case 5:
+        snprintf(text, size, "a stream fell silent %" PRIu64 " time%s while recording",
+                 survey->lost_events, plural(survey->lost_events));
+        return survey->lost_events > 0;
+    case 6:
+        snprintf(text, size,
+                 "lines that were not understood came during the test, noted %" PRIu64 " time%s",
+                 survey->refused_events, plural(survey->refused_events));
+        return survey->refused_events > 0;
+    case 7:
+        snprintf(text, size, "the rig's description is missing: nothing can be decoded");
+        return !survey->has_rig;
+    case 8:
+        snprintf(text, size, "%s", survey->log_problem);
+        return survey->log_problem[0] != '\0';
+    case 9:
+        snprintf(text, size, "recovered from a damaged file; missing: %s",
+                 survey->recovered_missing);
+        return survey->is_recovered && survey->recovered_missing[0];
+    default:
+        snprintf(text, size, "the specimen's description is missing: it cannot be aligned");
+        return !survey->has_specimen;
+    }
+}
+
+bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size)
+{
+    const int rows = FILE_PROBLEMS + ROW_PROBLEMS;
+    while (*at < rows + survey->n_streams * STREAM_PROBLEMS) {
+        const int which = (*at)++;
+        if (which < FILE_PROBLEMS ? file_problem(survey, which, text, size)
+            : which < rows        ? row_problem(survey, which - FILE_PROBLEMS, text, size)
+                                  : stream_problem(survey, which - rows, text, size))
+            return true;
+    }
+    return false;
+}
+
+bool wb_survey_is_whole(const struct wb_survey *survey)
+{
+    char text[256];
+    int at = 0;
+    return !wb_survey_problem(survey, &at, text, sizeof text);
+}

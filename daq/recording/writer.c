@@ -1,0 +1,529 @@
+#include "daq/recording/writer.h"
+#include "daq/recording/writer_private.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/interrupt.h"
+#include "base/progress.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "writer"
+
+/* Between two tries of a disk that takes nothing. */
+#define RETRY_NS (200 * WB_NS_PER_MS)
+
+enum entry_kind {
+    ENTRY_CHUNK,
+    ENTRY_EVENT,
+    ENTRY_CLOCK,
+    ENTRY_META
+};
+
+struct entry {
+    struct entry *next;
+    enum entry_kind kind;
+    int stream;
+    int64_t seq, t_ns;
+    double t_device;
+    int64_t rtt_ns;
+    int64_t pushed_ns;
+    size_t n;       /* bytes that count for the capacity */
+    size_t n_first; /* event, meta: length of the kind or key with its NUL; the text follows */
+    uint8_t bytes[];
+};
+
+/* What one stream lost since the last "drop" event. */
+struct loss {
+    uint64_t chunks, bytes, probes;
+    int64_t first_ns, last_ns;
+};
+
+struct wb_writer {
+    struct wb_recording *recording;
+    struct wb_writer_settings settings;
+    pthread_t thread;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* Under the lock. */
+    struct entry *first, *last;            /* pushed, not yet taken by the thread */
+    size_t waiting_bytes, waiting_entries; /* all that is not on the disk */
+    int64_t oldest_ns;                     /* of it, when it was pushed; 0: there is none */
+    bool finishing;
+    int interrupts;         /* that had come before */
+    enum wb_status failing; /* of the last try */
+    enum wb_status status;  /* of the whole, once it is over */
+    struct loss losses[WB_WRITER_STREAMS];
+    uint64_t dropped[WB_WRITER_STREAMS];
+    struct wb_writer_counts counts;
+    /* Of the writing thread: taken and not yet on the disk. */
+    struct entry *taken, *last_taken;
+    /* Of the pushing thread. */
+    int64_t next_seq[WB_WRITER_STREAMS];
+};
+
+void wb_writer_default_settings(struct wb_writer_settings *settings)
+{
+    *settings = (struct wb_writer_settings){
+        .capacity_bytes = (size_t)64 << 20,
+        .capacity_entries = 262144,
+        .flush_interval_ns = 100 * WB_NS_PER_MS,
+        .patience_ns = 600 * WB_NS_PER_S,
+    };
+}
+
+/* --- the thread --- */
+
+static const char *role_of(const struct wb_recording *recording, int id)
+{
+    for (int i = 0; i < wb_recording_n_streams(recording); i++) {
+        const struct wb_recording_stream *stream = wb_recording_stream_at(recording, i);
+        if (stream->id == id)
+            return wb_role_name(stream->role);
+    }
+    return "unknown";
+}
+
+static enum wb_status write_entry(struct wb_recording *recording, const struct entry *entry)
+{
+    const char *first = (const char *)entry->bytes;
+    switch (entry->kind) {
+    case ENTRY_CHUNK:
+        return wb_recording_append_chunk(recording, entry->stream, entry->seq, entry->t_ns,
+                                         entry->bytes, entry->n);
+    case ENTRY_EVENT:
+        return wb_recording_append_event(recording, entry->t_ns, first, first + entry->n_first);
+    case ENTRY_CLOCK:
+        return wb_recording_append_clock(recording, entry->stream, entry->t_ns, entry->t_device,
+                                         entry->rtt_ns);
+    case ENTRY_META:
+        return wb_recording_set_meta(recording, first, first + entry->n_first);
+    }
+    return WB_OK;
+}
+
+/* Of a chunk, under the lock. */
+static void count_dropped(struct wb_writer *writer, const struct entry *entry)
+{
+    writer->dropped[entry->stream]++;
+    writer->counts.dropped_chunks++;
+    writer->counts.dropped_bytes += entry->n;
+}
+
+/* Two texts as one entry, the second cut to `most`; NULL without memory. */
+static struct entry *make_texts(enum entry_kind kind, int64_t t_ns, const char *first,
+                                const char *second, size_t most)
+{
+    const size_t n_first = strlen(first), n_second = strnlen(second, most);
+    struct entry *const entry = malloc(sizeof *entry + n_first + n_second + 2);
+    if (!entry)
+        return NULL;
+    *entry = (struct entry){
+        .kind = kind, .t_ns = t_ns, .n = n_first + n_second + 2, .n_first = n_first + 1};
+    memcpy(entry->bytes, first, n_first);
+    entry->bytes[n_first] = '\0';
+    memcpy(entry->bytes + n_first + 1, second, n_second);
+    entry->bytes[n_first + 1 + n_second] = '\0';
+    return entry;
+}
+
+/* Counts an entry in, under the lock. */
+static void count_waiting(struct wb_writer *writer, struct entry *entry)
+{
+    entry->pushed_ns = wb_progress_now_ns();
+    if (writer->oldest_ns == 0)
+        writer->oldest_ns = entry->pushed_ns;
+    writer->waiting_entries++;
+    writer->waiting_bytes += entry->n;
+    if (writer->counts.most_waiting_bytes < writer->waiting_bytes)
+        writer->counts.most_waiting_bytes = writer->waiting_bytes;
+}
+
+/* Takes an entry over into what the thread writes. */
+static void take(struct wb_writer *writer, struct entry *first, struct entry *last)
+{
+    if (writer->last_taken)
+        writer->last_taken->next = first;
+    else
+        writer->taken = first;
+    writer->last_taken = last;
+}
+
+/* An event that says what a stream lost for want of room, under the lock. */
+static void take_loss(struct wb_writer *writer, int stream)
+{
+    struct loss *const loss = &writer->losses[stream];
+    char text[280];
+    snprintf(text, sizeof text,
+             "the %s stream (number %d) lost %llu chunks of %llu bytes and %llu clock probes from "
+             "%.3f s to %.3f s of the host's clock: the disk was too slow, or took nothing",
+             role_of(writer->recording, stream), stream, (unsigned long long)loss->chunks,
+             (unsigned long long)loss->bytes, (unsigned long long)loss->probes,
+             wb_seconds_from_ns(loss->first_ns), wb_seconds_from_ns(loss->last_ns));
+    struct entry *const entry = make_texts(ENTRY_EVENT, loss->first_ns, "drop", text, SIZE_MAX);
+    if (!entry)
+        return; /* next time */
+    wb_warn("%s", text);
+    *loss = (struct loss){0};
+    count_waiting(writer, entry);
+    take(writer, entry, entry);
+}
+
+/* Everything that waits now. */
+static void take_waiting(struct wb_writer *writer)
+{
+    pthread_mutex_lock(&writer->lock);
+    if (writer->first)
+        take(writer, writer->first, writer->last);
+    writer->first = writer->last = NULL;
+    /* While the disk fails more may get lost. */
+    for (int i = 0; i < WB_WRITER_STREAMS && writer->failing == WB_OK; i++) {
+        if (writer->losses[i].chunks || writer->losses[i].probes)
+            take_loss(writer, i);
+    }
+    pthread_mutex_unlock(&writer->lock);
+}
+
+/* What was taken is on the disk, or given up: its room is free again. */
+static void release_taken(struct wb_writer *writer, bool is_written)
+{
+    struct entry *entry = writer->taken;
+    writer->taken = writer->last_taken = NULL;
+    pthread_mutex_lock(&writer->lock);
+    for (struct entry *next; entry; entry = next) {
+        next = entry->next;
+        writer->waiting_bytes -= entry->n;
+        writer->waiting_entries--;
+        if (!is_written && entry->kind == ENTRY_CHUNK)
+            count_dropped(writer, entry);
+        free(entry);
+    }
+    writer->oldest_ns = writer->first ? writer->first->pushed_ns : 0;
+    pthread_mutex_unlock(&writer->lock);
+}
+
+/* One round: everything that waits, in one transaction. What fails stays and is written again in
+ * the next one. */
+static enum wb_status write_waiting(struct wb_writer *writer)
+{
+    take_waiting(writer);
+    if (writer->settings.before_write)
+        writer->settings.before_write(writer->settings.context);
+    enum wb_status status = WB_OK;
+    for (const struct entry *entry = writer->taken; entry && status == WB_OK; entry = entry->next)
+        status = write_entry(writer->recording, entry);
+    if (status == WB_OK)
+        status = wb_recording_flush(writer->recording);
+    if (status == WB_OK)
+        release_taken(writer, true);
+    pthread_mutex_lock(&writer->lock);
+    writer->failing = status;
+    pthread_mutex_unlock(&writer->lock);
+    return status;
+}
+
+/* Waits for the next flush, or earlier when the queue fills, unless the disk fails, or ends. True
+ * when finishing. */
+static bool wait_for_work(struct wb_writer *writer, int64_t due_ns)
+{
+    struct timespec due = {.tv_sec = (time_t)(due_ns / WB_NS_PER_S),
+                           .tv_nsec = (long)(due_ns % WB_NS_PER_S)};
+    pthread_mutex_lock(&writer->lock);
+    while (!writer->finishing && wb_progress_now_ns() < due_ns &&
+           (writer->failing != WB_OK ||
+            (writer->waiting_bytes < writer->settings.capacity_bytes / 4 &&
+             writer->waiting_entries < writer->settings.capacity_entries / 4)))
+        pthread_cond_timedwait(&writer->wake, &writer->lock, &due);
+    bool finishing = writer->finishing;
+    pthread_mutex_unlock(&writer->lock);
+    return finishing;
+}
+
+/* At the end the disk gets time: what is in memory is lost with the process. */
+static enum wb_status write_rest(struct wb_writer *writer)
+{
+    enum wb_status status = write_waiting(writer);
+    const int64_t until_ns = wb_progress_now_ns() + writer->settings.patience_ns;
+    const double kilobytes = (double)writer->waiting_bytes * 1e-3;
+    if (status != WB_OK && writer->settings.patience_ns > 0)
+        wb_warn("the disk takes nothing, and %.1f kB of the recording are in memory only: make "
+                "room on it within %.0f s and they are written; Ctrl-C gives it up",
+                kilobytes, wb_seconds_from_ns(writer->settings.patience_ns));
+    while (status != WB_OK && wb_progress_now_ns() < until_ns &&
+           wb_interrupt_count() == writer->interrupts) {
+        const struct timespec wait = {.tv_nsec = RETRY_NS};
+        nanosleep(&wait, NULL);
+        status = write_waiting(writer);
+    }
+    if (status != WB_OK)
+        wb_error("the last %.1f kB of the recording are lost; what was written before stays",
+                 kilobytes);
+    return status;
+}
+
+static void *run(void *argument)
+{
+    struct wb_writer *writer = argument;
+    bool finishing = false;
+    enum wb_status status = WB_OK;
+    while (!finishing) {
+        const int64_t interval_ns = status != WB_OK ? RETRY_NS : writer->settings.flush_interval_ns;
+        finishing = wait_for_work(writer, wb_progress_now_ns() + interval_ns);
+        if (!finishing)
+            status = write_waiting(writer);
+    }
+    /* A full disk must not end the process before the stage is stopped: the signal is blocked in
+     * this thread, so closing belongs here too. */
+    status = write_rest(writer);
+    if (status != WB_OK) {
+        release_taken(writer, false);
+    } else {
+        char text[24];
+        snprintf(text, sizeof text, "%llu", (unsigned long long)wb_writer_drops(writer, -1));
+        status = wb_recording_set_meta(writer->recording, "dropped_chunks", text);
+    }
+    const enum wb_status closed = wb_recording_close(writer->recording);
+    writer->status = status != WB_OK ? status : closed;
+    return NULL;
+}
+
+/* --- starting and finishing --- */
+
+static enum wb_status start_thread(struct wb_writer *writer)
+{
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&writer->wake, &attributes);
+    pthread_condattr_destroy(&attributes);
+    pthread_mutex_init(&writer->lock, NULL);
+    /* Ctrl-C wakes the poll loop, not this thread; "file too large" becomes an error code. */
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    int error = pthread_create(&writer->thread, NULL, run, writer);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (error == 0)
+        return WB_OK;
+    pthread_mutex_destroy(&writer->lock);
+    pthread_cond_destroy(&writer->wake);
+    return wb_fail(WB_ERR_MEMORY, "the writer's thread cannot be started: %s", strerror(error));
+}
+
+enum wb_status wb_writer_start(struct wb_writer **out, struct wb_recording *recording,
+                               const struct wb_writer_settings *settings)
+{
+    *out = NULL;
+    if (wb_recording_n_streams(recording) > WB_WRITER_STREAMS)
+        return wb_fail(WB_ERR_ARGUMENT, "a recording takes at most %d streams", WB_WRITER_STREAMS);
+    /* What fails later is written again by the thread, which does not have this. */
+    WB_TRY(wb_recording_flush(recording));
+    struct wb_writer *writer = calloc(1, sizeof *writer);
+    if (!writer)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the writer");
+    wb_writer_default_settings(&writer->settings);
+    if (settings)
+        writer->settings = *settings;
+    writer->recording = recording;
+    enum wb_status status = start_thread(writer);
+    if (status != WB_OK) {
+        free(writer);
+        return status;
+    }
+    *out = writer;
+    return WB_OK;
+}
+
+enum wb_status wb_writer_finish(struct wb_writer *writer)
+{
+    if (!writer)
+        return WB_OK;
+    pthread_mutex_lock(&writer->lock);
+    writer->finishing = true;
+    writer->interrupts = wb_interrupt_count();
+    pthread_cond_signal(&writer->wake);
+    pthread_mutex_unlock(&writer->lock);
+    pthread_join(writer->thread, NULL);
+    enum wb_status status = writer->status;
+    pthread_mutex_destroy(&writer->lock);
+    pthread_cond_destroy(&writer->wake);
+    free(writer);
+    return status;
+}
+
+/* --- pushing --- */
+
+static bool has_room(const struct wb_writer *writer, size_t n)
+{
+    return writer->waiting_entries < writer->settings.capacity_entries &&
+           writer->waiting_bytes + n <= writer->settings.capacity_bytes;
+}
+
+/* Appends under the lock; the thread is woken when the queue gets long. */
+static void append(struct wb_writer *writer, struct entry *entry)
+{
+    if (writer->last)
+        writer->last->next = entry;
+    else
+        writer->first = entry;
+    writer->last = entry;
+    count_waiting(writer, entry);
+    if (writer->waiting_bytes >= writer->settings.capacity_bytes / 4 ||
+        writer->waiting_entries >= writer->settings.capacity_entries / 4)
+        pthread_cond_signal(&writer->wake);
+}
+
+static void count_loss(struct wb_writer *writer, const struct entry *entry)
+{
+    struct loss *loss = &writer->losses[entry->stream];
+    if (loss->chunks == 0 && loss->probes == 0)
+        loss->first_ns = entry->t_ns;
+    loss->last_ns = entry->t_ns;
+    if (entry->kind == ENTRY_CLOCK) {
+        loss->probes++;
+        writer->counts.dropped_probes++;
+        return;
+    }
+    loss->chunks++;
+    loss->bytes += entry->n;
+    count_dropped(writer, entry);
+}
+
+static bool known_stream(const struct wb_writer *writer, int stream)
+{
+    if (stream >= 0 && stream < wb_recording_n_streams(writer->recording))
+        return true;
+    wb_error("stream %d was not declared; its bytes are not recorded", stream);
+    return false;
+}
+
+/* Takes the entry, or frees it and counts what is lost of its stream. `entry` is NULL when there
+ * was no memory for it; `like` says what it would have been. */
+static bool offer(struct wb_writer *writer, struct entry *entry, const struct entry *like)
+{
+    pthread_mutex_lock(&writer->lock);
+    const bool taken = entry && has_room(writer, like->n);
+    if (taken && like->kind == ENTRY_CHUNK) {
+        writer->counts.chunks++;
+        writer->counts.bytes += like->n;
+    }
+    if (taken)
+        append(writer, entry);
+    else
+        count_loss(writer, like);
+    pthread_mutex_unlock(&writer->lock);
+    if (!taken)
+        free(entry);
+    return taken;
+}
+
+bool wb_writer_push_chunk(struct wb_writer *writer, int stream, int64_t t_ns, const void *bytes,
+                          size_t n)
+{
+    if (!known_stream(writer, stream))
+        return false;
+    const struct entry like = {.kind = ENTRY_CHUNK,
+                               .stream = stream,
+                               .seq = writer->next_seq[stream]++,
+                               .t_ns = t_ns,
+                               .n = n};
+    struct entry *entry = malloc(sizeof *entry + n);
+    if (entry)
+        *entry = like;
+    if (entry && n)
+        memcpy(entry->bytes, bytes, n);
+    return offer(writer, entry, &like);
+}
+
+bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_ns, double t_device,
+                          int64_t rtt_ns)
+{
+    if (!known_stream(writer, stream))
+        return false;
+    const struct entry like = {.kind = ENTRY_CLOCK,
+                               .stream = stream,
+                               .t_ns = t_host_ns,
+                               .t_device = t_device,
+                               .rtt_ns = rtt_ns};
+    struct entry *entry = malloc(sizeof *entry);
+    if (entry)
+        *entry = like;
+    return offer(writer, entry, &like);
+}
+
+/* Beyond the limits: there are few of them and each one matters. */
+static void push_texts(struct wb_writer *writer, enum entry_kind kind, int64_t t_ns,
+                       const char *first, const char *second, size_t most)
+{
+    struct entry *const entry = make_texts(kind, t_ns, first, second, most);
+    if (!entry) {
+        wb_error("out of memory: '%s' is not recorded: %s", first, second);
+        return;
+    }
+    pthread_mutex_lock(&writer->lock);
+    append(writer, entry);
+    pthread_mutex_unlock(&writer->lock);
+}
+
+void wb_writer_push_event(struct wb_writer *writer, int64_t t_ns, const char *kind,
+                          const char *text)
+{
+    char word[sizeof((struct wb_event *)0)->kind];
+    snprintf(word, sizeof word, "%s", kind);
+    push_texts(writer, ENTRY_EVENT, t_ns, word, text, sizeof((struct wb_event *)0)->text - 1);
+}
+
+void wb_writer_push_meta(struct wb_writer *writer, const char *key, const char *value)
+{
+    push_texts(writer, ENTRY_META, 0, key, value, SIZE_MAX);
+}
+
+/* --- asking --- */
+
+/* The lock is no part of what const promises. */
+static pthread_mutex_t *lock_of(const struct wb_writer *writer)
+{
+    return (pthread_mutex_t *)&writer->lock;
+}
+
+uint64_t wb_writer_drops(const struct wb_writer *writer, int stream)
+{
+    if (stream >= WB_WRITER_STREAMS)
+        return 0;
+    pthread_mutex_lock(lock_of(writer));
+    uint64_t drops = stream < 0 ? writer->counts.dropped_chunks : writer->dropped[stream];
+    pthread_mutex_unlock(lock_of(writer));
+    return drops;
+}
+
+void wb_writer_state(const struct wb_writer *writer, struct wb_writer_state *state)
+{
+    pthread_mutex_lock(lock_of(writer));
+    const struct wb_writer_settings *const settings = &writer->settings;
+    *state = (struct wb_writer_state){
+        .failing = writer->failing,
+        .lag_ns = writer->oldest_ns > 0 ? wb_progress_now_ns() - writer->oldest_ns : 0,
+        .fill = fmax((double)writer->waiting_bytes / (double)settings->capacity_bytes,
+                     (double)writer->waiting_entries / (double)settings->capacity_entries),
+    };
+    pthread_mutex_unlock(lock_of(writer));
+}
+
+enum wb_status wb_writer_status(const struct wb_writer *writer)
+{
+    struct wb_writer_state state;
+    wb_writer_state(writer, &state);
+    return state.fill >= 0.75 ? state.failing : WB_OK;
+}
+
+void wb_writer_counts(const struct wb_writer *writer, struct wb_writer_counts *counts)
+{
+    pthread_mutex_lock(lock_of(writer));
+    *counts = writer->counts;
+    pthread_mutex_unlock(lock_of(writer));
+}

@@ -1,0 +1,11 @@
+/* What only tests ask of daq/recording/writer.h. */
+#ifndef WB_DAQ_WRITER_PRIVATE_H
+#define WB_DAQ_WRITER_PRIVATE_H
+
+#include "daq/recording/writer.h"
+
+void wb_writer_default_settings(struct wb_writer_settings *settings);
+
+void wb_writer_counts(const struct wb_writer *writer, struct wb_writer_counts *counts);
+
+#endif

@@ -1,0 +1,221 @@
+#include "daq/stream/stream_line.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/progress.h"
+#include "daq/stream/port_user.h"
+
+#define WB_LOG_DOMAIN "stream"
+
+static bool parse_switch(const char *text, int *value)
+{
+    if (strcmp(text, "on") == 0)
+        *value = 1;
+    else if (strcmp(text, "off") == 0)
+        *value = -1;
+    else
+        return false;
+    return true;
+}
+
+static bool parse_flow(const char *text, char *value)
+{
+    if (strcmp(text, "none") == 0)
+        *value = 'n';
+    else if (strcmp(text, "xonxoff") == 0)
+        *value = 'x';
+    else if (strcmp(text, "rtscts") == 0)
+        *value = 'r';
+    else
+        return false;
+    return true;
+}
+
+/* "8n1" */
+static bool parse_frame(const char *text, struct wb_stream_line *line)
+{
+    if (strlen(text) != 3 || text[0] < '5' || text[0] > '8' || (text[2] != '1' && text[2] != '2'))
+        return false;
+    char parity = (char)(text[1] | 0x20);
+    if (parity != 'n' && parity != 'e' && parity != 'o')
+        return false;
+    line->bits = text[0] - '0';
+    line->parity = parity;
+    line->stop = text[2] - '0';
+    return true;
+}
+
+static bool parse_baud(const char *text, int *baud)
+{
+    size_t n = strlen(text);
+    if (n == 0 || n > 8 || strspn(text, "0123456789") != n)
+        return false;
+    *baud = atoi(text);
+    return *baud >= 50 && *baud <= 4000000;
+}
+
+static bool parse_option(const char *text, struct wb_stream_line *line)
+{
+    if (strcmp(text, "dtr=keep") == 0)
+        return line->keeps_dtr = true;
+    if (strncmp(text, "dtr=", 4) == 0)
+        return parse_switch(text + 4, &line->dtr);
+    if (strncmp(text, "rts=", 4) == 0)
+        return parse_switch(text + 4, &line->rts);
+    if (strncmp(text, "flow=", 5) == 0)
+        return parse_flow(text + 5, &line->flow);
+    if (strlen(text) == 3 && strspn(text, "0123456789") < 3)
+        return parse_frame(text, line);
+    return parse_baud(text, &line->baud);
+}
+
+enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line,
+                                    struct wb_reason *why)
+{
+    *line = (struct wb_stream_line){.baud = 9600, .bits = 8, .parity = 'n', .stop = 1, .flow = 'n'};
+    size_t n = strcspn(rest, ",");
+    if (n == 0 || n >= sizeof line->path)
+        return wb_fail_to(
+            why, WB_ERR_ARGUMENT,
+            "'%s' names no device: expected PATH,BAUD,8n1 such as /dev/ttyUSB0,9600,8n1", rest);
+    memcpy(line->path, rest, n);
+    line->path[n] = '\0';
+    const char *at = rest + n;
+    while (*at == ',') {
+        char option[32];
+        n = strcspn(++at, ",");
+        if (n >= sizeof option)
+            return wb_fail_to(why, WB_ERR_ARGUMENT, "line setting '%.*s' of '%s' is not known",
+                              (int)n, at, line->path);
+        memcpy(option, at, n);
+        option[n] = '\0';
+        if (!parse_option(option, line))
+            return wb_fail_to(why, WB_ERR_ARGUMENT,
+                              "line setting '%s' of '%s' is not known: expected a baud rate, bits "
+                              "parity and stop bits such as 8n1, dtr=on|off|keep, rts=on|off or "
+                              "flow=none|xonxoff|rtscts",
+                              option, line->path);
+        at += n;
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_stream_fail_open(const char *path, int error, const char *hint,
+                                   struct wb_reason *why)
+{
+    char user[WB_PORT_USER_TEXT];
+    switch (error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO:
+    case ENOTDIR:
+        return wb_fail_to(why, WB_ERR_NOT_FOUND, "port '%s' does not exist%s", path, hint);
+    case EACCES:
+    case EPERM:
+        return wb_fail_to(why, WB_ERR_PERMISSION,
+                          "port '%s' may not be opened by you: join the group dialout with 'sudo "
+                          "usermod -aG dialout $USER' and log in again",
+                          path);
+    case EBUSY:
+    case EWOULDBLOCK:
+        if (wb_port_user(path, user))
+            return wb_fail_to(why, WB_ERR_BUSY,
+                              "port '%s' is in use by another program (%s): close that one first",
+                              path, user);
+        return wb_fail_to(why, WB_ERR_BUSY,
+                          "port '%s' is in use by another program: close that one first ('sudo "
+                          "fuser %s' names it)",
+                          path, path);
+    default:
+        return wb_fail_to(why, WB_ERR_IO, "port '%s' cannot be opened: %s", path, strerror(error));
+    }
+}
+
+enum wb_status wb_stream_lock(int descriptor, const char *path, struct wb_reason *why)
+{
+    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+        return WB_OK;
+    return wb_stream_fail_open(path, errno == EWOULDBLOCK ? EBUSY : errno, "", why);
+}
+
+/* After a read of 0 bytes: true when the device hung up or went away. */
+static bool has_gone(int descriptor)
+{
+    struct pollfd wait = {.fd = descriptor, .events = POLLIN};
+    return poll(&wait, 1, 0) > 0 && (wait.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+}
+
+bool wb_stream_wait_writable(int descriptor, int64_t deadline_ns)
+{
+    for (;;) {
+        int64_t left_ns = deadline_ns - wb_progress_now_ns();
+        if (left_ns <= 0)
+            return false;
+        struct timespec left = {.tv_sec = (time_t)(left_ns / 1000000000),
+                                .tv_nsec = (long)(left_ns % 1000000000)};
+        struct pollfd wait = {.fd = descriptor, .events = POLLOUT};
+        int ready = ppoll(&wait, 1, &left, NULL);
+        if (ready > 0)
+            return true;
+        if (ready < 0 && errno != EINTR)
+            return false;
+    }
+}
+
+int wb_stream_port_descriptors(const void *state, int descriptors[2])
+{
+    const struct wb_stream_port *port = state;
+    descriptors[0] = port->descriptor;
+    return 1;
+}
+
+enum wb_status wb_stream_port_read(void *state, void *buffer, size_t size, size_t *n)
+{
+    const struct wb_stream_port *port = state;
+    ssize_t got;
+    *n = 0;
+    do
+        got = read(port->descriptor, buffer, size);
+    while (got < 0 && errno == EINTR);
+    if (got > 0) {
+        *n = (size_t)got;
+        return WB_OK;
+    }
+    const bool failed = got < 0 && errno != EAGAIN;
+    if (failed && errno != EIO && errno != ENXIO && errno != ENODEV)
+        return wb_fail(WB_ERR_IO, "port '%s' cannot be read: %s", port->line.path, strerror(errno));
+    if (failed || has_gone(port->descriptor))
+        return wb_fail(WB_ERR_IO, "port '%s' went away: %s", port->line.path, port->gone);
+    return WB_OK;
+}
+
+enum wb_status wb_stream_port_write(void *state, const void *bytes, size_t n)
+{
+    const struct wb_stream_port *port = state;
+    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
+    size_t done = 0;
+    while (done < n) {
+        ssize_t put = write(port->descriptor, (const char *)bytes + done, n - done);
+        if (put > 0) {
+            done += (size_t)put;
+            continue;
+        }
+        if (put < 0 && errno == EINTR)
+            continue;
+        if (put < 0 && errno != EAGAIN)
+            return wb_fail(WB_ERR_IO, "port '%s' cannot be written to: %s", port->line.path,
+                           strerror(errno));
+        if (!wb_stream_wait_writable(port->descriptor, deadline_ns))
+            return wb_fail(WB_ERR_TIMEOUT,
+                           "port '%s' took only %zu of %zu bytes within 50 ms: is the instrument "
+                           "on, and its flow control as in the rig file?",
+                           port->line.path, done, n);
+    }
+    return WB_OK;
+}

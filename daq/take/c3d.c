@@ -1,0 +1,518 @@
+/* C3D (c3d.org, "The C3D File Format"): blocks of 512 bytes; a header, parameters in groups, then
+ * frames of points and analogue readings.
+ *
+ * The parameter section names the processor that wrote the file: Intel (84), DEC (85), which has
+ * Intel's integers and floats of the VAX, or MIPS (86), which is big-endian. POINT:SCALE below zero
+ * says that data are floats, else they are 16-bit integers times that scale. A point is X, Y, Z and
+ * a word of residual and cameras, which is negative where the point is missing. An analogue reading
+ * is (raw - OFFSET) x SCALE x GEN_SCALE.
+ */
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "daq/take/take_reader.h"
+
+#define WB_LOG_DOMAIN "c3d"
+
+#define BLOCK 512
+#define MOST_POINTS 65535
+#define LARGEST_POSITION 1e4 /* m */
+#define MOST_STEPS 20000000
+
+enum processor {
+    INTEL = 84,
+    DEC = 85,
+    MIPS = 86
+};
+
+/* A parameter in place. */
+struct parameter {
+    int type; /* -1 characters, 1 byte, 2 int16, 4 float */
+    int n_dimensions;
+    unsigned dimensions[7];
+    const uint8_t *data;
+    size_t n_items;
+};
+
+struct reading {
+    struct wb_take *take;
+    const char *name;
+    struct wb_reason *why;
+    const uint8_t *bytes;
+    size_t n;
+    enum processor processor;
+    size_t parameters; /* offset of the section */
+    size_t steps;      /* records looked at: a hostile file must not take forever */
+    /* From header and parameters. */
+    bool is_real, is_unsigned;
+    double scale, unit; /* of integers; m */
+    size_t n_points, n_channels, per_frame, n_frames;
+    size_t data; /* offset */
+    int32_t first;
+    double *offsets, *scales; /* of the channels; owned */
+};
+
+/* Says where: an offset in bytes, or a parameter's name. */
+#define refuse_at(reading, where, format, ...)                                                     \
+    wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s: byte %zu: " format, (reading)->name,            \
+               (size_t)(where), __VA_ARGS__)
+#define refuse_parameter(reading, where, format, ...)                                              \
+    wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s: %s: " format, (reading)->name, where,           \
+               __VA_ARGS__)
+
+static enum wb_status no_memory(const struct reading *reading)
+{
+    return wb_fail_to(reading->why, WB_ERR_MEMORY, "%s: out of memory", reading->name);
+}
+
+/* --- numbers of three processors --- */
+
+static uint16_t get_word(const struct reading *reading, const uint8_t *at)
+{
+    return reading->processor == MIPS ? (uint16_t)(at[0] << 8 | at[1])
+                                      : (uint16_t)(at[1] << 8 | at[0]);
+}
+
+static int16_t get_int(const struct reading *reading, const uint8_t *at)
+{
+    return (int16_t)get_word(reading, at);
+}
+
+/* The VAX keeps the high word first, its exponent is larger by two for the same number, and
+ * exponent 0 is zero. */
+static double get_float(const struct reading *reading, const uint8_t *at)
+{
+    uint32_t bits;
+    float value;
+    if (reading->processor == MIPS)
+        bits = (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
+    else if (reading->processor == DEC)
+        bits = (uint32_t)at[1] << 24 | (uint32_t)at[0] << 16 | (uint32_t)at[3] << 8 | at[2];
+    else
+        bits = (uint32_t)at[3] << 24 | (uint32_t)at[2] << 16 | (uint32_t)at[1] << 8 | at[0];
+    if (reading->processor == DEC) {
+        const int exponent = (int)(bits >> 23 & 0xff);
+        const double fraction = 0.5 + (double)(bits & 0x7fffff) / 16777216.0;
+        const double magnitude = exponent ? ldexp(fraction, exponent - 128) : 0.0;
+        return bits >> 31 ? -magnitude : magnitude;
+    }
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+/* --- parameters --- */
+
+/* The next record of the section; false at its end, also where it breaks off. */
+struct record {
+    int id; /* below zero: a group of that number */
+    const uint8_t *name;
+    size_t n_name;
+    size_t body; /* offset of what follows the word to the next record */
+    size_t next; /* offset; 0: none */
+};
+
+static bool read_record(const struct reading *reading, size_t at, struct record *record)
+{
+    if (at + 2 > reading->n)
+        return false;
+    const int length = (int8_t)reading->bytes[at];
+    record->n_name = (size_t)abs(length);
+    record->id = (int8_t)reading->bytes[at + 1];
+    record->name = reading->bytes + at + 2;
+    const size_t word = at + 2 + record->n_name;
+    if (length == 0 || record->id == 0 || word + 2 > reading->n)
+        return false;
+    const uint16_t offset = get_word(reading, reading->bytes + word);
+    record->body = word + 2;
+    record->next = offset >= 2 ? word + offset : 0;
+    return true;
+}
+
+static bool is_named(const struct record *record, const char *name)
+{
+    return record->n_name == strlen(name) &&
+           strncasecmp((const char *)record->name, name, record->n_name) == 0;
+}
+
+static bool read_parameter(const struct reading *reading, size_t at, struct parameter *parameter)
+{
+    if (at + 2 > reading->n)
+        return false;
+    parameter->type = (int8_t)reading->bytes[at];
+    parameter->n_dimensions = reading->bytes[at + 1];
+    at += 2;
+    if (parameter->n_dimensions > 7 || at + (size_t)parameter->n_dimensions > reading->n)
+        return false;
+    size_t n_items = 1;
+    for (int i = 0; i < parameter->n_dimensions; i++) {
+        parameter->dimensions[i] = reading->bytes[at++];
+        n_items *= parameter->dimensions[i];
+        if (n_items > reading->n)
+            return false;
+    }
+    const size_t size = parameter->type == -1 ? 1 : (size_t)abs(parameter->type);
+    parameter->data = reading->bytes + at;
+    parameter->n_items = n_items;
+    return (size == 1 || size == 2 || size == 4) && at + size * n_items <= reading->n;
+}
+
+/* Finds GROUP:NAME. Records only ever lead forwards. */
+static bool find(struct reading *reading, const char *group, const char *name,
+                 struct parameter *parameter)
+{
+    struct record record;
+    int id = 0;
+    for (size_t at = reading->parameters; at && read_record(reading, at, &record);
+         at = record.next) {
+        if (reading->steps++ > MOST_STEPS)
+            return false;
+        if (record.id < 0 && is_named(&record, group))
+            id = -record.id;
+    }
+    for (size_t at = reading->parameters; at && id && read_record(reading, at, &record);
+         at = record.next) {
+        if (record.id == id && is_named(&record, name))
+            return read_parameter(reading, record.body, parameter);
+    }
+    return false;
+}
+
+static bool get_item(const struct reading *reading, const struct parameter *parameter, size_t i,
+                     double *value)
+{
+    if (i >= parameter->n_items)
+        return false;
+    switch (parameter->type) {
+    case 1:
+        *value = parameter->data[i];
+        return true;
+    case 2:
+        *value = get_int(reading, parameter->data + 2 * i);
+        return true;
+    case 4:
+        *value = get_float(reading, parameter->data + 4 * i);
+        return true;
+    default:
+        return false;
+    }
+}
+
+static bool find_number(struct reading *reading, const char *group, const char *name, double *value)
+{
+    struct parameter parameter;
+    return find(reading, group, name, &parameter) && get_item(reading, &parameter, 0, value) &&
+           isfinite(*value);
+}
+
+/* Integers that count are unsigned, whatever the format says. */
+static bool find_count(struct reading *reading, const char *group, const char *name, size_t *count)
+{
+    double value;
+    if (!find_number(reading, group, name, &value))
+        return false;
+    *count = value < 0.0 && value >= -32768.0 ? (size_t)(value + 65536.0)
+             : value < 1e9                    ? (size_t)value
+                                              : 0;
+    return true;
+}
+
+/* The i-th text of a list, which goes on in LABELS2, LABELS3 after 255. */
+static bool find_text(struct reading *reading, const char *group, const char *name, size_t i,
+                      const char **text, size_t *n)
+{
+    char list[16];
+    for (int k = 1; k < 100; k++) {
+        struct parameter parameter;
+        snprintf(list, sizeof list, k > 1 ? "%s%d" : "%s", name, k);
+        if (!find(reading, group, list, &parameter) || parameter.type != -1 ||
+            parameter.n_dimensions < 1)
+            return false;
+        const size_t length = parameter.dimensions[0];
+        const size_t n_texts = parameter.n_dimensions < 2 ? 1
+                               : length > 0               ? parameter.n_items / length
+                                                          : 0;
+        if (i < n_texts) {
+            *text = (const char *)parameter.data + i * length;
+            *n = strnlen(*text, length);
+            return true;
+        }
+        i -= n_texts;
+    }
+    return false;
+}
+
+/* --- what the file holds --- */
+
+static enum wb_status find_parameters(struct reading *reading)
+{
+    if (reading->n < 2 * BLOCK || reading->bytes[0] == 0 || reading->bytes[1] != 0x50)
+        return refuse_at(reading, 0, "%s", "no header of a C3D file of at least 1024 bytes");
+    const size_t section = ((size_t)reading->bytes[0] - 1) * BLOCK;
+    if (section + 4 > reading->n)
+        return refuse_at(reading, 0, "the parameters are to begin at byte %zu, behind the end",
+                         section);
+    const int processor = reading->bytes[section + 3];
+    if (processor < INTEL || processor > MIPS)
+        return refuse_at(reading, section + 3,
+                         "processor %d, expected 84 (Intel), 85 (DEC) or 86 (MIPS)", processor);
+    reading->processor = (enum processor)processor;
+    reading->parameters = section + 4;
+    static const char *const names[] = {"Intel", "DEC", "MIPS"};
+    snprintf(reading->take->format, sizeof reading->take->format, "C3D, %s",
+             names[processor - INTEL]);
+    return WB_OK;
+}
+
+/* The number of frames: 16 bits in header and POINT:FRAMES do not hold long takes. */
+static void count_frames(struct reading *reading)
+{
+    const uint8_t *const header = reading->bytes;
+    const size_t first = get_word(reading, header + 6), last = get_word(reading, header + 8);
+    struct parameter start, end;
+    double low, high, low_end, high_end;
+    size_t count = 0;
+    reading->first = (int32_t)first;
+    if (find(reading, "TRIAL", "ACTUAL_START_FIELD", &start) &&
+        find(reading, "TRIAL", "ACTUAL_END_FIELD", &end) && start.type == 2 && end.type == 2 &&
+        get_item(reading, &start, 0, &low) && get_item(reading, &end, 0, &low_end)) {
+        high = high_end = 0.0;
+        (void)get_item(reading, &start, 1, &high);
+        (void)get_item(reading, &end, 1, &high_end);
+        const double from = low + (low < 0.0 ? 65536.0 : 0.0) + 65536.0 * high;
+        const double to = low_end + (low_end < 0.0 ? 65536.0 : 0.0) + 65536.0 * high_end;
+        if (from >= 0.0 && to >= from && to < 1e9) {
+            reading->n_frames = (size_t)(to - from) + 1;
+            reading->first = (int32_t)from;
+            return;
+        }
+    }
+    if (find_count(reading, "POINT", "LONG_FRAMES", &count) && count > 0)
+        reading->n_frames = count;
+    else if (find_count(reading, "POINT", "FRAMES", &count) && count > 0)
+        reading->n_frames = count;
+    else
+        reading->n_frames = last >= first ? last - first + 1 : 0;
+}
+
+static enum wb_status read_layout(struct reading *reading)
+{
+    double scale, rate;
+    size_t block, per_frame = get_word(reading, reading->bytes + 4);
+    const char *unit;
+    size_t n_unit;
+    if (!find_count(reading, "POINT", "USED", &reading->n_points))
+        reading->n_points = get_word(reading, reading->bytes + 2);
+    if (reading->n_points == 0 || reading->n_points > MOST_POINTS)
+        return refuse_parameter(reading, "POINT:USED", "%zu points", reading->n_points);
+    if (!find_number(reading, "POINT", "SCALE", &scale))
+        scale = get_float(reading, reading->bytes + 12);
+    if (!(fabs(scale) > 0.0) || !(fabs(scale) < 1e6))
+        return refuse_parameter(reading, "POINT:SCALE", "%g", scale);
+    reading->is_real = scale < 0.0;
+    reading->scale = fabs(scale);
+    if (!find_number(reading, "POINT", "RATE", &rate))
+        rate = get_float(reading, reading->bytes + 20);
+    /* Slower, and the times of frames that are numbered from far on do not fit 64 bits of ns. */
+    if (!(rate >= 0.5) || !(rate < 1e6))
+        return refuse_parameter(reading, "POINT:RATE", "%g frames a second", rate);
+    reading->take->rate = rate;
+    if (!find_text(reading, "POINT", "UNITS", 0, &unit, &n_unit))
+        return refuse_parameter(reading, "POINT:UNITS", "%s", "not there: lengths have no unit");
+    reading->unit = wb_take_length_unit(unit, n_unit);
+    if (!(reading->unit > 0.0)) {
+        char word[24];
+        wb_take_copy_name(word, sizeof word, unit, n_unit);
+        return refuse_parameter(reading, "POINT:UNITS", "'%s' is no unit of length that is known",
+                                word);
+    }
+    if (!find_count(reading, "POINT", "DATA_START", &block) || block == 0)
+        block = get_word(reading, reading->bytes + 16);
+    reading->data = (block - 1) * BLOCK;
+    if (block == 0 || reading->data >= reading->n)
+        return refuse_parameter(reading, "POINT:DATA_START", "block %zu is not in the file", block);
+    if (!find_count(reading, "ANALOG", "USED", &reading->n_channels))
+        reading->n_channels = 0;
+    if (reading->n_channels > 0) {
+        if (per_frame % reading->n_channels != 0 || per_frame / reading->n_channels > 10000)
+            return refuse_at(reading, 4, "%zu analogue readings a frame of %zu channels", per_frame,
+                             reading->n_channels);
+        reading->per_frame = per_frame / reading->n_channels;
+        if (reading->per_frame == 0)
+            reading->n_channels = 0;
+    } else if (per_frame > 0) {
+        return refuse_parameter(reading, "ANALOG:USED", "no channels, but %zu readings a frame",
+                                per_frame);
+    }
+    count_frames(reading);
+    return WB_OK;
+}
+
+static enum wb_status read_points(struct reading *reading)
+{
+    for (size_t i = 0; i < reading->n_points; i++) {
+        const char *text;
+        size_t n;
+        char name[32];
+        if (!find_text(reading, "POINT", "LABELS", i, &text, &n)) {
+            snprintf(name, sizeof name, "Unlabeled %zu", i + 1);
+            text = name;
+            n = strlen(name);
+        }
+        const bool unlabelled = (n >= 9 && strncasecmp(text, "Unlabeled", 9) == 0) ||
+                                (n >= 1 && text[0] == '*') || n == 0;
+        if (wb_take_add_point(reading->take, unlabelled ? WB_TAKE_UNLABELLED : WB_TAKE_MARKER, text,
+                              n) < 0)
+            return no_memory(reading);
+    }
+    return WB_OK;
+}
+
+static enum wb_status read_channels(struct reading *reading)
+{
+    const size_t n = reading->n_channels;
+    struct parameter scales, offsets;
+    double general = 1.0;
+    const char *text;
+    size_t n_text;
+    if (n == 0)
+        return WB_OK;
+    reading->take->channels = calloc(n, sizeof *reading->take->channels);
+    reading->offsets = calloc(n, sizeof *reading->offsets);
+    reading->scales = calloc(n, sizeof *reading->scales);
+    if (!reading->take->channels || !reading->offsets || !reading->scales)
+        return no_memory(reading);
+    reading->take->n_channels = (int)n;
+    reading->take->per_frame = (int)reading->per_frame;
+    (void)find_number(reading, "ANALOG", "GEN_SCALE", &general);
+    reading->is_unsigned = find_text(reading, "ANALOG", "FORMAT", 0, &text, &n_text) &&
+                           n_text >= 8 && strncasecmp(text, "UNSIGNED", 8) == 0;
+    const bool has_scales = find(reading, "ANALOG", "SCALE", &scales);
+    const bool has_offsets = find(reading, "ANALOG", "OFFSET", &offsets);
+    for (size_t i = 0; i < n; i++) {
+        struct wb_take_channel *const channel = &reading->take->channels[i];
+        reading->scales[i] = 1.0;
+        if (has_scales)
+            (void)get_item(reading, &scales, i, &reading->scales[i]);
+        if (has_offsets)
+            (void)get_item(reading, &offsets, i, &reading->offsets[i]);
+        if (reading->is_unsigned && reading->offsets[i] < 0.0 && offsets.type == 2)
+            reading->offsets[i] += 65536.0;
+        reading->scales[i] *= general;
+        if (!isfinite(reading->scales[i]) || !isfinite(reading->offsets[i]))
+            return refuse_parameter(reading, "ANALOG:SCALE", "channel %zu has no finite scale",
+                                    i + 1);
+        if (find_text(reading, "ANALOG", "LABELS", i, &text, &n_text))
+            wb_take_copy_name(channel->name, sizeof channel->name, text, n_text);
+        if (find_text(reading, "ANALOG", "UNITS", i, &text, &n_text))
+            wb_take_copy_name(channel->unit, sizeof channel->unit, text, n_text);
+    }
+    return WB_OK;
+}
+
+/* --- data --- */
+
+static double get_raw(const struct reading *reading, const uint8_t *at)
+{
+    return reading->is_real ? get_float(reading, at) : get_int(reading, at);
+}
+
+static enum wb_status read_point(struct reading *reading, size_t point, const uint8_t *at)
+{
+    const size_t word = reading->is_real ? 4 : 2;
+    const double factor = (reading->is_real ? 1.0 : reading->scale) * reading->unit;
+    const double residual = get_raw(reading, at + 3 * word);
+    double position[3];
+    bool zero = true;
+    if (residual < 0.0 || isnan(residual))
+        return WB_OK;
+    for (int k = 0; k < 3; k++) {
+        const double raw = get_raw(reading, at + (size_t)k * word);
+        if (!isfinite(raw))
+            return WB_OK;
+        zero &= raw == 0.0;
+        position[k] = raw * factor;
+        if (!(fabs(position[k]) <= LARGEST_POSITION))
+            return refuse_at(reading, at - reading->bytes, "a marker at %g m", position[k]);
+    }
+    if (zero)
+        return WB_OK;
+    return wb_take_add_place(reading->take, (uint32_t)point, position) ? WB_OK : no_memory(reading);
+}
+
+static enum wb_status read_frame(struct reading *reading, size_t frame, const uint8_t *at)
+{
+    const size_t word = reading->is_real ? 4 : 2;
+    struct wb_take *const take = reading->take;
+    if (!wb_take_add_frame(take, reading->first + (int32_t)frame,
+                           (double)(reading->first + (int32_t)frame) / take->rate))
+        return no_memory(reading);
+    for (size_t i = 0; i < reading->n_points; i++, at += 4 * word)
+        WB_TRY(read_point(reading, i, at));
+    const size_t n = reading->n_channels * reading->per_frame;
+    float *const analog = n > 0 ? wb_take_add_analog(take, n) : NULL;
+    if (n > 0 && !analog)
+        return no_memory(reading);
+    for (size_t i = 0; i < n; i++, at += word) {
+        const size_t channel = i % reading->n_channels;
+        const double raw = reading->is_unsigned && !reading->is_real ? get_word(reading, at)
+                                                                     : get_raw(reading, at);
+        analog[i] = (float)((raw - reading->offsets[channel]) * reading->scales[channel]);
+    }
+    return WB_OK;
+}
+
+static enum wb_status read_data(struct reading *reading)
+{
+    const size_t word = reading->is_real ? 4 : 2;
+    const size_t size = word * (4 * reading->n_points + reading->n_channels * reading->per_frame);
+    const size_t there = (reading->n - reading->data) / size;
+    size_t n = reading->n_frames;
+    /* A count that 16 bits could not hold: the file's length decides. */
+    if (n == 65535 && there > n)
+        n = there;
+    if (n == 0)
+        return refuse_parameter(reading, "POINT:FRAMES", "%s", "no frame");
+    if ((double)reading->first + (double)n > (double)INT_MAX)
+        return refuse_parameter(reading, "POINT:FRAMES", "%zu frames", n);
+    reading->take->declared_frames = n;
+    for (size_t i = 0; i < n && i < there; i++)
+        WB_TRY(read_frame(reading, i, reading->bytes + reading->data + i * size));
+    return WB_OK;
+}
+
+/* --- the file --- */
+
+static bool is_c3d(const uint8_t *bytes, size_t n)
+{
+    /* A text that begins so has its second letter P. */
+    return n >= 2 && bytes[0] > 0 && bytes[1] == 0x50 && (n < 3 || bytes[0] < ' ');
+}
+
+static enum wb_status read_all(struct reading *reading)
+{
+    WB_TRY(find_parameters(reading));
+    WB_TRY(read_layout(reading));
+    WB_TRY(read_points(reading));
+    WB_TRY(read_channels(reading));
+    WB_TRY(read_data(reading));
+    return wb_take_finish(reading->take, reading->name, reading->why);
+}
+
+static enum wb_status read_c3d(struct wb_take *take, const char *name, const uint8_t *bytes,
+                               size_t n, struct wb_reason *why)
+{
+    struct reading reading = {.take = take, .name = name, .why = why, .bytes = bytes, .n = n};
+    memset(take, 0, sizeof *take);
+    const enum wb_status status = read_all(&reading);
+    free(reading.offsets);
+    free(reading.scales);
+    if (status != WB_OK)
+        wb_take_release(take);
+    return status;
+}
+
+const struct wb_take_reader wb_c3d = {.name = "c3d", .is = is_c3d, .read = read_c3d};

@@ -1,0 +1,258 @@
+#include "daq/take/take.h"
+#include "daq/take/take_private.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/config.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "take"
+
+/* Times in files are rounded to 1 ms or finer; a time may be off its frame's by so much, s. */
+#define ROUNDING 0.75e-3
+/* Frames missing in one go; more is another take. */
+#define LONGEST_JUMP 100000000
+
+void wb_take_release(struct wb_take *take)
+{
+    free(take->points);
+    free(take->frames);
+    free(take->places);
+    free(take->channels);
+    free(take->analog);
+    memset(take, 0, sizeof *take);
+}
+
+bool wb_take_is_measured(enum wb_take_kind kind)
+{
+    return kind == WB_TAKE_MARKER || kind == WB_TAKE_UNLABELLED;
+}
+
+double wb_take_missing(const struct wb_take *take)
+{
+    size_t n[2] = {0}, seen[2] = {0};
+    for (size_t i = 0; i < take->n_points; i++) {
+        const bool measured = wb_take_is_measured(take->points[i].kind);
+        if (!measured && take->points[i].kind != WB_TAKE_BODY)
+            continue;
+        n[measured]++;
+        seen[measured] += take->points[i].n_seen;
+    }
+    const bool which = n[true] > 0;
+    const double all = (double)n[which] * (double)take->n_frames;
+    return all > 0.0 ? 1.0 - (double)seen[which] / all : 0.0;
+}
+
+size_t wb_take_frame_at(const struct wb_take *take, size_t frame, struct wb_mocap_frame *out)
+{
+    const struct wb_take_frame *const from = &take->frames[frame];
+    size_t left = 0;
+    *out = (struct wb_mocap_frame){
+        .t_ns = wb_ns_from_seconds(from->t),
+        .frame_number = from->number,
+        .t_device = from->t,
+        .t_clock = (double)NAN,
+    };
+    for (size_t i = from->first; i < from[1].first; i++) {
+        const struct wb_take_place *const place = &take->places[i];
+        const enum wb_take_kind kind = take->points[place->point].kind;
+        if (!wb_take_is_measured(kind))
+            continue;
+        if (out->n_markers == WB_MAX_MARKERS) {
+            left++;
+            continue;
+        }
+        struct wb_marker *const marker = &out->markers[out->n_markers++];
+        *marker = (struct wb_marker){
+            .id = (int32_t)place->point + 1,
+            .params = WB_MARKER_POINT_CLOUD_SOLVED,
+        };
+        if (kind == WB_TAKE_UNLABELLED)
+            marker->params |= WB_MARKER_UNLABELED;
+        memcpy(marker->position, place->position, sizeof marker->position);
+    }
+    return left;
+}
+
+/* --- for readers --- */
+
+/* Makes room for `more` items after `n`. */
+static bool reserve(void **items, size_t *capacity, size_t n, size_t more, size_t size)
+{
+    if (n + more <= *capacity)
+        return true;
+    size_t larger = *capacity ? *capacity + *capacity / 2 : 256;
+    if (larger < n + more)
+        larger = n + more;
+    void *const grown = realloc(*items, larger * size);
+    if (!grown)
+        return false;
+    *items = grown;
+    *capacity = larger;
+    return true;
+}
+
+#define RESERVE(which, items, n, more)                                                             \
+    reserve((void **)&(items), &(which), (n), (more), sizeof *(items))
+
+void wb_take_copy_name(char *to, size_t size, const char *from, size_t n)
+{
+    while (n > 0 && (isspace((unsigned char)from[n - 1]) || from[n - 1] == '\0'))
+        n--;
+    while (n > 0 && isspace((unsigned char)*from)) {
+        from++;
+        n--;
+    }
+    if (n >= size)
+        n = size - 1;
+    for (size_t i = 0; i < n; i++)
+        to[i] = from[i] >= ' ' && from[i] <= '~' ? from[i] : '?';
+    to[n] = '\0';
+}
+
+struct wb_take_quoted wb_take_quote(const char *cell, size_t n)
+{
+    struct wb_take_quoted quoted;
+    wb_take_copy_name(quoted.text, sizeof quoted.text, cell, n);
+    return quoted;
+}
+
+long wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n)
+{
+    if (take->n_points >= UINT32_MAX ||
+        !RESERVE(take->capacity[0], take->points, take->n_points, 1))
+        return -1;
+    struct wb_take_point *const point = &take->points[take->n_points];
+    *point = (struct wb_take_point){.kind = kind};
+    wb_take_copy_name(point->name, sizeof point->name, name, n);
+    return (long)take->n_points++;
+}
+
+bool wb_take_add_frame(struct wb_take *take, int32_t number, double t)
+{
+    /* One more, for the end of the last. */
+    if (!RESERVE(take->capacity[1], take->frames, take->n_frames, 2))
+        return false;
+    take->frames[take->n_frames++] =
+        (struct wb_take_frame){.number = number, .t = t, .first = take->n_places};
+    return true;
+}
+
+bool wb_take_add_place(struct wb_take *take, uint32_t point, const double position[3])
+{
+    if (!RESERVE(take->capacity[2], take->places, take->n_places, 1))
+        return false;
+    struct wb_take_place *const place = &take->places[take->n_places++];
+    place->point = point;
+    for (int k = 0; k < 3; k++)
+        place->position[k] = (float)position[k];
+    take->points[point].n_seen++;
+    return true;
+}
+
+void wb_take_drop_frame(struct wb_take *take)
+{
+    const size_t first = take->frames[--take->n_frames].first;
+    while (take->n_places > first)
+        take->points[take->places[--take->n_places].point].n_seen--;
+}
+
+float *wb_take_add_analog(struct wb_take *take, size_t n)
+{
+    const size_t used = (take->n_frames > 0 ? take->n_frames - 1 : 0) * n;
+    if (!RESERVE(take->capacity[3], take->analog, used, n))
+        return NULL;
+    return take->analog + used;
+}
+
+void wb_take_skip(struct wb_take *take, size_t line)
+{
+    take->skipped_rows++;
+    if (!take->first_skipped)
+        take->first_skipped = line;
+}
+
+/* Puts times on the frames' numbers where they are those, but for their rounding. A file may count
+ * in frames of the cameras and hold every n-th of them. */
+static void unround_times(struct wb_take *take)
+{
+    struct wb_take_frame *const frames = take->frames;
+    const size_t n = take->n_frames;
+    if (n < 2 || !(take->rate > 0.0))
+        return;
+    double least = HUGE_VAL, largest = -HUGE_VAL;
+    for (size_t i = 0; i < n; i++) {
+        const double off = frames[i].t - (double)frames[i].number / take->rate;
+        least = fmin(least, off);
+        largest = fmax(largest, off);
+    }
+    if (!(largest - least <= 2.0 * ROUNDING))
+        return;
+    double offset = 0.5 * (least + largest);
+    if (fabs(offset) <= ROUNDING)
+        offset = 0.0;
+    for (size_t i = 0; i < n; i++)
+        frames[i].t = offset + (double)frames[i].number / take->rate;
+}
+
+enum wb_status wb_take_finish(struct wb_take *take, const char *name, struct wb_reason *why)
+{
+    if (take->n_frames == 0)
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: there is no frame in it", name);
+    struct wb_take_frame *const frames = take->frames;
+    frames[take->n_frames].first = take->n_places;
+    /* Numbers go up by 1, or by the cameras' frames to one that was written. */
+    int64_t step = INT64_MAX;
+    for (size_t i = 1; i < take->n_frames; i++) {
+        const int64_t by = (int64_t)frames[i].number - frames[i - 1].number;
+        step = by < step ? by : step;
+    }
+    for (size_t i = 1; i < take->n_frames; i++) {
+        const int64_t by = (int64_t)frames[i].number - frames[i - 1].number;
+        if (by > step && by < LONGEST_JUMP) {
+            take->jumps++;
+            take->jumped += (size_t)(by / step - 1);
+        }
+    }
+    unround_times(take);
+    return WB_OK;
+}
+
+double wb_take_length_unit(const char *text, size_t n)
+{
+    static const struct {
+        const char *name;
+        double factor;
+    } units[] = {
+        {"m", 1.0},
+        {"meter", 1.0},
+        {"meters", 1.0},
+        {"metre", 1.0},
+        {"metres", 1.0},
+        {"mm", 1e-3},
+        {"millimeter", 1e-3},
+        {"millimeters", 1e-3},
+        {"millimetre", 1e-3},
+        {"millimetres", 1e-3},
+        {"cm", 1e-2},
+        {"centimeter", 1e-2},
+        {"centimeters", 1e-2},
+        {"centimetre", 1e-2},
+        {"centimetres", 1e-2},
+        {"inch", 0.0254},
+        {"inches", 0.0254},
+        {"in", 0.0254},
+    };
+    char word[24];
+    if (n >= sizeof word)
+        return 0.0;
+    wb_take_copy_name(word, sizeof word, text, n);
+    for (size_t i = 0; i < WB_COUNT(units); i++)
+        if (strcasecmp(word, units[i].name) == 0)
+            return units[i].factor;
+    return 0.0;
+}
