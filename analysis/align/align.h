@@ -17,8 +17,8 @@
  *   - cuts the test into cycles and phases.
  * dataset.json lists each correction with its size. Nothing is filled in: gaps stay gaps.
  */
-#ifndef WB_ANALYSIS_ALIGN_H
-#define WB_ANALYSIS_ALIGN_H
+#ifndef WB_ANALYSIS_ALIGN_ALIGN_H
+#define WB_ANALYSIS_ALIGN_ALIGN_H
 
 #include "analysis/dataset/dataset.h"
 #include "base/reason.h"

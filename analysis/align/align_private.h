@@ -8,8 +8,8 @@
  * align.c, which calls them all, fills the dataset. align_report.c, which all call, writes what was
  * done into dataset.json.
  */
-#ifndef WB_ANALYSIS_ALIGN_PRIVATE_H
-#define WB_ANALYSIS_ALIGN_PRIVATE_H
+#ifndef WB_ANALYSIS_ALIGN_ALIGN_PRIVATE_H
+#define WB_ANALYSIS_ALIGN_ALIGN_PRIVATE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -6,8 +6,8 @@
  * fitted to all markers by least squares (Gauss-Newton). Only the slope of the fit is used:
  * a marker's point on the axis is its measured place less offset times the fitted normal.
  */
-#ifndef WB_ANALYSIS_AXIS_FIT_H
-#define WB_ANALYSIS_AXIS_FIT_H
+#ifndef WB_ANALYSIS_ALIGN_AXIS_FIT_H
+#define WB_ANALYSIS_ALIGN_AXIS_FIT_H
 
 #include "base/status.h"
 

@@ -4,8 +4,8 @@
  * that holds the vertical; its horizontal direction is x, along the straight wire. The origin is
  * the clamp point: it moves with the clamp's marker, which sits one marker offset above it.
  */
-#ifndef WB_ANALYSIS_FRAME_H
-#define WB_ANALYSIS_FRAME_H
+#ifndef WB_ANALYSIS_ALIGN_FRAME_H
+#define WB_ANALYSIS_ALIGN_FRAME_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -6,8 +6,8 @@
  * through the recording, forwards and backwards. Occluded and model-filled points are no
  * measurements and must not be given. A marker that is not seen is missing: gaps stay gaps.
  */
-#ifndef WB_ANALYSIS_MARKERS_H
-#define WB_ANALYSIS_MARKERS_H
+#ifndef WB_ANALYSIS_ALIGN_MARKERS_H
+#define WB_ANALYSIS_ALIGN_MARKERS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* A part of markers.c that tests call by itself. */
-#ifndef WB_ANALYSIS_MARKERS_PRIVATE_H
-#define WB_ANALYSIS_MARKERS_PRIVATE_H
+#ifndef WB_ANALYSIS_ALIGN_MARKERS_PRIVATE_H
+#define WB_ANALYSIS_ALIGN_MARKERS_PRIVATE_H
 
 #include "analysis/align/markers.h"
 

@@ -2,8 +2,8 @@
  * header line with the columns' names, every line with as many fields. Errors name file, line and
  * column. The numbers serve the dataset's own tables as well.
  */
-#ifndef WB_ANALYSIS_CSV_TABLE_H
-#define WB_ANALYSIS_CSV_TABLE_H
+#ifndef WB_ANALYSIS_DATASET_CSV_TABLE_H
+#define WB_ANALYSIS_DATASET_CSV_TABLE_H
 
 #include <stdbool.h>
 #include <stddef.h>

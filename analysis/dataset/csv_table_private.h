@@ -1,6 +1,6 @@
 /* A part of csv_table.c that tests call by itself. */
-#ifndef WB_ANALYSIS_CSV_TABLE_PRIVATE_H
-#define WB_ANALYSIS_CSV_TABLE_PRIVATE_H
+#ifndef WB_ANALYSIS_DATASET_CSV_TABLE_PRIVATE_H
+#define WB_ANALYSIS_DATASET_CSV_TABLE_PRIVATE_H
 
 #include "analysis/dataset/csv_table.h"
 

@@ -5,8 +5,8 @@
  * force, which stays normal to the tip, the wire curls up and the deflection has a maximum. Near it
  * the force hardly follows from the deflection, and beyond it two forces have the same one.
  */
-#ifndef WB_ANALYSIS_CURVE_H
-#define WB_ANALYSIS_CURVE_H
+#ifndef WB_ANALYSIS_DATASET_CURVE_H
+#define WB_ANALYSIS_DATASET_CURVE_H
 
 #include <stdbool.h>
 #include <stddef.h>

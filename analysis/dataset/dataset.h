@@ -16,8 +16,8 @@
  * as the machine printed it (tensile: the elongation), not zeroed at the first contact, and `force`
  * the load, not zeroed either; both rise where the specimen is loaded. Shapes there are none.
  */
-#ifndef WB_ANALYSIS_DATASET_H
-#define WB_ANALYSIS_DATASET_H
+#ifndef WB_ANALYSIS_DATASET_DATASET_H
+#define WB_ANALYSIS_DATASET_DATASET_H
 
 #include <stdbool.h>
 #include <stddef.h>

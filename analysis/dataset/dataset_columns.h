@@ -1,7 +1,7 @@
 /* A dataset's rows as tables in memory: those of force_deflection.csv and shape.csv, with lengths
  * in metres. */
-#ifndef WB_ANALYSIS_DATASET_COLUMNS_H
-#define WB_ANALYSIS_DATASET_COLUMNS_H
+#ifndef WB_ANALYSIS_DATASET_DATASET_COLUMNS_H
+#define WB_ANALYSIS_DATASET_DATASET_COLUMNS_H
 
 #include "analysis/dataset/dataset.h"
 #include "base/columns.h"

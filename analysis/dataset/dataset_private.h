@@ -1,6 +1,6 @@
 /* Parts of dataset.c that tests call by themselves. */
-#ifndef WB_ANALYSIS_DATASET_PRIVATE_H
-#define WB_ANALYSIS_DATASET_PRIVATE_H
+#ifndef WB_ANALYSIS_DATASET_DATASET_PRIVATE_H
+#define WB_ANALYSIS_DATASET_DATASET_PRIVATE_H
 
 #include <stddef.h>
 

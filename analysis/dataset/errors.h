@@ -6,8 +6,8 @@
  * whose curves are deflections over forces, it is the largest deflection. Pure functions; `n` is at
  * least 2 and `step` positive. A NaN in a curve makes the result NaN.
  */
-#ifndef WB_ANALYSIS_ERRORS_H
-#define WB_ANALYSIS_ERRORS_H
+#ifndef WB_ANALYSIS_DATASET_ERRORS_H
+#define WB_ANALYSIS_DATASET_ERRORS_H
 
 /* E_L2 of eq. 17 as printed: square root of the integral of the squared difference, N m^(1/2). */
 double wb_errors_l2(int n, double step, const double *measured, const double *computed);

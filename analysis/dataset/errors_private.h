@@ -1,6 +1,6 @@
 /* A part of errors.c that tests call by itself. */
-#ifndef WB_ANALYSIS_ERRORS_PRIVATE_H
-#define WB_ANALYSIS_ERRORS_PRIVATE_H
+#ifndef WB_ANALYSIS_DATASET_ERRORS_PRIVATE_H
+#define WB_ANALYSIS_DATASET_ERRORS_PRIVATE_H
 
 #include "analysis/dataset/errors.h"
 

@@ -10,8 +10,8 @@
  * the wire. Sections of a 1D model are the fibres' cells, each with constant values. Numbers are
  * kept to 6 digits.
  */
-#ifndef WB_ANALYSIS_FIELDS_H
-#define WB_ANALYSIS_FIELDS_H
+#ifndef WB_ANALYSIS_DATASET_FIELDS_H
+#define WB_ANALYSIS_DATASET_FIELDS_H
 
 #include "base/reason.h"
 #include "base/status.h"

@@ -1,7 +1,7 @@
 /* Straight lines and parabolas through measured points, medians, and places in sorted ones. GSL's
  * error handler, which aborts, must be off. */
-#ifndef WB_ANALYSIS_FIT_H
-#define WB_ANALYSIS_FIT_H
+#ifndef WB_ANALYSIS_DATASET_FIT_H
+#define WB_ANALYSIS_DATASET_FIT_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -8,8 +8,8 @@
  * HDF5 rather than MAT files: integers of 64 bits, units as attributes, and texts of any length;
  * and MATLAB reads it.
  */
-#ifndef WB_ANALYSIS_HDF5_FILE_H
-#define WB_ANALYSIS_HDF5_FILE_H
+#ifndef WB_ANALYSIS_DATASET_HDF5_FILE_H
+#define WB_ANALYSIS_DATASET_HDF5_FILE_H
 
 #include "base/columns.h"
 #include "base/status.h"

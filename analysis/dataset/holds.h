@@ -1,6 +1,6 @@
 /* Holds of a test by its operator, as its dataset tells them: `checks.holds` of dataset.json. */
-#ifndef WB_ANALYSIS_HOLDS_H
-#define WB_ANALYSIS_HOLDS_H
+#ifndef WB_ANALYSIS_DATASET_HOLDS_H
+#define WB_ANALYSIS_DATASET_HOLDS_H
 
 #include "analysis/dataset/dataset.h"
 

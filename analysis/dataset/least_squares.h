@@ -1,7 +1,7 @@
 /* What least-squares fits of a law to a test share: the search and its end, and the prior of
  * parallel parts. */
-#ifndef WB_ANALYSIS_LEAST_SQUARES_H
-#define WB_ANALYSIS_LEAST_SQUARES_H
+#ifndef WB_ANALYSIS_DATASET_LEAST_SQUARES_H
+#define WB_ANALYSIS_DATASET_LEAST_SQUARES_H
 
 #include <stdbool.h>
 

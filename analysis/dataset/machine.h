@@ -18,8 +18,8 @@
  *
  * A key of another kind is refused. What is not known is left out.
  */
-#ifndef WB_ANALYSIS_MACHINE_H
-#define WB_ANALYSIS_MACHINE_H
+#ifndef WB_ANALYSIS_DATASET_MACHINE_H
+#define WB_ANALYSIS_DATASET_MACHINE_H
 
 #include <stdbool.h>
 

@@ -6,8 +6,8 @@
  * cut at the turns of the travel. The dataset's document says under "import" what was found and
  * what was left out.
  */
-#ifndef WB_ANALYSIS_MACHINE_IMPORT_H
-#define WB_ANALYSIS_MACHINE_IMPORT_H
+#ifndef WB_ANALYSIS_DATASET_MACHINE_IMPORT_H
+#define WB_ANALYSIS_DATASET_MACHINE_IMPORT_H
 
 #include "analysis/dataset/dataset.h"
 #include "analysis/dataset/machine.h"

@@ -1,6 +1,6 @@
 /* Of the machine's reader, for its tests. */
-#ifndef WB_ANALYSIS_MACHINE_PRIVATE_H
-#define WB_ANALYSIS_MACHINE_PRIVATE_H
+#ifndef WB_ANALYSIS_DATASET_MACHINE_PRIVATE_H
+#define WB_ANALYSIS_DATASET_MACHINE_PRIVATE_H
 
 #include "analysis/dataset/machine.h"
 

@@ -3,8 +3,8 @@
  * Bench time is the time in which a stage at 1 mm/s would have made the way. Shapes hold as many
  * equally spaced positions as the computation recorded, as if they were markers.
  */
-#ifndef WB_ANALYSIS_SIMULATED_H
-#define WB_ANALYSIS_SIMULATED_H
+#ifndef WB_ANALYSIS_DATASET_SIMULATED_H
+#define WB_ANALYSIS_DATASET_SIMULATED_H
 
 #include "analysis/dataset/dataset.h"
 #include "base/status.h"

@@ -8,8 +8,8 @@
  * (one line). Internal energy is stored + plastic + contact + cohesive; ratios are empty where it
  * is zero.
  */
-#ifndef WB_ANALYSIS_SIMULATED_BUNDLE_H
-#define WB_ANALYSIS_SIMULATED_BUNDLE_H
+#ifndef WB_ANALYSIS_DATASET_SIMULATED_BUNDLE_H
+#define WB_ANALYSIS_DATASET_SIMULATED_BUNDLE_H
 
 #include "analysis/dataset/dataset.h"
 #include "base/hash.h"

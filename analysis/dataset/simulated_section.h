@@ -6,8 +6,8 @@
  *
  * in energies.csv; those of wires and tape are stored and plastic work together.
  */
-#ifndef WB_ANALYSIS_SIMULATED_SECTION_H
-#define WB_ANALYSIS_SIMULATED_SECTION_H
+#ifndef WB_ANALYSIS_DATASET_SIMULATED_SECTION_H
+#define WB_ANALYSIS_DATASET_SIMULATED_SECTION_H
 
 #include "analysis/dataset/dataset.h"
 #include "base/json.h"

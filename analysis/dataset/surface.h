@@ -8,8 +8,8 @@
  *
  * x runs from the clamp along the straight bundle, y up, z across.
  */
-#ifndef WB_ANALYSIS_SURFACE_H
-#define WB_ANALYSIS_SURFACE_H
+#ifndef WB_ANALYSIS_DATASET_SURFACE_H
+#define WB_ANALYSIS_DATASET_SURFACE_H
 
 #include <stdbool.h>
 

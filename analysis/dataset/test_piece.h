@@ -23,8 +23,8 @@
  *
  * The specimen file of a bench test serves as well: what it says of markers is left aside.
  */
-#ifndef WB_ANALYSIS_TEST_PIECE_H
-#define WB_ANALYSIS_TEST_PIECE_H
+#ifndef WB_ANALYSIS_DATASET_TEST_PIECE_H
+#define WB_ANALYSIS_DATASET_TEST_PIECE_H
 
 #include "analysis/dataset/machine.h"
 #include "base/json.h"

@@ -1,6 +1,6 @@
 /* Of the reader of test pieces, for its tests. */
-#ifndef WB_ANALYSIS_TEST_PIECE_PRIVATE_H
-#define WB_ANALYSIS_TEST_PIECE_PRIVATE_H
+#ifndef WB_ANALYSIS_DATASET_TEST_PIECE_PRIVATE_H
+#define WB_ANALYSIS_DATASET_TEST_PIECE_PRIVATE_H
 
 #include "analysis/dataset/test_piece.h"
 

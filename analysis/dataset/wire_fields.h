@@ -2,8 +2,8 @@
  * and the cross sections of `fields_at_mm`. Of cross sections that fall into one plane of the mesh
  * one is kept.
  */
-#ifndef WB_ANALYSIS_WIRE_FIELDS_H
-#define WB_ANALYSIS_WIRE_FIELDS_H
+#ifndef WB_ANALYSIS_DATASET_WIRE_FIELDS_H
+#define WB_ANALYSIS_DATASET_WIRE_FIELDS_H
 
 #include "analysis/dataset/fields.h"
 #include "base/status.h"

@@ -5,8 +5,8 @@
  * is that of the take. What the files do not say is found here: the lag between the two clocks
  * (analysis/import/sync.h) and the tare, the mean force before the motion begins.
  */
-#ifndef WB_ANALYSIS_MOCAP_IMPORT_H
-#define WB_ANALYSIS_MOCAP_IMPORT_H
+#ifndef WB_ANALYSIS_IMPORT_MOCAP_IMPORT_H
+#define WB_ANALYSIS_IMPORT_MOCAP_IMPORT_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -13,8 +13,8 @@
  * Left out of the force is what a filter of first order still remembers: three of its delays after
  * the rest.
  */
-#ifndef WB_ANALYSIS_REVERSAL_LAG_H
-#define WB_ANALYSIS_REVERSAL_LAG_H
+#ifndef WB_ANALYSIS_IMPORT_REVERSAL_LAG_H
+#define WB_ANALYSIS_IMPORT_REVERSAL_LAG_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* What an instrument showed over time on a clock of its own, and what is seen in it at once: its
  * noise, and what shakes in it. */
-#ifndef WB_ANALYSIS_SIGNAL_H
-#define WB_ANALYSIS_SIGNAL_H
+#ifndef WB_ANALYSIS_IMPORT_SIGNAL_H
+#define WB_ANALYSIS_IMPORT_SIGNAL_H
 
 #include <stddef.h>
 

@@ -7,8 +7,8 @@
  * pattern; a pattern that fits in two ways, as one missing of several equal cycles makes it, gives
  * no lag.
  */
-#ifndef WB_ANALYSIS_SYNC_H
-#define WB_ANALYSIS_SYNC_H
+#ifndef WB_ANALYSIS_IMPORT_SYNC_H
+#define WB_ANALYSIS_IMPORT_SYNC_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* What scatter between specimens alone makes of a validation's error; see validate.h. */
-#ifndef WB_ANALYSIS_EXPECTED_H
-#define WB_ANALYSIS_EXPECTED_H
+#ifndef WB_ANALYSIS_VALIDATION_EXPECTED_H
+#define WB_ANALYSIS_VALIDATION_EXPECTED_H
 
 /* Specimens (or series of them) here or of the calibration. */
 struct wb_expected_group {

@@ -7,8 +7,8 @@
  * from the scatter s between tests alone, and a model cannot do better but by chance. What it adds
  * is its bias, the model's curve against the mean of the curves that it was made from.
  */
-#ifndef WB_ANALYSIS_LEFT_OUT_H
-#define WB_ANALYSIS_LEFT_OUT_H
+#ifndef WB_ANALYSIS_VALIDATION_LEFT_OUT_H
+#define WB_ANALYSIS_VALIDATION_LEFT_OUT_H
 
 #include "analysis/calibration/three_point/three_point_calibrate.h"
 #include "base/reason.h"

@@ -1,6 +1,6 @@
 /* How far the measured markers lie from the computed wire during the first loading. */
-#ifndef WB_ANALYSIS_MARKER_DISTANCE_H
-#define WB_ANALYSIS_MARKER_DISTANCE_H
+#ifndef WB_ANALYSIS_VALIDATION_MARKER_DISTANCE_H
+#define WB_ANALYSIS_VALIDATION_MARKER_DISTANCE_H
 
 #include "analysis/calibration/paper/computed.h"
 #include "analysis/dataset/dataset.h"

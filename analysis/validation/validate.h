@@ -18,8 +18,8 @@
  *     RMS95 = t_0.975(v) s (1/n + 1/m)^(1/2) G
  *
  * in one of twenty validations, whatever s is. */
-#ifndef WB_ANALYSIS_VALIDATE_H
-#define WB_ANALYSIS_VALIDATE_H
+#ifndef WB_ANALYSIS_VALIDATION_VALIDATE_H
+#define WB_ANALYSIS_VALIDATION_VALIDATE_H
 
 #include "analysis/calibration/properties/properties.h"
 #include "analysis/dataset/curve.h"

@@ -7,8 +7,8 @@
  * bow does not count as one of the law. Scored is the mean over the samples, as of the loading
  * curve, because a law is one of the product.
  */
-#ifndef WB_ANALYSIS_VALIDATE_CYCLE_H
-#define WB_ANALYSIS_VALIDATE_CYCLE_H
+#ifndef WB_ANALYSIS_VALIDATION_VALIDATE_CYCLE_H
+#define WB_ANALYSIS_VALIDATION_VALIDATE_CYCLE_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* Scores of a validation beyond the first loading as JSON: the same in `validate --json` and
  * report.json. */
-#ifndef WB_ANALYSIS_VALIDATE_JSON_H
-#define WB_ANALYSIS_VALIDATE_JSON_H
+#ifndef WB_ANALYSIS_VALIDATION_VALIDATE_JSON_H
+#define WB_ANALYSIS_VALIDATION_VALIDATE_JSON_H
 
 #include "analysis/validation/validate.h"
 #include "base/json.h"

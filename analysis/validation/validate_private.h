@@ -1,6 +1,6 @@
 /* A part of validate.c that tests call by itself. */
-#ifndef WB_ANALYSIS_VALIDATE_PRIVATE_H
-#define WB_ANALYSIS_VALIDATE_PRIVATE_H
+#ifndef WB_ANALYSIS_VALIDATION_VALIDATE_PRIVATE_H
+#define WB_ANALYSIS_VALIDATION_VALIDATE_PRIVATE_H
 
 #include "analysis/validation/validate.h"
 

@@ -1,6 +1,6 @@
 /* Tables of validations, as CSV. */
-#ifndef WB_ANALYSIS_VALIDATE_TABLES_H
-#define WB_ANALYSIS_VALIDATE_TABLES_H
+#ifndef WB_ANALYSIS_VALIDATION_VALIDATE_TABLES_H
+#define WB_ANALYSIS_VALIDATION_VALIDATE_TABLES_H
 
 #include "analysis/dataset/dataset.h"
 #include "base/text.h"

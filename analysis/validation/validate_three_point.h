@@ -10,8 +10,8 @@
  * What scatter between specimens makes of a perfect model's error is as in validate.h. The unit is
  * the test, or the series where calibration or datasets have several: what a series has in common
  * is not averaged away by its tests. */
-#ifndef WB_ANALYSIS_VALIDATE_THREE_POINT_H
-#define WB_ANALYSIS_VALIDATE_THREE_POINT_H
+#ifndef WB_ANALYSIS_VALIDATION_VALIDATE_THREE_POINT_H
+#define WB_ANALYSIS_VALIDATION_VALIDATE_THREE_POINT_H
 
 #include <stdbool.h>
 

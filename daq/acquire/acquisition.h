@@ -11,8 +11,8 @@
  * steps ask for confirmation and send a soft reset when it does not come (daq/acquire/interlock.h).
  * The interlock is armed by wb_acquisition_arm(). Everything is used by one thread.
  */
-#ifndef WB_DAQ_ACQUISITION_H
-#define WB_DAQ_ACQUISITION_H
+#ifndef WB_DAQ_ACQUIRE_ACQUISITION_H
+#define WB_DAQ_ACQUIRE_ACQUISITION_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* What only tests ask of daq/acquire/acquisition.h. */
-#ifndef WB_DAQ_ACQUISITION_PRIVATE_H
-#define WB_DAQ_ACQUISITION_PRIVATE_H
+#ifndef WB_DAQ_ACQUIRE_ACQUISITION_PRIVATE_H
+#define WB_DAQ_ACQUIRE_ACQUISITION_PRIVATE_H
 
 #include "daq/acquire/acquisition.h"
 

@@ -1,7 +1,7 @@
 /* Whether the disk can take a recording: how long it takes to make data safe, and how much room
  * there is. */
-#ifndef WB_DAQ_DISK_CHECK_H
-#define WB_DAQ_DISK_CHECK_H
+#ifndef WB_DAQ_ACQUIRE_DISK_CHECK_H
+#define WB_DAQ_ACQUIRE_DISK_CHECK_H
 
 #include <stdbool.h>
 

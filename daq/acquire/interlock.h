@@ -10,8 +10,8 @@
  * The stop's own deadlines are host time on every rig; a virtual rig's time scale does not move
  * them.
  */
-#ifndef WB_DAQ_INTERLOCK_H
-#define WB_DAQ_INTERLOCK_H
+#ifndef WB_DAQ_ACQUIRE_INTERLOCK_H
+#define WB_DAQ_ACQUIRE_INTERLOCK_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* What is behind a serial port of which nothing is known: its baud rate and frame are found by
  * listening at one after another, until the bytes are lines of a load cell or of a stage. */
-#ifndef WB_DAQ_LISTENING_H
-#define WB_DAQ_LISTENING_H
+#ifndef WB_DAQ_ACQUIRE_LISTENING_H
+#define WB_DAQ_ACQUIRE_LISTENING_H
 
 #include <stdbool.h>
 #include <stdint.h>

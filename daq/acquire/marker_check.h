@@ -2,8 +2,8 @@
  * the ids of bare markers change: on the unloaded, nearly straight wire they lie on a line at their
  * arc lengths. A stray reflection is therefore not mistaken for a missing marker.
  */
-#ifndef WB_DAQ_MARKER_CHECK_H
-#define WB_DAQ_MARKER_CHECK_H
+#ifndef WB_DAQ_ACQUIRE_MARKER_CHECK_H
+#define WB_DAQ_ACQUIRE_MARKER_CHECK_H
 
 #include "base/units.h"
 #include "daq/protocol/sample.h"

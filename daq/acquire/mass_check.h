@@ -11,8 +11,8 @@
  * The list begins with 0: what the cell carries when the check begins is its zero, and is read
  * without a question. Used by one thread.
  */
-#ifndef WB_DAQ_MASS_CHECK_H
-#define WB_DAQ_MASS_CHECK_H
+#ifndef WB_DAQ_ACQUIRE_MASS_CHECK_H
+#define WB_DAQ_ACQUIRE_MASS_CHECK_H
 
 #include <stdbool.h>
 #include <stdint.h>

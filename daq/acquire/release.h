@@ -10,8 +10,8 @@
  *     wb_release_add(&release, &sample);                   every reading
  *     switch (wb_release_judge(&release)) ...
  */
-#ifndef WB_DAQ_RELEASE_H
-#define WB_DAQ_RELEASE_H
+#ifndef WB_DAQ_ACQUIRE_RELEASE_H
+#define WB_DAQ_ACQUIRE_RELEASE_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* Keeps remarks from becoming a flood: a port full of rubbish would otherwise fill the recording
  * and the operator's terminal with complaints. One gate for each stream. */
-#ifndef WB_DAQ_REMARK_GATE_H
-#define WB_DAQ_REMARK_GATE_H
+#ifndef WB_DAQ_ACQUIRE_REMARK_GATE_H
+#define WB_DAQ_ACQUIRE_REMARK_GATE_H
 
 #include <stdbool.h>
 #include <stdint.h>

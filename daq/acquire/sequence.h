@@ -2,8 +2,8 @@
  * follows another, each motion is offered to the stage until it takes it, and every way out stops
  * the stage first.
  */
-#ifndef WB_DAQ_SEQUENCE_H
-#define WB_DAQ_SEQUENCE_H
+#ifndef WB_DAQ_ACQUIRE_SEQUENCE_H
+#define WB_DAQ_ACQUIRE_SEQUENCE_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* What an instrument that is not heard may lack, and how to mend it: nothing came, or nothing that
  * can be understood, or answers without frames. */
-#ifndef WB_DAQ_SILENCE_CHECK_H
-#define WB_DAQ_SILENCE_CHECK_H
+#ifndef WB_DAQ_ACQUIRE_SILENCE_CHECK_H
+#define WB_DAQ_ACQUIRE_SILENCE_CHECK_H
 
 #include <stdbool.h>
 

@@ -1,8 +1,8 @@
 /* The speed of the stage in a motion, from its own reports: between the first and the last that are
  * clear of speeding up and braking. A controller that is set too slow, or whose feed somebody has
  * overridden, says nothing. */
-#ifndef WB_DAQ_SPEED_WATCH_H
-#define WB_DAQ_SPEED_WATCH_H
+#ifndef WB_DAQ_ACQUIRE_SPEED_WATCH_H
+#define WB_DAQ_ACQUIRE_SPEED_WATCH_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* Why a stage is in alarm, whatever its controller is. */
-#ifndef WB_DAQ_STAGE_ALARM_H
-#define WB_DAQ_STAGE_ALARM_H
+#ifndef WB_DAQ_ACQUIRE_STAGE_ALARM_H
+#define WB_DAQ_ACQUIRE_STAGE_ALARM_H
 
 #include <stddef.h>
 

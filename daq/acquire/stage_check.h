@@ -2,8 +2,8 @@
  * when this computer dies is not moved. GRBL says nothing of most of it: it
  * slows a jog down to its largest speed, and reports inches, without a word. Pure decisions; the
  * reason of a refusal is written for the operator. */
-#ifndef WB_DAQ_STAGE_CHECK_H
-#define WB_DAQ_STAGE_CHECK_H
+#ifndef WB_DAQ_ACQUIRE_STAGE_CHECK_H
+#define WB_DAQ_ACQUIRE_STAGE_CHECK_H
 
 #include <stdbool.h>
 

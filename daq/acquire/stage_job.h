@@ -5,8 +5,8 @@
  *     while (wb_stage_job_step(job, timeout_ns) == WB_SEQUENCE_RUNNING) ...
  *     wb_stage_job_close(job, &result);
  */
-#ifndef WB_DAQ_STAGE_JOB_H
-#define WB_DAQ_STAGE_JOB_H
+#ifndef WB_DAQ_ACQUIRE_STAGE_JOB_H
+#define WB_DAQ_ACQUIRE_STAGE_JOB_H
 
 #include <stdbool.h>
 

@@ -9,8 +9,8 @@
  * The checks are those of `wirebench record`, and the rig file's limits are its own. An instrument
  * that cannot be opened or stays silent is a finding, not a failure.
  */
-#ifndef WB_DAQ_DOCTOR_H
-#define WB_DAQ_DOCTOR_H
+#ifndef WB_DAQ_DOCTOR_DOCTOR_H
+#define WB_DAQ_DOCTOR_DOCTOR_H
 
 #include <stdbool.h>
 #include <stdint.h>

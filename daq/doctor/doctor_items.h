@@ -1,6 +1,6 @@
 /* The findings of daq/doctor/doctor.h, from what was seen and heard. No port is touched. */
-#ifndef WB_DAQ_DOCTOR_ITEMS_H
-#define WB_DAQ_DOCTOR_ITEMS_H
+#ifndef WB_DAQ_DOCTOR_DOCTOR_ITEMS_H
+#define WB_DAQ_DOCTOR_DOCTOR_ITEMS_H
 
 #include "daq/doctor/doctor.h"
 #include "daq/doctor/doctor_seen.h"

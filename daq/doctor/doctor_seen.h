@@ -1,7 +1,7 @@
 /* What was seen and heard of a bench while it was listened to. Filled from samples, without ports
  * or clocks. */
-#ifndef WB_DAQ_DOCTOR_SEEN_H
-#define WB_DAQ_DOCTOR_SEEN_H
+#ifndef WB_DAQ_DOCTOR_DOCTOR_SEEN_H
+#define WB_DAQ_DOCTOR_DOCTOR_SEEN_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* What the cameras see beside what the specimen file says, as text for a terminal. */
-#ifndef WB_DAQ_MARKER_PICTURE_H
-#define WB_DAQ_MARKER_PICTURE_H
+#ifndef WB_DAQ_DOCTOR_MARKER_PICTURE_H
+#define WB_DAQ_DOCTOR_MARKER_PICTURE_H
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 /* What instruments are connected to this computer, and a first rig file that names them. */
-#ifndef WB_DAQ_SCAN_H
-#define WB_DAQ_SCAN_H
+#ifndef WB_DAQ_DOCTOR_SCAN_H
+#define WB_DAQ_DOCTOR_SCAN_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* A running mean with its scatter (Welford), for zeros, tares and checks. */
-#ifndef WB_DAQ_AVERAGE_H
-#define WB_DAQ_AVERAGE_H
+#ifndef WB_DAQ_PROTOCOL_AVERAGE_H
+#define WB_DAQ_PROTOCOL_AVERAGE_H
 
 #include <math.h>
 #include <stdint.h>

@@ -16,8 +16,8 @@
  * Standard uncertainties are those of the means (struct wb_cell_point). Those of the masses
  * themselves and of gravity come on top and are not known here. Terms as in OIML R 60 (load cells).
  */
-#ifndef WB_DAQ_CELL_CALIBRATION_H
-#define WB_DAQ_CELL_CALIBRATION_H
+#ifndef WB_DAQ_PROTOCOL_CELL_CALIBRATION_H
+#define WB_DAQ_PROTOCOL_CELL_CALIBRATION_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* Lines and cells of large tables as text, without copies: for exports of 100 MB, read in a second.
  * Small tables of unknown make are for base/text_table.h. */
-#ifndef WB_DAQ_CELLS_H
-#define WB_DAQ_CELLS_H
+#ifndef WB_DAQ_PROTOCOL_CELLS_H
+#define WB_DAQ_PROTOCOL_CELLS_H
 
 #include <stdbool.h>
 #include <stddef.h>

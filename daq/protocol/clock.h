@@ -6,8 +6,8 @@
  * latency as an unknown constant. A streaming instrument without stamps: the same over the
  * readings' number. After a break (a restarted server, lost readings) a new segment begins.
  */
-#ifndef WB_DAQ_CLOCK_H
-#define WB_DAQ_CLOCK_H
+#ifndef WB_DAQ_PROTOCOL_CLOCK_H
+#define WB_DAQ_PROTOCOL_CLOCK_H
 
 #include <stddef.h>
 #include <stdint.h>

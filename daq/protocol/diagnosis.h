@@ -1,8 +1,8 @@
 /* What an instrument that cannot be understood seems to be, from the first bytes it sent, and which
  * key of the rig file to change: a wrong baud rate, no line ends, other firmware, the ports of load
  * cell and stage swapped. Pure functions on bytes. */
-#ifndef WB_DAQ_DIAGNOSIS_H
-#define WB_DAQ_DIAGNOSIS_H
+#ifndef WB_DAQ_PROTOCOL_DIAGNOSIS_H
+#define WB_DAQ_PROTOCOL_DIAGNOSIS_H
 
 #include <stddef.h>
 #include <stdint.h>

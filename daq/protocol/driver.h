@@ -6,8 +6,8 @@
  * allocates `state_size` zeroed bytes and calls `init` with the instrument's settings. Only
  * `command` and `stop` may be NULL: an instrument without commands, one that needs no goodbye.
  */
-#ifndef WB_DAQ_DRIVER_H
-#define WB_DAQ_DRIVER_H
+#ifndef WB_DAQ_PROTOCOL_DRIVER_H
+#define WB_DAQ_PROTOCOL_DRIVER_H
 
 #include <stdbool.h>
 #include <stddef.h>

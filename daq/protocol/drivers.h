@@ -1,7 +1,7 @@
 /* The protocols that the program knows. A new one is a file with its `struct wb_driver`, named as
  * the file, and a line in this list. */
-#ifndef WB_DAQ_DRIVERS_H
-#define WB_DAQ_DRIVERS_H
+#ifndef WB_DAQ_PROTOCOL_DRIVERS_H
+#define WB_DAQ_PROTOCOL_DRIVERS_H
 
 #include "daq/protocol/driver.h"
 

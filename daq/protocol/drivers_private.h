@@ -1,6 +1,6 @@
 /* What only tests ask of daq/protocol/drivers.h. */
-#ifndef WB_DAQ_DRIVERS_PRIVATE_H
-#define WB_DAQ_DRIVERS_PRIVATE_H
+#ifndef WB_DAQ_PROTOCOL_DRIVERS_PRIVATE_H
+#define WB_DAQ_PROTOCOL_DRIVERS_PRIVATE_H
 
 #include "daq/protocol/drivers.h"
 

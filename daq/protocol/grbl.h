@@ -4,8 +4,8 @@
  * GRBL answers each line it is sent with `ok` or `error:N`, in order. In between it pushes status
  * reports (the answer to the real-time byte `?`), `ALARM:N`, messages and its banner.
  */
-#ifndef WB_DAQ_GRBL_H
-#define WB_DAQ_GRBL_H
+#ifndef WB_DAQ_PROTOCOL_GRBL_H
+#define WB_DAQ_PROTOCOL_GRBL_H
 
 #include <stdbool.h>
 #include <stddef.h>

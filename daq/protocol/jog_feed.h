@@ -10,8 +10,8 @@
  *     wb_jog_feed_accepted(&feed, now_ns);                its `ok`
  *
  * Knows no protocol and no clock. Lengths are along the way, from where it begins. */
-#ifndef WB_DAQ_JOG_FEED_H
-#define WB_DAQ_JOG_FEED_H
+#ifndef WB_DAQ_PROTOCOL_JOG_FEED_H
+#define WB_DAQ_PROTOCOL_JOG_FEED_H
 
 #include <stdbool.h>
 #include <stdint.h>

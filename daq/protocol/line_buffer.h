@@ -1,6 +1,6 @@
 /* Bytes of a text protocol, gathered until they are a line. */
-#ifndef WB_DAQ_LINE_BUFFER_H
-#define WB_DAQ_LINE_BUFFER_H
+#ifndef WB_DAQ_PROTOCOL_LINE_BUFFER_H
+#define WB_DAQ_PROTOCOL_LINE_BUFFER_H
 
 #include <stdbool.h>
 #include <stddef.h>

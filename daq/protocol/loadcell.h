@@ -1,8 +1,8 @@
 /* What the load-cell drivers share: the bytes of a line on their way, the questions of a polled
  * cell, and what becomes of a decoded line: it is counted, its unit is checked, it turns into a
  * sample, and faults are remarked on without flooding the recording. */
-#ifndef WB_DAQ_LOADCELL_H
-#define WB_DAQ_LOADCELL_H
+#ifndef WB_DAQ_PROTOCOL_LOADCELL_H
+#define WB_DAQ_PROTOCOL_LOADCELL_H
 
 #include <stdbool.h>
 #include <stddef.h>

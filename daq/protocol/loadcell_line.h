@@ -6,8 +6,8 @@
  * `OL,+9999999E+19` is no number. A comma in a number is refused unless the rig file says that this
  * instrument writes decimal commas.
  */
-#ifndef WB_DAQ_LOADCELL_LINE_H
-#define WB_DAQ_LOADCELL_LINE_H
+#ifndef WB_DAQ_PROTOCOL_LOADCELL_LINE_H
+#define WB_DAQ_PROTOCOL_LOADCELL_LINE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -7,8 +7,8 @@
  * cannot say: which lines are answers to commands and no readings, and that a line without a unit
  * is an unstable one. The lines themselves are read by daq/protocol/loadcell_line.h.
  */
-#ifndef WB_DAQ_LOADCELL_PRESET_H
-#define WB_DAQ_LOADCELL_PRESET_H
+#ifndef WB_DAQ_PROTOCOL_LOADCELL_PRESET_H
+#define WB_DAQ_PROTOCOL_LOADCELL_PRESET_H
 
 #include <stdbool.h>
 #include <stddef.h>

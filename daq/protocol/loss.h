@@ -9,8 +9,8 @@
  *
  * Pure: samples in, counts out; no memory, no clock.
  */
-#ifndef WB_DAQ_LOSS_H
-#define WB_DAQ_LOSS_H
+#ifndef WB_DAQ_PROTOCOL_LOSS_H
+#define WB_DAQ_PROTOCOL_LOSS_H
 
 #include <stdbool.h>
 #include <stdint.h>

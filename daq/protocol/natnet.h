@@ -11,8 +11,8 @@
  * and later versions, are read as 4.1, and like every frame only
  * when sections, stamps and end mark fit to the last byte. Other layouts are refused.
  */
-#ifndef WB_DAQ_NATNET_H
-#define WB_DAQ_NATNET_H
+#ifndef WB_DAQ_PROTOCOL_NATNET_H
+#define WB_DAQ_PROTOCOL_NATNET_H
 
 #include <stdbool.h>
 #include <stddef.h>

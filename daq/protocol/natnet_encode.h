@@ -4,8 +4,8 @@
  * Each function writes one whole datagram into `buffer` and returns its size, or 0 when it does not
  * fit `size` (or cannot be sent at all).
  */
-#ifndef WB_DAQ_NATNET_ENCODE_H
-#define WB_DAQ_NATNET_ENCODE_H
+#ifndef WB_DAQ_PROTOCOL_NATNET_ENCODE_H
+#define WB_DAQ_PROTOCOL_NATNET_ENCODE_H
 
 #include <stdbool.h>
 #include <stddef.h>

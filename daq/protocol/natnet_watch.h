@@ -4,8 +4,8 @@
  *
  * Pure: frames and their times in, remarks and a segment's number out; so a replay finds the same.
  */
-#ifndef WB_DAQ_NATNET_WATCH_H
-#define WB_DAQ_NATNET_WATCH_H
+#ifndef WB_DAQ_PROTOCOL_NATNET_WATCH_H
+#define WB_DAQ_PROTOCOL_NATNET_WATCH_H
 
 #include <stdbool.h>
 #include <stdint.h>

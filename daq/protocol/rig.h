@@ -51,8 +51,8 @@
  *     time_scale: 1
  *     truth: {...}                     # only written by `wirebench rig`; no analysis reads it
  */
-#ifndef WB_DAQ_RIG_H
-#define WB_DAQ_RIG_H
+#ifndef WB_DAQ_PROTOCOL_RIG_H
+#define WB_DAQ_PROTOCOL_RIG_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* What instruments say, decoded: samples with the host's arrival time beside the device's own. */
-#ifndef WB_DAQ_SAMPLE_H
-#define WB_DAQ_SAMPLE_H
+#ifndef WB_DAQ_PROTOCOL_SAMPLE_H
+#define WB_DAQ_PROTOCOL_SAMPLE_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -8,8 +8,8 @@
  *     marker_offset_mm: 1.0        # from the wire's axis, along its local normal
  *     marker_offset_uncertainty_mm: 0.1   # optional
  */
-#ifndef WB_DAQ_SPECIMEN_H
-#define WB_DAQ_SPECIMEN_H
+#ifndef WB_DAQ_PROTOCOL_SPECIMEN_H
+#define WB_DAQ_PROTOCOL_SPECIMEN_H
 
 #include "base/file.h"
 #include "base/reason.h"

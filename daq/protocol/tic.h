@@ -8,8 +8,8 @@
  *
  * Positions are in microsteps, speeds in microsteps per 10 000 s, accelerations in microsteps/s per
  * 100 s. */
-#ifndef WB_DAQ_TIC_H
-#define WB_DAQ_TIC_H
+#ifndef WB_DAQ_PROTOCOL_TIC_H
+#define WB_DAQ_PROTOCOL_TIC_H
 
 #include <stdbool.h>
 #include <stddef.h>

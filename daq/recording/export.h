@@ -1,6 +1,6 @@
 /* A recording's samples as CSV tables, for people and other programs. */
-#ifndef WB_DAQ_EXPORT_H
-#define WB_DAQ_EXPORT_H
+#ifndef WB_DAQ_RECORDING_EXPORT_H
+#define WB_DAQ_RECORDING_EXPORT_H
 
 #include <stdint.h>
 

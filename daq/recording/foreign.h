@@ -1,8 +1,8 @@
 /* Files of other programs as sources of samples: how a stream of a recording says what its file is,
  * and the file's bytes through its reader into a sink, the same when it is imported and when the
  * recording is replayed. */
-#ifndef WB_DAQ_FOREIGN_H
-#define WB_DAQ_FOREIGN_H
+#ifndef WB_DAQ_RECORDING_FOREIGN_H
+#define WB_DAQ_RECORDING_FOREIGN_H
 
 #include "base/hash.h"
 #include "daq/protocol/driver.h"

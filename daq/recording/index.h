@@ -27,8 +27,8 @@
  * A recording is never changed, so what was decided of it afterwards stands in an index. The one in
  * the recording's own folder, index.yaml, is looked at by whatever opens the recording.
  */
-#ifndef WB_DAQ_INDEX_H
-#define WB_DAQ_INDEX_H
+#ifndef WB_DAQ_RECORDING_INDEX_H
+#define WB_DAQ_RECORDING_INDEX_H
 
 #include <stdbool.h>
 

@@ -13,8 +13,8 @@
  * Closing sets meta 'closed' to the UTC time; without it the recording ended by a crash, a power
  * cut or a full disk. Only recording_*.c include sqlite3.h, zlib.h and zstd.h.
  */
-#ifndef WB_DAQ_RECORDING_H
-#define WB_DAQ_RECORDING_H
+#ifndef WB_DAQ_RECORDING_RECORDING_H
+#define WB_DAQ_RECORDING_RECORDING_H
 
 #include <stdbool.h>
 #include <stddef.h>

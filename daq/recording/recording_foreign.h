@@ -1,7 +1,7 @@
 /* A whole file of another program inside a recording: one stream, its chunks pieces of the file,
  * each compressed by itself with zstd. */
-#ifndef WB_DAQ_RECORDING_FOREIGN_H
-#define WB_DAQ_RECORDING_FOREIGN_H
+#ifndef WB_DAQ_RECORDING_RECORDING_FOREIGN_H
+#define WB_DAQ_RECORDING_RECORDING_FOREIGN_H
 
 #include "daq/recording/recording.h"
 

@@ -1,8 +1,8 @@
 /* Between the parts of the recording, recording_*.c. Only these include sqlite3.h, zlib.h and
  * zstd.h.
  */
-#ifndef WB_DAQ_RECORDING_PRIVATE_H
-#define WB_DAQ_RECORDING_PRIVATE_H
+#ifndef WB_DAQ_RECORDING_RECORDING_PRIVATE_H
+#define WB_DAQ_RECORDING_RECORDING_PRIVATE_H
 
 #include <sqlite3.h>
 #include <stdbool.h>

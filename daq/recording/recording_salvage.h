@@ -5,8 +5,8 @@
  * of which table, with which number. So every page of the file and every page in the log is looked
  * at by itself, in whatever order they stand, and what fits its checksum counts.
  */
-#ifndef WB_DAQ_RECORDING_SALVAGE_H
-#define WB_DAQ_RECORDING_SALVAGE_H
+#ifndef WB_DAQ_RECORDING_RECORDING_SALVAGE_H
+#define WB_DAQ_RECORDING_RECORDING_SALVAGE_H
 
 #include "daq/recording/recording_private.h"
 

@@ -1,6 +1,6 @@
 /* A damaged or unclosed recording made whole: all rows that can still be found, in a new file. */
-#ifndef WB_DAQ_RECOVER_H
-#define WB_DAQ_RECOVER_H
+#ifndef WB_DAQ_RECORDING_RECOVER_H
+#define WB_DAQ_RECORDING_RECOVER_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* Replay: the recorded bytes through the same drivers as live, for analysis, quicklook and
  * `wirebench replay`. */
-#ifndef WB_DAQ_REPLAY_H
-#define WB_DAQ_REPLAY_H
+#ifndef WB_DAQ_RECORDING_REPLAY_H
+#define WB_DAQ_RECORDING_REPLAY_H
 
 #include "base/status.h"
 #include "daq/protocol/rig.h"

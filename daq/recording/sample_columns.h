@@ -1,7 +1,7 @@
 /* A recording's samples, events and clock probes as tables in memory. The same rows in the same
  * order as the CSV tables of daq/recording/export.h; lengths are in metres. */
-#ifndef WB_DAQ_SAMPLE_COLUMNS_H
-#define WB_DAQ_SAMPLE_COLUMNS_H
+#ifndef WB_DAQ_RECORDING_SAMPLE_COLUMNS_H
+#define WB_DAQ_RECORDING_SAMPLE_COLUMNS_H
 
 #include "base/columns.h"
 #include "base/status.h"

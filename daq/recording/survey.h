@@ -1,7 +1,7 @@
 /* A survey of a whole recording: what it holds, and what is missing or damaged. A stream is what
  * one instrument sent, a chunk one read or datagram of it. */
-#ifndef WB_DAQ_SURVEY_H
-#define WB_DAQ_SURVEY_H
+#ifndef WB_DAQ_RECORDING_SURVEY_H
+#define WB_DAQ_RECORDING_SURVEY_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -15,8 +15,8 @@
  *
  * One thread pushes, asks and finishes; the recording belongs to the writer from start to finish.
  */
-#ifndef WB_DAQ_WRITER_H
-#define WB_DAQ_WRITER_H
+#ifndef WB_DAQ_RECORDING_WRITER_H
+#define WB_DAQ_RECORDING_WRITER_H
 
 #include <stdbool.h>
 #include <stddef.h>

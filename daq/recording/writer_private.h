@@ -1,6 +1,6 @@
 /* What only tests ask of daq/recording/writer.h. */
-#ifndef WB_DAQ_WRITER_PRIVATE_H
-#define WB_DAQ_WRITER_PRIVATE_H
+#ifndef WB_DAQ_RECORDING_WRITER_PRIVATE_H
+#define WB_DAQ_RECORDING_WRITER_PRIVATE_H
 
 #include "daq/recording/writer.h"
 

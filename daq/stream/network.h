@@ -1,6 +1,6 @@
 /* The network cards of this computer, and which of them leads to a server. */
-#ifndef WB_DAQ_NETWORK_H
-#define WB_DAQ_NETWORK_H
+#ifndef WB_DAQ_STREAM_NETWORK_H
+#define WB_DAQ_STREAM_NETWORK_H
 
 #include <stdbool.h>
 #include <stddef.h>

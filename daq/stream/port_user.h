@@ -3,8 +3,8 @@
  * The kernel tells the holder of a lock (/proc/locks), and which files the processes of this user,
  * or for root of all users, have open (/proc/PID/fd).
  */
-#ifndef WB_DAQ_PORT_USER_H
-#define WB_DAQ_PORT_USER_H
+#ifndef WB_DAQ_STREAM_PORT_USER_H
+#define WB_DAQ_STREAM_PORT_USER_H
 
 #include <stdbool.h>
 

@@ -12,8 +12,8 @@
  * /dev/serial/by-id/... A group of 255.255.255.255:PORT takes a server's broadcasts; `interface` is
  * an address or a name such as eth0. All streams are non-blocking. A stream is used by one thread.
  */
-#ifndef WB_DAQ_STREAM_H
-#define WB_DAQ_STREAM_H
+#ifndef WB_DAQ_STREAM_STREAM_H
+#define WB_DAQ_STREAM_STREAM_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* Between stream.c and the kinds of streams: what a kind is, and a stream of one. Nobody else
  * includes this. */
-#ifndef WB_DAQ_STREAM_KIND_H
-#define WB_DAQ_STREAM_KIND_H
+#ifndef WB_DAQ_STREAM_STREAM_KIND_H
+#define WB_DAQ_STREAM_STREAM_KIND_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* What serial ports and pseudo-terminals share: their addresses, and how a device is locked, read,
  * written and waited for. */
-#ifndef WB_DAQ_STREAM_LINE_H
-#define WB_DAQ_STREAM_LINE_H
+#ifndef WB_DAQ_STREAM_STREAM_LINE_H
+#define WB_DAQ_STREAM_STREAM_LINE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* What only tests ask of daq/stream/stream.h. */
-#ifndef WB_DAQ_STREAM_PRIVATE_H
-#define WB_DAQ_STREAM_PRIVATE_H
+#ifndef WB_DAQ_STREAM_STREAM_PRIVATE_H
+#define WB_DAQ_STREAM_STREAM_PRIVATE_H
 
 #include "daq/stream/stream.h"
 

@@ -1,6 +1,6 @@
 /* Addresses `udp:HOST:PORT[,group=ADDR:PORT][,interface=ADDR]`: see daq/stream/stream.h. */
-#ifndef WB_DAQ_UDP_ADDRESS_H
-#define WB_DAQ_UDP_ADDRESS_H
+#ifndef WB_DAQ_STREAM_UDP_ADDRESS_H
+#define WB_DAQ_STREAM_UDP_ADDRESS_H
 
 #include <netinet/in.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 /* Which of the serial ports that are there is an adapter that was unplugged: the kernel may give it
  * another number when it comes back, and its old number to another one.
  */
-#ifndef WB_DAQ_USB_IDENTITY_H
-#define WB_DAQ_USB_IDENTITY_H
+#ifndef WB_DAQ_STREAM_USB_IDENTITY_H
+#define WB_DAQ_STREAM_USB_IDENTITY_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* Force over time from a text file of a data logger, of any delimiter and encoding
  * (base/text_table.h). */
-#ifndef WB_DAQ_FORCE_TABLE_H
-#define WB_DAQ_FORCE_TABLE_H
+#ifndef WB_DAQ_TAKE_FORCE_TABLE_H
+#define WB_DAQ_TAKE_FORCE_TABLE_H
 
 #include <stddef.h>
 

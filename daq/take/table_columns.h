@@ -5,8 +5,8 @@
  * the header has none: "time=1,force=2:mN,travel=3". What fits several columns equally well is
  * refused.
  */
-#ifndef WB_DAQ_TABLE_COLUMNS_H
-#define WB_DAQ_TABLE_COLUMNS_H
+#ifndef WB_DAQ_TAKE_TABLE_COLUMNS_H
+#define WB_DAQ_TAKE_TABLE_COLUMNS_H
 
 #include "base/reason.h"
 #include "base/text_table.h"

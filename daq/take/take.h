@@ -9,8 +9,8 @@
  * A reader either understands the whole file or refuses it, naming file, line and column (of a
  * binary file: what it was reading); rows that are left out are counted in the take.
  */
-#ifndef WB_DAQ_TAKE_H
-#define WB_DAQ_TAKE_H
+#ifndef WB_DAQ_TAKE_TAKE_H
+#define WB_DAQ_TAKE_TAKE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* What only tests ask of daq/take/take.h. */
-#ifndef WB_DAQ_TAKE_PRIVATE_H
-#define WB_DAQ_TAKE_PRIVATE_H
+#ifndef WB_DAQ_TAKE_TAKE_PRIVATE_H
+#define WB_DAQ_TAKE_TAKE_PRIVATE_H
 
 #include "daq/take/take.h"
 

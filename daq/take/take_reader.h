@@ -1,7 +1,7 @@
 /* The readers of takes, one for each format of files. A new one is a file with its struct, and a
  * line in the table of take_reader.c. */
-#ifndef WB_DAQ_TAKE_READER_H
-#define WB_DAQ_TAKE_READER_H
+#ifndef WB_DAQ_TAKE_TAKE_READER_H
+#define WB_DAQ_TAKE_TAKE_READER_H
 
 #include "daq/take/take.h"
 

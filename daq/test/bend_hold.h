@@ -5,8 +5,8 @@
  *     hold_start  {"cycle": 1, "phase": "down", "travel_mm": 20.4, "tension_mN": 41.7}
  *     hold_end    {"lasted_s": 32.1, "tension_mN": 39.9, "how": "resumed"}      or "stopped"
  */
-#ifndef WB_DAQ_BEND_HOLD_H
-#define WB_DAQ_BEND_HOLD_H
+#ifndef WB_DAQ_TEST_BEND_HOLD_H
+#define WB_DAQ_TEST_BEND_HOLD_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* Creates the recording of a test: its meta values and its streams. */
-#ifndef WB_DAQ_BEND_RECORDING_H
-#define WB_DAQ_BEND_RECORDING_H
+#ifndef WB_DAQ_TEST_BEND_RECORDING_H
+#define WB_DAQ_TEST_BEND_RECORDING_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* What only tests ask of daq/test/bend_recording.h. */
-#ifndef WB_DAQ_BEND_RECORDING_PRIVATE_H
-#define WB_DAQ_BEND_RECORDING_PRIVATE_H
+#ifndef WB_DAQ_TEST_BEND_RECORDING_PRIVATE_H
+#define WB_DAQ_TEST_BEND_RECORDING_PRIVATE_H
 
 #include "daq/test/bend_recording.h"
 

@@ -8,8 +8,8 @@
  * Every way out stops the stage first, then closes the recording: a limit, Ctrl-C, a full disk, an
  * instrument that fell silent. A limit is a result, not an error. Used by one thread.
  */
-#ifndef WB_DAQ_BEND_TEST_H
-#define WB_DAQ_BEND_TEST_H
+#ifndef WB_DAQ_TEST_BEND_TEST_H
+#define WB_DAQ_TEST_BEND_TEST_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* Whether the load cell's check still holds: the age of its last entry in the log beside the rig
  * file (check_log.h) against load_cell.check_due_days. */
-#ifndef WB_DAQ_CHECK_DUE_H
-#define WB_DAQ_CHECK_DUE_H
+#ifndef WB_DAQ_TEST_CHECK_DUE_H
+#define WB_DAQ_TEST_CHECK_DUE_H
 
 #include <stdint.h>
 

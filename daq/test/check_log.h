@@ -6,8 +6,8 @@
  *
  * The serial number comes last, because it is text and may hold anything but a line break.
  */
-#ifndef WB_DAQ_CHECK_LOG_H
-#define WB_DAQ_CHECK_LOG_H
+#ifndef WB_DAQ_TEST_CHECK_LOG_H
+#define WB_DAQ_TEST_CHECK_LOG_H
 
 #include <stdbool.h>
 

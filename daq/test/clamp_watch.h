@@ -2,8 +2,8 @@
  * that loses its steps is seen by the cameras, while the stage goes on counting. The first
  * millimetres are judged more closely (first_motion.h).
  */
-#ifndef WB_DAQ_CLAMP_WATCH_H
-#define WB_DAQ_CLAMP_WATCH_H
+#ifndef WB_DAQ_TEST_CLAMP_WATCH_H
+#define WB_DAQ_TEST_CLAMP_WATCH_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -2,8 +2,8 @@
  * bent, and as steeply as a wire of its kind can be. A cell that reads the other way round, another
  * unit, or another specimen shows here, while the specimen is still whole.
  */
-#ifndef WB_DAQ_FIRST_FORCE_H
-#define WB_DAQ_FIRST_FORCE_H
+#ifndef WB_DAQ_TEST_FIRST_FORCE_H
+#define WB_DAQ_TEST_FIRST_FORCE_H
 
 #include <stdbool.h>
 

@@ -2,8 +2,8 @@
  * clamp has. Where the two part, the specimen is still whole, and what is wrong can be mended;
  * after the test it cannot.
  */
-#ifndef WB_DAQ_FIRST_MOTION_H
-#define WB_DAQ_FIRST_MOTION_H
+#ifndef WB_DAQ_TEST_FIRST_MOTION_H
+#define WB_DAQ_TEST_FIRST_MOTION_H
 
 #include <stdbool.h>
 

@@ -1,8 +1,8 @@
 /* A force that falls while the wire is bent further: the wire or the strand broke, or the wire
  * slips in its clamp. What follows measures nothing, and the stage would go on to the end.
  */
-#ifndef WB_DAQ_FORCE_DROP_H
-#define WB_DAQ_FORCE_DROP_H
+#ifndef WB_DAQ_TEST_FORCE_DROP_H
+#define WB_DAQ_TEST_FORCE_DROP_H
 
 #include <stdbool.h>
 

@@ -13,8 +13,8 @@
  * How far a series has come is seen in the folder of its recordings and in the index there
  * (daq/recording/index.h), and nowhere else: it may be interrupted at any moment and gone on with.
  */
-#ifndef WB_DAQ_SERIES_H
-#define WB_DAQ_SERIES_H
+#ifndef WB_DAQ_TEST_SERIES_H
+#define WB_DAQ_TEST_SERIES_H
 
 #include <stdbool.h>
 

@@ -2,8 +2,8 @@
  * reads zero. Pure functions on gathered samples; the reason of a refusal is written for the
  * operator.
  */
-#ifndef WB_DAQ_START_CHECK_H
-#define WB_DAQ_START_CHECK_H
+#ifndef WB_DAQ_TEST_START_CHECK_H
+#define WB_DAQ_TEST_START_CHECK_H
 
 #include <stdbool.h>
 #include <stddef.h>

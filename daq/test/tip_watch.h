@@ -2,8 +2,8 @@
  * above the clamp's, followed from frame to frame. The analysis later computes the exact one from
  * the recording.
  */
-#ifndef WB_DAQ_TIP_WATCH_H
-#define WB_DAQ_TIP_WATCH_H
+#ifndef WB_DAQ_TEST_TIP_WATCH_H
+#define WB_DAQ_TEST_TIP_WATCH_H
 
 #include <stdbool.h>
 

@@ -1,8 +1,8 @@
 /* One small take in every format, for tests of the readers: `n_frames` frames of 3 markers at 100
  * frames a second. Marker m in frame f is at (0.1 m + 0.001 f, 1 - 0.002 f, 0.25 m) m, and the
  * second is not seen in every fifth frame. */
-#ifndef WB_TESTS_TAKE_EXAMPLE_H
-#define WB_TESTS_TAKE_EXAMPLE_H
+#ifndef WB_TESTS_DAQ_TAKE_EXAMPLE_H
+#define WB_TESTS_DAQ_TAKE_EXAMPLE_H
 
 #include <math.h>
 #include <stdbool.h>

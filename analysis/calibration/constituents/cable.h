@@ -12,8 +12,8 @@
  * with the strain that its centre has: M_bonded = M_free + M_axial. The place of a measurement
  * between them is chi = (M - M_free) / (M_bonded - M_free), 0 without friction and 1 when bonded.
  */
-#ifndef WB_ANALYSIS_CABLE_H
-#define WB_ANALYSIS_CABLE_H
+#ifndef WB_ANALYSIS_CALIBRATION_CONSTITUENTS_CABLE_H
+#define WB_ANALYSIS_CALIBRATION_CONSTITUENTS_CABLE_H
 
 #include "base/reason.h"
 #include "base/status.h"

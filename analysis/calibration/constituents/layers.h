@@ -7,8 +7,8 @@
  *   - bonded: the section stays plane, its metal spread over the conductor's circle;
  *   - sliding: each strand bends about its own axis, without friction.
  */
-#ifndef WB_ANALYSIS_LAYERS_H
-#define WB_ANALYSIS_LAYERS_H
+#ifndef WB_ANALYSIS_CALIBRATION_CONSTITUENTS_LAYERS_H
+#define WB_ANALYSIS_CALIBRATION_CONSTITUENTS_LAYERS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -20,8 +20,8 @@
  *      on; and by least squares of eq. 6 itself with sigma_Y free. Beside the latter stands the
  *      range of n in which the curve is met as well as the data can tell.
  */
-#ifndef WB_ANALYSIS_TENSILE_H
-#define WB_ANALYSIS_TENSILE_H
+#ifndef WB_ANALYSIS_CALIBRATION_CONSTITUENTS_TENSILE_H
+#define WB_ANALYSIS_CALIBRATION_CONSTITUENTS_TENSILE_H
 
 #include <stdbool.h>
 #include <stddef.h>

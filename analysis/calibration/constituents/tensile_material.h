@@ -1,6 +1,6 @@
 /* A material file from tensile tests: fe/material/material_file.h, with origin and intervals. */
-#ifndef WB_ANALYSIS_TENSILE_MATERIAL_H
-#define WB_ANALYSIS_TENSILE_MATERIAL_H
+#ifndef WB_ANALYSIS_CALIBRATION_CONSTITUENTS_TENSILE_MATERIAL_H
+#define WB_ANALYSIS_CALIBRATION_CONSTITUENTS_TENSILE_MATERIAL_H
 
 #include "analysis/calibration/constituents/tensile.h"
 #include "base/reason.h"

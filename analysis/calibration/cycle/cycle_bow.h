@@ -5,8 +5,8 @@
  * the bow is the one with which it carries, at the first point of the loading, what was measured
  * there. Everything after that point stays a prediction.
  */
-#ifndef WB_ANALYSIS_CYCLE_BOW_H
-#define WB_ANALYSIS_CYCLE_BOW_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_BOW_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_BOW_H
 
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/calibration/cycle/cycle_model.h"

@@ -13,8 +13,8 @@
  * not shrink with more specimens. What all specimens share (gain of the cell, lengths,
  * counterweight, diameter) leaves no trace in the data and is in neither.
  */
-#ifndef WB_ANALYSIS_CYCLE_CALIBRATE_H
-#define WB_ANALYSIS_CYCLE_CALIBRATE_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CALIBRATE_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CALIBRATE_H
 
 #include <stdbool.h>
 

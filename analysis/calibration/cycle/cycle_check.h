@@ -7,8 +7,8 @@
  *
  * What all specimens share leaves no trace and is not found: gain of the cell, diameter.
  */
-#ifndef WB_ANALYSIS_CYCLE_CHECK_H
-#define WB_ANALYSIS_CYCLE_CHECK_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CHECK_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CHECK_H
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "analysis/dataset/dataset.h"

@@ -1,6 +1,6 @@
 /* The two checks of analysis/cycle_check.h by themselves, for its tests. */
-#ifndef WB_ANALYSIS_CYCLE_CHECK_PRIVATE_H
-#define WB_ANALYSIS_CYCLE_CHECK_PRIVATE_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CHECK_PRIVATE_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CHECK_PRIVATE_H
 
 #include "analysis/calibration/cycle/cycle_check.h"
 

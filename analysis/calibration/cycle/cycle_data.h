@@ -9,8 +9,8 @@
  * below the turn, where the change of direction is past, and ends where the strand is about to
  * become slack. Of a simulation, which has no noise, every row is a point.
  */
-#ifndef WB_ANALYSIS_CYCLE_DATA_H
-#define WB_ANALYSIS_CYCLE_DATA_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_DATA_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_DATA_H
 
 #include <stdbool.h>
 

@@ -9,8 +9,8 @@
  * Loading alone leaves E and the hardening rule open: a wire that yields early and hardens bends up
  * like one that is soft. The way back tells them apart.
  */
-#ifndef WB_ANALYSIS_CYCLE_FIT_H
-#define WB_ANALYSIS_CYCLE_FIT_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_FIT_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_FIT_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* A calibration on whole cycles as JSON: the same in `calibrate --json` and report.json. */
-#ifndef WB_ANALYSIS_CYCLE_JSON_H
-#define WB_ANALYSIS_CYCLE_JSON_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_JSON_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_JSON_H
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "base/json.h"

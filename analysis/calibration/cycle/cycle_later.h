@@ -3,8 +3,8 @@
  * The fit never sees them, so they say whether the hardening rule holds: the beam goes through the
  * first cycle and all that follow, with the specimen's own law, bow and level.
  */
-#ifndef WB_ANALYSIS_CYCLE_LATER_H
-#define WB_ANALYSIS_CYCLE_LATER_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_LATER_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_LATER_H
 
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/calibration/cycle/cycle_fit.h"

@@ -5,8 +5,8 @@
  * The tension is the strand's, weights included. Two things of a specimen are the caller's: its
  * shape by nature, and the level, by which measured deflections are too large.
  */
-#ifndef WB_ANALYSIS_CYCLE_MODEL_H
-#define WB_ANALYSIS_CYCLE_MODEL_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_MODEL_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_MODEL_H
 
 #include <stdbool.h>
 

@@ -7,8 +7,8 @@
  * tenths. The diameter is exact: stress and strain are derived from moment and
  * curvature, so EI and M(kappa) stay, and E goes with the inverse fourth power of the diameter.
  */
-#ifndef WB_ANALYSIS_CYCLE_SENSITIVITY_H
-#define WB_ANALYSIS_CYCLE_SENSITIVITY_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_SENSITIVITY_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_SENSITIVITY_H
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "base/json.h"

@@ -5,8 +5,8 @@
  * lies on its floor. At each pair E, sigma_Y, the bow and the level are free, by the slopes at the
  * optimum; the misfit is then that of a run of the beam.
  */
-#ifndef WB_ANALYSIS_CYCLE_VALLEY_H
-#define WB_ANALYSIS_CYCLE_VALLEY_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_VALLEY_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_VALLEY_H
 
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "base/reason.h"

@@ -7,8 +7,8 @@
  * to about a tenth of 1/m, so the points mean something from an eighth of the largest curvature on;
  * below they are a band. A law is compared with them and never fitted to them.
  */
-#ifndef WB_ANALYSIS_MOMENT_CURVATURE_H
-#define WB_ANALYSIS_MOMENT_CURVATURE_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_MOMENT_CURVATURE_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_MOMENT_CURVATURE_H
 
 #include <stdbool.h>
 

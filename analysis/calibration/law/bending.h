@@ -1,6 +1,6 @@
 /* What a law says of a wire's section under pure bending: the numbers that users take away. */
-#ifndef WB_ANALYSIS_BENDING_H
-#define WB_ANALYSIS_BENDING_H
+#ifndef WB_ANALYSIS_CALIBRATION_LAW_BENDING_H
+#define WB_ANALYSIS_CALIBRATION_LAW_BENDING_H
 
 #include "base/status.h"
 #include "fe/material/law.h"

@@ -3,8 +3,8 @@
  * Eqs. 10 and 11 hold for a straight wire; of a sample with a bow they give a modulus and a yield
  * stress that are not the material's. How far off they are is found by applying them to curves that
  * are computed for the same samples from a known material. */
-#ifndef WB_ANALYSIS_BOW_CORRECTION_H
-#define WB_ANALYSIS_BOW_CORRECTION_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_BOW_CORRECTION_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_BOW_CORRECTION_H
 
 #include "analysis/calibration/paper/computed.h"
 #include "analysis/calibration/paper/first_guess.h"

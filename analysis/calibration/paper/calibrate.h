@@ -11,8 +11,8 @@
  * deflection and leave out how the wire curls up beyond it. Errors are then divided by the largest
  * deflection.
  */
-#ifndef WB_ANALYSIS_CALIBRATE_H
-#define WB_ANALYSIS_CALIBRATE_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_CALIBRATE_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_CALIBRATE_H
 
 #include <stdbool.h>
 

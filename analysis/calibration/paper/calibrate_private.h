@@ -1,6 +1,6 @@
 /* A part of calibrate.c that tests call by itself. */
-#ifndef WB_ANALYSIS_CALIBRATE_PRIVATE_H
-#define WB_ANALYSIS_CALIBRATE_PRIVATE_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_CALIBRATE_PRIVATE_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_CALIBRATE_PRIVATE_H
 
 #include "analysis/calibration/paper/calibrate.h"
 #include "analysis/dataset/dataset.h"

@@ -7,8 +7,8 @@
  * and a run starts from the wire under its weight only. All memory is taken at creation; a run
  * resets the state.
  */
-#ifndef WB_ANALYSIS_COMPUTED_H
-#define WB_ANALYSIS_COMPUTED_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_COMPUTED_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_COMPUTED_H
 
 #include <stdbool.h>
 

@@ -6,8 +6,8 @@
  * (sigma = K eps^n in the total strain) and serve for the first guess only: the law that is
  * calibrated is Ludwik's (plastic strain only).
  */
-#ifndef WB_ANALYSIS_FIRST_GUESS_H
-#define WB_ANALYSIS_FIRST_GUESS_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_FIRST_GUESS_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_FIRST_GUESS_H
 
 #include "analysis/dataset/curve.h"
 #include "base/reason.h"

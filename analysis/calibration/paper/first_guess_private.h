@@ -1,6 +1,6 @@
 /* The single formulas of first_guess.c, for the start of other fits and for tests. */
-#ifndef WB_ANALYSIS_FIRST_GUESS_PRIVATE_H
-#define WB_ANALYSIS_FIRST_GUESS_PRIVATE_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_FIRST_GUESS_PRIVATE_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_FIRST_GUESS_PRIVATE_H
 
 #include "analysis/calibration/paper/first_guess.h"
 

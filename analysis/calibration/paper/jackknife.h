@@ -3,8 +3,8 @@
  * Jackknife: each sample is left out once and the others are calibrated again, from the optimum of
  * all; the deviation is sqrt((n - 1)/n sum (theta_i - mean)^2).
  */
-#ifndef WB_ANALYSIS_JACKKNIFE_H
-#define WB_ANALYSIS_JACKKNIFE_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_JACKKNIFE_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_JACKKNIFE_H
 
 #include <stdbool.h>
 

@@ -3,8 +3,8 @@
  * Gauss-Newton steps with Levenberg's damping need some fifteen runs, where a simplex would need
  * dozens and, with a looser tolerance, stop early in the narrow valley that K and n share.
  */
-#ifndef WB_ANALYSIS_REFIT_H
-#define WB_ANALYSIS_REFIT_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_REFIT_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_REFIT_H
 
 #include <stdbool.h>
 

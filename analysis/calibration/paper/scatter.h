@@ -1,8 +1,8 @@
 /* The part of the scatter between samples that their bows do not explain. For each sample the curve
  * predicted with its own natural shape is subtracted from the measured one; the scatter of these
  * differences is what is left. */
-#ifndef WB_ANALYSIS_SCATTER_H
-#define WB_ANALYSIS_SCATTER_H
+#ifndef WB_ANALYSIS_CALIBRATION_PAPER_SCATTER_H
+#define WB_ANALYSIS_CALIBRATION_PAPER_SCATTER_H
 
 #include "analysis/calibration/paper/computed.h"
 #include "analysis/dataset/curve.h"

@@ -1,6 +1,6 @@
 /* Which method calibrates datasets where nobody names one: for the command and the library. */
-#ifndef WB_ANALYSIS_CALIBRATION_METHOD_H
-#define WB_ANALYSIS_CALIBRATION_METHOD_H
+#ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_METHOD_H
+#define WB_ANALYSIS_CALIBRATION_PROPERTIES_METHOD_H
 
 #include "analysis/dataset/dataset.h"
 #include "base/reason.h"

@@ -26,8 +26,8 @@
  *     specimens: [{sample: 1, length_mm: 85, bow_mm: 1.2, uneven_bow_mm: 0.1, level_mm: 0, misfit:
  * 0.0007, and the four numbers of its own Ludwik equivalent}, ...]
  */
-#ifndef WB_ANALYSIS_PROPERTIES_H
-#define WB_ANALYSIS_PROPERTIES_H
+#ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_PROPERTIES_H
+#define WB_ANALYSIS_CALIBRATION_PROPERTIES_PROPERTIES_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Between the values of properties, and their reading and writing. */
-#ifndef WB_ANALYSIS_PROPERTIES_PRIVATE_H
-#define WB_ANALYSIS_PROPERTIES_PRIVATE_H
+#ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_PROPERTIES_PRIVATE_H
+#define WB_ANALYSIS_CALIBRATION_PROPERTIES_PROPERTIES_PRIVATE_H
 
 #include "analysis/calibration/properties/properties.h"
 

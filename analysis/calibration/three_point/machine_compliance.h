@@ -16,8 +16,8 @@
  * it in quadrature the error of the bar's rigidity, which counts by as much as the bar gives way
  * itself. Friction, where the machine file leaves it open, is varied over its band, and its half
  * range joins likewise. */
-#ifndef WB_ANALYSIS_MACHINE_COMPLIANCE_H
-#define WB_ANALYSIS_MACHINE_COMPLIANCE_H
+#ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_MACHINE_COMPLIANCE_H
+#define WB_ANALYSIS_CALIBRATION_THREE_POINT_MACHINE_COMPLIANCE_H
 
 #include <stdbool.h>
 

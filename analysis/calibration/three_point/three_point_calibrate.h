@@ -8,8 +8,8 @@
  * radius: the machine's bands, or where it says nothing, 0 to 0.6, and half to two and a half times
  * the rollers' radius.
  */
-#ifndef WB_ANALYSIS_THREE_POINT_CALIBRATE_H
-#define WB_ANALYSIS_THREE_POINT_CALIBRATE_H
+#ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_CALIBRATE_H
+#define WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_CALIBRATE_H
 
 #include <stdbool.h>
 

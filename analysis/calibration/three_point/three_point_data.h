@@ -6,8 +6,8 @@
  * settling decides. So the points begin above it, and the first contact is left to the fit; what is
  * found here is where it looks first.
  */
-#ifndef WB_ANALYSIS_THREE_POINT_DATA_H
-#define WB_ANALYSIS_THREE_POINT_DATA_H
+#ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_DATA_H
+#define WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_DATA_H
 
 #include <stdbool.h>
 

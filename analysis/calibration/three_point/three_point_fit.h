@@ -6,8 +6,8 @@
  * machine's compliance are the caller's: the curves do not tell them (theory, "Three-point
  * bending").
  */
-#ifndef WB_ANALYSIS_THREE_POINT_FIT_H
-#define WB_ANALYSIS_THREE_POINT_FIT_H
+#ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_FIT_H
+#define WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_FIT_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* A three-point bending test of any law, computed: force over the travel beyond the first contact,
  * on the way up and, where it is asked for, the way back. */
-#ifndef WB_ANALYSIS_THREE_POINT_MODEL_H
-#define WB_ANALYSIS_THREE_POINT_MODEL_H
+#ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_MODEL_H
+#define WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_MODEL_H
 
 #include <stdbool.h>
 

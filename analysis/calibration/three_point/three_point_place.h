@@ -2,8 +2,8 @@
  * natural bow of its wire. The same priors hold where the law is fitted with them
  * (analysis/calibration/three_point/three_point_fit.h).
  */
-#ifndef WB_ANALYSIS_THREE_POINT_PLACE_H
-#define WB_ANALYSIS_THREE_POINT_PLACE_H
+#ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_PLACE_H
+#define WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_PLACE_H
 
 #include "analysis/calibration/three_point/three_point_data.h"
 #include "analysis/calibration/three_point/three_point_fit.h"

@@ -1,7 +1,7 @@
 /* Bundles of fixtures/bundles for the tests of the section model: a vertical force at the tip, no
  * weight. */
-#ifndef WB_TESTS_FE_SECTION_FIXTURE_H
-#define WB_TESTS_FE_SECTION_FIXTURE_H
+#ifndef WB_TESTS_FE_SECTION_SECTION_FIXTURE_H
+#define WB_TESTS_FE_SECTION_SECTION_FIXTURE_H
 
 #include "base/file.h"
 #include "fe/section/section_solver.h"

@@ -1,7 +1,7 @@
 /* A campaign of bundles for tests, and its datasets. They are made up: forces of the published
  * beams times a factor, so that errors and fits are known. */
-#ifndef WB_TESTS_ANALYSIS_REPORT_BUNDLES_CAMPAIGN_H
-#define WB_TESTS_ANALYSIS_REPORT_BUNDLES_CAMPAIGN_H
+#ifndef WB_TESTS_ANALYSIS_REPORT_BUNDLES_BUNDLES_CAMPAIGN_H
+#define WB_TESTS_ANALYSIS_REPORT_BUNDLES_BUNDLES_CAMPAIGN_H
 
 #include "analysis/dataset/simulated.h"
 #include "analysis/report/bundles/bundles_kind.h"
