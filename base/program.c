@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "program"
@@ -40,14 +40,14 @@ static void pause_ms(int ms)
 /* Its exit code into *code; false when it had to be killed. */
 static bool wait_for(pid_t child, double timeout, int *code)
 {
-    const int64_t until_ns = wb_progress_now_ns() + wb_ns_from_seconds(timeout);
+    const int64_t until_ns = wb_time_now_ns() + wb_ns_from_seconds(timeout);
     int status = 0, ms = 1;
     bool killed = false;
     for (;;) {
         const pid_t ended = waitpid(child, &status, WNOHANG);
         if (ended == child || (ended < 0 && errno != EINTR))
             break;
-        if (!killed && wb_progress_now_ns() > until_ns) {
+        if (!killed && wb_time_now_ns() > until_ns) {
             kill(-child, SIGKILL);
             killed = true;
         }

@@ -4,14 +4,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/timing.h"
 #include "base/units.h"
-
-int64_t wb_progress_now_ns(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * WB_NS_PER_S + now.tv_nsec;
-}
 
 double wb_progress_thread_cpu(void)
 {
@@ -27,7 +21,7 @@ void wb_progress_start(struct wb_progress *progress, const char *label, const ch
         .label = label,
         .unit = unit,
         .total = total,
-        .started_ns = wb_progress_now_ns(),
+        .started_ns = wb_time_now_ns(),
         .on_terminal = isatty(STDERR_FILENO) != 0,
     };
 }
@@ -41,7 +35,7 @@ void wb_progress_update(struct wb_progress *progress, double done, const char *n
 {
     if (!progress->on_terminal)
         return;
-    const int64_t now_ns = wb_progress_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     if (progress->drawn && now_ns - progress->drawn_ns < WB_NS_PER_S / 10)
         return;
     progress->drawn = true;

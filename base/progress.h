@@ -31,7 +31,4 @@ void wb_progress_finish(struct wb_progress *progress);
 /* CPU time of the calling thread, s. */
 double wb_progress_thread_cpu(void);
 
-/* Host monotonic clock, ns. */
-int64_t wb_progress_now_ns(void);
-
 #endif

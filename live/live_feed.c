@@ -1,7 +1,6 @@
 #include "live/live_feed.h"
 
 #include <errno.h>
-#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "live"
@@ -51,6 +50,7 @@ enum wb_status wb_live_feed_start(struct wb_live_feed *feed, int (*run)(int sock
     const pid_t process = fork();
     if (process == 0) {
         close(ends[0]);
+        wb_time_replace(NULL);
         become_a_view(feed);
         _exit(run(ends[1], context));
     }
@@ -160,16 +160,16 @@ bool wb_live_feed_has_ended(struct wb_live_feed *feed, int index)
 static bool ends_until(struct wb_live_feed *feed, int index, int64_t deadline_ns)
 {
     while (!wb_live_feed_has_ended(feed, index)) {
-        if (wb_progress_now_ns() >= deadline_ns)
+        if (wb_time_now_ns() >= deadline_ns)
             return false;
-        (void)poll(NULL, 0, 10);
+        wb_time_sleep(wb_time_now_ns() + 10 * WB_NS_PER_MS);
     }
     return true;
 }
 
 void wb_live_feed_stop(struct wb_live_feed *feed, int patience_ms)
 {
-    const int64_t deadline_ns = wb_progress_now_ns() + patience_ms * WB_NS_PER_MS;
+    const int64_t deadline_ns = wb_time_now_ns() + patience_ms * WB_NS_PER_MS;
     for (int i = 0; i < feed->n_views; i++)
         close(feed->view[i].socket);
     for (int i = 0; i < feed->n_views; i++) {
@@ -177,7 +177,7 @@ void wb_live_feed_stop(struct wb_live_feed *feed, int patience_ms)
             continue;
         kill(feed->view[i].process, SIGKILL); /* ends a stopped process as well */
         /* But not one that waits for a dead network drive: that is left behind. */
-        (void)ends_until(feed, i, wb_progress_now_ns() + WB_NS_PER_S);
+        (void)ends_until(feed, i, wb_time_now_ns() + WB_NS_PER_S);
     }
     feed->n_views = 0;
 }

@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 #include <sys/statvfs.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define DISK_NS (2 * WB_NS_PER_S)
@@ -32,7 +32,7 @@ static bool take_frame(struct wb_live_history *history, const struct wb_live_fra
     for (int i = 0; i < frame->n_points; i++)
         history->points[history->n_points++] = frame->point[i];
     history->frame = *frame;
-    history->frame_ns = wb_progress_now_ns();
+    history->frame_ns = wb_time_now_ns();
     history->has_frame = true;
     return true;
 }
@@ -84,7 +84,7 @@ void wb_live_history_look_at_disk(struct wb_live_history *history, const char *r
 {
     struct statvfs status;
     const struct wb_live_frame *const frame = &history->frame;
-    const int64_t now_ns = wb_progress_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     if (now_ns < history->disk_due_ns)
         return;
     history->disk_due_ns = now_ns + DISK_NS;

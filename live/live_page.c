@@ -12,7 +12,7 @@
 
 #include <microhttpd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "live/live_events.h"
 #include "live/live_history.h"
@@ -214,16 +214,17 @@ static void serve(struct server *server, struct MHD_Daemon *daemon, int socket)
 {
     const union MHD_DaemonInfo *const info = MHD_get_daemon_info(daemon, MHD_DAEMON_INFO_EPOLL_FD);
     int64_t end_ns = INT64_MAX;
-    while (info && !told_to_end && wb_progress_now_ns() < end_ns) {
+    while (info && !told_to_end && wb_time_now_ns() < end_ns) {
         struct pollfd polled[] = {{.fd = info->epoll_fd, .events = POLLIN},
                                   {.fd = server->is_over ? -1 : socket, .events = POLLIN}};
-        if (poll(polled, 2, server->is_over ? 20 : 200) < 0 && errno != EINTR)
+        const int64_t most_ns = (server->is_over ? 20 : 200) * WB_NS_PER_MS;
+        if (wb_time_wait(polled, 2, wb_time_now_ns() + most_ns) < 0 && errno != EINTR)
             return;
         if (!server->is_over && polled[1].revents) {
             server->is_over = !wb_live_history_receive(&server->history, socket);
             wb_live_history_look_at_disk(&server->history, server->plan->recording);
             if (server->is_over)
-                end_ns = wb_progress_now_ns() + LINGER_NS;
+                end_ns = wb_time_now_ns() + LINGER_NS;
             wake_clients(server);
         }
         (void)MHD_run(daemon);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "live/live_chart.h"
 #include "live/live_digits.h"
@@ -95,7 +95,7 @@ static void draw_title(const struct wb_live_screen *screen)
     const struct wb_live_frame *const frame = &screen->history->frame;
     char text[256], word[64] = "connecting", clock[32];
     int colour = PAIR_WARN;
-    const double age = wb_seconds_from_ns(wb_progress_now_ns() - screen->history->frame_ns);
+    const double age = wb_seconds_from_ns(wb_time_now_ns() - screen->history->frame_ns);
     attron(COLOR_PAIR(PAIR_TITLE));
     mvhline(0, 0, ' ', COLS);
     attroff(COLOR_PAIR(PAIR_TITLE));

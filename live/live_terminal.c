@@ -12,7 +12,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "live/live_history.h"
 #include "live/live_plan.h"
@@ -58,18 +58,18 @@ static void follow(int socket, struct wb_live_screen *screen, struct wb_live_his
     while (goes_on && !told_to_end) {
         struct pollfd polled[] = {{.fd = socket, .events = POLLIN},
                                   {.fd = STDIN_FILENO, .events = POLLIN}};
-        if (poll(polled, 2, 200) < 0 && errno != EINTR)
+        if (wb_time_wait(polled, 2, wb_time_now_ns() + 200 * WB_NS_PER_MS) < 0 && errno != EINTR)
             return;
         /* A terminal that was hung up is readable for ever. */
         if (polled[1].revents & (POLLHUP | POLLERR | POLLNVAL))
             return;
         goes_on = wb_live_history_receive(history, socket);
         handle_keys(socket);
-        if (wb_progress_now_ns() - drawn_ns < DRAW_NS)
+        if (wb_time_now_ns() - drawn_ns < DRAW_NS)
             continue;
         wb_live_history_look_at_disk(history, screen->plan->recording);
         wb_live_screen_draw(screen);
-        drawn_ns = wb_progress_now_ns();
+        drawn_ns = wb_time_now_ns();
     }
 }
 

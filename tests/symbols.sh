@@ -22,6 +22,7 @@ for archive in "$@"; do
             others["loadcell_line"] = "line"
             others["markers"] = "marker point_cloud"
             others["output"] = "figure"
+            others["timing"] = "time"
         }
         function begins(symbol, noun) {
             return symbol == "wb_" noun || index(symbol, "wb_" noun "_") == 1

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "jobs"
@@ -98,7 +98,7 @@ static enum wb_status start_child(struct wb_jobs_plan *plan, struct wb_jobs_plan
     setpgid(child, child); /* either of the two is first */
     item->pid = child;
     item->state = WB_JOBS_PLAN_RUNNING;
-    item->started_ns = wb_progress_now_ns();
+    item->started_ns = wb_time_now_ns();
     return WB_OK;
 }
 
@@ -126,7 +126,7 @@ static void settle(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item, in
 {
     char how[128];
     item->pid = 0;
-    item->took_ns = wb_progress_now_ns() - item->started_ns;
+    item->took_ns = wb_time_now_ns() - item->started_ns;
     if (is_success(item, status)) {
         if (wb_jobs_plan_accept(item) == WB_OK)
             item->state = WB_JOBS_PLAN_DONE;
@@ -193,11 +193,11 @@ static int bury(struct wb_jobs_plan *plan)
 
 static void end_all(struct wb_jobs_plan *plan)
 {
-    const int64_t until_ns = wb_progress_now_ns() + PATIENCE_MS * WB_NS_PER_MS;
+    const int64_t until_ns = wb_time_now_ns() + PATIENCE_MS * WB_NS_PER_MS;
     bool killed = false;
     signal_all(plan, SIGTERM);
     while (bury(plan) > 0) {
-        if (!killed && wb_progress_now_ns() > until_ns) {
+        if (!killed && wb_time_now_ns() > until_ns) {
             signal_all(plan, SIGKILL);
             killed = true;
         }
@@ -227,9 +227,9 @@ static void run_all(struct wb_jobs_plan *plan)
         }
         if (running == 0 || wb_interrupted())
             return;
-        if (wb_progress_now_ns() - drawn_ns > WB_NS_PER_S / 2) {
+        if (wb_time_now_ns() - drawn_ns > WB_NS_PER_S / 2) {
             wb_jobs_plan_draw(plan, workers, NULL);
-            drawn_ns = wb_progress_now_ns();
+            drawn_ns = wb_time_now_ns();
         }
         pause_ms(LOOK_MS);
     }

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "jobs"
@@ -374,7 +374,7 @@ static double time_left(const struct wb_jobs_plan *plan, int at_once)
     }
     if (done == 0)
         return -1.0;
-    const int64_t now_ns = wb_progress_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     for (int i = 0; i < plan->n; i++) {
         const struct wb_jobs_plan_item *const item = &plan->items[i];
         if (item->state != WB_JOBS_PLAN_TODO && item->state != WB_JOBS_PLAN_RUNNING)

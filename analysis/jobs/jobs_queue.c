@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/number.h"
-#include "base/progress.h"
+#include "base/timing.h"
 
 #define WB_LOG_DOMAIN "jobs"
 
@@ -64,7 +64,7 @@ static struct wb_jobs_plan_item *find(struct wb_jobs_plan *plan,
 static void note_ended(struct wb_jobs_plan_item *item, const char *state)
 {
     if (item->ended_ns == 0)
-        item->ended_ns = wb_progress_now_ns();
+        item->ended_ns = wb_time_now_ns();
     if (state[0])
         snprintf(item->ending, sizeof item->ending, "%s", state);
 }
@@ -78,7 +78,7 @@ static void note_live(struct wb_jobs_plan_item *item, bool waits)
         return;
     }
     if (item->state != WB_JOBS_PLAN_RUNNING)
-        item->started_ns = wb_progress_now_ns();
+        item->started_ns = wb_time_now_ns();
     item->state = WB_JOBS_PLAN_RUNNING;
 }
 

@@ -10,7 +10,7 @@
 #include "analysis/jobs/jobs_queue.h"
 #include "base/interrupt.h"
 #include "base/json.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "jobs"
@@ -156,7 +156,7 @@ static double longest_interval(const struct wb_jobs_plan *plan)
 static void take(struct wb_jobs_plan_item *item)
 {
     if (item->state == WB_JOBS_PLAN_RUNNING)
-        item->took_ns = wb_progress_now_ns() - item->started_ns;
+        item->took_ns = wb_time_now_ns() - item->started_ns;
     item->state = WB_JOBS_PLAN_DONE;
     item->queued = false;
 }
@@ -188,8 +188,7 @@ static bool is_hopeless(const struct wb_jobs_plan *plan, const struct wb_jobs_pl
 {
     const bool may_come = !item->ending[0] || strcmp(item->ending, "COMPLETED") == 0;
     const double patience = (may_come ? 3.0 : 1.0) * longest_interval(plan);
-    return item->ended_ns != 0 &&
-           wb_seconds_from_ns(wb_progress_now_ns() - item->ended_ns) >= patience;
+    return item->ended_ns != 0 && wb_seconds_from_ns(wb_time_now_ns() - item->ended_ns) >= patience;
 }
 
 /* Whether anything changed. */
@@ -229,9 +228,9 @@ static void tell(struct wb_jobs_plan *plan, struct waiting *waiting,
 
 static void rest(double seconds)
 {
-    const int64_t until_ns = wb_progress_now_ns() + wb_ns_from_seconds(seconds);
-    while (!wb_interrupted() && wb_progress_now_ns() < until_ns) {
-        const int64_t left_ns = until_ns - wb_progress_now_ns();
+    const int64_t until_ns = wb_time_now_ns() + wb_ns_from_seconds(seconds);
+    while (!wb_interrupted() && wb_time_now_ns() < until_ns) {
+        const int64_t left_ns = until_ns - wb_time_now_ns();
         /* In parts, as a signal may come just before the sleep. */
         const struct timespec part = {.tv_nsec = left_ns < WB_NS_PER_S / 4
                                                      ? (long)(left_ns > 0 ? left_ns : 0)

@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include "base/interrupt.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/acquire/remark_gate.h"
 #include "daq/protocol/drivers.h"
@@ -82,13 +82,6 @@ static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind,
         wb_writer_push_event(a->writer, t_ns, kind, text);
 }
 
-int64_t wb_acquisition_now_ns(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (int64_t)time.tv_sec * WB_NS_PER_S + time.tv_nsec;
-}
-
 void wb_acquisition_raise_priority(void)
 {
     if (setpriority(PRIO_PROCESS, 0, -15) != 0)
@@ -107,7 +100,7 @@ void wb_acquisition_event(struct wb_acquisition *a, const char *kind, const char
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    push_event(a, wb_acquisition_now_ns(), kind, text);
+    push_event(a, wb_time_now_ns(), kind, text);
 }
 
 /* --- sending --- */
@@ -118,7 +111,7 @@ static void lose_device(struct line *line)
 {
     struct wb_acquisition *const a = line->owner;
     a->latest.stream[line->role].gone = true;
-    line->gone_ns = wb_acquisition_now_ns();
+    line->gone_ns = wb_time_now_ns();
     line->look_again_ns = line->gone_ns + LOOK_AGAIN_NS;
     if (line->role == WB_ROLE_STAGE)
         a->interlock.lost[line->role] = true;
@@ -143,7 +136,7 @@ static enum wb_status send_outbox(struct line *line, bool urgent)
     struct wb_acquisition *const a = line->owner;
     struct wb_outbox *const outbox = &a->outbox;
     enum wb_status status = WB_OK;
-    const int64_t now_ns = wb_acquisition_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     size_t begin = 0;
     if (a->latest.stream[line->role].gone)
         status = WB_ERR_IO;
@@ -193,7 +186,7 @@ static void hold_now(struct wb_acquisition *a)
     if (stage && a->moving)
         status = send_command(stage, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
     a->hold_sent = status == WB_OK;
-    const int64_t now_ns = wb_acquisition_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     if (!stage || !a->moving)
         wb_stop_settle(&a->stop, WB_STOP_STANDING, now_ns);
     else
@@ -252,7 +245,7 @@ static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
         status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
         wb_warn("the stage did not confirm the feed hold within %d ms: a soft reset stops it",
                 (int)(WB_STOP_CONFIRM_NS / WB_NS_PER_MS));
-        push_event(a, wb_acquisition_now_ns(), "reset",
+        push_event(a, wb_time_now_ns(), "reset",
                    status == WB_OK ? "hold not confirmed in time: soft reset sent"
                                    : "the soft reset could not be sent");
         break;
@@ -267,7 +260,7 @@ static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
 void wb_acquisition_stop(struct wb_acquisition *a, enum wb_interlock_reason reason,
                          const char *text)
 {
-    if (wb_interlock_trip(&a->interlock, reason, wb_acquisition_now_ns(), text))
+    if (wb_interlock_trip(&a->interlock, reason, wb_time_now_ns(), text))
         hold_now(a);
 }
 
@@ -276,7 +269,7 @@ void wb_acquisition_clear_stop(struct wb_acquisition *a)
     const struct wb_interlock_settings settings = a->interlock.settings;
     bool lost[WB_INTERLOCK_ROLES];
     memcpy(lost, a->interlock.lost, sizeof lost);
-    wb_interlock_init(&a->interlock, &settings, wb_acquisition_now_ns());
+    wb_interlock_init(&a->interlock, &settings, wb_time_now_ns());
     memcpy(a->interlock.lost, lost, sizeof lost);
     memset(&a->stop, 0, sizeof a->stop);
     a->reported_stop = WB_STOP_NONE;
@@ -290,7 +283,7 @@ void wb_acquisition_arm(struct wb_acquisition *a, const struct wb_interlock_sett
     const enum wb_interlock_reason reason = a->interlock.reason;
     if (reason != WB_INTERLOCK_NONE)
         return;
-    wb_interlock_init(&a->interlock, settings, wb_acquisition_now_ns());
+    wb_interlock_init(&a->interlock, settings, wb_time_now_ns());
     a->interlock.armed = true;
     if (!isfinite(start_position) && a->latest.has_stage)
         start_position = a->latest.stage.position;
@@ -503,7 +496,7 @@ static void read_line(struct line *line)
             return;
         /* Not the wake-up's time: where this process stalls between the two, the read also takes
          * what came meanwhile, and a stamp before the arrival is one that no clock fit can bear. */
-        const int64_t t_ns = wb_acquisition_now_ns();
+        const int64_t t_ns = wb_time_now_ns();
         note_kernel_drops(line, t_ns);
         state->chunks++;
         state->bytes += n;
@@ -653,6 +646,7 @@ static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
 {
     if (!a->writer)
         return;
+    wb_writer_tick(a->writer);
     struct wb_writer_state *const state = &a->latest.storage;
     wb_writer_state(a->writer, state);
     const bool late = state->failing != WB_OK || state->lag_ns > STORAGE_LAG_NS;
@@ -680,7 +674,7 @@ static bool may_come_back(const struct line *line)
 {
     const struct wb_interlock *const interlock = &line->owner->interlock;
     return line->role == WB_ROLE_LOAD && interlock->settings.stream_lost_ns[line->role] > 0 &&
-           !wb_interlock_expires(interlock, line->role, wb_acquisition_now_ns());
+           !wb_interlock_expires(interlock, line->role, wb_time_now_ns());
 }
 
 /* What no sample shows but silence: devices that went away, a full disk, Ctrl-C. */
@@ -738,7 +732,7 @@ static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
     snprintf(text, sizeof text,
              "the recorder stood still for %.1f s: no limit was watched in that time",
              wb_seconds_from_ns(stalled_ns));
-    push_event(a, wb_acquisition_now_ns(), "stall", text);
+    push_event(a, wb_time_now_ns(), "stall", text);
     wb_warn("%s", text);
 }
 
@@ -753,7 +747,7 @@ static enum wb_status wait_for_bytes(struct wb_acquisition *a, int64_t deadline_
 {
     struct pollfd polled[2 * WB_INTERLOCK_ROLES];
     int owner[2 * WB_INTERLOCK_ROLES];
-    nfds_t n_polled = 0;
+    size_t n_polled = 0;
     for (int i = 0; i < a->n_lines; i++) {
         int descriptors[2];
         readable[i] = false;
@@ -766,16 +760,11 @@ static enum wb_status wait_for_bytes(struct wb_acquisition *a, int64_t deadline_
             owner[n_polled++] = i;
         }
     }
-    int64_t left_ns = deadline_ns - wb_acquisition_now_ns();
-    if (left_ns < 0)
-        left_ns = 0;
-    const struct timespec timeout = {.tv_sec = left_ns / WB_NS_PER_S,
-                                     .tv_nsec = left_ns % WB_NS_PER_S};
-    const int n_ready = ppoll(polled, n_polled, &timeout, NULL);
-    *woken_ns = wb_acquisition_now_ns();
+    const int n_ready = wb_time_wait(polled, n_polled, deadline_ns);
+    *woken_ns = wb_time_now_ns();
     if (n_ready < 0 && errno != EINTR)
         return wb_fail(WB_ERR_IO, "cannot wait for the instruments: %s", strerror(errno));
-    for (nfds_t k = 0; n_ready > 0 && k < n_polled; k++)
+    for (size_t k = 0; n_ready > 0 && k < n_polled; k++)
         if (polled[k].revents != 0)
             readable[owner[k]] = true;
     return WB_OK;
@@ -785,7 +774,7 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
 {
     bool readable[WB_INTERLOCK_ROLES];
     int64_t woken_ns;
-    const int64_t begun_ns = wb_acquisition_now_ns();
+    const int64_t begun_ns = wb_time_now_ns();
     int64_t deadline_ns = begun_ns + (timeout_ns > 0 ? timeout_ns : 0);
     deadline_ns = earlier(deadline_ns, a->next_tick_ns);
     deadline_ns = earlier(deadline_ns, wb_interlock_deadline(&a->interlock));
@@ -801,7 +790,7 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
             read_line(&a->lines[i]);
     check_rest(a);
     judge_silence(a, woken_ns);
-    const int64_t now_ns = wb_acquisition_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     follow_stop(a, now_ns);
     if (now_ns >= a->next_tick_ns)
         tick_lines(a, now_ns);
@@ -936,7 +925,7 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
 {
     struct wb_interlock_settings unwatched;
     memset(&unwatched, 0, sizeof unwatched);
-    const int64_t now_ns = wb_acquisition_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     a->writer = writer;
     a->started = true;
     a->next_tick_ns = now_ns + TICK_NS;

@@ -149,9 +149,6 @@ void wb_acquisition_event(struct wb_acquisition *acquisition, const char *kind, 
  * nothing happens. */
 void wb_acquisition_raise_priority(void);
 
-/* The monotonic clock all stamps come from, ns. */
-int64_t wb_acquisition_now_ns(void);
-
 /* That clock at the last waking up, less all time in which this loop was kept from running or from
  * waiting for bytes: what deadlines are counted in, or an instrument would be blamed for silence
  * that nobody listened to. */

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "disk"
@@ -36,13 +36,13 @@ static int time_flushes(int file, struct wb_disk_check *check)
     static const char bytes[FLUSH_BYTES] = "wirebench: how fast is this disk?\n";
     double took[FLUSHES];
     for (check->n = 0; check->n < FLUSHES; check->n++) {
-        const int64_t begun_ns = wb_progress_now_ns();
+        const int64_t begun_ns = wb_time_now_ns();
         const ssize_t written = write(file, bytes, sizeof bytes);
         if (written != (ssize_t)sizeof bytes)
             return written < 0 ? errno : ENOSPC;
         if (fsync(file) != 0)
             return errno;
-        took[check->n] = wb_seconds_from_ns(wb_progress_now_ns() - begun_ns);
+        took[check->n] = wb_seconds_from_ns(wb_time_now_ns() - begun_ns);
     }
     qsort(took, FLUSHES, sizeof *took, by_size);
     check->usual = took[FLUSHES / 2];

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/protocol/tic.h"
 #include "daq/stream/stream.h"
@@ -36,7 +36,7 @@ static void wait_for_bytes(struct wb_stream *stream)
     const int n = wb_stream_descriptors(stream, descriptors);
     struct pollfd polled = {.fd = descriptors[0], .events = POLLIN};
     if (n > 0)
-        (void)poll(&polled, 1, 20);
+        (void)wb_time_wait(&polled, 1, wb_time_now_ns() + 20 * WB_NS_PER_MS);
 }
 
 static enum wb_listening_found judge(const struct wb_diagnosis *diagnosis, bool asked_tic)
@@ -85,7 +85,7 @@ static enum wb_status listen_to(struct wb_stream *stream, size_t i,
                                 const struct wb_listening_settings *settings,
                                 struct wb_diagnosis *diagnosis, enum wb_listening_found *found)
 {
-    const int64_t begun_ns = wb_progress_now_ns();
+    const int64_t begun_ns = wb_time_now_ns();
     const int64_t patience_ns = settings->patience_ns * (i == 0 && settings->asks ? 3 : 1);
     int64_t ask_ns = begun_ns, now_ns = begun_ns;
     uint8_t bytes[1024], ask[WB_TIC_ASK_BYTES];
@@ -102,7 +102,7 @@ static enum wb_status listen_to(struct wb_stream *stream, size_t i,
         if (n > 0)
             wb_diagnosis_add(diagnosis, bytes, n);
         *found = judge(diagnosis, n_ask > 1);
-        now_ns = wb_progress_now_ns();
+        now_ns = wb_time_now_ns();
     }
     return WB_OK;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/acquire/acquisition.h"
 #include "daq/protocol/average.h"
@@ -78,7 +79,7 @@ static void on_load(void *context, const struct wb_load_sample *sample)
         wb_average_add(&check->window, sample->force);
     if (check->phase != WB_MASS_CHECK_READING)
         return;
-    const int64_t since_ns = wb_acquisition_now_ns() - check->phase_ns;
+    const int64_t since_ns = wb_time_now_ns() - check->phase_ns;
     const int64_t part = since_ns * N_PARTS / (check->duration_ns + 1);
     wb_average_add(&check->all, sample->force);
     wb_average_add(&check->parts[part < N_PARTS ? part : N_PARTS - 1], sample->force);
@@ -104,7 +105,7 @@ enum wb_status wb_mass_check_open(struct wb_mass_check **out, const struct wb_ri
         return status;
     }
     wb_acquisition_start(check->acquisition, NULL);
-    check->phase_ns = wb_acquisition_now_ns();
+    check->phase_ns = wb_time_now_ns();
     *out = check;
     return WB_OK;
 }
@@ -112,7 +113,7 @@ enum wb_status wb_mass_check_open(struct wb_mass_check **out, const struct wb_ri
 static void enter(struct wb_mass_check *check, enum wb_mass_check_phase phase)
 {
     check->phase = phase;
-    check->phase_ns = check->window_ns = wb_acquisition_now_ns();
+    check->phase_ns = check->window_ns = wb_time_now_ns();
     check->window = check->window_before = check->all = (struct wb_average){0};
     memset(check->parts, 0, sizeof check->parts);
     check->is_still = false;
@@ -226,7 +227,7 @@ enum wb_mass_check_phase wb_mass_check_step(struct wb_mass_check *check, int64_t
         enter(check, WB_MASS_CHECK_FAILED);
         return check->phase;
     }
-    const int64_t now_ns = wb_acquisition_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     watch(check, now_ns);
     advance(check, now_ns);
     return check->phase;

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "base/interrupt.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/acquire/stage_check.h"
 
@@ -22,7 +23,7 @@ double wb_sequence_travel(const struct wb_sequence *sequence, double position)
 void wb_sequence_enter(struct wb_sequence *sequence, int phase)
 {
     sequence->phase = phase;
-    sequence->phase_ns = wb_acquisition_now_ns();
+    sequence->phase_ns = wb_time_now_ns();
     sequence->heard_ns = wb_acquisition_heard_ns(sequence->acquisition);
     sequence->reports_seen = wb_acquisition_latest(sequence->acquisition)->stage_reports;
     sequence->idle_reports = 0;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/acquire/disk_check.h"
 #include "daq/acquire/listening.h"
@@ -76,7 +77,7 @@ bool wb_doctor_is_ready(const struct wb_doctor_report *report)
 static void enter(struct wb_doctor *doctor, enum phase phase)
 {
     doctor->phase = phase;
-    doctor->phase_ns = wb_acquisition_now_ns();
+    doctor->phase_ns = wb_time_now_ns();
 }
 
 static enum wb_status start(struct wb_doctor *doctor)
@@ -135,7 +136,7 @@ bool wb_doctor_step(struct wb_doctor *doctor, int64_t timeout_ns)
         return false;
     const bool ended =
         wb_acquisition_step(doctor->acquisition, timeout_ns) != WB_ACQUISITION_CONTINUE;
-    const int64_t lasted_ns = wb_acquisition_now_ns() - doctor->phase_ns;
+    const int64_t lasted_ns = wb_time_now_ns() - doctor->phase_ns;
     const int64_t allowed_ns =
         wb_ns_from_seconds(doctor->request.test.connect_timeout) + doctor->rig.load_cell.settle_ns;
     if (ended || wb_interrupted()) {

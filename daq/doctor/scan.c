@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/protocol/natnet_encode.h"
 #include "daq/stream/network.h"
@@ -154,16 +154,16 @@ enum wb_status wb_scan_find_servers(struct wb_scan *scan, const char *address)
 {
     static uint8_t bytes[65536];
     const int on = 1, descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    const int64_t begun_ns = wb_progress_now_ns();
+    const int64_t begun_ns = wb_time_now_ns();
     if (descriptor < 0)
         return wb_fail(WB_ERR_IO, "no socket to look for NatNet servers: %s", strerror(errno));
     (void)setsockopt(descriptor, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
     const enum wb_status status = ask_all(descriptor, address);
-    while (status == WB_OK && wb_progress_now_ns() - begun_ns < ANSWER_NS && !wb_interrupted()) {
+    while (status == WB_OK && wb_time_now_ns() - begun_ns < ANSWER_NS && !wb_interrupted()) {
         struct pollfd polled = {.fd = descriptor, .events = POLLIN};
         struct sockaddr_in from;
         socklen_t size = sizeof from;
-        (void)poll(&polled, 1, 50);
+        (void)wb_time_wait(&polled, 1, wb_time_now_ns() + 50 * WB_NS_PER_MS);
         const ssize_t n =
             recvfrom(descriptor, bytes, sizeof bytes, 0, (struct sockaddr *)&from, &size);
         if (n <= 0)

@@ -1,4 +1,5 @@
 /* Recordings being written: schema, appends in transactions, closing. */
+#include "base/timing.h"
 #include "daq/recording/recording.h"
 
 #include <errno.h>
@@ -6,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -373,9 +373,7 @@ static const int64_t checkpoint_interval_ns = WB_NS_PER_S;
  * is flushed goes into the file once a second. Where that fails the log still has it. */
 static void checkpoint_when_due(struct wb_recording *recording)
 {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    const int64_t now = time.tv_sec * WB_NS_PER_S + time.tv_nsec;
+    const int64_t now = wb_time_now_ns();
     if (now - recording->checkpoint_ns < checkpoint_interval_ns)
         return;
     sqlite3_wal_checkpoint_v2(recording->db, NULL, SQLITE_CHECKPOINT_PASSIVE, NULL, NULL);
@@ -404,11 +402,8 @@ enum wb_status wb_recording_flush(struct wb_recording *recording)
  * readable from a read-only folder. */
 static enum wb_status finish_file(struct wb_recording *recording)
 {
-    char now[32], hex[WB_SHA256_TEXT];
-    time_t seconds = time(NULL);
-    struct tm utc;
-    gmtime_r(&seconds, &utc);
-    strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    char now[WB_TIME_TEXT], hex[WB_SHA256_TEXT];
+    wb_time_format(wb_time_utc(), now);
     WB_TRY(wb_recording_set_meta(recording, "closed", now));
     WB_TRY(wb_recording_flush(recording));
     wb_hash_so_far(recording->digest, hex);

@@ -4,11 +4,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/hash.h"
 #include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/protocol/drivers.h"
 #include "daq/recording/foreign.h"
@@ -176,17 +175,13 @@ static bool wait_until_due(struct replay *replay, int64_t t_ns)
         return true;
     if (replay->started_ns == 0) {
         replay->first_ns = t_ns;
-        replay->started_ns = wb_progress_now_ns();
+        replay->started_ns = wb_time_now_ns();
     }
     /* Chunks come in order of time. */
     double wait_s = (double)((uint64_t)t_ns - (uint64_t)replay->first_ns) * 1e-9 / replay->rate;
     int64_t due_ns = replay->started_ns + wb_ns_from_seconds(wait_s < 1e9 ? wait_s : 1e9);
-    struct timespec due = {.tv_sec = (time_t)(due_ns / WB_NS_PER_S),
-                           .tv_nsec = (long)(due_ns % WB_NS_PER_S)};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, NULL) == EINTR) {
-        if (wb_interrupted())
-            return false;
-    }
+    while (wb_time_now_ns() < due_ns && !wb_interrupted())
+        wb_time_sleep(due_ns);
     return !wb_interrupted();
 }
 

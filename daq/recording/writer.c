@@ -10,7 +10,7 @@
 #include <time.h>
 
 #include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "writer"
@@ -47,6 +47,8 @@ struct loss {
 struct wb_writer {
     struct wb_recording *recording;
     struct wb_writer_settings settings;
+    bool is_synchronous; /* in virtual time, where there is no thread */
+    int64_t tried_ns;    /* then: when it was written last */
     pthread_t thread;
     pthread_mutex_t lock;
     pthread_cond_t wake;
@@ -135,7 +137,7 @@ static struct entry *make_texts(enum entry_kind kind, int64_t t_ns, const char *
 /* Counts an entry in, under the lock. */
 static void count_waiting(struct wb_writer *writer, struct entry *entry)
 {
-    entry->pushed_ns = wb_progress_now_ns();
+    entry->pushed_ns = wb_time_now_ns();
     if (writer->oldest_ns == 0)
         writer->oldest_ns = entry->pushed_ns;
     writer->waiting_entries++;
@@ -227,17 +229,21 @@ static enum wb_status write_waiting(struct wb_writer *writer)
     return status;
 }
 
-/* Waits for the next flush, or earlier when the queue fills, unless the disk fails, or ends. True
- * when finishing. */
+/* So much waits that it is written before its time, unless the disk fails; under the lock. */
+static bool is_urgent(const struct wb_writer *writer)
+{
+    return writer->failing == WB_OK &&
+           (writer->waiting_bytes >= writer->settings.capacity_bytes / 4 ||
+            writer->waiting_entries >= writer->settings.capacity_entries / 4);
+}
+
+/* Waits for the next flush, or earlier when the queue fills or ends. True when finishing. */
 static bool wait_for_work(struct wb_writer *writer, int64_t due_ns)
 {
     struct timespec due = {.tv_sec = (time_t)(due_ns / WB_NS_PER_S),
                            .tv_nsec = (long)(due_ns % WB_NS_PER_S)};
     pthread_mutex_lock(&writer->lock);
-    while (!writer->finishing && wb_progress_now_ns() < due_ns &&
-           (writer->failing != WB_OK ||
-            (writer->waiting_bytes < writer->settings.capacity_bytes / 4 &&
-             writer->waiting_entries < writer->settings.capacity_entries / 4)))
+    while (!writer->finishing && wb_time_now_ns() < due_ns && !is_urgent(writer))
         pthread_cond_timedwait(&writer->wake, &writer->lock, &due);
     bool finishing = writer->finishing;
     pthread_mutex_unlock(&writer->lock);
@@ -248,16 +254,15 @@ static bool wait_for_work(struct wb_writer *writer, int64_t due_ns)
 static enum wb_status write_rest(struct wb_writer *writer)
 {
     enum wb_status status = write_waiting(writer);
-    const int64_t until_ns = wb_progress_now_ns() + writer->settings.patience_ns;
+    const int64_t until_ns = wb_time_now_ns() + writer->settings.patience_ns;
     const double kilobytes = (double)writer->waiting_bytes * 1e-3;
     if (status != WB_OK && writer->settings.patience_ns > 0)
         wb_warn("the disk takes nothing, and %.1f kB of the recording are in memory only: make "
                 "room on it within %.0f s and they are written; Ctrl-C gives it up",
                 kilobytes, wb_seconds_from_ns(writer->settings.patience_ns));
-    while (status != WB_OK && wb_progress_now_ns() < until_ns &&
+    while (status != WB_OK && wb_time_now_ns() < until_ns &&
            wb_interrupt_count() == writer->interrupts) {
-        const struct timespec wait = {.tv_nsec = RETRY_NS};
-        nanosleep(&wait, NULL);
+        wb_time_sleep(wb_time_now_ns() + RETRY_NS);
         status = write_waiting(writer);
     }
     if (status != WB_OK)
@@ -266,20 +271,10 @@ static enum wb_status write_rest(struct wb_writer *writer)
     return status;
 }
 
-static void *run(void *argument)
+/* Writes what is left and closes the recording. */
+static void end(struct wb_writer *writer)
 {
-    struct wb_writer *writer = argument;
-    bool finishing = false;
-    enum wb_status status = WB_OK;
-    while (!finishing) {
-        const int64_t interval_ns = status != WB_OK ? RETRY_NS : writer->settings.flush_interval_ns;
-        finishing = wait_for_work(writer, wb_progress_now_ns() + interval_ns);
-        if (!finishing)
-            status = write_waiting(writer);
-    }
-    /* A full disk must not end the process before the stage is stopped: the signal is blocked in
-     * this thread, so closing belongs here too. */
-    status = write_rest(writer);
+    enum wb_status status = write_rest(writer);
     if (status != WB_OK) {
         release_taken(writer, false);
     } else {
@@ -289,7 +284,36 @@ static void *run(void *argument)
     }
     const enum wb_status closed = wb_recording_close(writer->recording);
     writer->status = status != WB_OK ? status : closed;
+}
+
+static void *run(void *argument)
+{
+    struct wb_writer *writer = argument;
+    bool finishing = false;
+    enum wb_status status = WB_OK;
+    while (!finishing) {
+        const int64_t interval_ns = status != WB_OK ? RETRY_NS : writer->settings.flush_interval_ns;
+        finishing = wait_for_work(writer, wb_time_now_ns() + interval_ns);
+        if (!finishing)
+            status = write_waiting(writer);
+    }
+    /* A full disk must not end the process before the stage is stopped: the signal is blocked in
+     * this thread, so closing belongs here too. */
+    end(writer);
     return NULL;
+}
+
+void wb_writer_tick(struct wb_writer *writer)
+{
+    if (!writer->is_synchronous)
+        return;
+    const int64_t now_ns = wb_time_now_ns();
+    const int64_t interval_ns =
+        writer->failing != WB_OK ? RETRY_NS : writer->settings.flush_interval_ns;
+    if (now_ns - writer->tried_ns < interval_ns && !is_urgent(writer))
+        return;
+    writer->tried_ns = now_ns;
+    (void)write_waiting(writer); /* a failure is kept, and tried again */
 }
 
 /* --- starting and finishing --- */
@@ -306,7 +330,8 @@ static enum wb_status start_thread(struct wb_writer *writer)
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    int error = pthread_create(&writer->thread, NULL, run, writer);
+    const int error =
+        writer->is_synchronous ? 0 : pthread_create(&writer->thread, NULL, run, writer);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     if (error == 0)
         return WB_OK;
@@ -330,6 +355,8 @@ enum wb_status wb_writer_start(struct wb_writer **out, struct wb_recording *reco
     if (settings)
         writer->settings = *settings;
     writer->recording = recording;
+    writer->is_synchronous = wb_time_is_virtual();
+    writer->tried_ns = wb_time_now_ns();
     enum wb_status status = start_thread(writer);
     if (status != WB_OK) {
         free(writer);
@@ -348,7 +375,10 @@ enum wb_status wb_writer_finish(struct wb_writer *writer)
     writer->interrupts = wb_interrupt_count();
     pthread_cond_signal(&writer->wake);
     pthread_mutex_unlock(&writer->lock);
-    pthread_join(writer->thread, NULL);
+    if (writer->is_synchronous)
+        end(writer);
+    else
+        pthread_join(writer->thread, NULL);
     enum wb_status status = writer->status;
     pthread_mutex_destroy(&writer->lock);
     pthread_cond_destroy(&writer->wake);
@@ -507,7 +537,7 @@ void wb_writer_state(const struct wb_writer *writer, struct wb_writer_state *sta
     const struct wb_writer_settings *const settings = &writer->settings;
     *state = (struct wb_writer_state){
         .failing = writer->failing,
-        .lag_ns = writer->oldest_ns > 0 ? wb_progress_now_ns() - writer->oldest_ns : 0,
+        .lag_ns = writer->oldest_ns > 0 ? wb_time_now_ns() - writer->oldest_ns : 0,
         .fill = fmax((double)writer->waiting_bytes / (double)settings->capacity_bytes,
                      (double)writer->waiting_entries / (double)settings->capacity_entries),
     };

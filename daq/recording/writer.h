@@ -84,6 +84,10 @@ void wb_writer_state(const struct wb_writer *writer, struct wb_writer_state *sta
  * the memory are full, and the test is to be ended. */
 WB_MUST_CHECK enum wb_status wb_writer_status(const struct wb_writer *writer);
 
+/* The loop calls it in each step. In virtual time (base/timing.h), in which a thread would make
+ * results depend on the machine, it writes what is due; otherwise it does nothing. */
+void wb_writer_tick(struct wb_writer *writer);
+
 /* Writes what waits, ends the thread, closes the recording and frees the writer. Where the disk
  * takes nothing, that is told, and it waits. WB_OK when the recording holds all that was accepted,
  * also after a disk that failed for a while. Accepts NULL (WB_OK). */

@@ -5,10 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
-#include <time.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "daq/stream/port_user.h"
 
 #define WB_LOG_DOMAIN "stream"
@@ -154,16 +153,11 @@ static bool has_gone(int descriptor)
 bool wb_stream_wait_writable(int descriptor, int64_t deadline_ns)
 {
     for (;;) {
-        int64_t left_ns = deadline_ns - wb_progress_now_ns();
-        if (left_ns <= 0)
-            return false;
-        struct timespec left = {.tv_sec = (time_t)(left_ns / 1000000000),
-                                .tv_nsec = (long)(left_ns % 1000000000)};
         struct pollfd wait = {.fd = descriptor, .events = POLLOUT};
-        int ready = ppoll(&wait, 1, &left, NULL);
+        const int ready = wb_time_wait(&wait, 1, deadline_ns);
         if (ready > 0)
             return true;
-        if (ready < 0 && errno != EINTR)
+        if (ready == 0 || errno != EINTR)
             return false;
     }
 }
@@ -198,7 +192,7 @@ enum wb_status wb_stream_port_read(void *state, void *buffer, size_t size, size_
 enum wb_status wb_stream_port_write(void *state, const void *bytes, size_t n)
 {
     const struct wb_stream_port *port = state;
-    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
+    int64_t deadline_ns = wb_time_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
     size_t done = 0;
     while (done < n) {
         ssize_t put = write(port->descriptor, (const char *)bytes + done, n - done);

@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "daq/stream/stream_kind.h"
 #include "daq/stream/stream_line.h"
 #include "daq/stream/udp_address.h"
@@ -218,7 +218,7 @@ static enum wb_status udp_read(void *state, void *buffer, size_t size, size_t *n
 static enum wb_status udp_write(void *state, const void *bytes, size_t n)
 {
     struct udp_state *udp = state;
-    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
+    int64_t deadline_ns = wb_time_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
     for (;;) {
         ssize_t put =
             sendto(udp->command, bytes, n, 0, (struct sockaddr *)&udp->host, sizeof udp->host);
