@@ -25,8 +25,8 @@ static const char *const tares[] = {"unloaded", "counterweight", NULL};
 static const char *const ups[] = {"y", "z", NULL};
 static const char *const axes[] = {"X", "Y", "Z", NULL};
 
-static const char *const wire_schemes[] = {"serial:", "pty:", "memory:", NULL};
-static const char *const network_schemes[] = {"udp:", "memory:", NULL};
+static const char *const wire_schemes[] = {"serial:", "pty:", "memory:", "sim:", NULL};
+static const char *const network_schemes[] = {"udp:", "memory:", "sim:", NULL};
 
 /* Refuses an address whose scheme the role cannot use; the rest is the stream's to judge. */
 static enum wb_status check_address(const struct wb_config_node *map, const char *address,
@@ -36,8 +36,8 @@ static enum wb_status check_address(const struct wb_config_node *map, const char
     for (int i = 0; schemes[i]; i++) {
         if (strncmp(address, schemes[i], strlen(schemes[i])) == 0)
             return WB_OK;
-        /* For tests; nobody writes it into the file of a bench. */
-        if (strcmp(schemes[i], "memory:") == 0)
+        /* For tests and virtual time; nobody writes it into the file of a bench. */
+        if (strcmp(schemes[i], "memory:") == 0 || strcmp(schemes[i], "sim:") == 0)
             continue;
         const size_t used = strlen(expected);
         snprintf(expected + used, sizeof expected - used, "%s%s", i ? " or " : "", schemes[i]);

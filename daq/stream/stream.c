@@ -7,12 +7,18 @@
 
 #define WB_LOG_DOMAIN "stream"
 
-static const struct wb_stream_kind *const kinds[] = {&wb_stream_serial, &wb_stream_pty,
-                                                     &wb_stream_udp, &wb_stream_memory};
+/* The last one is registered from outside. */
+static const struct wb_stream_kind *kinds[] = {&wb_stream_serial, &wb_stream_pty, &wb_stream_udp,
+                                               &wb_stream_memory, NULL};
+
+void wb_stream_kind_register(const struct wb_stream_kind *kind)
+{
+    kinds[sizeof kinds / sizeof kinds[0] - 1] = kind;
+}
 
 static const struct wb_stream_kind *find_kind(const char *address)
 {
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0] && kinds[i]; i++) {
         size_t n = strlen(kinds[i]->scheme);
         if (strncmp(address, kinds[i]->scheme, n) == 0 && address[n] == ':')
             return kinds[i];

@@ -1,5 +1,4 @@
-/* Between stream.c and the kinds of streams: what a kind is, and a stream of one. Nobody else
- * includes this. */
+/* Between stream.c and the kinds of streams: what a kind is, and a stream of one. */
 #ifndef WB_DAQ_STREAM_STREAM_KIND_H
 #define WB_DAQ_STREAM_STREAM_KIND_H
 
@@ -28,6 +27,9 @@ extern const struct wb_stream_kind wb_stream_serial;
 extern const struct wb_stream_kind wb_stream_pty;
 extern const struct wb_stream_kind wb_stream_udp;
 extern const struct wb_stream_kind wb_stream_memory;
+
+/* Makes one more kind known, beside those above: the virtual bench's. The kind is borrowed. */
+void wb_stream_kind_register(const struct wb_stream_kind *kind);
 
 struct wb_stream {
     const struct wb_stream_kind *kind;

@@ -7,7 +7,7 @@
 
 #include "base/file.h"
 #include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/acquire/acquisition.h"
 #include "tests/check.h"
@@ -106,17 +106,17 @@ static void connect_to(struct scene *scene)
 
 static void listen_for(struct scene *scene, double seconds)
 {
-    const int64_t end_ns = wb_progress_now_ns() + wb_ns_from_seconds(seconds);
-    for (int64_t left; (left = end_ns - wb_progress_now_ns()) > 0;)
+    const int64_t end_ns = wb_time_now_ns() + wb_ns_from_seconds(seconds);
+    for (int64_t left; (left = end_ns - wb_time_now_ns()) > 0;)
         assert_int_equal(wb_acquisition_step(scene->acquisition, left), WB_ACQUISITION_CONTINUE);
 }
 
 /* Listens until so much was heard; a machine that is busy gets its time. */
 static void listen_until(struct scene *scene, int readings, int frames)
 {
-    const int64_t end_ns = wb_progress_now_ns() + 20 * WB_NS_PER_S;
+    const int64_t end_ns = wb_time_now_ns() + 20 * WB_NS_PER_S;
     while (scene->ears.n_load < readings || scene->ears.n_mocap < frames) {
-        assert_true(wb_progress_now_ns() < end_ns);
+        assert_true(wb_time_now_ns() < end_ns);
         assert_int_equal(wb_acquisition_step(scene->acquisition, 5 * WB_NS_PER_MS),
                          WB_ACQUISITION_CONTINUE);
     }
@@ -144,10 +144,10 @@ static struct scene *make_scene(void)
 static void measure_rates(struct scene *scene, double scale, double share[2])
 {
     listen_for(scene, 0.1);
-    const int64_t start_ns = wb_progress_now_ns();
+    const int64_t start_ns = wb_time_now_ns();
     memset(&scene->ears, 0, sizeof scene->ears);
     listen_for(scene, 0.6);
-    const double passed = wb_seconds_from_ns(wb_progress_now_ns() - start_ns) * scale;
+    const double passed = wb_seconds_from_ns(wb_time_now_ns() - start_ns) * scale;
     share[0] = scene->ears.n_load / (80.0 * passed);
     share[1] = scene->ears.n_mocap / (120.0 * passed);
 }
@@ -269,9 +269,9 @@ static void a_jog_loads_the_wire(void **state)
     assert_int_equal(wb_acquisition_command(scene->acquisition, WB_STAGE_COMMAND_JOG, 10.0 * WB_MM,
                                             20.0 * WB_MM),
                      WB_OK);
-    const int64_t end_ns = wb_progress_now_ns() + 20 * WB_NS_PER_S;
+    const int64_t end_ns = wb_time_now_ns() + 20 * WB_NS_PER_S;
     while (!(latest->stage.position > -52.001 * WB_MM && latest->stage.state == WB_STAGE_IDLE)) {
-        assert_true(wb_progress_now_ns() < end_ns);
+        assert_true(wb_time_now_ns() < end_ns);
         listen_for(scene, 0.02);
     }
     listen_until(scene, scene->ears.n_load + 100, 0);
@@ -307,13 +307,13 @@ static void lateness_leaves_no_holes(void **state)
     const struct wb_bench_settings settings = {
         .rig = scene->paper, .specimen = scene->specimen, .seed = 3};
     assert_int_equal(wb_bench_open(&scene->bench, &settings), WB_OK);
-    const int64_t start_ns = wb_progress_now_ns();
+    const int64_t start_ns = wb_time_now_ns();
     wb_bench_step(scene->bench, 0);
     wb_bench_count(scene->bench, &before);
     usleep(500000);
     wb_bench_step(scene->bench, 0);
     wb_bench_count(scene->bench, &after);
-    const double passed = wb_seconds_from_ns(wb_progress_now_ns() - start_ns);
+    const double passed = wb_seconds_from_ns(wb_time_now_ns() - start_ns);
     assert_true((double)after.readings > 75.0 * 0.5);
     assert_true((double)after.frames > 118.0 * 0.5);
     assert_true((double)after.frames < 122.0 * passed + 2.0);
