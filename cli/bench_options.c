@@ -8,6 +8,7 @@
 
 #define STAGE_AT(member) offsetof(struct wb_stage_options, member)
 #define RIG_AT(member) offsetof(struct wb_rig_options, member)
+#define VIRTUAL_AT(member) offsetof(struct wb_virtual_options, member)
 
 static const struct wb_setting stage_rows[] = {
     {.name = "speed_mm_s",
@@ -75,7 +76,7 @@ static const struct wb_setting version_rows[] = {
     {.name = "major", .type = WB_SETTING_INTEGER, .offset = 0, .least = 2, .largest = 4},
     {.name = "minor",
      .type = WB_SETTING_INTEGER,
-     .offset = RIG_AT(version.minor) - RIG_AT(version.major),
+     .offset = VIRTUAL_AT(version.minor) - VIRTUAL_AT(version.major),
      .least = 0,
      .largest = 99},
 };
@@ -101,10 +102,61 @@ static const struct wb_setting lost_steps_rows[] = {
 static const struct wb_setting_table lost_steps_table = {.rows = lost_steps_rows,
                                                          .n = WB_COUNT(lost_steps_rows)};
 
+static const struct wb_setting virtual_rows[] = {
+    {.name = "seed",
+     .type = WB_SETTING_INTEGER,
+     .offset = VIRTUAL_AT(seed),
+     .least = 0,
+     .largest = 1e9,
+     .fallback = 1,
+     .option = "seed",
+     .argument = "N",
+     .help = "Seed of specimen, truth and noise"},
+    {.name = "natnet_version",
+     .type = WB_SETTING_LIST,
+     .offset = VIRTUAL_AT(version),
+     .otherwise = "3.0",
+     .option = "natnet-version",
+     .argument = "M.N",
+     .help = "Protocol of the motion capture, 2.5 to 4.4; M",
+     .separator = '.',
+     .members = &version_table,
+     .given = VIRTUAL_AT(has_version)},
+    {.name = "wire_law",
+     .type = WB_SETTING_CHOICE,
+     .offset = VIRTUAL_AT(bench.variant),
+     .choices = wb_composite_variant_names,
+     .option = "wire-law",
+     .argument = "NAME",
+     .help = "What the wire is made of, to try a calibration on"},
+    {.name = "lost_steps",
+     .type = WB_SETTING_LIST,
+     .offset = VIRTUAL_AT(bench),
+     .otherwise = "none",
+     .option = "lost-steps",
+     .argument = "MM@MM",
+     .help = "The stage loses so many mm once it is so many mm down (up to 5000), such as 0.8@20; "
+             "lost",
+     .separator = '@',
+     .members = &lost_steps_table,
+     .given = VIRTUAL_AT(has_lost_steps)},
+    {.name = "faults",
+     .type = WB_SETTING_TEXT,
+     .offset = VIRTUAL_AT(bench.faults),
+     .otherwise = "none",
+     .option = "faults",
+     .argument = "LIST",
+     .help = "What is wrong with the bench, such as loss=5,wrong-up: names and values are in the "
+             "manual"},
+};
+
+const struct wb_setting_table wb_bench_options_virtual = {.rows = virtual_rows,
+                                                          .n = WB_COUNT(virtual_rows)};
+
 static const struct wb_setting rig_rows[] = {
     {.name = "specimen",
      .type = WB_SETTING_TEXT,
-     .offset = RIG_AT(bench.specimen),
+     .offset = RIG_AT(virtual.bench.specimen),
      .option = "specimen",
      .argument = "SPECIMEN.yaml",
      .help = "The piece of wire to put on the rig"},
@@ -114,63 +166,18 @@ static const struct wb_setting rig_rows[] = {
      .option = "run",
      .argument = "DIR",
      .help = "Folder that receives rig.yaml, the rig file for `record`"},
-    {.name = "seed",
-     .type = WB_SETTING_INTEGER,
-     .offset = RIG_AT(seed),
-     .least = 0,
-     .largest = 1e9,
-     .fallback = 1,
-     .option = "seed",
-     .argument = "N",
-     .help = "Seed of specimen, truth and noise"},
     {.name = "time_scale",
      .type = WB_SETTING_NUMBER,
-     .offset = RIG_AT(bench.time_scale),
+     .offset = RIG_AT(virtual.bench.time_scale),
      .least = 0.05,
      .largest = 50.0,
      .fallback = 1.0,
      .option = "time-scale",
      .argument = "X",
      .help = "Let all clocks, filters and drifts run X times as fast"},
-    {.name = "natnet_version",
-     .type = WB_SETTING_LIST,
-     .offset = RIG_AT(version),
-     .otherwise = "3.0",
-     .option = "natnet-version",
-     .argument = "M.N",
-     .help = "Protocol of the motion capture, 2.5 to 4.4; M",
-     .separator = '.',
-     .members = &version_table,
-     .given = RIG_AT(has_version)},
-    {.name = "wire_law",
-     .type = WB_SETTING_CHOICE,
-     .offset = RIG_AT(bench.variant),
-     .choices = wb_composite_variant_names,
-     .option = "wire-law",
-     .argument = "NAME",
-     .help = "What the wire is made of, to try a calibration on"},
-    {.name = "lost_steps",
-     .type = WB_SETTING_LIST,
-     .offset = RIG_AT(bench),
-     .otherwise = "none",
-     .option = "lost-steps",
-     .argument = "MM@MM",
-     .help = "The stage loses so many mm once it is so many mm down (up to 5000), such as 0.8@20; "
-             "lost",
-     .separator = '@',
-     .members = &lost_steps_table,
-     .given = RIG_AT(has_lost_steps)},
-    {.name = "faults",
-     .type = WB_SETTING_TEXT,
-     .offset = RIG_AT(bench.faults),
-     .otherwise = "none",
-     .option = "faults",
-     .argument = "LIST",
-     .help = "What is wrong with the bench, such as loss=5,wrong-up: names and values are in the "
-             "manual"},
     {.name = "natnet_port",
      .type = WB_SETTING_INTEGER,
-     .offset = RIG_AT(bench.natnet_port),
+     .offset = RIG_AT(virtual.bench.natnet_port),
      .least = 0,
      .largest = 65535,
      .option = "natnet-port",
@@ -178,7 +185,7 @@ static const struct wb_setting rig_rows[] = {
      .help = "UDP port of the motion capture; 0 is a free one"},
     {.name = "multicast",
      .type = WB_SETTING_BOOLEAN,
-     .offset = RIG_AT(bench.multicast),
+     .offset = RIG_AT(virtual.bench.multicast),
      .option = "multicast",
      .help = "Let the motion capture stream to a multicast group on the loopback"},
 };
@@ -200,3 +207,16 @@ static const struct wb_setting replay_rows[] = {
 
 const struct wb_setting_table wb_bench_options_replay = {.rows = replay_rows,
                                                          .n = WB_COUNT(replay_rows)};
+
+void wb_bench_options_default(struct wb_virtual_options *options)
+{
+    *options = (struct wb_virtual_options){.seed = 0};
+    wb_setting_fill(&wb_bench_options_virtual, options);
+}
+
+void wb_bench_options_complete(struct wb_virtual_options *options)
+{
+    options->bench.seed = (uint64_t)options->seed;
+    options->bench.natnet = (struct wb_natnet_version){(uint8_t)options->version.major,
+                                                       (uint8_t)options->version.minor};
+}

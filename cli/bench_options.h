@@ -18,10 +18,9 @@ struct wb_stage_options {
     const char *masses; /* of a check's series, in g between commas; NULL: the rig's */
 };
 
-struct wb_rig_options {
-    struct wb_command_common common;
+/* What a virtual bench is, of whichever command. */
+struct wb_virtual_options {
     struct wb_bench_settings bench;
-    const char *run; /* folder of the rig file */
     int seed;
     bool has_version, has_lost_steps;
     struct {
@@ -29,12 +28,23 @@ struct wb_rig_options {
     } version; /* of the motion capture's protocol, if has_version */
 };
 
+struct wb_rig_options {
+    struct wb_command_common common;
+    struct wb_virtual_options virtual;
+    const char *run; /* folder of the rig file */
+};
+
 struct wb_replay_options {
     struct wb_command_common common;
     double rate; /* 0: as fast as it can */
 };
 
+/* `rig` has the rows of struct wb_rig_options beside those of `virtual`. */
 extern const struct wb_setting_table wb_bench_options_stage, wb_bench_options_rig,
-    wb_bench_options_replay;
+    wb_bench_options_virtual, wb_bench_options_replay;
+
+/* Fills in the defaults; and, after the options were read, the bench's settings from them. */
+void wb_bench_options_default(struct wb_virtual_options *options);
+void wb_bench_options_complete(struct wb_virtual_options *options);
 
 #endif

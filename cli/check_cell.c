@@ -5,12 +5,13 @@
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "analysis/report/certificate.h"
 #include "base/number.h"
+#include "base/timing.h"
 #include "base/units.h"
+#include "daq/acquire/mass_check.h"
 #include "daq/protocol/cell_calibration.h"
 #include "daq/test/check_log.h"
 
@@ -154,10 +155,7 @@ static bool measure(struct check *check)
         memcpy(check->points, wb_mass_check_points(program),
                (size_t)check->n * sizeof *check->points);
     wb_mass_check_close(program);
-    const time_t now = time(NULL);
-    struct tm utc;
-    gmtime_r(&now, &utc);
-    strftime(check->utc, sizeof check->utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    wb_time_format(wb_time_utc(), check->utc);
     return measured;
 }
 

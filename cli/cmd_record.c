@@ -1,4 +1,5 @@
 /* wirebench record: the paper's test, recorded. */
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -6,13 +7,16 @@
 #include "analysis/plot/figure.h"
 #include "analysis/quicklook.h"
 #include "base/file.h"
+#include "base/timing.h"
 #include "base/units.h"
+#include "cli/bench_options.h"
 #include "cli/command.h"
 #include "cli/live_line.h"
 #include "cli/record_series.h"
 #include "cli/record_test.h"
 #include "cli/settings.h"
 #include "daq/test/bend_test.h"
+#include "fixtures/virtual/virtual_time.h"
 
 #define WB_LOG_DOMAIN "record"
 
@@ -22,6 +26,10 @@ struct options {
     struct wb_record_views_options views;
     const char *figure; /* the curve's file; NULL: not wanted */
     const char *series; /* the file of a series; NULL: a single test */
+    bool is_virtual;
+    struct wb_virtual_options bench;
+    const char *of_virtual; /* an option given that only a virtual test has; NULL: none */
+    struct wb_virtual_test virtual;
 };
 
 enum {
@@ -31,7 +39,9 @@ enum {
     OPTION_NOTES,
     OPTION_LIVE,
     OPTION_SERVE,
-    OPTION_FIGURE
+    OPTION_FIGURE,
+    OPTION_VIRTUAL,
+    OPTION_START
 };
 
 static const struct argp_option argp_options[] = {
@@ -48,6 +58,15 @@ static const struct argp_option argp_options[] = {
      "Show it as a web page at http://127.0.0.1:PORT/; 0 takes a free port", 0},
     {"figure", OPTION_FIGURE, "FILE", 0,
      "Draw force over deflection at the end, as SVG, PNG or PDF; the file must not exist", 0},
+    {"virtual", OPTION_VIRTUAL, NULL, 0,
+     "Test on a virtual bench like that of RIG.yaml, in virtual time: the whole test in a second "
+     "or "
+     "two, without instruments",
+     0},
+    {"start", OPTION_START, "DATE", 0,
+     "With --virtual: the date that the recording names, 2026-11-25 or 2026-11-25T14:03:00Z; "
+     "without it the real one",
+     0},
     {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
     {0},
 };
@@ -64,6 +83,23 @@ static error_t check_series(struct argp_state *state, const struct options *opti
                        row->option);
     }
     return 0;
+}
+
+static void check_virtual(struct argp_state *state, const struct options *options)
+{
+    if (!options->is_virtual && options->of_virtual)
+        argp_error(state, "--%s is for a virtual test: add --virtual", options->of_virtual);
+    if (options->is_virtual && (options->views.live || options->views.serve))
+        argp_error(state, "a virtual test takes a second and cannot be watched: leave out --live "
+                          "and --serve, or start the bench with 'wirebench rig'");
+}
+
+static void note_option(void *input, const struct wb_setting *row)
+{
+    struct options *const options = input;
+    for (size_t i = 0; i < wb_bench_options_virtual.n; i++)
+        if (row == &wb_bench_options_virtual.rows[i])
+            options->of_virtual = row->option;
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -96,7 +132,19 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "a figure is written as NAME.svg, NAME.png or NAME.pdf, not '%s'",
                        argument);
         return 0;
+    case OPTION_VIRTUAL:
+        options->is_virtual = true;
+        return 0;
+    case OPTION_START:
+        options->of_virtual = "start";
+        if (!wb_time_parse(argument, &options->virtual.start))
+            argp_error(state,
+                       "--start: expected a date such as 2026-11-25 or 2026-11-25T14:03:00Z "
+                       "(UTC), not '%s'",
+                       argument);
+        return 0;
     case ARGP_KEY_END:
+        check_virtual(state, options);
         if (options->series)
             return check_series(state, options);
         if (!request->specimen_path)
@@ -132,6 +180,20 @@ static const struct argp argp = {
         "Exit codes: 0 complete; 1 failed before the first cycle, or nothing was recorded; 2 wrong "
         "usage; 3 stopped early or data lost, what was recorded is usable.",
 };
+
+static const struct wb_settings_source sources[] = {
+    {.tables = &wb_bend_test_table, .n_tables = 1, .offset = offsetof(struct options, request)},
+    {.tables = &wb_bench_options_virtual,
+     .n_tables = 1,
+     .offset = offsetof(struct options, bench),
+     .title = "With --virtual:"},
+};
+
+static const struct wb_settings_command command = {.argp = &argp,
+                                                   .sources = sources,
+                                                   .n_sources = WB_COUNT(sources),
+                                                   .place = 1,
+                                                   .note = note_option};
 
 static const char *end_name(enum wb_sequence_end end)
 {
@@ -197,12 +259,13 @@ static void print_result(const struct wb_bend_test_result *result, const char *o
     free(text);
 }
 
-static int run_series(const struct options *options)
+static int run_series(struct options *options)
 {
     const struct wb_record_series series = {
         .path = options->series,
         .test = options->request,
         .views = options->views,
+        .virtual = options->is_virtual ? &options->virtual : NULL,
         .folder = options->common.output,
         .figure = options->figure,
         .json = options->common.json,
@@ -216,10 +279,15 @@ int wb_cmd_record(int argc, char **argv)
         .common = {.noun = "rig file", .destination = "recording goes: -o REC.wbr"}};
     struct wb_bend_test_result result;
     int code;
-    char specimen[WB_PATH];
+    char specimen[WB_PATH], rig[WB_PATH];
     wb_bend_test_default_request(&options.request);
-    wb_settings_parse_table(&argp, &wb_bend_test_table, &options.request, 1, argc, argv, &options);
-    options.request.rig_path = options.common.input;
+    wb_bench_options_default(&options.bench);
+    options.virtual.start = WB_VIRTUAL_TIME_HOST_DATE;
+    wb_settings_parse(&command, argc, argv, &options);
+    wb_bench_options_complete(&options.bench);
+    options.virtual.settings = options.bench.bench;
+    options.request.rig_path =
+        options.is_virtual ? wb_command_find(options.common.input, rig) : options.common.input;
     if (options.series)
         return run_series(&options);
     options.request.output_path = options.common.output;
@@ -228,7 +296,8 @@ int wb_cmd_record(int argc, char **argv)
         wb_error("'%s' exists: choose another name with --figure", options.figure);
         return WB_EXIT_FAILED;
     }
-    if (wb_record_test_run(&options.request, &options.views, &result, &code) != WB_OK)
+    if (wb_record_test_run(&options.request, &options.views,
+                           options.is_virtual ? &options.virtual : NULL, &result, &code) != WB_OK)
         return WB_EXIT_FAILED;
     if (options.figure && result.started &&
         draw_figure(options.request.output_path, options.figure) != WB_OK) {

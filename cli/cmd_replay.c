@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "cli/bench_options.h"
 #include "cli/live_line.h"
@@ -159,9 +159,9 @@ int wb_cmd_replay(int argc, char **argv)
     if (wb_recording_open(&recording, options.common.input) != WB_OK)
         return WB_EXIT_FAILED;
     bool complete = wb_recording_is_complete(recording);
-    int64_t started_ns = wb_progress_now_ns();
+    int64_t started_ns = wb_time_now_ns();
     enum wb_status status = play(recording, &options, &player, &counts);
-    double wall_s = wb_seconds_from_ns(wb_progress_now_ns() - started_ns);
+    double wall_s = wb_seconds_from_ns(wb_time_now_ns() - started_ns);
     if (wb_recording_close(recording) != WB_OK)
         return WB_EXIT_FAILED;
     /* A database that breaks off was replayed up to that point. */

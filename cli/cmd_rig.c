@@ -1,5 +1,6 @@
 /* wirebench rig: the virtual rig, until it is interrupted. */
 #include <errno.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,7 @@ static const struct argp_option other_options[] = {{0}};
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct wb_rig_options *const options = state->input;
-    if (key == ARGP_KEY_END && !options->bench.specimen)
+    if (key == ARGP_KEY_END && !options->virtual.bench.specimen)
         argp_error(state, "no --specimen given");
     if (key == ARGP_KEY_END && !options->run)
         argp_error(state, "no folder for the rig file given (--run DIR)");
@@ -38,13 +39,22 @@ static const struct argp argp = {
            "not used. The same seed and specimen give the same wire and the same noise.",
 };
 
+static const struct wb_settings_source sources[] = {
+    {.tables = &wb_bench_options_rig, .n_tables = 1},
+    {.tables = &wb_bench_options_virtual,
+     .n_tables = 1,
+     .offset = offsetof(struct wb_rig_options, virtual)},
+};
+
+static const struct wb_settings_command command = {
+    .argp = &argp, .sources = sources, .n_sources = WB_COUNT(sources), .place = 1};
+
 static void parse_options(int argc, char **argv, struct wb_rig_options *options)
 {
+    wb_bench_options_default(&options->virtual);
     wb_setting_fill(&wb_bench_options_rig, options);
-    wb_settings_parse_table(&argp, &wb_bench_options_rig, options, 1, argc, argv, options);
-    options->bench.seed = (uint64_t)options->seed;
-    options->bench.natnet = (struct wb_natnet_version){(uint8_t)options->version.major,
-                                                       (uint8_t)options->version.minor};
+    wb_settings_parse(&command, argc, argv, options);
+    wb_bench_options_complete(&options->virtual);
 }
 
 /* A folder serves one rig: a second one would replace the first one's rig file and later remove it.
@@ -81,16 +91,16 @@ int wb_cmd_rig(int argc, char **argv)
     struct wb_file_lock lock;
     static const volatile bool never = false;
     parse_options(argc, argv, &options);
-    options.bench.rig = wb_command_find(options.common.input, rig);
-    options.bench.folder = options.run;
-    options.bench.specimen = wb_command_find(options.bench.specimen, specimen);
+    options.virtual.bench.rig = wb_command_find(options.common.input, rig);
+    options.virtual.bench.folder = options.run;
+    options.virtual.bench.specimen = wb_command_find(options.virtual.bench.specimen, specimen);
     wb_interrupt_install();
     wb_acquisition_raise_priority();
     if (wb_file_make_folder(options.run) != WB_OK ||
         wb_file_join(path, options.run, "rig.yaml") != WB_OK ||
         lock_folder(&lock, options.run) != WB_OK)
         return WB_EXIT_FAILED;
-    if (wb_bench_open(&bench, &options.bench) != WB_OK) {
+    if (wb_bench_open(&bench, &options.virtual.bench) != WB_OK) {
         wb_file_unlock(&lock);
         return WB_EXIT_FAILED;
     }

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "cli/talk.h"
 
@@ -129,7 +129,7 @@ void wb_live_line_open(void)
 
 bool wb_live_line_due(void)
 {
-    return live.draws && wb_progress_now_ns() - live.drawn_ns >= REDRAW_NS;
+    return live.draws && wb_time_now_ns() - live.drawn_ns >= REDRAW_NS;
 }
 
 int wb_live_line_columns(void)
@@ -159,7 +159,7 @@ void wb_live_line_show(const char *format, ...)
         (void)wb_talk_say(text);
         live.drawn = true;
     }
-    live.drawn_ns = wb_progress_now_ns();
+    live.drawn_ns = wb_time_now_ns();
     pthread_mutex_unlock(&lock);
 }
 

@@ -10,11 +10,11 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <termios.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "analysis/series_results.h"
 #include "base/interrupt.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/record_test.h"
@@ -265,10 +265,7 @@ static bool judge(struct run *run, struct wb_index_entry *entry, bool is_whole)
             run->is_over = true;
             return false;
         }
-        const time_t now = time(NULL);
-        struct tm utc;
-        gmtime_r(&now, &utc);
-        strftime(now_utc, sizeof now_utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
+        wb_time_format(wb_time_utc(), now_utc);
         if (take_exclusion(run, answer, &entry->excluded, now_utc))
             return true;
     }
@@ -382,7 +379,10 @@ static enum wb_status test_sample(struct run *run, int number, int sample, const
     test.notes = notes[0] ? notes : run->test.notes;
     struct wb_live_frame_point *const earlier = find_earlier(&run->results, &run->views.n_earlier);
     run->views.earlier = earlier;
-    const enum wb_status status = wb_record_test_run(&test, &run->views, &result, &code);
+    struct wb_virtual_test *const virtual = run->request->virtual;
+    if (virtual) /* another specimen is another draw */
+        virtual->settings.seed++;
+    const enum wb_status status = wb_record_test_run(&test, &run->views, virtual, &result, &code);
     free(earlier);
     if (status != WB_OK)
         return WB_OK; /* told; nothing was moved, and the specimen is asked for again */

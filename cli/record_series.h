@@ -12,8 +12,9 @@ struct wb_record_series {
     const char *path;                 /* of the series' file */
     struct wb_bend_test_request test; /* rig (NULL: the file names it), operator, notes */
     struct wb_record_views_options views;
-    const char *folder; /* of the recordings; NULL: that of the series' file */
-    const char *figure; /* of all curves; NULL: not wanted */
+    struct wb_virtual_test *virtual; /* each test on a virtual bench of its own; NULL: not */
+    const char *folder;              /* of the recordings; NULL: that of the series' file */
+    const char *figure;              /* of all curves; NULL: not wanted */
     bool json;
 };
 

@@ -7,6 +7,7 @@
 
 #include "base/config.h"
 #include "base/interrupt.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/live_line.h"
@@ -131,6 +132,8 @@ static void tell_stop(const struct wb_bend_test_result *result, const char *rig_
     if (!result->standing)
         wb_error("the stage did not confirm that it stands: switch off its power before you touch "
                  "the bench");
+    else if (wb_time_is_virtual())
+        return; /* the bench ends with the test */
     else if (result->displaced && isfinite(result->travel))
         wb_warn("the stage stands at %.2f mm and the specimen stays as it is; free it with "
                 "'wirebench stage %s release %.0f --zero-mn=%.2f', which goes up by no more than "
@@ -214,7 +217,8 @@ static enum wb_status run_test(struct wb_bend_test_request *request,
     wb_interrupt_install();
     wb_interrupt_guard();
     WB_TRY(wb_record_views_open(&views, options, request, &wire));
-    wb_acquisition_raise_priority();
+    if (!wb_time_is_virtual())
+        wb_acquisition_raise_priority();
     const enum wb_status opened = wb_bend_test_open(&test, request);
     if (opened != WB_OK) {
         wb_record_views_close(&views);
@@ -239,6 +243,7 @@ static enum wb_status run_test(struct wb_bend_test_request *request,
  * changes the file meanwhile. */
 enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
                                   struct wb_record_views_options *options,
+                                  struct wb_virtual_test *virtual,
                                   struct wb_bend_test_result *result, int *code)
 {
     const char *const given = request->specimen_text;
@@ -246,7 +251,12 @@ enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
     if (!given)
         WB_TRY(wb_config_read_text(&text, request->specimen_path, NULL));
     request->specimen_text = given ? given : text;
-    const enum wb_status status = run_test(request, options, result, code);
+    enum wb_status status = virtual ? wb_virtual_test_begin(virtual, request) : WB_OK;
+    if (status == WB_OK) {
+        status = run_test(request, options, result, code);
+        if (virtual)
+            wb_virtual_test_end(virtual, request);
+    }
     request->specimen_text = given;
     free(text);
     return status;

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "cli/live_line.h"
 #include "live/live_terminal.h"
@@ -56,7 +56,7 @@ static enum wb_status make_plan(struct wb_record_views *views,
 {
     struct wb_rig rig;
     struct wb_specimen specimen;
-    WB_TRY(wb_rig_read(request->rig_path, &rig));
+    WB_TRY(wb_bend_test_rig(request, &rig));
     WB_TRY(wb_bend_test_specimen(request, &specimen));
     if (wb_live_plan_make(&views->plan, &rig, &specimen, wire, request->travel) != WB_OK)
         wb_warn("the views show no predicted curve: the message before says why");
@@ -145,7 +145,7 @@ static void take_terminal_back(struct wb_record_views *views)
 bool wb_record_views_tell(struct wb_record_views *views, bool now)
 {
     struct wb_live_frame frame;
-    const int64_t now_ns = wb_progress_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     if (views->terminal >= 0 && atomic_load(&views->feed.view[views->terminal].is_gone) &&
         wb_live_feed_has_ended(&views->feed, views->terminal)) {
         take_terminal_back(views);

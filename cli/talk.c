@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 enum way {
@@ -123,15 +123,13 @@ uint64_t wb_talk_lost(void)
 
 void wb_talk_close(int patience_ms)
 {
-    const int64_t deadline_ns = wb_progress_now_ns() + patience_ms * WB_NS_PER_MS;
+    const int64_t deadline_ns = wb_time_now_ns() + patience_ms * WB_NS_PER_MS;
     (void)wb_talk_flush();
     tell_lost(0);
     while (!wb_talk_flush() && !talk.gone) {
-        const int64_t left_ns = deadline_ns - wb_progress_now_ns();
-        if (left_ns <= 0)
-            break;
         struct pollfd polled = {.fd = talk.descriptor, .events = POLLOUT};
-        poll(&polled, 1, (int)(left_ns / WB_NS_PER_MS) + 1);
+        if (wb_time_wait(&polled, 1, deadline_ns) == 0)
+            break;
     }
     if (talk.is_own)
         close(talk.descriptor);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/json.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "record"
@@ -20,7 +21,7 @@ void wb_bend_hold_begin(struct wb_bend_hold *hold, struct wb_sequence *run, int 
     hold->is_on = true;
     hold->stands = false;
     hold->phase = run->phase;
-    hold->at_ns = wb_acquisition_now_ns();
+    hold->at_ns = wb_time_now_ns();
     wb_acquisition_event(run->acquisition, WB_BEND_HOLD_START,
                          "{\"cycle\": %d, \"phase\": \"%s\", \"travel_mm\": %.6g, "
                          "\"tension_mN\": %.6g}",
@@ -32,7 +33,7 @@ void wb_bend_hold_begin(struct wb_bend_hold *hold, struct wb_sequence *run, int 
 
 double wb_bend_hold_lasts(const struct wb_bend_hold *hold)
 {
-    return hold->is_on ? wb_seconds_from_ns(wb_acquisition_now_ns() - hold->at_ns) : (double)NAN;
+    return hold->is_on ? wb_seconds_from_ns(wb_time_now_ns() - hold->at_ns) : (double)NAN;
 }
 
 static void see_it_stand(struct wb_bend_hold *hold, struct wb_sequence *run)

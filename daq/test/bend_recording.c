@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/file.h"
 #include "base/number.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "daq/test/check_log.h"
@@ -59,10 +59,11 @@ static enum wb_status set_truth(struct wb_recording *recording,
 {
     if (!description->rig->is_virtual)
         return WB_OK;
-    char *text;
+    char *text = NULL;
     WB_TRY(wb_recording_set_meta(recording, "virtual", "true"));
-    WB_TRY(wb_file_read(description->rig_path, &text, NULL));
-    char *const truth = wb_bend_recording_yaml_part(text, "truth");
+    if (!description->rig_text)
+        WB_TRY(wb_file_read(description->rig_path, &text, NULL));
+    char *const truth = wb_bend_recording_yaml_part(text ? text : description->rig_text, "truth");
     free(text);
     if (!truth)
         return wb_fail(WB_ERR_MEMORY, "out of memory for the rig's truth");
@@ -81,10 +82,7 @@ static enum wb_status set_circumstances(struct wb_recording *recording,
                                         const struct wb_bend_recording *description)
 {
     char text[256];
-    const time_t now = time(NULL);
-    struct tm utc;
-    gmtime_r(&now, &utc);
-    strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    wb_time_format(wb_time_utc(), text);
     /* When an imported test was made, its files do not say. */
     WB_TRY(wb_recording_set_meta(recording, description->imported ? "imported_utc" : "start_utc",
                                  text));
@@ -128,14 +126,18 @@ static enum wb_status set_meta(struct wb_recording *recording,
     WB_TRY(set_circumstances(recording, d));
     WB_TRY(wb_recording_set_meta(recording, "operator", d->operator_name ? d->operator_name : ""));
     WB_TRY(wb_recording_set_meta(recording, "notes", d->notes ? d->notes : ""));
-    WB_TRY(set_text_file(recording, "rig", d->rig_path));
+    if (d->rig_text)
+        WB_TRY(wb_recording_set_meta(recording, "rig", d->rig_text));
+    else
+        WB_TRY(set_text_file(recording, "rig", d->rig_path));
     if (d->specimen_text)
         WB_TRY(wb_recording_set_meta(recording, "specimen", d->specimen_text));
     else
         WB_TRY(set_text_file(recording, "specimen", d->specimen_path));
     WB_TRY(set_wire(recording, d));
     WB_TRY(set_truth(recording, d));
-    WB_TRY(set_check(recording, d));
+    if (!d->rig_text)
+        WB_TRY(set_check(recording, d));
     WB_TRY(set_number(recording, "g", d->rig->gravity));
     if (d->imported)
         return WB_OK;

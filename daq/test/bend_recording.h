@@ -12,6 +12,7 @@
 struct wb_bend_recording {
     const char *path;                     /* must not exist */
     const char *rig_path, *specimen_path; /* stored whole */
+    const char *rig_text;                 /* stored in place of the file's; NULL: the file's */
     const char *specimen_text;            /* stored in place of the file's; NULL: the file's */
     const struct wb_rig *rig;
     const struct wb_specimen *specimen;

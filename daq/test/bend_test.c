@@ -6,10 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "daq/acquire/silence_check.h"
@@ -137,7 +137,7 @@ static void finish(struct wb_bend_test *test)
                                       "interrupted", "still loaded", "failed"};
     struct wb_bend_test_result *const result = &test->result;
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
-    result->duration = wb_seconds_from_ns(wb_acquisition_now_ns() - test->started_ns);
+    result->duration = wb_seconds_from_ns(wb_time_now_ns() - test->started_ns);
     if (latest->has_stage && isfinite(test->run.start_position))
         result->travel = wb_sequence_travel(&test->run, latest->stage.position);
     if (isfinite(result->travel))
@@ -589,6 +589,13 @@ enum wb_status wb_bend_test_check_request(const struct wb_bend_test_request *req
     return WB_OK;
 }
 
+enum wb_status wb_bend_test_rig(const struct wb_bend_test_request *request, struct wb_rig *rig)
+{
+    if (request->rig_text)
+        return wb_rig_parse(request->rig_text, request->rig_path, rig, NULL);
+    return wb_rig_read(request->rig_path, rig);
+}
+
 enum wb_status wb_bend_test_specimen(const struct wb_bend_test_request *request,
                                      struct wb_specimen *specimen)
 {
@@ -601,7 +608,7 @@ enum wb_status wb_bend_test_specimen(const struct wb_bend_test_request *request,
 static enum wb_status check_cell(const struct wb_rig *rig, const char *rig_path)
 {
     char text[WB_CHECK_DUE_TEXT];
-    switch (wb_check_due(&rig->load_cell, rig_path, (int64_t)time(NULL), text)) {
+    switch (wb_check_due(&rig->load_cell, rig_path, wb_time_utc(), text)) {
     case WB_CHECK_DUE_TOO_LATE:
         return wb_fail(WB_ERR_ARGUMENT, "%s", text);
     case WB_CHECK_DUE_LATE:
@@ -614,10 +621,11 @@ static enum wb_status check_cell(const struct wb_rig *rig, const char *rig_path)
 
 static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test_request *request)
 {
-    WB_TRY(wb_rig_read(request->rig_path, &test->run.rig));
+    WB_TRY(wb_bend_test_rig(request, &test->run.rig));
     WB_TRY(wb_bend_test_specimen(request, &test->specimen));
     WB_TRY(wb_bend_test_check_request(&test->request, &test->run.rig, NULL));
-    WB_TRY(check_cell(&test->run.rig, request->rig_path));
+    if (!request->rig_text)
+        WB_TRY(check_cell(&test->run.rig, request->rig_path));
     if (wb_file_exists(request->output_path))
         return wb_fail(WB_ERR_EXISTS,
                        "'%s' exists: a recording is never overwritten, choose another name",
@@ -625,10 +633,11 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
     const struct wb_sink sink = {.context = test, .load = on_load, .mocap = on_mocap};
     WB_TRY(wb_acquisition_open(&test->run.acquisition, &test->run.rig, WB_ACQUISITION_ALL, &sink));
     wb_acquisition_also_tell(test->run.acquisition, &request->sink);
-    test->started_ns = wb_acquisition_now_ns();
+    test->started_ns = wb_time_now_ns();
     const struct wb_bend_recording description = {
         .path = request->output_path,
         .rig_path = request->rig_path,
+        .rig_text = request->rig_text,
         .specimen_path = request->specimen_path,
         .specimen_text = request->specimen_text,
         .rig = &test->run.rig,
@@ -771,7 +780,7 @@ void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_st
         status->travel = wb_sequence_travel(&test->run, latest->stage.position);
     status->has_deflection = test->tip.settled;
     status->deflection = test->tip.deflection;
-    status->elapsed = wb_seconds_from_ns(wb_acquisition_now_ns() - test->started_ns);
+    status->elapsed = wb_seconds_from_ns(wb_time_now_ns() - test->started_ns);
     status->gravity = test->run.rig.gravity;
     status->markers_expected = test->specimen.n_markers;
     status->is_virtual = test->run.rig.is_virtual;

@@ -25,6 +25,10 @@ struct wb_bend_test; /* opaque */
 
 struct wb_bend_test_request {
     const char *rig_path, *specimen_path; /* YAML files */
+    const char *rig_text;                 /* of a bench that is not the rig file's own (a virtual
+                                             one like it): in place of what the file holds, and the
+                                             log of checks beside it is of another load cell;
+                                             NULL: the file */
     const char *specimen_text;            /* in place of what the specimen's file holds, which then
                                              only says where its wire is looked for; NULL: the file */
     const char *output_path;              /* the recording; must not exist */
@@ -47,7 +51,9 @@ extern const struct wb_setting_table wb_bend_test_table;
 /* 1 cycle, 53 mm, 6 s, 1 s, 2 s, 2 s, 600 s; paths NULL. */
 void wb_bend_test_default_request(struct wb_bend_test_request *request);
 
-/* Reads the specimen that the request names. */
+/* Reads the rig that the request names, and the specimen. */
+WB_MUST_CHECK enum wb_status wb_bend_test_rig(const struct wb_bend_test_request *request,
+                                              struct wb_rig *rig);
 WB_MUST_CHECK enum wb_status wb_bend_test_specimen(const struct wb_bend_test_request *request,
                                                    struct wb_specimen *specimen);
 

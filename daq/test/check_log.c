@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/number.h"
+#include "base/timing.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "check"
@@ -142,7 +143,7 @@ double wb_check_log_age(const struct wb_check_log_entry *entry)
 {
     struct tm utc = {0};
     const char *const end = strptime(entry->utc, "%Y-%m-%dT%H:%M:%S", &utc);
-    return end ? difftime(time(NULL), timegm(&utc)) : HUGE_VAL;
+    return end ? (double)(wb_time_utc() - (int64_t)timegm(&utc)) : HUGE_VAL;
 }
 
 void wb_check_log_describe(const struct wb_check_log_entry *entry, char text[WB_CHECK_LOG_LINE])

@@ -6,6 +6,7 @@
 #define FAKE_LOAD_PERIOD_NS (WB_NS_PER_MS * 5 / 4)
 #define FAKE_FRAME_PERIOD_NS (WB_NS_PER_MS * 5 / 6)
 #include "base/interrupt.h"
+#include "base/timing.h"
 #include "daq/stream/stream.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/folder.h"
@@ -91,10 +92,10 @@ static void record(const struct wb_rig *rig, const char *path, double seconds, s
     assert_int_equal(wb_writer_start(&writer, recording, NULL), WB_OK);
     wb_acquisition_start(acquisition, writer);
     /* Buffers grow to their size in the first seconds. */
-    const int64_t begin_ns = wb_acquisition_now_ns(), settled_ns = begin_ns + 5 * WB_NS_PER_S;
+    const int64_t begin_ns = wb_time_now_ns(), settled_ns = begin_ns + 5 * WB_NS_PER_S;
     const int64_t end_ns = begin_ns + wb_ns_from_seconds(seconds);
     const double before_s = cpu_s();
-    for (int64_t now_ns; (now_ns = wb_acquisition_now_ns()) < end_ns;) {
+    for (int64_t now_ns; (now_ns = wb_time_now_ns()) < end_ns;) {
         if (now_ns < settled_ns)
             cost->first_MiB = resident_MiB();
         assert_int_equal(wb_acquisition_step(acquisition, 20 * WB_NS_PER_MS),
@@ -134,9 +135,9 @@ static double copy(const struct addresses *from, const char *path, double second
         polled[i].fd = descriptors[0];
     }
     const double before_s = cpu_s();
-    const int64_t end_ns = wb_acquisition_now_ns() + wb_ns_from_seconds(seconds);
+    const int64_t end_ns = wb_time_now_ns() + wb_ns_from_seconds(seconds);
     int64_t synced_ns = 0;
-    for (int64_t now_ns; (now_ns = wb_acquisition_now_ns()) < end_ns;) {
+    for (int64_t now_ns; (now_ns = wb_time_now_ns()) < end_ns;) {
         poll(polled, 2, 20);
         for (int i = 0; i < 2; i++) {
             size_t n = 1;

@@ -21,7 +21,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "tests/folder.h"
 
@@ -69,9 +69,9 @@ static pid_t start(const char *const *arguments, int *terminal)
  * come. False at the end of either the program or the patience. */
 static bool read_until(int terminal, int client, const char *words)
 {
-    const int64_t end_ns = wb_progress_now_ns() + wb_ns_from_seconds(PATIENCE_S);
+    const int64_t end_ns = wb_time_now_ns() + wb_ns_from_seconds(PATIENCE_S);
     static char page[65536];
-    while (!strstr(output, words) && wb_progress_now_ns() < end_ns) {
+    while (!strstr(output, words) && wb_time_now_ns() < end_ns) {
         struct pollfd polled[] = {{.fd = terminal, .events = POLLIN},
                                   {.fd = client, .events = POLLIN}};
         (void)poll(polled, 2, 200);
@@ -154,7 +154,7 @@ static void take_end(pid_t process, int64_t begun_ns, struct cost *cost)
 {
     const char *at = strstr(output, " drops");
     cost->cpu = cpu_of(process);
-    cost->seconds = wb_seconds_from_ns(wb_progress_now_ns() - begun_ns);
+    cost->seconds = wb_seconds_from_ns(wb_time_now_ns() - begun_ns);
     while (at > output && at[-1] >= '0' && at[-1] <= '9')
         at--;
     cost->drops = atol(at);
@@ -167,7 +167,7 @@ static void record_alone(const char *travel, struct cost *cost)
     snprintf(path, sizeof path, "%s/alone.wbr", folder);
     const char *const arguments[] = {tool, "record", rig_yaml,      "--specimen", specimen,
                                      "-o", path,     "--travel-mm", travel,       NULL};
-    const int64_t begun_ns = wb_progress_now_ns();
+    const int64_t begun_ns = wb_time_now_ns();
     const pid_t process = start(arguments, &terminal);
     /* Its last line; a zombie still has its times. */
     expect(terminal, -1, " drops\r\n");
@@ -193,7 +193,7 @@ static void record_series(const char *travel, struct cost *cost)
     const pid_t process = start(arguments, &terminal);
     expect(terminal, -1, "press Enter");
     const double before = cpu_of(process);
-    const int64_t begun_ns = wb_progress_now_ns();
+    const int64_t begun_ns = wb_time_now_ns();
     answer(terminal);
     const int client = follow_page(port);
     expect(terminal, client, " drops\r\n");

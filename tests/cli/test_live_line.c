@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "cli/live_line.h"
 #include "cli/talk_private.h"
@@ -40,12 +40,12 @@ static bool talks_without_waiting(void)
     char message[512];
     memset(message, 'x', sizeof message - 1);
     message[sizeof message - 1] = '\0';
-    const int64_t before_ns = wb_progress_now_ns();
+    const int64_t before_ns = wb_time_now_ns();
     for (int i = 0; i < 400; i++) {
         wb_warn("%d %s", i, message);
         wb_live_line_show("line %d", i);
     }
-    return wb_progress_now_ns() - before_ns < WB_NS_PER_S;
+    return wb_time_now_ns() - before_ns < WB_NS_PER_S;
 }
 
 /* Perhaps in parts: the kernel's own buffers may make room in between. */

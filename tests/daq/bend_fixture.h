@@ -4,6 +4,7 @@
 
 #include "base/interrupt_private.h"
 #include "base/log.h"
+#include "base/timing.h"
 #include "daq/test/bend_test.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/daq/sample_log.h"
@@ -71,13 +72,13 @@ static inline int tear_down(void **state)
 static inline bool run(struct wb_bend_test *test,
                        bool (*until)(const struct wb_bend_test_status *status))
 {
-    const int64_t patience_ns = wb_acquisition_now_ns() + 20 * WB_NS_PER_S;
+    const int64_t patience_ns = wb_time_now_ns() + 20 * WB_NS_PER_S;
     struct wb_bend_test_status status;
     while (wb_bend_test_step(test, 20 * MS) == WB_SEQUENCE_RUNNING) {
         wb_bend_test_status(test, &status);
         if (until && until(&status))
             return true;
-        assert_true(wb_acquisition_now_ns() < patience_ns);
+        assert_true(wb_time_now_ns() < patience_ns);
     }
     return false;
 }

@@ -16,6 +16,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/acquire/acquisition.h"
 #include "daq/protocol/grbl.h"
@@ -148,7 +149,7 @@ static inline void fake_report(struct fake_bench *bench)
     const int share = bench->reports_of_100;
     if (share > 0 && ++bench->questions * share % 100 >= share)
         return;
-    bench->report_last_ns = wb_acquisition_now_ns();
+    bench->report_last_ns = wb_time_now_ns();
     fake_write(bench->stage, text, n);
 }
 
@@ -190,7 +191,7 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
 static inline void fake_hold(struct fake_bench *bench)
 {
     if (bench->holds++ == 0)
-        bench->hold_ns = wb_acquisition_now_ns();
+        bench->hold_ns = wb_time_now_ns();
     if (bench->stage_deaf) {
         /* Where short jogs came late it stood for a moment: it shall run on all the same. */
         if (bench->stage_overshoots && strcmp(bench->state, "Idle") == 0) {
@@ -205,7 +206,7 @@ static inline void fake_hold(struct fake_bench *bench)
 
 static inline void fake_reset(struct fake_bench *bench)
 {
-    bench->reset_ns = wb_acquisition_now_ns();
+    bench->reset_ns = wb_time_now_ns();
     if (bench->stage_wild)
         return;
     const bool moved = fake_moves(bench);
@@ -269,12 +270,12 @@ static inline void fake_reading(struct fake_bench *bench)
     if (bench->limit_sent_ns == 0 &&
         ((bench->force_limit_mg > 0 && fabs(mg) > bench->force_limit_mg) || bench->overload ||
          bench->other_unit))
-        bench->limit_sent_ns = wb_acquisition_now_ns();
+        bench->limit_sent_ns = wb_time_now_ns();
     memcpy(bench->readings + bench->n_readings, text, strlen(text));
     bench->n_readings += strlen(text);
     if (++bench->readings_held < bench->readings_at_once)
         return;
-    bench->load_last_ns = wb_acquisition_now_ns();
+    bench->load_last_ns = wb_time_now_ns();
     fake_write(bench->load, bench->readings, bench->n_readings);
     bench->n_readings = 0;
     bench->readings_held = 0;
@@ -289,7 +290,7 @@ static inline void fake_send(struct fake_bench *bench, const uint8_t *bytes, siz
 
 static inline uint64_t fake_ticks(void)
 {
-    return (uint64_t)(wb_acquisition_now_ns() / 100 + 36000000000LL);
+    return (uint64_t)(wb_time_now_ns() / 100 + 36000000000LL);
 }
 
 static inline void fake_frame(struct fake_bench *bench)
@@ -317,7 +318,7 @@ static inline void fake_frame(struct fake_bench *bench)
         marker->size = 0.003F;
         marker->params = WB_MARKER_POINT_CLOUD_SOLVED | WB_MARKER_UNLABELED;
     }
-    bench->frame_last_ns = wb_acquisition_now_ns();
+    bench->frame_last_ns = wb_time_now_ns();
     fake_send(bench, buffer,
               wb_natnet_encode_frame(buffer, sizeof buffer, (struct wb_natnet_version){3, 0},
                                      &bench->data));
@@ -381,14 +382,14 @@ static inline void fake_replug(struct fake_bench *bench)
 static inline void *fake_run(void *context)
 {
     struct fake_bench *const bench = context;
-    int64_t before_ns = wb_acquisition_now_ns();
+    int64_t before_ns = wb_time_now_ns();
     while (!bench->quit) {
         struct pollfd polled[2] = {{.fd = bench->stage, .events = POLLIN},
                                    {.fd = bench->udp, .events = POLLIN}};
         const struct timespec wait = {
             .tv_nsec = FAKE_FRAME_PERIOD_NS < 4 * WB_NS_PER_MS ? 100000 : WB_NS_PER_MS};
         ppoll(polled, 2, &wait, NULL);
-        const int64_t now_ns = wb_acquisition_now_ns();
+        const int64_t now_ns = wb_time_now_ns();
         if (now_ns - before_ns > bench->worst_gap_ns)
             bench->worst_gap_ns = now_ns - before_ns;
         before_ns = now_ns;
@@ -405,7 +406,7 @@ static inline void *fake_run(void *context)
             fake_datagram(bench);
         if (bench->raise_alarm && strcmp(bench->state, "Alarm") != 0) {
             bench->state = "Alarm";
-            bench->limit_sent_ns = wb_acquisition_now_ns();
+            bench->limit_sent_ns = wb_time_now_ns();
             fake_say(bench, "ALARM:1\r\n");
         }
         if (now_ns >= bench->next_load_ns) {
@@ -457,7 +458,7 @@ static inline struct fake_bench *fake_start(void)
     bench->force_mg = 150;
     bench->spring_mg_mm = 500;
     bench->noise = 12345;
-    const int64_t now_ns = wb_acquisition_now_ns();
+    const int64_t now_ns = wb_time_now_ns();
     bench->moved_ns = bench->next_load_ns = bench->next_frame_ns = now_ns;
     assert_int_equal(pthread_create(&bench->thread, NULL, fake_run, bench), 0);
     return bench;

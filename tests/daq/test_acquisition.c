@@ -1,6 +1,7 @@
 /* The acquisition loop against a small bench in a thread: what it stores, what it tells, and that
  * it never waits longer than it may. */
 #include "base/file.h"
+#include "base/timing.h"
 
 #include "base/interrupt_private.h"
 #include "base/log.h"
@@ -92,8 +93,8 @@ static void start(struct fixture *fixture)
 
 static void run_for(struct fixture *fixture, int64_t duration_ns)
 {
-    const int64_t end_ns = wb_acquisition_now_ns() + duration_ns;
-    while (wb_acquisition_now_ns() < end_ns)
+    const int64_t end_ns = wb_time_now_ns() + duration_ns;
+    while (wb_time_now_ns() < end_ns)
         assert_int_equal(wb_acquisition_step(fixture->acquisition, 10 * MS),
                          WB_ACQUISITION_CONTINUE);
 }
@@ -200,7 +201,7 @@ enum wb_status __wrap_wb_stream_read(struct wb_stream *stream, void *buffer, siz
 {
     if (reads.stalls && ++reads.n_calls % 40 == 0)
         usleep(30000);
-    const int64_t begun_ns = wb_acquisition_now_ns();
+    const int64_t begun_ns = wb_time_now_ns();
     const enum wb_status status = __real_wb_stream_read(stream, buffer, size, n);
     if (reads.stalls && status == WB_OK && *n > 0 && reads.n < MOST_READS)
         reads.begun_ns[reads.n++] = begun_ns;
@@ -310,10 +311,10 @@ static void a_step_waits_20_ms_at_most(void **state)
     do {
         worst_ns = 0;
         for (int i = 0; i < 20; i++) {
-            const int64_t before_ns = wb_acquisition_now_ns();
+            const int64_t before_ns = wb_time_now_ns();
             assert_int_equal(wb_acquisition_step(fixture->acquisition, WB_NS_PER_S),
                              WB_ACQUISITION_CONTINUE);
-            const int64_t took_ns = wb_acquisition_now_ns() - before_ns;
+            const int64_t took_ns = wb_time_now_ns() - before_ns;
             worst_ns = took_ns > worst_ns ? took_ns : worst_ns;
         }
         fake_note_latency(&latency, fixture->bench, "the worst step",

@@ -1,6 +1,7 @@
 /* A test that its operator holds: what the stage does, what is recorded, and how a hold ends. */
 #include <math.h>
 
+#include "base/timing.h"
 #include "daq/test/bend_hold.h"
 #include "tests/daq/bend_fixture.h"
 
@@ -43,8 +44,8 @@ static void resume(struct wb_bend_test *test)
 
 static void step_for(struct wb_bend_test *test, double seconds)
 {
-    const int64_t until_ns = wb_acquisition_now_ns() + wb_ns_from_seconds(seconds);
-    while (wb_acquisition_now_ns() < until_ns)
+    const int64_t until_ns = wb_time_now_ns() + wb_ns_from_seconds(seconds);
+    while (wb_time_now_ns() < until_ns)
         assert_true(run(test, nothing_yet));
 }
 

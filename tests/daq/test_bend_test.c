@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "base/interrupt_private.h"
+#include "base/timing.h"
 #include "daq/recording/writer_private.h"
 #include "daq/test/bend_recording_private.h"
 #include "tests/daq/bend_fixture.h"
@@ -394,7 +395,7 @@ static void press_ctrl_c(struct fixture *fixture, struct fake_latency *latency)
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_and_get_down(fixture, &test);
-    const int64_t pressed_ns = wb_acquisition_now_ns();
+    const int64_t pressed_ns = wb_time_now_ns();
     wb_interrupt_set(true);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);

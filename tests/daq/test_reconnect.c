@@ -1,5 +1,6 @@
 /* A load cell whose cable comes out and in again, against a small bench in a thread: the test goes
  * on, the gap is told, and no two halves of lines make a reading that was never sent. */
+#include "base/timing.h"
 #include "daq/stream/usb_identity.h"
 #include "tests/daq/bend_fixture.h"
 #include "tests/trials.h"
@@ -37,10 +38,10 @@ static void a_cell_that_comes_back_goes_on_and_no_halves_of_lines_join(void **st
     fixture->request.travel = 8.0 * WB_MM;
     fixture->request.cycles = 1000;
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
-    int64_t change_ns = wb_acquisition_now_ns() + WB_NS_PER_S;
+    int64_t change_ns = wb_time_now_ns() + WB_NS_PER_S;
     int plugged = 0;
     while (wb_bend_test_step(test, MS) == WB_SEQUENCE_RUNNING && plugged < TRIALS) {
-        const int64_t now_ns = wb_acquisition_now_ns();
+        const int64_t now_ns = wb_time_now_ns();
         struct wb_bend_test_status status;
         wb_bend_test_status(test, &status);
         const bool gone = status.latest->stream[WB_ROLE_LOAD].gone;

@@ -2,6 +2,7 @@
  * check of the load cell with a mass. */
 #include "base/interrupt_private.h"
 #include "base/log.h"
+#include "base/timing.h"
 #include "daq/acquire/mass_check.h"
 #include "daq/acquire/stage_job.h"
 #include "daq/protocol/cell_calibration.h"
@@ -64,9 +65,9 @@ static struct wb_stage_job_result run(struct fixture *fixture, enum wb_stage_job
     struct wb_stage_job *job;
     struct wb_stage_job_result result;
     assert_int_equal(wb_stage_job_open(&job, &fixture->rig, &request), WB_OK);
-    const int64_t patience_ns = wb_acquisition_now_ns() + 20 * WB_NS_PER_S;
+    const int64_t patience_ns = wb_time_now_ns() + 20 * WB_NS_PER_S;
     while (wb_stage_job_step(job, 10 * MS) == WB_SEQUENCE_RUNNING)
-        assert_true(wb_acquisition_now_ns() < patience_ns);
+        assert_true(wb_time_now_ns() < patience_ns);
     wb_stage_job_close(job, &result);
     return result;
 }
@@ -441,7 +442,7 @@ static void a_swinging_mass_is_waited_for(void **state)
     assert_int_equal(
         wb_mass_check_open(&check, &fixture->rig, 0.3, (double[]){0.0, 10.0 * WB_G}, 2), WB_OK);
     while ((phase = wb_mass_check_step(check, 5 * MS)) < WB_MASS_CHECK_DONE) {
-        const int64_t now_ns = wb_acquisition_now_ns();
+        const int64_t now_ns = wb_time_now_ns();
         if (phase == WB_MASS_CHECK_WAITING) {
             hung_ns = now_ns;
             fixture->bench->force_mg += 10000;

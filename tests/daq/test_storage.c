@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #include <sys/wait.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/recording/recording_private.h"
 #include "daq/recording/writer_private.h"
@@ -138,12 +138,12 @@ static void record_until_killed(const char *path, struct shared *shared)
         uint8_t bytes[300];
         struct wb_writer_state lag;
         const size_t n = bench_bytes(0, seq, bytes);
-        pushed_ns[seq % RING] = wb_progress_now_ns();
+        pushed_ns[seq % RING] = wb_time_now_ns();
         if (!wb_writer_push_chunk(writer, 0, bench_time(0, seq), bytes, n))
             _exit(1);
         atomic_store(&shared->pushed, seq + 1);
         wb_writer_state(writer, &lag);
-        const int64_t now_ns = wb_progress_now_ns();
+        const int64_t now_ns = wb_time_now_ns();
         /* What was pushed before the oldest that waits is on the disk. */
         while (safe < seq && safe + RING > seq && pushed_ns[safe % RING] < now_ns - lag.lag_ns &&
                lag.lag_ns > 0 && pushed_ns[(safe + 1) % RING] < now_ns - lag.lag_ns)

@@ -3,7 +3,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "daq/recording/writer_private.h"
 #include "tests/daq/recording_fixture.h"
@@ -166,9 +166,9 @@ static void full_queue_drops_counts_and_records_every_chunk_and_no_event(void **
     int64_t first_refused[2] = {-1, -1}, slowest_ns = 0;
     for (int64_t seq = 0; seq < 400; seq++) {
         for (int stream = 0; stream < 2; stream++) {
-            int64_t before_ns = wb_progress_now_ns();
+            int64_t before_ns = wb_time_now_ns();
             bool taken = push(writer, stream, seq);
-            int64_t took_ns = wb_progress_now_ns() - before_ns;
+            int64_t took_ns = wb_time_now_ns() - before_ns;
             slowest_ns = took_ns > slowest_ns ? took_ns : slowest_ns;
             if (!taken && first_refused[stream] < 0)
                 first_refused[stream] = bench_time(stream, seq);

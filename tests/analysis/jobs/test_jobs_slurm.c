@@ -19,7 +19,7 @@
 
 #include "base/file.h"
 #include "base/interrupt_private.h"
-#include "base/progress.h"
+#include "base/timing.h"
 #include "base/units.h"
 #include "tests/analysis/jobs/jobs_fixture.h"
 #include "tests/check.h"
@@ -218,9 +218,9 @@ static int stop_cluster(void **state)
 /* Waits for a shell command to succeed. */
 static bool comes_true(const char *command, int seconds)
 {
-    const int64_t until_ns = wb_progress_now_ns() + seconds * WB_NS_PER_S;
+    const int64_t until_ns = wb_time_now_ns() + seconds * WB_NS_PER_S;
     while (system(command) != 0) {
-        if (wb_progress_now_ns() > until_ns)
+        if (wb_time_now_ns() > until_ns)
             return false;
         usleep(200000);
     }
