@@ -1,5 +1,6 @@
 /* Bundles in explicit dynamics, where it takes minutes. */
 #include "tests/fe/bundle/bundles.h"
+#include "tests/fe/bundle/static_reference.h"
 
 /* Runs the model and, with the 1D beam, the same loading: each row's force is within `limit` of
  * the largest. Returns the slack rows. */
@@ -184,6 +185,32 @@ static void seven_wires_are_between_sliding_and_bonded(void **unused)
     }
 }
 
+/* Friction of 0.1, as wires roll in the explicit model only. */
+static void curve_is_within_five_percent_of_the_static_reference(void **unused)
+{
+    (void)unused;
+    const int n = sizeof static_7_every_mm / sizeof static_7_every_mm[0];
+    double worst = 0.0;
+
+    read_model(SEVEN "run: {selective_mass_scaling: 100, deflection_mm: 53, rows: 53, "
+                     "duration_s: 2}\nloads: {weight: false}\n");
+    model.interface.friction_static = model.interface.friction_kinetic = 0.1;
+    run_model(NULL);
+    assert_true(result.converged && !result.exceeded);
+    for (int i = 0; i < n; i++) {
+        const struct static_point *expected = &static_7_every_mm[i];
+        const struct wb_bundle_row *row = &result.rows[i + 2];
+        const double error = row->force / expected->force - 1.0;
+        assert_close(row->deflection, expected->deflection_mm * 1e-3, 1e-6);
+        if (i % 10 == 0 || i + 1 == n)
+            print_message("%4.1f mm: static %.4f N, explicit %.4f N, %+.1f %%\n",
+                          expected->deflection_mm, expected->force, row->force, 100.0 * error);
+        worst = fmax(worst, fabs(error));
+        assert_close(row->tip[0], expected->tip_x_mm * 1e-3, 0.5e-3);
+    }
+    assert_true(worst < 0.05);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -193,6 +220,7 @@ int main(void)
         cmocka_unit_test_teardown(one_wire_is_within_the_mesh_error_of_the_beam, release),
         cmocka_unit_test_teardown(two_wires_are_twice_as_stiff_as_one, release),
         cmocka_unit_test_teardown(seven_wires_are_between_sliding_and_bonded, release),
+        cmocka_unit_test_teardown(curve_is_within_five_percent_of_the_static_reference, release),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

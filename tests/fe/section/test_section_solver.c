@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "fe/trial/cantilever.h"
+#include "tests/fe/bundle/static_reference.h"
 #include "tests/fe/section/section_fixture.h"
 
 static const double small = 1e-6; /* m */
@@ -163,6 +164,51 @@ static void seven_wires_shear_on_each_other_as_newmark_says(void **unused)
         assert_close_relative(found, expected, 0.04);
         assert_true(found > before && found < limit.bonded[0]);
         before = found;
+    }
+}
+
+/* Elements, contact and the tape's wall are others there. */
+static void forces_are_those_of_the_static_reference(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *bundle;
+        const struct static_point *expected;
+        bool no_tape, is_glued;
+        double friction, limit;
+    } curves[] = {
+        {"7-type3", static_7, false, false, 0.4, 0.02},
+        {"7-type3", static_7_frictionless, false, false, 0.0, 0.02},
+        {"12-type3", static_12, false, false, 0.4, 0.02},
+        {"7-type3", static_7_apart, true, false, 0.4, 0.01},
+        {"7-type3", static_7_glued, true, true, 0.0, 0.01},
+    };
+    enum {
+        POINTS = sizeof static_7 / sizeof static_7[0]
+    };
+
+    for (size_t c = 0; c < sizeof curves / sizeof curves[0]; c++) {
+        const struct wb_section_solver_settings settings = {
+            .friction = curves[c].friction,
+            .beam = {.is_glued = curves[c].is_glued,
+                     .slip_stiffness = curves[c].is_glued ? 1e16 : 0.0,
+                     .n_elements = 48}};
+        double from = 0.0, worst = 0.0;
+        read_bundle(curves[c].bundle);
+        model.has_tape = !curves[c].no_tape;
+        create(&settings);
+        for (int i = 0; i < POINTS; i++) {
+            const struct static_point *const expected = &curves[c].expected[i];
+            const double to = expected->deflection_mm * 1e-3;
+            const struct wb_section_solver_point point = load(from, to, i == 0 ? 2 : 10);
+            worst = fmax(worst, fabs(point.vertical / expected->force - 1.0));
+            assert_close(point.tip_x, expected->tip_x_mm * 1e-3, 0.5e-3);
+            from = to;
+        }
+        print_message("%s, mu = %g%s: largest difference %.2f %%\n", curves[c].bundle,
+                      curves[c].friction, curves[c].no_tape ? ", no tape" : "", 100.0 * worst);
+        assert_true(worst < curves[c].limit);
+        destroy(NULL);
     }
 }
 
@@ -454,6 +500,7 @@ int main(void)
         TEST(glued_wires_bend_as_one_section_that_stays_plane),
         TEST(wires_and_tape_without_bonds_or_friction_add_up),
         TEST(seven_wires_shear_on_each_other_as_newmark_says),
+        TEST(forces_are_those_of_the_static_reference),
         TEST(energies_add_up_to_the_work_and_better_with_smaller_steps),
         TEST(friction_stiffens_and_does_so_more_with_more_of_it),
         TEST(elements_and_increments_as_they_are_by_default_are_fine_enough),
