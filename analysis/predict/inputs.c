@@ -302,9 +302,7 @@ bool wb_inputs_apply(const struct wb_inputs *inputs, const double *numbers,
         interface->normal_stiffness = stiffness;
     }
     const double friction = take_from_range(&hand, u->friction);
-    if (u->has_friction) {
-        interface->friction_static = interface->friction_kinetic = friction;
-        interface->friction_decay = 0.0;
-    }
+    if (u->has_friction)
+        interface->friction = (struct wb_friction){friction, friction, 0.0};
     return are_laws;
 }

@@ -119,9 +119,7 @@ static enum wb_status make_contact(struct wb_bundle_bond *bond,
     wb_swept_tape_contact_default_settings(&settings);
     settings.normal_stiffness = interface->normal_stiffness;
     settings.shear_stiffness = interface->shear_stiffness;
-    settings.friction_static = interface->friction_static;
-    settings.friction_kinetic = interface->friction_kinetic;
-    settings.friction_decay = interface->friction_decay;
+    settings.friction = interface->friction;
     settings.refresh_interval = LOOK_INTERVAL;
     settings.reason = reason;
     return wb_swept_tape_contact_create(&bond->contact, bodies->tape, bond->cohesion, &settings,

@@ -16,16 +16,13 @@ static enum wb_status make_contact(struct wb_bundle_part *part)
 {
     const struct wb_bundle_bodies *bodies = &part->bodies;
     const struct wb_bundle_model *model = bodies->model;
-    const struct wb_bundle_interface *interface = &model->interface;
     struct wb_swept_contact_wire wires[WB_PACKING_MOST];
     struct wb_swept_contact_settings settings;
 
     if (bodies->n_wires < 2)
         return WB_OK;
     wb_swept_contact_default_settings(&settings);
-    settings.friction_static = interface->friction_static;
-    settings.friction_kinetic = interface->friction_kinetic;
-    settings.friction_decay = interface->friction_decay;
+    settings.friction = model->interface.friction;
     settings.counted = bodies->extent.own;
     settings.double_precision = model->run.double_precision;
     settings.reason = &part->reason;

@@ -105,20 +105,20 @@ static const struct wb_setting_table run_table = {.rows = wb_bundle_model_run_se
 static const struct wb_setting friction_rows[] = {
     {.name = "static",
      .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_bundle_interface, friction_static),
+     .offset = offsetof(struct wb_bundle_interface, friction.mu_static),
      .least = 0.0,
      .largest = 10.0,
      .required = true},
     {.name = "kinetic",
      .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_bundle_interface, friction_kinetic),
+     .offset = offsetof(struct wb_bundle_interface, friction.mu_kinetic),
      .least = 0.0,
      .largest = 10.0,
      .required = true},
     {.name = "decay_s_mm",
      .unit = "s/mm",
      .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_bundle_interface, friction_decay),
+     .offset = offsetof(struct wb_bundle_interface, friction.decay),
      .scale = WB_S_PER_MM,
      .least = 1e-9,
      .largest = 1e9,
@@ -132,14 +132,15 @@ static const struct wb_setting_table friction_table = {.rows = friction_rows,
 static int complete_friction(void *members, int n, char *problem, size_t size)
 {
     struct wb_bundle_interface *const interface = members;
+    struct wb_friction *const friction = &interface->friction;
     if (n == 1) {
-        interface->friction_kinetic = interface->friction_static;
-        interface->friction_decay = 0.0;
+        friction->mu_kinetic = friction->mu_static;
+        friction->decay = 0.0;
     }
-    if (!(interface->friction_kinetic > interface->friction_static))
+    if (!(friction->mu_kinetic > friction->mu_static))
         return -1;
-    snprintf(problem, size, "%g is more than the static one, %g", interface->friction_kinetic,
-             interface->friction_static);
+    snprintf(problem, size, "%g is more than the static one, %g", friction->mu_kinetic,
+             friction->mu_static);
     return 1;
 }
 

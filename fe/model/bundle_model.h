@@ -25,6 +25,7 @@
 #include "base/file.h"
 #include "base/setting.h"
 #include "base/status.h"
+#include "fe/material/friction.h"
 #include "fe/material/material_file.h"
 #include "fe/model/bundle_uncertainty.h"
 #include "fe/model/hull.h"
@@ -71,11 +72,9 @@ struct wb_bundle_interface {
     double shear_stiffness;  /* K_ss = K_tt, Pa/m */
     bool has_damage;
     struct wb_bundle_damage damage;
-    /* Between wires, and between tape and wires that are not bonded (any more). Eq. 20:
-     * mu_k + (mu_s - mu_k) exp(-decay slip rate), the rate in the model's own time. */
-    bool has_friction; /* whether it was given */
-    double friction_static, friction_kinetic;
-    double friction_decay; /* s/m; 0: mu_s at any rate */
+    bool has_friction;           /* whether it was given */
+    struct wb_friction friction; /* between wires, and between tape and wires that are not bonded
+                                    (any more); the slip rate is in the model's own time */
 };
 
 /* --- ends, meshes, run, loads --- */

@@ -172,14 +172,12 @@ static enum wb_status override_friction(const struct wb_bundle_interface *given,
 {
     if (!given->has_friction)
         return WB_OK;
-    if (given->friction_kinetic > given->friction_static)
+    if (given->friction.mu_kinetic > given->friction.mu_static)
         return wb_fail(WB_ERR_ARGUMENT,
                        "friction: the kinetic coefficient %g is more than the "
                        "static one, %g",
-                       given->friction_kinetic, given->friction_static);
-    interface->friction_static = given->friction_static;
-    interface->friction_kinetic = given->friction_kinetic;
-    interface->friction_decay = given->friction_decay;
+                       given->friction.mu_kinetic, given->friction.mu_static);
+    interface->friction = given->friction;
     return WB_OK;
 }
 

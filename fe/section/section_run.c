@@ -55,9 +55,9 @@ void wb_section_run_release(struct wb_section_run *run)
 /* mu between the wires of a model; *is_mean whether its friction decays. */
 static double find_friction(const struct wb_bundle_model *model, bool *is_mean)
 {
-    const struct wb_bundle_interface *const i = &model->interface;
-    *is_mean = i->friction_decay > 0.0 && i->friction_static != i->friction_kinetic;
-    return *is_mean ? sqrt(i->friction_static * i->friction_kinetic) : i->friction_static;
+    const struct wb_friction *const f = &model->interface.friction;
+    *is_mean = f->decay > 0.0 && f->mu_static != f->mu_kinetic;
+    return *is_mean ? sqrt(f->mu_static * f->mu_kinetic) : f->mu_static;
 }
 
 /* --- rigidities --- */

@@ -115,8 +115,7 @@ void wb_swept_contact_default_settings(struct wb_swept_contact_settings *setting
     *settings = (struct wb_swept_contact_settings){
         .stiffness = 0.25,
         .tangential_ratio = 0.5,
-        .friction_static = 0.4,
-        .friction_kinetic = 0.4,
+        .friction = {.mu_static = 0.4, .mu_kinetic = 0.4},
         .reach = 0.5,
         .refresh_interval = 50,
     };
@@ -136,13 +135,14 @@ static enum wb_status check_settings(const struct wb_swept_contact_settings *s)
                        "the contact stiffness is %g E, and the tangential one %g times that: "
                        "expected 1e-12 to 1e6 and 1e-6 to 1e6",
                        s->stiffness, s->tangential_ratio);
-    if (!(in_range(s->friction_static, 0.0, 1e3) && in_range(s->friction_kinetic, 0.0, 1e3) &&
-          in_range(s->friction_decay, 0.0, most) && in_range(s->damping_time, 0.0, most)))
+    if (!(in_range(s->friction.mu_static, 0.0, 1e3) && in_range(s->friction.mu_kinetic, 0.0, 1e3) &&
+          in_range(s->friction.decay, 0.0, most) && in_range(s->damping_time, 0.0, most)))
         return wb_fail(WB_ERR_ARGUMENT,
                        "friction: the static coefficient is %g, the kinetic one %g, the decay %g "
                        "s/m and the damping time %g s: expected coefficients from 0 to 1000, and a "
                        "decay and a time from 0 to 1e12",
-                       s->friction_static, s->friction_kinetic, s->friction_decay, s->damping_time);
+                       s->friction.mu_static, s->friction.mu_kinetic, s->friction.decay,
+                       s->damping_time);
     if (!(in_range(s->reach, 1e-3, 10.0)) || s->refresh_interval < 1 || s->most_pairs < 0)
         return wb_fail(
             WB_ERR_ARGUMENT,
@@ -307,12 +307,12 @@ static void size_model(struct wb_swept_contact *c, int n_wires, int n_stations)
         .n_blocks = (n_stations + WB_SWEPT_LANES - 1) / WB_SWEPT_LANES,
         .stride = layout.stride,
         .row = 3 * layout.stride,
-        .friction_static = s->friction_static,
-        .friction_kinetic = s->friction_decay > 0.0 ? s->friction_kinetic : s->friction_static,
-        .friction_decay = s->friction_decay,
+        .friction = s->friction,
         .damping_time = s->damping_time,
         .counted = wb_swept_range_within(s->counted, n_stations),
     };
+    if (!(s->friction.decay > 0.0))
+        c->model.friction.mu_kinetic = s->friction.mu_static;
 }
 
 enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,

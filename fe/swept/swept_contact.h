@@ -37,6 +37,7 @@
 #include "base/checkpoint.h"
 #include "base/reason.h"
 #include "base/status.h"
+#include "fe/material/friction.h"
 #include "fe/swept/swept.h"
 
 struct wb_swept_contact_wire {
@@ -52,9 +53,7 @@ struct wb_swept_contact_settings {
     double stiffness;        /* k / E, with the harmonic mean of the two wires' moduli; 0.25, about
                                 that of two cylinders pressed together */
     double tangential_ratio; /* k_t / k; 0.5 */
-    double friction_static;  /* mu_s; 0.4 */
-    double friction_kinetic; /* mu_k; 0.4 */
-    double friction_decay;   /* s/m; 0: mu_s at any rate. 1 s/mm is 1000 s/m */
+    struct wb_friction friction; /* 0.4 at any rate */
     double damping_time;  /* s; 0: none. The normal force is k (depth + damping_time d(depth)/dt),
                              never a pull */
     double reach;         /* gap at which wires become neighbours, of the smallest radius; 0.5 */

@@ -340,17 +340,13 @@ static void press_block(const struct wb_swept_contact_model *m, const struct con
 static void press(const struct wb_swept_contact_call *call)
 {
     const struct wb_swept_contact_model *m = call->model;
-    const struct contact_law law = {
-        .damping = splat((real)(m->damping_time / call->time_step)),
-        .friction_kinetic = splat((real)m->friction_kinetic),
-        .friction_drop = splat((real)(m->friction_static - m->friction_kinetic)),
-        .decay = splat((real)(m->friction_decay / call->time_step)),
-    };
+    struct contact_law law = {.damping = splat((real)(m->damping_time / call->time_step))};
     struct contact_energy sums = {splat(0), splat(0), splat(0), splat(0)};
     struct wb_swept_contact_sums *out = &m->sums[call->first_block];
     vec deepest = splat(0);
     struct queue queue;
 
+    set_friction(&law, &m->friction, call->time_step);
     queue.n = 0;
     for (int block = call->first_block; block < call->end_block; block++)
         press_block(m, &law, block, &queue, &sums, &deepest);

@@ -27,6 +27,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "fe/material/friction.h"
 #include "fe/swept/swept_kernel.h"
 
 /* Rows of numbers at stations. Those read between stations have a stride of zeros before and after.
@@ -106,7 +107,7 @@ struct wb_swept_contact_model {
     int n_pairs;
     struct wb_swept_contact_frames *wire;
     struct wb_swept_contact_pair_rows *pair;
-    double friction_static, friction_kinetic, friction_decay;
+    struct wb_friction friction;
     double damping_time;
     struct wb_swept_range counted;      /* stations, in energies */
     bool started;                       /* there was a step before */

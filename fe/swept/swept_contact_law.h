@@ -3,6 +3,7 @@
 #ifndef WB_FE_SWEPT_SWEPT_CONTACT_LAW_H
 #define WB_FE_SWEPT_SWEPT_CONTACT_LAW_H
 
+#include "fe/material/friction.h"
 #include "fe/swept/swept_simd.h"
 
 /* a x b added to out. */
@@ -66,16 +67,24 @@ struct meeting {
 };
 
 struct contact_law {
-    vec normal, tangential;              /* stiffnesses */
-    vec compliance;                      /* 1 / tangential */
-    vec damping;                         /* relaxation time / time step */
-    vec friction_kinetic, friction_drop; /* mu_k, mu_s - mu_k */
-    vec decay;                           /* decay / time step */
+    vec normal, tangential;  /* stiffnesses */
+    vec compliance;          /* 1 / tangential */
+    vec damping;             /* relaxation time / time step */
+    vec mu_kinetic, mu_drop; /* mu_k, mu_s - mu_k */
+    vec decay;               /* decay / time step */
 };
 
 struct contact_energy {
     vec normal, tangential, friction, damping;
 };
+
+INLINE void set_friction(struct contact_law *law, const struct wb_friction *friction,
+                         double time_step)
+{
+    law->mu_kinetic = splat((real)friction->mu_kinetic);
+    law->mu_drop = splat((real)(friction->mu_static - friction->mu_kinetic));
+    law->decay = splat((real)(friction->decay / time_step));
+}
 
 /* N = k (depth - tau d(gap)/dt), never a pull. `unit` is the normal, from first to second. */
 INLINE vec normal_force(const struct contact_law *law, const struct meeting *at, vec unit[3],
@@ -122,7 +131,7 @@ INLINE void friction_force(const struct contact_law *law, const struct meeting *
     }
     const vec square = dot(slip, slip);
     const vec rate = law->decay * square * safe_inverse_root(square);
-    const vec limit = (law->friction_kinetic + law->friction_drop * decay_of(rate)) * normal;
+    const vec limit = (law->mu_kinetic + law->mu_drop * decay_of(rate)) * normal;
     const vec kept = minimum(limit * safe_inverse_root(dot(drag, drag)), splat(1));
     vec work = splat(0);
     for (int i = 0; i < 3; i++) {

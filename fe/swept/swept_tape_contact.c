@@ -65,10 +65,10 @@ struct wb_swept_tape_contact {
 
 void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings)
 {
-    *settings = (struct wb_swept_tape_contact_settings){.normal_stiffness = 30e9,
-                                                        .shear_stiffness = 10e9,
-                                                        .friction_static = 0.4,
-                                                        .friction_kinetic = 0.4};
+    *settings =
+        (struct wb_swept_tape_contact_settings){.normal_stiffness = 30e9,
+                                                .shear_stiffness = 10e9,
+                                                .friction = {.mu_static = 0.4, .mu_kinetic = 0.4}};
 }
 
 static const struct wb_swept_layout *layout_of(const struct wb_swept_tape_contact *c)
@@ -477,14 +477,14 @@ static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int 
                        "contact of the tape: the normal stiffness is %g Pa/m and the shear "
                        "stiffness %g Pa/m: expected numbers above 0",
                        s->normal_stiffness, s->shear_stiffness);
-    if (!(s->friction_kinetic >= 0.0 && s->friction_static >= s->friction_kinetic &&
-          isfinite(s->friction_static)) ||
-        !(s->friction_decay >= 0.0 && isfinite(s->friction_decay)))
+    if (!(s->friction.mu_kinetic >= 0.0 && s->friction.mu_static >= s->friction.mu_kinetic &&
+          isfinite(s->friction.mu_static)) ||
+        !(s->friction.decay >= 0.0 && isfinite(s->friction.decay)))
         return wb_fail(
             WB_ERR_ARGUMENT,
             "friction of the tape: the static coefficient is %g, the kinetic one %g and the decay "
             "%g s/m: expected 0 or more, and the static coefficient not below the kinetic one",
-            s->friction_static, s->friction_kinetic, s->friction_decay);
+            s->friction.mu_static, s->friction.mu_kinetic, s->friction.decay);
     if (!(s->margin >= 0.0 && isfinite(s->margin)) || s->refresh_interval < 0)
         return wb_fail(WB_ERR_ARGUMENT,
                        "contact of the tape: the margin is %g m and the refresh interval %d steps: "
@@ -567,9 +567,7 @@ static enum wb_status fill(struct wb_swept_tape_contact *c,
         .rows = c->rows,
         .normal = s->normal_stiffness,
         .shear = s->shear_stiffness,
-        .friction_static = s->friction_static,
-        .friction_kinetic = s->friction_kinetic,
-        .friction_decay = s->friction_decay,
+        .friction = s->friction,
         .counted = wb_swept_range_within(c->tape_model->counted, layout->n_stations),
     };
     wb_swept_tape_contact_reset(c);

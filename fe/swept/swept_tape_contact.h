@@ -25,18 +25,17 @@
 #include "base/checkpoint.h"
 #include "base/reason.h"
 #include "base/status.h"
+#include "fe/material/friction.h"
 #include "fe/swept/swept_cohesion.h"
 
 struct wb_swept_tape_contact_settings {
-    double normal_stiffness; /* Pa/m; 30 N/mm3 */
-    double shear_stiffness;  /* of sticking, Pa/m; a third of it */
-    double friction_static;  /* mu_s; 0.4 */
-    double friction_kinetic; /* mu_k; 0.4 */
-    double friction_decay;   /* s/m; 0: mu_s at any rate */
-    double margin;           /* m: gap within which a node is looked after; 0: a twentieth of the
-                                smallest radius. Nodes must not come nearer by more between
-                                refreshes */
-    int refresh_interval;    /* steps; 0: 100 */
+    double normal_stiffness;     /* Pa/m; 30 N/mm3 */
+    double shear_stiffness;      /* of sticking, Pa/m; a third of it */
+    struct wb_friction friction; /* 0.4 at any rate */
+    double margin;        /* m: gap within which a node is looked after; 0: a twentieth of the
+                             smallest radius. Nodes must not come nearer by more between
+                             refreshes */
+    int refresh_interval; /* steps; 0: 100 */
 
     struct wb_reason *reason; /* borrowed; holds why a step failed. NULL: that is logged */
 };

@@ -220,16 +220,14 @@ INLINE void run_strip(const struct wb_swept_tape_contact_kernel_model *m,
 static void add_forces(const struct wb_swept_tape_contact_kernel_call *call)
 {
     const struct wb_swept_tape_contact_kernel_model *m = call->model;
-    const struct contact_law law = {
+    struct contact_law law = {
         .normal = splat((real)m->normal),
         .tangential = splat((real)m->shear),
         .compliance = splat((real)(1.0 / m->shear)),
-        .friction_kinetic = splat((real)m->friction_kinetic),
-        .friction_drop = splat((real)(m->friction_static - m->friction_kinetic)),
-        .decay = splat((real)(m->friction_decay / call->time_step)),
     };
     struct totals totals = {{0}, {0}, {0}, {0}};
 
+    set_friction(&law, &m->friction, call->time_step);
     for (int b = 0; b < m->n_blocks; b++) {
         for (int s = m->first[b]; s < m->first[b + 1]; s++) {
             const struct wb_swept_tape_contact_strip *strip = &m->strip[s];

@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 
+#include "fe/material/friction.h"
 #include "fe/swept/swept_kernel.h"
 #include "fe/swept/swept_tape_contact.h"
 
@@ -44,7 +45,7 @@ struct wb_swept_tape_contact_kernel_model {
     const struct wb_swept_tape_contact_strip *strip;
     const void *rows; /* of each strip (ROWS x LANES) */
     double normal, shear;
-    double friction_static, friction_kinetic, friction_decay;
+    struct wb_friction friction;
     struct wb_swept_range counted; /* stations, in sums */
 };
 

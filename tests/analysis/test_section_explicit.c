@@ -34,7 +34,7 @@ static void read_bundle(const struct pair *pair, bool is_strand)
     if (!is_strand)
         model.loads = (struct wb_bundle_loads){0};
     if (pair->friction > 0.0)
-        model.interface.friction_static = model.interface.friction_kinetic = pair->friction;
+        model.interface.friction.mu_static = model.interface.friction.mu_kinetic = pair->friction;
     if (pair->stiffness > 0.0) {
         model.interface.shear_stiffness *= pair->stiffness / model.interface.normal_stiffness;
         model.interface.normal_stiffness = pair->stiffness;

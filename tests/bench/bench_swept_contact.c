@@ -153,8 +153,8 @@ static bool time_problem(const struct problem *problem, enum wb_swept_instructio
 
     wb_swept_contact_default_settings(&settings);
     settings.instructions = set;
-    settings.friction_kinetic = 0.1;
-    settings.friction_decay = 2000.0;
+    settings.friction.mu_kinetic = 0.1;
+    settings.friction.decay = 2000.0;
     bool good = make_bundle(problem, &bundle);
     for (int w = 0; w < problem->n_wires; w++)
         wires[w] = (struct wb_swept_contact_wire){.n_nodes = problem->n_surface,

@@ -118,11 +118,11 @@ static void put_run(struct wb_document_table *table, const struct wb_bundles_res
     const double none = (double)NAN;
     wb_document_row(table, false);
     wb_pages_cell_plain(table, WB_TONE_PLAIN, wanted->name);
-    if (interface->friction_kinetic != interface->friction_static)
-        wb_pages_cell(table, WB_TONE_PLAIN, "%g\xe2\x80\x93%g", interface->friction_static,
-                      interface->friction_kinetic);
+    if (interface->friction.mu_kinetic != interface->friction.mu_static)
+        wb_pages_cell(table, WB_TONE_PLAIN, "%g\xe2\x80\x93%g", interface->friction.mu_static,
+                      interface->friction.mu_kinetic);
     else
-        wb_pages_cell(table, WB_TONE_PLAIN, "%g", interface->friction_static);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%g", interface->friction.mu_static);
     wb_pages_cell(table, WB_TONE_PLAIN, "%g", interface->normal_stiffness / 1e9);
     wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_bundles_loading(wanted));
     wb_pages_cell_number(table, run ? run->numbers.duration : none, 2);

@@ -115,10 +115,10 @@ static void set_label(struct wb_bundles_run *run)
     char friction[80];
     if (run->label[0])
         return;
-    snprintf(friction, sizeof friction, "friction %g", i->friction_static);
-    if (i->friction_kinetic != i->friction_static)
-        snprintf(friction, sizeof friction, "friction %g to %g", i->friction_static,
-                 i->friction_kinetic);
+    snprintf(friction, sizeof friction, "friction %g", i->friction.mu_static);
+    if (i->friction.mu_kinetic != i->friction.mu_static)
+        snprintf(friction, sizeof friction, "friction %g to %g", i->friction.mu_static,
+                 i->friction.mu_kinetic);
     snprintf(run->label, sizeof run->label, "%s%s%s", friction,
              loads->strand_length > 0.0 ? ", strand" : "", loads->weight ? ", weight" : "");
 }

@@ -479,7 +479,7 @@ static void another_models_checkpoint_is_refused(void **unused)
     run_with(&options);
     assert_true(result.stopped && wb_file_exists(file));
     wb_log_set_sink(keep_message, messages);
-    model.interface.friction_static = 0.3;
+    model.interface.friction.mu_static = 0.3;
     assert_int_equal(wb_bundle_run(&result, &model, &options), WB_ERR_DATA);
     wb_log_set_sink(NULL, NULL);
     assert_non_null(strstr(messages, "another run"));

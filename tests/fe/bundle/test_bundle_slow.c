@@ -194,7 +194,7 @@ static void curve_is_within_five_percent_of_the_static_reference(void **unused)
 
     read_model(SEVEN "run: {selective_mass_scaling: 100, deflection_mm: 53, rows: 53, "
                      "duration_s: 2}\nloads: {weight: false}\n");
-    model.interface.friction_static = model.interface.friction_kinetic = 0.1;
+    model.interface.friction.mu_static = model.interface.friction.mu_kinetic = 0.1;
     run_model(NULL);
     assert_true(result.converged && !result.exceeded);
     for (int i = 0; i < n; i++) {

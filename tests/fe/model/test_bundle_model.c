@@ -143,9 +143,9 @@ static void every_key_is_read(void **state)
     assert_close_relative(i->damage.strength, 2e6, 1e-12);
     assert_close_relative(i->damage.shear_strength, 1e6, 1e-12);
     assert_close_relative(i->damage.fracture_energy, 300.0, 1e-12);
-    assert_close(i->friction_static, 0.4, 0.0);
-    assert_close(i->friction_kinetic, 0.1, 0.0);
-    assert_close_relative(i->friction_decay, 2000.0, 1e-12);
+    assert_close(i->friction.mu_static, 0.4, 0.0);
+    assert_close(i->friction.mu_kinetic, 0.1, 0.0);
+    assert_close_relative(i->friction.decay, 2000.0, 1e-12);
     assert_close(model.potted_length, 3e-3, 1e-15);
     assert_int_equal(model.tip, WB_BUNDLE_TIP_CAPPED);
 }
@@ -188,9 +188,9 @@ static void what_is_left_out_has_a_default(void **state)
     assert_false(model.has_tape || model.has_published || model.interface.has_damage);
     assert_int_equal(model.length_source, WB_BUNDLE_LENGTH_OWN);
     assert_close_relative(model.interface.shear_stiffness, 10e9, 1e-12);
-    assert_close(model.interface.friction_static, 0.4, 0.0);
-    assert_close(model.interface.friction_kinetic, 0.4, 0.0);
-    assert_close(model.interface.friction_decay, 0.0, 0.0);
+    assert_close(model.interface.friction.mu_static, 0.4, 0.0);
+    assert_close(model.interface.friction.mu_kinetic, 0.4, 0.0);
+    assert_close(model.interface.friction.decay, 0.0, 0.0);
     assert_true(model.potted_length == 0.0 && model.tip == WB_BUNDLE_TIP_FREE);
     assert_string_equal(model.run.mesh, "engineering");
     assert_close(model.run.deflection, 0.053, 1e-15);

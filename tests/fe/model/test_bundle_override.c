@@ -25,9 +25,9 @@ static void make_model(struct wb_bundle_model *model)
     model->interface = (struct wb_bundle_interface){
         .normal_stiffness = 30e9,
         .shear_stiffness = 10e9,
-        .friction_static = 0.4,
-        .friction_kinetic = 0.1,
-        .friction_decay = 2e3,
+        .friction.mu_static = 0.4,
+        .friction.mu_kinetic = 0.1,
+        .friction.decay = 2e3,
     };
 }
 
@@ -59,8 +59,8 @@ static void all_of_it_reaches_the_model(void **unused)
                 .rows = 4,
                 .cycles = 2},
         .interface = {.has_friction = true,
-                      .friction_static = 0.3,
-                      .friction_kinetic = 0.3,
+                      .friction.mu_static = 0.3,
+                      .friction.mu_kinetic = 0.3,
                       .normal_stiffness = 60e9},
     };
     make_model(&model);
@@ -77,9 +77,9 @@ static void all_of_it_reaches_the_model(void **unused)
     assert_int_equal(model.run.cycles, 2);
     assert_close(model.length, 0.08, 0.0);
     assert_int_equal(model.length_source, WB_BUNDLE_LENGTH_OWN);
-    assert_close(model.interface.friction_static, 0.3, 0.0);
-    assert_close(model.interface.friction_kinetic, 0.3, 0.0);
-    assert_close(model.interface.friction_decay, 0.0, 0.0);
+    assert_close(model.interface.friction.mu_static, 0.3, 0.0);
+    assert_close(model.interface.friction.mu_kinetic, 0.3, 0.0);
+    assert_close(model.interface.friction.decay, 0.0, 0.0);
     assert_close(model.interface.normal_stiffness, 60e9, 0.0);
     assert_close_relative(model.interface.shear_stiffness, 20e9, 1e-15);
 }
@@ -92,18 +92,20 @@ static void friction_of_zero_is_an_override(void **unused)
     make_model(&model);
     assert_false(wb_bundle_override_is_empty(&override));
     assert_int_equal(wb_bundle_override_apply(&override, &model), WB_OK);
-    assert_close(model.interface.friction_static, 0.0, 0.0);
-    assert_close(model.interface.friction_decay, 0.0, 0.0);
+    assert_close(model.interface.friction.mu_static, 0.0, 0.0);
+    assert_close(model.interface.friction.decay, 0.0, 0.0);
 }
 
 static void what_is_out_of_range_is_refused_and_changes_nothing(void **unused)
 {
     (void)unused;
     static const struct wb_bundle_override bad[] = {
-        {.interface = {.has_friction = true, .friction_static = -0.1}},
-        {.interface = {.has_friction = true, .friction_static = 11.0}},
-        {.interface = {.has_friction = true, .friction_static = 0.1, .friction_kinetic = 0.2}},
-        {.interface = {.has_friction = true, .friction_decay = -1.0}},
+        {.interface = {.has_friction = true, .friction.mu_static = -0.1}},
+        {.interface = {.has_friction = true, .friction.mu_static = 11.0}},
+        {.interface = {.has_friction = true,
+                       .friction.mu_static = 0.1,
+                       .friction.mu_kinetic = 0.2}},
+        {.interface = {.has_friction = true, .friction.decay = -1.0}},
         {.interface = {.normal_stiffness = -1.0}},
         {.no_weight = true, .run = {.mass_scaling = 0.5}, .interface = {.normal_stiffness = 60e9}},
         {.dead_force = true, .run = {.selective = 0.99}},

@@ -111,9 +111,9 @@ static void hardly_any_tape_or_friction_is_none(void **unused)
         assert_close_relative(thin, last_force(), 2e-4);
 
         begin(names[i], 12);
-        model.interface.friction_static = model.interface.friction_kinetic = 1e-9;
+        model.interface.friction.mu_static = model.interface.friction.mu_kinetic = 1e-9;
         const double slight = last_force();
-        model.interface.friction_static = model.interface.friction_kinetic = 0.0;
+        model.interface.friction.mu_static = model.interface.friction.mu_kinetic = 0.0;
         assert_close_relative(slight, last_force(), 1e-6);
 
         begin(names[i], 12);
@@ -148,7 +148,7 @@ static void a_run_that_finds_no_equilibrium_has_no_rows(void **unused)
     (void)unused;
     begin("19-type3", 12);
     model.loads.weight = true;
-    model.interface.friction_static = model.interface.friction_kinetic = 1e3;
+    model.interface.friction.mu_static = model.interface.friction.mu_kinetic = 1e3;
     compute();
     assert_false(run.converged);
     assert_int_equal(run.n_rows, 0);

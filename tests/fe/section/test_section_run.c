@@ -166,7 +166,7 @@ static void friction_that_decays_becomes_the_geometric_mean(void **unused)
         model.run.rows = 1;
         model.run.deflection = 1e-3;
         if (i == 1)
-            model.interface.friction_kinetic = 0.4;
+            model.interface.friction.mu_kinetic = 0.4;
         compute(NULL, NULL);
         assert_close(run.friction, i == 0 ? 0.2 : 0.4, 1e-12);
         assert_int_equal(run.is_mean, i == 0);

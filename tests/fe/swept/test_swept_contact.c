@@ -214,7 +214,7 @@ static void forces_without_friction_are_the_derivative_of_the_energy(void **stat
     int touched = 0;
 
     (void)state;
-    settings.friction_static = settings.friction_kinetic = 0.0;
+    settings.friction.mu_static = settings.friction.mu_kinetic = 0.0;
     settings.refresh_interval = 1 << 30;
     make_tangle(&c, &settings);
     contacts_step(&c, dt);
@@ -251,7 +251,7 @@ static void refreshing_shifts_hardly_changes_the_energy(void **state)
         const double radius[2] = {0.7e-3, 0.7e-3}, slip = half ? 5e-6 : 10e-6;
         struct wb_swept_contact_settings settings = contacts_settings();
         struct contacts c;
-        settings.friction_static = settings.friction_kinetic = 0.0;
+        settings.friction.mu_static = settings.friction.mu_kinetic = 0.0;
         settings.refresh_interval = 2;
         contacts_make_pair(&c, &settings, radius, 2e-6, 0.0, 0.3e-3);
         contacts_step(&c, dt);
@@ -542,9 +542,9 @@ CHANGE(one_station, *n_stations = 1)
 CHANGE(no_spacing, *spacing = 0.0)
 CHANGE(spacing_nan, *spacing = (double)NAN)
 CHANGE(soft, settings->stiffness = 0.0)
-CHANGE(friction_nan, settings->friction_static = (double)NAN)
-CHANGE(friction_negative, settings->friction_kinetic = -0.1)
-CHANGE(decay_negative, settings->friction_decay = -1.0)
+CHANGE(friction_nan, settings->friction.mu_static = (double)NAN)
+CHANGE(friction_negative, settings->friction.mu_kinetic = -0.1)
+CHANGE(decay_negative, settings->friction.decay = -1.0)
 CHANGE(damping_negative, settings->damping_time = -1.0)
 CHANGE(no_reach, settings->reach = 0.0)
 CHANGE(never_refreshed, settings->refresh_interval = 0)
@@ -554,7 +554,7 @@ CHANGE(line, wire->node = on_a_line)
 CHANGE(node_beyond, wire->surface = beyond)
 CHANGE(no_radius, wire->radius = 0.0)
 CHANGE(modulus_nan, wire->youngs_modulus = (double)NAN)
-CHANGE(frictionless, settings->friction_static = settings->friction_kinetic = 0.0)
+CHANGE(frictionless, settings->friction.mu_static = settings->friction.mu_kinetic = 0.0)
 
 static void bad_settings_are_refused(void **state)
 {

@@ -96,7 +96,7 @@ static void friction_loops_have_coulombs_area(void **state)
     double f[3], m[3];
 
     (void)state;
-    settings.friction_static = settings.friction_kinetic = mu;
+    settings.friction.mu_static = settings.friction.mu_kinetic = mu;
     settings.refresh_interval = 1;
     contacts_make_pair(&c, &settings, radius, depth, 0.0, 0.0);
     contacts_step(&c, dt);
@@ -129,9 +129,9 @@ static void friction_decays_with_the_rate_of_slip(void **state)
     struct wb_swept_contact_settings settings = contacts_settings();
 
     (void)state;
-    settings.friction_static = 0.4;
-    settings.friction_kinetic = 0.1;
-    settings.friction_decay = 2000.0;
+    settings.friction.mu_static = 0.4;
+    settings.friction.mu_kinetic = 0.1;
+    settings.friction.decay = 2000.0;
     settings.refresh_interval = 1;
     for (size_t n = 0; n < 2 * sizeof rates / sizeof rates[0]; n++) {
         const double rate = rates[n / 2], slip = 5e-8;

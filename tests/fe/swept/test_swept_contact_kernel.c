@@ -222,8 +222,8 @@ static void rub(struct twin *twin, double k_t, double length, double N, const do
         trial[i] = before[i] + k_t * tangential[i];
     }
     const double rate = sqrt(wb_vec3_dot(tangential, tangential)) / dt;
-    const double mu = s->friction_kinetic +
-                      (s->friction_static - s->friction_kinetic) * exp(-s->friction_decay * rate);
+    const double mu = s->friction.mu_kinetic + (s->friction.mu_static - s->friction.mu_kinetic) *
+                                                   exp(-s->friction.decay * rate);
     const double size = sqrt(wb_vec3_dot(trial, trial));
     for (int i = 0; i < 3; i++) {
         drag[i] = size > mu * N ? trial[i] * mu * N / size : trial[i];
@@ -396,8 +396,8 @@ static void every_kernel_equals_the_slow_twin(void **state)
             settings.instructions = (enum wb_swept_instructions)set;
             settings.double_precision = type == 1;
             settings.refresh_interval = 5;
-            settings.friction_kinetic = 0.1;
-            settings.friction_decay = 10.0; /* slips are at 0.1 m/s and more */
+            settings.friction.mu_kinetic = 0.1;
+            settings.friction.decay = 10.0; /* slips are at 0.1 m/s and more */
             check_against_twin(&settings, type == 1 ? 1e-6 : 2e-4);
         }
     }
@@ -590,7 +590,7 @@ static void check_bound(double selective)
     struct vibration v = {.selective = selective};
     double bound = 0.0;
 
-    settings.friction_static = settings.friction_kinetic = 1e3;
+    settings.friction.mu_static = settings.friction.mu_kinetic = 1e3;
     make_bundle(&v.c, &settings, 3e-6);
     contacts_step(&v.c, dt);
     seed = 31;

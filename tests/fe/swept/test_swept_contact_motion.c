@@ -74,7 +74,7 @@ static double collide(double mu, double dt)
     double linear[2][3], angular[2];
     struct contacts c;
 
-    settings.friction_static = settings.friction_kinetic = mu;
+    settings.friction.mu_static = settings.friction.mu_kinetic = mu;
     settings.refresh_interval = 1;
     contacts_init(&c, &settings, 2, radius, 21, 1e-3);
     bodies[0].x[2] = 0.1e-3;
@@ -139,7 +139,7 @@ static struct slide slide(double mu, double angle, double g, double time)
     struct contacts c;
     double speed = 0.0;
 
-    settings.friction_static = settings.friction_kinetic = mu;
+    settings.friction.mu_static = settings.friction.mu_kinetic = mu;
     settings.refresh_interval = 1; /* at 3 m/s */
     contacts_init(&c, &settings, 2, radius, 21, 1e-3);
     bodies[0].is_fixed = true;
@@ -269,7 +269,7 @@ static void check_capstan(double mu, double angle)
     double T2 = 0.0, turn = 0.0;
     int n_mean = 0;
 
-    settings.friction_static = settings.friction_kinetic = mu;
+    settings.friction.mu_static = settings.friction.mu_kinetic = mu;
     settings.damping_time = 1e-6;
     contacts_init(&c, &settings, 2, radius, LINKS, 1e-3);
     memset(&rope, 0, sizeof rope);

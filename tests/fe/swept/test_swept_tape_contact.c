@@ -27,7 +27,7 @@ static struct wb_swept_tape_contact_settings usual(void)
 {
     struct wb_swept_tape_contact_settings settings;
     wb_swept_tape_contact_default_settings(&settings);
-    settings.friction_kinetic = 0.1;
+    settings.friction.mu_kinetic = 0.1;
     settings.refresh_interval = 7;
     return settings;
 }
@@ -206,7 +206,7 @@ static void forces_are_the_derivatives_of_the_pressures_energy(void **unused)
     (void)unused;
     struct wb_swept_tape_contact_settings settings = usual();
     settings.refresh_interval = 1000000;
-    settings.friction_static = settings.friction_kinetic = 0.0;
+    settings.friction.mu_static = settings.friction.mu_kinetic = 0.0;
     struct grip g;
     uint64_t seed = 2;
     grip_create(&g, &settings, 3e-6, true, NULL);
@@ -266,7 +266,7 @@ static void a_tape_that_slides_round_a_wire_gets_no_energy(void **unused)
 {
     (void)unused;
     struct wb_swept_tape_contact_settings settings = usual();
-    settings.friction_static = settings.friction_kinetic = 0.0;
+    settings.friction.mu_static = settings.friction.mu_kinetic = 0.0;
     settings.refresh_interval = 5;
     enum {
         STEPS = 4000
@@ -312,7 +312,7 @@ static void sliding_is_resisted_by_mu_times_the_pressure(void **unused)
     /* The wire is drawn through the sleeve by more than a station. */
     for (int is_double = 0; is_double < 2; is_double++) {
         struct wb_swept_tape_contact_settings settings = usual();
-        settings.friction_decay = 50.0;
+        settings.friction.decay = 50.0;
         struct grip g;
         const double depth = 2e-6, dt = 1e-6, speed = 0.02, tolerance = is_double ? 2e-4 : 3e-3;
         grip_create(&g, &settings, depth, is_double, NULL);
@@ -579,10 +579,10 @@ static void what_is_lost_or_impossible_is_refused(void **unused)
                                                 .surface = g.surface};
     assert_int_equal(wb_swept_tape_contact_create(&contact, g.tape.tape, NULL, &settings, 1, &wire),
                      WB_ERR_ARGUMENT);
-    settings.friction_kinetic = 0.5; /* above the static one */
+    settings.friction.mu_kinetic = 0.5; /* above the static one */
     assert_int_equal(wb_swept_tape_contact_create(&contact, g.tape.tape, NULL, &settings, 0, NULL),
                      WB_ERR_ARGUMENT);
-    settings.friction_kinetic = (double)NAN;
+    settings.friction.mu_kinetic = (double)NAN;
     assert_int_equal(wb_swept_tape_contact_create(&contact, g.tape.tape, NULL, &settings, 0, NULL),
                      WB_ERR_ARGUMENT);
     wb_log_set_sink(NULL, NULL);

@@ -11,16 +11,16 @@ static void a_campaign_names_runs_with_their_settings(void **state)
     assert_int_equal(campaign.n_bundles, 2);
     assert_int_equal(campaign.inset, 0);
     const struct wb_bundle_model *const seven = campaign.runs[0].model;
-    assert_close(seven->interface.friction_kinetic, 0.1, 1e-12);
+    assert_close(seven->interface.friction.mu_kinetic, 0.1, 1e-12);
     assert_close(seven->loads.strand_length, 0.0, 0.0);
     assert_false(seven->loads.weight);
     const struct wb_bundle_model *const constant = campaign.runs[1].model;
-    assert_close(constant->interface.friction_kinetic, 0.4, 1e-12);
-    assert_close(constant->interface.friction_decay, 0.0, 0.0);
+    assert_close(constant->interface.friction.mu_kinetic, 0.4, 1e-12);
+    assert_close(constant->interface.friction.decay, 0.0, 0.0);
     const struct wb_bundle_model *const stiff = campaign.runs[2].model;
     assert_close(stiff->interface.normal_stiffness, 300e9, 1.0);
     assert_close(stiff->interface.shear_stiffness, 100e9, 1.0);
-    assert_close(stiff->interface.friction_decay, 3e3, 1e-9);
+    assert_close(stiff->interface.friction.decay, 3e3, 1e-9);
     assert_close(stiff->run.duration, 2.5, 1e-12);
     assert_string_equal(campaign.runs[2].mesh->name, "paper");
     assert_string_equal(campaign.runs[2].label, "stiff & slow");
@@ -77,8 +77,8 @@ static void the_shipped_campaign_can_be_read(void **state)
     for (int i = 0; i < campaign.n_bundles; i++) {
         const struct wb_bundles_bundle *const bundle = &campaign.bundles[i];
         const struct wb_bundle_model *const model = campaign.runs[bundle->dynamic].model;
-        assert_close(model->interface.friction_static, 0.4, 1e-12);
-        assert_close(model->interface.friction_kinetic, 0.1, 1e-12);
+        assert_close(model->interface.friction.mu_static, 0.4, 1e-12);
+        assert_close(model->interface.friction.mu_kinetic, 0.1, 1e-12);
         assert_close(model->interface.normal_stiffness, 30e9, 1.0);
         assert_close(model->loads.strand_length, 0.0, 0.0);
         assert_false(model->loads.weight);
@@ -163,7 +163,7 @@ static void a_dataset_with_other_settings_is_outdated(void **state)
         read_small("", "");
         struct wb_bundle_model *const m = campaign.runs[0].model;
         if (i == 0)
-            m->interface.friction_static = m->interface.friction_kinetic = 0.3;
+            m->interface.friction.mu_static = m->interface.friction.mu_kinetic = 0.3;
         else if (i == 1)
             m->interface.normal_stiffness = 40e9;
         else if (i == 2)
