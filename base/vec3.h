@@ -9,6 +9,11 @@ static inline double wb_vec3_dot(const double *a, const double *b)
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static inline double wb_vec3_length(const double *a)
+{
+    return sqrt(wb_vec3_dot(a, a));
+}
+
 /* out = a x b. */
 static inline void wb_vec3_cross(const double *a, const double *b, double *out)
 {
@@ -23,7 +28,7 @@ static inline void wb_vec3_cross(const double *a, const double *b, double *out)
 /* Scales to length 1 and returns the length before; a vector of no length stays as it is. */
 static inline double wb_vec3_normalise(double *a)
 {
-    const double length = sqrt(wb_vec3_dot(a, a));
+    const double length = wb_vec3_length(a);
     for (int k = 0; k < 3 && length > 0.0; k++)
         a[k] /= length;
     return length;

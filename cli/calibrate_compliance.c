@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/calibration/three_point/machine_compliance.h"
+#include "base/circle.h"
 #include "base/json.h"
 #include "base/units.h"
 #include "cli/command.h"
@@ -90,7 +91,7 @@ static int print_json(const struct wb_machine_compliance *c, const struct wb_tes
 static double youngs_modulus(const struct wb_machine_compliance_settings *settings,
                              const struct wb_test_info *info)
 {
-    return settings->rigidity * 64.0 / (M_PI * pow(info->outer_diameter, 4));
+    return settings->rigidity / wb_circle_second_moment(info->outer_diameter);
 }
 
 static int deliver(const struct options *o, const struct wb_machine_compliance *c)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/calibration/constituents/layers.h"
+#include "base/circle.h"
 #include "base/number.h"
 #include "base/units.h"
 #include "cli/command.h"
@@ -110,11 +111,6 @@ static enum wb_status run(struct options *o, struct table *table)
     return wb_layers_moments(&o->layers, true, table->curvature, POINTS, table->sliding, NULL);
 }
 
-static double second_moment(const struct wb_layers *layers)
-{
-    return M_PI * pow(layers->outer_diameter, 4.0) / 64.0;
-}
-
 static void print_text(const struct options *o, const struct table *table)
 {
     const double squared = WB_MM * WB_MM;
@@ -125,7 +121,7 @@ static void print_text(const struct options *o, const struct table *table)
     if (two)
         printf("%-22s %10.5g N mm2, sliding strands\n", "", sliding / squared);
     printf("%-22s %10.5g MPa over the outer diameter\n", "E_eff",
-           bonded / second_moment(&o->layers) / WB_MPA);
+           bonded / wb_circle_second_moment(o->layers.outer_diameter) / WB_MPA);
     printf("%-22s %10.3g\n", "nu_eff, eq. 9", wb_layers_poissons_ratio(&o->layers));
     if (two)
         printf("%-22s %10.3g\n", "metal in its circle", wb_layers_fill(&o->layers));
@@ -147,7 +143,8 @@ static int print_json(const struct options *o, const struct table *table)
     wb_json_set_number(root, "sliding_rigidity_Nmm2",
                        wb_layers_rigidity(&o->layers, true) / squared);
     wb_json_set_number(root, "youngs_modulus_MPa",
-                       wb_layers_rigidity(&o->layers, false) / second_moment(&o->layers) / WB_MPA);
+                       wb_layers_rigidity(&o->layers, false) /
+                           wb_circle_second_moment(o->layers.outer_diameter) / WB_MPA);
     wb_json_set_number(root, "poissons_ratio", wb_layers_poissons_ratio(&o->layers));
     wb_json_set_number(root, "fill", wb_layers_fill(&o->layers));
     struct wb_json *const points = wb_json_set_array(root, "points");

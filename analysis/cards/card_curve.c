@@ -16,6 +16,7 @@ static struct ratios ratios_of(const struct wb_estimate *e)
     return ratios;
 }
 
+/* Unlike with wb_interpolate() an infinite bound stays infinite. */
 static double between(double from, double to, double share)
 {
     return share <= 0.0 ? from : share >= 1.0 ? to : (1.0 - share) * from + share * to;

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/circle.h"
+
 #define WB_LOG_DOMAIN "card"
 
 enum {
@@ -179,7 +181,7 @@ static enum wb_status write(const struct dialect *dialect, const struct wb_card_
                             struct wb_text *text, struct wb_reason *why)
 {
     const struct wb_properties *const p = &source->properties;
-    const double area = 0.25 * M_PI * p->outer_diameter * p->outer_diameter;
+    const double area = wb_circle_area(p->outer_diameter);
     char name[NAME];
     if (p->law.material.poissons_ratio > largest_poisson)
         return wb_fail_to(

@@ -8,6 +8,7 @@
 
 #include <gsl/gsl_cdf.h>
 
+#include "base/circle.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/units.h"
@@ -98,7 +99,7 @@ struct wb_estimate wb_card_source_rigidity(const struct wb_card_source *source)
     const double unknown = (double)NAN;
     if (isfinite(p->rigidity.value))
         return p->rigidity;
-    const double I = M_PI * pow(p->outer_diameter, 4.0) / 64.0;
+    const double I = wb_circle_second_moment(p->outer_diameter);
     struct wb_estimate e = {
         p->law.material.youngs_modulus * I, unknown, unknown, p->rigidity.candidates_low,
         p->rigidity.candidates_high,        unknown};

@@ -7,6 +7,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/calibration/law/bending.h"
+#include "base/interpolate.h"
 #include "base/units.h"
 #include "base/version.h"
 
@@ -46,11 +47,6 @@ static bool find_group(const struct wb_properties *p, const struct wb_estimate *
     return true;
 }
 
-static double between(double a, double b, double part)
-{
-    return a + part * (b - a);
-}
-
 /* The moment at a curvature: of the two that the file has around it, value over the law's and
  * interval over value, both by the logarithm of the curvature. Beyond the first or last its. */
 static enum wb_status find_moment(const struct wb_properties *p, double curvature,
@@ -66,8 +62,9 @@ static enum wb_status find_moment(const struct wb_properties *p, double curvatur
     const struct wb_estimate *const e[2] = {&p->moment[k], &p->moment[next]};
     const double part =
         next > k ? fmin(fmax(log(curvature / at[0]) / log(at[1] / at[0]), 0.0), 1.0) : 0.0;
-    const double ratio = between(log(e[0]->value / law[0]), log(e[1]->value / law[1]), part);
-    const double half = between(log(e[0]->high / e[0]->low), log(e[1]->high / e[1]->low), part);
+    const double ratio = wb_interpolate(log(e[0]->value / law[0]), log(e[1]->value / law[1]), part);
+    const double half =
+        wb_interpolate(log(e[0]->high / e[0]->low), log(e[1]->high / e[1]->low), part);
     moment->value = exp(ratio) * law[2];
     moment->low = moment->value * exp(-0.5 * half);
     moment->high = moment->value * exp(0.5 * half);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/dataset/test_piece_private.h"
+#include "base/circle.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/units.h"
@@ -40,11 +41,6 @@ struct said {
     bool has_constituent;
 };
 
-static double circle(double diameter)
-{
-    return 0.25 * M_PI * diameter * diameter;
-}
-
 /* --- area --- */
 
 static enum wb_status take_area(const struct wb_config_node *root, const struct said *said,
@@ -67,7 +63,7 @@ static enum wb_status take_area(const struct wb_config_node *root, const struct 
     if (by_strands) {
         if (said->strands == 0 || !isfinite(said->strand_diameter))
             return wb_config_refuse(root, NULL, "expected strands and strand_diameter_mm together");
-        piece->area = said->strands * circle(said->strand_diameter);
+        piece->area = said->strands * wb_circle_area(said->strand_diameter);
         return WB_OK;
     }
     if (by_tape) {
@@ -80,7 +76,7 @@ static enum wb_status take_area(const struct wb_config_node *root, const struct 
         return wb_config_refuse(root, "inner_diameter_mm",
                                 "expected less than outer_diameter_mm, which is %s",
                                 isfinite(piece->outer_diameter) ? "no larger" : "missing");
-    piece->area = circle(piece->outer_diameter) - circle(said->inner_diameter);
+    piece->area = wb_circle_area(piece->outer_diameter) - wb_circle_area(said->inner_diameter);
     return WB_OK;
 }
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/material/material.h"
+
 #define WB_LOG_DOMAIN "fields"
 
 /* --- the 3D wire --- */
@@ -66,12 +68,6 @@ static double normal_stress(const double s[6], const double n[3])
            2.0 * (n[0] * n[1] * s[3] + n[1] * n[2] * s[4] + n[2] * n[0] * s[5]);
 }
 
-static double von_mises(const double s[6])
-{
-    const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-    return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
-
 static int place_in_element(const struct wb_solid_mesh *mesh, int element, int node)
 {
     for (int k = 0; k < WB_SOLID_MESH_NODES; k++)
@@ -97,7 +93,7 @@ static enum wb_status take_face(const struct solid *solid, const struct wb_solid
         memcpy(to->position, solid->fields->position[node], sizeof to->position);
         direction_at(solid, to->reference[0], direction);
         to->axial = normal_stress(solid->fields->stress[e][place], direction);
-        to->von_mises = von_mises(solid->fields->stress[e][place]);
+        to->von_mises = wb_material_von_mises(solid->fields->stress[e][place]);
         /* Averages of extrapolations may undershoot zero. */
         to->plastic = fmax(0.0, solid->fields->plastic[e][place]);
     }

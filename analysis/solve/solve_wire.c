@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "base/vec3.h"
 #include "fe/output/vtk.h"
 #include "fe/trial/wire1d.h"
 #include "fe/trial/wire3d.h"
@@ -47,11 +48,6 @@ static enum wb_status prepare(void *context)
 
 /* --- while it runs --- */
 
-static double norm(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* The load at the last row, for the live line. */
 static void describe_load(const struct run *run, char *text, size_t size)
 {
@@ -59,8 +55,9 @@ static void describe_load(const struct run *run, char *text, size_t size)
     if (run->run.n_rows == 0)
         return;
     const struct wb_wire_row *const row = &run->run.rows[run->run.n_rows - 1];
-    const double moment = norm(row->loads.moment);
-    const double force = hypot(norm(row->loads.force), norm(row->loads.follower));
+    const double moment = wb_vec3_length(row->loads.moment);
+    const double force =
+        hypot(wb_vec3_length(row->loads.force), wb_vec3_length(row->loads.follower));
     if (run->model.step[row->step].kind != WB_WIRE_STEP_LOADS)
         snprintf(text, size, "%.3g mm %.3g N", row->tip[1] / WB_MM, row->tension);
     else if (moment > 0.0)

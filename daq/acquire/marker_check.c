@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/vec3.h"
 #include "daq/acquire/acquisition.h"
 
 #define MAX_CANDIDATES 32
@@ -23,12 +24,6 @@ static void gather(const struct wb_mocap_frame *frame, struct cloud *cloud)
             cloud->at[cloud->n][k] = (double)marker->position[k];
         cloud->index[cloud->n++] = i;
     }
-}
-
-static double distance(const double a[3], const double b[3])
-{
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
 }
 
 /* A straight wire laid through two points of the cloud, and the markers that fit it. */
@@ -54,7 +49,7 @@ static void fit(const struct cloud *cloud, const struct wb_specimen *specimen, d
         double nearest = (double)INFINITY;
         places->index[m] = -1;
         for (int c = 0; c < cloud->n; c++) {
-            const double off = distance(expected, cloud->at[c]);
+            const double off = wb_vec3_distance(expected, cloud->at[c]);
             if (off < nearest && off <= tolerance)
                 places->index[m] = cloud->index[c];
             nearest = fmin(nearest, off);
@@ -75,7 +70,8 @@ static void try_pair(const struct cloud *cloud, const struct wb_specimen *specim
     struct lay lay = {.markers = {markers[0], markers[1]}};
     for (int p = 0; p < cloud->n; p++) {
         for (int q = 0; q < cloud->n; q++) {
-            if (q == p || !(fabs(distance(cloud->at[p], cloud->at[q]) - apart) <= tolerance))
+            if (q == p ||
+                !(fabs(wb_vec3_distance(cloud->at[p], cloud->at[q]) - apart) <= tolerance))
                 continue;
             lay.points[0] = p;
             lay.points[1] = q;
@@ -118,7 +114,8 @@ int wb_marker_check_nearest(const struct wb_mocap_frame *frame, const double at[
     int found = -1;
     for (int i = 0; i < frame->n_markers; i++) {
         const float *const p = frame->markers[i].position;
-        const double off = distance((double[]){(double)p[0], (double)p[1], (double)p[2]}, at);
+        const double off =
+            wb_vec3_distance((double[]){(double)p[0], (double)p[1], (double)p[2]}, at);
         if (wb_acquisition_marker_measured(&frame->markers[i]) && off < nearest) {
             nearest = off;
             found = i;

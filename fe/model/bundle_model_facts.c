@@ -3,10 +3,10 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "base/circle.h"
 #include "base/units.h"
 #include "fe/model/bundle_model.h"
 
-static const double pi = 3.14159265358979323846;
 static const double n_mm2 = 1e-6;    /* N m2 of one N mm2 */
 static const double g_per_m = 1e-3;  /* kg/m of one g/m */
 static const double touching = 1e-9; /* m: wires so near to the tape touch it */
@@ -14,16 +14,6 @@ static const double touching = 1e-9; /* m: wires so near to the tape touch it */
 enum {
     OUTLINE = 20000 /* places looked at round a tape */
 };
-
-static double circle_area(double diameter)
-{
-    return 0.25 * pi * diameter * diameter;
-}
-
-static double second_moment(double diameter)
-{
-    return pi / 64.0 * pow(diameter, 4.0);
-}
 
 static const struct wb_wire *wire_of(const struct wb_bundle_model *model, int wire)
 {
@@ -81,7 +71,7 @@ int wb_bundle_model_tape_wire(const struct wb_bundle_model *model, double y, dou
 double wb_bundle_model_density(const struct wb_bundle_model *model, double diameter)
 {
     return (wb_bundle_model_wire_mass(model) + wb_bundle_model_tape_mass(model)) /
-           circle_area(diameter);
+           wb_circle_area(diameter);
 }
 
 /* Sums of E A, and of E times the first and second moments about the axis, upwards and across. */
@@ -118,8 +108,8 @@ struct wb_bundle_rigidity wb_bundle_model_rigidity(const struct wb_bundle_model 
     struct stiffness all = {0};
     for (int i = 0; i < model->packing.n; i++) {
         const struct wb_wire *const wire = wire_of(model, i);
-        const double E = wire->material.youngs_modulus, A = circle_area(wire->outer_diameter);
-        const double own = E * second_moment(wire->outer_diameter);
+        const double E = wire->material.youngs_modulus, A = wb_circle_area(wire->outer_diameter);
+        const double own = E * wb_circle_second_moment(wire->outer_diameter);
         const double y = model->packing.wire[i].y, z = model->packing.wire[i].z;
         const struct stiffness part = {
             E * A, {E * A * y, E * A * z}, {own + E * A * y * y, own + E * A * z * z}};
@@ -158,12 +148,12 @@ static void tell_packing(struct list *list, const struct wb_bundle_model *model)
 {
     double area = 0.0;
     for (int i = 0; i < model->packing.n; i++)
-        area += circle_area(wire_of(model, i)->outer_diameter);
+        area += wb_circle_area(wire_of(model, i)->outer_diameter);
     tell(list, "outer_diameter_mm", "outer diameter", "mm",
          wb_bundle_model_diameter(model) / WB_MM);
     tell(list, "wires_circle_mm", "circle round the wires", "mm", wires_circle(model) / WB_MM);
     tell(list, "filled_percent", "of that circle filled", "%",
-         area / circle_area(wires_circle(model)) / WB_PERCENT);
+         area / wb_circle_area(wires_circle(model)) / WB_PERCENT);
     tell(list, "touching_pairs", "pairs of wires that touch", "",
          wb_packing_pairs(&model->packing, touching, 0, NULL));
 }
@@ -222,7 +212,7 @@ static void tell_mass(struct list *list, const struct wb_bundle_model *model)
 static void tell_rigidity(struct list *list, const struct wb_bundle_model *model)
 {
     const struct wb_bundle_rigidity r = wb_bundle_model_rigidity(model);
-    const double I = second_moment(wb_bundle_model_diameter(model));
+    const double I = wb_circle_second_moment(wb_bundle_model_diameter(model));
     tell(list, "wires_EI_N_mm2", "E I of the wires alone", "N mm2", r.wires / n_mm2);
     tell(list, "sliding_EI_N_mm2", "E I, wires sliding", "N mm2", r.sliding[0] / n_mm2);
     tell(list, "sliding_EI_across_N_mm2", "the same across", "N mm2", r.sliding[1] / n_mm2);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/circle.h"
 #include "base/config.h"
 #include "base/units.h"
 #include "fe/material/law_file.h"
@@ -77,15 +78,9 @@ enum wb_status wb_wire_parse(const char *text, const char *origin, struct wb_wir
     return take(config, wire);
 }
 
-/* pi d^4 / 64 */
-static double second_moment(double diameter)
-{
-    return M_PI * pow(diameter, 4.0) / 64.0;
-}
-
 double wb_wire_second_moment(const struct wb_wire *wire)
 {
-    return second_moment(wire->outer_diameter);
+    return wb_circle_second_moment(wire->outer_diameter);
 }
 
 double wb_wire_mass_per_length(const struct wb_wire *wire)
@@ -107,8 +102,9 @@ static double largest_rigidity(const struct wb_wire *wire)
     /* A bundle has no single conductor: copper as far as it reaches. */
     const double conductor =
         wire->conductor_diameter > 0.0 ? wire->conductor_diameter : wire->outer_diameter;
-    const double inner = second_moment(conductor);
-    return COPPER_MODULUS * inner + STIFFEST_JACKET * (second_moment(wire->outer_diameter) - inner);
+    const double inner = wb_circle_second_moment(conductor);
+    return COPPER_MODULUS * inner +
+           STIFFEST_JACKET * (wb_circle_second_moment(wire->outer_diameter) - inner);
 }
 
 void wb_wire_stiffness_bounds(const struct wb_wire *wire, double length, double *lowest,

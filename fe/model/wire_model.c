@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/circle.h"
 #include "base/config.h"
 #include "base/units.h"
 #include "base/vec3.h"
@@ -479,12 +480,6 @@ double wb_wire_model_mass_per_length(const struct wb_wire_model *model)
     return sum;
 }
 
-/* Of a full circle, m4. */
-static double second_moment(double diameter)
-{
-    return M_PI / 64.0 * pow(diameter, 4.0);
-}
-
 static double outer_diameter(const struct wb_wire_model *model)
 {
     return model->part[model->n_parts - 1].outer_diameter;
@@ -496,15 +491,15 @@ static double flexural_rigidity(const struct wb_wire_model *model)
     double sum = 0.0;
     for (int i = 0; i < model->n_parts; i++) {
         const struct wb_wire_model_part *const part = &model->part[i];
-        sum += part->material.youngs_modulus *
-               (second_moment(part->outer_diameter) - second_moment(part->inner_diameter));
+        sum += part->material.youngs_modulus * (wb_circle_second_moment(part->outer_diameter) -
+                                                wb_circle_second_moment(part->inner_diameter));
     }
     return sum;
 }
 
 double wb_wire_model_youngs_modulus(const struct wb_wire_model *model)
 {
-    return flexural_rigidity(model) / second_moment(outer_diameter(model));
+    return flexural_rigidity(model) / wb_circle_second_moment(outer_diameter(model));
 }
 
 double wb_wire_model_poissons_ratio(const struct wb_wire_model *model)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "fe/bundle/bundle_part.h"
+#include "fe/material/material.h"
 #include "fe/swept/swept_hex_stress.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -224,7 +225,7 @@ static void take_wire(struct wb_bundle_fields *f, const struct wb_bundle_bodies 
         for (int k = 0; k < TENSOR; k++)
             mean[k] = sums[i].stress[k] / sums[i].n;
         const double plastic = fmax(0.0, sums[i].plastic / sums[i].n);
-        const double stress = wb_swept_hex_stress_von_mises(mean);
+        const double stress = wb_material_von_mises(mean);
         const double most = wb_material_flow_stress(law, plastic);
         f->plastic[body->first + i] = plastic;
         f->von_mises[body->first + i] = stress > most ? most : stress;

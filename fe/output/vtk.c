@@ -4,6 +4,7 @@
 #include <stdbool.h>
 
 #include "base/units.h"
+#include "fe/material/material.h"
 #include "fe/output/vtk_private.h"
 
 #define WB_LOG_DOMAIN "vtk"
@@ -90,10 +91,7 @@ static double stress(const void *context, size_t i)
 
 static double von_mises(const void *context, size_t i)
 {
-    const double *const s = stress_of(context, i);
-    const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-    return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])) /
-           WB_MPA;
+    return wb_material_von_mises(stress_of(context, i)) / WB_MPA;
 }
 
 static double plastic(const void *context, size_t i)

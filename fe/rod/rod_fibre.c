@@ -20,7 +20,7 @@ void wb_rod_fibre_law_init(struct wb_rod_fibre_law *law, const struct wb_materia
         .material = *material,
         .table = table,
         .hardening = wb_hardening_law(material),
-        .shear_modulus = 0.5 * material->youngs_modulus / (1.0 + material->poissons_ratio),
+        .shear_modulus = wb_material_shear_modulus(material),
         .back = wb_hardening_back_modulus(material),
         .per_E = 1.0 / material->youngs_modulus,
         .per_yield = 1.0 / material->yield_stress,

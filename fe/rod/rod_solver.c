@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/interpolate.h"
 #include "fe/linear/banded.h"
 #include "fe/linear/signature.h"
 
@@ -473,20 +474,16 @@ static double near_increment(const struct wb_rod_solver *s, const struct wb_rod_
     return (1.0 - done) / fmax(1.0, ceil(turn / (0.8 * s->settings.most_rotation)));
 }
 
-static double between(double from, double to, double fraction)
-{
-    return fraction == 1.0 ? to : from + fraction * (to - from);
-}
-
 static void loads_between(const struct wb_rod_loads *from, const struct wb_rod_loads *to,
                           double fraction, struct wb_rod_loads *loads)
 {
-    loads->weight = between(from->weight, to->weight, fraction);
-    loads->tension = between(from->tension, to->tension, fraction);
+    loads->weight = wb_interpolate(from->weight, to->weight, fraction);
+    loads->tension = wb_interpolate(from->tension, to->tension, fraction);
     for (int i = 0; i < 3; i++) {
-        loads->tip.force[i] = between(from->tip.force[i], to->tip.force[i], fraction);
-        loads->tip.moment[i] = between(from->tip.moment[i], to->tip.moment[i], fraction);
-        loads->tip.follower[i] = between(from->tip.follower[i], to->tip.follower[i], fraction);
+        loads->tip.force[i] = wb_interpolate(from->tip.force[i], to->tip.force[i], fraction);
+        loads->tip.moment[i] = wb_interpolate(from->tip.moment[i], to->tip.moment[i], fraction);
+        loads->tip.follower[i] =
+            wb_interpolate(from->tip.follower[i], to->tip.follower[i], fraction);
     }
 }
 
@@ -548,7 +545,7 @@ enum wb_status wb_rod_solver_move(struct wb_rod_solver *s, const struct wb_rod_m
         const double next =
             result->fraction + fraction > 1.0 - 1e-9 ? 1.0 : result->fraction + fraction;
         struct step step = {.control = move->control,
-                            .deflection = between(start, move->deflection, next)};
+                            .deflection = wb_interpolate(start, move->deflection, next)};
         loads_between(&from, &move->target, next, &step.loads);
         s->iterations = 0;
         const bool settled = settle(s, &step) && can_stand(s, &step);

@@ -17,7 +17,7 @@ enum wb_status wb_section_sheet_init(struct wb_section_sheet *sheet,
 {
     const struct wb_hardening_law *const law = wb_hardening_law(material);
     const double E = material->youngs_modulus, nu = material->poissons_ratio;
-    const double G = 0.5 * E / (1.0 + nu), bulk = E / (1.0 - nu);
+    const double G = wb_material_shear_modulus(material), bulk = E / (1.0 - nu);
 
     if (law->yields && !law->growth)
         return wb_fail(WB_ERR_ARGUMENT,

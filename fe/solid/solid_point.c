@@ -26,7 +26,7 @@ void wb_solid_point_law_init(struct wb_solid_point_law *law, const struct wb_mat
 {
     const double E = material->youngs_modulus, nu = material->poissons_ratio;
 
-    law->shear_modulus = E / (2.0 * (1.0 + nu));
+    law->shear_modulus = wb_material_shear_modulus(material);
     law->bulk_modulus = E / (3.0 * (1.0 - 2.0 * nu));
     law->radial = *material;
     law->radial.youngs_modulus = 3.0 * law->shear_modulus;

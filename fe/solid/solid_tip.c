@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/vec3.h"
 #include "fe/solid/hex20.h"
 
 #define WB_LOG_DOMAIN "solid"
@@ -117,8 +118,8 @@ void wb_solid_tip_frame(const double z[WB_SOLID_TIP_UNKNOWNS], double frame[3][3
     const double *y = z + 3, *w = z + 6;
     const double normal[3] = {y[1] * w[2] - y[2] * w[1], y[2] * w[0] - y[0] * w[2],
                               y[0] * w[1] - y[1] * w[0]};
-    const double size = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    const double length = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
+    const double size = wb_vec3_length(normal);
+    const double length = wb_vec3_length(y);
 
     for (int i = 0; i < 3; i++) {
         frame[0][i] = normal[i] / size;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/circle.h"
 #include "fe/material/hardening.h"
 #include "fe/swept/swept_hex_kernel.h"
 #include "fe/swept/swept_private.h"
@@ -41,11 +42,6 @@ struct wb_swept_hex_state {
     struct wb_memory memory; /* of both */
 };
 
-static double shear_modulus(const struct wb_material *m)
-{
-    return m->youngs_modulus / (2.0 * (1.0 + m->poissons_ratio));
-}
-
 static size_t real_size(const struct wb_swept_hex *hex)
 {
     return wb_swept_kernel_real_size(hex->model.double_precision);
@@ -56,7 +52,7 @@ static enum wb_status make_table(struct wb_swept_hex *hex)
     double table[TERMS][WB_HARDENING_TABLE_OCTAVES];
     struct wb_material radial = hex->model.material;
 
-    radial.youngs_modulus = 3.0 * shear_modulus(&radial);
+    radial.youngs_modulus = 3.0 * wb_material_shear_modulus(&radial);
     WB_TRY(wb_hardening_tabulate_octaves(&radial, TERMS, &table[0][0]));
     hex->table = wb_swept_kernel_convert(&hex->memory, hex->model.double_precision, &table[0][0],
                                          sizeof table / sizeof table[0][0]);
@@ -66,7 +62,8 @@ static enum wb_status make_table(struct wb_swept_hex *hex)
 static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_quad *quad,
                      const double (*at)[2], double *row)
 {
-    const double mu = shear_modulus(&m->material), h = m->element_length, volume = quad->area * h;
+    const double mu = wb_material_shear_modulus(&m->material), h = m->element_length,
+                 volume = quad->area * h;
     const double kappa =
         m->material.youngs_modulus / (3.0 * (1.0 - 2.0 * m->material.poissons_ratio));
     const double along = m->hourglass * m->material.youngs_modulus * quad->area / h;
@@ -185,8 +182,9 @@ static enum wb_status fill(struct wb_swept_hex *hex)
         .quad = (const int(*)[4])m->section->quad,
         .node = (const double(*)[2])m->section->node,
         .length = m->element_length,
-        .yield_strain = yields ? m->material.yield_stress / (3.0 * shear_modulus(&m->material))
-                               : (double)INFINITY,
+        .yield_strain =
+            yields ? m->material.yield_stress / (3.0 * wb_material_shear_modulus(&m->material))
+                   : (double)INFINITY,
         .strain_limit = WB_SWEPT_HEX_STRAIN_LIMIT,
         .constants = hex->constants,
         .table = hex->table};
@@ -368,7 +366,7 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
 {
     const struct wb_swept_hex *hex = state->hex;
     const struct wb_material *m = &hex->model.material;
-    const double two_mu = 2.0 * shear_modulus(m);
+    const double two_mu = 2.0 * wb_material_shear_modulus(m);
     double work = 0.0;
 
     for (int e = 0; e < hex->numbers.n_quads; e++) {
@@ -417,7 +415,7 @@ static double second_moment(const struct wb_swept_section *section,
                             const struct wb_material *material)
 {
     const double factor = formulation == WB_SWEPT_HEX_FOUR_POINTS
-                              ? 3.0 * shear_modulus(material) / material->youngs_modulus
+                              ? 3.0 * wb_material_shear_modulus(material) / material->youngs_modulus
                               : default_hourglass;
     double moment = 0.0;
 
@@ -437,7 +435,7 @@ void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
                              enum wb_swept_hex_formulation formulation,
                              const struct wb_material *material)
 {
-    const double wanted = M_PI * pow(diameter, 4) / 64.0;
+    const double wanted = wb_circle_second_moment(diameter);
 
     wb_swept_section_scale(section,
                            pow(wanted / second_moment(section, formulation, material), 0.25));

@@ -167,11 +167,3 @@ void wb_swept_hex_stress_at_corners(const struct wb_swept_hex *hex,
                              factor[2] * far->plastic;
     }
 }
-
-double wb_swept_hex_stress_von_mises(const double s[6])
-{
-    const double a = s[XX] - s[YY], b = s[YY] - s[ZZ], c = s[ZZ] - s[XX];
-
-    return sqrt(0.5 * (a * a + b * b + c * c) +
-                3.0 * (s[XY] * s[XY] + s[XZ] * s[XZ] + s[YZ] * s[YZ]));
-}

@@ -26,7 +26,4 @@ void wb_swept_hex_stress_at_corners(const struct wb_swept_hex *hex,
                                     const struct wb_swept_hex_stress *points,
                                     struct wb_swept_hex_stress corners[4]);
 
-/* Von Mises stress, Pa. */
-double wb_swept_hex_stress_von_mises(const double stress[6]);
-
 #endif

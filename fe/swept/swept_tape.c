@@ -71,11 +71,6 @@ static const double gauss_weight[4][WB_SWEPT_TAPE_MOST_POINTS] = {
      0.11846344252809454},
 };
 
-static double shear_modulus(const struct wb_material *m)
-{
-    return m->youngs_modulus / (2.0 * (1.0 + m->poissons_ratio));
-}
-
 /* Numbers in the kernel's type. */
 static void put(const struct wb_swept_tape *tape, void *numbers, size_t at, double value)
 {
@@ -180,7 +175,8 @@ static void lump(struct wb_swept_tape *tape, int k, int j, const struct element 
     const double share = 0.25 * element->area;
     const double mass = m->density * m->thickness * share;
     const double length = m->spacing * (m->layout.n_stations - 1);
-    const double stiffness = shear_correction * shear_modulus(&m->material) * m->thickness * share;
+    const double stiffness =
+        shear_correction * wb_material_shear_modulus(&m->material) * m->thickness * share;
 
     for (int a = 0; a < 4; a++) {
         const int node = (k + a / 2) % m->layout.n_nodes;
@@ -303,7 +299,7 @@ static void set_numbers(struct wb_swept_tape *tape)
 {
     const struct wb_swept_tape_model *m = &tape->model;
     const double E = m->material.youngs_modulus, nu = m->material.poissons_ratio;
-    const double mu = shear_modulus(&m->material), bent = m->thickness / m->sheets;
+    const double mu = wb_material_shear_modulus(&m->material), bent = m->thickness / m->sheets;
     const bool yields = wb_hardening_law(&m->material)->yields;
     const double yield_strain = yields ? m->material.yield_stress / (3.0 * mu) : (double)INFINITY;
     struct wb_swept_tape_kernel_model *k = &tape->numbers;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/interpolate.h"
 #include "base/units.h"
 #include "fe/solid/solid.h"
 
@@ -195,11 +196,6 @@ static bool move(struct run *r, struct wb_solid_move *move, struct wb_solid_poin
     return point->end == WB_SOLID_CONVERGED;
 }
 
-static double between(double a, double b, double share)
-{
-    return share == 1.0 ? b : a + share * (b - a);
-}
-
 /* The end of a row: what the step wants at `share` of its way from `start`. */
 static struct wb_solid_move plan_row(const struct run *r, const struct wb_wire_target *start,
                                      double share)
@@ -273,7 +269,7 @@ static bool follow_arc(struct run *r, const struct wb_solid_move *row, double fr
             return false;
         /* What is left of the way is an arc's whole. */
         path.share += point.fraction * (1.0 - path.share);
-        add_row(r, fmin(between(from, to, path.share), 0.999999));
+        add_row(r, fmin(wb_interpolate(from, to, path.share), 0.999999));
         if (r->at.status != WB_OK || r->at.run->stopped)
             return false;
         const bool near = path.share >= 1.0 || (point.fraction > 0.0 && i >= path.next_try);

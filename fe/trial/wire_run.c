@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/interpolate.h"
 #include "fe/trial/wire_run_private.h"
 
 #define WB_LOG_DOMAIN "wire run"
@@ -99,11 +100,6 @@ void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
     run->n_rows++;
 }
 
-static double between(double from, double to, double share)
-{
-    return share == 1.0 ? to : from + share * (to - from);
-}
-
 struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
                                          const struct wb_wire_target *start, double share)
 {
@@ -111,15 +107,15 @@ struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
     struct wb_wire_target target = {.tension = start->tension};
 
     for (int i = 0; i < 3; i++) {
-        target.tip.force[i] = between(from->force[i], to->force[i], share);
-        target.tip.moment[i] = between(from->moment[i], to->moment[i], share);
-        target.tip.follower[i] = between(from->follower[i], to->follower[i], share);
+        target.tip.force[i] = wb_interpolate(from->force[i], to->force[i], share);
+        target.tip.moment[i] = wb_interpolate(from->moment[i], to->moment[i], share);
+        target.tip.follower[i] = wb_interpolate(from->follower[i], to->follower[i], share);
     }
     if (step->kind == WB_WIRE_STEP_RELEASE)
-        target.tension = between(start->tension, 0.0, share);
+        target.tension = wb_interpolate(start->tension, 0.0, share);
     target.is_held = step->kind == WB_WIRE_STEP_DEFLECTION;
     if (target.is_held)
-        target.deflection = between(start->deflection, step->deflection, share);
+        target.deflection = wb_interpolate(start->deflection, step->deflection, share);
     return target;
 }
 

@@ -1,8 +1,8 @@
 #include "analysis/calibration/constituents/layers.h"
 
-#include <math.h>
 #include <stdlib.h>
 
+#include "base/circle.h"
 #include "base/config.h"
 #include "base/units.h"
 #include "fe/rod/fibres.h"
@@ -56,16 +56,6 @@ static const struct wb_setting rows[] = {
 };
 const struct wb_setting_table wb_layers_table = {.rows = rows, .n = WB_COUNT(rows)};
 
-static double area_of(double diameter)
-{
-    return 0.25 * M_PI * diameter * diameter;
-}
-
-static double second_moment_of(double diameter)
-{
-    return M_PI * pow(diameter, 4.0) / 64.0;
-}
-
 static bool has_jacket(const struct wb_layers *layers)
 {
     return layers->outer_diameter > layers->conductor_diameter;
@@ -92,17 +82,19 @@ double wb_layers_fill(const struct wb_layers *layers)
 {
     if (layers->strands == 0)
         return 1.0;
-    return layers->strands * area_of(layers->strand_diameter) / area_of(layers->conductor_diameter);
+    return layers->strands * wb_circle_area(layers->strand_diameter) /
+           wb_circle_area(layers->conductor_diameter);
 }
 
 double wb_layers_rigidity(const struct wb_layers *layers, bool sliding)
 {
     const bool strands_slide = sliding && layers->strands > 0;
     const double conductor =
-        strands_slide ? layers->strands * second_moment_of(layers->strand_diameter)
-                      : wb_layers_fill(layers) * second_moment_of(layers->conductor_diameter);
-    const double jacket =
-        second_moment_of(layers->outer_diameter) - second_moment_of(layers->conductor_diameter);
+        strands_slide
+            ? layers->strands * wb_circle_second_moment(layers->strand_diameter)
+            : wb_layers_fill(layers) * wb_circle_second_moment(layers->conductor_diameter);
+    const double jacket = wb_circle_second_moment(layers->outer_diameter) -
+                          wb_circle_second_moment(layers->conductor_diameter);
     const double of_conductor = layers->conductor.youngs_modulus * conductor;
     return has_jacket(layers) ? of_conductor + layers->jacket.youngs_modulus * jacket
                               : of_conductor;
@@ -110,8 +102,9 @@ double wb_layers_rigidity(const struct wb_layers *layers, bool sliding)
 
 double wb_layers_poissons_ratio(const struct wb_layers *layers)
 {
-    const double metal = wb_layers_fill(layers) * area_of(layers->conductor_diameter);
-    const double jacket = area_of(layers->outer_diameter) - area_of(layers->conductor_diameter);
+    const double metal = wb_layers_fill(layers) * wb_circle_area(layers->conductor_diameter);
+    const double jacket =
+        wb_circle_area(layers->outer_diameter) - wb_circle_area(layers->conductor_diameter);
     if (!has_jacket(layers))
         return layers->conductor.poissons_ratio;
     return (layers->conductor.poissons_ratio * metal + layers->jacket.poissons_ratio * jacket) /

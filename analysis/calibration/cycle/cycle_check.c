@@ -10,6 +10,7 @@
 #include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/holds.h"
+#include "base/circle.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "check"
@@ -234,7 +235,7 @@ static bool check_forces(struct wb_cycle_remarks *remarks, const struct loading 
 {
     const struct wb_test_info *const info = &loading->dataset->info;
     const double carried = weights(info);
-    const double second_moment = M_PI * pow(info->outer_diameter, 4) / 64.0;
+    const double second_moment = wb_circle_second_moment(info->outer_diameter);
     const double modulus = loading->stiffness * pow(info->length, 3) / (3.0 * second_moment);
     const double ratio = carried > 0.0 ? loading->zero / carried : (double)NAN;
 

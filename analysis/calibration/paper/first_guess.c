@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "analysis/calibration/paper/first_guess_private.h"
+#include "base/circle.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "first guess"
@@ -22,7 +23,7 @@
 
 double wb_first_guess_modulus(double force, double deflection, double length, double diameter)
 {
-    const double second_moment = M_PI * pow(diameter, 4) / 64.0;
+    const double second_moment = wb_circle_second_moment(diameter);
     return force * pow(length, 3) / (3.0 * deflection * second_moment);
 }
 

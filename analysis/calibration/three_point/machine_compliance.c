@@ -10,6 +10,7 @@
 #include "analysis/calibration/three_point/three_point_calibrate.h"
 #include "analysis/calibration/three_point/three_point_model.h"
 #include "analysis/dataset/fit.h"
+#include "base/circle.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "compliance"
@@ -238,7 +239,7 @@ static enum wb_status find_mean(struct mean *mean, const struct test *all, int n
                                 struct wb_reason *why)
 {
     const double d = info->outer_diameter, span = info->length;
-    const struct wb_law_part part = {rigidity * 64.0 / (M_PI * pow(d, 4)), (double)INFINITY};
+    const struct wb_law_part part = {rigidity / wb_circle_second_moment(d), (double)INFINITY};
     struct wb_three_point_model *model;
     struct wb_three_point_run run = {.reached = false};
     struct wb_law law;

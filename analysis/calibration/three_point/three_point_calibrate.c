@@ -8,6 +8,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/calibration/law/bending.h"
+#include "base/circle.h"
 #include "base/units.h"
 #include "base/workers.h"
 
@@ -28,11 +29,6 @@ static const double parts[WB_THREE_POINT_MOMENTS] = {0.05, 0.1, 0.2, 0.5, 1.0};
 /* Bands where the machine says nothing: friction; nose radius over that of the rollers. */
 static const double least_friction = 0.0, most_friction = 0.6;
 static const double least_nose = 0.5, most_nose = 2.5;
-
-static double second_moment(double diameter)
-{
-    return M_PI * pow(diameter, 4) / 64.0;
-}
 
 static enum wb_status check_same(const struct wb_dataset *const *datasets, int n,
                                  struct wb_reason *why)
@@ -84,7 +80,7 @@ static enum wb_status describe(struct wb_three_point_member *m,
                                const struct wb_three_point_calibration *c)
 {
     const double d = m->data.info.outer_diameter;
-    m->rigidity = m->fit.law.material.youngs_modulus * second_moment(d);
+    m->rigidity = m->fit.law.material.youngs_modulus * wb_circle_second_moment(d);
     WB_TRY(wb_bending_moments(&m->fit.law, d, WB_THREE_POINT_MOMENTS, c->curvature, m->moment));
     m->rigidity_error = 0.0;
     memset(m->moment_error, 0, sizeof m->moment_error);

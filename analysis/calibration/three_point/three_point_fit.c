@@ -14,6 +14,7 @@
 #include "analysis/calibration/paper/calibrate.h"
 #include "analysis/calibration/three_point/three_point_place.h"
 #include "analysis/dataset/least_squares.h"
+#include "base/circle.h"
 #include "base/progress.h"
 #include "base/units.h"
 
@@ -191,7 +192,7 @@ static void start_law(struct problem *p, const struct wb_three_point_fit *start)
     const double span = data->info.length, d = data->info.outer_diameter;
     const double way = fmax(first->travel - data->first_contact, 1e-3 * span);
     const double EI = fmax(first->force, 1e-3 * data->max_force) * pow(span, 3) / (48.0 * way);
-    const double E = EI * 64.0 / (M_PI * pow(d, 4));
+    const double E = EI / wb_circle_second_moment(d);
     const struct wb_three_point_strains strains =
         p->strains ? *p->strains : wb_three_point_fit_strains(data);
     const double ratio = strains.last / strains.first;

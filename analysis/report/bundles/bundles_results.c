@@ -7,11 +7,10 @@
 
 #include "analysis/calibration/paper/computed.h"
 #include "analysis/report/reasons.h"
+#include "base/circle.h"
 #include "base/interrupt.h"
 
 #define WB_LOG_DOMAIN "report"
-
-static const double pi = 3.14159265358979323846;
 
 const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundles_results *results,
                                                           int run)
@@ -54,7 +53,7 @@ wb_bundles_results_section(const struct wb_bundles_results *results, int run)
 
 double wb_bundles_results_rigidity(double youngs_modulus, double diameter)
 {
-    return youngs_modulus * pi / 64.0 * pow(diameter, 4.0);
+    return youngs_modulus * wb_circle_second_moment(diameter);
 }
 
 double wb_bundles_results_cost(const struct wb_bundles_results *results, int bundle)

@@ -3,12 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/circle.h"
 #include "fe/rod/section.h"
 #include "fe/trial/cantilever.h"
 
 #define WB_LOG_DOMAIN "report"
-
-static const double pi = 3.14159265358979323846;
 
 static enum wb_status load(struct wb_wires_rod *rod, const struct wb_wires_wire *wire,
                            struct wb_cantilever *cantilever)
@@ -86,7 +85,7 @@ void wb_wires_rod_exact(struct wb_wires_rod *rod, const struct wb_wires_wire *wi
 {
     const int last = WB_WIRES_POINTS - 1, substeps = 20;
     const double load =
-        wire->force / (wire->material.youngs_modulus * pi / 64.0 * pow(wire->diameter, 4.0));
+        wire->force / (wire->material.youngs_modulus * wb_circle_second_moment(wire->diameter));
     const double h = wire->length / (last * substeps);
     double state[4] = {0.0}, back[WB_WIRES_POINTS][2] = {{0.0}};
     memset(rod, 0, sizeof *rod);

@@ -53,7 +53,7 @@ static void a_turned_and_stretched_bar_has_axial_stress_only(void **unused)
             assert_close_relative(out[q].stress[0], expected, 1e-4);
             for (int i = 1; i < 6; i++)
                 assert_close(out[q].stress[i], 0.0, 1e-4 * expected);
-            assert_close_relative(wb_swept_hex_stress_von_mises(out[q].stress), expected, 1e-4);
+            assert_close_relative(wb_material_von_mises(out[q].stress), expected, 1e-4);
             assert_close(out[q].plastic, 0.0, 0.0);
         }
         swept_body_destroy(&body);
@@ -108,7 +108,7 @@ static double energy_of(struct swept_body *body, int *off, double *most_plastic)
                 double trace = pressure / kappa;
                 for (int i = 0; i < 20; i++)
                     trace = pressure * exp(trace) / kappa;
-                const double von_mises = wb_swept_hex_stress_von_mises(out[q].stress) * exp(trace);
+                const double von_mises = wb_material_von_mises(out[q].stress) * exp(trace);
                 assert_close(out[q].plastic, p, 0.0);
                 *off += p > 0.0 && !(fabs(von_mises - flow) <= 1e-4 * flow);
                 *most_plastic = fmax(*most_plastic, p);

@@ -140,12 +140,6 @@ static void elastic_wire_under_a_follower_force_is_the_exact_rod(void **state)
     end(c);
 }
 
-static double von_mises(const double s[6])
-{
-    const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-    return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
-
 /* Von Mises stress of part 0 at a node's reference position. */
 static double stress_at(const struct computed *c, double x, double y, double z)
 {
@@ -159,7 +153,7 @@ static double stress_at(const struct computed *c, double x, double y, double z)
             const double *X = mesh->node[mesh->element[e][a]];
             if (mesh->part[e] == 0 &&
                 fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z) < 1e-6 * c->model.length)
-                stress = von_mises(fields.stress[e][a]);
+                stress = wb_material_von_mises(fields.stress[e][a]);
         }
     wb_wire3d_fields_release(&fields);
     return stress;
