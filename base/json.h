@@ -1,10 +1,11 @@
-/* JSON values: built to be written, or read from a file. jansson stays behind json.c.
+/* JSON values: built to be written, or read from a file. They are jansson's, which stays behind
+ * json.c.
  *
  * Functions that build a document return no status. When memory runs out, or a value is set into
- * something that is not an object (appended to what is not an array), the document remembers it and
- * wb_json_format() reports it. Each document remembers its own failures, so that several may be
- * built at a time. Numbers that are not finite become null. Keys keep the order in which they were
- * set.
+ * something that is not an object (appended to something that is not an array), the thread
+ * remembers it, and wb_json_format() fails in this thread until all its documents are destroyed. So
+ * a document is built and formatted in one thread. Numbers that are not finite become null. Keys
+ * keep the order in which they were set.
  */
 #ifndef WB_BASE_JSON_H
 #define WB_BASE_JSON_H
@@ -29,7 +30,8 @@ void wb_json_set_number(struct wb_json *object, const char *key, double value);
 void wb_json_set_integer(struct wb_json *object, const char *key, int64_t value);
 void wb_json_set_boolean(struct wb_json *object, const char *key, bool value);
 
-/* Adds an empty object or array as a member; the returned handle belongs to the document. */
+/* Adds an empty object or array as a member; the returned handle belongs to the document, until
+ * the member is set again. */
 struct wb_json *wb_json_set_object(struct wb_json *object, const char *key);
 struct wb_json *wb_json_set_array(struct wb_json *object, const char *key);
 
@@ -42,7 +44,7 @@ struct wb_json *wb_json_append_object(struct wb_json *array);
 void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_json *value);
 
 /* Text of the document (caller frees), indented by two spaces, with a final newline, doubles that
- * read back the same. WB_ERR_MEMORY when the document failed while it was built. */
+ * read back the same. WB_ERR_MEMORY when a value was lost. */
 WB_MUST_CHECK enum wb_status wb_json_format(const struct wb_json *root, char **text);
 
 /* Reads a document whose root is an object; errors name file and line. */
