@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
-# Proof that ./bootstrap demo and ./bootstrap test are all a newcomer needs: makes a bare Debian 12
-# with debootstrap, clones this checkout into it, and runs both there, each twice, from another
-# folder. Run by hand as root; takes some minutes and 2 GB below FOLDER.
-# Usage: tests/bare-debian.sh FOLDER [MIRROR]
+# Proof that ./bootstrap demo and ./bootstrap test are all a newcomer needs: makes a bare Debian with
+# debootstrap (release bookworm, Debian 12, or another), clones this checkout into it, and runs both
+# there, each twice, from another folder. Run by hand as root; takes some minutes and 2 GB below
+# FOLDER. Usage: tests/bare-debian.sh FOLDER [RELEASE [MIRROR]]
 set -euo pipefail
 
-folder=${1:?usage: tests/bare-debian.sh FOLDER [MIRROR]}
-mirror=${2:-http://deb.debian.org/debian}
+folder=${1:?usage: tests/bare-debian.sh FOLDER [RELEASE [MIRROR]]}
+release=${2:-bookworm}
+mirror=${3:-http://deb.debian.org/debian}
 source=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=tests/bare-system.sh
 . "$source/tests/bare-system.sh"
 
 mkdir -p "$folder"
-system=$(cd "$folder" && pwd)/bookworm
-make_bare "$system" "$mirror"
+system=$(cd "$folder" && pwd)/$release
+make_bare "$system" "$release" "$mirror"
 open_bare "$system"
 trap 'close_bare "$system"' EXIT
 
@@ -33,4 +34,4 @@ inside "$system" sh -c 'cd /home/newcomer/wirebench && meson install -C build >/
     wirebench solve cantilever --wire type3 --length-mm 85 --deflection-mm 53 --points 2 &&
     (wirebench report fixtures/campaigns/single-wires.yaml -o /tmp/report || [ $? -eq 4 ]) &&
     test -s /tmp/report/report.pdf && test -s /usr/local/share/man/man1/wirebench-record.1'
-echo "bare Debian: demo and test both work, twice"
+echo "bare Debian $release: demo and test both work, twice"

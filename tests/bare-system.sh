@@ -1,13 +1,13 @@
 # shellcheck shell=bash
-# Sourced by scripts that need a bare Debian 12; they run as root.
+# Sourced by scripts that need a bare Debian; they run as root.
 
-# make_bare SYSTEM MIRROR: makes one in the folder SYSTEM, unless it is there.
-make_bare() {
-    local system=$1 mirror=$2
+# Makes one in the folder SYSTEM, unless it is there.
+make_bare() { # SYSTEM RELEASE MIRROR
+    local system=$1 release=$2 mirror=$3
     [ "$(id -u)" -eq 0 ] || { echo "run me as root: debootstrap and chroot need it" >&2; exit 2; }
     command -v debootstrap >/dev/null || apt-get install -y --no-install-recommends debootstrap
     [ ! -f "$system/.complete" ] || return 0
-    debootstrap --variant=minbase bookworm "$system" "$mirror"
+    debootstrap --variant=minbase "$release" "$system" "$mirror"
     # How this machine reaches its mirror is its own business; the guest does it the same way.
     cp -a /etc/apt/apt.conf.d/. "$system/etc/apt/apt.conf.d/"
     rm -f "$system"/etc/apt/apt.conf.d/{20packagekit,50appstream}

@@ -17,7 +17,7 @@ source=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 builder=$folder/builder clean=$folder/builder/srv/clean
-make_bare "$folder/pristine" "$mirror"
+make_bare "$folder/pristine" bookworm "$mirror"
 [ -f "$builder/.complete" ] || cp -a "$folder/pristine" "$builder"
 close_all() {
     [ ! -d "$clean" ] || close_bare "$clean"

@@ -399,8 +399,7 @@ static void wires_part_and_touch_again_elsewhere(void **state)
     contacts_place_straight(&c, 0, origin, 0.0);
     contacts_place_straight(&c, 2, (double[3]){0.0, 6e-3, 0.0}, 0.0);
     /* Down at the first, slid along it; up to the third by 7 mm shifted; back by 4 mm shifted. */
-    const double stages[4][2] = {
-        {0.0, near}, {5e-6, near}, {7e-3, 6e-3 - near}, {4e-3, near}};
+    const double stages[4][2] = {{0.0, near}, {5e-6, near}, {7e-3, 6e-3 - near}, {4e-3, near}};
     for (int stage = 0; stage < 4; stage++) {
         const double *from = stages[stage > 0 ? stage - 1 : 0], *to = stages[stage];
         for (int n = 1; n <= 2010; n++) {

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# What takes longer than .ci/run allows: slow tests, all fast tests under sanitizers, process tests
+# beside busy processes, Slurm, packages, bare Debians. Run as root (debootstrap and chroot need
+# it) once before an issue is closed; takes some hours and 12 GB below FOLDER.
+# Steps that passed are noted in build/nightly.txt, with their times: the same command on the same
+# revision continues with the others. Ends with the section of docs/verification.md, to paste there.
+# Usage: tests/nightly.sh FOLDER [STEP...]   (of the names that it prints; all without)
+set -u
+folder=${1:?usage: tests/nightly.sh FOLDER [STEP...]}
+shift
+mkdir -p "$folder" || exit 1
+folder=$(cd "$folder" && pwd)
+cd "$(dirname "$0")/.." || exit 1
+# shellcheck source=tests/steps.sh
+. tests/steps.sh
+
+[ -z "$(git status --porcelain)" ] || {
+    echo 'uncommitted changes: the bare Debians and the packages are made of the last commit' >&2
+    exit 2
+}
+revision=$(git describe --always --abbrev=12)
+state=build/nightly.txt
+mkdir -p build
+[ "$(sed -n 1p $state 2>/dev/null)" = "$revision" ] || echo "$revision" >$state
+
+# As step, but a step that passed before is not repeated.
+wanted=("$@")
+nightly() { # NAME COMMAND...
+    [ ${#wanted[@]} -eq 0 ] || printf '%s\n' "${wanted[@]}" | grep -qxF "$1" || return 0
+    ! grep -q "^$1|ok|" $state || return 0
+    step "$@"
+    grep -vF "$1|" $state >"$scratch/state"
+    { cat "$scratch/state"; echo "${steps[-1]}"; } >$state
+}
+
+build_with_clang() {
+    [ -f build-clang/build.ninja ] || CC=clang meson setup build-clang --werror -Dtests=enabled >/dev/null || return 1
+    ninja -C build-clang --quiet
+}
+
+test_under_sanitizers() {
+    configure_sanitizers build-sanitize address,undefined &&
+        meson test -C build-sanitize --setup sanitize --no-suite slow --no-suite headers --print-errorlogs
+}
+
+# Its tests skip themselves where Slurm is missing.
+test_slurm() {
+    install_packages slurm-wlm munge &&
+        meson test -C build jobs_slurm --print-errorlogs | tee "$scratch/slurm" &&
+        grep -q '^Ok: *1' "$scratch/slurm"
+}
+
+nightly 'build' ./bootstrap build
+nightly 'clang build' build_with_clang
+nightly 'slow tests' meson test -C build --suite slow --print-errorlogs
+nightly 'fast tests under sanitizers' test_under_sanitizers
+nightly 'process tests beside busy processes' tests/repeat.sh build 0 3 0
+nightly 'Slurm' test_slurm
+nightly 'packages' tests/packages.sh "$folder/packages"
+nightly 'bare Debian 12' tests/bare-debian.sh "$folder/bare" bookworm
+nightly 'bare Debian 13' tests/bare-debian.sh "$folder/bare" trixie
+
+echo
+echo "Revision $revision, $(date +%F), $(nproc) cores:"
+echo
+echo '| step | result | seconds |'
+echo '| --- | --- | --- |'
+sed 1d $state | awk -F '|' '{ printf "| %s | %s | %s |\n", $1, $2, $3 }'
+[ ${#failed[@]} -eq 0 ]

@@ -1,0 +1,83 @@
+#!/bin/sh
+# Runs tests again and again: none may depend on how busy the machine is. By default the suites daq,
+# live and cli ten times on the machine as it is and ten times beside four busy processes per core,
+# and all fast tests three times. Results are kept in BUILD_FOLDER/repeat.txt, so that the same
+# command continues after an interrupt; another revision of the source starts over, as does
+# removing the file. Prints how many runs had no failure and which tests failed; exits with 1 if
+# any did.
+# Usage: repeat.sh BUILD_FOLDER [ALONE BUSY WHOLE [TEST...]]   (10 10 3; of these tests in place of
+# the suites)
+set -u
+
+build=${1:?usage: repeat.sh BUILD_FOLDER [ALONE BUSY WHOLE [TEST...]]}
+alone=${2:-10} beside=${3:-10} whole=${4:-3}
+if [ $# -gt 4 ]; then
+    shift 4
+else
+    set -- --suite daq --suite live --suite cli
+fi
+[ -f "$build/build.ninja" ] || { echo "no build folder $build" >&2; exit 2; }
+ninja -C "$build" --quiet || exit 2
+
+# The first line of the file says what was repeated.
+state=$build/repeat.txt
+root=$(cd "$(dirname "$0")/.." && pwd)
+subject="$(git -C "$root" describe --always --abbrev=12) $(git -C "$root" diff HEAD | cksum) $*"
+[ "$(sed -n 1p "$state" 2>/dev/null)" = "$subject" ] || echo "$subject" >"$state"
+
+longest_s=3600 # of one run; the busy processes end by themselves at the latest then
+busy=
+folder=$(mktemp -d)
+calm_down() {
+    # shellcheck disable=SC2086 # process numbers are words
+    [ -z "$busy" ] || kill $busy 2>/dev/null
+    busy=
+}
+trap 'calm_down; rm -rf "$folder"' EXIT
+trap 'exit 130' INT TERM
+
+# A line of the state file: KIND RUN RESULT SECONDS [TEST...].
+run() { # KIND RUN ARGUMENT...
+    kind=$1 number=$2
+    shift 2
+    ! grep -q "^$kind $number " "$state" || return 0
+    began=$(date +%s)
+    code=0
+    timeout $longest_s meson test -C "$build" --no-rebuild "$@" >"$folder/log" 2>&1 || code=$?
+    [ $code -lt 128 ] || exit $code # interrupted
+    # meson is content with a name that it does not know.
+    grep -q '^Ok: *[1-9]' "$folder/log" || code=1
+    wrong=
+    if [ $code != 0 ]; then
+        wrong=$(sed -nE 's|^ *[0-9]+/[0-9]+ [^/]* / ([^ ]+) +(FAIL\|TIMEOUT\|ERROR\|INTERRUPT) .*|\1|p' "$folder/log" | sort -u | tr '\n' ' ')
+        cp "$build/meson-logs/testlog.txt" "$build/meson-logs/repeat-$kind-$number.txt"
+        wrong=${wrong:-unknown}
+    fi
+    echo "$kind $number $([ $code = 0 ] && echo ok || echo FAILED) $(($(date +%s) - began)) $wrong" >>"$state"
+    tail -n 1 "$state"
+}
+
+for number in $(seq "$alone"); do
+    run alone "$number" "$@"
+done
+for number in $(seq "$beside"); do
+    for _ in $(seq "$(($(nproc) * 4))"); do
+        timeout $longest_s sh -c 'while :; do :; done' &
+        busy="$busy $!"
+    done
+    # A time limit stops a test that hangs; it does not measure the machine.
+    run busy "$number" --timeout-multiplier 20 "$@"
+    calm_down
+done
+for number in $(seq "$whole"); do
+    run whole "$number" --no-suite slow
+done
+
+runs=$(sed 1d "$state" | wc -l)
+good=$(sed 1d "$state" | grep -c '^[a-z]* [0-9]* ok ')
+echo "$good of $runs runs without a failure"
+[ "$good" = "$runs" ] || {
+    echo "failed: $(sed 1d "$state" | grep -v '^[a-z]* [0-9]* ok ' | cut -d ' ' -f 5- | tr ' ' '\n' | sort | uniq -c | awk 'NF == 2 { printf "%s%s (%d)", separator, $2, $1; separator = ", " }')"
+    echo "their logs: $build/meson-logs/repeat-*.txt"
+    exit 1
+}
