@@ -36,6 +36,7 @@ struct wb_jobs_plan_item {
     int task;                    /* its number in the array */
     char ending[64];             /* how it ended ("TIMEOUT", "" when not known) */
     int64_t ended_ns;            /* when that was first seen; 0: it has not */
+    bool seen;                   /* in the last answer of squeue */
 };
 
 struct wb_jobs_plan {

@@ -20,6 +20,9 @@ struct wb_jobs_queue_look {
 WB_MUST_CHECK enum wb_status wb_jobs_queue_look(struct wb_jobs_plan *plan,
                                                 struct wb_jobs_queue_look *look);
 
+/* The task as Slurm names it, "12_3". */
+void wb_jobs_queue_task(const struct wb_jobs_plan_item *item, char task[64]);
+
 /* Asks the accounting, if there is any, how a task ended that squeue has forgotten. */
 void wb_jobs_queue_ask_ending(struct wb_jobs_plan_item *item);
 

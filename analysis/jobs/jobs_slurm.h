@@ -1,6 +1,6 @@
 /* Runs as a Slurm job array. In the folder of the logs: slurm-N/ with the script and the list of a
- * submission and what Slurm itself says of its tasks, and slurm.json, which tells what of it has
- * not been collected yet. */
+ * submission and what Slurm itself says of its tasks, and NAME.slurm, which names the task of a
+ * run that has not been collected yet. */
 #ifndef WB_ANALYSIS_JOBS_JOBS_SLURM_H
 #define WB_ANALYSIS_JOBS_JOBS_SLURM_H
 

@@ -110,7 +110,7 @@ static int run(void *context, const char *output, int cores)
 int jobs_fixture_make_folder(void **state)
 {
     (void)state;
-    strcpy(jobs_fixture_folder, "/tmp/wirebench jobs' XXXXXX");
+    strcpy(jobs_fixture_folder, "/tmp/wirebench 9% jobs' XXXXXX");
     wb_interrupt_set(false);
     return mkdtemp(jobs_fixture_folder) && chdir(jobs_fixture_folder) == 0 ? 0 : -1;
 }

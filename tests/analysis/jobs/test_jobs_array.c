@@ -12,32 +12,29 @@
 
 static const struct wb_jobs_options slurm = {.where = WB_JOBS_SLURM, .poll_interval = 0.05};
 
-/* Notes its arguments; runs the tasks of a list "1,3-4" at once unless there is a file `hold`. Of
- * the clusters that a file of this name lists, each takes one array, the number of all is 12. With
- * a file `forget` squeue is told nothing. */
+/* Notes its arguments; runs the tasks of the list at once unless there is a file `hold`. Of the
+ * clusters that a file of this name lists, each takes one array, the number of all is 12. With a
+ * file `forget` squeue is told nothing. */
 static const char sbatch[] =
     "#!/bin/sh\n"
     "cd \"$FAKE\" || exit 1\n"
     "[ ! -e refuse ] || { echo 'sbatch: error: invalid partition: nowhere' >&2; exit 1; }\n"
     "printf '%s\\n' \"$@\" >> sbatch.said\n"
     "echo . >> sbatch.count\n"
-    "id=$((11 + $(wc -l < sbatch.count)))\n"
-    "cluster=\n"
+    "id=$((11 + $(wc -l < sbatch.count))) cluster=\n"
     "[ ! -e clusters ] || { cluster=$(sed -n \"$((id - 11))p\" clusters); id=12; }\n"
-    "for a in \"$@\"; do\n"
-    "    case $a in --array=*) tasks=${a#--array=} ;; --chdir=*) folder=${a#--chdir=} ;; esac\n"
+    "while [ $# -gt 2 ]; do\n"
+    "    case $1 in --array) tasks=${2%\\%*} ;; --chdir) folder=$2 ;; esac\n"
+    "    shift\n"
     "done\n"
-    "while [ $# -gt 3 ]; do shift; done\n"
-    "for range in $(echo \"${tasks%\\%*}\" | tr , ' '); do\n"
-    "    for task in $(seq \"${range%-*}\" \"${range#*-}\"); do\n"
-    "        state=PENDING\n"
-    "        [ -e \"hold$cluster\" ] || {\n"
-    "            state=FAILED\n"
-    "            (cd \"$folder\" && SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=3 sh \"$@\") \\\n"
-    "                && state=COMPLETED\n"
-    "        }\n"
-    "        [ -e forget ] || echo \"${id}_$task|$state|None|$1\" >> queue.$id$cluster\n"
-    "    done\n"
+    "for task in $(seq \"${tasks#1-}\"); do\n"
+    "    state=PENDING\n"
+    "    [ -e \"hold$cluster\" ] || {\n"
+    "        state=FAILED\n"
+    "        (cd \"$folder\" && SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=3 sh \"$@\") \\\n"
+    "            && state=COMPLETED\n"
+    "    }\n"
+    "    [ -e forget ] || echo \"${id}_$task|$state|None|$1\" >> queue.$id$cluster\n"
     "done\n"
     "echo \"$id${cluster:+;$cluster}\"\n";
 
@@ -46,20 +43,18 @@ static const char sbatch[] =
 static const char squeue[] =
     "#!/bin/sh\n"
     "cd \"$FAKE\" || exit 1\n"
-    "if [ -s mute ]; then\n"
+    "[ ! -s mute ] || {\n"
     "    sed -i 1d mute\n"
     "    echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2\n"
     "    exit 1\n"
-    "fi\n"
-    "for a in \"$@\"; do\n"
-    "    case $a in --jobs=*) id=${a#--jobs=} ;; --clusters=*) cluster=${a#--clusters=} ;; esac\n"
-    "done\n"
-    "id=$id$cluster\n"
-    "[ -e \"queue.$id\" ] || {\n"
-    "    echo 'slurm_load_jobs error: Invalid job id specified' >&2\n"
-    "    exit 1\n"
     "}\n"
-    "cat \"queue.$id\"\n";
+    "while [ $# -gt 1 ]; do\n"
+    "    case $1 in --jobs) id=$2 ;; --clusters) cluster=$2 ;; esac\n"
+    "    shift\n"
+    "done\n"
+    "cat \"queue.$id$cluster\" && exit\n"
+    "echo 'slurm_load_jobs error: Invalid job id specified' >&2\n"
+    "exit 1\n";
 
 static const char scontrol[] = "#!/bin/sh\n"
                                "echo 'MaxArraySize            = '$(cat \"$FAKE/largest\")\n";
@@ -112,10 +107,10 @@ static void only_what_is_missing_is_submitted(void **unused)
     struct jobs_fixture_run runs[5];
     struct wb_jobs_outcome outcome = jobs_fixture_run(five, 5, &slurm, WB_OK);
     jobs_fixture_expect(&outcome, 0, 3, 2, 0);
-    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=1-5\n"));
+    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array\n1-5\n"));
     assert_string_equal(jobs_fixture_text("c/dataset.json"), "it's \"so\" $HOME");
     assert_string_equal(jobs_fixture_text("d/dataset.json"), "3");
-    assert_false(jobs_fixture_is_there("logs/slurm.json"));
+    assert_false(jobs_fixture_is_there("logs/a.slurm") || jobs_fixture_is_there("logs/b.slurm"));
     assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task 12_2 is FAILED"));
     assert_non_null(
         strstr(jobs_fixture_said, "\n    line 9 of what went wrong\n    exit code 1\n"));
@@ -130,7 +125,7 @@ static void only_what_is_missing_is_submitted(void **unused)
     jobs_fixture_write("fake/sbatch.said", "");
     outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
     jobs_fixture_expect(&outcome, 2, 3, 0, 0);
-    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=1-2,5\n"));
+    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array\n1-3\n"));
     outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
     jobs_fixture_expect(&outcome, 5, 0, 0, 0);
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
@@ -156,11 +151,11 @@ static void options_are_passed_on(void **unused)
     jobs_fixture_expect(&outcome, 0, 1, 0, 0);
     char expected[4096];
     snprintf(expected, sizeof expected,
-             "--parsable\n--array=1%%7\n--job-name=my bundles\n--chdir=%s\n"
-             "--output=%s/100 %%%%/slurm-1/%%A_%%a.out\n--ntasks=1\n--cpus-per-task=3\n"
-             "--partition=fast\n--account=wires\n--time=1:30:00\n--mem=2G\n--qos=long\n"
-             "--exclude=a b\n%s/100 %%/slurm-1/array.sh\n%s/100 %%/slurm-1/jobs.txt\n0\n",
-             jobs_fixture_folder, jobs_fixture_folder, jobs_fixture_folder, jobs_fixture_folder);
+             "--parsable\n--array\n1-1%%7\n--job-name\nmy bundles\n--chdir\n%s/100 %%/slurm-1\n"
+             "--output\n%%A_%%a.out\n--ntasks\n1\n--cpus-per-task\n3\n--partition\nfast\n"
+             "--account\nwires\n--time\n1:30:00\n--mem\n2G\n--qos=long\n--exclude=a b\n"
+             "%s/100 %%/slurm-1/array.sh\n%s\n",
+             jobs_fixture_folder, jobs_fixture_folder, jobs_fixture_folder);
     assert_string_equal(jobs_fixture_text("fake/sbatch.said"), expected);
 }
 
@@ -196,8 +191,10 @@ static void large_lists_become_several_arrays(void **unused)
     const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
     jobs_fixture_expect(&outcome, 0, 5, 0, 0);
     assert_string_equal(jobs_fixture_text("e/dataset.json"), "e");
-    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.said"), "--array=1-2\n"), 2);
-    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.said"), "--array=1\n"), 1);
+    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.said"), "--array\n1-2\n"),
+                     2);
+    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.said"), "--array\n1-1\n"),
+                     1);
     assert_string_equal(jobs_fixture_text("b/dataset.json"), "b");
     assert_string_equal(jobs_fixture_text("d/dataset.json"), "d");
 }
@@ -226,7 +223,7 @@ static void refused_submission_says_why(void **unused)
     jobs_fixture_run(five, 2, &slurm, WB_ERR_IO);
     assert_non_null(strstr(jobs_fixture_said, "sbatch refused the array (exit code 1): sbatch: "
                                               "error: invalid partition: nowhere\n"));
-    assert_false(jobs_fixture_is_there("logs/slurm.json"));
+    assert_false(jobs_fixture_is_there("logs/a.slurm"));
 }
 
 static void silent_queue_is_waited_for(void **unused)
@@ -244,10 +241,12 @@ static void silent_queue_is_waited_for(void **unused)
 /* Interrupts the waiting once the tasks are submitted. */
 static void interrupt_a_call(const struct jobs_fixture_run *runs, int n)
 {
+    char last[32];
+    snprintf(last, sizeof last, "logs/%s.slurm", runs[n - 1].name);
     wb_interrupt_install();
     const pid_t parent = getpid(), helper = fork();
     if (helper == 0) {
-        for (int i = 0; i < 1000 && !jobs_fixture_is_there("logs/slurm.json"); i++)
+        for (int i = 0; i < 1000 && !jobs_fixture_is_there(last); i++)
             usleep(10000);
         kill(parent, SIGTERM);
         _exit(0);
@@ -293,8 +292,8 @@ static void next_call_waits_for_what_an_interrupted_one_submitted(void **unused)
     outcome = jobs_fixture_run(runs, 3, &slurm, WB_OK);
     jobs_fixture_expect(&outcome, 1, 2, 0, 0);
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
-    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=3\n"));
-    assert_false(jobs_fixture_is_there("logs/slurm.json"));
+    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array\n1-1\n"));
+    assert_false(jobs_fixture_is_there("logs/a.slurm"));
 }
 
 static void forgotten_tasks_are_judged_by_their_outputs(void **unused)
@@ -384,7 +383,7 @@ static void queue_that_cannot_be_asked_about_earlier_runs_stops_the_call(void **
     jobs_fixture_run(five, 1, &slurm, WB_ERR_BUSY);
     jobs_fixture_run(five, 1, &local, WB_ERR_BUSY);
     assert_non_null(strstr(jobs_fixture_said, "Unable to contact slurm controller"));
-    assert_non_null(strstr(jobs_fixture_said, "/logs/slurm.json'"));
+    assert_non_null(strstr(jobs_fixture_said, "/logs/*.slurm'"));
     assert_false(jobs_fixture_is_there("a"));
 }
 

@@ -312,7 +312,7 @@ static void array_makes_datasets(void **unused)
     assert_non_null(strstr(jobs_fixture_said, "no such"));
     assert_non_null(strstr(jobs_fixture_said, "\n    exit code 1\n"));
     assert_false(jobs_fixture_is_there("data/c"));
-    assert_false(jobs_fixture_is_there("logs/slurm.json"));
+    assert_false(jobs_fixture_is_there("logs/a.slurm"));
 }
 
 /* A process that, once task 2 of the array runs (its unfinished folder is not needed for that),
@@ -320,8 +320,7 @@ static void array_makes_datasets(void **unused)
 static pid_t when_task_2_runs(const char *what)
 {
     static const char wait[] = "for i in $(seq 200); do\n"
-                               "  id=$(sed -n 's/.*\"array\": \"\\(.*\\)\".*/\\1/p' "
-                               "logs/slurm.json 2>/dev/null | tail -n 1)\n"
+                               "  id=$(sed -n '1s/ .*//p' logs/b.slurm 2>/dev/null)\n"
                                "  [ -n \"$id\" ] && squeue -h -r -j $id -o '%i %T' 2>/dev/null |\n"
                                "    grep -qx \"${id}_2 RUNNING\" && break\n"
                                "  sleep 0.2\n"
@@ -448,8 +447,7 @@ static void report_of_a_campaign_resumes_what_is_missing(void **unused)
     /* Held until one of the tasks is killed. */
     assert_int_equal(
         system("(for i in $(seq 200); do\n"
-               "  id=$(sed -n 's/.*\"array\": \"\\(.*\\)\".*/\\1/p' r.jobs/slurm.json |"
-               " tail -n 1)\n"
+               "  id=$(sed -n '1s/ .*//p' r.jobs/one-0.2.slurm)\n"
                "  [ -n \"$id\" ] && break; sleep 0.2; done; scancel ${id}_2; scontrol release $id)"
                " >/dev/null 2>&1 &"),
         0);
