@@ -1,5 +1,5 @@
 /* Slurm job arrays with commands in the place of Slurm's: what is submitted, what a task's script
- * does, and how answers of the queue are understood. test_jobs_slurm.c has a real Slurm. */
+ * does, and how answers of the queue are understood. jobs-slurm.sh has a real Slurm. */
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/stat.h>
