@@ -44,12 +44,14 @@ for archive in "$@"; do
         {
             stem = $1
             sub(/\.c\.o$/, "", stem)
-            inner = stem
-            # Meson writes the folder before the name.
-            sub(/^(dataset|align|import|calibration|cards|validation|plot|predict|compare)_/, "", inner)
-            sub(/^(law|paper|cycle|three_point|constituents|properties)_/, "", inner)
-            sub(/^(stream|protocol|take|recording|acquire|test|doctor)_/, "", inner)
-            if (!belongs(stem, $2) && !(inner != stem && belongs(inner, $2)))
+            # Meson writes the rooms before the name.
+            found = belongs(stem, $2)
+            for (rooms = 1; rooms <= 2 && !found; rooms++) {
+                if (!sub(/^(dataset|align|import|calibration|cards|validation|plot|predict|compare|law|paper|cycle|three_point|constituents|properties|stream|protocol|take|recording|acquire|test|doctor)_/, "", stem))
+                    break
+                found = belongs(stem, $2)
+            }
+            if (!found)
                 print $1 " " $2
         }' | sort -u)
     if [ -n "$foreign" ]; then

@@ -1,5 +1,5 @@
 /* Virtual time and the ports in it: what arrives when, stalls, cables. */
-#include "fixtures/virtual/virtual_time.h"
+#include "fixtures/virtual/virtual_time_private.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -9,7 +9,7 @@
 #include "base/timing.h"
 #include "base/units.h"
 #include "daq/stream/stream.h"
-#include "fixtures/virtual/sim_port.h"
+#include "fixtures/virtual/sim_port_private.h"
 #include "tests/check.h"
 #include "tests/messages.h"
 
