@@ -781,9 +781,10 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
     deadline_ns = earlier(deadline_ns, wb_stop_deadline(&a->stop));
     if (wait_for_bytes(a, deadline_ns, readable, &woken_ns) != WB_OK)
         return WB_ACQUISITION_FAILED;
-    /* From the last waking up to the beginning of this wait, and from its end to waking up. */
-    forgive_stall(a,
-                  begun_ns - a->woken_ns + (woken_ns > deadline_ns ? woken_ns - deadline_ns : 0));
+    /* From the last waking up to the beginning of this wait, and from its end to waking up. The
+     * deadline of a wait that began late has passed before. */
+    const int64_t end_ns = deadline_ns > begun_ns ? deadline_ns : begun_ns;
+    forgive_stall(a, begun_ns - a->woken_ns + (woken_ns > end_ns ? woken_ns - end_ns : 0));
     a->woken_ns = woken_ns;
     for (int i = 0; i < a->n_lines; i++)
         if (readable[i])
