@@ -1,55 +1,75 @@
-/* What recording costs at ten times a bench's rates: 800 readings, 1200 frames of 7 markers a
- * second, and a stage that is asked, from a bench in a process of its own. CPU time of the whole
- * recorder (loop, decoders, writer) and how its memory grows; the baseline in the same run waits
- * for the same bytes with poll(), reads them and writes them to a file with fdatasync() every 100
- * ms. `bench_acquisition SECONDS` runs for so long, default 20. */
-#define FAKE_LOAD_PERIOD_NS (WB_NS_PER_MS * 5 / 4)
-#define FAKE_FRAME_PERIOD_NS (WB_NS_PER_MS * 5 / 6)
-#include "base/interrupt.h"
+/* What recording costs at ten times a bench's rates, and how soon the hold byte leaves, on real
+ * ports in real time.
+ *
+ * Cost: the virtual rig in a process of its own runs ten times faster (800 readings, 1200 frames of
+ * its markers a second, and a stage that is asked). CPU time of the whole recorder (loop, decoders,
+ * writer) and how its memory grows; the baseline in the same run waits for the same bytes with
+ * poll(), reads them and writes them to a file with fdatasync() every 100 ms. `bench_acquisition
+ * SECONDS` records for so long, default 20.
+ *
+ * Latency: a load cell and a GRBL stage on pseudo-terminals in a process of its own; from the
+ * moment an overloaded reading is sent to the moment the hold byte arrives. The baseline waits with
+ * poll(), reads and writes that byte itself. */
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/file.h"
 #include "base/timing.h"
+#include "base/units.h"
+#include "daq/acquire/acquisition.h"
+#include "daq/acquire/acquisition_private.h"
+#include "daq/protocol/natnet.h"
 #include "daq/stream/stream.h"
-#include "tests/daq/fake_bench.h"
+#include "fixtures/virtual/bench.h"
+#include "fixtures/virtual/pty_port.h"
+#include "fixtures/virtual/sim_stage.h"
+#include "tests/check.h"
 #include "tests/folder.h"
 #include "tests/trials.h"
 
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-
 #define GOAL 0.3 /* of one core */
+#define HOLDS 100
+#define READING_NS (WB_NS_PER_MS * 5 / 4)
 
-/* What the other process tells of its bench. */
-struct addresses {
-    char load_path[64], stage_path[64];
-    int port;
-};
+/* --- processes --- */
 
-static pid_t start_bench(struct addresses *addresses)
+static void end_process(pid_t process)
 {
+    kill(process, SIGKILL);
+    waitpid(process, NULL, 0);
+}
+
+/* The virtual rig, ten times as fast; its rig file is there when this returns. */
+static pid_t start_rig(const char *folder, const char *rig_path)
+{
+    char paper[WB_PATH], specimen[WB_PATH], byte = 0;
     int ends[2];
+    assert_int_equal(wb_file_find_fixture(paper, "rigs", "paper", NULL), WB_OK);
+    assert_int_equal(wb_file_find_fixture(specimen, "specimens", "type1-L100-1", NULL), WB_OK);
     assert_int_equal(pipe(ends), 0);
     const pid_t process = fork();
     assert_true(process >= 0);
     if (process == 0) {
-        struct fake_bench *const bench = fake_start();
-        struct addresses own = {.port = bench->port};
-        memcpy(own.load_path, bench->load_path, sizeof own.load_path);
-        memcpy(own.stage_path, bench->stage_path, sizeof own.stage_path);
-        if (write(ends[1], &own, sizeof own) != sizeof own)
+        const struct wb_bench_settings settings = {
+            .rig = paper, .specimen = specimen, .folder = folder, .seed = 1, .time_scale = 10.0};
+        const volatile bool stop = false;
+        struct wb_bench *bench;
+        if (wb_bench_open(&bench, &settings) != WB_OK ||
+            wb_bench_write_rig(bench, rig_path) != WB_OK || write(ends[1], &byte, 1) != 1)
             _exit(1);
         for (;;)
-            pause();
+            wb_bench_run(bench, &stop);
     }
-    assert_int_equal(read(ends[0], addresses, sizeof *addresses), sizeof *addresses);
-    close(ends[0]);
     close(ends[1]);
+    assert_int_equal(read(ends[0], &byte, 1), 1);
+    close(ends[0]);
     return process;
-}
-
-static void end_bench(pid_t process)
-{
-    kill(process, SIGKILL);
-    waitpid(process, NULL, 0);
 }
 
 static double cpu_s(void)
@@ -115,14 +135,11 @@ static void record(const struct wb_rig *rig, const char *path, double seconds, s
 
 /* The same bytes, neither decoded nor kept apart. The cameras are asked by what the recorder sends
  * them first. */
-static double copy(const struct addresses *from, const char *path, double seconds)
+static double copy(const struct wb_rig *rig, const char *path, double seconds)
 {
-    char address[96];
     struct wb_stream *streams[2];
-    snprintf(address, sizeof address, "pty:%s", from->load_path);
-    assert_int_equal(wb_stream_open(&streams[0], address), WB_OK);
-    snprintf(address, sizeof address, "udp:127.0.0.1:%d", from->port);
-    assert_int_equal(wb_stream_open(&streams[1], address), WB_OK);
+    assert_int_equal(wb_stream_open(&streams[0], rig->load_cell.address), WB_OK);
+    assert_int_equal(wb_stream_open(&streams[1], rig->mocap.address), WB_OK);
     const uint8_t connect[4] = {WB_NATNET_CONNECT, 0, 0, 0};
     assert_int_equal(wb_stream_write(streams[1], connect, sizeof connect), WB_OK);
     const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -158,28 +175,199 @@ static double copy(const struct addresses *from, const char *path, double second
     return share;
 }
 
+/* --- the hold byte --- */
+
+/* Shared with the process that plays the instruments. */
+struct instruments {
+    char load[64], stage[64]; /* paths of their ports */
+    volatile int asked;       /* by the parent: the number of an overload, from 1; 0: none */
+    volatile int sent, held;  /* the numbers of the last ones */
+    volatile int64_t sent_ns, held_ns;
+};
+
+/* A load cell of 800 readings a second and a stage. */
+static void play(struct instruments *shared, struct wb_pty_port ports[2])
+{
+    static struct wb_sim_stage stage;
+    const struct wb_sim_stage_settings settings = {.axis = 'X', .down = 1};
+    const int64_t begun_ns = wb_time_now_ns();
+    int64_t next_ns = begun_ns;
+    wb_sim_stage_init(&stage, &settings);
+    for (;;) {
+        struct pollfd polled = {.fd = ports[1].descriptor, .events = POLLIN};
+        char bytes[512];
+        (void)wb_time_wait(&polled, 1, next_ns);
+        const int64_t now_ns = wb_time_now_ns();
+        const double t = wb_seconds_from_ns(now_ns - begun_ns);
+        wb_sim_stage_advance(&stage, t);
+        (void)wb_pty_port_update(&ports[0]);
+        (void)wb_pty_port_update(&ports[1]);
+        const size_t n = wb_pty_port_read(&ports[1], bytes, sizeof bytes);
+        if (shared->held < shared->sent && memchr(bytes, '!', n)) {
+            shared->held_ns = now_ns;
+            shared->held = shared->sent;
+        }
+        wb_sim_stage_receive(&stage, t, bytes, n);
+        char said[WB_REPLY_BYTES];
+        wb_pty_port_write(&ports[1], said, wb_reply_take(&stage.out, said, sizeof said));
+        if (now_ns < next_ns)
+            continue;
+        next_ns += READING_NS;
+        const int asked = shared->asked;
+        if (asked == 0) {
+            wb_pty_port_write(&ports[0], "0.150 g\r\n", 9);
+            continue;
+        }
+        if (shared->sent < asked) {
+            shared->sent_ns = wb_time_now_ns();
+            shared->sent = asked;
+        }
+        wb_pty_port_write(&ports[0], "OL\r\n", 4);
+    }
+}
+
+static pid_t start_instruments(struct instruments *shared)
+{
+    struct wb_pty_port ports[2];
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(wb_pty_port_open(&ports[i]), WB_OK);
+    snprintf(shared->load, sizeof shared->load, "%s", ports[0].path);
+    snprintf(shared->stage, sizeof shared->stage, "%s", ports[1].path);
+    const pid_t process = fork();
+    assert_true(process >= 0);
+    if (process == 0)
+        play(shared, ports);
+    return process;
+}
+
+/* s from the overload that was asked for to the hold byte. */
+static double end_overload(struct instruments *shared)
+{
+    while (shared->held < shared->asked)
+        wb_time_sleep(wb_time_now_ns() + WB_NS_PER_MS / 10);
+    shared->asked = 0;
+    return wb_seconds_from_ns(shared->held_ns - shared->sent_ns);
+}
+
+static void step_for(struct wb_acquisition *a, int64_t duration_ns)
+{
+    const int64_t end_ns = wb_time_now_ns() + duration_ns;
+    while (wb_time_now_ns() < end_ns)
+        assert_int_equal(wb_acquisition_step(a, 20 * WB_NS_PER_MS), WB_ACQUISITION_CONTINUE);
+}
+
+static void hold(struct instruments *shared, const struct wb_rig *rig, double latencies[HOLDS])
+{
+    struct wb_acquisition *a;
+    struct wb_interlock_settings settings;
+    wb_interlock_default_settings(&settings, rig);
+    assert_int_equal(wb_acquisition_open(&a, rig, WB_ACQUISITION_LOAD | WB_ACQUISITION_STAGE, NULL),
+                     WB_OK);
+    wb_acquisition_start(a, NULL);
+    const struct wb_acquisition_stream_state *const stage =
+        &wb_acquisition_latest(a)->stream[WB_ROLE_STAGE];
+    while (!stage->ready)
+        step_for(a, 20 * WB_NS_PER_MS);
+    for (int i = 0; i < HOLDS; i++) {
+        wb_acquisition_arm(a, &settings, (double)NAN);
+        assert_int_equal(
+            wb_acquisition_command(a, WB_STAGE_COMMAND_JOG, i % 2 ? -0.2e-3 : 0.2e-3, 1e-3), WB_OK);
+        step_for(a, 20 * WB_NS_PER_MS + i % 10 * WB_NS_PER_MS);
+        shared->asked = shared->sent + 1;
+        while (!wb_stop_over(wb_acquisition_stop_state(a)))
+            step_for(a, WB_NS_PER_MS);
+        assert_int_equal(wb_acquisition_stop_state(a)->state, WB_STOP_STANDING);
+        latencies[i] = end_overload(shared);
+        wb_acquisition_clear_stop(a);
+        assert_int_equal(wb_acquisition_command(a, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0), WB_OK);
+        step_for(a, 20 * WB_NS_PER_MS);
+    }
+    wb_acquisition_close(a);
+}
+
+/* A loop that does nothing else. */
+static void answer(struct instruments *shared, const struct wb_rig *rig, double latencies[HOLDS])
+{
+    struct wb_stream *load, *stage;
+    struct pollfd polled = {.events = POLLIN};
+    int descriptors[2];
+    assert_int_equal(wb_stream_open(&load, rig->load_cell.address), WB_OK);
+    assert_int_equal(wb_stream_open(&stage, rig->stage.address), WB_OK);
+    assert_int_equal(wb_stream_descriptors(load, descriptors), 1);
+    polled.fd = descriptors[0];
+    for (int i = 0; i < HOLDS; i++) {
+        char bytes[256];
+        size_t n;
+        shared->asked = shared->sent + 1;
+        do {
+            poll(&polled, 1, 20);
+            assert_int_equal(wb_stream_read(load, bytes, sizeof bytes, &n), WB_OK);
+        } while (!memchr(bytes, 'O', n));
+        assert_int_equal(wb_stream_write(stage, "!", 1), WB_OK);
+        latencies[i] = end_overload(shared);
+        /* Overloads that are still under way. */
+        for (const int64_t end_ns = wb_time_now_ns() + 10 * WB_NS_PER_MS;
+             wb_time_now_ns() < end_ns;) {
+            poll(&polled, 1, 2);
+            assert_int_equal(wb_stream_read(load, bytes, sizeof bytes, &n), WB_OK);
+        }
+    }
+    wb_stream_close(load);
+    wb_stream_close(stage);
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double *const x = a, *const y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+static void print_latencies(const char *what, double latencies[HOLDS])
+{
+    qsort(latencies, HOLDS, sizeof *latencies, compare);
+    printf("%s: min %.3f ms, median %.3f ms, max %.3f ms of %d\n", what, 1e3 * latencies[0],
+           1e3 * latencies[HOLDS / 2], 1e3 * latencies[HOLDS - 1], HOLDS);
+}
+
+static void measure_hold(const struct wb_rig *like)
+{
+    double latencies[HOLDS];
+    struct wb_rig rig = *like;
+    struct instruments *const shared =
+        mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    assert_true(shared != MAP_FAILED);
+    const pid_t process = start_instruments(shared);
+    snprintf(rig.load_cell.address, sizeof rig.load_cell.address, "pty:%s", shared->load);
+    snprintf(rig.stage.address, sizeof rig.stage.address, "pty:%s", shared->stage);
+    rig.time_scale = 1.0;
+    wb_log_set_sink(discard_message, NULL); /* each overload is a warning */
+    hold(shared, &rig, latencies);
+    print_latencies("hold byte after the overload; goal 20 ms", latencies);
+    answer(shared, &rig, latencies);
+    print_latencies("  baseline poll, read, write", latencies);
+    wb_log_set_sink(NULL, NULL);
+    end_process(process);
+    munmap(shared, sizeof *shared);
+}
+
 int main(int argc, char **argv)
 {
     const double seconds = argc > 1 ? atof(argv[1]) : 20.0;
     char folder[32], path[64], rig_path[64], raw[64];
-    struct addresses addresses;
     struct cost cost = {0};
     struct wb_rig rig;
     assert_true(temporary_folder_make(folder));
     snprintf(path, sizeof path, "%s/test.wbr", folder);
     snprintf(rig_path, sizeof rig_path, "%s/rig.yaml", folder);
     snprintf(raw, sizeof raw, "%s/raw", folder);
-    pid_t process = start_bench(&addresses);
-    struct fake_bench bench = {.port = addresses.port};
-    memcpy(bench.load_path, addresses.load_path, sizeof bench.load_path);
-    memcpy(bench.stage_path, addresses.stage_path, sizeof bench.stage_path);
-    fake_write_rig(&bench, rig_path, 1.0, 5.0);
+    pid_t process = start_rig(folder, rig_path);
     assert_int_equal(wb_rig_read(rig_path, &rig), WB_OK);
     record(&rig, path, seconds, &cost);
-    end_bench(process);
-    process = start_bench(&addresses);
-    const double baseline = copy(&addresses, raw, fmin(seconds, 20.0));
-    end_bench(process);
+    end_process(process);
+    process = start_rig(folder, rig_path);
+    assert_int_equal(wb_rig_read(rig_path, &rig), WB_OK);
+    const double baseline = copy(&rig, raw, fmin(seconds, 20.0));
+    end_process(process);
     printf("recorded for %g s: %.0f readings/s, %.0f frames/s, %.1f reports/s, %" PRIu64
            " lost or dropped\n",
            seconds, (double)cost.readings / seconds, (double)cost.frames / seconds,
@@ -188,6 +376,7 @@ int main(int argc, char **argv)
     printf("  baseline poll, read, write, fdatasync every 100 ms: %.1f %%; ratio %.2f\n",
            100.0 * baseline, cost.share / baseline);
     printf("memory: %.1f MiB after 5 s, %.1f MiB at the end\n", cost.first_MiB, cost.last_MiB);
+    measure_hold(&rig);
     count_trials("Ten times a bench's rates", cost.readings + cost.frames,
                  "samples in %.0f s: %.1f %% of one core, %" PRIu64
                  " lost or dropped, memory %+.1f MiB",

@@ -1,7 +1,14 @@
 /* What keeps a bending test from starting, or ends it in its first millimetres, each with its one
- * message, against a small bench in a thread. */
+ * message, against a small bench in virtual time. */
 #include "daq/stream/stream.h"
 #include "tests/daq/bend_fixture.h"
+
+static void edit_rig(const struct fixture *fixture, const char *sed)
+{
+    char command[256];
+    snprintf(command, sizeof command, "sed -i '%s' %s", sed, fixture->rig);
+    assert_int_equal(system(command), 0);
+}
 
 /* --- what keeps it from starting --- */
 
@@ -25,7 +32,7 @@ static void no_natnet_answer_is_told_and_leaves_nothing(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->mocap_dead = true;
-    assert_refused(fixture, "no NatNet answer from udp:127.0.0.1", false);
+    assert_refused(fixture, "no NatNet answer from sim:fake_mocap", false);
 }
 
 static void a_silent_load_cell_is_told(void **state)
@@ -46,24 +53,21 @@ static void a_silent_stage_is_told(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->stage_silent = true;
-    assert_refused(fixture, "the stage at pty:", false);
+    assert_refused(fixture, "the stage at sim:fake_stage", false);
 }
 
 static void swapped_ports_are_told(void **state)
 {
     struct fixture *const fixture = *state;
-    struct fake_bench swapped = *fixture->bench;
-    memcpy(swapped.load_path, fixture->bench->stage_path, sizeof swapped.load_path);
-    memcpy(swapped.stage_path, fixture->bench->load_path, sizeof swapped.stage_path);
-    fake_write_rig(&swapped, fixture->rig, 40.0, 60.0);
+    edit_rig(fixture, "s/fake_cell/fake_here/; s/fake_stage/fake_cell/; s/fake_here/fake_stage/");
     assert_refused(fixture, "load_cell.address and stage.address seem to be swapped", false);
 }
 
 static void a_stage_set_slower_than_the_test_is_told(void **state)
 {
     struct fixture *const fixture = *state;
-    fixture->bench->fastest_mm_min = 1200; /* 0.5 mm/s on this bench, 40 times as fast */
-    assert_refused(fixture, "0.5 mm/s at most ($110=1200 mm/min), and 1 mm/s are wanted", true);
+    fixture->bench->fastest_mm_min = 30;
+    assert_refused(fixture, "0.5 mm/s at most ($110=30 mm/min), and 1 mm/s are wanted", true);
 }
 
 static void a_missing_marker_is_named(void **state)
@@ -91,9 +95,7 @@ static void a_stray_reflection_does_not_hurt(void **state)
 static void a_unit_that_contradicts_the_rig_file_is_refused(void **state)
 {
     struct fixture *const fixture = *state;
-    char command[256];
-    snprintf(command, sizeof command, "sed -i 's/^  noise_mg: 10/  unit: g\\n&/' %s", fixture->rig);
-    assert_int_equal(system(command), 0);
+    edit_rig(fixture, "s/^  noise_mg: 10/  unit: g\\n&/");
     fixture->bench->other_unit = true;
     assert_refused(fixture, "prints another unit than load_cell.unit: g", true);
     unlink(fixture->output);
@@ -106,11 +108,9 @@ static void a_unit_that_contradicts_the_rig_file_is_refused(void **state)
 static void raw_counts_are_told_with_the_keys_that_make_them_forces(void **state)
 {
     struct fixture *const fixture = *state;
-    char command[256];
     fixture->bench->raw_counts = true;
     assert_refused(fixture, "load_cell.unit", false);
-    snprintf(command, sizeof command, "sed -i 's/^  noise_mg: 10/  unit: g\\n&/' %s", fixture->rig);
-    assert_int_equal(system(command), 0);
+    edit_rig(fixture, "s/^  noise_mg: 10/  unit: g\\n&/");
     assert_refused(fixture, "load_cell.scale", false);
 }
 
@@ -144,10 +144,7 @@ static void a_tare_with_the_counterweight_adds_its_weight(void **state)
     assert_non_null(file);
     fputs("strand:\n  length_mm: 760\n  counterweight_g: 2.7\n", file);
     fclose(file);
-    char command[256];
-    snprintf(command, sizeof command,
-             "sed -i 's/noise_mg: 10/noise_mg: 10\\n  tare: counterweight/' %s", fixture->rig);
-    assert_int_equal(system(command), 0);
+    edit_rig(fixture, "s/noise_mg: 10/noise_mg: 10\\n  tare: counterweight/");
     fixture->request.travel = 8.0 * WB_MM;
     assert_refused(fixture, "not the counterweight's 26.48 mN", true); /* nothing hangs there */
     unlink(fixture->output);
@@ -177,10 +174,9 @@ static void assert_not_opened(struct fixture *fixture, enum wb_status expected, 
 static void a_missing_port_is_one_message(void **state)
 {
     struct fixture *const fixture = *state;
-    char gone[64];
-    snprintf(gone, sizeof gone, "%s", fixture->bench->load_path);
-    snprintf(fixture->bench->load_path, sizeof fixture->bench->load_path, "/dev/pts/no-such");
-    fake_write_rig(fixture->bench, fixture->rig, 40.0, 60.0);
+    edit_rig(fixture, "s/fake_cell/no_such_cell/");
+    assert_not_opened(fixture, WB_ERR_NOT_FOUND, "'sim:no_such_cell' does not exist");
+    edit_rig(fixture, "s:sim.no_such_cell:pty\\:/dev/pts/no-such:");
     assert_not_opened(fixture, WB_ERR_NOT_FOUND, "/dev/pts/no-such");
     assert_int_not_equal(access(fixture->output, F_OK), 0);
 }
@@ -189,10 +185,8 @@ static void a_busy_port_is_one_message(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_stream *other;
-    char address[80];
-    snprintf(address, sizeof address, "pty:%s", fixture->bench->stage_path);
-    assert_int_equal(wb_stream_open(&other, address), WB_OK);
-    assert_not_opened(fixture, WB_ERR_BUSY, fixture->bench->stage_path);
+    assert_int_equal(wb_stream_open(&other, "sim:fake_stage"), WB_OK);
+    assert_not_opened(fixture, WB_ERR_BUSY, "'sim:fake_stage' is in use");
     wb_stream_close(other);
     assert_int_not_equal(access(fixture->output, F_OK), 0);
 }

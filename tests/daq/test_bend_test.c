@@ -1,5 +1,5 @@
-/* The bending test against a small bench in a thread: the whole sequence, and every way it is
- * stopped with the latencies measured. */
+/* The bending test against a small bench in virtual time: the whole sequence, and every way it is
+ * stopped, with the moment of the hold byte. */
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -20,28 +20,10 @@ static bool takes_tare(const struct wb_bend_test_status *status)
     return strcmp(status->phase, "tare") == 0;
 }
 
-/* When the hold byte reached the stage, after the moment that showed the limit. An alarm is itself
- * the word that the stage stands: the test may end while the byte is still on its way. */
-static void note_hold(const struct fixture *fixture, struct fake_latency *latency, int64_t shown_ns)
+/* The hold byte left in the step that read what arrived at `shown_ns`. */
+static void assert_held_at(const struct fixture *fixture, int64_t shown_ns)
 {
-    for (int i = 0; i < 2000 && fixture->bench->hold_ns == 0; i++)
-        usleep(1000);
-    assert_true(fixture->bench->hold_ns != 0);
-    assert_true(shown_ns != 0);
-    fake_note_latency(latency, fixture->bench, "hold byte", fixture->bench->hold_ns - shown_ns);
-}
-
-/* Latencies are measured up to three times. */
-static void assert_in_time(void **state,
-                           void (*measure)(struct fixture *fixture, struct fake_latency *latency))
-{
-    struct fixture *const fixture = *state;
-    struct fake_latency latency = {0};
-    measure(fixture, &latency);
-    while (!fake_in_time(&latency)) {
-        renew(fixture, 60.0);
-        measure(fixture, &latency);
-    }
+    assert_int_equal(fixture->bench->hold_ns, shown_ns);
 }
 
 static void open_and_get_down(struct fixture *fixture, struct wb_bend_test **test)
@@ -89,8 +71,7 @@ static bool is_coming_up(const struct wb_bend_test_status *status)
     return strcmp(status->phase, "up") == 0 && status->travel < 10.0 * WB_MM;
 }
 
-/* The stage of the fixture's rig moves at 1 mm/s, at 40 times its speed; 2 s of rest end a cycle.
- */
+/* The stage of the fixture's rig moves at 1 mm/s; 2 s of rest end a cycle. */
 static void time_left_is_the_way_left_and_ends_at_zero(void **state)
 {
     struct fixture *const fixture = *state;
@@ -106,10 +87,10 @@ static void time_left_is_the_way_left_and_ends_at_zero(void **state)
     assert_true(run(test, well_down));
     wb_bend_test_status(test, &status);
     assert_true(status.is_connected);
-    assert_close(status.time_left, (48.0 - status.travel / WB_MM + 4.0) / 40.0, 1e-9);
+    assert_close(status.time_left, 48.0 - status.travel / WB_MM + 4.0, 1e-9);
     assert_true(run(test, is_coming_up));
     wb_bend_test_status(test, &status);
-    assert_close(status.time_left, (24.0 + status.travel / WB_MM + 4.0) / 40.0, 1e-9);
+    assert_close(status.time_left, 24.0 + status.travel / WB_MM + 4.0, 1e-9);
     const double peak = status.peak_tension;
     assert_true(peak > 0.0);
     wb_bend_test_stop(test);
@@ -180,80 +161,80 @@ static void a_part_of_a_yaml_text_ends_at_the_next_key(void **state)
     free(part);
 }
 
-/* --- limits, with their latencies --- */
+/* --- limits, each with the moment of the hold byte --- */
 
-static void reach_the_force_limit(struct fixture *fixture, struct fake_latency *latency)
+/* The first reading whose tension is beyond a limit. */
+struct first_beyond {
+    double tare, limit; /* N */
+    int64_t t_ns;       /* when it was read; 0: none */
+};
+
+static void find_first_beyond(void *context, const struct wb_load_sample *sample)
 {
+    struct first_beyond *const first = context;
+    if (first->t_ns == 0 && sample->valid && sample->force - first->tare > first->limit)
+        first->t_ns = sample->t_ns;
+}
+
+static void force_limit_holds_at_the_reading_beyond_it_and_the_specimen_stays(void **state)
+{
+    struct fixture *const fixture = *state;
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
-    /* 100 mN on top of the tare of 150 mg, which is known to some mg. */
-    fixture->bench->force_limit_mg = (int)(100e-3 / WB_STANDARD_GRAVITY * 1e6) + 145;
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_true(result.standing && result.displaced && !result.soft_reset);
     assert_non_null(strstr(result.text, "force limit of 100.0 mN"));
-    assert_in_range(result.confirm_latency * 1e6, 0, 500000);
-    fake_note_latency(latency, fixture->bench, "hold byte, by its own account,",
-                      wb_ns_from_seconds(result.hold_latency));
+    assert_close(result.hold_latency, 0.0, 0.0);
+    /* It is asked in the same step. */
+    assert_close(result.confirm_latency, wb_seconds_from_ns(WB_SIM_PORT_DELAY_NS), 1e-12);
     assert_string_equal(fixture->bench->state, "Hold:0");
-    /* 40 mm/s as long as it may take. */
-    assert_close(fixture->bench->position_mm, 20.5,
-                 1.5 + 40e-9 * (double)fake_patience_ns(fixture->bench));
-    assert_close(result.travel / WB_MM, fixture->bench->position_mm, 0.01);
-    note_hold(fixture, latency, fixture->bench->limit_sent_ns);
+    assert_close(fixture->bench->position_mm, 100e-3 / WB_STANDARD_GRAVITY / 500e-6, 0.05);
+    assert_close(result.travel / WB_MM, fixture->bench->position_mm, 0.001);
+    struct first_beyond first = {.tare = result.tare, .limit = 100.0 * WB_MN};
+    replay(fixture, &(struct wb_sink){.context = &first, .load = find_first_beyond});
+    assert_held_at(fixture, first.t_ns);
     static const char *const expected[] = {"cycle_start: 1", "limit: the tension is",    "hold: {",
                                            "stopped: {",     "stop: limit: the tension", "end:"};
     assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
     assert_replay_identical(fixture->output, &fixture->log);
 }
 
-static void force_limit_holds_within_20_ms_and_the_specimen_stays(void **state)
+static void overload_unit_change_and_alarm_hold_at_their_arrival(void **state)
 {
-    assert_in_time(state, reach_the_force_limit);
-}
-
-static void raise_overload_unit_change_and_alarm(struct fixture *fixture,
-                                                 struct fake_latency *latency)
-{
+    struct fixture *const fixture = *state;
+    memset(&fixture->request.sink, 0, sizeof fixture->request.sink);
     for (int i = 0; i < 3; i++) {
         struct wb_bend_test *test;
         struct wb_bend_test_result result;
         struct fake_bench *const bench = fixture->bench;
-        unlink(fixture->output);
-        fixture->request.sink.context = NULL;
-        memset(&fixture->request.sink, 0, sizeof fixture->request.sink);
         open_and_get_down(fixture, &test);
-        atomic_bool *const faults[] = {&bench->overload, &bench->other_unit, &bench->raise_alarm};
+        bool *const faults[] = {&bench->overload, &bench->other_unit, &bench->raise_alarm};
         static const char *const words[] = {"overload", "unit", "ALARM:1"};
         *faults[i] = true;
         assert_false(run(test, NULL));
-        *faults[i] = false;
         assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
         assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
         if (!strstr(result.text, words[i]))
             fail_msg("'%s' does not say '%s'", result.text, words[i]);
         assert_true(result.standing);
-        note_hold(fixture, latency, bench->limit_sent_ns);
+        assert_true(bench->limit_sent_ns != 0);
+        assert_held_at(fixture, bench->limit_sent_ns + WB_SIM_PORT_DELAY_NS);
         renew(fixture, 60.0);
     }
 }
 
-static void overload_unit_change_and_alarm_hold_within_20_ms(void **state)
+static void silent_streams_hold_at_their_expiry(void **state)
 {
-    assert_in_time(state, raise_overload_unit_change_and_alarm);
-}
-
-static void silence_each_stream(struct fixture *fixture, struct fake_latency *latency)
-{
+    struct fixture *const fixture = *state;
+    memset(&fixture->request.sink, 0, sizeof fixture->request.sink);
     for (int i = 0; i < 2; i++) {
         struct wb_bend_test *test;
         struct wb_bend_test_result result;
+        renew(fixture, 0.25);
         struct fake_bench *const bench = fixture->bench;
-        unlink(fixture->output);
-        memset(&fixture->request.sink, 0, sizeof fixture->request.sink);
-        fake_write_rig(bench, fixture->rig, 40.0, 10.0);
         open_and_get_down(fixture, &test);
         *(i ? &bench->mocap_silent : &bench->load_silent) = true;
         assert_false(run(test, NULL));
@@ -261,17 +242,11 @@ static void silence_each_stream(struct fixture *fixture, struct fake_latency *la
         assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
         if (!strstr(result.text, i ? "motion capture" : "load cell"))
             fail_msg("silence %d ended as '%s'", i, result.text);
-        /* T is 10 s of the rig, 250 ms of the host. */
-        note_hold(fixture, latency, (i ? bench->frame_last_ns : bench->load_last_ns) + 250 * MS);
+        const int64_t last_ns = i ? bench->frame_last_ns : bench->load_last_ns;
+        assert_held_at(fixture, last_ns + WB_SIM_PORT_DELAY_NS + 250 * MS);
         read_events(fixture);
         assert_non_null(strstr(fixture->events, i ? "stream_lost: mocap" : "stream_lost: load"));
-        renew(fixture, 60.0);
     }
-}
-
-static void silent_streams_hold_within_20_ms_of_their_expiry(void **state)
-{
-    assert_in_time(state, silence_each_stream);
 }
 
 static void a_stall_of_our_own_is_not_taken_for_silence(void **state)
@@ -280,34 +255,34 @@ static void a_stall_of_our_own_is_not_taken_for_silence(void **state)
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     fixture->bench->spring_mg_mm = 10;
-    fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
+    fake_write_rig(fixture->rig, true, 0.25);
     open_and_get_down(fixture, &test);
     /* Longer than the stage, which is asked for its reports, may be silent. */
-    usleep(1200000);
+    wb_virtual_time_stall(1200 * MS);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     if (result.end != WB_SEQUENCE_DONE)
         fail_msg("ended early: %s", result.text);
     /* But the stage went on unwatched, and that is told. */
     read_events(fixture);
-    if (!strstr(fixture->events, "stall: the recorder stood still for "))
+    if (!strstr(fixture->events, "stall: the recorder stood still for 1.2 s"))
         fail_msg("no stall in: %s", fixture->events);
 }
 
-struct sleeper {
+struct staller {
     struct fake_bench *bench;
-    bool slept;
+    bool stalled;
 };
 
 /* Once, in mid-motion: whatever arrives meanwhile waits unread. */
-static void sleep_once(void *context, const struct wb_load_sample *sample)
+static void stall_once(void *context, const struct wb_load_sample *sample)
 {
-    struct sleeper *const sleeper = context;
+    struct staller *const staller = context;
     (void)sample;
-    if (sleeper->slept || sleeper->bench->position_mm < 5.0)
+    if (staller->stalled || staller->bench->position_mm < 5.0)
         return;
-    sleeper->slept = true;
-    usleep(800000);
+    staller->stalled = true;
+    wb_virtual_time_stall(800 * MS);
 }
 
 static void a_stall_within_a_step_is_not_taken_for_silence(void **state)
@@ -315,15 +290,15 @@ static void a_stall_within_a_step_is_not_taken_for_silence(void **state)
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
-    struct sleeper sleeper = {.bench = fixture->bench};
+    struct staller staller = {.bench = fixture->bench};
     fixture->bench->spring_mg_mm = 10;
-    /* T is 250 ms of the host, 600 ms for the stage. */
-    fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
-    fixture->request.sink = (struct wb_sink){.context = &sleeper, .load = sleep_once};
+    /* 250 ms, and 600 ms for the stage. */
+    fake_write_rig(fixture->rig, true, 0.25);
+    fixture->request.sink = (struct wb_sink){.context = &staller, .load = stall_once};
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_true(sleeper.slept);
+    assert_true(staller.stalled);
     if (result.end != WB_SEQUENCE_DONE)
         fail_msg("ended early: %s", result.text);
     read_events(fixture);
@@ -343,12 +318,13 @@ static void a_stage_running_on_is_held_at_the_travel_limit(void **state)
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_non_null(strstr(result.text, "travel limit of 58.00 mm"));
     assert_true(result.standing);
-    assert_close(fixture->bench->position_mm, 58.0,
-                 2.0 + 40e-9 * (double)fake_patience_ns(fixture->bench));
+    /* It is asked five times a second. */
+    assert_close(fixture->bench->position_mm, 58.1, 0.101);
 }
 
-static void hold_a_deaf_stage(struct fixture *fixture, struct fake_latency *latency)
+static void a_stage_deaf_to_hold_is_reset_after_500_ms(void **state)
 {
+    struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
@@ -359,18 +335,11 @@ static void hold_a_deaf_stage(struct fixture *fixture, struct fake_latency *late
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_true(result.soft_reset && result.standing);
-    note_hold(fixture, latency, bench->limit_sent_ns);
-    const int64_t reset_ns = bench->reset_ns - bench->hold_ns - 500 * MS;
-    assert_true(reset_ns >= -10 * MS);
-    fake_note_latency(latency, bench, "soft reset", reset_ns > 0 ? reset_ns : 0);
+    assert_held_at(fixture, bench->limit_sent_ns + WB_SIM_PORT_DELAY_NS);
+    assert_int_equal(bench->reset_ns, bench->hold_ns + 500 * MS);
     assert_string_equal(bench->state, "Alarm");
     static const char *const expected[] = {"limit:", "hold:", "reset:", "stopped:", "stop: limit"};
     assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
-}
-
-static void a_stage_deaf_to_hold_is_reset_after_500_ms(void **state)
-{
-    assert_in_time(state, hold_a_deaf_stage);
 }
 
 static void a_stage_that_obeys_nothing_is_called_moving(void **state)
@@ -390,29 +359,42 @@ static void a_stage_that_obeys_nothing_is_called_moving(void **state)
     assert_non_null(strstr(fixture->events, "not confirmed"));
 }
 
-static void press_ctrl_c(struct fixture *fixture, struct fake_latency *latency)
+/* Ctrl-C, at a moment within a wait. */
+static int64_t pressed_ns;
+
+static int64_t next_press(void *context)
 {
+    (void)context;
+    return wb_interrupted() ? INT64_MAX : pressed_ns;
+}
+
+static void press(void *context, int64_t now_ns)
+{
+    (void)context, (void)now_ns;
+    wb_interrupt_set(true);
+}
+
+static void ctrl_c_stops_the_stage_and_closes_the_recording(void **state)
+{
+    static const struct wb_virtual_actor finger = {NULL, next_press, press};
+    struct fixture *const fixture = *state;
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_and_get_down(fixture, &test);
-    const int64_t pressed_ns = wb_time_now_ns();
-    wb_interrupt_set(true);
+    pressed_ns = wb_time_now_ns() + 1234567;
+    wb_virtual_time_add(&finger);
     assert_false(run(test, NULL));
+    wb_virtual_time_remove(&finger);
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     wb_interrupt_set(false); /* it would stop the replay below as well */
     assert_int_equal(result.end, WB_SEQUENCE_INTERRUPTED);
     assert_true(result.standing && result.displaced);
-    note_hold(fixture, latency, pressed_ns);
+    assert_held_at(fixture, pressed_ns);
     static const char *const expected[] = {"cycle_start: 1", "hold: {\"reason\": \"interrupt\"",
                                            "stopped:", "stop: interrupted", "end:"};
     assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
     assert_null(strstr(fixture->events, "limit:"));
     assert_replay_identical(fixture->output, &fixture->log);
-}
-
-static void ctrl_c_stops_the_stage_and_closes_the_recording(void **state)
-{
-    assert_in_time(state, press_ctrl_c);
 }
 
 static void closing_in_mid_test_stops_the_stage_first(void **state)
@@ -546,8 +528,8 @@ static void a_first_motion_that_the_cameras_see_otherwise_ends_the_test(void **s
         if (result.end != WB_SEQUENCE_FAILED || !strstr(result.text, faults[i].word))
             fail_msg("fault %zu: ended with '%s'", i, result.text);
         assert_true(result.standing);
-        /* 2 mm and what a report may be old, at 40 mm/s; the whole test goes farther. */
-        assert_in_range((int)bench->position_mm, 2, 40);
+        /* The whole test goes farther. */
+        assert_close(bench->position_mm, 2.3, 0.4);
         read_events(fixture);
         assert_null(strstr(fixture->events, "first_motion"));
         renew(fixture, 60.0);
@@ -594,9 +576,9 @@ int main(void)
         TEST(time_left_is_the_way_left_and_ends_at_zero),
         TEST(meta_tells_who_what_and_how),
         TEST(a_part_of_a_yaml_text_ends_at_the_next_key),
-        TEST(force_limit_holds_within_20_ms_and_the_specimen_stays),
-        TEST(overload_unit_change_and_alarm_hold_within_20_ms),
-        TEST(silent_streams_hold_within_20_ms_of_their_expiry),
+        TEST(force_limit_holds_at_the_reading_beyond_it_and_the_specimen_stays),
+        TEST(overload_unit_change_and_alarm_hold_at_their_arrival),
+        TEST(silent_streams_hold_at_their_expiry),
         TEST(a_stall_of_our_own_is_not_taken_for_silence),
         TEST(a_stall_within_a_step_is_not_taken_for_silence),
         TEST(a_stage_running_on_is_held_at_the_travel_limit),

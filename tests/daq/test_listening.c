@@ -1,79 +1,91 @@
-/* Instruments behind a pseudo-terminal whose baud rate counts: at another one they send rubbish and
- * understand nothing. */
+/* Instruments on a port whose baud rate counts: at another one they send rubbish and understand
+ * nothing. */
 #include "daq/acquire/listening.h"
 
+#include <stdlib.h>
+
 #include "base/interrupt_private.h"
-#include "tests/daq/fake_bench.h"
+#include "base/timing.h"
+#include "base/units.h"
+#include "fixtures/virtual/sim_port.h"
+#include "fixtures/virtual/virtual_time.h"
+#include "tests/check.h"
 #include "tests/daq/tic_example.h"
 
 struct port {
-    pthread_t thread;
-    int master, keep;
-    char path[64], address[80];
-    atomic_bool quit;
-    speed_t speed; /* at which it is understood */
+    struct wb_sim_port *port;
+    struct wb_sim_port_handler handler;
+    struct wb_virtual_actor actor;
+    int baud; /* at which it is understood */
     enum wb_listening_found what;
-    atomic_int understood, misunderstood; /* bytes that came to it */
+    int line_baud; /* at which the host has opened it */
+    int64_t next_ns;
+    int heard; /* bytes that came to it */
 };
 
-static void answer(struct port *port, const char *bytes, ssize_t n)
-{
-    uint8_t status[WB_TIC_STATUS_BYTES];
-    const struct wb_tic_status tic = {.operation = WB_TIC_NORMAL, .up_time_ms = 70000};
-    if (port->what == WB_LISTENING_GRBL && memchr(bytes, '?', (size_t)n))
-        fake_write(port->master, "<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n", 38);
-    if (port->what == WB_LISTENING_TIC && n > 1) {
-        tic_example_status(status, &tic);
-        fake_write(port->master, status, sizeof status);
-    }
-}
-
-static void *run(void *context)
+static void opened(void *context, int64_t now_ns, const char *line)
 {
     struct port *const port = context;
-    while (!port->quit) {
-        struct termios line;
-        char bytes[256];
-        tcgetattr(port->master, &line);
-        const bool understands = cfgetospeed(&line) == port->speed;
-        const ssize_t n = read(port->master, bytes, sizeof bytes);
-        if (n > 0 && understands)
-            answer(port, bytes, n);
-        if (n > 0)
-            atomic_fetch_add(understands ? &port->understood : &port->misunderstood, (int)n);
-        if (port->what == WB_LISTENING_LOAD_CELL)
-            fake_write(port->master, understands ? "  12.34 g\r\n" : "\x81\xfe\x90\xe3\xbf\x88",
-                       understands ? 11 : 6);
-        usleep(5000);
-    }
-    return NULL;
+    (void)now_ns;
+    port->line_baud = atoi(line);
 }
 
-static void begin(struct port *port, enum wb_listening_found what, speed_t speed)
+static void answer(void *context, int64_t now_ns, const void *bytes, size_t n)
 {
-    memset(port, 0, sizeof *port);
-    port->what = what;
-    port->speed = speed;
-    fake_open_terminal(&port->master, &port->keep, port->path);
-    snprintf(port->address, sizeof port->address, "pty:%s", port->path);
-    assert_int_equal(pthread_create(&port->thread, NULL, run, port), 0);
+    struct port *const port = context;
+    uint8_t status[WB_TIC_STATUS_BYTES];
+    const struct wb_tic_status tic = {.operation = WB_TIC_NORMAL, .up_time_ms = 70000};
+    (void)now_ns;
+    port->heard += (int)n;
+    if (port->line_baud != port->baud)
+        return;
+    if (port->what == WB_LISTENING_GRBL && memchr(bytes, '?', n))
+        wb_sim_port_send(port->port, "<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n", 38);
+    if (port->what == WB_LISTENING_TIC && n > 1) {
+        tic_example_status(status, &tic);
+        wb_sim_port_send(port->port, status, sizeof status);
+    }
+}
+
+static int64_t next_reading(void *context)
+{
+    const struct port *const port = context;
+    return port->what == WB_LISTENING_LOAD_CELL ? port->next_ns : INT64_MAX;
+}
+
+static void read_out(void *context, int64_t now_ns)
+{
+    struct port *const port = context;
+    const bool understands = port->line_baud == port->baud;
+    const char *const bytes = understands ? "  12.34 g\r\n" : "\x81\xfe\x90\xe3\xbf\x88";
+    wb_sim_port_send(port->port, bytes, strlen(bytes));
+    port->next_ns = now_ns + 5 * WB_NS_PER_MS;
+}
+
+static void begin(struct port *port, enum wb_listening_found what, int baud)
+{
+    wb_virtual_time_begin(WB_VIRTUAL_TIME_HOST_DATE);
+    *port = (struct port){.handler = {port, answer, opened},
+                          .actor = {port, next_reading, read_out},
+                          .what = what,
+                          .baud = baud};
+    assert_int_equal(wb_sim_port_create(&port->port, "some", &port->handler), WB_OK);
+    wb_virtual_time_add(&port->actor);
 }
 
 static void end(struct port *port)
 {
-    port->quit = true;
-    pthread_join(port->thread, NULL);
-    close(port->master);
-    close(port->keep);
+    wb_sim_port_destroy(port->port);
+    wb_virtual_time_end();
 }
 
-static struct wb_listening listen_at(const struct port *port, bool asks)
+static struct wb_listening listen_to(bool asks)
 {
     const struct wb_listening_settings settings = {.asks = asks, .patience_ns = 200 * WB_NS_PER_MS};
     struct wb_listening heard;
     struct wb_reason why = {0};
     wb_interrupt_set(false);
-    assert_int_equal(wb_listening_run(port->address, &settings, &heard, &why), WB_OK);
+    assert_int_equal(wb_listening_run("sim:some", &settings, &heard, &why), WB_OK);
     return heard;
 }
 
@@ -81,12 +93,12 @@ static void a_load_cell_that_prints_is_found_at_its_baud_rate(void **state)
 {
     struct port port;
     (void)state;
-    begin(&port, WB_LISTENING_LOAD_CELL, B57600);
-    const struct wb_listening heard = listen_at(&port, false);
+    begin(&port, WB_LISTENING_LOAD_CELL, 57600);
+    const struct wb_listening heard = listen_to(false);
     assert_int_equal(heard.found, WB_LISTENING_LOAD_CELL);
     assert_string_equal(heard.line, "57600,8n1");
     assert_string_equal(heard.sample, "  12.34 g");
-    assert_int_equal(port.understood + port.misunderstood, 0);
+    assert_int_equal(port.heard, 0);
     end(&port);
 }
 
@@ -94,12 +106,12 @@ static void what_is_understood_at_no_rate_is_unknown_and_silence_is_silence(void
 {
     struct port port;
     (void)state;
-    begin(&port, WB_LISTENING_LOAD_CELL, B300);
-    assert_int_equal(listen_at(&port, false).found, WB_LISTENING_UNKNOWN);
+    begin(&port, WB_LISTENING_LOAD_CELL, 300);
+    assert_int_equal(listen_to(false).found, WB_LISTENING_UNKNOWN);
     end(&port);
-    begin(&port, WB_LISTENING_NOTHING, B9600);
-    assert_int_equal(listen_at(&port, false).found, WB_LISTENING_NOTHING);
-    assert_int_equal(port.understood + port.misunderstood, 0);
+    begin(&port, WB_LISTENING_NOTHING, 9600);
+    assert_int_equal(listen_to(false).found, WB_LISTENING_NOTHING);
+    assert_int_equal(port.heard, 0);
     end(&port);
 }
 
@@ -107,14 +119,14 @@ static void stages_answer_their_question_and_are_not_asked_without_leave(void **
 {
     struct port port;
     (void)state;
-    begin(&port, WB_LISTENING_GRBL, B115200);
-    assert_int_equal(listen_at(&port, false).found, WB_LISTENING_NOTHING);
-    const struct wb_listening grbl = listen_at(&port, true);
+    begin(&port, WB_LISTENING_GRBL, 115200);
+    assert_int_equal(listen_to(false).found, WB_LISTENING_NOTHING);
+    const struct wb_listening grbl = listen_to(true);
     assert_int_equal(grbl.found, WB_LISTENING_GRBL);
     assert_string_equal(grbl.line, "115200,8n1");
     end(&port);
-    begin(&port, WB_LISTENING_TIC, B9600);
-    const struct wb_listening tic = listen_at(&port, true);
+    begin(&port, WB_LISTENING_TIC, 9600);
+    const struct wb_listening tic = listen_to(true);
     assert_int_equal(tic.found, WB_LISTENING_TIC);
     assert_string_equal(tic.line, "9600,8n1");
     end(&port);

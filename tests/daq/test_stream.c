@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "daq/stream/stream_private.h"
+#include "tests/folder.h"
 #include "tests/messages.h"
 
 static int set_up(void **state)
@@ -176,6 +177,35 @@ static void closed_master_is_a_lost_stream(void **state)
     assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_ERR_IO);
     assert_message("went away");
     wb_stream_close(stream);
+}
+
+/* As /dev/serial/by-id leads to a USB adapter that was plugged in again. */
+static void lost_pseudo_terminal_comes_back_through_its_link_under_another_number(void **state)
+{
+    (void)state;
+    char folder[32], link[64], address[80], slave[64], again[64], byte;
+    struct wb_stream *stream;
+    size_t n;
+    assert_true(temporary_folder_make(folder));
+    snprintf(link, sizeof link, "%s/cell", folder);
+    snprintf(address, sizeof address, "pty:%s", link);
+    const int master = open_master(slave, sizeof slave);
+    const int other = open_master(again, sizeof again);
+    assert_string_not_equal(slave, again);
+    assert_int_equal(symlink(slave, link), 0);
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    close(master);
+    assert_int_equal(unlink(link), 0);
+    assert_int_equal(wb_stream_read(stream, &byte, 1, &n), WB_ERR_IO);
+    assert_false(wb_stream_reopen(stream));
+    assert_int_equal(symlink(again, link), 0);
+    assert_true(wb_stream_reopen(stream));
+    assert_int_equal(write(other, "0.15 g\r\n", 8), 8);
+    wait_readable(stream);
+    assert_reads(stream, "0.15 g\r\n");
+    wb_stream_close(stream);
+    close(other);
+    assert_int_equal(temporary_folder_remove(folder), 0);
 }
 
 static void full_pseudo_terminal_times_out(void **state)
@@ -481,6 +511,7 @@ int main(void)
         FACT(pseudo_terminal_passes_bytes_unchanged),
         FACT(second_opener_of_a_pseudo_terminal_is_told_it_is_busy),
         FACT(closed_master_is_a_lost_stream),
+        FACT(lost_pseudo_terminal_comes_back_through_its_link_under_another_number),
         FACT(full_pseudo_terminal_times_out),
         FACT(missing_pseudo_terminal_and_plain_file_are_told_apart),
         FACT(datagrams_pass_one_a_read),
