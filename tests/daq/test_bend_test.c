@@ -176,11 +176,27 @@ static void find_first_beyond(void *context, const struct wb_load_sample *sample
         first->t_ns = sample->t_ns;
 }
 
+/* The first reading that is passed on after the hold byte left. */
+static struct {
+    const struct fake_bench *bench;
+    int64_t t_ns;
+} first_held;
+
+static void log_and_watch_the_hold(void *context, const struct wb_load_sample *sample)
+{
+    if (first_held.t_ns == 0 && first_held.bench->holds > 0)
+        first_held.t_ns = sample->t_ns;
+    sample_log_load(context, sample);
+}
+
 static void force_limit_holds_at_the_reading_beyond_it_and_the_specimen_stays(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
+    first_held.bench = fixture->bench;
+    first_held.t_ns = 0;
+    fixture->request.sink.load = log_and_watch_the_hold;
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
@@ -196,6 +212,7 @@ static void force_limit_holds_at_the_reading_beyond_it_and_the_specimen_stays(vo
     struct first_beyond first = {.tare = result.tare, .limit = 100.0 * WB_MN};
     replay(fixture, &(struct wb_sink){.context = &first, .load = find_first_beyond});
     assert_held_at(fixture, first.t_ns);
+    assert_int_equal(first_held.t_ns, first.t_ns);
     static const char *const expected[] = {"cycle_start: 1", "limit: the tension is",    "hold: {",
                                            "stopped: {",     "stop: limit: the tension", "end:"};
     assert_events(fixture, expected, sizeof expected / sizeof expected[0]);

@@ -121,6 +121,9 @@ static void pseudo_terminal_passes_bytes_unchanged(void **state)
     int master;
     struct wb_stream *stream = open_pty(&master, ",115200,8n1");
     uint8_t sent[256], got[512];
+    struct termios line;
+    assert_int_equal(tcgetattr(master, &line), 0);
+    assert_int_equal(cfgetospeed(&line), B115200);
     for (int i = 0; i < 256; i++)
         sent[i] = (uint8_t)i;
     size_t n = 1;
