@@ -4,13 +4,13 @@
 #include <sched.h>
 #include <signal.h>
 #include <sqlite3.h>
-#include <stdatomic.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
 #include "daq/recording/recording_private.h"
 #include "daq/recording/writer_private.h"
+#include "tests/daq/gate.h"
 #include "tests/daq/recording_fixture.h"
 
 static void run_sql(const char *path, const char *sql)
@@ -254,19 +254,6 @@ static void view_instead_of_a_table_is_not_run(void **state)
 
 /* --- full disks --- */
 
-static void count_round(void *context)
-{
-    atomic_fetch_add((atomic_int *)context, 1);
-}
-
-/* Waits until what was pushed before has been written: two rounds of the writer later it was. */
-static void wait_for_rounds(const struct wb_writer *writer, atomic_int *rounds)
-{
-    int from = atomic_load(rounds);
-    while (atomic_load(rounds) < from + 2 && wb_writer_status(writer) == WB_OK)
-        usleep(200);
-}
-
 /* Pushes chunks until the writer says that it cannot keep more, then reads what is there. 0 when
  * all is as promised. */
 static int fill_until_full(struct bench *bench, const char *path, const char *reason)
@@ -285,9 +272,9 @@ static int fill_until_full(struct bench *bench, const char *path, const char *re
     settings.flush_interval_ns = 1000000;
     settings.capacity_bytes = 40000;
     settings.patience_ns = 0;
-    atomic_int rounds = 0;
-    settings.before_write = count_round;
-    settings.context = &rounds;
+    struct gate gate = GATE(false);
+    settings.before_write = gate_pass;
+    settings.context = &gate;
     struct wb_writer *writer = NULL;
     if (wb_writer_start(&writer, recording, &settings) != WB_OK)
         return 12;
@@ -301,7 +288,7 @@ static int fill_until_full(struct bench *bench, const char *path, const char *re
         if (!wb_writer_push_chunk(writer, stream, bench_time(stream, seq / 3), bytes, n))
             break;
         if (seq % 50 == 49)
-            wait_for_rounds(writer, &rounds);
+            gate_await_rounds(&gate);
     }
     if (wb_writer_status(writer) != WB_ERR_IO)
         return 13;

@@ -1,48 +1,19 @@
 /* The writer queue: nothing lost with room, every loss counted and recorded without, never a wait
  * for the disk. */
-#include <pthread.h>
-#include <unistd.h>
-
-#include "base/timing.h"
 #include "base/units.h"
 #include "daq/recording/writer_private.h"
+#include "tests/daq/gate.h"
 #include "tests/daq/recording_fixture.h"
 
-/* A disk that stalls until it is let go. */
-struct gate {
-    pthread_mutex_t lock;
-    pthread_cond_t changed;
-    bool shut;
-    int arrived, passed;
-};
-
-static void pass_gate(void *context)
+/* Settings of a writer that writes every millisecond and passes the gate before. */
+static struct wb_writer_settings settings_of(struct gate *gate)
 {
-    struct gate *gate = context;
-    pthread_mutex_lock(&gate->lock);
-    gate->arrived++;
-    pthread_cond_broadcast(&gate->changed);
-    while (gate->shut)
-        pthread_cond_wait(&gate->changed, &gate->lock);
-    gate->passed++;
-    pthread_mutex_unlock(&gate->lock);
-}
-
-/* The thread has taken what waited and is held up. */
-static void wait_at_gate(struct gate *gate)
-{
-    pthread_mutex_lock(&gate->lock);
-    while (gate->arrived == 0)
-        pthread_cond_wait(&gate->changed, &gate->lock);
-    pthread_mutex_unlock(&gate->lock);
-}
-
-static void open_gate(struct gate *gate)
-{
-    pthread_mutex_lock(&gate->lock);
-    gate->shut = false;
-    pthread_cond_broadcast(&gate->changed);
-    pthread_mutex_unlock(&gate->lock);
+    struct wb_writer_settings settings;
+    wb_writer_default_settings(&settings);
+    settings.flush_interval_ns = WB_NS_PER_MS;
+    settings.before_write = gate_pass;
+    settings.context = gate;
+    return settings;
 }
 
 static struct wb_writer *start(const char *path, const struct wb_writer_settings *settings)
@@ -65,12 +36,14 @@ static bool push(struct wb_writer *writer, int stream, int64_t seq)
 static void everything_pushed_is_recorded(void **state)
 {
     struct bench *bench = *state;
-    struct wb_writer *writer = start(bench->path, NULL);
+    struct gate gate = GATE(false);
+    const struct wb_writer_settings settings = settings_of(&gate);
+    struct wb_writer *writer = start(bench->path, &settings);
     for (int64_t seq = 0; seq < 3000; seq++) {
         for (int stream = 0; stream < 3; stream++)
             assert_true(push(writer, stream, seq));
         if (seq % 500 == 0)
-            usleep(1000);
+            gate_await(&gate, gate_arrived(&gate) + 1);
     }
     struct wb_writer_counts counts;
     wb_writer_counts(writer, &counts);
@@ -97,18 +70,17 @@ static void everything_pushed_is_recorded(void **state)
 static void flushed_chunks_are_on_disk_while_recording_goes_on(void **state)
 {
     struct bench *bench = *state;
-    struct wb_writer *writer = start(bench->path, NULL);
+    struct gate gate = GATE(false);
+    const struct wb_writer_settings settings = settings_of(&gate);
+    struct wb_writer *writer = start(bench->path, &settings);
     for (int64_t seq = 0; seq < 10; seq++)
         assert_true(push(writer, 0, seq));
-    /* Twice the flush interval of 100 ms, and some for a busy machine. */
-    struct bench_tally tally = {0};
-    for (int i = 0; i < 100 && tally.chunks < 10; i++) {
-        usleep(20000);
-        struct wb_recording *onlooker = NULL;
-        assert_int_equal(wb_recording_open(&onlooker, bench->path), WB_OK);
-        assert_int_equal(bench_walk(onlooker, &tally), WB_OK);
-        assert_int_equal(wb_recording_close(onlooker), WB_OK);
-    }
+    gate_await_rounds(&gate);
+    struct bench_tally tally;
+    struct wb_recording *onlooker = NULL;
+    assert_int_equal(wb_recording_open(&onlooker, bench->path), WB_OK);
+    assert_int_equal(bench_walk(onlooker, &tally), WB_OK);
+    assert_int_equal(wb_recording_close(onlooker), WB_OK);
     assert_int_equal(tally.chunks, 10);
     assert_int_equal(wb_writer_finish(writer), WB_OK);
 }
@@ -150,26 +122,18 @@ static enum wb_status find_drops(void *context, const struct wb_event *event)
 static void full_queue_drops_counts_and_records_every_chunk_and_no_event(void **state)
 {
     struct bench *bench = *state;
-    struct gate gate = {.shut = true};
-    pthread_mutex_init(&gate.lock, NULL);
-    pthread_cond_init(&gate.changed, NULL);
-    struct wb_writer_settings settings;
-    wb_writer_default_settings(&settings);
+    struct gate gate = GATE(true);
+    struct wb_writer_settings settings = settings_of(&gate);
     settings.capacity_bytes = 20000;
-    settings.flush_interval_ns = WB_NS_PER_MS;
-    settings.before_write = pass_gate;
-    settings.context = &gate;
     struct wb_writer *writer = start(bench->path, &settings);
     /* Else its first round may come amid the pushes and tell of their losses in two parts. */
-    wait_at_gate(&gate);
+    gate_await(&gate, 1);
     uint64_t refused[2] = {0};
-    int64_t first_refused[2] = {-1, -1}, slowest_ns = 0;
+    int64_t first_refused[2] = {-1, -1};
+    /* The disk stalls all the while: a push that waited for it would wait for ever. */
     for (int64_t seq = 0; seq < 400; seq++) {
         for (int stream = 0; stream < 2; stream++) {
-            int64_t before_ns = wb_time_now_ns();
             bool taken = push(writer, stream, seq);
-            int64_t took_ns = wb_time_now_ns() - before_ns;
-            slowest_ns = took_ns > slowest_ns ? took_ns : slowest_ns;
             if (!taken && first_refused[stream] < 0)
                 first_refused[stream] = bench_time(stream, seq);
             refused[stream] += !taken;
@@ -181,19 +145,9 @@ static void full_queue_drops_counts_and_records_every_chunk_and_no_event(void **
     assert_int_equal(wb_writer_drops(writer, 1), refused[1]);
     assert_int_equal(wb_writer_drops(writer, 2), 0);
     assert_int_equal(wb_writer_drops(writer, -1), refused[0] + refused[1]);
-    /* The disk stalls all the while; no push waited for it. */
-    assert_true(slowest_ns < 50 * WB_NS_PER_MS);
-
-    open_gate(&gate);
+    gate_set(&gate, false);
     struct wb_writer_counts counts;
-    for (int i = 0; i < 200; i++) {
-        usleep(10000);
-        pthread_mutex_lock(&gate.lock);
-        int passed = gate.passed;
-        pthread_mutex_unlock(&gate.lock);
-        if (passed > 2)
-            break;
-    }
+    gate_await_rounds(&gate);
     /* There is room again: the last chunks close the gaps at their ends. */
     assert_true(push(writer, 0, 400));
     assert_true(push(writer, 1, 400));
@@ -228,22 +182,16 @@ static void full_queue_drops_counts_and_records_every_chunk_and_no_event(void **
     assert_int_equal(atoll(value), (long long)(refused[0] + refused[1]));
     free(value);
     assert_int_equal(wb_recording_close(recording), WB_OK);
-    pthread_cond_destroy(&gate.changed);
-    pthread_mutex_destroy(&gate.lock);
 }
 
 static void queue_of_few_entries_drops_by_number(void **state)
 {
     struct bench *bench = *state;
-    struct gate gate = {.shut = true};
-    pthread_mutex_init(&gate.lock, NULL);
-    pthread_cond_init(&gate.changed, NULL);
-    struct wb_writer_settings settings;
-    wb_writer_default_settings(&settings);
+    struct gate gate = GATE(true);
+    struct wb_writer_settings settings = settings_of(&gate);
     settings.capacity_entries = 10;
-    settings.before_write = pass_gate;
-    settings.context = &gate;
     struct wb_writer *writer = start(bench->path, &settings);
+    gate_await(&gate, 1);
     int taken = 0;
     for (int64_t i = 0; i < 15; i++)
         taken += wb_writer_push_clock(writer, 1, i, (double)i, 1);
@@ -253,10 +201,8 @@ static void queue_of_few_entries_drops_by_number(void **state)
     wb_writer_counts(writer, &counts);
     assert_int_equal(counts.dropped_probes, 5);
     assert_int_equal(counts.dropped_chunks, 1);
-    open_gate(&gate);
+    gate_set(&gate, false);
     assert_int_equal(wb_writer_finish(writer), WB_OK);
-    pthread_cond_destroy(&gate.changed);
-    pthread_mutex_destroy(&gate.lock);
 }
 
 static void undeclared_stream_is_refused(void **state)
