@@ -15,7 +15,7 @@
 #include "daq/protocol/natnet.h"
 #include "daq/protocol/natnet_encode.h"
 #include "fixtures/virtual/sim_port.h"
-#include "fixtures/virtual/virtual_time.h"
+#include "fixtures/virtual/virtual_time_private.h"
 #include "tests/check.h"
 #include "tests/daq/grbl_jog.h"
 
