@@ -121,7 +121,8 @@ static void run(struct wb_bend_test *test, struct wb_record_views *views)
 }
 
 /* What a stop leaves behind, and how to go on. */
-static void tell_stop(const struct wb_bend_test_result *result, const char *rig_path)
+static void tell_stop(const struct wb_bend_test_result *result, const char *rig_path,
+                      bool bench_stays)
 {
     if (result->end == WB_SEQUENCE_LIMIT)
         wb_warn("stopped by a limit: %s", result->text);
@@ -132,8 +133,8 @@ static void tell_stop(const struct wb_bend_test_result *result, const char *rig_
     if (!result->standing)
         wb_error("the stage did not confirm that it stands: switch off its power before you touch "
                  "the bench");
-    else if (wb_time_is_virtual())
-        return; /* the bench ends with the test */
+    else if (!bench_stays)
+        return;
     else if (result->displaced && isfinite(result->travel))
         wb_warn("the stage stands at %.2f mm and the specimen stays as it is; free it with "
                 "'wirebench stage %s release %.0f --zero-mn=%.2f', which goes up by no more than "
@@ -207,7 +208,7 @@ static enum wb_status find_wire(struct wb_bend_test_request *request, struct wb_
 }
 
 static enum wb_status run_test(struct wb_bend_test_request *request,
-                               struct wb_record_views_options *options,
+                               struct wb_record_views_options *options, bool bench_stays,
                                struct wb_bend_test_result *result, int *code)
 {
     static struct wb_record_views views;
@@ -217,8 +218,7 @@ static enum wb_status run_test(struct wb_bend_test_request *request,
     wb_interrupt_install();
     wb_interrupt_guard();
     WB_TRY(wb_record_views_open(&views, options, request, &wire));
-    if (!wb_time_is_virtual())
-        wb_acquisition_raise_priority();
+    wb_acquisition_raise_priority();
     const enum wb_status opened = wb_bend_test_open(&test, request);
     if (opened != WB_OK) {
         wb_record_views_close(&views);
@@ -229,7 +229,7 @@ static enum wb_status run_test(struct wb_bend_test_request *request,
     const enum wb_status status = wb_bend_test_close(test, result);
     /* While the views are open: from there on a terminal that hangs would be waited for. */
     if (result->end != WB_SEQUENCE_DONE)
-        tell_stop(result, request->rig_path);
+        tell_stop(result, request->rig_path, bench_stays);
     tell_losses(result);
     tell_holds(result);
     if (!result->recorded)
@@ -253,7 +253,7 @@ enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
     request->specimen_text = given ? given : text;
     enum wb_status status = virtual ? wb_virtual_test_begin(virtual, request) : WB_OK;
     if (status == WB_OK) {
-        status = run_test(request, options, result, code);
+        status = run_test(request, options, !virtual, result, code);
         if (virtual)
             wb_virtual_test_end(virtual, request);
     }

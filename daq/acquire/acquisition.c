@@ -84,7 +84,7 @@ static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind,
 
 void wb_acquisition_raise_priority(void)
 {
-    if (setpriority(PRIO_PROCESS, 0, -15) != 0)
+    if (!wb_time_is_virtual() && setpriority(PRIO_PROCESS, 0, -15) != 0)
         wb_debug("the priority stays as it is: %s", strerror(errno));
 }
 
