@@ -17,7 +17,6 @@ names() {
         sed 's|.*/||; s|^test_||; s|\.c$||'
     (cd "$root" && git grep -l 'include "tests/daq/fuzz.*\.h"' -- 'tests/daq/fuzz_*.c') |
         sed 's|.*/||; s|\.c$||'
-    echo record
     [ "$quick" = quick ] || printf '%s\n' storage_slow recording_flips_all
 }
 

@@ -1,6 +1,6 @@
 #!/bin/bash
-# `wirebench record --series` against the virtual rig: answers from standard input, an exclusion and
-# who is told of it, a series that was stopped, killed, or run twice at once.
+# `wirebench record --series` on virtual benches in virtual time: answers from standard input, an
+# exclusion and where it is reported, a series that was stopped, killed, or run twice at once.
 # Usage: series.sh WIREBENCH SOURCE_ROOT
 set -u
 . "$(dirname "$0")/wait.sh"
@@ -9,14 +9,9 @@ wirebench=$(realpath "$1")
 root=$2
 folder=$(mktemp -d /tmp/wb-series-XXXXXX)
 failures=0
-rig=
-
-end_rig() {
-    kill -INT "$rig" 2>/dev/null
-    wait "$rig" 2>/dev/null
-}
-trap 'end_rig; rm -rf "$folder"' EXIT
-sed 's/stream_lost_s: 1/stream_lost_s: 20/' "$root/fixtures/rigs/paper.yaml" >"$folder/bench.yaml"
+rig=$root/fixtures/rigs/paper.yaml
+virtual=(--virtual --start 2026-11-25 --seed 3)
+trap 'rm -rf "$folder"' EXIT
 cp "$root/fixtures/specimens/type1-L85-1.yaml" "$folder/like.yaml"
 cat >"$folder/series.yaml" <<END
 series: s
@@ -31,20 +26,11 @@ fail() {
     failures=$((failures + 1))
 }
 
-start_rig() { # in $folder/rig, with options
-    "$wirebench" rig "$folder/bench.yaml" --specimen "$folder/like.yaml" --run "$folder/rig" \
-        --seed 3 --time-scale 20 "$@" 2>"$folder/rig.log" &
-    rig=$!
-    wait_until $rig grep -qs '^ready' "$folder/rig.log" && return
-    fail "the rig is not ready: $(cat "$folder/rig.log")"
-    exit 1
-}
-
 # series NAME ANSWERS OPTIONS...: the series into $folder/NAME; exit code in $code.
 series() {
     local name=$1 answers=$2
     shift 2
-    printf '%b' "$answers" | "$wirebench" record "$folder/rig/rig.yaml" \
+    printf '%b' "$answers" | "$wirebench" record "$rig" "${virtual[@]}" \
         --series "$folder/series.yaml" -o "$folder/$name" --operator 'A. Tester' "$@" \
         >"$folder/$name.out" 2>"$folder/$name.err"
     code=$?
@@ -71,7 +57,7 @@ stopped_and_gone_on_with() {
     holds info 'notes  *first note'
     holds info 'series  *s, test 1'
     "$wirebench" info "$folder/a/s-002-type1-L85-2.wbr" >"$folder/info" 2>&1
-    holds info 'EXCLUDED  *by A. Tester on 20..-..-..: the wire slipped'
+    holds info 'EXCLUDED  *by A. Tester on 2026-11-25: the wire slipped'
     holds info 'sample 2'
     "$wirebench" info "$folder/a/s-002-type1-L85-2.wbr" --json >"$folder/info" 2>&1
     holds info '"reason": "the wire slipped"'
@@ -79,7 +65,7 @@ stopped_and_gone_on_with() {
     holds dataset/dataset.json 'the test was excluded by A. Tester'
     "$wirebench" calibrate "$folder/dataset" -o "$folder/properties.yaml" 2>"$folder/refused" &&
         fail 'an excluded test was calibrated'
-    holds refused 'the test was excluded by A. Tester on 20..-..-..: the wire slipped. Leave'
+    holds refused 'the test was excluded by A. Tester on 2026-11-25: the wire slipped. Leave'
     # The third one twice: somebody leaned on the bench.
     series a 'n\n\nr I leaned on the bench\nn\n\n\n' --figure "$folder/a.svg" --json
     expect a 0 '"specimens_done": 3'
@@ -106,8 +92,8 @@ wires:
 END
     "$wirebench" report "$folder/campaign.yaml" -o "$folder/report" >"$folder/report.out" 2>&1
     holds report.out '2 of 2 recordings used'
-    holds report/report.html 's-002-type1-L85-2.wbr</b>: excluded by A. Tester on 20..-..-..: the wire slipped'
-    holds report/report.html 's-003-type1-L85-3.wbr</b>: excluded by A. Tester on 20..-..-..: I leaned on'
+    holds report/report.html 's-002-type1-L85-2.wbr</b>: excluded by A. Tester on 2026-11-25: the wire slipped'
+    holds report/report.html 's-003-type1-L85-3.wbr</b>: excluded by A. Tester on 2026-11-25: I leaned on'
     holds report/report.json '"reason": "the wire slipped"'
 }
 
@@ -116,7 +102,7 @@ END
 killed_before_the_judgement() {
     mkfifo "$folder/answers"
     exec 8<>"$folder/answers"
-    "$wirebench" record "$folder/rig/rig.yaml" --series "$folder/series.yaml" -o "$folder/b" \
+    "$wirebench" record "$rig" "${virtual[@]}" --series "$folder/series.yaml" -o "$folder/b" \
         --operator 'A. Tester' <"$folder/answers" >"$folder/b.out" 2>"$folder/b.err" &
     local recorder=$!
     printf 'n\n\n' >&8
@@ -141,23 +127,14 @@ wrong_answers_and_refused_tests() {
     expect d 3 'a reason is needed'
     holds d.err "'what?' is none of these answers"
     holds d.err '1 of 3 specimens are done'
-    end_rig
+    # The bench's own ports are not there.
+    virtual=()
     series d 'n\n\nn\nq\n'
     expect d 3 '1 of 3 specimens are done'
     [ "$(grep -c 'goes to s-002-type1-L85-2.wbr' "$folder/d.err")" = 2 ] ||
         fail "d: the specimen is not asked for again: $(cat "$folder/d.err")"
-    start_rig
-    # The start check does not find the markers where the answer has them. Its recording is kept.
-    sed 's/notes/markers_mm/' "$folder/series.yaml" >"$folder/markers.yaml"
-    printf '0, 85.5\n0, 10, 20, 30, 40, 50, 85\n\nq\nq\n' | "$wirebench" record "$folder/rig/rig.yaml" \
-        --series "$folder/markers.yaml" -o "$folder/f" --operator me >"$folder/f.out" 2>"$folder/f.err"
-    code=$?
-    expect f 3 '0 of 3 specimens are done'
-    holds f.err 'expected the last marker at the strand'
-    holds f.err "'s-001-type1-L85-1.wbr' holds no cycle"
-    holds f.err 'goes to s-002-type1-L85-1.wbr'
     printf 'series: s\nspecimen: like.yaml\nspecimens: 3\noutput: "{series}.wbr"\n' >"$folder/bad.yaml"
-    "$wirebench" record "$folder/rig/rig.yaml" --series "$folder/bad.yaml" </dev/null >"$folder/e.out" 2>"$folder/e.err"
+    "$wirebench" record "$rig" --series "$folder/bad.yaml" </dev/null >"$folder/e.out" 2>"$folder/e.err"
     code=$?
     expect e 1 'bad.yaml:4: output: expected {number}'
     "$wirebench" record --series "$folder/series.yaml" </dev/null >"$folder/e.out" 2>"$folder/e.err"
@@ -168,7 +145,6 @@ wrong_answers_and_refused_tests() {
     expect e 2 'write cycles into its file instead of --cycles'
 }
 
-start_rig
 for case in stopped_and_gone_on_with reported killed_before_the_judgement wrong_answers_and_refused_tests; do
     before=$failures
     $case
