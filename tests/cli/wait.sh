@@ -8,7 +8,7 @@ wait_until() { # PROCESS COMMAND...: true once the command succeeds
         # Once more after its end: it may have done its work just before.
         [ $alive = yes ] || return 1
         kill -0 "$process" 2>/dev/null && [ $SECONDS -lt $end ] || alive=no
-        sleep 0.02
+        sleep "${wait_interval_s:-0.02}"
     done
 }
 

@@ -1,10 +1,12 @@
 /* A terminal as a slow connection gives it: it takes so many bytes a second, and its window changes
- * its size all the time, down to a single cell. SIGUSR1 lets it hang, and a second one go on again.
+ * its size all the time, down to a single cell. SIGUSR1 makes it hang, a second one makes it
+ * continue; it prints "the terminal is full" once a program that writes to it would have to wait.
  * What is read from standard input are its keys; what it shows goes to standard output.
  *
  *     slow_terminal BYTES_PER_SECOND COMMAND...
  */
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <pty.h>
 #include <signal.h>
@@ -41,8 +43,23 @@ static bool copy(int from, int to, size_t most)
     return n > 0 && write(to, bytes, (size_t)n) == n;
 }
 
+/* Whether a write to the terminal would block. Opened each time: a terminal that somebody has open
+ * never reads as ended. */
+static bool is_full(int terminal)
+{
+    const char *const path = ptsname(terminal);
+    const int program = path ? open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC) : -1;
+    struct pollfd polled = {.fd = program, .events = POLLOUT};
+    if (program < 0)
+        return false;
+    const bool full = poll(&polled, 1, 0) == 0;
+    close(program);
+    return full;
+}
+
 static void serve(int terminal, size_t bytes_per_turn)
 {
+    bool was_full = false;
     for (unsigned turn = 0;; turn++) {
         struct pollfd keys = {.fd = STDIN_FILENO, .events = POLLIN};
         struct pollfd shown = {.fd = terminal, .events = POLLIN};
@@ -51,6 +68,11 @@ static void serve(int terminal, size_t bytes_per_turn)
         if (turn % TURNS_PER_SIZE == 0)
             (void)ioctl(terminal, TIOCSWINSZ,
                         &sizes[turn / TURNS_PER_SIZE % (sizeof sizes / sizeof sizes[0])]);
+        if (hangs && !was_full && is_full(terminal)) {
+            was_full = true;
+            printf("the terminal is full\n");
+            fflush(stdout);
+        }
         if (!hangs && poll(&shown, 1, 0) > 0 && !copy(terminal, STDOUT_FILENO, bytes_per_turn))
             return;
     }
