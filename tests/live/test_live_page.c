@@ -10,7 +10,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "base/timing.h"
 #include "base/units.h"
+#include "fixtures/virtual/virtual_time.h"
+#include "live/live_events.h"
 #include "live/live_feed.h"
 #include "live/live_history.h"
 #include "live/live_page.h"
@@ -126,6 +129,7 @@ static void events_bring_the_plan_the_curve_and_the_state(void **state)
     hear(client, "\"force_mN\": 12.5");
     assert_heard("\"state\": \"test in progress\"");
     assert_heard("\"time_left_s\": null");
+    hear(client, "\"disk_free_GB\": ");
     wb_live_feed_add_point(feed, &(struct wb_live_frame_point){0.0025f, 0.0335f, 2});
     hear(client, "data: {\"from\": 1, \"points\": [[2,2.5,33.5]]}\n\n");
     wb_live_feed_tell(feed, WB_LOG_WARNING, "a \"message\"\nof two lines");
@@ -134,39 +138,38 @@ static void events_bring_the_plan_the_curve_and_the_state(void **state)
     close(client);
 }
 
-static const char *last_heard(const char *words, const char *before)
+/* The number under this key of the state that a client would get now; NaN: null. */
+static double number_of(const struct wb_live_history *history, const char *key)
 {
-    const char *last = NULL;
-    for (const char *at = heard; (at = strstr(at, words)) && (!before || at < before); at++)
-        last = at;
-    assert_non_null(last);
-    return last;
-}
-
-/* The number that the last state which came whole has under this key; NaN: null. */
-static double number_heard(const char *key)
-{
+    struct wb_live_events_cursor cursor = {.frame = UINT64_MAX};
+    struct wb_text text = {0};
     double value = (double)NAN;
-    const char *const last = last_heard(key, last_heard("\"frames_dropped\"", NULL));
-    (void)sscanf(last + strlen(key), "\": %lf", &value);
+    wb_live_events_append(&cursor, &plan, history, false, &text);
+    const char *const at = strstr(wb_text_string(&text), key);
+    assert_non_null(at);
+    (void)sscanf(at + strlen(key), "\": %lf", &value);
+    wb_text_release(&text);
     return value;
 }
 
 static void the_room_on_the_disk_is_told_in_bytes_and_in_time(void **state)
 {
     (void)state;
-    frame.elapsed = 100.0;
-    frame.bytes = 1000000000;
-    const int client = ask("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    hear(client, "\"frames_dropped\"");
-    /* The first look may come before the first frame, the next one is two seconds later. */
-    const double GB = number_heard("disk_free_GB");
-    assert_true(GB > 0.0);
-    while (isnan(number_heard("disk_left_h")))
-        hear(client, "\"frames_dropped\"");
-    assert_close_relative(number_heard("disk_left_h") * 3600.0 * 1e-2, number_heard("disk_free_GB"),
-                          1e-9);
-    close(client);
+    struct wb_live_history history = {.has_frame = true};
+    wb_virtual_time_begin(WB_VIRTUAL_TIME_HOST_DATE);
+    wb_live_history_look_at_disk(&history, plan.recording);
+    assert_true(number_of(&history, "disk_free_GB") > 0.0);
+    assert_true(isnan(number_of(&history, "disk_left_h"))); /* before the first frame */
+    history.frame.elapsed = 100.0;
+    history.frame.bytes = 1000000000;
+    wb_time_sleep(WB_VIRTUAL_TIME_START_NS + 2 * WB_NS_PER_S - 1);
+    wb_live_history_look_at_disk(&history, plan.recording);
+    assert_true(isnan(number_of(&history, "disk_left_h"))); /* a look every two seconds */
+    wb_time_sleep(WB_VIRTUAL_TIME_START_NS + 2 * WB_NS_PER_S);
+    wb_live_history_look_at_disk(&history, plan.recording);
+    assert_close_relative(number_of(&history, "disk_left_h") * 3600.0 * 1e-2,
+                          number_of(&history, "disk_free_GB"), 1e-9);
+    wb_virtual_time_end();
 }
 
 static void a_disk_that_cannot_be_asked_has_unknown_room(void **state)
@@ -270,7 +273,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         ON_A_PAGE(the_page_is_whole_and_fetches_nothing_from_elsewhere),
         ON_A_PAGE(events_bring_the_plan_the_curve_and_the_state),
-        ON_A_PAGE(the_room_on_the_disk_is_told_in_bytes_and_in_time),
+        cmocka_unit_test(the_room_on_the_disk_is_told_in_bytes_and_in_time),
         cmocka_unit_test(a_disk_that_cannot_be_asked_has_unknown_room),
         ON_A_PAGE(a_client_that_comes_later_has_all_of_the_curve),
         ON_A_PAGE(a_client_that_never_reads_holds_up_nobody),

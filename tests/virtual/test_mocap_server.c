@@ -2,6 +2,7 @@
 #include "fixtures/virtual/mocap_server_private.h"
 
 #include <arpa/inet.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -375,10 +376,13 @@ static void frames_come_through_a_multicast_group(void **state)
     }
     frame.mocap.frame_number = 77; /* nobody has connected */
     wb_mocap_server_send(server, &frame, 0);
-    for (int i = 0; i < 1000 && n == 0; i++) {
-        usleep(1000);
-        assert_int_equal(wb_stream_read(stream, bytes, sizeof bytes, &n), WB_OK);
-    }
+    struct pollfd polled[2];
+    int descriptors[2];
+    const int n_descriptors = wb_stream_descriptors(stream, descriptors);
+    for (int i = 0; i < n_descriptors; i++)
+        polled[i] = (struct pollfd){.fd = descriptors[i], .events = POLLIN};
+    assert_int_equal(poll(polled, (nfds_t)n_descriptors, 60000), 1);
+    assert_int_equal(wb_stream_read(stream, bytes, sizeof bytes, &n), WB_OK);
     assert_int_equal(wb_natnet_decode_packet(bytes, n, &packet, &fault), WB_OK);
     assert_int_equal(wb_natnet_decode_frame(&packet, settings.version, &heard, &fault), WB_OK);
     assert_int_equal(heard.mocap.frame_number, 77);

@@ -2,6 +2,7 @@
 #include "fixtures/virtual/pty_port.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include "daq/stream/stream.h"
@@ -16,16 +17,36 @@ static struct wb_stream *open_stream(const struct wb_pty_port *port)
     return stream;
 }
 
-/* What the stream has to read; the kernel passes bytes on by a worker, so wait a little. */
-static size_t read_all(struct wb_stream *stream, char *text, size_t size)
+#define DEADLINE_MS 60000
+
+/* The kernel passes bytes on by a worker: waits until there are some. */
+static void wait_for_bytes(int descriptor)
 {
-    size_t n = 0, got;
-    for (int i = 0; i < 20; i++) {
+    struct pollfd polled = {.fd = descriptor, .events = POLLIN};
+    assert_int_equal(poll(&polled, 1, DEADLINE_MS), 1);
+}
+
+/* Reads so many bytes, and finds no more behind them. */
+static void read_exactly(struct wb_stream *stream, char *text, size_t size)
+{
+    int descriptors[2];
+    char more;
+    size_t got;
+    assert_int_equal(wb_stream_descriptors(stream, descriptors), 1);
+    for (size_t n = 0; n < size; n += got) {
+        wait_for_bytes(descriptors[0]);
         assert_int_equal(wb_stream_read(stream, text + n, size - n, &got), WB_OK);
-        n += got;
-        usleep(1000);
     }
-    return n;
+    assert_int_equal(wb_stream_read(stream, &more, 1, &got), WB_OK);
+    assert_int_equal(got, 0);
+}
+
+/* Reads `expected`, which was written last: nothing came before it. */
+static void assert_reads(struct wb_stream *stream, const char *expected)
+{
+    char text[16];
+    read_exactly(stream, text, strlen(expected));
+    assert_memory_equal(text, expected, strlen(expected));
 }
 
 static void opening_and_closing_is_seen(void **state)
@@ -52,22 +73,25 @@ static void bytes_go_both_ways_unchanged(void **state)
     (void)state;
     struct wb_pty_port port;
     unsigned char all[256], back[256];
-    char text[600];
+    char text[256];
     for (int i = 0; i < 256; i++)
         all[i] = (unsigned char)i;
     assert_int_equal(wb_pty_port_open(&port), WB_OK);
     struct wb_stream *const stream = open_stream(&port);
     wb_pty_port_update(&port);
     wb_pty_port_write(&port, all, sizeof all);
-    assert_int_equal(read_all(stream, text, sizeof text), sizeof all);
+    read_exactly(stream, text, sizeof all);
     assert_memory_equal(text, all, sizeof all);
     assert_int_equal(wb_stream_write(stream, all, sizeof all), WB_OK);
-    usleep(5000);
-    assert_int_equal(wb_pty_port_read(&port, back, sizeof back), sizeof all);
+    for (size_t n = 0; n < sizeof all;) {
+        wait_for_bytes(port.descriptor);
+        n += wb_pty_port_read(&port, back + n, sizeof back - n);
+    }
     assert_memory_equal(back, all, sizeof all);
     assert_int_equal(wb_pty_port_read(&port, back, sizeof back), 0);
-    /* Nothing is echoed. */
-    assert_int_equal(read_all(stream, text, sizeof text), 0);
+    /* Nothing is echoed: an echo would stand before this. */
+    wb_pty_port_write(&port, "end", 3);
+    assert_reads(stream, "end");
     wb_stream_close(stream);
     wb_pty_port_close(&port);
 }
@@ -83,7 +107,7 @@ static void the_line_is_raw_from_the_start(void **state)
     assert_true(slave >= 0);
     wb_pty_port_update(&port);
     wb_pty_port_write(&port, "a\rb", 3);
-    usleep(5000);
+    wait_for_bytes(slave);
     assert_int_equal(read(slave, text, sizeof text), 3);
     assert_memory_equal(text, "a\rb", 3);
     assert_int_equal(wb_pty_port_read(&port, text, sizeof text), 0);
@@ -95,28 +119,29 @@ static void bytes_for_a_closed_port_are_lost(void **state)
 {
     (void)state;
     struct wb_pty_port port;
-    char text[100];
     assert_int_equal(wb_pty_port_open(&port), WB_OK);
     wb_pty_port_update(&port);
     wb_pty_port_write(&port, "early", 5);
     struct wb_stream *stream = open_stream(&port);
     wb_pty_port_update(&port);
-    assert_int_equal(read_all(stream, text, sizeof text), 0);
+    wb_pty_port_write(&port, "late", 4);
+    assert_reads(stream, "late");
     /* What one program left unread, the next does not find. */
     wb_pty_port_write(&port, "unread", 6);
-    usleep(5000);
+    int descriptors[2];
+    assert_int_equal(wb_stream_descriptors(stream, descriptors), 1);
+    wait_for_bytes(descriptors[0]);
     wb_stream_close(stream);
     wb_pty_port_update(&port);
     stream = open_stream(&port);
     wb_pty_port_update(&port);
     wb_pty_port_write(&port, "fresh", 5);
-    assert_int_equal(read_all(stream, text, sizeof text), 5);
-    assert_memory_equal(text, "fresh", 5);
+    assert_reads(stream, "fresh");
     wb_stream_close(stream);
     wb_pty_port_close(&port);
 }
 
-static void a_reader_that_sleeps_does_not_block(void **state)
+static void slow_reader_does_not_block(void **state)
 {
     (void)state;
     struct wb_pty_port port;
@@ -167,7 +192,7 @@ int main(void)
         cmocka_unit_test(bytes_go_both_ways_unchanged),
         cmocka_unit_test(the_line_is_raw_from_the_start),
         cmocka_unit_test(bytes_for_a_closed_port_are_lost),
-        cmocka_unit_test(a_reader_that_sleeps_does_not_block),
+        cmocka_unit_test(slow_reader_does_not_block),
         cmocka_unit_test(a_port_that_is_pulled_out_is_gone_for_its_reader),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
