@@ -198,7 +198,9 @@ static void unplugged_port_is_gone_until_its_cable_is_back(void **state)
     assert_false(wb_stream_reopen(stream));
     wb_time_sleep(START + 25 * MS);
     wb_sim_port_replug(ticker->port);
+    ticker->line[0] = '\0';
     assert_true(wb_stream_reopen(stream));
+    assert_string_equal(ticker->line, "9600,8n1");
     assert_int_equal(wait_for(stream, START + WB_NS_PER_S), 1);
     assert_reads(stream, "c");
     release_messages();
