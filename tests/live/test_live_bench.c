@@ -15,7 +15,7 @@
 #include "cli/virtual_test.h"
 #include "daq/recording/recording.h"
 #include "fe/model/wire.h"
-#include "fixtures/virtual/virtual_time.h"
+#include "fixtures/virtual/virtual_time_private.h"
 #include "live/live_events.h"
 #include "live/live_feed.h"
 #include "live/live_history.h"

@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "daq/doctor/doctor.h"
 #include "daq/stream/stream.h"
-#include "fixtures/virtual/bench.h"
+#include "fixtures/virtual/bench_private.h"
 #include "fixtures/virtual/virtual_time.h"
 #include "tests/folder.h"
 #include "tests/messages.h"
