@@ -25,7 +25,9 @@ mkdir -p build
 
 # As step, but a step that passed before is not repeated.
 wanted=("$@")
+known=()
 nightly() { # NAME COMMAND...
+    known+=("$1")
     [ ${#wanted[@]} -eq 0 ] || printf '%s\n' "${wanted[@]}" | grep -qxF "$1" || return 0
     ! grep -q "^$1|ok|" $state || return 0
     step "$@"
@@ -59,6 +61,13 @@ nightly 'Slurm' test_slurm
 nightly 'packages' tests/packages.sh "$folder/packages"
 nightly 'bare Debian 12' tests/bare-debian.sh "$folder/bare" bookworm
 nightly 'bare Debian 13' tests/bare-debian.sh "$folder/bare" trixie
+
+for name in "${wanted[@]+"${wanted[@]}"}"; do
+    printf '%s\n' "${known[@]}" | grep -qxF "$name" || failed+=("$name")
+done
+for name in "${failed[@]+"${failed[@]}"}"; do
+    echo "FAILED: $name"
+done
 
 echo
 echo "Revision $revision, $(date +%F), $(nproc) cores:"
