@@ -43,7 +43,7 @@ start() { # NAME OPTIONS...: a rig in $folder/NAME, its process in $process
 refused() { # CODE WORDS OPTIONS...: one message with these words, this exit code, no rig file
     local code=$1 words=$2
     shift 2
-    timeout 10 "$wirebench" rig "$@" >"$folder/out" 2>"$folder/err"
+    timeout 120 "$wirebench" rig "$@" >"$folder/out" 2>"$folder/err"
     local got=$?
     [ $got = "$code" ] || fail "rig $*: exit code $got, expected $code"
     grep -q -- "$words" "$folder/err" || fail "rig $*: '$words' not said: $(cat "$folder/err")"
@@ -80,7 +80,7 @@ refused 1 "UDP port $taken of 127.0.0.1 cannot be used.*--natnet-port" "$rig" \
     --specimen "$specimen" --run "$folder/refused" --natnet-port "$taken"
 
 # A second one in the same folder is refused with the first one's number, and takes nothing away.
-timeout 10 "$wirebench" rig "$rig" --specimen "$specimen" --run "$folder/one/deep" 2>"$folder/err"
+timeout 120 "$wirebench" rig "$rig" --specimen "$specimen" --run "$folder/one/deep" 2>"$folder/err"
 [ $? = 1 ] || fail "a second rig in one folder was not refused"
 grep -q "process $one)" "$folder/err" || fail "second rig: $(cat "$folder/err")"
 [ -e "$folder/one/deep/rig.yaml" ] || fail "the second rig took the first one's file away"
