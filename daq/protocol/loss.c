@@ -157,6 +157,17 @@ static void settle(struct wb_loss_counts *counts, double debt, double widest)
     counts->longest_gap = fmax(counts->longest_gap, widest - counts->period);
 }
 
+/* The period that was learnt on a busy computer is too short: of a late sample and the next one,
+ * which makes up for it, only the short interval looks regular. Their mean is the period. */
+static void refine_period(struct wb_loss *loss, double interval)
+{
+    if (interval < 0.0)
+        return;
+    loss->on_time += interval;
+    if (++loss->n_on_time >= WB_LOSS_LEARNT)
+        loss->counts.period = loss->on_time / loss->n_on_time;
+}
+
 static void take_arrival(struct wb_loss *loss, double t)
 {
     const double period = loss->counts.period;
@@ -169,8 +180,10 @@ static void take_arrival(struct wb_loss *loss, double t)
         return;
     }
     const bool is_long = off >= (LONG - 1.0) * period;
-    if (!is_long && !(loss->debt > 0.0))
+    if (!is_long && !(loss->debt > 0.0)) {
+        refine_period(loss, off + period);
         return;
+    }
     loss->debt = fmax(loss->debt + off, 0.0);
     if (is_long)
         loss->widest = fmax(loss->widest, off + period);

@@ -43,10 +43,12 @@ struct wb_loss {
     bool stamped;                     /* times are the device's stamps, not arrivals */
     double times[WB_LOSS_LEARNT + 1]; /* s, until the period is known; then the recent stamps */
     int n_times, next;
-    double last;   /* s, the latest */
-    double debt;   /* s that arrivals are behind; what they do not make up for is missing */
-    double widest; /* s, longest interval of the debt */
-    int n_regular; /* intervals in rhythm since the debt was made or paid */
+    double last;      /* s, the latest */
+    double debt;      /* s that arrivals are behind; what they do not make up for is missing */
+    double widest;    /* s, longest interval of the debt */
+    double on_time;   /* s, sum of the intervals without debt, */
+    double n_on_time; /* and how many */
+    int n_regular;    /* intervals in rhythm since the debt was made or paid */
     bool has_last, has_begun; /* begun: gaps between stamps count */
 };
 

@@ -235,6 +235,32 @@ static void no_times_do_harm(void **state)
     }
 }
 
+/* A computer that is busy while the rhythm is learnt: most lines are late, by more than the others
+ * are early, and now and then all of it stands still. */
+static void rhythm_learnt_on_a_busy_computer_misses_nothing(void **state)
+{
+    (void)state;
+    const double period = 0.0125;
+    struct wb_loss loss;
+    double last = 0.0;
+    seed();
+    wb_loss_init(&loss, false, 0.0);
+    for (int i = 0; i < N; i++) {
+        const double busy = i < 200 ? 0.004 : 0.001, stall = i % 500 < 300 ? 0.0 : 0.4;
+        const double late = -busy * log(1.0 - uniform());
+        const double awake = (i - i % 500 + 300) * period + stall;
+        last = fmax(last, i * period + late);
+        if (stall > 0.0)
+            last = fmax(last, awake);
+        wb_loss_add(&loss, last);
+    }
+    const struct wb_loss_counts counts = wb_loss_counts(&loss);
+    assert_int_equal(counts.received, N);
+    assert_close_relative(counts.period, period, 0.002);
+    assert_true(wb_loss_share(&counts) < 0.001); /* before the period is known well */
+    assert_false(wb_loss_is_told(&loss));
+}
+
 /* A computer that is late by 10 ms when the rhythm has just been learnt: eight lines come together.
  */
 static void a_stall_that_is_made_up_for_is_never_told(void **state)
@@ -284,6 +310,7 @@ int main(void)
         cmocka_unit_test(lost_lines_are_counted),
         cmocka_unit_test(bundled_lines_have_no_rhythm_to_miss),
         cmocka_unit_test(no_times_do_harm),
+        cmocka_unit_test(rhythm_learnt_on_a_busy_computer_misses_nothing),
         cmocka_unit_test(a_stall_that_is_made_up_for_is_never_told),
         cmocka_unit_test(bundles_of_a_busy_computer_are_no_rhythm),
     };
