@@ -103,9 +103,13 @@ said_at_the_end() {
     grep -qaF -- "$2" "$folder/$1.end" || fail "$1: '$2' not at the end: $(tail -c 600 "$folder/$1.screen")"
 }
 
-whole() { # NAME: every byte is there, and the test is complete
+intact() { # NAME: every byte is there
     "$wirebench" verify "$folder/$1.wbr" >"$folder/$1.verify" 2>&1 ||
         fail "$1: $(cat "$folder/$1.verify")"
+}
+
+whole() { # NAME: and the test is complete
+    intact "$1"
     "$wirebench" align "$folder/$1.wbr" -o "$folder/$1.data" >"$folder/$1.align" 2>&1 ||
         fail "$1: $(cat "$folder/$1.align")"
     "$wirebench" quicklook --json "$folder/$1.wbr" -o "$folder/$1.look" >"$folder/$1.json" 2>&1
@@ -179,8 +183,7 @@ held_view_hangs() {
     finish held_view_hangs 3
     said held_view_hangs '--hold-most-s'
     has_hold held_view_hangs stopped
-    "$wirebench" verify "$folder/held_view_hangs.wbr" >/dev/null 2>&1 ||
-        fail 'held_view_hangs: the recording is not whole'
+    intact held_view_hangs
     ! kill -0 "$view" 2>/dev/null || fail 'held_view_hangs: the view is still there'
 }
 
@@ -192,7 +195,7 @@ lost() {
     kill -s HUP "$recorder"
     wait "$script"
     [ "$(cat "$folder/lost.code")" = 3 ] || fail "lost: exit code $(cat "$folder/lost.code")"
-    "$wirebench" verify "$folder/lost.wbr" >/dev/null 2>&1 || fail 'lost: the recording is not whole'
+    intact lost
 }
 
 lost_with_nohup() {
@@ -243,7 +246,7 @@ hung() {
     finish hung 3
     said_at_the_end hung 'wirebench: marked'
     said_at_the_end hung 'stopped by the operator'
-    "$wirebench" verify "$folder/hung.wbr" >/dev/null 2>&1 || fail 'hung: the recording is not whole'
+    intact hung
 }
 
 # A page that is watched, by somebody who never reads, and killed.
