@@ -173,10 +173,12 @@ static void take_arrival(struct wb_loss *loss, double t)
     const double period = loss->counts.period;
     const double off = loss->has_last ? t - loss->last - period : 0.0;
     loss->counts.received++;
+    loss->elapsed += loss->has_last ? off + period : period;
     loss->last = t;
     loss->has_last = true;
     if (off > LONGEST) {
         loss->debt = 0.0;
+        loss->elapsed -= off;
         return;
     }
     const bool is_long = off >= (LONG - 1.0) * period;
@@ -238,6 +240,20 @@ void wb_loss_add(struct wb_loss *loss, double t)
     }
 }
 
+/* No more can be missing than would have filled the time: while the period was not known well,
+ * more were counted. */
+static void cap(const struct wb_loss *loss, struct wb_loss_counts *counts)
+{
+    const double room = round(loss->elapsed / counts->period) - (double)counts->received;
+    if (loss->stamped || !(counts->period > 0.0) || (double)counts->missing <= room)
+        return;
+    counts->missing = room >= 1.0 ? (uint64_t)room : 0;
+    if (counts->missing == 0) {
+        counts->gaps = 0;
+        counts->longest_gap = 0.0;
+    }
+}
+
 struct wb_loss_counts wb_loss_counts(const struct wb_loss *loss)
 {
     struct wb_loss_counts counts = loss->counts;
@@ -245,6 +261,7 @@ struct wb_loss_counts wb_loss_counts(const struct wb_loss *loss)
         counts.received += (uint64_t)loss->n_times;
     else if (!loss->stamped)
         settle(&counts, loss->debt, loss->widest);
+    cap(loss, &counts);
     return counts;
 }
 
@@ -258,6 +275,7 @@ bool wb_loss_is_told(const struct wb_loss *loss)
 {
     /* Not what late arrivals may still make up for: asked while the stream goes on, that told of
      * losses which were none a moment later. */
-    const struct wb_loss_counts *const counts = &loss->counts;
-    return counts->missing > 0 && (loss->stamped || wb_loss_share(counts) > CHANCE);
+    struct wb_loss_counts counts = loss->counts;
+    cap(loss, &counts);
+    return counts.missing > 0 && (loss->stamped || wb_loss_share(&counts) > CHANCE);
 }

@@ -46,6 +46,7 @@ struct wb_loss {
     double last;      /* s, the latest */
     double debt;      /* s that arrivals are behind; what they do not make up for is missing */
     double widest;    /* s, longest interval of the debt */
+    double elapsed;   /* s, of all arrivals, without stops of the stream */
     double on_time;   /* s, sum of the intervals without debt, */
     double n_on_time; /* and how many */
     int n_regular;    /* intervals in rhythm since the debt was made or paid */
