@@ -164,7 +164,7 @@ static void refine_period(struct wb_loss *loss, double interval)
     if (interval < 0.0)
         return;
     loss->on_time += interval;
-    if (++loss->n_on_time >= WB_LOSS_LEARNT)
+    if (++loss->n_on_time >= WB_LOSS_LEARNT / 2.0)
         loss->counts.period = loss->on_time / loss->n_on_time;
 }
 
