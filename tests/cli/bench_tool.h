@@ -152,6 +152,14 @@ static inline void run(const char *arguments)
             fail_msg("'%s' was said: %s%s", (part), o.out, o.err);                                 \
     } while (0)
 
+/* The command that a message advises, with `wirebench` left out. */
+static inline void advised(char command[256])
+{
+    const char *const at = strstr(o.err, "'wirebench ");
+    assert_non_null(at);
+    snprintf(command, 256, "%.*s", (int)strcspn(at + 11, "'"), at + 11);
+}
+
 /* --- the bench --- */
 
 static struct wb_bench *bench;

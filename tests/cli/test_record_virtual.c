@@ -40,14 +40,6 @@ static void whole_test_is_recorded(void **state)
     assert_said("never overwritten");
 }
 
-/* The command that a message advises, with `wirebench` left out. */
-static void advised(char command[256])
-{
-    const char *const at = strstr(o.err, "'wirebench ");
-    assert_non_null(at);
-    snprintf(command, 256, "%.*s", (int)strcspn(at + 11, "'"), at + 11);
-}
-
 static void ctrl_c_stops_the_stage_and_a_release_frees_the_specimen(void **state)
 {
     char release[256];
