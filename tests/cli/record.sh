@@ -188,7 +188,6 @@ hung_reader() {
     wait $recorder
     code=$?
     [ $code = 3 ] || fail "hung: exit code $code: $(tr -d '\0' <"$folder/hung.err")"
-    grep -qa 'has sent no valid sample for' "$folder/hung.err" || fail 'hung: the reason was not said'
     end_rig "$rig"
 }
 

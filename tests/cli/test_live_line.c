@@ -1,5 +1,6 @@
 /* The live line never waits for its terminal, and leaves it to others where it should. */
 #include <fcntl.h>
+#include <poll.h>
 #include <pty.h>
 #include <signal.h>
 #include <stdio.h>
@@ -10,42 +11,43 @@
 
 #include "base/log.h"
 #include "base/timing.h"
-#include "base/units.h"
 #include "cli/live_line.h"
 #include "cli/talk_private.h"
+#include "fixtures/virtual/virtual_time.h"
 #include "tests/check.h"
 
 #define WB_LOG_DOMAIN "test"
 
 static char heard[1 << 20];
 
-/* What has come out of a descriptor so far, without waiting for more than 50 ms. */
-static void listen_to(int descriptor)
+/* Reads what comes out of a descriptor until these words have come; NULL: until nothing waits. */
+static void listen_until(int descriptor, const char *words)
 {
     size_t n = strlen(heard);
-    for (int i = 0; i < 50; i++) {
-        const ssize_t got = read(descriptor, heard + n, sizeof heard - 1 - n);
-        if (got > 0)
-            n += (size_t)got;
+    while (!wb_talk_flush() || (words && !strstr(heard, words))) {
+        struct pollfd polled = {.fd = descriptor, .events = POLLIN};
+        const ssize_t got =
+            poll(&polled, 1, 10) > 0 ? read(descriptor, heard + n, sizeof heard - 1 - n) : 0;
+        n += got > 0 ? (size_t)got : 0;
         heard[n] = '\0';
-        (void)wb_talk_flush();
-        usleep(1000);
     }
 }
 
-/* Messages and lines far beyond what `ours` takes, which nobody reads; true when all of it took no
- * time. */
+/* Messages and lines far beyond what `ours` takes, which nobody reads; true when nothing waited: in
+ * virtual time only waits take time, and what would block is ended by alarm(). */
 static bool talks_without_waiting(void)
 {
     char message[512];
     memset(message, 'x', sizeof message - 1);
     message[sizeof message - 1] = '\0';
-    const int64_t before_ns = wb_time_now_ns();
+    wb_virtual_time_begin(WB_VIRTUAL_TIME_HOST_DATE);
     for (int i = 0; i < 400; i++) {
         wb_warn("%d %s", i, message);
         wb_live_line_show("line %d", i);
     }
-    return wb_time_now_ns() - before_ns < WB_NS_PER_S;
+    const bool waited = wb_time_now_ns() != WB_VIRTUAL_TIME_START_NS;
+    wb_virtual_time_end();
+    return !waited;
 }
 
 /* Perhaps in parts: the kernel's own buffers may make room in between. */
@@ -71,9 +73,9 @@ static void assert_never_waits(int theirs, int ours)
     wb_live_line_open();
     const bool free = talks_without_waiting();
     const uint64_t lost = wb_talk_lost();
-    listen_to(theirs);
+    listen_until(theirs, NULL);
     wb_warn("at last");
-    listen_to(theirs);
+    listen_until(theirs, "warning: at last");
     wb_live_line_close();
     dup2(kept, STDERR_FILENO);
     close(kept);
@@ -133,7 +135,9 @@ static void the_result_reaches_who_reads(void **state)
     wb_live_line_print("the result\n");
     dup2(kept, STDOUT_FILENO);
     heard[0] = '\0';
-    listen_to(theirs);
+    alarm(20);
+    listen_until(theirs, "result\r\n");
+    alarm(0);
     close(kept);
     close(theirs);
     close(ours);
