@@ -12,12 +12,6 @@ wait_until() { # PROCESS COMMAND...: true once the command succeeds
     done
 }
 
-# lost_samples FILE...: one of them says that samples never came. A rig at many times its speed loses
-# some by itself where the machine is busy, and the recorder's exit code is 3 then.
-lost_samples() {
-    grep -qsa 'of what the .* sent never came' "$@"
-}
-
 # run_in_lanes LANES CASE...: the cases side by side in so many lanes, each lane one after the other;
 # more virtual rigs at many times their speed would starve each other. A case is a function with its
 # arguments, and failed where it counted up `failures`. A case ends with leave_case and a lane with
