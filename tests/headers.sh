@@ -6,22 +6,42 @@ set -eu
 cd "$1"
 shift
 flags=$(pkg-config --cflags cairo pangocairo gsl)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
 bad=0
-for header in $(find base daq fe fixtures analysis live library include cli tests -name '*.h' | LC_ALL=C sort); do
-    # shellcheck disable=SC2086 # the flags are words
-    printf '#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' "$header" "$header" |
-        "$@" -x c -std=c11 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Werror -I. $flags \
-            -fsyntax-only - || {
-        echo "$header does not compile alone"
-        bad=1
+find base daq fe fixtures analysis live library include cli tests -name '*.h' >"$folder/headers"
+# A source file for each, named after the header.
+awk -v folder="$folder" '{
+    name = $0
+    gsub("/", "-", name)
+    source = folder "/" name ".c"
+    printf "#include \"%s\"\n#include \"%s\"\n", $0, $0 >source
+    print "int main(void) { return 0; }" >source
+    close(source)
+}' "$folder/headers"
+# shellcheck disable=SC2086 # the flags are words
+find "$folder" -name '*.c' | xargs -n 50 "$@" -std=c11 -D_GNU_SOURCE -Wall -Wextra -Wpedantic \
+    -Werror -I. $flags -fsyntax-only || {
+    echo 'a header does not compile alone: its file above is named after it'
+    bad=1
+}
+# shellcheck disable=SC2046 # the headers are words
+awk '
+    FNR == 1 {
+        if (guard != "")
+            missing()
+        guard = FILENAME ~ /^include\// ? "" : "WB_" toupper(FILENAME)
+        gsub("[^A-Z0-9]", "_", guard)
+        path = FILENAME
     }
-    case $header in
-    include/*) continue ;;
-    esac
-    guard=WB_$(echo "$header" | tr 'a-z/.' 'A-Z__')
-    grep -q "^#define $guard\$" "$header" || {
-        echo "$header: expected the guard $guard"
-        bad=1
+    $1 == "#define" && $2 == guard { guard = "" }
+    function missing() {
+        print path ": expected the guard " guard
+        bad = 1
     }
-done
+    END {
+        if (guard != "")
+            missing()
+        exit bad
+    }' $(cat "$folder/headers") || bad=1
 exit $bad
