@@ -21,8 +21,20 @@
  * many at the beginning of a stream tell of none, because the first one may have been overtaken by
  * what was sent before this end listened. */
 #define TURNED_ROUND 8
-/* Regular intervals after which a late sample has nothing more to make up for. */
-#define SETTLED 8
+/* A window of arrivals has so many, and lasts so long (s): longer than a computer is busy with
+ * something else for a moment. */
+#define WINDOW 16
+#define WINDOW_TIME 0.1
+/* Windows without which a period cannot be told from one that differs by a line in a window. */
+#define LEAST_WINDOWS 8
+/* Mean square of what is left of whole periods, in periods: above it there is no rhythm. */
+#define MOST_MISFIT 0.05
+/* How far the period from intervals may be off: at least, and times the square of the relative
+ * scatter of the intervals. Of 2000 simulated streams of each kind none was off by more. */
+#define LEAST_DOUBT 0.005
+#define DOUBT 3.5
+/* Missing between two windows at most: stamps of a damaged recording may be anything. */
+#define MOST_MISSING 1e9
 /* Share of arrivals that may seem to be missing on a busy computer. */
 #define CHANCE 0.02
 
@@ -44,7 +56,7 @@ static int ascending(const void *a, const void *b)
 /* The period of these times; 0 without one. A lost sample makes an interval longer, never shorter:
  * of stamps the lower quartile is the period while three quarters may be lost. Arrivals scatter,
  * and the median is taken. */
-static double find_period(const struct wb_loss *loss)
+static double find_period(const struct wb_loss *loss, double *doubt)
 {
     double intervals[WB_LOSS_LEARNT];
     int n = 0;
@@ -57,19 +69,25 @@ static double find_period(const struct wb_loss *loss)
         return 0.0;
     qsort(intervals, (size_t)n, sizeof *intervals, ascending);
     const double typical = intervals[loss->stamped ? n / 4 : n / 2];
-    double sum = 0.0;
+    double sum = 0.0, squares = 0.0;
     int used = 0;
     for (int i = 0; i < n; i++) {
-        if (fabs(intervals[i] - typical) > IN_RHYTHM * typical)
+        const double off = intervals[i] - typical;
+        if (fabs(off) > IN_RHYTHM * typical)
             continue;
-        sum += intervals[i];
+        sum += off;
+        squares += off * off;
         used++;
     }
     const double least = loss->stamped ? 0.1 : LEAST_RHYTHM;
     const double mean = (loss->times[loss->n_times - 1] - loss->times[0]) / (loss->n_times - 1);
     if (!loss->stamped && mean > MOST_OFTEN * typical)
         return 0.0;
-    return typical > 0.0 && used >= least * n ? sum / used : 0.0;
+    if (!(typical > 0.0) || used < least * n)
+        return 0.0;
+    const double off = sum / used;
+    *doubt = fmax(DOUBT * (squares / used - off * off) / (typical * typical), LEAST_DOUBT);
+    return typical + off;
 }
 
 /* --- stamped --- */
@@ -146,55 +164,139 @@ static void take_stamp(struct wb_loss *loss, double t)
 
 /* --- arrivals --- */
 
-/* What the debt leaves missing. */
-static void settle(struct wb_loss_counts *counts, double debt, double widest)
+/* Periods between two arrivals beyond those of the lines received: nearly a whole number. */
+static double periods_more(const struct wb_loss_arrival *from, const struct wb_loss_arrival *to,
+                           double period)
 {
-    const double missing = round(debt / counts->period);
-    if (!(missing >= 1.0))
-        return;
-    counts->missing += (uint64_t)missing;
-    counts->gaps++;
-    counts->longest_gap = fmax(counts->longest_gap, widest - counts->period);
+    return (to->t - from->t) / period - (to->number - from->number);
 }
 
-/* The period that was learnt on a busy computer is too short: of a late sample and the next one,
- * which makes up for it, only the short interval looks regular. Their mean is the period. */
-static void refine_period(struct wb_loss *loss, double interval)
+/* Mean square of the windows' fractions of a period; of fewer periods than lines the largest. */
+static double misfit(const struct wb_loss *loss, double period)
 {
-    if (interval < 0.0)
+    double sum = 0.0;
+    for (int i = 1; i < loss->n_windows; i++) {
+        const double more =
+            periods_more(&loss->windows[i - 1].earliest, &loss->windows[i].earliest, period);
+        const double off = more > -0.5 ? more - round(more) : 0.5;
+        sum += off * off;
+    }
+    return sum / (loss->n_windows - 1);
+}
+
+/* The period, near the one learnt, whose misfit is the least; of equal ones the longest. */
+static void fit_period(struct wb_loss *loss)
+{
+    const struct wb_loss_arrival *const first = &loss->windows[0].earliest,
+                                        *const last = &loss->windows[loss->n_windows - 1].earliest;
+    const double step = 0.04 * (loss->n_windows - 1) / (last->number - first->number);
+    const bool is_clear = loss->doubt < 0.5 / WINDOW;
+    double best = INFINITY;
+    for (double off = loss->doubt; off > -loss->doubt; off -= step) {
+        const double period = loss->learnt * (1.0 + off), left = misfit(loss, period);
+        if (left < best) {
+            best = left;
+            loss->counts.period = period;
+        }
+    }
+    loss->is_fitted = best < MOST_MISFIT && (is_clear || loss->n_windows >= LEAST_WINDOWS);
+}
+
+/* Adds what is missing between window i and the one before. */
+static void add_missing(const struct wb_loss *loss, int i, struct wb_loss_open *sum)
+{
+    const struct wb_loss_window *const window = &loss->windows[i], *const before = window - 1;
+    const double more = periods_more(&before->earliest, &window->earliest, loss->counts.period);
+    const double missing = fmin(round(more), MOST_MISSING);
+    if (!(missing >= 1.0))
         return;
-    loss->on_time += interval;
-    if (++loss->n_on_time >= WB_LOSS_LEARNT / 2.0)
-        loss->counts.period = loss->on_time / loss->n_on_time;
+    const int n_long = before->n_long + window->n_long;
+    const double widest = fmax(before->widest, window->widest);
+    sum->missing += (uint64_t)missing;
+    sum->gaps += n_long < 1 ? 1 : n_long < missing ? (uint64_t)n_long : (uint64_t)missing;
+    sum->longest_gap = fmax(sum->longest_gap, widest - loss->counts.period);
+}
+
+static void add_open(struct wb_loss_counts *counts, const struct wb_loss_open *open)
+{
+    counts->missing += open->missing;
+    counts->gaps += open->gaps;
+    counts->longest_gap = fmax(counts->longest_gap, open->longest_gap);
+}
+
+/* The oldest window goes, and what is missing up to the next one is settled. */
+static void settle(struct wb_loss *loss)
+{
+    struct wb_loss_open open = {0};
+    if (loss->is_fitted)
+        add_missing(loss, 1, &open);
+    add_open(&loss->counts, &open);
+    loss->n_windows--;
+    memmove(loss->windows, loss->windows + 1, (size_t)loss->n_windows * sizeof *loss->windows);
+}
+
+/* Drops the windows whose earliest arrival was late, as a later window shows: the computer had not
+ * caught up. */
+static void drop_late(struct wb_loss *loss)
+{
+    int kept = loss->n_windows - 1; /* from here on */
+    for (int i = kept - 1; i >= 0; i--)
+        if (periods_more(&loss->windows[i].earliest, &loss->windows[kept].earliest,
+                         loss->counts.period) >= -0.5)
+            loss->windows[--kept] = loss->windows[i];
+    loss->n_windows -= kept;
+    memmove(loss->windows, loss->windows + kept, (size_t)loss->n_windows * sizeof *loss->windows);
+}
+
+static void close_window(struct wb_loss *loss)
+{
+    if (loss->n_windows == WB_LOSS_WINDOWS)
+        settle(loss);
+    loss->windows[loss->n_windows++] = loss->window;
+    loss->n_window = 0;
+    memset(&loss->recent, 0, sizeof loss->recent);
+    if (loss->n_windows < 2)
+        return;
+    const struct wb_loss_arrival *const from = &loss->windows[0].earliest,
+                                        *const to = &loss->windows[loss->n_windows - 1].earliest;
+    loss->slope = (to->t - from->t) / (to->number - from->number);
+    fit_period(loss);
+    if (!loss->is_fitted)
+        return;
+    drop_late(loss);
+    for (int i = 1; i < loss->n_windows - 1; i++)
+        add_missing(loss, i, &loss->recent);
+}
+
+/* The stream stood still, which is told elsewhere: what comes now is counted from here. */
+static void begin_again(struct wb_loss *loss)
+{
+    add_open(&loss->counts, &loss->recent);
+    memset(&loss->recent, 0, sizeof loss->recent);
+    loss->n_windows = loss->n_window = 0;
 }
 
 static void take_arrival(struct wb_loss *loss, double t)
 {
-    const double period = loss->counts.period;
-    const double off = loss->has_last ? t - loss->last - period : 0.0;
+    const double interval = loss->has_last ? t - loss->last : 0.0;
+    struct wb_loss_window *const window = &loss->window;
+    if (interval > LONGEST)
+        begin_again(loss);
     loss->counts.received++;
-    loss->elapsed += loss->has_last ? off + period : period;
+    const struct wb_loss_arrival arrival = {(double)loss->counts.received, t};
+    loss->tail[loss->counts.received % WB_LOSS_TAIL] = arrival;
+    if (loss->n_window++ == 0) {
+        *window = (struct wb_loss_window){.earliest = arrival};
+        loss->begun = t;
+    }
+    if (periods_more(&window->earliest, &arrival, loss->slope) < 0.0)
+        window->earliest = arrival;
+    window->n_long += interval >= LONG * loss->counts.period && interval <= LONGEST;
+    window->widest = fmax(window->widest, interval <= LONGEST ? interval : 0.0);
     loss->last = t;
     loss->has_last = true;
-    if (off > LONGEST) {
-        loss->debt = 0.0;
-        loss->elapsed -= off;
-        return;
-    }
-    const bool is_long = off >= (LONG - 1.0) * period;
-    if (!is_long && !(loss->debt > 0.0)) {
-        refine_period(loss, off + period);
-        return;
-    }
-    loss->debt = fmax(loss->debt + off, 0.0);
-    if (is_long)
-        loss->widest = fmax(loss->widest, off + period);
-    loss->n_regular = fabs(off) <= IN_RHYTHM * period ? loss->n_regular + 1 : 0;
-    if (loss->n_regular >= SETTLED) {
-        settle(&loss->counts, loss->debt, loss->widest);
-        loss->debt = loss->widest = 0.0;
-        loss->n_regular = 0;
-    }
+    if (loss->n_window >= WINDOW && t - loss->begun >= WINDOW_TIME)
+        close_window(loss);
 }
 
 /* --- both --- */
@@ -213,11 +315,12 @@ static void learn(struct wb_loss *loss)
 {
     double times[WB_LOSS_LEARNT + 1];
     const int n = loss->n_times;
-    const double period = find_period(loss);
+    const double period = find_period(loss, &loss->doubt);
     memcpy(times, loss->times, sizeof times);
     loss->n_times = loss->next = 0;
     if (period > 0.0) {
-        loss->counts.period = period;
+        loss->counts.period = loss->learnt = period;
+        loss->slope = (times[n - 1] - times[0]) / (n - 1);
         for (int i = 0; i < n; i++)
             take(loss, times[i]);
         return;
@@ -240,18 +343,24 @@ void wb_loss_add(struct wb_loss *loss, double t)
     }
 }
 
-/* No more can be missing than would have filled the time: while the period was not known well,
- * more were counted. */
-static void cap(const struct wb_loss *loss, struct wb_loss_counts *counts)
+/* Missing up to the last window and after it: late arrivals may still make up for that. */
+static void add_end(const struct wb_loss *loss, struct wb_loss_counts *counts)
 {
-    const double room = round(loss->elapsed / counts->period) - (double)counts->received;
-    if (loss->stamped || !(counts->period > 0.0) || (double)counts->missing <= room)
+    struct wb_loss_open open = {0};
+    double least = INFINITY;
+    if (!loss->is_fitted || loss->n_windows < 2)
         return;
-    counts->missing = room >= 1.0 ? (uint64_t)room : 0;
-    if (counts->missing == 0) {
-        counts->gaps = 0;
-        counts->longest_gap = 0.0;
+    const struct wb_loss_window *const last = &loss->windows[loss->n_windows - 1];
+    add_missing(loss, loss->n_windows - 1, &open);
+    for (int i = 0; i < WB_LOSS_TAIL && loss->n_window >= WB_LOSS_TAIL; i++)
+        least = fmin(least, periods_more(&last->earliest, &loss->tail[i], counts->period));
+    const double missing = isfinite(least) ? fmin(round(least), MOST_MISSING) : 0.0;
+    if (missing >= 1.0) {
+        open.missing += (uint64_t)missing;
+        open.gaps++;
+        open.longest_gap = fmax(open.longest_gap, loss->window.widest - counts->period);
     }
+    add_open(counts, &open);
 }
 
 struct wb_loss_counts wb_loss_counts(const struct wb_loss *loss)
@@ -259,9 +368,9 @@ struct wb_loss_counts wb_loss_counts(const struct wb_loss *loss)
     struct wb_loss_counts counts = loss->counts;
     if (!(counts.period > 0.0))
         counts.received += (uint64_t)loss->n_times;
-    else if (!loss->stamped)
-        settle(&counts, loss->debt, loss->widest);
-    cap(loss, &counts);
+    add_open(&counts, &loss->recent);
+    if (!loss->stamped)
+        add_end(loss, &counts);
     return counts;
 }
 
@@ -273,9 +382,7 @@ double wb_loss_share(const struct wb_loss_counts *counts)
 
 bool wb_loss_is_told(const struct wb_loss *loss)
 {
-    /* Not what late arrivals may still make up for: asked while the stream goes on, that told of
-     * losses which were none a moment later. */
     struct wb_loss_counts counts = loss->counts;
-    cap(loss, &counts);
+    add_open(&counts, &loss->recent);
     return counts.missing > 0 && (loss->stamped || wb_loss_share(&counts) > CHANCE);
 }

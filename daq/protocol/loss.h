@@ -2,10 +2,12 @@
  * ones.
  *
  * An instrument that streams keeps a rhythm. Cameras stamp their frames: a step of two periods is
- * one frame lost on the way, whoever lost it. A load cell stamps nothing; its lines arrive a little
- * late and then catch up, and a gap that nothing makes up for is a lost line. Where arrivals show
- * no rhythm (lines that come in bundles, an instrument that is asked now and then) nothing is said
- * of missing ones.
+ * one frame lost on the way, whoever lost it. A load cell stamps nothing, and its lines arrive
+ * late, by times that vary. The stream is therefore cut into windows. The earliest line of each,
+ * against the rhythm, is nearly prompt, and between two such lines whole periods pass: one for each
+ * line, received or lost. The period is the one that leaves the smallest fractions. Where arrivals
+ * show no rhythm (lines that come in bundles, an instrument that is asked now and then) none are
+ * counted as missing.
  *
  * Pure: samples in, counts out; no memory, no clock.
  */
@@ -17,8 +19,10 @@
 
 #include "daq/protocol/sample.h"
 
-#define WB_LOSS_LEARNT 64 /* intervals that the period is learnt from */
-#define WB_LOSS_RECENT 64 /* stamps that a repeated one is known by */
+#define WB_LOSS_LEARNT 64  /* intervals that the period is learnt from */
+#define WB_LOSS_RECENT 64  /* stamps that a repeated one is known by */
+#define WB_LOSS_WINDOWS 32 /* of arrivals; they are counted anew with every better period */
+#define WB_LOSS_TAIL 4     /* arrivals at the end that one is the earliest of */
 
 struct wb_loss_counts {
     uint64_t received;  /* repeated ones not among them */
@@ -36,6 +40,18 @@ struct wb_loss_open {
     double longest_gap; /* s */
 };
 
+/* An arrival: number in the stream, and s. */
+struct wb_loss_arrival {
+    double number, t;
+};
+
+/* The earliest arrival of a window, and intervals of the window that may hide lost ones. */
+struct wb_loss_window {
+    struct wb_loss_arrival earliest;
+    double widest; /* s */
+    int n_long;
+};
+
 struct wb_loss {
     struct wb_loss_counts counts;
     struct wb_loss_open young, old;   /* of stamps: gaps of the latest ones, and of those before */
@@ -43,14 +59,19 @@ struct wb_loss {
     bool stamped;                     /* times are the device's stamps, not arrivals */
     double times[WB_LOSS_LEARNT + 1]; /* s, until the period is known; then the recent stamps */
     int n_times, next;
-    double last;      /* s, the latest */
-    double debt;      /* s that arrivals are behind; what they do not make up for is missing */
-    double widest;    /* s, longest interval of the debt */
-    double elapsed;   /* s, of all arrivals, without stops of the stream */
-    double on_time;   /* s, sum of the intervals without debt, */
-    double n_on_time; /* and how many */
-    int n_regular;    /* intervals in rhythm since the debt was made or paid */
-    bool has_last, has_begun; /* begun: gaps between stamps count */
+    double last; /* s, the latest */
+    /* Of arrivals. Those of `counts` are settled: before the first of the windows kept. */
+    struct wb_loss_arrival tail[WB_LOSS_TAIL];
+    struct wb_loss_window window; /* being filled, */
+    int n_window;                 /* with so many, */
+    double begun;                 /* since then, s */
+    double slope;                 /* s per arrival on average, lost ones or not */
+    struct wb_loss_window windows[WB_LOSS_WINDOWS];
+    int n_windows;
+    struct wb_loss_open recent; /* missing in the windows kept */
+    double learnt, doubt;       /* s, the period from intervals; its relative uncertainty */
+    bool is_fitted;             /* the period fits the windows */
+    bool has_last, has_begun;   /* begun: gaps between stamps count */
 };
 
 /* Begins to count. `stamped`: times are stamps of the device's clock; else arrivals. `period` (s):

@@ -297,6 +297,109 @@ static void bundles_of_a_busy_computer_are_no_rhythm(void **state)
     assert_int_equal(counts.missing, 0);
 }
 
+/* 7 s of 80 lines a second, each late by an exponentially distributed time of this mean (s). In
+ * some streams the computer stands still now and then; of some this share is lost. */
+struct busy {
+    double mean;
+    bool has_stalls;
+    double share;
+};
+
+static void busy_stream(struct wb_loss *loss, const struct busy *busy, uint64_t *lost)
+{
+    const double period = 0.0125 * 1.0002;
+    double last = 0.0, awake = 0.0;
+    *lost = 0;
+    wb_loss_init(loss, false, 0.0);
+    for (int i = 0; i < 560; i++) {
+        if (uniform() < busy->share) {
+            ++*lost;
+            continue;
+        }
+        const double t = i * period - busy->mean * log(1.0 - uniform());
+        if (busy->has_stalls && uniform() < 0.5 * period)
+            awake = t + 0.4 * uniform();
+        last = fmax(fmax(last, awake), t);
+        wb_loss_add(loss, last);
+    }
+}
+
+static void late_lines_are_not_taken_for_lost_ones(void **state)
+{
+    (void)state;
+    static const double means[] = {0.0002, 0.001, 0.002, 0.003, 0.005, 0.01};
+    seed();
+    for (int stalls = 0; stalls < 2; stalls++) {
+        for (size_t i = 0; i < sizeof means / sizeof *means; i++) {
+            const struct busy busy = {means[i], stalls, 0.0};
+            uint64_t missing = 0;
+            for (int stream = 0; stream < 300; stream++) {
+                struct wb_loss loss;
+                uint64_t lost;
+                busy_stream(&loss, &busy, &lost);
+                if (wb_loss_is_told(&loss))
+                    fail_msg("late by %g s on average: stream %d is called lossy", means[i],
+                             stream);
+                missing += wb_loss_counts(&loss).missing;
+            }
+            /* The end of a stream that stood still is not yet made up for. */
+            assert_true(missing <= (stalls ? 300u : 0u));
+        }
+    }
+}
+
+static void lost_lines_are_counted_among_late_ones(void **state)
+{
+    (void)state;
+    static const double means[] = {0.0002, 0.001, 0.002}, shares[] = {0.05, 0.15};
+    seed();
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 2; k++) {
+            const struct busy busy = {means[i], false, shares[k]};
+            uint64_t all_lost = 0, missing = 0;
+            int told = 0;
+            for (int stream = 0; stream < 300; stream++) {
+                struct wb_loss loss;
+                uint64_t lost;
+                busy_stream(&loss, &busy, &lost);
+                told += wb_loss_is_told(&loss);
+                missing += wb_loss_counts(&loss).missing;
+                all_lost += lost;
+            }
+            assert_close_relative((double)missing, (double)all_lost, 0.05);
+            assert_true(told >= 295);
+        }
+    }
+}
+
+/* Never eight regular intervals in a row. */
+static void every_fourth_line_is_missed(void **state)
+{
+    (void)state;
+    struct wb_loss loss;
+    wb_loss_init(&loss, false, 0.0);
+    for (int i = 0; i < N; i++)
+        if (i % 4 != 3)
+            wb_loss_add(&loss, i * 0.0125);
+    const struct wb_loss_counts counts = wb_loss_counts(&loss);
+    assert_close((double)counts.missing, N / 4.0, 3.0);
+    assert_close((double)counts.gaps, N / 4.0, 10.0); /* those of the ends */
+    assert_close(counts.longest_gap, 0.0125, 1e-5);
+    assert_true(wb_loss_is_told(&loss));
+}
+
+/* Longer than what is counted: told elsewhere. */
+static void stream_that_stood_still_is_counted_on_from_there(void **state)
+{
+    (void)state;
+    struct wb_loss loss;
+    wb_loss_init(&loss, false, 0.0);
+    for (int i = 0; i < N; i++)
+        if (i % 10 != 9)
+            wb_loss_add(&loss, i * 0.0125 + (i < N / 2 ? 0.0 : 100.0));
+    assert_close((double)wb_loss_counts(&loss).missing, N / 10.0, 6.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -313,6 +416,10 @@ int main(void)
         cmocka_unit_test(rhythm_learnt_on_a_busy_computer_misses_nothing),
         cmocka_unit_test(a_stall_that_is_made_up_for_is_never_told),
         cmocka_unit_test(bundles_of_a_busy_computer_are_no_rhythm),
+        cmocka_unit_test(late_lines_are_not_taken_for_lost_ones),
+        cmocka_unit_test(lost_lines_are_counted_among_late_ones),
+        cmocka_unit_test(every_fourth_line_is_missed),
+        cmocka_unit_test(stream_that_stood_still_is_counted_on_from_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
