@@ -2,31 +2,101 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
+
+#define WB_LOG_DOMAIN "memory"
+
+static _Thread_local struct wb_memory_guard *innermost;
+
+void wb_memory_guard_begin(struct wb_memory_guard *guard)
+{
+    guard->outer = innermost;
+    guard->gravest = wb_log_set_gravest(WB_LOG_ERROR);
+    wb_log_set_gravest(guard->gravest);
+    innermost = guard;
+}
+
+void wb_memory_guard_end(void)
+{
+    innermost = innermost->outer;
+}
+
+bool wb_memory_is_guarded(void)
+{
+    return innermost;
+}
+
+static _Noreturn void end(size_t count, size_t size)
+{
+    struct wb_memory_guard *const guard = innermost;
+    wb_log_set_gravest(WB_LOG_ERROR);
+    if (size > 0)
+        wb_error("out of memory: no %zu x %zu bytes", count, size);
+    else
+        wb_error("out of memory");
+    if (!guard)
+        exit(EXIT_FAILURE);
+    wb_memory_guard_end();
+    wb_log_set_gravest(guard->gravest);
+    longjmp(guard->target, 1);
+}
+
+enum wb_status wb_memory_try(enum wb_status (*run)(void *context), void *context)
+{
+    struct wb_memory_guard guard;
+    wb_memory_guard_begin(&guard);
+    if (setjmp(guard.target) != 0)
+        return WB_ERR_MEMORY;
+    const enum wb_status status = run(context);
+    wb_memory_guard_end();
+    return status;
+}
+
+void *wb_memory_new(size_t count, size_t size)
+{
+    void *const block = calloc(count > 0 ? count : 1, size > 0 ? size : 1);
+    if (!block)
+        end(count, size);
+    return block;
+}
+
+void *wb_memory_resize(void *block, size_t count, size_t size)
+{
+    const bool fits = size == 0 || count <= SIZE_MAX / size;
+    const size_t n = count * size;
+    void *const larger = fits ? realloc(block, n > 0 ? n : 1) : NULL;
+    if (!larger)
+        end(count, size);
+    return larger;
+}
+
+void *wb_memory_need(void *block)
+{
+    if (!block)
+        end(0, 0);
+    return block;
+}
+
+char *wb_memory_text(const char *text)
+{
+    const size_t n = strlen(text) + 1;
+    return memcpy(wb_memory_new(n, 1), text, n);
+}
 
 void *wb_memory_keep(struct wb_memory *memory, void *block)
 {
-    if (block && memory->n == memory->room) {
-        const size_t room = 2 * memory->room + 8;
-        void **const blocks = realloc(memory->blocks, room * sizeof *blocks);
-        if (blocks) {
-            memory->blocks = blocks;
-            memory->room = room;
-        } else {
-            free(block);
-            block = NULL;
-        }
+    wb_memory_need(block);
+    if (memory->n == memory->room) {
+        memory->room = 2 * memory->room + 8;
+        memory->blocks = wb_memory_resize(memory->blocks, memory->room, sizeof *memory->blocks);
     }
-    if (block)
-        memory->blocks[memory->n++] = block;
-    else
-        memory->failed = true;
+    memory->blocks[memory->n++] = block;
     return block;
 }
 
 void *wb_memory_take(struct wb_memory *memory, size_t count, size_t size)
 {
-    const bool fits = size == 0 || count <= SIZE_MAX / size;
-    return wb_memory_keep(memory, fits ? calloc(count > 0 ? count : 1, size) : NULL);
+    return wb_memory_keep(memory, wb_memory_new(count, size));
 }
 
 void wb_memory_release(struct wb_memory *memory)

@@ -3,6 +3,8 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include "base/memory.h"
+
 enum {
     MOST_THREADS = 64
 };
@@ -12,7 +14,33 @@ struct queue {
     pthread_mutex_t lock;
     int next, done;
     bool stopped;
+    bool is_guarded;
 };
+
+struct step {
+    const struct wb_workers *workers;
+    int index;
+    enum wb_status status; /* of the job */
+};
+
+static enum wb_status do_job(void *context)
+{
+    const struct step *const step = context;
+    return step->workers->job(step->workers->context, step->index);
+}
+
+static enum wb_status tell_done(void *context)
+{
+    const struct step *const step = context;
+    const struct wb_workers *const w = step->workers;
+    return !w->done || w->done(w->context, step->index, step->status) ? WB_OK : WB_ERR_DATA;
+}
+
+static enum wb_status run(const struct queue *queue, enum wb_status (*function)(void *),
+                          struct step *step)
+{
+    return queue->is_guarded ? wb_memory_try(function, step) : function(step);
+}
 
 static int take_next(struct queue *queue)
 {
@@ -25,12 +53,12 @@ static int take_next(struct queue *queue)
 static void *work(void *context)
 {
     struct queue *const queue = context;
-    const struct wb_workers *const w = queue->workers;
-    for (int i = take_next(queue); i >= 0; i = take_next(queue)) {
-        const enum wb_status status = w->job(w->context, i);
+    struct step step = {.workers = queue->workers};
+    while ((step.index = take_next(queue)) >= 0) {
+        step.status = run(queue, do_job, &step);
         pthread_mutex_lock(&queue->lock);
         queue->done++;
-        if (w->done && !w->done(w->context, i, status))
+        if (run(queue, tell_done, &step) != WB_OK)
             queue->stopped = true;
         pthread_mutex_unlock(&queue->lock);
     }
@@ -39,7 +67,9 @@ static void *work(void *context)
 
 int wb_workers_run(const struct wb_workers *workers)
 {
-    struct queue queue = {.workers = workers, .lock = PTHREAD_MUTEX_INITIALIZER};
+    struct queue queue = {.workers = workers,
+                          .lock = PTHREAD_MUTEX_INITIALIZER,
+                          .is_guarded = wb_memory_is_guarded()};
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     const int wanted = workers->n_threads > 0 ? workers->n_threads : (int)processors;
     pthread_t threads[MOST_THREADS];

@@ -17,8 +17,10 @@ struct wb_workers {
 };
 
 /* Begins the jobs in the order of their index, as threads become free, and returns when all that
- * began have ended. A thread that cannot be started is no failure: others do its jobs. Returns how
- * many jobs were done. */
+ * began have ended. A thread that cannot be started is no failure: others do its jobs. Where the
+ * caller is below wb_memory_try(), so are job and done: a job that finds no memory returns
+ * WB_ERR_MEMORY, and where `done` finds none, no further job begins. Returns how many jobs were
+ * done. */
 int wb_workers_run(const struct wb_workers *workers);
 
 #endif

@@ -18,6 +18,7 @@ enum {
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 static _Thread_local char message[MESSAGE_SIZE];
 static _Thread_local char warnings[WARNINGS_SIZE];
+static _Thread_local int mine_without_handler; /* of n_without_handler, this thread's */
 
 static void append(char *text, size_t size, const char *separator, const char *more)
 {
@@ -40,10 +41,19 @@ static void set_sink(void)
     wb_log_set_sink(keep, NULL);
 }
 
-void wb_call_begin(void)
+void wb_call_start(struct wb_call *call)
 {
     pthread_once(&once, set_sink);
     message[0] = warnings[0] = '\0';
+    call->n_without_handler = mine_without_handler;
+    wb_memory_guard_begin(&call->guard);
+}
+
+enum wirebench_status wb_call_abandon(const struct wb_call *call)
+{
+    while (mine_without_handler > call->n_without_handler)
+        wb_call_end_gsl();
+    return WIREBENCH_ERR_MEMORY;
 }
 
 void wb_call_warn(const char *text)
@@ -53,6 +63,7 @@ void wb_call_warn(const char *text)
 
 enum wirebench_status wb_call_end(enum wb_status status)
 {
+    wb_memory_guard_end();
     if (status != WB_OK && !message[0])
         append(message, sizeof message, "", wb_status_text(status));
     /* What failed on the way to a success is worth a remark. */
@@ -71,6 +82,7 @@ enum wirebench_status wb_call_end_incomplete(const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     append(message, sizeof message, "; ", text);
+    wb_memory_guard_end();
     return WIREBENCH_INCOMPLETE;
 }
 
@@ -136,6 +148,7 @@ void wb_call_begin_gsl(void)
     pthread_mutex_lock(&handler_lock);
     if (n_without_handler++ == 0)
         handler = gsl_set_error_handler_off();
+    mine_without_handler++;
     pthread_mutex_unlock(&handler_lock);
 }
 
@@ -144,6 +157,7 @@ void wb_call_end_gsl(void)
     pthread_mutex_lock(&handler_lock);
     if (--n_without_handler == 0)
         gsl_set_error_handler(handler);
+    mine_without_handler--;
     pthread_mutex_unlock(&handler_lock);
 }
 

@@ -13,6 +13,7 @@
 #include <stddef.h>
 
 #include "base/columns.h"
+#include "base/memory.h"
 #include "base/status.h"
 #include "include/wirebench.h"
 
@@ -20,8 +21,21 @@ struct wirebench_table {
     struct wb_columns columns;
 };
 
-/* Forgets this thread's message and warnings. */
-void wb_call_begin(void);
+/* A call under way, in its function's frame. */
+struct wb_call {
+    struct wb_memory_guard guard;
+    int n_without_handler; /* of this thread, when it began */
+};
+
+/* Forgets this thread's message and warnings. Where an allocation fails from here to the end, the
+ * function returns WIREBENCH_ERR_MEMORY from this line; what it owned then is lost. */
+#define wb_call_begin()                                                                            \
+    struct wb_call wb_call_;                                                                       \
+    wb_call_start(&wb_call_);                                                                      \
+    if (setjmp(wb_call_.guard.target) != 0)                                                        \
+    return wb_call_abandon(&wb_call_)
+void wb_call_start(struct wb_call *call);
+enum wirebench_status wb_call_abandon(const struct wb_call *call);
 
 /* The public status; sees to it that a failure has a message. */
 enum wirebench_status wb_call_end(enum wb_status status);

@@ -1,7 +1,10 @@
 #include "base/memory.h"
 
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "tests/check.h"
 
@@ -12,7 +15,6 @@ static void arrays_are_zeroed_and_apart(void **unused)
     unsigned char *arrays[40];
     for (int i = 0; i < 40; i++) {
         arrays[i] = wb_memory_take(&memory, (size_t)i, 3);
-        assert_non_null(arrays[i]);
         for (int k = 0; k < 3 * i; k++)
             assert_int_equal(arrays[i][k], 0);
         memset(arrays[i], i, 3 * (size_t)i);
@@ -20,31 +22,127 @@ static void arrays_are_zeroed_and_apart(void **unused)
     for (int i = 0; i < 40; i++)
         for (int k = 0; k < 3 * i; k++)
             assert_int_equal(arrays[i][k], i);
-    assert_false(memory.failed);
     wb_memory_release(&memory);
     assert_true(memory.blocks == NULL && memory.n == 0);
 }
 
-static void one_that_fails_is_remembered(void **unused)
+static void blocks_grow_and_texts_are_copied(void **unused)
 {
     (void)unused;
-    struct wb_memory memory = {0};
-    assert_non_null(wb_memory_take(&memory, 1, 1));
-    assert_null(wb_memory_take(&memory, SIZE_MAX / 2, 16));
-    assert_non_null(wb_memory_take(&memory, 1, 1));
-    assert_true(memory.failed);
-    wb_memory_release(&memory);
-    assert_null(wb_memory_keep(&memory, NULL));
-    assert_true(memory.failed);
-    wb_memory_release(&memory);
-    assert_false(memory.failed);
+    int *numbers = wb_memory_new(0, sizeof *numbers);
+    assert_int_equal(*numbers, 0);
+    *numbers = 7;
+    numbers = wb_memory_resize(numbers, 1000, sizeof *numbers);
+    assert_int_equal(*numbers, 7);
+    free(numbers);
+    const char *const text = "a wire";
+    char *const copy = wb_memory_text(text);
+    assert_true(copy != text);
+    assert_string_equal(copy, text);
+    free(copy);
+}
+
+/* Larger than any memory: no library is asked for it. */
+static enum wb_status too_much(void *context)
+{
+    (void)wb_memory_resize(NULL, SIZE_MAX / 2, 16);
+    *(bool *)context = true;
+    return WB_OK;
+}
+
+static enum wb_status need_nothing(void *context)
+{
+    wb_log_set_gravest(WB_LOG_DEBUG);
+    (void)wb_memory_need(NULL);
+    *(bool *)context = true;
+    return WB_OK;
+}
+
+static enum wb_status try_within(void *context)
+{
+    assert_int_equal(wb_memory_try(too_much, context), WB_ERR_MEMORY);
+    assert_true(wb_memory_is_guarded());
+    return need_nothing(context);
+}
+
+static enum wb_status fail_otherwise(void *context)
+{
+    free(wb_memory_new(10, 10));
+    *(bool *)context = true;
+    return WB_ERR_DATA;
+}
+
+struct messages {
+    int n;
+    enum wb_log_level level;
+};
+
+static void count_messages(void *context, enum wb_log_level level, const char *domain,
+                           const char *text)
+{
+    struct messages *const messages = context;
+    (void)domain;
+    assert_non_null(strstr(text, "out of memory"));
+    messages->n++;
+    messages->level = level;
+}
+
+static void tried_function_ends_at_the_allocation(void **unused)
+{
+    (void)unused;
+    struct messages messages = {0};
+    bool went_on = false;
+    wb_log_set_sink(count_messages, &messages);
+    assert_false(wb_memory_is_guarded());
+    assert_int_equal(wb_memory_try(too_much, &went_on), WB_ERR_MEMORY);
+    assert_int_equal(messages.n, 1);
+    assert_int_equal(messages.level, WB_LOG_ERROR);
+    assert_int_equal(wb_memory_try(need_nothing, &went_on), WB_ERR_MEMORY);
+    assert_int_equal(messages.n, 2);
+    assert_int_equal(messages.level, WB_LOG_ERROR);
+    assert_int_equal(wb_log_set_gravest(WB_LOG_ERROR), WB_LOG_ERROR);
+    assert_int_equal(wb_memory_try(try_within, &went_on), WB_ERR_MEMORY);
+    assert_int_equal(messages.n, 4);
+    assert_false(went_on || wb_memory_is_guarded());
+    wb_log_set_sink(NULL, NULL);
+    assert_int_equal(wb_memory_try(fail_otherwise, &went_on), WB_ERR_DATA);
+    assert_true(went_on && !wb_memory_is_guarded());
+}
+
+static void program_ends_with_one_message(void **unused)
+{
+    (void)unused;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        bool went_on;
+        dup2(ends[1], STDERR_FILENO);
+        (void)too_much(&went_on);
+        _exit(0);
+    }
+    close(ends[1]);
+    char text[400];
+    size_t n = 0;
+    for (ssize_t got; (got = read(ends[0], text + n, sizeof text - 1 - n)) > 0;)
+        n += (size_t)got;
+    text[n] = '\0';
+    close(ends[0]);
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == EXIT_FAILURE);
+    const char *const newline = strchr(text, '\n');
+    assert_non_null(strstr(text, "out of memory"));
+    assert_true(newline && newline[1] == '\0');
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arrays_are_zeroed_and_apart),
-        cmocka_unit_test(one_that_fails_is_remembered),
+        cmocka_unit_test(blocks_grow_and_texts_are_copied),
+        cmocka_unit_test(tried_function_ends_at_the_allocation),
+        cmocka_unit_test(program_ends_with_one_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include "base/memory.h"
 #include "tests/check.h"
 
 enum {
@@ -88,6 +89,56 @@ static void nothing_is_done_without_jobs(void **unused)
     assert_int_equal(wb_workers_run(&workers), 0);
 }
 
+static enum wb_status need_memory(void *context, int index)
+{
+    (void)context;
+    if (index % 3 == 0)
+        (void)wb_memory_need(NULL);
+    return WB_OK;
+}
+
+struct ends {
+    int n_without, n_told;
+    int fails_at; /* of those told */
+};
+
+static bool count_ends(void *context, int index, enum wb_status status)
+{
+    struct ends *const ends = context;
+    assert_int_equal(status, index % 3 == 0 ? WB_ERR_MEMORY : WB_OK);
+    ends->n_without += status == WB_ERR_MEMORY;
+    if (++ends->n_told == ends->fails_at)
+        (void)wb_memory_need(NULL);
+    return true;
+}
+
+static enum wb_status run_without_memory(void *context)
+{
+    struct ends *const ends = context;
+    const struct wb_workers workers = {
+        .n = JOBS, .n_threads = 4, .job = need_memory, .done = count_ends, .context = ends};
+    const int done = wb_workers_run(&workers);
+    return done == JOBS ? WB_OK : WB_ERR_DATA;
+}
+
+static void discard(void *context, enum wb_log_level level, const char *domain, const char *text)
+{
+    (void)context, (void)level, (void)domain, (void)text;
+}
+
+static void a_job_without_memory_fails_alone(void **unused)
+{
+    (void)unused;
+    struct ends ends = {0}, cut = {.fails_at = 5};
+    wb_log_set_sink(discard, NULL);
+    assert_int_equal(wb_memory_try(run_without_memory, &ends), WB_OK);
+    assert_int_equal(ends.n_told, JOBS);
+    assert_int_equal(ends.n_without, (JOBS + 2) / 3);
+    assert_int_equal(wb_memory_try(run_without_memory, &cut), WB_ERR_DATA);
+    assert_true(cut.n_told >= 5 && cut.n_told <= 5 + 3);
+    wb_log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -95,6 +146,7 @@ int main(void)
         cmocka_unit_test(one_thread_is_the_callers),
         cmocka_unit_test(no_job_begins_after_a_stop),
         cmocka_unit_test(nothing_is_done_without_jobs),
+        cmocka_unit_test(a_job_without_memory_fails_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
