@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "checkpoint"
 
@@ -38,19 +39,12 @@ void wb_checkpoint_release(struct wb_checkpoint *checkpoint)
     wb_checkpoint_init(checkpoint);
 }
 
-static bool make_room(struct wb_checkpoint *c, size_t size)
+static void make_room(struct wb_checkpoint *c, size_t size)
 {
     if (size <= c->room - c->at)
-        return true;
-    const size_t room = 2 * (c->at + size) + 1024;
-    unsigned char *bytes = realloc(c->bytes, room);
-    if (!bytes) {
-        c->status = wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint of %zu bytes", room);
-        return false;
-    }
-    c->bytes = bytes;
-    c->room = room;
-    return true;
+        return;
+    c->room = 2 * (c->at + size) + 1024;
+    c->bytes = wb_memory_resize(c->bytes, c->room, 1);
 }
 
 /* --- groups --- */
@@ -87,8 +81,9 @@ void wb_checkpoint_leave(struct wb_checkpoint *c)
 
 void wb_checkpoint_append(struct wb_checkpoint *c, const void *fields, size_t size)
 {
-    if (c->status != WB_OK || size == 0 || !make_room(c, size))
+    if (c->status != WB_OK || size == 0)
         return;
+    make_room(c, size);
     memcpy(c->bytes + c->at, fields, size);
     c->at += size;
     c->size = c->at;
@@ -212,9 +207,7 @@ enum wb_status wb_checkpoint_write(const struct wb_checkpoint *c, const char *pa
                        "%s: the checkpoint's identity has %zu bytes: more than its head of %d "
                        "bytes has room for",
                        path, strlen(identity), MOST_HEAD);
-    unsigned char *all = malloc((size_t)n + c->size);
-    if (!all)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint of %zu bytes", c->size);
+    unsigned char *const all = wb_memory_resize(NULL, (size_t)n + c->size, 1);
     memcpy(all, head, (size_t)n);
     if (c->size > 0)
         memcpy(all + n, c->bytes, c->size);

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WB_LOG_DOMAIN "columns"
+#include "base/memory.h"
 
 enum {
     FIRST_ROWS = 64
@@ -21,28 +21,19 @@ void wb_columns_init(struct wb_columns *table, const char *name, const struct wb
 _Static_assert(sizeof(double) == sizeof(int64_t), "doubles of 64 bits");
 _Static_assert(sizeof(char *) <= sizeof(int64_t), "pointers of at most 64 bits");
 
-static bool grow(struct wb_columns *table)
+static void grow(struct wb_columns *table)
 {
-    const size_t capacity = table->capacity ? 2 * table->capacity : FIRST_ROWS;
-    for (int i = 0; i < table->n; i++) {
-        double *const grown = realloc(table->items[i].reals, capacity * sizeof *grown);
-        if (!grown)
-            return false;
-        table->items[i].reals = grown;
-    }
-    table->capacity = capacity;
-    return true;
+    table->capacity = table->capacity ? 2 * table->capacity : FIRST_ROWS;
+    for (int i = 0; i < table->n; i++)
+        table->items[i].reals =
+            wb_memory_resize(table->items[i].reals, table->capacity, sizeof(double));
 }
 
 void wb_columns_add_row(struct wb_columns *table, const union wb_cell *cells)
 {
-    if (table->failed)
-        return;
-    if (table->n_rows == table->capacity && !grow(table)) {
-        table->failed = true;
-        return;
-    }
-    const size_t row = table->n_rows;
+    if (table->n_rows == table->capacity)
+        grow(table);
+    const size_t row = table->n_rows++;
     for (int i = 0; i < table->n; i++) {
         struct wb_column *const column = &table->items[i];
         switch (column->kind->type) {
@@ -53,21 +44,10 @@ void wb_columns_add_row(struct wb_columns *table, const union wb_cell *cells)
             column->integers[row] = cells[i].integer;
             break;
         case WB_COLUMN_TEXT:
-            column->texts[row] = strdup(cells[i].text);
-            table->failed = table->failed || !column->texts[row];
+            column->texts[row] = wb_memory_text(cells[i].text);
             break;
         }
     }
-    /* A row without its text counts, so that its other texts are freed. */
-    table->n_rows++;
-}
-
-enum wb_status wb_columns_check(const struct wb_columns *table)
-{
-    if (table->failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for more than %zu rows of table '%s'",
-                       table->n_rows, table->name);
-    return WB_OK;
 }
 
 const struct wb_column *wb_columns_find(const struct wb_columns *table, const char *name)

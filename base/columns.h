@@ -50,7 +50,6 @@ struct wb_columns {
     const char *name; /* borrowed, as the kinds are */
     int n;            /* columns, 1..WB_COLUMNS_MOST */
     size_t n_rows, capacity;
-    bool failed; /* a row found no memory: no further row is added */
     struct wb_column items[WB_COLUMNS_MOST];
 };
 
@@ -58,12 +57,8 @@ struct wb_columns {
 void wb_columns_init(struct wb_columns *table, const char *name, const struct wb_column_kind *kinds,
                      int n);
 
-/* Appends a row, a cell for each column. Without memory it sets `failed`, so that one check after
- * the last row is enough. */
+/* Appends a row, a cell for each column. */
 void wb_columns_add_row(struct wb_columns *table, const union wb_cell *cells);
-
-/* WB_ERR_MEMORY with a message where a row found no memory. */
-WB_MUST_CHECK enum wb_status wb_columns_check(const struct wb_columns *table);
 
 /* The column of that name; NULL: there is none. */
 const struct wb_column *wb_columns_find(const struct wb_columns *table, const char *name);

@@ -10,6 +10,7 @@
 #include <yaml.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/number.h"
 
 #define WB_LOG_DOMAIN "config"
@@ -37,7 +38,7 @@ static enum wb_status load(struct wb_config *config, const char *text)
 {
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser))
-        return wb_fail_to(config->why, WB_ERR_MEMORY, "out of memory reading '%s'", config->origin);
+        wb_memory_need(NULL);
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, strlen(text));
     enum wb_status status = WB_OK;
     if (!yaml_parser_load(&parser, &config->document)) {
@@ -97,19 +98,14 @@ enum wb_status wb_config_parse(struct wb_config **out, const char *text, const c
                                struct wb_reason *why)
 {
     *out = NULL;
-    struct wb_config *config = calloc(1, sizeof *config);
-    if (!config)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading '%s'", origin);
+    struct wb_config *const config = wb_memory_new(1, sizeof *config);
     config->why = why;
-    config->origin = strdup(origin);
-    enum wb_status status =
-        config->origin ? load(config, text) : wb_fail_to(why, WB_ERR_MEMORY, "out of memory");
+    config->origin = wb_memory_text(origin);
+    enum wb_status status = load(config, text);
     if (status == WB_OK) {
         const size_t n = (size_t)(config->document.nodes.top - config->document.nodes.start);
-        config->nodes = calloc(n, sizeof *config->nodes);
-        if (!config->nodes)
-            status = wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading '%s'", origin);
-        for (size_t i = 0; config->nodes && i < n; i++)
+        config->nodes = wb_memory_new(n, sizeof *config->nodes);
+        for (size_t i = 0; i < n; i++)
             config->nodes[i] = (struct wb_config_node){config, config->document.nodes.start + i};
     }
     if (status == WB_OK)

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 static struct {
     pthread_mutex_t lock;
     bool is_on;
@@ -33,9 +35,7 @@ static void add(struct wb_read *read)
 {
     if (reads.n == reads.capacity) {
         reads.capacity = reads.capacity > 0 ? 2 * reads.capacity : 64;
-        reads.items = realloc(reads.items, (size_t)reads.capacity * sizeof *reads.items);
-        if (!reads.items)
-            abort(); /* as GLib does: a list that lacks a file must not be signed */
+        reads.items = wb_memory_resize(reads.items, (size_t)reads.capacity, sizeof *reads.items);
     }
     reads.items[reads.n++] = *read;
     read->path = NULL;
@@ -102,9 +102,7 @@ void wb_reads_note(const char *path, const void *bytes, size_t size)
     if (!is_on())
         return;
     char *const found = realpath(path, NULL);
-    struct wb_read read = {.path = found ? found : strdup(path)};
-    if (!read.path)
-        abort();
+    struct wb_read read = {.path = found ? found : wb_memory_text(path)};
     wb_hash_bytes(bytes, size, read.sha256);
     pthread_mutex_lock(&reads.lock);
     if (!is_noted(&read))

@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/number.h"
 
 #define WB_LOG_DOMAIN "table"
@@ -201,9 +202,7 @@ static enum wb_status decode(const void *bytes, size_t size, const char *name,
         (memcmp(bytes, "\xff\xfe\0\0", 4) == 0 || memcmp(bytes, "\0\0\xfe\xff", 4) == 0))
         return wb_fail_to(why, WB_ERR_UNSUPPORTED, "%s: UTF-32: save it as UTF-8 or UTF-16", name);
     const size_t start = find_encoding(bytes, size, &decoded);
-    decoded.bytes = malloc(2 * size + 1);
-    if (!decoded.bytes)
-        return wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory for %zu bytes", name, size);
+    decoded.bytes = wb_memory_new(2 * size + 1, 1);
     const uint8_t *const from = (const uint8_t *)bytes + start;
     const bool wide =
         decoded.encoding == WB_ENCODING_UTF16_LE || decoded.encoding == WB_ENCODING_UTF16_BE;
@@ -230,18 +229,13 @@ struct lines {
     size_t n, room;
 };
 
-static bool add_line(struct lines *lines, char *text, int number)
+static void add_line(struct lines *lines, char *text, int number)
 {
     if (lines->n == lines->room) {
-        const size_t room = lines->room ? 2 * lines->room : 256;
-        struct line *const items = realloc(lines->items, room * sizeof *items);
-        if (!items)
-            return false;
-        lines->items = items;
-        lines->room = room;
+        lines->room = lines->room ? 2 * lines->room : 256;
+        lines->items = wb_memory_resize(lines->items, lines->room, sizeof *lines->items);
     }
     lines->items[lines->n++] = (struct line){text, number};
-    return true;
 }
 
 /* Cuts the text in place. Carriage returns before a line feed belong to it. */
@@ -264,8 +258,7 @@ static enum wb_status cut_lines(struct wb_text_table *table, size_t size, const 
         table->ends_without_end = stop == end;
         if (number == MOST_LINES)
             return wb_fail_to(why, WB_ERR_FORMAT, "%s: more than %d lines", name, MOST_LINES);
-        if (!add_line(lines, at, ++number))
-            return wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory for its lines", name);
+        add_line(lines, at, ++number);
         if (stop < end)
             *stop = '\0';
         at = next;
@@ -720,11 +713,9 @@ static enum wb_status fill(struct wb_text_table *table, struct lines *lines,
     if (table->n_columns > MOST_COLUMNS)
         return wb_fail_to(why, WB_ERR_FORMAT, "%s: more than %d columns", name, MOST_COLUMNS);
     const size_t n = lines->n - body;
-    table->columns = calloc((size_t)table->n_columns, sizeof *table->columns);
-    table->fields = calloc(n * (size_t)table->n_columns, sizeof *table->fields);
-    table->lines = calloc(n, sizeof *table->lines);
-    if (!table->columns || !table->fields || !table->lines)
-        return wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory for %zu rows", name, n);
+    table->columns = wb_memory_new((size_t)table->n_columns, sizeof *table->columns);
+    table->fields = wb_memory_new(n * (size_t)table->n_columns, sizeof *table->fields);
+    table->lines = wb_memory_new(n, sizeof *table->lines);
     WB_TRY(fill_names(table, lines, header, units));
     const size_t first = units < lines->n ? units + 1 : header < lines->n ? header + 1 : body;
     return fill_rows(table, lines, first, body, name, why);

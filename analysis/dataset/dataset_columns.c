@@ -68,8 +68,8 @@ static void add_shape_row(struct wb_columns *table, const struct wb_shape_row *r
     wb_columns_add_row(table, cells);
 }
 
-enum wb_status wb_dataset_columns_make(struct wb_columns tables[WB_DATASET_COLUMNS_TABLES],
-                                       const struct wb_dataset *dataset)
+void wb_dataset_columns_make(struct wb_columns tables[WB_DATASET_COLUMNS_TABLES],
+                             const struct wb_dataset *dataset)
 {
     struct wb_columns *const rows = &tables[WB_DATASET_COLUMNS_FORCE_DEFLECTION];
     struct wb_columns *const shape = &tables[WB_DATASET_COLUMNS_SHAPE];
@@ -79,10 +79,4 @@ enum wb_status wb_dataset_columns_make(struct wb_columns tables[WB_DATASET_COLUM
         add_row(rows, &dataset->rows[i]);
     for (size_t i = 0; i < dataset->n_shape_rows; i++)
         add_shape_row(shape, &dataset->shape_rows[i]);
-    enum wb_status status = wb_columns_check(rows);
-    if (status == WB_OK)
-        status = wb_columns_check(shape);
-    for (int i = 0; status != WB_OK && i < WB_DATASET_COLUMNS_TABLES; i++)
-        wb_columns_release(&tables[i]);
-    return status;
 }

@@ -16,9 +16,8 @@ enum {
 /* The table's name, "force_deflection" or "shape"; -1 for another one. */
 int wb_dataset_columns_find(const char *name);
 
-/* The caller releases each table; on failure (WB_ERR_MEMORY) they are empty. */
-WB_MUST_CHECK enum wb_status
-wb_dataset_columns_make(struct wb_columns tables[WB_DATASET_COLUMNS_TABLES],
-                        const struct wb_dataset *dataset);
+/* The caller releases each table. */
+void wb_dataset_columns_make(struct wb_columns tables[WB_DATASET_COLUMNS_TABLES],
+                             const struct wb_dataset *dataset);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/memory.h"
 #include "base/number.h"
 
 /* --- lines --- */
@@ -30,7 +31,7 @@ static int utf16_order(const uint8_t *bytes, size_t n, size_t *skip)
     return zeros[0] == looked_at / 2 && zeros[1] == 0 ? 2 : 0;
 }
 
-bool wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, size_t n)
+void wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, size_t n)
 {
     size_t skip;
     const int order = utf16_order(bytes, n, &skip);
@@ -38,12 +39,10 @@ bool wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, si
     if (order == 0) {
         if (n >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0)
             lines->at += 3;
-        return true;
+        return;
     }
     const size_t n_units = (n - skip) / 2;
-    char *const text = malloc(n_units + 1);
-    if (!text)
-        return false;
+    char *const text = wb_memory_new(n_units, 1);
     for (size_t i = 0; i < n_units; i++) {
         const uint8_t *const unit = bytes + skip + 2 * i;
         const uint8_t low = unit[order == 1 ? 0 : 1], high = unit[order == 1 ? 1 : 0];
@@ -52,7 +51,6 @@ bool wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, si
     lines->converted = text;
     lines->at = text;
     lines->end = text + n_units;
-    return true;
 }
 
 /* The next CR before the next LF; NULL: none. */

@@ -17,9 +17,8 @@ struct wb_cells_lines {
     char *converted; /* owned: of UTF-16 text */
 };
 
-/* Begins. UTF-16 in either order becomes bytes, characters beyond ASCII '?'. False when out of
- * memory. */
-bool wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, size_t n);
+/* Begins. UTF-16 in either order becomes bytes, characters beyond ASCII '?'. */
+void wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, size_t n);
 /* The next line without its end; false at the end of the text. */
 bool wb_cells_lines_next(struct wb_cells_lines *lines, const char **line, size_t *n);
 void wb_cells_lines_release(struct wb_cells_lines *lines);

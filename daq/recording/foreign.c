@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "base/json.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "daq/protocol/loadcell_line.h"
 #include "daq/take/take_reader.h"
@@ -128,12 +129,8 @@ enum wb_status wb_foreign_channel(struct wb_foreign *foreign, const struct wb_ta
                           foreign->name, foreign->channel, foreign->unit);
     const size_t per_frame = (size_t)take->per_frame;
     const size_t n = take->n_frames * per_frame;
-    force->t = malloc((n + 1) * sizeof *force->t);
-    force->force = malloc((n + 1) * sizeof *force->force);
-    if (!force->t || !force->force) {
-        wb_force_table_release(force);
-        return wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory", foreign->name);
-    }
+    force->t = wb_memory_new(n, sizeof *force->t);
+    force->force = wb_memory_new(n, sizeof *force->force);
     for (size_t i = 0; i < n; i++) {
         const double part = (double)(i % per_frame) / (double)per_frame;
         const double value = (double)take->analog[i * (size_t)take->n_channels + (size_t)channel];
@@ -153,8 +150,8 @@ static void deliver_take(const struct wb_foreign *foreign, const struct wb_take 
                          const struct wb_sink *sink)
 {
     size_t left = 0;
-    struct wb_mocap_frame *const frame = malloc(sizeof *frame);
-    for (size_t i = 0; frame && sink->mocap && i < take->n_frames; i++) {
+    struct wb_mocap_frame *const frame = wb_memory_new(1, sizeof *frame);
+    for (size_t i = 0; sink->mocap && i < take->n_frames; i++) {
         left += wb_take_frame_at(take, i, frame);
         frame->t_ns = wb_ns_from_seconds(take->frames[i].t + foreign->offset);
         sink->mocap(sink->context, frame);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/reads.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -78,9 +79,7 @@ static enum wb_status read_entries(struct wb_index *index, const struct wb_confi
     const int n = wb_config_length(list);
     if (n < 0)
         return wb_config_refuse(list, NULL, "expected a list of recordings");
-    index->entries = calloc((size_t)n + 1, sizeof *index->entries);
-    if (!index->entries)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading the index of recordings");
+    index->entries = wb_memory_new((size_t)n, sizeof *index->entries);
     for (int i = 0; i < n; i++) {
         const struct wb_config_node *const node = wb_config_item(list, i);
         struct wb_index_entry entry;

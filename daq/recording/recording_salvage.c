@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WB_LOG_DOMAIN "recording"
+#include "base/memory.h"
 
 /* https://www.sqlite.org/fileformat2.html: 1.6 (pages of trees), 2.1 (records), 4 (the log). */
 enum {
@@ -106,19 +106,16 @@ static const uint8_t *frame_page(const struct wb_recording_salvage *s, uint32_t 
     return s->log + LOG_HEADER + (size_t)index * (FRAME_HEADER + PAGE) + FRAME_HEADER;
 }
 
-static enum wb_status list_frames(struct wb_recording_salvage *s, size_t n_log)
+static void list_frames(struct wb_recording_salvage *s, size_t n_log)
 {
     const size_t n = n_log > LOG_HEADER ? (n_log - LOG_HEADER) / (FRAME_HEADER + PAGE) : 0;
     if (n == 0)
-        return WB_OK;
-    s->frames = calloc(n, sizeof *s->frames);
-    if (!s->frames)
-        return WB_ERR_MEMORY;
+        return;
+    s->frames = wb_memory_new(n, sizeof *s->frames);
     for (size_t i = 0; i < n && i < UINT32_MAX; i++)
         s->frames[s->n_frames++] =
             (struct frame){big_endian(frame_page(s, (uint32_t)i) - FRAME_HEADER), (uint32_t)i};
     qsort(s->frames, s->n_frames, sizeof *s->frames, compare_frames);
-    return WB_OK;
 }
 
 /* The page of this number: its last version in the log, else in the file, or the other way round;
@@ -182,10 +179,7 @@ static bool gather(struct wb_recording_salvage *s, const uint8_t *at, size_t n_i
     if (n > s->budget)
         return false;
     s->budget -= n;
-    uint8_t *const larger = realloc(s->payload, n);
-    if (!larger)
-        return false;
-    s->payload = larger;
+    s->payload = wb_memory_resize(s->payload, n, 1);
     memcpy(s->payload, at, n_inline);
     uint32_t next = big_endian(at + n_inline);
     for (size_t done = n_inline; done < n;) {
@@ -308,25 +302,20 @@ static bool read_row(struct wb_recording_salvage *s, const struct cell *cell, bo
     return false;
 }
 
-static enum wb_status keep(struct wb_recording_salvage *s, const struct place *place)
+static void keep(struct wb_recording_salvage *s, const struct place *place)
 {
     if (s->n_places == s->capacity) {
-        const size_t capacity = s->capacity ? 2 * s->capacity : 4096;
-        struct place *const larger = realloc(s->places, capacity * sizeof *larger);
-        if (!larger)
-            return WB_ERR_MEMORY;
-        s->places = larger;
-        s->capacity = capacity;
+        s->capacity = s->capacity ? 2 * s->capacity : 4096;
+        s->places = wb_memory_resize(s->places, s->capacity, sizeof *s->places);
     }
     s->places[s->n_places++] = *place;
-    return WB_OK;
 }
 
 /* The rows of one page, if it is one of rows. Cells do not overlap: all together are a page. */
-static enum wb_status look_at_page(struct wb_recording_salvage *s, const uint8_t *page)
+static void look_at_page(struct wb_recording_salvage *s, const uint8_t *page)
 {
     if (page[0] != LEAF_OF_TABLE)
-        return WB_OK;
+        return;
     const size_t n = (size_t)page[3] << 8 | page[4];
     size_t room = PAGE;
     for (size_t i = 0; i < n && 8 + 2 * i + 2 <= PAGE; i++) {
@@ -351,11 +340,10 @@ static enum wb_status look_at_page(struct wb_recording_salvage *s, const uint8_t
                                         .chain = (uint32_t)row.chain,
                                         .kind = row.kind,
                                         .is_file_first = way == 1};
-            WB_TRY(keep(s, &place));
+            keep(s, &place);
             break;
         }
     }
-    return WB_OK;
 }
 
 static int compare_places(const void *a, const void *b)
@@ -430,36 +418,27 @@ static void keep_each_once(struct wb_recording_salvage *s)
     s->n_places = n;
 }
 
-enum wb_status wb_recording_salvage_find(struct wb_recording_salvage **out, const uint8_t *file,
-                                         size_t n_file, const uint8_t *log, size_t n_log)
+struct wb_recording_salvage *wb_recording_salvage_find(const uint8_t *file, size_t n_file,
+                                                       const uint8_t *log, size_t n_log)
 {
-    struct wb_recording_salvage *const s = calloc(1, sizeof *s);
-    *out = NULL;
-    if (!s)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
+    struct wb_recording_salvage *const s = wb_memory_new(1, sizeof *s);
     s->file = file;
     s->log = log;
     s->n_pages = n_file / PAGE;
     memcpy(s->tail, file + s->n_pages * PAGE, n_file % PAGE);
     s->budget = 4 * ((uint64_t)n_file + n_log);
-    enum wb_status status = list_frames(s, n_log);
-    for (size_t i = 0; status == WB_OK && i < s->n_frames; i++)
-        status = look_at_page(s, frame_page(s, s->frames[i].index));
-    for (size_t i = 0; status == WB_OK && i < s->n_pages; i++)
-        status = look_at_page(s, file + i * PAGE);
-    if (status == WB_OK)
-        status = look_at_page(s, s->tail);
-    if (status != WB_OK) {
-        wb_recording_salvage_destroy(s);
-        return wb_fail(status, "out of memory");
-    }
+    list_frames(s, n_log);
+    for (size_t i = 0; i < s->n_frames; i++)
+        look_at_page(s, frame_page(s, s->frames[i].index));
+    for (size_t i = 0; i < s->n_pages; i++)
+        look_at_page(s, file + i * PAGE);
+    look_at_page(s, s->tail);
     if (s->n_places > 0)
         qsort(s->places, s->n_places, sizeof *s->places, compare_places);
     drop_copies(s);
     count_followers(s);
     keep_each_once(s);
-    *out = s;
-    return WB_OK;
+    return s;
 }
 
 void wb_recording_salvage_destroy(struct wb_recording_salvage *salvage)

@@ -14,8 +14,7 @@ struct wb_recording_salvage; /* opaque */
 
 /* Finds the rows in the bytes of a recording and of its log (n_log 0: none), both borrowed. Any
  * bytes are taken; the time it takes is that of reading them a few times. */
-WB_MUST_CHECK enum wb_status wb_recording_salvage_find(struct wb_recording_salvage **out,
-                                                       const uint8_t *file, size_t n_file,
+struct wb_recording_salvage *wb_recording_salvage_find(const uint8_t *file, size_t n_file,
                                                        const uint8_t *log, size_t n_log);
 void wb_recording_salvage_destroy(struct wb_recording_salvage *salvage); /* accepts NULL */
 

@@ -221,8 +221,8 @@ static enum wb_status take_old(struct recovery *r)
 
 static enum wb_status take_all(struct recovery *r)
 {
-    struct wb_recording_salvage *salvage;
-    WB_TRY(wb_recording_salvage_find(&salvage, r->file.at, r->file.n, r->log.at, r->log.n));
+    struct wb_recording_salvage *const salvage =
+        wb_recording_salvage_find(r->file.at, r->file.n, r->log.at, r->log.n);
     const enum wb_status status =
         wb_recording_salvage_count(salvage) > 0 ? take_salvage(r, salvage) : take_old(r);
     wb_recording_salvage_destroy(salvage);

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/interrupt.h"
+#include "base/memory.h"
 #include "base/timing.h"
 #include "base/units.h"
 #include "daq/protocol/drivers.h"
@@ -91,17 +92,14 @@ static void pass_remark(void *context, enum wb_log_level level, int64_t t_ns, co
 
 /* --- channels --- */
 
-static enum wb_status open_file(struct channel *channel, const char *settings)
+static void open_file(struct channel *channel, const char *settings)
 {
-    channel->file = calloc(1, sizeof *channel->file);
-    if (!channel->file)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a file in the recording");
+    channel->file = wb_memory_new(1, sizeof *channel->file);
     struct wb_reason why = {.text = ""};
     if (wb_foreign_parse(&channel->file->foreign, settings, &why) != WB_OK) {
         wb_warn("stream %d is left out: %s", channel->id, why.text);
         channel->file->lost = true;
     }
-    return WB_OK;
 }
 
 static enum wb_status open_channel(struct channel *channel,
@@ -109,8 +107,10 @@ static enum wb_status open_channel(struct channel *channel,
                                    const struct wb_rig *rig)
 {
     channel->id = recorded->id;
-    if (wb_recording_foreign_is(recorded))
-        return open_file(channel, settings);
+    if (wb_recording_foreign_is(recorded)) {
+        open_file(channel, settings);
+        return WB_OK;
+    }
     const struct wb_driver *driver = wb_drivers_find(recorded->role, recorded->protocol);
     if (!driver) {
         wb_warn("stream %d (%s) speaks the protocol '%s', which is not known here: it is left out",
@@ -118,9 +118,7 @@ static enum wb_status open_channel(struct channel *channel,
         return WB_OK;
     }
     WB_TRY(wb_stream_open(&channel->stream, "memory:"));
-    channel->state = calloc(1, driver->state_size ? driver->state_size : 1);
-    if (!channel->state)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the driver '%s'", driver->name);
+    channel->state = wb_memory_new(1, driver->state_size);
     WB_TRY(driver->init(channel->state, rig));
     channel->driver = driver;
     return WB_OK;
@@ -130,10 +128,8 @@ static enum wb_status open_channels(struct replay *replay, struct wb_recording *
                                     const struct wb_rig *rig)
 {
     int n = wb_recording_n_streams(recording);
-    replay->channels = calloc((size_t)n + 1, sizeof *replay->channels);
-    replay->buffer = malloc(WB_STREAM_READ_MAX);
-    if (!replay->channels || !replay->buffer)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the replay");
+    replay->channels = wb_memory_new((size_t)n, sizeof *replay->channels);
+    replay->buffer = wb_memory_new(WB_STREAM_READ_MAX, 1);
     replay->n_channels = n;
     for (int i = 0; i < n; i++)
         WB_TRY(open_channel(&replay->channels[i], wb_recording_stream_at(recording, i),
@@ -245,8 +241,6 @@ static enum wb_status play_piece(struct replay *replay, struct file *file,
     }
     const enum wb_status status =
         wb_foreign_play(&file->foreign, file->bytes, replay->rig, &replay->counting, &why);
-    if (status == WB_ERR_MEMORY)
-        return wb_fail(status, "%s", why.text);
     if (status != WB_OK)
         lose_file(replay, file, chunk->t_ns, why.text);
     free(file->bytes);

@@ -210,8 +210,6 @@ static enum wb_status fill(struct reading *reading, struct wb_recording *recordi
     enum wb_status status = wb_replay_run(recording, rig, &sink, 0.0, counts);
     const enum wb_status events = wb_recording_each_event(recording, put_event, reading);
     const enum wb_status clock = wb_recording_each_clock(recording, put_clock, reading);
-    for (int i = 0; i < WB_SAMPLE_COLUMNS_TABLES; i++)
-        WB_TRY(wb_columns_check(&reading->tables[i]));
     if (status == WB_OK)
         status = events;
     return status == WB_OK ? clock : status;

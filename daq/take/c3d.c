@@ -14,6 +14,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/memory.h"
 #include "daq/take/take_reader.h"
 
 #define WB_LOG_DOMAIN "c3d"
@@ -63,11 +64,6 @@ struct reading {
 #define refuse_parameter(reading, where, format, ...)                                              \
     wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s: %s: " format, (reading)->name, where,           \
                __VA_ARGS__)
-
-static enum wb_status no_memory(const struct reading *reading)
-{
-    return wb_fail_to(reading->why, WB_ERR_MEMORY, "%s: out of memory", reading->name);
-}
 
 /* --- numbers of three processors --- */
 
@@ -364,9 +360,7 @@ static enum wb_status read_points(struct reading *reading)
         }
         const bool unlabelled = (n >= 9 && strncasecmp(text, "Unlabeled", 9) == 0) ||
                                 (n >= 1 && text[0] == '*') || n == 0;
-        if (wb_take_add_point(reading->take, unlabelled ? WB_TAKE_UNLABELLED : WB_TAKE_MARKER, text,
-                              n) < 0)
-            return no_memory(reading);
+        wb_take_add_point(reading->take, unlabelled ? WB_TAKE_UNLABELLED : WB_TAKE_MARKER, text, n);
     }
     return WB_OK;
 }
@@ -380,11 +374,9 @@ static enum wb_status read_channels(struct reading *reading)
     size_t n_text;
     if (n == 0)
         return WB_OK;
-    reading->take->channels = calloc(n, sizeof *reading->take->channels);
-    reading->offsets = calloc(n, sizeof *reading->offsets);
-    reading->scales = calloc(n, sizeof *reading->scales);
-    if (!reading->take->channels || !reading->offsets || !reading->scales)
-        return no_memory(reading);
+    reading->take->channels = wb_memory_new(n, sizeof *reading->take->channels);
+    reading->offsets = wb_memory_new(n, sizeof *reading->offsets);
+    reading->scales = wb_memory_new(n, sizeof *reading->scales);
     reading->take->n_channels = (int)n;
     reading->take->per_frame = (int)reading->per_frame;
     (void)find_number(reading, "ANALOG", "GEN_SCALE", &general);
@@ -440,22 +432,20 @@ static enum wb_status read_point(struct reading *reading, size_t point, const ui
     }
     if (zero)
         return WB_OK;
-    return wb_take_add_place(reading->take, (uint32_t)point, position) ? WB_OK : no_memory(reading);
+    wb_take_add_place(reading->take, (uint32_t)point, position);
+    return WB_OK;
 }
 
 static enum wb_status read_frame(struct reading *reading, size_t frame, const uint8_t *at)
 {
     const size_t word = reading->is_real ? 4 : 2;
     struct wb_take *const take = reading->take;
-    if (!wb_take_add_frame(take, reading->first + (int32_t)frame,
-                           (double)(reading->first + (int32_t)frame) / take->rate))
-        return no_memory(reading);
+    wb_take_add_frame(take, reading->first + (int32_t)frame,
+                      (double)(reading->first + (int32_t)frame) / take->rate);
     for (size_t i = 0; i < reading->n_points; i++, at += 4 * word)
         WB_TRY(read_point(reading, i, at));
     const size_t n = reading->n_channels * reading->per_frame;
     float *const analog = n > 0 ? wb_take_add_analog(take, n) : NULL;
-    if (n > 0 && !analog)
-        return no_memory(reading);
     for (size_t i = 0; i < n; i++, at += word) {
         const size_t channel = i % reading->n_channels;
         const double raw = reading->is_unsigned && !reading->is_real ? get_word(reading, at)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "daq/take/table_columns.h"
 
 #define WB_LOG_DOMAIN "force"
@@ -66,13 +67,9 @@ enum wb_status wb_force_table_parse(struct wb_force_table *out, const char *name
     memset(out, 0, sizeof *out);
     taken[0] = '\0';
     WB_TRY(wb_text_table_parse(&table, bytes, n, name, NULL, why));
-    out->t = malloc((table.n_rows + 1) * sizeof *out->t);
-    out->force = malloc((table.n_rows + 1) * sizeof *out->force);
-    enum wb_status status = WB_ERR_MEMORY;
-    if (out->t && out->force)
-        status = take(out, &table, name, list, taken, rig, why);
-    else
-        status = wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory", name);
+    out->t = wb_memory_new(table.n_rows, sizeof *out->t);
+    out->force = wb_memory_new(table.n_rows, sizeof *out->force);
+    const enum wb_status status = take(out, &table, name, list, taken, rig, why);
     wb_text_table_release(&table);
     if (status != WB_OK)
         wb_force_table_release(out);

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "daq/protocol/cells.h"
 #include "daq/take/take_reader.h"
 
@@ -63,11 +64,6 @@ struct slot {
 #define refuse(reading, column, format, ...)                                                       \
     wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s:%zu: column %zu: " format, (reading)->name,      \
                (reading)->lines.number, (size_t)(column), __VA_ARGS__)
-
-static enum wb_status no_memory(const struct reading *reading)
-{
-    return wb_fail_to(reading->why, WB_ERR_MEMORY, "%s: out of memory", reading->name);
-}
 
 static bool is_missing(const char *cell, size_t n)
 {
@@ -220,9 +216,7 @@ static bool kind_of(const char *type, size_t n_type, const char *name, size_t n_
 static enum wb_status check_columns(struct reading *reading)
 {
     bool frame = false, time = false;
-    unsigned *const axes = calloc(reading->take->n_points + 1, sizeof *axes);
-    if (!axes)
-        return no_memory(reading);
+    unsigned *const axes = wb_memory_new(reading->take->n_points, sizeof *axes);
     size_t incomplete = 0;
     for (size_t i = 0; i < reading->n_columns; i++) {
         const struct column *const column = &reading->columns[i];
@@ -258,9 +252,7 @@ static enum wb_status read_columns(struct reading *reading, const struct header 
     for (int r = 0; r < 4; r++)
         wb_cells_begin(&rows[r], header->rows[which[r]].line, header->rows[which[r]].n,
                        reading->delimiter);
-    reading->columns = calloc(header->rows[header->axis].n + 2, sizeof *reading->columns);
-    if (!reading->columns)
-        return no_memory(reading);
+    reading->columns = wb_memory_new(header->rows[header->axis].n + 2, sizeof *reading->columns);
     const char *cell[4];
     size_t n[4];
     while (wb_cells_next(&rows[3], &cell[3], &n[3])) {
@@ -286,8 +278,7 @@ static enum wb_status read_columns(struct reading *reading, const struct header 
                           cell[3][0]);
         const struct wb_take_quoted name = wb_take_quote(cell[1], n[1]);
         if (axes >> axis & 1 || kind != last_kind || strcmp(name.text, last.text) != 0) {
-            if (wb_take_add_point(reading->take, kind, cell[1], n[1]) < 0)
-                return no_memory(reading);
+            wb_take_add_point(reading->take, kind, cell[1], n[1]);
             axes = 0;
             last = name;
             last_kind = kind;
@@ -351,11 +342,10 @@ static bool in_order(struct reading *reading, int32_t number, double t)
     return true;
 }
 
-static bool add_point(struct reading *reading, uint32_t point, const double position[3])
+static void add_point(struct reading *reading, uint32_t point, const double position[3])
 {
-    if (!isfinite(position[0]) || !isfinite(position[1]) || !isfinite(position[2]))
-        return true;
-    return wb_take_add_place(reading->take, point, position);
+    if (isfinite(position[0]) && isfinite(position[1]) && isfinite(position[2]))
+        wb_take_add_place(reading->take, point, position);
 }
 
 /* One row of data. A row of another width than the header is left out: which cell is missing in it
@@ -389,11 +379,9 @@ static enum wb_status read_row(struct reading *reading, const char *line, size_t
         wb_take_skip(reading->take, reading->lines.number);
         return WB_OK;
     }
-    if (!wb_take_add_frame(reading->take, number, t))
-        return no_memory(reading);
+    wb_take_add_frame(reading->take, number, t);
     for (size_t i = 0; i < reading->take->n_points; i++)
-        if (!add_point(reading, (uint32_t)i, reading->places[i]))
-            return no_memory(reading);
+        add_point(reading, (uint32_t)i, reading->places[i]);
     return WB_OK;
 }
 
@@ -401,9 +389,7 @@ static enum wb_status read_data(struct reading *reading)
 {
     const char *line;
     size_t n;
-    reading->places = calloc(reading->take->n_points + 1, sizeof *reading->places);
-    if (!reading->places)
-        return no_memory(reading);
+    reading->places = wb_memory_new(reading->take->n_points, sizeof *reading->places);
     while (wb_cells_lines_next(&reading->lines, &line, &n)) {
         if (wb_cells_blank(line, n, reading->delimiter)) {
             reading->take->empty_rows++;
@@ -444,42 +430,34 @@ static struct slot *find_slot(const struct reading *reading, uint64_t key)
     return &reading->slots[at];
 }
 
-static bool grow_slots(struct reading *reading)
+static void grow_slots(struct reading *reading)
 {
     if (2 * (reading->take->n_points + 1) <= reading->n_slots)
-        return true;
+        return;
     struct reading larger = {.n_slots = reading->n_slots ? 2 * reading->n_slots : 1024};
-    larger.slots = calloc(larger.n_slots, sizeof *larger.slots);
-    if (!larger.slots)
-        return false;
+    larger.slots = wb_memory_new(larger.n_slots, sizeof *larger.slots);
     for (size_t i = 0; i < reading->n_slots; i++)
         if (reading->slots[i].used)
             *find_slot(&larger, reading->slots[i].key) = reading->slots[i];
     free(reading->slots);
     reading->slots = larger.slots;
     reading->n_slots = larger.n_slots;
-    return true;
 }
 
-static bool point_of_id(struct reading *reading, int32_t id, const char *name, size_t n_name,
-                        uint32_t *point)
+static uint32_t point_of_id(struct reading *reading, int32_t id, const char *name, size_t n_name)
 {
-    if (!grow_slots(reading))
-        return false;
+    grow_slots(reading);
     struct slot *const slot = find_slot(reading, (uint64_t)(uint32_t)id + 1);
     if (!slot->used) {
         char text[80], given[64];
         wb_take_copy_name(given, sizeof given, name, n_name);
         snprintf(text, sizeof text, "%s%s%d", given, given[0] ? ":" : "Unlabeled ", id);
-        const long added = wb_take_add_point(
+        const size_t added = wb_take_add_point(
             reading->take, given[0] ? WB_TAKE_MARKER : WB_TAKE_UNLABELLED, text, strlen(text));
-        if (added < 0)
-            return false;
         *slot = (struct slot){
             .key = (uint64_t)(uint32_t)id + 1, .point = (uint32_t)added, .used = true};
     }
-    *point = slot->point;
-    return true;
+    return slot->point;
 }
 
 static enum wb_status need_count(struct reading *reading, struct wb_cells *cells, const char *what,
@@ -526,7 +504,6 @@ static enum wb_status read_markers(struct reading *reading, struct wb_cells *cel
     for (size_t i = 0; i < n_markers; i++) {
         double position[3];
         int32_t id;
-        uint32_t point;
         for (int k = 0; k < 3; k++) {
             if (!wb_cells_next(cells, &cell, &n))
                 return refuse(reading, cells->column, "the row ends within marker %zu of %zu",
@@ -541,8 +518,7 @@ static enum wb_status read_markers(struct reading *reading, struct wb_cells *cel
         n_name = 0;
         if (named && !wb_cells_next(cells, &name, &n_name))
             n_name = 0;
-        if (!point_of_id(reading, id, name, n_name, &point) || !add_point(reading, point, position))
-            return no_memory(reading);
+        add_point(reading, point_of_id(reading, id, name, n_name), position);
     }
     return WB_OK;
 }
@@ -573,8 +549,7 @@ static enum wb_status read_frame(struct reading *reading, struct wb_cells *cells
         wb_take_skip(reading->take, reading->lines.number);
         return WB_OK;
     }
-    if (!wb_take_add_frame(reading->take, number, t))
-        return no_memory(reading);
+    wb_take_add_frame(reading->take, number, t);
     return read_markers(reading, cells, n_markers);
 }
 
@@ -683,8 +658,7 @@ static bool is_motive_csv(const uint8_t *bytes, size_t n)
     char delimiter;
     bool with_columns;
     /* What the first line is shows in its first bytes. */
-    if (!wb_cells_lines_begin(&lines, bytes, n < 4096 ? n : 4096))
-        return false;
+    wb_cells_lines_begin(&lines, bytes, n < 4096 ? n : 4096);
     const bool is = first_line(&lines, &line, &n_line, &delimiter, &with_columns);
     wb_cells_lines_release(&lines);
     return is;
@@ -698,8 +672,7 @@ static enum wb_status read_motive_csv(struct wb_take *take, const char *name, co
     size_t n_line;
     bool with_columns;
     memset(take, 0, sizeof *take);
-    if (!wb_cells_lines_begin(&reading.lines, bytes, n))
-        return no_memory(&reading);
+    wb_cells_lines_begin(&reading.lines, bytes, n);
     enum wb_status status;
     if (!first_line(&reading.lines, &line, &n_line, &reading.delimiter, &with_columns)) {
         status = refuse(&reading, 1, "%s", "expected 'Format Version' or 'comment'");

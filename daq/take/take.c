@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "take"
@@ -81,19 +82,13 @@ size_t wb_take_frame_at(const struct wb_take *take, size_t frame, struct wb_moca
 /* --- for readers --- */
 
 /* Makes room for `more` items after `n`. */
-static bool reserve(void **items, size_t *capacity, size_t n, size_t more, size_t size)
+static void reserve(void **items, size_t *capacity, size_t n, size_t more, size_t size)
 {
     if (n + more <= *capacity)
-        return true;
-    size_t larger = *capacity ? *capacity + *capacity / 2 : 256;
-    if (larger < n + more)
-        larger = n + more;
-    void *const grown = realloc(*items, larger * size);
-    if (!grown)
-        return false;
-    *items = grown;
-    *capacity = larger;
-    return true;
+        return;
+    const size_t larger = *capacity ? *capacity + *capacity / 2 : 256;
+    *capacity = larger < n + more ? n + more : larger;
+    *items = wb_memory_resize(*items, *capacity, size);
 }
 
 #define RESERVE(which, items, n, more)                                                             \
@@ -121,37 +116,31 @@ struct wb_take_quoted wb_take_quote(const char *cell, size_t n)
     return quoted;
 }
 
-long wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n)
+size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n)
 {
-    if (take->n_points >= UINT32_MAX ||
-        !RESERVE(take->capacity[0], take->points, take->n_points, 1))
-        return -1;
+    RESERVE(take->capacity[0], take->points, take->n_points, 1);
     struct wb_take_point *const point = &take->points[take->n_points];
     *point = (struct wb_take_point){.kind = kind};
     wb_take_copy_name(point->name, sizeof point->name, name, n);
-    return (long)take->n_points++;
+    return take->n_points++;
 }
 
-bool wb_take_add_frame(struct wb_take *take, int32_t number, double t)
+void wb_take_add_frame(struct wb_take *take, int32_t number, double t)
 {
     /* One more, for the end of the last. */
-    if (!RESERVE(take->capacity[1], take->frames, take->n_frames, 2))
-        return false;
+    RESERVE(take->capacity[1], take->frames, take->n_frames, 2);
     take->frames[take->n_frames++] =
         (struct wb_take_frame){.number = number, .t = t, .first = take->n_places};
-    return true;
 }
 
-bool wb_take_add_place(struct wb_take *take, uint32_t point, const double position[3])
+void wb_take_add_place(struct wb_take *take, uint32_t point, const double position[3])
 {
-    if (!RESERVE(take->capacity[2], take->places, take->n_places, 1))
-        return false;
+    RESERVE(take->capacity[2], take->places, take->n_places, 1);
     struct wb_take_place *const place = &take->places[take->n_places++];
     place->point = point;
     for (int k = 0; k < 3; k++)
         place->position[k] = (float)position[k];
     take->points[point].n_seen++;
-    return true;
 }
 
 void wb_take_drop_frame(struct wb_take *take)
@@ -164,8 +153,7 @@ void wb_take_drop_frame(struct wb_take *take)
 float *wb_take_add_analog(struct wb_take *take, size_t n)
 {
     const size_t used = (take->n_frames > 0 ? take->n_frames - 1 : 0) * n;
-    if (!RESERVE(take->capacity[3], take->analog, used, n))
-        return NULL;
+    RESERVE(take->capacity[3], take->analog, used, n);
     return take->analog + used;
 }
 

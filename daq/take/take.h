@@ -80,15 +80,14 @@ size_t wb_take_frame_at(const struct wb_take *take, size_t frame, struct wb_moca
 
 /* --- for readers --- */
 
-/* Adds a point; its index, or -1 when out of memory. `name` need not end in NUL. */
-long wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n);
-WB_MUST_CHECK bool wb_take_add_frame(struct wb_take *take, int32_t number, double t);
+/* Adds a point; its index. `name` need not end in NUL. */
+size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n);
+void wb_take_add_frame(struct wb_take *take, int32_t number, double t);
 /* To the last frame. */
-WB_MUST_CHECK bool wb_take_add_place(struct wb_take *take, uint32_t point,
-                                     const double position[3]);
+void wb_take_add_place(struct wb_take *take, uint32_t point, const double position[3]);
 /* Takes the last frame out again. */
 void wb_take_drop_frame(struct wb_take *take);
-/* Room for so many more readings; NULL when out of memory. The caller fills them. */
+/* Room for so many more readings, which the caller fills. */
 float *wb_take_add_analog(struct wb_take *take, size_t n);
 /* Leaves a row out. */
 void wb_take_skip(struct wb_take *take, size_t line);

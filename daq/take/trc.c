@@ -33,11 +33,6 @@ struct reading {
     wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s:%zu: column %zu: " format, (reading)->name,      \
                (reading)->lines.number, (size_t)(column), __VA_ARGS__)
 
-static enum wb_status no_memory(const struct reading *reading)
-{
-    return wb_fail_to(reading->why, WB_ERR_MEMORY, "%s: out of memory", reading->name);
-}
-
 /* The next line that is not empty. */
 static enum wb_status need_line(struct reading *reading, const char *what, const char **line,
                                 size_t *n)
@@ -122,11 +117,10 @@ static enum wb_status read_names(struct reading *reading)
     while (wb_cells_next(&cells, &cell, &n_cell)) {
         if (n_cell == 0)
             continue;
-        if (wb_take_add_point(reading->take,
-                              wb_cells_begins(cell, n_cell, "Unlabeled") ? WB_TAKE_UNLABELLED
-                                                                         : WB_TAKE_MARKER,
-                              cell, n_cell) < 0)
-            return no_memory(reading);
+        wb_take_add_point(reading->take,
+                          wb_cells_begins(cell, n_cell, "Unlabeled") ? WB_TAKE_UNLABELLED
+                                                                     : WB_TAKE_MARKER,
+                          cell, n_cell);
     }
     if (reading->take->n_points != reading->n_markers)
         return refuse(reading, cells.column, "%zu names of markers, but NumMarkers is %zu",
@@ -220,15 +214,14 @@ static enum wb_status read_row(struct reading *reading, const char *line, size_t
         wb_take_skip(take, reading->lines.number);
         return WB_OK;
     }
-    if (!wb_take_add_frame(take, number, t))
-        return no_memory(reading);
+    wb_take_add_frame(take, number, t);
     bool whole = true;
     int there = 3;
     for (size_t i = 0; i < reading->n_markers && whole; i++) {
         double position[3];
         WB_TRY(read_marker(reading, &cells, position, &whole, &there));
-        if (whole && is_seen(position) && !wb_take_add_place(take, (uint32_t)i, position))
-            return no_memory(reading);
+        if (whole && is_seen(position))
+            wb_take_add_place(take, (uint32_t)i, position);
     }
     const char *cell;
     size_t n_cell;
@@ -281,8 +274,7 @@ static bool begins(struct wb_cells_lines *lines)
 static bool is_trc(const uint8_t *bytes, size_t n)
 {
     struct wb_cells_lines lines;
-    if (!wb_cells_lines_begin(&lines, bytes, n < 4096 ? n : 4096))
-        return false;
+    wb_cells_lines_begin(&lines, bytes, n < 4096 ? n : 4096);
     const bool is = begins(&lines);
     wb_cells_lines_release(&lines);
     return is;
@@ -305,8 +297,7 @@ static enum wb_status read_trc(struct wb_take *take, const char *name, const uin
 {
     struct reading reading = {.take = take, .name = name, .why = why};
     memset(take, 0, sizeof *take);
-    if (!wb_cells_lines_begin(&reading.lines, bytes, n))
-        return no_memory(&reading);
+    wb_cells_lines_begin(&reading.lines, bytes, n);
     const enum wb_status status = read_all(&reading);
     wb_cells_lines_release(&reading.lines);
     if (status != WB_OK)

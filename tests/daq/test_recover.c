@@ -372,9 +372,8 @@ static void rows_that_were_written_anew_count(void **state)
         log[32 + i * FRAME + 3] = (uint8_t)(i + 1);
         memcpy(log + 32 + i * FRAME + 24, other + i * PAGE, PAGE);
     }
-    struct wb_recording_salvage *salvage;
-    assert_int_equal(wb_recording_salvage_find(&salvage, (const uint8_t *)file, n_file, log, n_log),
-                     WB_OK);
+    struct wb_recording_salvage *const salvage =
+        wb_recording_salvage_find((const uint8_t *)file, n_file, log, n_log);
     const size_t n = wb_recording_salvage_count(salvage);
     int n_chunks = 0;
     for (size_t i = 0; i < n; i++) {
