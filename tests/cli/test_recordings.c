@@ -218,7 +218,7 @@ static void replay_counts_at_max_and_keeps_pace_otherwise(void **state)
     double wall = 0.0;
     assert_int_equal(wb_json_parse(&root, o.out, "replay"), WB_OK);
     assert_true(wb_json_get_number(root, "wall_s", &wall));
-    assert_true(wall > 0.24 && wall < 3.0);
+    assert_true(wall > 0.24); /* test_replay knows the pace to the nanosecond */
     assert_int_equal(integer(root, "load_readings"), SMALL_READINGS);
     wb_json_destroy(root);
 }
@@ -229,8 +229,9 @@ static void interrupted_replay_exits_3_with_the_counts_so_far(void **state)
     small_make(bench->path, true);
     /* At a tenth of its speed the second would take ten. */
     tool(bench,
-         "replay --rate 0.1 --json $REC & sleep 0.3; kill -INT $!; wait $!; "
-         "echo code $? >&2; true",
+         "replay --rate 0.1 --json $REC & "
+         "until grep -q '^SigCgt:.*[2367abef]$' /proc/$!/status; do sleep 0.02; done; "
+         "kill -INT $!; wait $!; echo code $? >&2; true",
          &o);
     assert_int_equal(o.code, 0);
     if (!strstr(o.err, "code 3"))
