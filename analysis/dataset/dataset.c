@@ -8,6 +8,7 @@
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/dataset_private.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -76,15 +77,12 @@ bool wb_dataset_is_complete(const struct wb_dataset *dataset)
     return wb_json_get_boolean(dataset->document, "complete", &complete) && complete;
 }
 
-enum wb_status wb_dataset_init(struct wb_dataset *dataset)
+void wb_dataset_init(struct wb_dataset *dataset)
 {
     memset(dataset, 0, sizeof *dataset);
     dataset->info.rest_level = (double)NAN;
-    dataset->document = wb_json_create();
-    if (!dataset->document)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a dataset");
+    dataset->document = wb_memory_need(wb_json_create());
     wb_json_set_integer(dataset->document, "schema", SCHEMA);
-    return WB_OK;
 }
 
 void wb_dataset_release(struct wb_dataset *dataset)
@@ -101,32 +99,19 @@ static void *grown(void *rows, size_t n, size_t row_size)
 {
     if (n != 0 && (n & (n - 1)) != 0)
         return rows;
-    const size_t capacity = n == 0 ? 1 : 2 * n;
-    if (capacity > SIZE_MAX / row_size)
-        return NULL;
-    return realloc(rows, capacity * row_size);
+    return wb_memory_resize(rows, n == 0 ? 1 : 2 * n, row_size);
 }
 
-enum wb_status wb_dataset_add_row(struct wb_dataset *dataset, const struct wb_row *row)
+void wb_dataset_add_row(struct wb_dataset *dataset, const struct wb_row *row)
 {
-    struct wb_row *const rows = grown(dataset->rows, dataset->n_rows, sizeof *rows);
-    if (!rows)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", dataset->n_rows + 1);
-    dataset->rows = rows;
-    rows[dataset->n_rows++] = *row;
-    return WB_OK;
+    dataset->rows = grown(dataset->rows, dataset->n_rows, sizeof *row);
+    dataset->rows[dataset->n_rows++] = *row;
 }
 
-enum wb_status wb_dataset_add_shape_row(struct wb_dataset *dataset, const struct wb_shape_row *row)
+void wb_dataset_add_shape_row(struct wb_dataset *dataset, const struct wb_shape_row *row)
 {
-    struct wb_shape_row *const rows =
-        grown(dataset->shape_rows, dataset->n_shape_rows, sizeof *rows);
-    if (!rows)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu shape rows",
-                       dataset->n_shape_rows + 1);
-    dataset->shape_rows = rows;
-    rows[dataset->n_shape_rows++] = *row;
-    return WB_OK;
+    dataset->shape_rows = grown(dataset->shape_rows, dataset->n_shape_rows, sizeof *row);
+    dataset->shape_rows[dataset->n_shape_rows++] = *row;
 }
 
 /* --- dataset.json: the typed part --- */
@@ -585,7 +570,7 @@ enum wb_status wb_dataset_parse_rows(struct wb_dataset *dataset, const char *pat
                              .tip_x = (double)NAN,
                              .tip_angle = (double)NAN};
         WB_TRY(parse_line(&reader, line, &row));
-        WB_TRY(wb_dataset_add_row(dataset, &row));
+        wb_dataset_add_row(dataset, &row);
     }
     return WB_OK;
 }
@@ -599,7 +584,7 @@ enum wb_status wb_dataset_parse_shapes(struct wb_dataset *dataset, const char *p
     while ((line = next_line(&reader))) {
         struct wb_shape_row row = {.z = (double)NAN};
         WB_TRY(parse_line(&reader, line, &row));
-        WB_TRY(wb_dataset_add_shape_row(dataset, &row));
+        wb_dataset_add_shape_row(dataset, &row);
     }
     return WB_OK;
 }

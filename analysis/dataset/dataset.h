@@ -103,7 +103,7 @@ double wb_dataset_bow(const struct wb_test_info *info);
 double wb_dataset_natural_curvature(void *context, double arc_length);
 
 /* Makes an empty dataset with a fresh document; release with wb_dataset_release(). */
-WB_MUST_CHECK enum wb_status wb_dataset_init(struct wb_dataset *dataset);
+void wb_dataset_init(struct wb_dataset *dataset);
 void wb_dataset_release(struct wb_dataset *dataset); /* accepts a zeroed one */
 
 /* Whether nothing was missing or cut short, as the document has it (see analysis/align.h); false
@@ -111,10 +111,8 @@ void wb_dataset_release(struct wb_dataset *dataset); /* accepts a zeroed one */
 bool wb_dataset_is_complete(const struct wb_dataset *dataset);
 
 /* Appends a row; doubles the memory as needed. */
-WB_MUST_CHECK enum wb_status wb_dataset_add_row(struct wb_dataset *dataset,
-                                                const struct wb_row *row);
-WB_MUST_CHECK enum wb_status wb_dataset_add_shape_row(struct wb_dataset *dataset,
-                                                      const struct wb_shape_row *row);
+void wb_dataset_add_row(struct wb_dataset *dataset, const struct wb_row *row);
+void wb_dataset_add_shape_row(struct wb_dataset *dataset, const struct wb_shape_row *row);
 
 /* Reads or writes a folder. Writing makes it (refused when not empty unless `force`) and writes
  * each file atomically, dataset.json last: a folder that has it is whole. Reading errors name file,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/dataset/csv_table.h"
+#include "base/memory.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "fields"
@@ -60,19 +61,11 @@ enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double
     if (n_faces < 1 || n_faces > MOST_FACES)
         return wb_fail_to(why, WB_ERR_ARGUMENT, "%d faces in a field: expected 1 to %d", n_faces,
                           MOST_FACES);
-    struct wb_field *const items =
-        realloc(fields->items, (size_t)(fields->n + 1) * sizeof *fields->items);
-    if (!items)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d fields", fields->n + 1);
-    fields->items = items;
-
-    struct wb_field *const added = &items[fields->n];
+    fields->items = wb_memory_resize(fields->items, (size_t)fields->n + 1, sizeof *fields->items);
+    struct wb_field *const added = &fields->items[fields->n++];
     *added = (struct wb_field){.x = x, .n_faces = n_faces};
     strcpy(added->state, state);
-    added->faces = calloc((size_t)n_faces, sizeof *added->faces);
-    if (!added->faces)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d faces", n_faces);
-    fields->n++;
+    added->faces = wb_memory_new((size_t)n_faces, sizeof *added->faces);
     *field = added;
     return WB_OK;
 }
@@ -201,18 +194,14 @@ static enum wb_status parse_row(const struct wb_csv_table *table, char *const *f
 }
 
 /* Makes room for one more face in the last field. */
-static enum wb_status add_face(struct reader *reader, struct wb_field *field)
+static void add_face(struct reader *reader, struct wb_field *field)
 {
     if (field->n_faces == reader->capacity) {
-        const int capacity = 2 * reader->capacity;
-        struct wb_field_face *const faces = realloc(field->faces, (size_t)capacity * sizeof *faces);
-        if (!faces)
-            return wb_fail_to(reader->table.why, WB_ERR_MEMORY, "no memory for %d faces", capacity);
-        field->faces = faces;
-        reader->capacity = capacity;
+        reader->capacity *= 2;
+        field->faces =
+            wb_memory_resize(field->faces, (size_t)reader->capacity, sizeof *field->faces);
     }
     field->n_faces++;
-    return WB_OK;
 }
 
 static bool has_field(const struct wb_fields *fields, const struct row *row)
@@ -242,7 +231,7 @@ static enum wb_status take_row(struct reader *reader, const struct row *row, int
         WB_TRY(wb_fields_add(fields, row->state, row->x, 1, &field, reader->table.why));
         reader->capacity = 1;
     } else if (expected == 0) {
-        WB_TRY(add_face(reader, field));
+        add_face(reader, field);
     }
 
     struct wb_field_face *const face = &field->faces[field->n_faces - 1];

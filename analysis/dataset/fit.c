@@ -6,6 +6,8 @@
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_multifit.h>
 
+#include "base/memory.h"
+
 bool wb_fit_line(const double *x, const double *y, size_t n, struct wb_fit_line *line)
 {
     double c00, c01, c11, squares;
@@ -22,24 +24,21 @@ bool wb_fit_parabola(const double *x, const double *y, size_t n, double c[3], do
 {
     if (n < 4)
         return false;
-    gsl_matrix *const design = gsl_matrix_alloc(n, 3);
-    gsl_matrix *const covariance = gsl_matrix_alloc(3, 3);
-    gsl_multifit_linear_workspace *const work = gsl_multifit_linear_alloc(n, 3);
+    gsl_matrix *const design = wb_memory_need(gsl_matrix_alloc(n, 3));
+    gsl_matrix *const covariance = wb_memory_need(gsl_matrix_alloc(3, 3));
+    gsl_multifit_linear_workspace *const work = wb_memory_need(gsl_multifit_linear_alloc(n, 3));
     gsl_vector_view coefficients = gsl_vector_view_array(c, 3);
     gsl_vector_const_view values = gsl_vector_const_view_array(y, n);
-    bool fitted = false;
-    if (design && covariance && work) {
-        for (size_t i = 0; i < n; i++) {
-            gsl_matrix_set(design, i, 0, 1.0);
-            gsl_matrix_set(design, i, 1, x[i]);
-            gsl_matrix_set(design, i, 2, x[i] * x[i]);
-        }
-        double squares;
-        fitted = gsl_multifit_linear(design, &values.vector, &coefficients.vector, covariance,
-                                     &squares, work) == GSL_SUCCESS &&
-                 isfinite(c[0]) && isfinite(c[1]) && isfinite(c[2]);
-        *deviation = sqrt(gsl_matrix_get(covariance, 0, 0));
+    double squares;
+    for (size_t i = 0; i < n; i++) {
+        gsl_matrix_set(design, i, 0, 1.0);
+        gsl_matrix_set(design, i, 1, x[i]);
+        gsl_matrix_set(design, i, 2, x[i] * x[i]);
     }
+    const bool fitted = gsl_multifit_linear(design, &values.vector, &coefficients.vector,
+                                            covariance, &squares, work) == GSL_SUCCESS &&
+                        isfinite(c[0]) && isfinite(c[1]) && isfinite(c[2]);
+    *deviation = sqrt(gsl_matrix_get(covariance, 0, 0));
     gsl_multifit_linear_free(work);
     gsl_matrix_free(covariance);
     gsl_matrix_free(design);

@@ -5,6 +5,7 @@
 #include <hdf5.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "hdf5"
 
@@ -123,11 +124,11 @@ static bool put_all(hid_t file, const struct wb_columns *tables, int n, const ch
     return good && H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
 }
 
-/* The file's bytes, allocated; NULL without memory. */
+/* The file's bytes, allocated; NULL where HDF5 cannot make them. */
 static void *take_image(hid_t file, size_t *size)
 {
     const ssize_t found = H5Fget_file_image(file, NULL, 0);
-    void *const image = found > 0 ? malloc((size_t)found) : NULL;
+    void *const image = found > 0 ? wb_memory_new((size_t)found, 1) : NULL;
     if (image && H5Fget_file_image(file, image, (size_t)found) == found) {
         *size = (size_t)found;
         return image;

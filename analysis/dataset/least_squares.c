@@ -6,6 +6,8 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 
+#include "base/memory.h"
+
 static void silence_gsl(void)
 {
     gsl_set_error_handler_off();
@@ -19,8 +21,8 @@ gsl_multifit_nlinear_workspace *wb_least_squares_create(int n_residuals, int n_f
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
     parameters.trs = gsl_multifit_nlinear_trs_dogleg;
     parameters.scale = gsl_multifit_nlinear_scale_levenberg;
-    return gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, (size_t)n_residuals,
-                                      (size_t)n_free);
+    return wb_memory_need(gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters,
+                                                     (size_t)n_residuals, (size_t)n_free));
 }
 
 bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *w,

@@ -12,7 +12,7 @@
 
 /* A workspace of Powell's dogleg in a trust region with Levenberg's scaling, which takes the
  * free numbers as they are scaled by the caller, with GSL's errors returned instead of ending the
- * program. NULL: no memory; release with gsl_multifit_nlinear_free(). */
+ * program. Release with gsl_multifit_nlinear_free(). */
 gsl_multifit_nlinear_workspace *wb_least_squares_create(int n_residuals, int n_free);
 
 struct wb_least_squares_search {

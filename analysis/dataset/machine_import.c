@@ -9,6 +9,7 @@
 #include "base/compress.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "daq/take/table_columns.h"
@@ -106,7 +107,8 @@ static enum wb_status take_row(struct import *import, size_t index)
                           "order",
                           path, import->table.lines[index], columns->column[WB_MEASURED_TIME] + 1,
                           import->dataset->rows[n - 1].t, row.t);
-    return wb_dataset_add_row(import->dataset, &row);
+    wb_dataset_add_row(import->dataset, &row);
+    return WB_OK;
 }
 
 /* --- signs, times, phases --- */
@@ -212,16 +214,14 @@ static int by_size(const void *a, const void *b)
 }
 
 /* A pause of the machine looks the same as rows that are lost; both are told. */
-static enum wb_status count_gaps(struct import *import)
+static void count_gaps(struct import *import)
 {
     const struct wb_dataset *const dataset = import->dataset;
     struct wb_machine_import_report *const report = &import->report;
     const size_t n = dataset->n_rows - 1;
     if (import->columns.column[WB_MEASURED_TIME] < 0)
-        return WB_OK;
-    double *const steps = malloc(n * sizeof *steps);
-    if (!steps)
-        return wb_fail_to(import->why, WB_ERR_MEMORY, "out of memory for %zu rows", n);
+        return;
+    double *const steps = wb_memory_new(n, sizeof *steps);
     for (size_t i = 0; i < n; i++)
         steps[i] = dataset->rows[i + 1].t - dataset->rows[i].t;
     qsort(steps, n, sizeof *steps, by_size);
@@ -233,7 +233,6 @@ static enum wb_status count_gaps(struct import *import)
         }
     }
     free(steps);
-    return WB_OK;
 }
 
 /* --- the document --- */
@@ -351,7 +350,7 @@ static enum wb_status fill(struct import *import)
     WB_TRY(turn_signs(import));
     WB_TRY(take_times(import));
     cut_phases(dataset);
-    WB_TRY(count_gaps(import));
+    count_gaps(import);
     set_info(import);
     zero_force(dataset);
     set_document(import);
@@ -370,7 +369,7 @@ enum wb_status wb_machine_import(struct wb_dataset *dataset, const void *bytes, 
     import.bytes = size;
     import.why = why;
     wb_hash_bytes(bytes, size, import.hash);
-    WB_TRY(wb_dataset_init(&made));
+    wb_dataset_init(&made);
     enum wb_status status =
         wb_text_table_parse(&import.table, bytes, size, from->path, from->form, why);
     if (status == WB_OK)

@@ -10,9 +10,8 @@
 static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
 static const double shortest_row = 1e-3; /* s */
 
-enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row,
-                                    const double *before, const double *tip,
-                                    const struct wb_simulated_shape *shape)
+void wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row, const double *before,
+                          const double *tip, const struct wb_simulated_shape *shape)
 {
     row.t = 0.0;
     if (before) {
@@ -21,7 +20,7 @@ enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row ro
     }
     row.stage = (double)NAN;
     row.tip_x = tip[0];
-    WB_TRY(wb_dataset_add_row(dataset, &row));
+    wb_dataset_add_row(dataset, &row);
     for (int k = 0; k < shape->n; k++) {
         const struct wb_shape_row marker = {
             .t = row.t,
@@ -32,9 +31,8 @@ enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row ro
             .y = shape->place[k][1],
             .z = shape->place[k][2],
         };
-        WB_TRY(wb_dataset_add_shape_row(dataset, &marker));
+        wb_dataset_add_shape_row(dataset, &marker);
     }
-    return WB_OK;
 }
 
 void wb_simulated_describe_tool(struct wb_json *document)
@@ -45,8 +43,8 @@ void wb_simulated_describe_tool(struct wb_json *document)
     wb_json_set_text(tool, "revision", wb_version_revision());
 }
 
-static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_loading_steps *loading,
-                               const double *shape_s)
+static void add_rows(struct wb_dataset *dataset, const struct wb_loading_steps *loading,
+                     const double *shape_s)
 {
     double travelled = 0.0;
 
@@ -65,7 +63,7 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_loadi
             .tip_x = row->point.tip_x,
             .tip_angle = row->point.tip_angle,
         };
-        WB_TRY(wb_dataset_add_row(dataset, &out));
+        wb_dataset_add_row(dataset, &out);
 
         for (int k = 0; k < loading->n_shape; k++) {
             const size_t at = (size_t)i * (size_t)loading->n_shape + (size_t)k;
@@ -77,10 +75,9 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_loadi
                 .x = loading->shape_x[at],
                 .y = loading->shape_y[at],
             };
-            WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
+            wb_dataset_add_shape_row(dataset, &shape);
         }
     }
-    return WB_OK;
 }
 
 /* The numbers of the law that was computed with: Ludwik's four, or the parts. */
@@ -153,21 +150,19 @@ static void describe(struct wb_json *document, const struct wb_test_info *info, 
     wb_simulated_describe_tool(document);
 }
 
-enum wb_status wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,
-                                 const struct wb_loading_steps *loading, const double *shape_s,
-                                 const struct wb_simulated_origin *origin)
+void wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,
+                       const struct wb_loading_steps *loading, const double *shape_s,
+                       const struct wb_simulated_origin *origin)
 {
     dataset->info = *info;
     dataset->info.is_simulation = true;
-    WB_TRY(add_rows(dataset, loading, shape_s));
+    add_rows(dataset, loading, shape_s);
     describe(dataset->document, info, loading->converged, loading->zero_force, origin);
-    return WB_OK;
 }
 
-enum wb_status wb_simulated_fill_three_point(struct wb_dataset *dataset,
-                                             const struct wb_test_info *info,
-                                             const struct wb_simulated_bending *bending,
-                                             const struct wb_simulated_origin *origin)
+void wb_simulated_fill_three_point(struct wb_dataset *dataset, const struct wb_test_info *info,
+                                   const struct wb_simulated_bending *bending,
+                                   const struct wb_simulated_origin *origin)
 {
     double travelled = 0.0;
 
@@ -188,8 +183,7 @@ enum wb_status wb_simulated_fill_three_point(struct wb_dataset *dataset,
             .tip_x = (double)NAN,
             .tip_angle = (double)NAN,
         };
-        WB_TRY(wb_dataset_add_row(dataset, &out));
+        wb_dataset_add_row(dataset, &out);
     }
     describe(dataset->document, info, bending->converged, (double)NAN, origin);
-    return WB_OK;
 }

@@ -45,18 +45,15 @@ struct wb_simulated_bending {
 };
 
 /* Fills an initialised dataset. `shape_s` are the arc lengths of the plan, m. */
-WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
-                                               const struct wb_test_info *info,
-                                               const struct wb_loading_steps *loading,
-                                               const double *shape_s,
-                                               const struct wb_simulated_origin *origin);
+void wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,
+                       const struct wb_loading_steps *loading, const double *shape_s,
+                       const struct wb_simulated_origin *origin);
 
 /* The same of three-point bending: `info` is of that kind, with its machine. Rows are those of a
  * testing machine, deflection the travel. */
-WB_MUST_CHECK enum wb_status
-wb_simulated_fill_three_point(struct wb_dataset *dataset, const struct wb_test_info *info,
-                              const struct wb_simulated_bending *bending,
-                              const struct wb_simulated_origin *origin);
+void wb_simulated_fill_three_point(struct wb_dataset *dataset, const struct wb_test_info *info,
+                                   const struct wb_simulated_bending *bending,
+                                   const struct wb_simulated_origin *origin);
 
 /* A shape in space: n places (m) at the arc lengths s (m). */
 struct wb_simulated_shape {
@@ -68,9 +65,8 @@ struct wb_simulated_shape {
 /* Appends a row of a free tip at that place (m), and its shape as that of n markers. Bench time
  * goes on from the row before by the tip's way from `before` (NULL: of the first row), at least 1
  * ms. The caller leaves time and tip_x to it. */
-WB_MUST_CHECK enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row,
-                                                  const double *before, const double *tip,
-                                                  const struct wb_simulated_shape *shape);
+void wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row, const double *before,
+                          const double *tip, const struct wb_simulated_shape *shape);
 
 /* dataset.json's `tool`: this program. */
 void wb_simulated_describe_tool(struct wb_json *document);
@@ -95,7 +91,6 @@ struct wb_simulated_wire {
 /* Fills an initialised dataset with a computed wire. Bench time grows with the tip's way, by at
  * least 1 ms a row. dataset.json's `simulation` says how the wire was computed and with which
  * materials; its `steps` name the row with which each step of the model ended. */
-WB_MUST_CHECK enum wb_status wb_simulated_fill_wire(struct wb_dataset *dataset,
-                                                    const struct wb_simulated_wire *wire);
+void wb_simulated_fill_wire(struct wb_dataset *dataset, const struct wb_simulated_wire *wire);
 
 #endif

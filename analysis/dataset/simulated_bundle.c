@@ -18,7 +18,7 @@ static const double poissons_ratio = 0.3; /* of the homogenised beam, as the pap
 
 /* --- rows --- */
 
-static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundle_result *result)
+static void add_rows(struct wb_dataset *dataset, const struct wb_bundle_result *result)
 {
     for (int i = 0; i < result->n_rows; i++) {
         const struct wb_bundle_row *const row = &result->rows[i];
@@ -35,10 +35,9 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundl
             .force = row->force,
             .tip_angle = row->tip_angle,
         };
-        WB_TRY(wb_simulated_add_row(dataset, out, i > 0 ? result->rows[i - 1].tip : NULL, row->tip,
-                                    &shape));
+        wb_simulated_add_row(dataset, out, i > 0 ? result->rows[i - 1].tip : NULL, row->tip,
+                             &shape);
     }
-    return WB_OK;
 }
 
 static void set_info(struct wb_test_info *info, const struct wb_bundle_model *model)
@@ -218,8 +217,7 @@ struct wb_json *wb_simulated_bundle_begin(struct wb_dataset *dataset,
     return simulation;
 }
 
-enum wb_status wb_simulated_bundle_fill(struct wb_dataset *dataset,
-                                        const struct wb_simulated_bundle *bundle)
+void wb_simulated_bundle_fill(struct wb_dataset *dataset, const struct wb_simulated_bundle *bundle)
 {
     const struct wb_simulated_bundle_head head = {
         .name = "simulated bundle",
@@ -234,7 +232,7 @@ enum wb_status wb_simulated_bundle_fill(struct wb_dataset *dataset,
         wb_json_set_number(simulation, "surface_deflection_mm", bundle->surface_deflection / WB_MM);
     wb_simulated_bundle_describe(simulation, bundle);
     wb_simulated_describe_tool(dataset->document);
-    return add_rows(dataset, bundle->result);
+    add_rows(dataset, bundle->result);
 }
 
 /* --- energies.csv --- */

@@ -12,7 +12,7 @@
 
 static const double n_mm2 = 1e-6; /* N m2 */
 
-static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_section_run *run)
+static void add_rows(struct wb_dataset *dataset, const struct wb_section_run *run)
 {
     double before[3] = {0.0, 0.0, 0.0};
 
@@ -32,11 +32,10 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_secti
             .force = row->force,
             .tip_angle = row->point.tip_angle,
         };
-        WB_TRY(wb_simulated_add_row(dataset, out, i > 0 ? before : NULL, tip, &shape));
+        wb_simulated_add_row(dataset, out, i > 0 ? before : NULL, tip, &shape);
         for (int k = 0; k < 3; k++)
             before[k] = tip[k];
     }
-    return WB_OK;
 }
 
 /* --- dataset.json --- */
@@ -120,8 +119,8 @@ void wb_simulated_section_describe(struct wb_json *object,
     wb_json_set_number(object, "cpu_s", section->cpu);
 }
 
-enum wb_status wb_simulated_section_fill(struct wb_dataset *dataset,
-                                         const struct wb_simulated_section *section)
+void wb_simulated_section_fill(struct wb_dataset *dataset,
+                               const struct wb_simulated_section *section)
 {
     const struct wb_simulated_bundle_head head = {
         .name = "simulated bundle, section model",
@@ -132,7 +131,7 @@ enum wb_status wb_simulated_section_fill(struct wb_dataset *dataset,
 
     wb_simulated_section_describe(wb_simulated_bundle_begin(dataset, &head), section);
     wb_simulated_describe_tool(dataset->document);
-    return add_rows(dataset, section->run);
+    add_rows(dataset, section->run);
 }
 
 /* --- energies.csv --- */

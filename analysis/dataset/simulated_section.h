@@ -23,8 +23,8 @@ struct wb_simulated_section {
 };
 
 /* Fills an initialised dataset, of the homogenised beam's test as that of an explicit bundle. */
-WB_MUST_CHECK enum wb_status wb_simulated_section_fill(struct wb_dataset *dataset,
-                                                       const struct wb_simulated_section *section);
+void wb_simulated_section_fill(struct wb_dataset *dataset,
+                               const struct wb_simulated_section *section);
 
 /* Writes energies.csv into the folder of the dataset that was filled from the same run. */
 WB_MUST_CHECK enum wb_status

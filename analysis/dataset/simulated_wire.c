@@ -17,7 +17,7 @@ static const char *const kind_names[] = {
     [WB_WIRE_STEP_RELEASE] = "release",
 };
 
-static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_wire_run *run)
+static void add_rows(struct wb_dataset *dataset, const struct wb_wire_run *run)
 {
     for (int i = 0; i < run->n_rows; i++) {
         const struct wb_wire_row *const row = &run->rows[i];
@@ -34,10 +34,8 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_wire_
             .force = row->force,
             .tip_angle = row->tip_angle,
         };
-        WB_TRY(wb_simulated_add_row(dataset, out, i > 0 ? run->rows[i - 1].tip : NULL, row->tip,
-                                    &shape));
+        wb_simulated_add_row(dataset, out, i > 0 ? run->rows[i - 1].tip : NULL, row->tip, &shape);
     }
-    return WB_OK;
 }
 
 static void set_info(struct wb_test_info *info, const struct wb_wire_model *model)
@@ -203,11 +201,9 @@ static void describe(struct wb_dataset *dataset, const struct wb_simulated_wire 
     wb_simulated_describe_tool(document);
 }
 
-enum wb_status wb_simulated_fill_wire(struct wb_dataset *dataset,
-                                      const struct wb_simulated_wire *wire)
+void wb_simulated_fill_wire(struct wb_dataset *dataset, const struct wb_simulated_wire *wire)
 {
     set_info(&dataset->info, wire->model);
-    WB_TRY(add_rows(dataset, wire->run));
+    add_rows(dataset, wire->run);
     describe(dataset, wire);
-    return WB_OK;
 }

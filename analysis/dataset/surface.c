@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/dataset/csv_table.h"
+#include "base/memory.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "surface"
@@ -57,8 +58,8 @@ static int pick(int k, int kept, int n, bool ends)
     return ends ? (int)lround((double)k * (n - 1) / (kept - 1)) : (int)((long)k * n / kept);
 }
 
-static enum wb_status take_body(struct wb_surface_body *body, const struct wb_bundle_fields *fields,
-                                const struct wb_bundle_fields_body *from)
+static void take_body(struct wb_surface_body *body, const struct wb_bundle_fields *fields,
+                      const struct wb_bundle_fields_body *from)
 {
     const int around = from->is_tape ? from->n_nodes : from->n_outline;
     const int most = from->is_tape ? WB_SURFACE_AROUND_TAPE : WB_SURFACE_AROUND_WIRE;
@@ -68,9 +69,8 @@ static enum wb_status take_body(struct wb_surface_body *body, const struct wb_bu
     body->closed = from->closed;
     body->n_around = around < most ? around : most;
     body->n_along = from->n_stations < most_along ? from->n_stations : most_along;
-    body->nodes = calloc((size_t)body->n_along * (size_t)body->n_around, sizeof *body->nodes);
-    if (!body->nodes)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle's surface");
+    body->nodes =
+        wb_memory_new((size_t)body->n_along * (size_t)body->n_around, sizeof *body->nodes);
     for (int j = 0; j < body->n_along; j++) {
         const int station = pick(j, body->n_along, from->n_stations, true);
         for (int k = 0; k < body->n_around; k++) {
@@ -82,24 +82,14 @@ static enum wb_status take_body(struct wb_surface_body *body, const struct wb_bu
             out->von_mises = fields->von_mises[point];
         }
     }
-    return WB_OK;
 }
 
-enum wb_status wb_surface_take(struct wb_surface *surface, const struct wb_bundle_fields *fields)
+void wb_surface_take(struct wb_surface *surface, const struct wb_bundle_fields *fields)
 {
-    enum wb_status status = WB_OK;
-
-    *surface = (struct wb_surface){0};
-    surface->bodies = calloc((size_t)fields->n_bodies + 1, sizeof *surface->bodies);
-    if (!surface->bodies)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle's surface");
-    for (int b = 0; b < fields->n_bodies && status == WB_OK; b++) {
-        surface->n++;
-        status = take_body(&surface->bodies[b], fields, &fields->bodies[b]);
-    }
-    if (status != WB_OK)
-        wb_surface_release(surface);
-    return status;
+    surface->n = fields->n_bodies;
+    surface->bodies = wb_memory_new((size_t)surface->n, sizeof *surface->bodies);
+    for (int b = 0; b < surface->n; b++)
+        take_body(&surface->bodies[b], fields, &fields->bodies[b]);
 }
 
 /* --- writing --- */
@@ -227,31 +217,22 @@ static enum wb_status begin_body(struct reader *reader, const struct row *row)
     struct wb_surface *surface = reader->surface;
 
     WB_TRY(check_last(reader));
-    struct wb_surface_body *larger =
-        realloc(surface->bodies, (size_t)(surface->n + 1) * sizeof *larger);
-    if (!larger)
-        return wb_fail_to(reader->table.why, WB_ERR_MEMORY, "no memory for a bundle's surface");
-    surface->bodies = larger;
+    surface->bodies =
+        wb_memory_resize(surface->bodies, (size_t)surface->n + 1, sizeof *surface->bodies);
     surface->bodies[surface->n++] =
         (struct wb_surface_body){.is_tape = row->is_tape, .closed = row->closed};
     reader->n_nodes = reader->capacity = 0;
     return WB_OK;
 }
 
-static enum wb_status append_to_body(struct reader *reader, struct wb_surface_body *body,
-                                     const struct wb_surface_node *node)
+static void append_to_body(struct reader *reader, struct wb_surface_body *body,
+                           const struct wb_surface_node *node)
 {
     if (reader->n_nodes == reader->capacity) {
-        const int capacity = reader->capacity ? 2 * reader->capacity : 1024;
-        struct wb_surface_node *larger =
-            realloc(body->nodes, (size_t)capacity * sizeof *body->nodes);
-        if (!larger)
-            return wb_fail_to(reader->table.why, WB_ERR_MEMORY, "no memory for a bundle's surface");
-        body->nodes = larger;
-        reader->capacity = capacity;
+        reader->capacity = reader->capacity ? 2 * reader->capacity : 1024;
+        body->nodes = wb_memory_resize(body->nodes, (size_t)reader->capacity, sizeof *body->nodes);
     }
     body->nodes[reader->n_nodes++] = *node;
-    return WB_OK;
 }
 
 /* Rows follow each other; the first station's give the number of nodes around. */
@@ -280,7 +261,8 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
         return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
                           "%s:%d: node: station %d, node %d is not the next one",
                           reader->table.path, reader->table.line, row->station, row->node);
-    return append_to_body(reader, body, &row->at);
+    append_to_body(reader, body, &row->at);
+    return WB_OK;
 }
 
 static enum wb_status take_fields(void *context, const struct wb_csv_table *table,

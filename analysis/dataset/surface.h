@@ -42,9 +42,8 @@ struct wb_surface {
 };
 
 /* The surface of a bundle's fields, with fewer stations and nodes where there are more than above.
- * On failure nothing needs a release. */
-WB_MUST_CHECK enum wb_status wb_surface_take(struct wb_surface *surface,
-                                             const struct wb_bundle_fields *fields);
+ */
+void wb_surface_take(struct wb_surface *surface, const struct wb_bundle_fields *fields);
 void wb_surface_release(struct wb_surface *surface); /* accepts a zeroed one */
 
 /* surface.csv in a dataset's folder, written whole or not at all; without a body the file is

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/material/material.h"
 
 #define WB_LOG_DOMAIN "fields"
@@ -154,9 +155,7 @@ enum wb_status wb_wire_fields_solid(struct wb_fields *fields, const struct wb_wi
     if (mesh->n_axis < 3)
         return wb_fail(WB_ERR_ARGUMENT, "the mesh is not that of a wire");
     struct solid s = {.mesh = mesh, .fields = solid};
-    s.tangent = calloc((size_t)mesh->n_axis, sizeof *s.tangent);
-    if (!s.tangent)
-        return wb_fail(WB_ERR_MEMORY, "no memory for fields");
+    s.tangent = wb_memory_new((size_t)mesh->n_axis, sizeof *s.tangent);
     const enum wb_status status = add_solid(fields, model, state, &s);
     free(s.tangent);
     return status;

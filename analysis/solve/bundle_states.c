@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "solve"
@@ -27,17 +28,6 @@ static enum wb_status take_fields(struct wb_bundle_states *states, const struct 
     return WB_OK;
 }
 
-static enum wb_status take_surface(struct wb_bundle_states *states, double deflection)
-{
-    struct wb_surface surface;
-
-    WB_TRY(wb_surface_take(&surface, &states->fields));
-    wb_surface_release(&states->surface);
-    states->surface = surface;
-    states->deflection = deflection;
-    return WB_OK;
-}
-
 static enum wb_status take(struct wb_bundle_states *states, int number,
                            const struct wb_bundle_row *row, const struct wb_bundle *bundle)
 {
@@ -50,8 +40,11 @@ static enum wb_status take(struct wb_bundle_states *states, int number,
     if (!surface && !vtk)
         return WB_OK;
     WB_TRY(take_fields(states, bundle));
-    if (surface)
-        WB_TRY(take_surface(states, row->deflection));
+    if (surface) {
+        wb_surface_release(&states->surface);
+        wb_surface_take(&states->surface, &states->fields);
+        states->deflection = row->deflection;
+    }
     return vtk ? wb_bundle_vtk_add(states->series, row->time, row->deflection, &states->fields)
                : WB_OK;
 }
@@ -81,11 +74,8 @@ static void visit_body(struct wb_surface_body *body, struct wb_checkpoint *c)
     if (c->status != WB_OK)
         return;
     const size_t size = (size_t)body->n_around * (size_t)body->n_along * sizeof *body->nodes;
-    if (c->restores) {
-        body->nodes = calloc(size > 0 ? size : 1, 1);
-        if (!body->nodes)
-            c->status = wb_fail(WB_ERR_MEMORY, "no memory for a surface");
-    }
+    if (c->restores)
+        body->nodes = wb_memory_new(size, 1);
     wb_checkpoint_visit(c, "nodes", body->nodes, size);
 }
 
@@ -96,11 +86,7 @@ static void visit_surface(struct wb_surface *surface, struct wb_checkpoint *c)
     wb_checkpoint_visit(c, "bodies", &n, sizeof n);
     if (c->restores && n > 0 && c->status == WB_OK) {
         wb_surface_release(surface);
-        surface->bodies = calloc((size_t)n, sizeof *surface->bodies);
-        if (!surface->bodies) {
-            c->status = wb_fail(WB_ERR_MEMORY, "no memory for a surface");
-            return;
-        }
+        surface->bodies = wb_memory_new((size_t)n, sizeof *surface->bodies);
         surface->n = n;
     }
     for (int i = 0; i < n && c->status == WB_OK; i++) {
@@ -117,13 +103,8 @@ static void visit_series(struct wb_vtk_file_series *series, struct wb_checkpoint
 
     wb_checkpoint_visit_member(c, series, n);
     wb_checkpoint_visit(c, "length", &length, sizeof length);
-    if (c->restores) {
-        bytes = malloc(length + 1);
-        if (!bytes) {
-            c->status = wb_fail(WB_ERR_MEMORY, "no memory for a VTK series");
-            return;
-        }
-    }
+    if (c->restores)
+        bytes = wb_memory_new(length + 1, 1);
     wb_checkpoint_visit(c, "states", bytes, length);
     if (!c->restores)
         return;

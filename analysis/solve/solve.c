@@ -8,6 +8,7 @@
 
 #include "analysis/solve/solve_kind.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "solve"
@@ -108,11 +109,10 @@ static enum wb_status write_dataset(const struct wb_solve *solve)
     const char *const folder = solve->settings->output;
     struct wb_dataset dataset;
 
-    WB_TRY(wb_dataset_init(&dataset));
-    enum wb_status status = solve->kind->fill(solve, &dataset);
+    wb_dataset_init(&dataset);
+    solve->kind->fill(solve, &dataset);
     /* That the folder may be overwritten was checked before the computation. */
-    if (status == WB_OK)
-        status = wb_dataset_begin(folder, true);
+    enum wb_status status = wb_dataset_begin(folder, true);
     if (status == WB_OK && solve->kind->write)
         status = solve->kind->write(solve, &dataset, folder);
     if (status == WB_OK)
@@ -199,9 +199,7 @@ static enum wb_status run_in_team(const struct wb_solve_settings *settings, wb_s
                                   void *context, bool *complete)
 {
     const struct wb_solve_kind *const kind = find_kind(settings);
-    struct wb_solve *const solve = calloc(1, kind->size);
-    if (!solve)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
+    struct wb_solve *const solve = wb_memory_new(1, kind->size);
     solve->kind = kind;
     solve->settings = settings;
     const struct outcome outcome = run(solve, show, context);

@@ -147,10 +147,10 @@ static struct wb_simulated_bundle simulated(const struct run *run)
     };
 }
 
-static enum wb_status fill(const void *context, struct wb_dataset *dataset)
+static void fill(const void *context, struct wb_dataset *dataset)
 {
     const struct wb_simulated_bundle bundle = simulated(context);
-    return wb_simulated_bundle_fill(dataset, &bundle);
+    wb_simulated_bundle_fill(dataset, &bundle);
 }
 
 static enum wb_status write(const void *context, const struct wb_dataset *dataset,

@@ -80,7 +80,7 @@ static enum wb_status compute(void *context)
     return status;
 }
 
-static enum wb_status fill(const void *context, struct wb_dataset *dataset)
+static void fill(const void *context, struct wb_dataset *dataset)
 {
     const struct run *const run = context;
     const struct wb_solve_settings *const o = run->solve.settings;
@@ -114,7 +114,7 @@ static enum wb_status fill(const void *context, struct wb_dataset *dataset)
     };
 
     snprintf(info.wire, sizeof info.wire, "%s", run->wire.name);
-    return wb_simulated_fill(dataset, &info, &run->loading, run->marker, &origin);
+    wb_simulated_fill(dataset, &info, &run->loading, run->marker, &origin);
 }
 
 static void take_row(const void *context, int index, struct wb_solve_row *out)

@@ -33,7 +33,7 @@ struct wb_solve_kind {
     enum wb_status (*prepare)(void *run);
     /* Not to converge is a result, no error. */
     enum wb_status (*compute)(void *run);
-    enum wb_status (*fill)(const void *run, struct wb_dataset *dataset);
+    void (*fill)(const void *run, struct wb_dataset *dataset);
     /* Writes what lies in the dataset's folder beside its tables; NULL: nothing. */
     enum wb_status (*write)(const void *run, const struct wb_dataset *dataset, const char *folder);
     void (*row)(const void *run, int index, struct wb_solve_row *row);

@@ -135,12 +135,11 @@ static void describe_bands(const struct run *run, struct wb_json *object)
         wb_bands_output_describe(run->bands, object);
 }
 
-static enum wb_status fill(const void *context, struct wb_dataset *dataset)
+static void fill(const void *context, struct wb_dataset *dataset)
 {
     const struct wb_simulated_section section = simulated(context);
-    WB_TRY(wb_simulated_section_fill(dataset, &section));
+    wb_simulated_section_fill(dataset, &section);
     describe_bands(context, wb_json_get(dataset->document, "simulation"));
-    return WB_OK;
 }
 
 static enum wb_status write(const void *context, const struct wb_dataset *dataset,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -338,9 +339,7 @@ static void add_override(struct words *words, const struct wb_bundle_override *o
 static char **pack(const struct words *words)
 {
     const size_t pointers = (words->n + 1) * sizeof(char *);
-    char **const block = words->texts.failed ? NULL : malloc(pointers + words->texts.length);
-    if (!block)
-        return NULL;
+    char **const block = wb_memory_new(pointers + words->texts.length, 1);
     char *text = (char *)block + pointers;
     memcpy(text, words->texts.bytes, words->texts.length);
     for (size_t i = 0; i < words->n; i++, text += strlen(text) + 1)

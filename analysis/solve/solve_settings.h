@@ -72,7 +72,7 @@ const char *wb_solve_settings_kind(const struct wb_solve_settings *settings); /*
 
 /* The words of the command that asks for the same, without program and output: "solve", "bundle",
  * the model, then the options of what is not as the rows have it. NULL-terminated, and one block
- * for free(); NULL when out of memory. */
+ * for free(). */
 char **wb_solve_settings_command(const struct wb_solve_settings *settings);
 
 #endif

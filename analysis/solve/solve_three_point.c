@@ -8,6 +8,7 @@
 #include "analysis/solve/solve_law.h"
 #include "base/file.h"
 #include "base/interrupt.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/model/wire.h"
 
@@ -46,9 +47,7 @@ static enum wb_status prepare(void *context)
                        "--bow-mm: %g mm: an arc over a span of %g mm rises by at most half of it",
                        o->bow / WB_MM, o->span / WB_MM);
     run->planned = 1 + o->points * (o->cycles > 0 ? 2 * o->cycles : 1);
-    run->rows = calloc((size_t)run->planned, sizeof *run->rows);
-    if (!run->rows)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d rows", run->planned);
+    run->rows = wb_memory_new((size_t)run->planned, sizeof *run->rows);
     /* Of the arc that rises by the bow over the span. */
     run->curvature = 8.0 * o->bow / (o->span * o->span + 4.0 * o->bow * o->bow);
     const struct wb_three_point_bending_model model = {
@@ -125,7 +124,7 @@ static struct wb_band unknown(void)
     return (struct wb_band){false, (double)NAN, (double)NAN, (double)NAN};
 }
 
-static enum wb_status fill(const void *context, struct wb_dataset *dataset)
+static void fill(const void *context, struct wb_dataset *dataset)
 {
     const struct run *const run = context;
     const struct wb_solve_settings *const o = run->solve.settings;
@@ -166,7 +165,7 @@ static enum wb_status fill(const void *context, struct wb_dataset *dataset)
 
     snprintf(info.wire, sizeof info.wire, "%s", run->wire.name);
     snprintf(info.piece.wire, sizeof info.piece.wire, "%s", run->wire.name);
-    return wb_simulated_fill_three_point(dataset, &info, &bending, &origin);
+    wb_simulated_fill_three_point(dataset, &info, &bending, &origin);
 }
 
 static void take_row(const void *context, int index, struct wb_solve_row *out)

@@ -154,7 +154,7 @@ static double peak_memory(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024.0 * (double)usage.ru_maxrss : 0.0;
 }
 
-static enum wb_status fill(const void *context, struct wb_dataset *dataset)
+static void fill(const void *context, struct wb_dataset *dataset)
 {
     const struct run *const run = context;
     struct wb_wire3d_balance balance;
@@ -171,7 +171,7 @@ static enum wb_status fill(const void *context, struct wb_dataset *dataset)
         wb_wire3d_balance(run->solid, &balance);
         wire.balance = &balance;
     }
-    return wb_simulated_fill_wire(dataset, &wire);
+    wb_simulated_fill_wire(dataset, &wire);
 }
 
 static enum wb_status write(const void *context, const struct wb_dataset *dataset,

@@ -52,7 +52,7 @@ static inline void three_point_add_row(struct wb_dataset *dataset,
         .tip_x = (double)NAN,
         .tip_angle = (double)NAN,
     };
-    assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+    wb_dataset_add_row(dataset, &row);
 }
 
 static inline double three_point_curvature(void *context, double from_middle)
@@ -76,7 +76,7 @@ static inline void three_point_make(struct wb_dataset *dataset, const struct thr
     struct wb_section section;
     struct wb_three_point_bending *bending;
 
-    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    wb_dataset_init(dataset);
     dataset->info = (struct wb_test_info){
         .wire = "type2",
         .sample = 1,

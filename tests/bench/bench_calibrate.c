@@ -56,13 +56,13 @@ static enum wb_status make_dataset(struct wb_dataset *dataset, const struct wb_t
                                    const struct wb_material *material)
 {
     double force[POINTS];
-    WB_TRY(wb_dataset_init(dataset));
+    wb_dataset_init(dataset);
     dataset->info = *info;
     WB_TRY(run_once(info, material, force));
     for (int i = 0; i < POINTS; i++) {
         struct wb_row row = {.t = i * step * 1e3, .cycle = 1, .deflection = i * step};
         row.force = row.tension = force[i];
-        WB_TRY(wb_dataset_add_row(dataset, &row));
+        wb_dataset_add_row(dataset, &row);
     }
     return WB_OK;
 }

@@ -33,10 +33,9 @@ static enum wb_status average(struct wb_bundles_section *section,
     const struct wb_curve_grid grid = {.step = step};
     struct wb_dataset dataset;
     const struct wb_dataset *const datasets[] = {&dataset};
-    WB_TRY(wb_dataset_init(&dataset));
-    enum wb_status status = wb_simulated_section_fill(&dataset, &simulated);
-    if (status == WB_OK)
-        status = wb_curve_average_on(&section->curve, datasets, 1, &grid, why);
+    wb_dataset_init(&dataset);
+    wb_simulated_section_fill(&dataset, &simulated);
+    const enum wb_status status = wb_curve_average_on(&section->curve, datasets, 1, &grid, why);
     wb_dataset_release(&dataset);
     return status;
 }

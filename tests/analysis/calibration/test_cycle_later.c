@@ -23,7 +23,7 @@ static void add_cycles(struct wb_dataset *dataset, struct wb_cycle_data *path, d
                 row.phase = way == 0 ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
                 row.deflection = begin + (end - begin) * i / STEPS;
                 row.stage = row.tip_x = row.tip_angle = (double)NAN;
-                assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+                wb_dataset_add_row(dataset, &row);
                 path->points[path->n_points++].deflection = row.deflection;
             }
         }
@@ -40,7 +40,7 @@ static void make_test(struct wb_dataset *dataset, const struct wb_law *law)
     struct wb_cycle_data path = {.info = info};
     struct wb_cycle_model *model;
     struct wb_cycle_run run;
-    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    wb_dataset_init(dataset);
     dataset->info = info;
     path.points = calloc(2 * CYCLES * STEPS, sizeof *path.points);
     double *const tension = calloc(2 * CYCLES * STEPS, sizeof *tension);

@@ -68,7 +68,7 @@ static void add_state(struct wb_dataset *dataset, struct wb_cantilever *cantilev
                                .stage = (double)NAN,
                                .tip_x = point.tip_x,
                                .tip_angle = point.tip_angle};
-    assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+    wb_dataset_add_row(dataset, &row);
     for (int i = 0; with_shape && i < 7; i++) {
         struct wb_shape_row shape = {.t = row.t,
                                      .deflection = to,
@@ -76,7 +76,7 @@ static void add_state(struct wb_dataset *dataset, struct wb_cantilever *cantilev
                                      .s = dataset->info.length * i / 6,
                                      .z = (double)NAN};
         wb_cantilever_shape(cantilever, 1, &shape.s, &shape.x, &shape.y, NULL);
-        assert_int_equal(wb_dataset_add_shape_row(dataset, &shape), WB_OK);
+        wb_dataset_add_shape_row(dataset, &shape);
     }
 }
 
@@ -86,7 +86,7 @@ static void exact_dataset(struct wb_dataset *dataset, const struct wb_law *law, 
     struct wb_section section;
     struct wb_cantilever_model model;
     struct wb_cantilever *cantilever;
-    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    wb_dataset_init(dataset);
     dataset->info = bench_info(bow);
     assert_int_equal(wb_section_init_law(&section, dataset->info.outer_diameter, law, 60), WB_OK);
     wb_cantilever_default_model(&model);

@@ -44,13 +44,13 @@ static void add(struct wb_dataset *dataset, const struct truth *truth, double e,
         .tip_x = (double)NAN,
         .tip_angle = (double)NAN,
     };
-    assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+    wb_dataset_add_row(dataset, &row);
 }
 
 static void make(struct wb_dataset *dataset, const struct truth *truth, int sample, bool own)
 {
     wb_dataset_release(dataset);
-    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    wb_dataset_init(dataset);
     struct wb_test_info *const info = &dataset->info;
     strcpy(info->wire, "made up");
     info->sample = sample;

@@ -42,8 +42,8 @@ static void write_and_read(const struct wb_simulated_wire *wire, const char *nam
     struct wb_dataset dataset;
     char path[WB_PATH];
     assert_int_equal(wb_file_join(path, folder, name), WB_OK);
-    assert_int_equal(wb_dataset_init(&dataset), WB_OK);
-    assert_int_equal(wb_simulated_fill_wire(&dataset, wire), WB_OK);
+    wb_dataset_init(&dataset);
+    wb_simulated_fill_wire(&dataset, wire);
     /* -0 is nothing to print. */
     assert_true(dataset.info.gravity != 0.0 || !signbit(dataset.info.gravity));
     assert_int_equal(wb_dataset_write(&dataset, path, false), WB_OK);

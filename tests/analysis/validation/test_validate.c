@@ -178,7 +178,7 @@ static void cycle_dataset(struct wb_dataset *dataset, const struct wb_law *law, 
     const struct wb_row rest = {.stage = (double)NAN, .tip_x = (double)NAN};
     bool reached;
     double force = 0.0;
-    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    wb_dataset_init(dataset);
     dataset->info = info;
     assert_int_equal(wb_computed_create(&computed, &info, &law->material, &how), WB_OK);
     assert_int_equal(wb_computed_start(computed, &law->material, &reached), WB_OK);
@@ -198,7 +198,7 @@ static void cycle_dataset(struct wb_dataset *dataset, const struct wb_law *law, 
         row.tension = force + 0.02;
         if (row.tension < 0.0)
             row.phase = WB_PHASE_SLACK;
-        assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+        wb_dataset_add_row(dataset, &row);
     }
     wb_computed_destroy(computed);
 }
@@ -320,13 +320,13 @@ static void a_prediction_that_does_not_converge_is_an_error(void **state)
     struct wb_dataset dataset;
     struct wb_validate_result result;
     double x[9], y[9];
-    assert_int_equal(wb_dataset_init(&dataset), WB_OK);
+    wb_dataset_init(&dataset);
     dataset.info = beam_info(2, 0.085, 0.0);
     /* Nothing less upsets the beam: 80 m of deflection in one step. */
     coarse.step = 80.0;
     for (int k = 0; k < 20; k++) {
         const struct wb_row row = {.cycle = 1, .deflection = 80.0 * k, .force = 1e-3 * k};
-        assert_int_equal(wb_dataset_add_row(&dataset, &row), WB_OK);
+        wb_dataset_add_row(&dataset, &row);
     }
     const struct wb_dataset *const datasets[] = {&dataset};
     assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &coarse, NULL),
