@@ -7,6 +7,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "analysis/align/align_private.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -86,7 +87,7 @@ static void set_info(struct wb_align *align)
     info->is_virtual = align->is_virtual;
 }
 
-static enum wb_status add_shape(struct wb_align *align, const struct wb_align_row *row)
+static void add_shape(struct wb_align *align, const struct wb_align_row *row)
 {
     for (int k = 0; k < align->specimen.n_markers; k++) {
         if (!isfinite(row->y[k]))
@@ -102,7 +103,6 @@ static enum wb_status add_shape(struct wb_align *align, const struct wb_align_ro
         };
         wb_dataset_add_shape_row(align->dataset, &shape);
     }
-    return WB_OK;
 }
 
 /* Rows from the start of the first cycle on; shapes whenever the tip went on by a step. */
@@ -126,7 +126,7 @@ static enum wb_status export_rows(struct wb_align *align)
         };
         wb_dataset_add_row(align->dataset, &out);
         if (!(fabs(row->tip_y - last_shape) < align->settings.shape_step)) {
-            WB_TRY(add_shape(align, row));
+            add_shape(align, row);
             last_shape = row->tip_y;
         }
     }
@@ -182,10 +182,10 @@ static enum wb_status run(struct wb_align *align,
     WB_TRY(wb_align_markers(align));
     WB_TRY(wb_align_rows(align));
     WB_TRY(wb_align_cycles(align));
-    WB_TRY(wb_align_stage(align));
+    wb_align_stage(align);
     WB_TRY(wb_align_force(align));
     set_info(align);
-    WB_TRY(wb_align_natural(align));
+    wb_align_natural(align);
     WB_TRY(export_rows(align));
     describe_rows(align);
     wb_align_describe_holds(align);
@@ -242,21 +242,16 @@ static void copy_signals(const struct wb_align *align, struct wb_align_signals *
     signals->time_scale = align->rig.time_scale;
 }
 
-static enum wb_status keep_signals(const struct wb_align *align, struct wb_align_signals *signals)
+static void keep_signals(const struct wb_align *align, struct wb_align_signals *signals)
 {
     const size_t n = align->cloud.n_frames + 1, m = align->readings.n + 1;
     *signals = (struct wb_align_signals){
-        .motion_t = malloc(n * sizeof *signals->motion_t),
-        .motion = malloc(n * sizeof *signals->motion),
-        .force_t = malloc(m * sizeof *signals->force_t),
-        .force = malloc(m * sizeof *signals->force),
+        .motion_t = wb_memory_new(n, sizeof *signals->motion_t),
+        .motion = wb_memory_new(n, sizeof *signals->motion),
+        .force_t = wb_memory_new(m, sizeof *signals->force_t),
+        .force = wb_memory_new(m, sizeof *signals->force),
     };
-    if (!signals->motion_t || !signals->motion || !signals->force_t || !signals->force) {
-        wb_align_signals_release(signals);
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu frames", n - 1);
-    }
     copy_signals(align, signals);
-    return WB_OK;
 }
 
 /* wb_align_run_from(); `signals` may be NULL. */
@@ -272,23 +267,18 @@ static enum wb_status run_all(struct wb_dataset *dataset, struct wb_align_signal
     WB_TRY(wb_setting_check(&wb_align_table, settings, why));
     /* GSL's own handler aborts; its codes are looked at here. */
     gsl_set_error_handler_off();
-    struct wb_align *const align = calloc(1, sizeof *align);
-    if (!align)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory to align a recording");
-    enum wb_status status = WB_OK;
+    struct wb_align *const align = wb_memory_new(1, sizeof *align);
     wb_dataset_init(dataset);
-    if (status == WB_OK) {
-        align->why = why;
-        align->lost = why ? &lost : NULL;
-        align->dataset = dataset;
-        align->settings = *settings;
-        if (align->settings.row_rate == 0.0)
-            align->settings.row_rate = DEFAULT_ROW_RATE;
-        status = run(align, load, context);
-        if (status == WB_OK && signals)
-            status = keep_signals(align, signals);
-        release(align);
-    }
+    align->why = why;
+    align->lost = why ? &lost : NULL;
+    align->dataset = dataset;
+    align->settings = *settings;
+    if (align->settings.row_rate == 0.0)
+        align->settings.row_rate = DEFAULT_ROW_RATE;
+    const enum wb_status status = run(align, load, context);
+    if (status == WB_OK && signals)
+        keep_signals(align, signals);
+    release(align);
     free(align);
     if (status != WB_OK)
         wb_dataset_release(dataset);

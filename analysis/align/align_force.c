@@ -4,6 +4,7 @@
 
 #include "analysis/align/align_private.h"
 #include "analysis/dataset/fit.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -60,9 +61,7 @@ static double row_noise(const struct wb_align *align)
 
 static enum wb_status find_largest(struct wb_align *align)
 {
-    double *const readings = malloc(align->n_rows * sizeof *readings);
-    if (!readings)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+    double *const readings = wb_memory_new(align->n_rows, sizeof *readings);
     for (size_t i = 0; i < align->n_rows; i++)
         readings[i] = align->rows[i].reading;
     wb_fit_sort(readings, align->n_rows);
@@ -96,19 +95,16 @@ static double tautness(const struct wb_align *align, const struct wb_align_row *
     return row->tip_y - align->rig.strand.length * (1.0 - row->lean_cosine) - row->travel;
 }
 
-static enum wb_status find_taut_level(struct wb_align *align)
+static void find_taut_level(struct wb_align *align)
 {
-    double *const levels = malloc(align->n_rows * sizeof *levels);
+    double *const levels = wb_memory_new(align->n_rows, sizeof *levels);
     size_t n = 0;
-    if (!levels)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     for (size_t i = 0; i < align->n_rows; i++) {
         if (align->rows[i].cycle == 1 && align->rows[i].reading > TAUT_PART * align->largest)
             levels[n++] = tautness(align, &align->rows[i]);
     }
     align->taut_level = align->rig.strand.length > 0.0 ? wb_fit_median(levels, n) : (double)NAN;
     free(levels);
-    return WB_OK;
 }
 
 /* By geometry where there is a strand: a drifting zero does not matter to it. */
@@ -494,7 +490,7 @@ enum wb_status wb_align_force(struct wb_align *align)
 {
     size_t settled;
     WB_TRY(find_largest(align));
-    WB_TRY(find_taut_level(align));
+    find_taut_level(align);
     find_zeros(align);
     describe_tare(align);
     describe_drift(align);
@@ -502,9 +498,7 @@ enum wb_status wb_align_force(struct wb_align *align)
     if (!find_taut(align, &settled))
         return wb_fail_to(align->why, WB_ERR_DATA,
                           "%s: the strand is never taut on the first loading", align->name);
-    double *const x = malloc(2 * align->n_rows * sizeof *x);
-    if (!x)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+    double *const x = wb_memory_new(2 * align->n_rows, sizeof *x);
     const enum wb_status status = fit_zero(align, settled, x, x + align->n_rows);
     free(x);
     WB_TRY(status);

@@ -34,6 +34,7 @@
 
 #include "analysis/align/align_private.h"
 #include "analysis/dataset/fit.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -138,13 +139,10 @@ struct loading {
     double *y, *force; /* m, N: vertical force less F_w; one allocation, owned by y */
 };
 
-static enum wb_status gather_loading(const struct wb_align *align, double carried,
-                                     struct loading *loading)
+static void gather_loading(const struct wb_align *align, double carried, struct loading *loading)
 {
     loading->n = 0;
-    loading->y = malloc(2 * align->n_rows * sizeof *loading->y);
-    if (!loading->y)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+    loading->y = wb_memory_new(2 * align->n_rows, sizeof *loading->y);
     loading->force = loading->y + align->n_rows;
     for (size_t i = 0; i < align->n_rows && align->rows[i].cycle == 1; i++) {
         const struct wb_align_row *const row = &align->rows[i];
@@ -153,7 +151,6 @@ static enum wb_status gather_loading(const struct wb_align *align, double carrie
         loading->y[loading->n] = row->tip_y;
         loading->force[loading->n++] = row->vertical - carried;
     }
-    return WB_OK;
 }
 
 /* Second-degree fit of the force up to `highest`: coefficients of 1, y, y^2. */
@@ -376,7 +373,7 @@ static double find_rest(const struct wb_align *align)
     return align->zero_force + align->stiffness * level > least ? level : (double)NAN;
 }
 
-enum wb_status wb_align_natural(struct wb_align *align)
+void wb_align_natural(struct wb_align *align)
 {
     struct wb_test_info *const info = &align->dataset->info;
     struct observations obs;
@@ -395,7 +392,7 @@ enum wb_status wb_align_natural(struct wb_align *align)
     if (align->slack_seen) {
         struct loading loading;
         double path;
-        WB_TRY(gather_loading(align, align->carried, &loading));
+        gather_loading(align, align->carried, &loading);
         from_force = bow_from_loading(align, &loading, &path);
         free(loading.y);
         observe_force(align, from_force, path, &obs, &from_force_deviation);
@@ -403,10 +400,9 @@ enum wb_status wb_align_natural(struct wb_align *align)
     if (obs.n == 0 || !estimate_shape(&obs, length, &estimate)) {
         wb_align_warn(align, "the natural shape cannot be told from this recording: the wire is "
                              "taken as straight");
-        return WB_OK;
+        return;
     }
     info->n_natural_shape = estimate.n_terms;
     memcpy(info->natural_shape, estimate.terms, sizeof estimate.terms);
     describe_natural(align, &estimate, &from_markers, from_force, from_force_deviation);
-    return WB_OK;
 }

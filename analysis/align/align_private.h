@@ -51,6 +51,9 @@ struct wb_align_list {
     size_t n, capacity;
 };
 
+/* Adds a copy of an item. */
+void wb_align_list_add(struct wb_align_list *list, const void *item, size_t size);
+
 /* One row of the dataset while it is made. */
 struct wb_align_row {
     double t;      /* s, bench time */
@@ -100,7 +103,6 @@ struct wb_align {
     struct wb_replay_counts counts;
     uint64_t n_invalid;      /* readings that were no numbers */
     bool is_losing_readings; /* of the load cell: lines that never came, more than chance */
-    bool out_of_memory;
 
     /* Events. */
     bool has_tare, has_start;
@@ -160,9 +162,9 @@ WB_MUST_CHECK enum wb_status wb_align_times(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_markers(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_rows(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_cycles(struct wb_align *align);
-WB_MUST_CHECK enum wb_status wb_align_stage(struct wb_align *align);
+void wb_align_stage(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_force(struct wb_align *align);
-WB_MUST_CHECK enum wb_status wb_align_natural(struct wb_align *align);
+void wb_align_natural(struct wb_align *align);
 
 /* wb_align_run() from another source: `load` does what wb_align_load() does. Tests make specimens
  * by it without a recording. */

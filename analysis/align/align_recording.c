@@ -7,6 +7,7 @@
 
 #include "analysis/align/align_private.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/number.h"
 #include "base/units.h"
 #include "daq/protocol/loss.h"
@@ -22,19 +23,13 @@
 /* Stamps over less than this, s of device time, are too short to find a skew from. */
 #define LEAST_SPAN 5.0
 
-/* Adds a copy of an item. */
-static bool list_add(struct wb_align_list *list, const void *item, size_t size)
+void wb_align_list_add(struct wb_align_list *list, const void *item, size_t size)
 {
     if (list->n == list->capacity) {
-        const size_t capacity = list->capacity ? 2 * list->capacity : 1024;
-        void *const items = realloc(list->items, capacity * size);
-        if (!items)
-            return false;
-        list->items = items;
-        list->capacity = capacity;
+        list->capacity = list->capacity ? 2 * list->capacity : 1024;
+        list->items = wb_memory_resize(list->items, list->capacity, size);
     }
     memcpy((char *)list->items + list->n++ * size, item, size);
-    return true;
 }
 
 struct wb_align_reading *wb_align_readings(const struct wb_align *align)
@@ -57,15 +52,13 @@ static void take_load(void *context, const struct wb_load_sample *sample)
         .force = sample->valid ? sample->force : (double)NAN,
     };
     align->n_invalid += !sample->valid;
-    if (!list_add(&align->readings, &reading, sizeof reading))
-        align->out_of_memory = true;
+    wb_align_list_add(&align->readings, &reading, sizeof reading);
 }
 
 static void take_mocap(void *context, const struct wb_mocap_frame *frame)
 {
     struct wb_align *const align = context;
-    if (!align->out_of_memory && wb_point_cloud_add(&align->cloud, frame) != WB_OK)
-        align->out_of_memory = true;
+    wb_point_cloud_add(&align->cloud, frame);
 }
 
 static void take_stage(void *context, const struct wb_stage_report *report)
@@ -77,15 +70,13 @@ static void take_stage(void *context, const struct wb_stage_report *report)
         .t_ns = report->t_ns,
         .travel = align->rig.stage.down * report->position,
     };
-    if (!list_add(&align->reports, &point, sizeof point))
-        align->out_of_memory = true;
+    wb_align_list_add(&align->reports, &point, sizeof point);
 }
 
 static void take_probe(void *context, const struct wb_clock_probe *probe)
 {
     struct wb_align *const align = context;
-    if (!list_add(&align->probes, probe, sizeof *probe))
-        align->out_of_memory = true;
+    wb_align_list_add(&align->probes, probe, sizeof *probe);
 }
 
 static enum wb_status decode(struct wb_align *align, struct wb_recording *recording)
@@ -98,8 +89,6 @@ static enum wb_status decode(struct wb_align *align, struct wb_recording *record
         .probe = take_probe,
     };
     const enum wb_status status = wb_replay_run(recording, &align->rig, &sink, 0.0, &align->counts);
-    if (align->out_of_memory)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "%s: out of memory", align->name);
     /* What was read before the database broke off can still serve. */
     if (status == WB_ERR_DATA) {
         if (wb_recording_is_complete(recording))
@@ -397,19 +386,17 @@ static void copy_import(struct wb_align *align, struct wb_recording *recording)
 }
 
 /* What `wirebench recover` could not bring back. */
-static enum wb_status note_recovery(struct wb_align *align, struct wb_recording *recording)
+static void note_recovery(struct wb_align *align, struct wb_recording *recording)
 {
-    char *missing = NULL;
-    const enum wb_status status = wb_recording_meta(recording, WB_RECOVER_META_MISSING, &missing);
-    if (status == WB_ERR_MEMORY)
-        return status;
-    if (missing && *missing) {
+    char *missing;
+    if (wb_recording_meta(recording, WB_RECOVER_META_MISSING, &missing) != WB_OK)
+        return;
+    if (*missing) {
         align->is_cut_short = true;
         wb_align_warn(align, "the recording was recovered from a damaged file; missing: %s",
                       missing);
     }
     free(missing);
-    return WB_OK;
 }
 
 /* What was decided of the test after it was recorded stands in the index beside it. */
@@ -456,15 +443,13 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
         wb_align_warn(align, "the recording was not closed or is not all there: its end is "
                              "missing");
     }
-    WB_TRY(note_recovery(align, recording));
+    note_recovery(align, recording);
     WB_TRY(decode(align, recording));
     note_losses(align);
     if (align->settings.rig_path)
         WB_TRY(wb_align_given_tare(align));
     if (align->probes.n == 0)
         WB_TRY(wb_recording_each_clock(recording, take_clock_row, align));
-    if (align->out_of_memory)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "%s: out of memory", align->name);
     return WB_OK;
 }
 
@@ -556,7 +541,7 @@ static void use_arrivals(struct wb_align *align)
 }
 
 /* Line for the frames first..last-1: through the probes of that time where there are some. Fails
- * silently, for want of memory. */
+ * silently. */
 static enum wb_status fit_segment(struct wb_align *align, const struct stamps *stamps, size_t first,
                                   size_t last, struct wb_clock_line *line)
 {
@@ -565,11 +550,9 @@ static enum wb_status fit_segment(struct wb_align *align, const struct stamps *s
     if (stamps->on_probe_clock) {
         /* Probes answered by the same run of the server: between these stamps, with a margin. */
         const struct wb_clock_probe *const all = align->probes.items;
-        struct wb_clock_probe *const used = malloc((align->probes.n + 1) * sizeof *used);
+        struct wb_clock_probe *const used = wb_memory_new(align->probes.n, sizeof *used);
         size_t n = 0;
         const double margin = 10.0 * align->rig.time_scale;
-        if (!used)
-            return WB_ERR_MEMORY;
         for (size_t i = 0; i < align->probes.n; i++) {
             if (all[i].t_device >= stamps->device[first] - margin &&
                 all[i].t_device <= stamps->device[last - 1] + margin)
@@ -577,7 +560,7 @@ static enum wb_status fit_segment(struct wb_align *align, const struct stamps *s
         }
         status = wb_clock_fit_probes(line, used, n, nominal);
         free(used);
-        if (status == WB_OK || status == WB_ERR_MEMORY)
+        if (status != WB_ERR_DATA)
             return status;
     }
     return wb_clock_fit_envelope(line, stamps->device + first, stamps->host_ns + first,
@@ -673,16 +656,14 @@ static enum wb_status map_cameras(struct wb_align *align)
         n_dropped = order_frames(align, on_probe_clock);
     const size_t n = align->cloud.n_frames;
     struct stamps stamps = {
-        .device = malloc((n + 1) * sizeof *stamps.device),
-        .host_ns = malloc((n + 1) * sizeof *stamps.host_ns),
+        .device = wb_memory_new(n, sizeof *stamps.device),
+        .host_ns = wb_memory_new(n, sizeof *stamps.host_ns),
         .n = n,
         .on_probe_clock = on_probe_clock,
     };
-    align->frame_t = malloc((n + 1) * sizeof *align->frame_t);
+    align->frame_t = wb_memory_new(n, sizeof *align->frame_t);
     enum wb_status status = WB_OK;
-    if (!stamps.device || !stamps.host_ns || !align->frame_t) {
-        status = wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu frames", n);
-    } else if (align->camera_times_given) {
+    if (align->camera_times_given) {
         use_file_times(align);
     } else if (!has_stamps) {
         use_arrivals(align);
@@ -780,11 +761,9 @@ static enum wb_status map_load(struct wb_align *align)
         for (size_t i = 0; i < n; i++)
             readings[i].t = wb_align_bench_time(align, readings[i].t_ns);
     } else {
-        int64_t *const host_ns = malloc((n + 1) * sizeof *host_ns);
-        double *const number = malloc((n + 1) * sizeof *number);
-        enum wb_status status = WB_ERR_MEMORY;
-        if (host_ns && number)
-            status = map_stream(align, host_ns, number, &n_segments);
+        int64_t *const host_ns = wb_memory_new(n, sizeof *host_ns);
+        double *const number = wb_memory_new(n, sizeof *number);
+        const enum wb_status status = map_stream(align, host_ns, number, &n_segments);
         free(host_ns);
         free(number);
         if (status != WB_OK)

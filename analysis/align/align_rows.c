@@ -10,6 +10,7 @@
 #include "analysis/align/align_private.h"
 #include "analysis/align/axis_fit.h"
 #include "analysis/dataset/fit.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -34,11 +35,9 @@
 static double typical_period(const struct wb_align *align)
 {
     const size_t n = align->cloud.n_frames;
-    double *const steps = malloc((n + 1) * sizeof *steps);
-    if (!steps || n < 2) {
-        free(steps);
+    if (n < 2)
         return 0.0;
-    }
+    double *const steps = wb_memory_new(n, sizeof *steps);
     for (size_t i = 1; i < n; i++)
         steps[i - 1] = align->frame_t[i] - align->frame_t[i - 1];
     const double period = wb_fit_median(steps, n - 1);
@@ -293,9 +292,7 @@ enum wb_status wb_align_rows(struct wb_align *align)
         n_readings > 1 ? (readings[n_readings - 1].t - readings[0].t) / (double)(n_readings - 1)
                        : 0.0;
     const double half = fmax(0.5 / rate, 2.5 * period);
-    align->rows = malloc((n_frames + 1) * sizeof *align->rows);
-    if (!align->rows)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", n_frames);
+    align->rows = wb_memory_new(n_frames, sizeof *align->rows);
     for (size_t first = 0, last; first < n_frames; first = last) {
         const double bin = floor(align->frame_t[first] * rate);
         for (last = first + 1; last < n_frames; last++) {
@@ -314,8 +311,7 @@ enum wb_status wb_align_rows(struct wb_align *align)
         return wb_fail_to(align->why, WB_ERR_DATA,
                           "%s: only %zu rows have tip, clamp and load cell at the same time",
                           align->name, align->n_rows);
-    struct wb_align_row *const fitted = realloc(align->rows, align->n_rows * sizeof *align->rows);
-    align->rows = fitted ? fitted : align->rows;
+    align->rows = wb_memory_resize(align->rows, align->n_rows, sizeof *align->rows);
     zero_travel(align);
     const struct wb_align_correction correction = {
         .name = "marker offset",
@@ -377,12 +373,10 @@ static void cut_cycles(struct wb_align *align, double threshold)
 }
 
 /* Typical speed of the clamp on the way down: the median over the rows that move. */
-static enum wb_status measure_speed(struct wb_align *align)
+static void measure_speed(struct wb_align *align)
 {
-    double *const speeds = malloc(align->n_rows * sizeof *speeds);
+    double *const speeds = wb_memory_new(align->n_rows, sizeof *speeds);
     size_t n = 0;
-    if (!speeds)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     for (size_t i = 20; i < align->n_rows; i++) {
         const struct wb_align_row *const a = &align->rows[i - 20], *const b = &align->rows[i];
         if (b->phase == WB_PHASE_LOAD && a->cycle == b->cycle &&
@@ -391,7 +385,6 @@ static enum wb_status measure_speed(struct wb_align *align)
     }
     align->speed = n > 0 ? wb_fit_median(speeds, n) : 0.0;
     free(speeds);
-    return WB_OK;
 }
 
 enum wb_status wb_align_cycles(struct wb_align *align)
@@ -407,7 +400,8 @@ enum wb_status wb_align_cycles(struct wb_align *align)
     if (align->n_cycle_starts > 0 && align->n_cycle_starts != align->n_cycles)
         wb_align_warn(align, "the recording tells %d cycles, the clamp's path has %d",
                       align->n_cycle_starts, align->n_cycles);
-    return measure_speed(align);
+    measure_speed(align);
+    return WB_OK;
 }
 
 /* --- commanded against measured --- */
@@ -504,35 +498,31 @@ static bool goes_both_ways(const struct pair *pairs, size_t n)
 static bool fit_pairs(const struct pair *pairs, size_t n, bool with_lag, struct stage_fit *fit)
 {
     const size_t p = with_lag && goes_both_ways(pairs, n) ? 3 : 2;
-    gsl_matrix *const x = gsl_matrix_alloc(n, p);
-    gsl_vector *const y = gsl_vector_alloc(n);
-    gsl_vector *const c = gsl_vector_alloc(p);
-    gsl_matrix *const covariance = gsl_matrix_alloc(p, p);
+    gsl_matrix *const x = wb_memory_need(gsl_matrix_alloc(n, p));
+    gsl_vector *const y = wb_memory_need(gsl_vector_alloc(n));
+    gsl_vector *const c = wb_memory_need(gsl_vector_alloc(p));
+    gsl_matrix *const covariance = wb_memory_need(gsl_matrix_alloc(p, p));
     gsl_multifit_robust_workspace *const work =
-        gsl_multifit_robust_alloc(gsl_multifit_robust_bisquare, n, p);
-    bool fitted = false;
-    if (x && y && c && covariance && work) {
-        for (size_t i = 0; i < n; i++) {
-            gsl_matrix_set(x, i, 0, 1.0);
-            gsl_matrix_set(x, i, 1, pairs[i].commanded);
-            if (p == 3)
-                gsl_matrix_set(x, i, 2, pairs[i].speed);
-            gsl_vector_set(y, i, pairs[i].measured);
-        }
-        const int code = gsl_multifit_robust(x, y, c, covariance, work);
-        fit->offset = gsl_vector_get(c, 0);
-        fit->slope = gsl_vector_get(c, 1);
-        fit->lag = p == 3 ? gsl_vector_get(c, 2) / fit->slope : 0.0;
-        fit->slope_deviation = sqrt(gsl_matrix_get(covariance, 1, 1));
-        fitted = (code == GSL_SUCCESS || code == GSL_EMAXITER) && isfinite(fit->slope) &&
-                 isfinite(fit->lag) && fit->slope > 0.0;
+        wb_memory_need(gsl_multifit_robust_alloc(gsl_multifit_robust_bisquare, n, p));
+    for (size_t i = 0; i < n; i++) {
+        gsl_matrix_set(x, i, 0, 1.0);
+        gsl_matrix_set(x, i, 1, pairs[i].commanded);
+        if (p == 3)
+            gsl_matrix_set(x, i, 2, pairs[i].speed);
+        gsl_vector_set(y, i, pairs[i].measured);
     }
+    const int code = gsl_multifit_robust(x, y, c, covariance, work);
+    fit->offset = gsl_vector_get(c, 0);
+    fit->slope = gsl_vector_get(c, 1);
+    fit->lag = p == 3 ? gsl_vector_get(c, 2) / fit->slope : 0.0;
+    fit->slope_deviation = sqrt(gsl_matrix_get(covariance, 1, 1));
     gsl_multifit_robust_free(work);
     gsl_matrix_free(covariance);
     gsl_vector_free(c);
     gsl_vector_free(y);
     gsl_matrix_free(x);
-    return fitted;
+    return (code == GSL_SUCCESS || code == GSL_EMAXITER) && isfinite(fit->slope) &&
+           isfinite(fit->lag) && fit->slope > 0.0;
 }
 
 static double median_of_three(double a, double b, double c)
@@ -655,13 +645,10 @@ static double commanded_zero(const struct wb_align *align)
     return reports[i].travel;
 }
 
-enum wb_status wb_align_stage(struct wb_align *align)
+void wb_align_stage(struct wb_align *align)
 {
-    struct pair *const pairs = malloc((align->reports.n + 1) * sizeof *pairs);
+    struct pair *const pairs = wb_memory_new(align->reports.n, sizeof *pairs);
     struct stage_fit fit = {0};
-    if (!pairs)
-        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu reports",
-                          align->reports.n);
     const size_t n = make_pairs(align, pairs);
     const bool fitted = fit_stage(align, pairs, n, &fit);
     if (fitted) {
@@ -680,5 +667,4 @@ enum wb_status wb_align_stage(struct wb_align *align)
     free(pairs);
     if (align->reports.n >= 2)
         command_rows(align, fitted ? fit.lag : 0.0, commanded_zero(align));
-    return WB_OK;
 }

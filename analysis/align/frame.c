@@ -6,6 +6,7 @@
 
 #include <gsl/gsl_linalg.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "base/vec3.h"
 
@@ -268,9 +269,7 @@ enum wb_status wb_frame_fit(struct wb_bench_frame *frame, const struct wb_marker
     memset(frame, 0, sizeof *frame);
     struct wb_bench_frame fitted = {.n_frames = tracks->n_frames};
     WB_TRY(fit_motion(&fitted, tracks, server_up, why));
-    fitted.clamp = malloc((tracks->n_frames + 1) * sizeof *fitted.clamp);
-    if (!fitted.clamp)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory for %zu frames", tracks->n_frames);
+    fitted.clamp = wb_memory_new(tracks->n_frames, sizeof *fitted.clamp);
     smooth_clamp(&fitted, tracks, times, window);
     const enum wb_status status = fit_along(&fitted, tracks, why);
     if (status != WB_OK) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/align/markers_private.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "base/vec3.h"
 
@@ -39,32 +40,22 @@
 
 /* --- the cloud --- */
 
-static bool reserve(void **memory, size_t *capacity, size_t needed, size_t item)
+static void *reserve(void *memory, size_t *capacity, size_t needed, size_t item)
 {
     if (needed <= *capacity)
-        return true;
-    size_t larger = *capacity ? 2 * *capacity : 1024;
-    while (larger < needed)
-        larger *= 2;
-    void *const grown = realloc(*memory, larger * item);
-    if (!grown)
-        return false;
-    *memory = grown;
-    *capacity = larger;
-    return true;
+        return memory;
+    *capacity = *capacity ? 2 * *capacity : 1024;
+    while (*capacity < needed)
+        *capacity *= 2;
+    return wb_memory_resize(memory, *capacity, item);
 }
 
-enum wb_status wb_point_cloud_add(struct wb_point_cloud *cloud, const struct wb_mocap_frame *frame)
+void wb_point_cloud_add(struct wb_point_cloud *cloud, const struct wb_mocap_frame *frame)
 {
-    void *frames = cloud->frames, *points = cloud->points;
-    const size_t most = cloud->n_points + (size_t)frame->n_markers;
-    const bool grown =
-        reserve(&frames, &cloud->frames_capacity, cloud->n_frames + 1, sizeof *cloud->frames) &&
-        reserve(&points, &cloud->points_capacity, most, sizeof *cloud->points);
-    cloud->frames = frames;
-    cloud->points = points;
-    if (!grown)
-        return WB_ERR_MEMORY;
+    cloud->frames =
+        reserve(cloud->frames, &cloud->frames_capacity, cloud->n_frames + 1, sizeof *cloud->frames);
+    cloud->points = reserve(cloud->points, &cloud->points_capacity,
+                            cloud->n_points + (size_t)frame->n_markers, sizeof *cloud->points);
     struct wb_point_frame *const added = &cloud->frames[cloud->n_frames++];
     *added = (struct wb_point_frame){
         .t_ns = frame->t_ns,
@@ -86,7 +77,6 @@ enum wb_status wb_point_cloud_add(struct wb_point_cloud *cloud, const struct wb_
             added->n++;
         }
     }
-    return WB_OK;
 }
 
 void wb_point_cloud_release(struct wb_point_cloud *cloud)
@@ -567,10 +557,7 @@ enum wb_status wb_markers_track(struct wb_marker_tracks *tracks, const struct wb
     for (int i = 1; i < specimen->n_markers; i++)
         tracker.smallest_spacing =
             fmin(tracker.smallest_spacing, specimen->markers[i] - specimen->markers[i - 1]);
-    made.index = malloc((cloud->n_frames + 1) * (size_t)specimen->n_markers * sizeof *made.index);
-    if (!made.index)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory for the markers of %zu frames",
-                          cloud->n_frames);
+    made.index = wb_memory_new(cloud->n_frames * (size_t)specimen->n_markers, sizeof *made.index);
     const enum wb_status status = track(&tracker, why);
     if (status != WB_OK) {
         free(made.index);

@@ -35,9 +35,8 @@ struct wb_point_cloud {
     uint64_t n_occluded, n_filled; /* left out: occluded, model-filled */
 };
 
-/* Adds a frame, without its occluded and model-filled markers. WB_ERR_MEMORY is silent. */
-WB_MUST_CHECK enum wb_status wb_point_cloud_add(struct wb_point_cloud *cloud,
-                                                const struct wb_mocap_frame *frame);
+/* Adds a frame, without its occluded and model-filled markers. */
+void wb_point_cloud_add(struct wb_point_cloud *cloud, const struct wb_mocap_frame *frame);
 void wb_point_cloud_release(struct wb_point_cloud *cloud);
 
 struct wb_marker_settings {

@@ -181,7 +181,7 @@ static enum wb_status fill_cloud(struct import *import)
     enum wb_status status = WB_OK;
     for (size_t i = 0; i < import->take.n_frames && status == WB_OK; i++) {
         (void)wb_take_frame_at(&import->take, i, frame);
-        status = wb_point_cloud_add(&import->cloud, frame);
+        wb_point_cloud_add(&import->cloud, frame);
     }
     free(frame);
     return status == WB_OK ? WB_OK : no_memory();

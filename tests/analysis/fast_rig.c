@@ -76,27 +76,13 @@ struct bench {
     long tare_n;
 };
 
-static bool add_item(struct wb_align_list *list, const void *item, size_t size)
-{
-    if (list->n == list->capacity) {
-        const size_t capacity = list->capacity ? 2 * list->capacity : 4096;
-        void *const more = realloc(list->items, capacity * size);
-        if (!more)
-            return false;
-        list->items = more;
-        list->capacity = capacity;
-    }
-    memcpy((char *)list->items + list->n++ * size, item, size);
-    return true;
-}
-
 /* Stamps of the host: whole nanoseconds from an hour on. */
 static int64_t stamp(double t)
 {
     return INT64_C(3600000000000) + (int64_t)(t * 1e9);
 }
 
-static enum wb_status read_cell(struct bench *bench, struct wb_align *align, uint64_t k, double t)
+static void read_cell(struct bench *bench, struct wb_align *align, uint64_t k, double t)
 {
     wb_live_wire_move(bench->wire, travel_at(bench->fast, t), &bench->view);
     wb_sim_cell_read(&bench->cell, k, t, bench->view.tension);
@@ -106,17 +92,17 @@ static enum wb_status read_cell(struct bench *bench, struct wb_align *align, uin
         bench->tare_sum += reading.force;
         bench->tare_n++;
     }
-    return add_item(&align->readings, &reading, sizeof reading) ? WB_OK : WB_ERR_MEMORY;
+    wb_align_list_add(&align->readings, &reading, sizeof reading);
 }
 
-static enum wb_status take_frame(struct bench *bench, struct wb_align *align, uint64_t k, double t)
+static void take_frame(struct bench *bench, struct wb_align *align, uint64_t k, double t)
 {
     wb_live_wire_move(bench->wire, travel_at(bench->fast, t), &bench->view);
     wb_sim_mocap_frame(&bench->mocap, k, &bench->view, &bench->frame);
     bench->frame.mocap.t_ns = stamp(t);
     bench->frame.mocap.t_device = t;
     bench->frame.mocap.camera_mid_exposure = 0;
-    return wb_point_cloud_add(&align->cloud, &bench->frame.mocap);
+    wb_point_cloud_add(&align->cloud, &bench->frame.mocap);
 }
 
 static enum wb_status run_bench(struct bench *bench, struct wb_align *align)
@@ -134,15 +120,14 @@ static enum wb_status run_bench(struct bench *bench, struct wb_align *align)
         if (t > end)
             return WB_OK;
         if (t == t_reading) {
-            WB_TRY(read_cell(bench, align, reading++, t));
+            read_cell(bench, align, reading++, t);
         } else if (t == t_frame) {
-            WB_TRY(take_frame(bench, align, frame, t));
+            take_frame(bench, align, frame, t);
             frame += every;
         } else {
             const struct wb_align_report_point point = {.t_ns = stamp(t),
                                                         .travel = travel_at(fast, t)};
-            if (!add_item(&align->reports, &point, sizeof point))
-                return WB_ERR_MEMORY;
+            wb_align_list_add(&align->reports, &point, sizeof point);
             report++;
         }
     }
