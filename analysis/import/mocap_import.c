@@ -13,6 +13,7 @@
 #include "analysis/dataset/fit.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "daq/recording/foreign.h"
 #include "daq/recording/recording_foreign.h"
@@ -85,11 +86,6 @@ struct import {
     size_t n_motion;
     double *t, *motion, *shake; /* (n_motion) owned */
 };
-
-static enum wb_status no_memory(void)
-{
-    return wb_fail(WB_ERR_MEMORY, "out of memory for the import");
-}
 
 /* --- files --- */
 
@@ -173,33 +169,24 @@ static enum wb_status read_force(struct import *import)
 
 /* --- markers --- */
 
-static enum wb_status fill_cloud(struct import *import)
+static void fill_cloud(struct import *import)
 {
-    struct wb_mocap_frame *const frame = malloc(sizeof *frame);
-    if (!frame)
-        return no_memory();
-    enum wb_status status = WB_OK;
-    for (size_t i = 0; i < import->take.n_frames && status == WB_OK; i++) {
+    struct wb_mocap_frame *const frame = wb_memory_new(1, sizeof *frame);
+    for (size_t i = 0; i < import->take.n_frames; i++) {
         (void)wb_take_frame_at(&import->take, i, frame);
         wb_point_cloud_add(&import->cloud, frame);
     }
     free(frame);
-    return status == WB_OK ? WB_OK : no_memory();
 }
 
 /* Which columns of the file were our markers at some time. The cloud holds the measured places of
  * the frames in the file's order. */
-static enum wb_status count_stitched(struct import *import)
+static void count_stitched(struct import *import)
 {
     const struct wb_take *const take = &import->take;
-    bool *const ours = calloc(take->n_points + 1, sizeof *ours);
-    uint32_t *const points = malloc((import->cloud.n_points + 1) * sizeof *points);
+    bool *const ours = wb_memory_new(take->n_points, sizeof *ours);
+    uint32_t *const points = wb_memory_new(import->cloud.n_points, sizeof *points);
     size_t n = 0;
-    if (!ours || !points) {
-        free(ours);
-        free(points);
-        return no_memory();
-    }
     for (size_t f = 0; f < take->n_frames; f++) {
         int in_frame = 0;
         for (size_t i = take->frames[f].first; i < take->frames[f + 1].first; i++) {
@@ -215,7 +202,6 @@ static enum wb_status count_stitched(struct import *import)
         import->result->n_stitched += ours[i];
     free(ours);
     free(points);
-    return WB_OK;
 }
 
 static enum wb_status find_markers(struct import *import)
@@ -226,7 +212,7 @@ static enum wb_status find_markers(struct import *import)
         .frame_period = result->rate > 0.0 ? 1.0 / result->rate : 0.0,
     };
     struct wb_reason why = {.text = ""};
-    WB_TRY(fill_cloud(import));
+    fill_cloud(import);
     const enum wb_status status =
         wb_markers_track(&import->tracks, &import->cloud, &import->specimen, &settings, &why);
     if (status != WB_OK)
@@ -236,7 +222,8 @@ static enum wb_status find_markers(struct import *import)
     result->symmetric = import->tracks.symmetric;
     result->missing = (double)import->tracks.n_missing /
                       ((double)import->tracks.n_frames * import->tracks.n_markers);
-    return count_stitched(import);
+    count_stitched(import);
+    return WB_OK;
 }
 
 /* --- motion --- */
@@ -260,11 +247,9 @@ static enum wb_status find_motion(struct import *import)
 {
     const size_t n = import->take.n_frames;
     double start[3] = {0.0}, far[3] = {0.0}, tip[3], farthest = -1.0;
-    import->t = malloc((n + 1) * sizeof *import->t);
-    import->motion = malloc((n + 1) * sizeof *import->motion);
-    import->shake = malloc((n + 1) * sizeof *import->shake);
-    if (!import->t || !import->motion || !import->shake)
-        return no_memory();
+    import->t = wb_memory_new(n, sizeof *import->t);
+    import->motion = wb_memory_new(n, sizeof *import->motion);
+    import->shake = wb_memory_new(n, sizeof *import->shake);
     bool started = false;
     for (size_t i = 0; i < n; i++) {
         if (!tip_from_clamp(import, i, tip))
@@ -316,7 +301,7 @@ static size_t last_rest(const struct wb_signal *motion, double rest, double nois
 /* Where the tip last rested before it surely moved, and a little before: the strand becomes taut
  * while the tip hardly moves, and the force's zero is read where the wire comes by its level, a
  * millimetre from its rest or less. */
-static enum wb_status find_start(struct import *import)
+static void find_start(struct import *import)
 {
     const struct wb_signal motion = {import->t, import->motion, import->n_motion};
     const double noise = wb_signal_noise(&motion);
@@ -335,15 +320,12 @@ static enum wb_status find_start(struct import *import)
     for (size_t i = 0; i < sure; i++)
         if (fabs(import->motion[i]) <= band)
             last = i;
-    double *const resting = malloc((last + 1) * sizeof *resting);
-    if (!resting)
-        return no_memory();
+    double *const resting = wb_memory_new(last + 1, sizeof *resting);
     memcpy(resting, import->motion, (last + 1) * sizeof *resting);
     const double rest = wb_fit_median(resting, last + 1);
     free(resting);
     const double rested = import->t[last_rest(&motion, rest, noise, last)];
     import->result->motion_start = rested - fmin(REST_BEFORE, 0.5 * (rested - import->t[0]));
-    return WB_OK;
 }
 
 /* --- the two clocks --- */
@@ -376,8 +358,7 @@ static enum wb_status bring_together(struct import *import)
     const struct wb_signal motion = {import->t, import->motion, import->n_motion};
     const struct wb_signal shake = {import->t, import->shake, import->n_motion};
     const struct wb_signal force = {import->force.t, import->force.force, import->force.n};
-    if (wb_sync_find(&result->sync, &motion, &shake, &force, &settings) != WB_OK)
-        return no_memory();
+    wb_sync_find(&result->sync, &motion, &shake, &force, &settings);
     if (result->sync.method == WB_SYNC_NONE)
         return wb_fail(WB_ERR_DATA,
                        "the lag between '%s' and '%s' is not identifiable: %s. Tap the bench once "
@@ -401,10 +382,8 @@ static enum wb_status find_tare(struct import *import)
     result->tare_samples = 1;
     if (isfinite(result->tare))
         return WB_OK;
-    double *const values = malloc(2 * (force->n + 1) * sizeof *values);
-    if (!values)
-        return no_memory();
-    double *const off = values + force->n + 1;
+    double *const values = wb_memory_new(2 * force->n, sizeof *values);
+    double *const off = values + force->n;
     size_t n = 0;
     while (n < force->n && force->t[n] + result->offset < result->motion_start)
         n++;
@@ -572,7 +551,7 @@ static enum wb_status run(struct import *import)
     WB_TRY(find_markers(import));
     if (result->has_force) {
         WB_TRY(find_motion(import));
-        WB_TRY(find_start(import));
+        find_start(import);
         WB_TRY(bring_together(import));
         WB_TRY(find_tare(import));
     }
@@ -591,9 +570,7 @@ enum wb_status wb_mocap_import_run(struct wb_mocap_import *result,
         return wb_fail(WB_ERR_EXISTS,
                        "'%s' exists: a recording is never overwritten; choose another name",
                        request->output);
-    struct import *const import = calloc(1, sizeof *import);
-    if (!import)
-        return no_memory();
+    struct import *const import = wb_memory_new(1, sizeof *import);
     import->request = request;
     import->result = result;
     const enum wb_status status = run(import);

@@ -5,6 +5,7 @@
 
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/least_squares.h"
+#include "base/memory.h"
 
 /* Windows on each side, s, or the time in which the signal moves by so many deviations of its
  * noise; at most this part of a way, and of a rest. */
@@ -151,29 +152,26 @@ static bool solve(struct problem *p, double free_numbers[N_ALL], double *deviati
 {
     const size_t n_free = p->with_force ? N_ALL : N_MOTION, n = count(p);
     gsl_multifit_nlinear_workspace *const w = wb_least_squares_create((int)n, (int)n_free);
-    gsl_matrix *const covariance = gsl_matrix_alloc(n_free, n_free);
-    bool found = false;
-    if (w && covariance) {
-        gsl_multifit_nlinear_fdf fdf = {.f = residuals, .n = n, .p = n_free, .params = p};
-        const gsl_vector_const_view start = gsl_vector_const_view_array(free_numbers, n_free);
-        const struct wb_least_squares_search search = {.max_iterations = MOST_ITERATIONS,
-                                                       .smallest_step = 1e-5,
-                                                       .smallest_gain = 1e-10,
-                                                       .patience = 2,
-                                                       .status = &p->status};
-        *squares = 0.0;
-        found =
-            gsl_multifit_nlinear_init(&start.vector, &fdf, w) == GSL_SUCCESS &&
-            wb_least_squares_iterate(w, &search, NULL) &&
-            gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), 0.0, covariance) == GSL_SUCCESS;
-        for (size_t i = 0; i < n; i++)
-            *squares += pow(gsl_vector_get(gsl_multifit_nlinear_residual(w), i), 2);
-        const double enlarged = fmax(1.0, *squares / (double)(n - n_free));
-        for (size_t i = 0; found && i < n_free; i++) {
-            free_numbers[i] = gsl_vector_get(gsl_multifit_nlinear_position(w), i);
-            if (deviations)
-                deviations[i] = sqrt(enlarged * gsl_matrix_get(covariance, i, i));
-        }
+    gsl_matrix *const covariance = wb_memory_need(gsl_matrix_alloc(n_free, n_free));
+    gsl_multifit_nlinear_fdf fdf = {.f = residuals, .n = n, .p = n_free, .params = p};
+    const gsl_vector_const_view start = gsl_vector_const_view_array(free_numbers, n_free);
+    const struct wb_least_squares_search search = {.max_iterations = MOST_ITERATIONS,
+                                                   .smallest_step = 1e-5,
+                                                   .smallest_gain = 1e-10,
+                                                   .patience = 2,
+                                                   .status = &p->status};
+    *squares = 0.0;
+    const bool found =
+        gsl_multifit_nlinear_init(&start.vector, &fdf, w) == GSL_SUCCESS &&
+        wb_least_squares_iterate(w, &search, NULL) &&
+        gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), 0.0, covariance) == GSL_SUCCESS;
+    for (size_t i = 0; i < n; i++)
+        *squares += pow(gsl_vector_get(gsl_multifit_nlinear_residual(w), i), 2);
+    const double enlarged = fmax(1.0, *squares / (double)(n - n_free));
+    for (size_t i = 0; found && i < n_free; i++) {
+        free_numbers[i] = gsl_vector_get(gsl_multifit_nlinear_position(w), i);
+        if (deviations)
+            deviations[i] = sqrt(enlarged * gsl_matrix_get(covariance, i, i));
     }
     gsl_multifit_nlinear_free(w);
     gsl_matrix_free(covariance);

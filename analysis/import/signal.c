@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "analysis/dataset/fit.h"
+#include "base/memory.h"
 
 /* s on each side of a sample that shakes. */
 #define SHAKE_HALF 0.2
@@ -30,9 +31,7 @@ double wb_signal_noise(const struct wb_signal *s)
 {
     if (s->n < 8)
         return 0.0;
-    double *const second = malloc(s->n * sizeof *second);
-    if (!second)
-        return (double)NAN;
+    double *const second = wb_memory_new(s->n, sizeof *second);
     for (size_t i = 1; i + 1 < s->n; i++)
         second[i - 1] = fabs(s->x[i - 1] - 2.0 * s->x[i] + s->x[i + 1]);
     const double median = wb_fit_median(second, s->n - 2);

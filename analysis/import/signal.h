@@ -14,7 +14,7 @@ struct wb_signal {
 /* First sample at time t or later; n where there is none. */
 size_t wb_signal_index(const struct wb_signal *signal, double t);
 
-/* Standard deviation of a sample's noise, from second differences. NaN when out of memory. */
+/* Standard deviation of a sample's noise, from second differences. */
 double wb_signal_noise(const struct wb_signal *signal);
 
 /* How far each sample is from the middle of those 0.2 s before and after it, into out[n]. */

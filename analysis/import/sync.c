@@ -7,6 +7,7 @@
 
 #include "analysis/dataset/fit.h"
 #include "analysis/import/reversal_lag.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "sync"
 
@@ -80,13 +81,11 @@ static struct event tap_at(const struct wb_signal *shake, size_t i, double floor
                           .deviation = 0.5 * period};
 }
 
-static enum wb_status find_taps(const struct wb_signal *shake, struct events *taps)
+static void find_taps(const struct wb_signal *shake, struct events *taps)
 {
     double largest = 0.0;
-    double *const sizes = malloc((shake->n + 1) * sizeof *sizes);
+    double *const sizes = wb_memory_new(shake->n, sizeof *sizes);
     taps->n = 0;
-    if (!sizes)
-        return WB_ERR_MEMORY;
     for (size_t i = 0; i < shake->n; i++) {
         sizes[i] = fabs(shake->x[i]);
         largest = fmax(largest, sizes[i]);
@@ -106,7 +105,6 @@ static enum wb_status find_taps(const struct wb_signal *shake, struct events *ta
         if (taps->n < MOST_EVENTS)
             taps->at[taps->n++] = tap_at(shake, best, fmax(0.2 * threshold, FLOOR_NOISE * noise));
     }
-    return WB_OK;
 }
 
 /* --- reversals --- */
@@ -154,10 +152,8 @@ static bool reaches(const struct wb_signal *s, const double *y, size_t far, size
     const bool rises = far < near;
     const size_t from = rises ? wb_signal_index(s, s->t[near] - window) : near;
     const size_t until = rises ? near : wb_signal_index(s, s->t[near] + window);
-    double *const x = malloc((until - from + 1) * sizeof *x);
+    double *const x = wb_memory_new(until - from, sizeof *x);
     struct wb_fit_line line;
-    if (!x)
-        return false;
     for (size_t i = from; i < until; i++)
         x[i - from] = s->t[i] - s->t[near];
     const bool found = until > from + 5 && wb_fit_line(x, y + from, until - from, &line) &&
@@ -198,14 +194,12 @@ static bool place(const struct wb_signal *s, const double *y, const struct turn 
 }
 
 /* Turns of |x - x(0)|, about. */
-static enum wb_status find_reversals(const struct wb_signal *s, struct events *events)
+static void find_reversals(const struct wb_signal *s, struct events *events)
 {
     struct turn turns[MOST_EVENTS];
-    double *const y = malloc((s->n + 1) * sizeof *y);
+    double *const y = wb_memory_new(s->n, sizeof *y);
     double most = 0.0;
     events->n = 0;
-    if (!y)
-        return WB_ERR_MEMORY;
     const double noise = wb_signal_noise(s), zero = s->n > 0 ? s->x[0] : 0.0;
     double sign = 1.0;
     for (size_t i = 0; i < s->n; i++) {
@@ -221,7 +215,6 @@ static enum wb_status find_reversals(const struct wb_signal *s, struct events *e
     for (int i = 0; i < n; i++)
         events->n += place(s, y, &turns[i], noise, &events->at[events->n]);
     free(y);
-    return WB_OK;
 }
 
 /* --- pairing --- */
@@ -320,16 +313,14 @@ static void add_event(struct lag_search *s, const struct event *motion, double l
     add_turn(s, &(struct wb_reversal){comes, leaves, motion->until, WB_TURN_FROM_REST}, lag);
 }
 
-static enum wb_status find_lags(const struct wb_signal *motion, const struct wb_signal *force,
-                                const struct events *a, const struct events *b, double filter_delay,
-                                struct pairing *pairing)
+static void find_lags(const struct wb_signal *motion, const struct wb_signal *force,
+                      const struct events *a, const struct events *b, double filter_delay,
+                      struct pairing *pairing)
 {
     struct lag_search s = {.motion = motion,
                            .force = force,
                            .filter_delay = filter_delay,
-                           .shifted = malloc((force->n + 1) * sizeof *s.shifted)};
-    if (!s.shifted)
-        return WB_ERR_MEMORY;
+                           .shifted = wb_memory_new(force->n, sizeof *s.shifted)};
     int n = 0;
     for (int i = 0; i < a->n; i++) {
         const int k = partner_of(&a->at[i], b, pairing->lag, TURN_GATE), before = s.mean.n;
@@ -343,7 +334,6 @@ static enum wb_status find_lags(const struct wb_signal *motion, const struct wb_
     pairing->deviation = HUGE_VAL;
     if (n > 0)
         wb_reversal_mean_find(&s.mean, &pairing->lag, &pairing->deviation);
-    return WB_OK;
 }
 
 /* --- all --- */
@@ -388,54 +378,46 @@ static void take(struct wb_sync *sync, enum wb_sync_method method, const struct 
     sync->first_event = pairing->first;
 }
 
-static enum wb_status find_by_tap(struct wb_sync *sync, const struct wb_signal *shake,
-                                  const struct wb_signal *force, double filter_delay,
-                                  char reason[120])
+static void find_by_tap(struct wb_sync *sync, const struct wb_signal *shake,
+                        const struct wb_signal *force, double filter_delay, char reason[120])
 {
     struct events a, b;
     struct pairing pairing;
-    double *const out = malloc((force->n + 1) * sizeof *out);
-    if (!out)
-        return WB_ERR_MEMORY;
+    double *const out = wb_memory_new(force->n, sizeof *out);
     wb_signal_shake(force, out);
     const struct wb_signal shaken = {force->t, out, force->n};
-    enum wb_status status = find_taps(shake, &a);
-    if (status == WB_OK)
-        status = find_taps(&shaken, &b);
+    find_taps(shake, &a);
+    find_taps(&shaken, &b);
     free(out);
     /* A filter delays a short event by less than a ramp. */
-    if (status == WB_OK && match(&pairing, WB_SYNC_TAP, &a, &b, reason))
+    if (match(&pairing, WB_SYNC_TAP, &a, &b, reason))
         take(sync, WB_SYNC_TAP, &pairing, 0.5 * filter_delay, reason);
-    return status;
 }
 
-static enum wb_status find_by_reversal(struct wb_sync *sync, const struct wb_signal *motion,
-                                       const struct wb_signal *force, double filter_delay,
-                                       char reason[120])
+static void find_by_reversal(struct wb_sync *sync, const struct wb_signal *motion,
+                             const struct wb_signal *force, double filter_delay, char reason[120])
 {
     struct events a, b;
     struct pairing pairing;
-    WB_TRY(find_reversals(motion, &a));
-    WB_TRY(find_reversals(force, &b));
+    find_reversals(motion, &a);
+    find_reversals(force, &b);
     if (!match(&pairing, WB_SYNC_REVERSAL, &a, &b, reason))
-        return WB_OK;
-    WB_TRY(find_lags(motion, force, &a, &b, filter_delay, &pairing));
+        return;
+    find_lags(motion, force, &a, &b, filter_delay, &pairing);
     take(sync, WB_SYNC_REVERSAL, &pairing, 0.0, reason);
-    return WB_OK;
 }
 
-enum wb_status wb_sync_find(struct wb_sync *sync, const struct wb_signal *motion,
-                            const struct wb_signal *shake, const struct wb_signal *force,
-                            const struct wb_sync_settings *settings)
+void wb_sync_find(struct wb_sync *sync, const struct wb_signal *motion,
+                  const struct wb_signal *shake, const struct wb_signal *force,
+                  const struct wb_sync_settings *settings)
 {
     char tap[120] = "", reversal[120] = "";
     *sync = (struct wb_sync){.lag = (double)NAN, .uncertainty = (double)NAN};
     if (settings->tap)
-        WB_TRY(find_by_tap(sync, shake, force, settings->filter_delay, tap));
+        find_by_tap(sync, shake, force, settings->filter_delay, tap);
     if (settings->reversal)
-        WB_TRY(find_by_reversal(sync, motion, force, settings->filter_delay, reversal));
+        find_by_reversal(sync, motion, force, settings->filter_delay, reversal);
     if (sync->method == WB_SYNC_NONE)
         snprintf(sync->reason, sizeof sync->reason, "%s%s%s", tap,
                  tap[0] && reversal[0] ? "; " : "", reversal);
-    return WB_OK;
 }

@@ -13,7 +13,6 @@
 #include <stdbool.h>
 
 #include "analysis/import/signal.h"
-#include "base/status.h"
 
 enum wb_sync_method {
     WB_SYNC_NONE,
@@ -39,11 +38,10 @@ struct wb_sync_settings {
 };
 
 /* Finds the lag of `force` (any unit and sign) behind `motion`. For taps `shake` is the fast part
- * of the motion, from wb_signal_shake() or zeros where there is none. WB_OK with method
- * WB_SYNC_NONE where it is not identifiable; WB_ERR_MEMORY, silent. */
-WB_MUST_CHECK enum wb_status wb_sync_find(struct wb_sync *sync, const struct wb_signal *motion,
-                                          const struct wb_signal *shake,
-                                          const struct wb_signal *force,
-                                          const struct wb_sync_settings *settings);
+ * of the motion, from wb_signal_shake() or zeros where there is none. The method is
+ * WB_SYNC_NONE where the lag is not identifiable. */
+void wb_sync_find(struct wb_sync *sync, const struct wb_signal *motion,
+                  const struct wb_signal *shake, const struct wb_signal *force,
+                  const struct wb_sync_settings *settings);
 
 #endif
