@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "calibrate"
 
 /* Adds 1/n of a sample's computed curve to `mean`. */
@@ -33,10 +35,8 @@ enum wb_status wb_bow_correction_guess(struct wb_first_guess *guess,
                                        struct wb_reason *why)
 {
     const size_t points = (size_t)samples->curve->n;
-    double *const mean = calloc(2 * points, sizeof *mean);
+    double *const mean = wb_memory_new(2 * points, sizeof *mean);
     enum wb_status status = WB_OK;
-    if (!mean)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu points", points);
     for (int i = 0; status == WB_OK && i < samples->n; i++) {
         status =
             add_sample(mean, mean + points, samples, &samples->datasets[i]->info, material, why);

@@ -18,6 +18,7 @@
 #include "analysis/calibration/paper/refit.h"
 #include "analysis/calibration/paper/scatter.h"
 #include "analysis/dataset/errors.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"
 
@@ -309,23 +310,17 @@ static double evaluate(const gsl_vector *at, void *parameters)
                                  wb_curve_scale(curve));
 }
 
-static enum wb_status add_step(struct wb_calibrate_result *result,
-                               const struct objective *objective, const gsl_vector *best,
-                               double error, double size)
+static void add_step(struct wb_calibrate_result *result, const struct objective *objective,
+                     const gsl_vector *best, double error, double size)
 {
-    const size_t n = (size_t)result->n_path;
-    struct wb_calibrate_step *const path = realloc(result->path, (n + 1) * sizeof *path);
-    if (!path)
-        return wb_fail_to(objective->why, WB_ERR_MEMORY, "no memory for the optimiser's path");
-    path[n] = (struct wb_calibrate_step){
+    const size_t n = (size_t)result->n_path++;
+    result->path = wb_memory_resize(result->path, n + 1, sizeof *result->path);
+    result->path[n] = (struct wb_calibrate_step){
         .strength_coefficient = gsl_vector_get(best, 0) * objective->first_strength,
         .hardening_exponent = gsl_vector_get(best, 1) * objective->first_exponent,
         .error = error,
         .size = size,
     };
-    result->path = path;
-    result->n_path++;
-    return WB_OK;
 }
 
 /* Iterates one simplex until it is small, the error is, or the iterations or the caller's patience
@@ -341,7 +336,7 @@ static enum wb_status iterate(struct wb_calibrate_result *result, struct objecti
         const double error = i == 0 ? first_error : gsl_multimin_fminimizer_minimum(minimizer);
         if (objective->status != WB_OK)
             return objective->status;
-        WB_TRY(add_step(result, objective, best, error, size));
+        add_step(result, objective, best, error, size);
         if (settings->progress &&
             !settings->progress(settings->progress_context, objective->evaluations, error, size)) {
             result->end = WB_CALIBRATE_STOPPED;
@@ -372,24 +367,17 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
                                double at[2], const struct wb_calibrate_settings *settings)
 {
     gsl_multimin_fminimizer *const minimizer =
-        gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, 2);
-    gsl_vector *const start = gsl_vector_alloc(2);
-    gsl_vector *const edges = gsl_vector_alloc(2);
+        wb_memory_need(gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, 2));
+    double edge[2] = {SIMPLEX_STEP * at[0], SIMPLEX_STEP * at[1]};
+    const gsl_vector_view start = gsl_vector_view_array(at, 2);
+    const gsl_vector_view edges = gsl_vector_view_array(edge, 2);
     gsl_multimin_function function = {evaluate, 2, objective};
     enum wb_status status = WB_OK;
-    double first_error = 0.0;
-    if (!minimizer || !start || !edges) {
-        status = wb_fail_to(objective->why, WB_ERR_MEMORY, "no memory for the simplex");
-    } else {
-        for (size_t i = 0; i < 2; i++) {
-            gsl_vector_set(start, i, at[i]);
-            gsl_vector_set(edges, i, SIMPLEX_STEP * at[i]);
-        }
-        first_error = evaluate(start, objective);
-        if (gsl_multimin_fminimizer_set(minimizer, &function, start, edges) != GSL_SUCCESS)
-            status = wb_fail_to(objective->why, WB_ERR_CONVERGENCE,
-                                "the first simplex could not be made");
-    }
+    const double first_error = evaluate(&start.vector, objective);
+    if (gsl_multimin_fminimizer_set(minimizer, &function, &start.vector, &edges.vector) !=
+        GSL_SUCCESS)
+        status =
+            wb_fail_to(objective->why, WB_ERR_CONVERGENCE, "the first simplex could not be made");
     if (status == WB_OK)
         status = iterate(result, objective, minimizer, first_error, settings);
     if (status == WB_OK) {
@@ -404,12 +392,7 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
                                 result->info.wire, objective->first_strength / WB_MPA,
                                 objective->first_exponent);
     }
-    if (minimizer)
-        gsl_multimin_fminimizer_free(minimizer);
-    if (start)
-        gsl_vector_free(start);
-    if (edges)
-        gsl_vector_free(edges);
+    gsl_multimin_fminimizer_free(minimizer);
     return status;
 }
 
@@ -691,9 +674,7 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     if (settings->yield_stress > 0.0)
         objective.material.yield_stress = settings->yield_stress;
     const struct wb_computed_settings how = computed_settings(settings, why);
-    objective.value = malloc((size_t)curve->n * sizeof *objective.value);
-    if (!objective.value)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", curve->n);
+    objective.value = wb_memory_new((size_t)curve->n, sizeof *objective.value);
     enum wb_status status =
         wb_computed_create(&objective.computed, &result->info, &objective.material, &how);
     if (status == WB_OK)

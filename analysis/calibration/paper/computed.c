@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/rod/section.h"
 #include "fe/trial/cantilever.h"
@@ -24,9 +25,7 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
                                   const struct wb_computed_settings *settings)
 {
     *out = NULL;
-    struct wb_computed *const computed = calloc(1, sizeof *computed);
-    if (!computed)
-        return wb_fail_to(settings->why, WB_ERR_MEMORY, "no memory for a computed test");
+    struct wb_computed *const computed = wb_memory_new(1, sizeof *computed);
     computed->info = *info;
     computed->why = settings->why;
     if (info->is_follower && info->strand_length != 0.0) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/log.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "jackknife"
 
@@ -24,10 +25,8 @@ static enum wb_status leave_each_out(double deviation[4], const struct wb_datase
 {
     enum wb_status status = WB_OK;
     bool all_settled = true;
-    const struct wb_dataset **const others = malloc((size_t)n * sizeof(struct wb_dataset *));
-    double *const values = malloc(4 * (size_t)n * sizeof *values);
-    if (!others || !values)
-        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d samples", n);
+    const struct wb_dataset **const others = wb_memory_new((size_t)n, sizeof *others);
+    double *const values = wb_memory_new(4 * (size_t)n, sizeof *values);
     for (int i = 0; status == WB_OK && i < n; i++) {
         struct wb_material material = *optimum;
         int kept = 0;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/dataset/errors.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "calibrate"
 
@@ -145,11 +146,8 @@ enum wb_status wb_refit_run(struct wb_material *material, bool *settled,
                             int *evaluations)
 {
     const size_t points = (size_t)curve->n;
-    double *const values = calloc(4 * points, sizeof *values);
+    double *const values = wb_memory_new(4 * points, sizeof *values);
     *settled = false;
-    if (!values)
-        return wb_fail_to(wb_computed_reason(computed), WB_ERR_MEMORY, "no memory for %zu points",
-                          points);
     struct refit refit = {
         .computed = computed,
         .curve = curve,

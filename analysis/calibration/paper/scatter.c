@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "scatter"
 
 /* Measured less computed values of one sample on the grid of the average, into `difference`. */
@@ -42,9 +44,7 @@ enum wb_status wb_scatter_residual(double *rms, const struct wb_dataset *const *
         *rms = 0.0;
         return WB_OK;
     }
-    double *const differences = malloc((size_t)n * points * sizeof *differences);
-    if (!differences)
-        return wb_fail_to(settings->why, WB_ERR_MEMORY, "no memory for %d samples", n);
+    double *const differences = wb_memory_new((size_t)n * points, sizeof *differences);
     for (int i = 0; status == WB_OK && complete && i < n; i++)
         status = sample_difference(differences + (size_t)i * points, &complete, datasets[i], curve,
                                    material, settings);
