@@ -4,6 +4,7 @@
 
 #include "base/circle.h"
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/rod/fibres.h"
 #include "fe/rod/section.h"
@@ -121,18 +122,15 @@ static enum wb_status add_moments(const struct wb_section *section, double times
     struct wb_fibres *fibres;
     WB_TRY(wb_fibres_create(&fibres, section));
     const size_t size = wb_fibres_history_size(fibres);
-    double *const before = calloc(2 * size + 1, sizeof *before);
-    enum wb_status status = WB_OK;
-    if (!before)
-        status = wb_fail(WB_ERR_MEMORY, "out of memory for a section");
-    for (int i = 0; status == WB_OK && i < n; i++) {
+    double *const before = wb_memory_new(2 * size, sizeof *before);
+    for (int i = 0; i < n; i++) {
         struct wb_fibres_response response;
         wb_fibres_respond(fibres, 0.0, curvature[i], before, before + size, &response);
         moment[i] += times * response.M;
     }
     free(before);
     wb_fibres_destroy(fibres);
-    return status;
+    return WB_OK;
 }
 
 static enum wb_status add_rings(struct wb_section *section, const struct wb_layers *layers,

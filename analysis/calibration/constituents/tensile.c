@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "tensile"
@@ -118,10 +119,8 @@ static enum wb_status take_curve(struct curve *curve, const struct wb_dataset *d
             "sample %d: %zu rows up to the largest force: too few for a tensile curve",
             info->sample, n);
     const size_t bin = 1 + (n - 1) / MOST_POINTS;
-    curve->strain = calloc(n / bin + 1, sizeof(double));
-    curve->stress = calloc(n / bin + 1, sizeof(double));
-    if (!curve->strain || !curve->stress)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory for %zu points", n);
+    curve->strain = wb_memory_new(n / bin + 1, sizeof(double));
+    curve->stress = wb_memory_new(n / bin + 1, sizeof(double));
     for (size_t i = 0; i < n; i += bin) {
         const size_t end = i + bin < n ? i + bin : n;
         double elongation = 0.0, force = 0.0;
@@ -529,7 +528,7 @@ static void fit_mean(struct wb_tensile_result *result, const struct curve *curve
 
 static void release_all(struct curve *curves, int n)
 {
-    for (int i = 0; curves && i < n; i++)
+    for (int i = 0; i < n; i++)
         release(&curves[i]);
     free(curves);
 }
@@ -550,11 +549,9 @@ enum wb_status wb_tensile_run(struct wb_tensile_result *result,
     made.own_elongation = info->machine.own_elongation;
     made.area = info->piece.area;
     made.gauge_length = info->length;
-    made.specimens = calloc((size_t)n, sizeof *made.specimens);
-    struct curve *const curves = calloc((size_t)n, sizeof *curves);
+    made.specimens = wb_memory_new((size_t)n, sizeof *made.specimens);
+    struct curve *const curves = wb_memory_new((size_t)n, sizeof *curves);
     enum wb_status status = WB_OK;
-    if (!made.specimens || !curves)
-        status = wb_fail_to(why, WB_ERR_MEMORY, "out of memory for %d specimens", n);
     for (int i = 0; status == WB_OK && i < n; i++)
         status = run_specimen(&made.specimens[i], &curves[i], datasets[i], settings, why);
     if (status == WB_OK) {

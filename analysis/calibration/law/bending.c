@@ -9,6 +9,7 @@
 #include <gsl/gsl_multifit_nlinear.h>
 #include <gsl/gsl_vector.h>
 
+#include "base/memory.h"
 #include "fe/rod/fibres.h"
 #include "fe/rod/section.h"
 
@@ -40,13 +41,11 @@ static enum wb_status make_point(struct point *p, const struct wb_law *law, doub
 {
     *p = (struct point){.before = NULL};
     WB_TRY(wb_section_init_law(&p->section, diameter, law, STRIPS));
-    enum wb_status status = wb_fibres_create(&p->fibres, &p->section);
+    const enum wb_status status = wb_fibres_create(&p->fibres, &p->section);
     if (status == WB_OK) {
         p->size = wb_fibres_history_size(p->fibres);
-        p->before = calloc(p->size, sizeof *p->before);
-        p->after = calloc(p->size, sizeof *p->after);
-        if (!p->before || !p->after)
-            status = wb_fail(WB_ERR_MEMORY, "no memory for a section");
+        p->before = wb_memory_new(p->size, sizeof *p->before);
+        p->after = wb_memory_new(p->size, sizeof *p->after);
     }
     return status;
 }
@@ -173,10 +172,8 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
     /* K and n lie in a valley so flat that the noise of one-sided differences shows in them. */
     parameters.fdtype = GSL_MULTIFIT_NLINEAR_CTRDIFF;
     parameters.h_df = 1e-4;
-    gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
-        gsl_multifit_nlinear_trust, &parameters, EQUIVALENT_POINTS, EQUIVALENT_FREE);
-    if (!w)
-        return wb_fail(WB_ERR_MEMORY, "no memory for an equivalent law");
+    gsl_multifit_nlinear_workspace *const w = wb_memory_need(gsl_multifit_nlinear_alloc(
+        gsl_multifit_nlinear_trust, &parameters, EQUIVALENT_POINTS, EQUIVALENT_FREE));
     gsl_multifit_nlinear_fdf fdf = {
         .f = equivalent_residuals, .n = EQUIVALENT_POINTS, .p = EQUIVALENT_FREE, .params = e};
     /* It starts with the stiffness of a small bend and yields where a first loading has lost a
