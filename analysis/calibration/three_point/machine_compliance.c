@@ -11,6 +11,7 @@
 #include "analysis/calibration/three_point/three_point_model.h"
 #include "analysis/dataset/fit.h"
 #include "base/circle.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "compliance"
@@ -86,18 +87,16 @@ static void take(struct readings *r, const struct wb_row *row, double force)
     r->force[r->n++] = force;
 }
 
-static bool collect(struct test *test, const struct wb_dataset *dataset, double from_force)
+static void collect(struct test *test, const struct wb_dataset *dataset, double from_force)
 {
     size_t n = 0, top = 0;
     while (n < dataset->n_rows && dataset->rows[n].cycle == dataset->rows[0].cycle)
         n++;
-    double *const room = calloc(6 * n + 1, sizeof *room);
+    double *const room = wb_memory_new(6 * n, sizeof *room);
     *test = (struct test){
         .zero = HUGE_VAL,
         .up = {.travel = room, .force = room + n, .rest = room + 2 * n},
         .back = {.travel = room + 3 * n, .force = room + 4 * n, .rest = room + 5 * n}};
-    if (!room)
-        return false;
     /* The way up ends at the largest force, not at the largest travel: a bar that slips forward at
      * the turn goes on, and its readings there would pass for noise of the way up. */
     for (size_t i = 0; i < n; i++) {
@@ -118,7 +117,6 @@ static bool collect(struct test *test, const struct wb_dataset *dataset, double 
         else if (force <= below_turn * test->largest)
             take(&test->back, row, force);
     }
-    return true;
 }
 
 /* The bar's deflection under a force, by bisection of its curve. */
@@ -140,9 +138,7 @@ static double deflection_of(const struct wb_three_point_model *model, double for
 static double curved_part(const struct readings *r, double mean, double slope)
 {
     double c[3], deviation, reach = 0.0;
-    double *const x = calloc((size_t)r->n, sizeof *x);
-    if (!x)
-        return 0.0;
+    double *const x = wb_memory_new((size_t)r->n, sizeof *x);
     for (int i = 0; i < r->n; i++) {
         x[i] = r->force[i] - mean;
         reach = fmax(reach, fabs(x[i]));
@@ -346,14 +342,11 @@ enum wb_status wb_machine_compliance_find(struct wb_machine_compliance *result,
     if (n < 1)
         return wb_fail_to(why, WB_ERR_ARGUMENT, "expected at least one test");
     WB_TRY(check(datasets, n, settings, why));
-    struct test *const all = calloc((size_t)n, sizeof *all);
-    if (!all)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", n);
+    struct test *const all = wb_memory_new((size_t)n, sizeof *all);
     enum wb_status status = WB_OK;
     for (int i = 0; i < n && status == WB_OK; i++) {
-        if (!collect(&all[i], datasets[i], settings->from_force))
-            status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", datasets[i]->n_rows);
-        else if (all[i].up.n < LEAST_READINGS)
+        collect(&all[i], datasets[i], settings->from_force);
+        if (all[i].up.n < LEAST_READINGS)
             status = wb_fail_to(why, WB_ERR_DATA,
                                 "test %d of '%s': %d readings above %g of the largest force: "
                                 "expected at least %d",

@@ -9,6 +9,7 @@
 
 #include "analysis/calibration/law/bending.h"
 #include "base/circle.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "base/workers.h"
 
@@ -193,6 +194,7 @@ struct work {
     struct variant_fit *fits; /* (n_members x WB_THREE_POINT_VARIANTS); NULL: the members' own */
     int done, all;
     bool stopped;
+    enum wb_status status; /* the last failure of a job: no memory */
 };
 
 /* A member's fit with another bench. */
@@ -205,10 +207,12 @@ static bool count_fit(void *context, int index, enum wb_status status)
 {
     struct work *const work = context;
     const struct wb_three_point_calibrate_settings *const s = work->settings;
-    (void)index, (void)status;
+    (void)index;
     work->done++;
+    if (status != WB_OK)
+        work->status = status;
     work->stopped = s->progress && !s->progress(s->progress_context, work->done, work->all);
-    return !work->stopped;
+    return !work->stopped && status == WB_OK;
 }
 
 static enum wb_status run_side_by_side(struct work *work, int n, enum wb_status (*job)(void *, int),
@@ -220,6 +224,8 @@ static enum wb_status run_side_by_side(struct work *work, int n, enum wb_status 
                                        .done = count_fit,
                                        .context = work};
     (void)wb_workers_run(&workers);
+    if (work->status != WB_OK)
+        return wb_fail_to(why, work->status, "out of memory");
     return work->stopped ? wb_fail_to(why, WB_ERR_TIMEOUT, "stopped") : WB_OK;
 }
 
@@ -340,9 +346,7 @@ static enum wb_status vary(struct work *work, struct wb_reason *why)
     struct wb_three_point_calibration *const c = work->calibration;
     const int n = c->n_members * WB_THREE_POINT_VARIANTS;
     struct wb_three_point_bench bench;
-    work->fits = calloc((size_t)n, sizeof *work->fits);
-    if (!work->fits)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d fits", n);
+    work->fits = wb_memory_new((size_t)n, sizeof *work->fits);
     enum wb_status status = run_side_by_side(work, n, fit_variant, why);
     for (int i = 0; i < n; i++)
         c->cpu_s += work->fits[i].fit.cpu_s;
@@ -380,9 +384,7 @@ static enum wb_status run(struct wb_three_point_calibration *c,
     }
     WB_TRY(fit_members(&work, why));
     wb_three_point_calibrate_law(c, -1, &c->law);
-    double *const room = calloc(2 * (size_t)c->n_members, sizeof *room);
-    if (!room)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", c->n_members);
+    double *const room = wb_memory_new(2 * (size_t)c->n_members, sizeof *room);
     find_estimates(c, &(struct numbers){room, room + c->n_members});
     free(room);
     WB_TRY(vary(&work, why));
@@ -396,9 +398,7 @@ enum wb_status wb_three_point_calibrate_run(
 {
     *calibration = (struct wb_three_point_calibration){.n_members = n};
     WB_TRY(check_same(datasets, n, why));
-    calibration->members = calloc((size_t)n, sizeof *calibration->members);
-    if (!calibration->members)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", n);
+    calibration->members = wb_memory_new((size_t)n, sizeof *calibration->members);
     const enum wb_status status = run(calibration, datasets, settings, why);
     if (status != WB_OK)
         wb_three_point_calibrate_release(calibration);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "analysis/dataset/fit.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "three-point"
@@ -99,12 +100,10 @@ static void release(struct readings *r)
     free(r->force);
 }
 
-static bool collect(const struct wb_dataset *dataset, struct readings *r)
+static void collect(const struct wb_dataset *dataset, struct readings *r)
 {
-    r->travel = calloc(dataset->n_rows + 1, sizeof *r->travel);
-    r->force = calloc(dataset->n_rows + 1, sizeof *r->force);
-    if (!r->travel || !r->force)
-        return false;
+    r->travel = wb_memory_new(dataset->n_rows, sizeof *r->travel);
+    r->force = wb_memory_new(dataset->n_rows, sizeof *r->force);
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
         if (row->cycle != dataset->rows[0].cycle || !isfinite(row->deflection) ||
@@ -116,7 +115,6 @@ static bool collect(const struct wb_dataset *dataset, struct readings *r)
             r->top = r->n;
         r->n++;
     }
-    return true;
 }
 
 /* Of the readings with up to `half` others on each side, as many on both. */
@@ -149,9 +147,7 @@ static bool find_contact(const struct readings *r, double zero, double largest, 
             return false;
     }
     struct wb_fit_line line;
-    double *const force = calloc(to - from, sizeof *force);
-    if (!force)
-        return false;
+    double *const force = wb_memory_new(to - from, sizeof *force);
     for (size_t i = from; i < to; i++)
         force[i - from] = r->force[i] - zero;
     const bool found = wb_fit_line(r->travel + from, force, to - from, &line) && line.slope > 0.0;
@@ -168,9 +164,7 @@ static bool find_zero(const struct readings *r, double contact, double distance,
         n++;
     if (n < LEAST_BEFORE)
         return false;
-    double *const values = calloc(n, sizeof *values);
-    if (!values)
-        return false;
+    double *const values = wb_memory_new(n, sizeof *values);
     memcpy(values, r->force, n * sizeof *values);
     *zero = wb_fit_median(values, n);
     free(values);
@@ -182,9 +176,7 @@ static double find_noise(const struct readings *r, size_t last)
 {
     if (last < 3)
         return 0.0;
-    double *const values = calloc(last, sizeof *values);
-    if (!values)
-        return 0.0;
+    double *const values = wb_memory_new(last, sizeof *values);
     for (size_t i = 1; i < last; i++)
         values[i - 1] = fabs(r->force[i] - 0.5 * (r->force[i - 1] + r->force[i + 1]));
     const double noise = 1.4826 * wb_fit_median(values, last - 1) / sqrt(1.5);
@@ -238,14 +230,11 @@ static double force_at(const struct readings *r, size_t from, size_t to, double 
     }
     struct wb_fit_line line;
     if (n >= 4) {
-        double *const x = calloc(n, sizeof *x);
-        bool fitted = false;
-        if (x) {
-            for (size_t i = 0; i < n; i++)
-                x[i] = r->travel[first + i] - travel;
-            fitted = wb_fit_line(x, r->force + first, n, &line);
-            free(x);
-        }
+        double *const x = wb_memory_new(n, sizeof *x);
+        for (size_t i = 0; i < n; i++)
+            x[i] = r->travel[first + i] - travel;
+        const bool fitted = wb_fit_line(x, r->force + first, n, &line);
+        free(x);
         if (fitted)
             return line.value;
     }
@@ -362,9 +351,7 @@ static enum wb_status make(struct wb_three_point_data *data, const struct readin
         data->usable = data->first_contact + largest_part * span;
         data->limit = WB_THREE_POINT_LIMIT_THIRD;
     }
-    data->points = calloc(MOST_POINTS, sizeof *data->points);
-    if (!data->points)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for points");
+    data->points = wb_memory_new(MOST_POINTS, sizeof *data->points);
     add_points(data, r, span, s, r->top);
     if (data->n_points < LEAST_POINTS)
         return wb_fail_to(why, WB_ERR_DATA,
@@ -389,9 +376,8 @@ enum wb_status wb_three_point_data_make(struct wb_three_point_data *data,
     if (dataset->info.kind != WB_TEST_THREE_POINT)
         return wb_fail_to(why, WB_ERR_DATA, "wire '%s': not a three-point bending test",
                           dataset->info.wire);
-    if (!collect(dataset, &readings))
-        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", dataset->n_rows);
-    else if (readings.n < LEAST_POINTS)
+    collect(dataset, &readings);
+    if (readings.n < LEAST_POINTS)
         status = wb_fail_to(why, WB_ERR_DATA, "wire '%s', sample %d: %zu rows: expected %d",
                             dataset->info.wire, dataset->info.sample, readings.n, LEAST_POINTS);
     if (status == WB_OK)

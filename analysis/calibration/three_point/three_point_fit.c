@@ -15,6 +15,7 @@
 #include "analysis/calibration/three_point/three_point_place.h"
 #include "analysis/dataset/least_squares.h"
 #include "base/circle.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"
 
@@ -285,9 +286,7 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     struct problem *const p = context;
     const size_t n = (size_t)p->n_residuals;
     double moved[WB_THREE_POINT_MOST_FREE];
-    double *const base = calloc(2 * n, sizeof *base);
-    if (!base)
-        return GSL_ENOMEM;
+    double *const base = wb_memory_new(2 * n, sizeof *base);
     double *const other = base + n;
     int status = residuals(p, x->data, base);
     for (int step = 0; step < p->n_free && status == GSL_SUCCESS; step++) {
@@ -321,20 +320,16 @@ static bool find_covariance(const gsl_matrix *J, size_t n_readings, double varia
     const gsl_matrix_const_view readings = gsl_matrix_const_submatrix(J, 0, 0, n_readings, n);
     const gsl_matrix_const_view priors =
         gsl_matrix_const_submatrix(J, n_readings, 0, J->size1 - n_readings, n);
-    gsl_matrix *const H = gsl_matrix_alloc(n, n), *const M = gsl_matrix_alloc(n, n),
-                      *const HM = gsl_matrix_alloc(n, n);
-    bool good = H && M && HM;
-    if (good) {
-        gsl_matrix_set_identity(H);
-        gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, H);
-        gsl_matrix_set_identity(M);
-        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &priors.matrix, &priors.matrix, know_nothing,
-                       M);
-        gsl_blas_dgemm(CblasTrans, CblasNoTrans, variance, &readings.matrix, &readings.matrix, 1.0,
-                       M);
-        good = gsl_linalg_cholesky_decomp1(H) == GSL_SUCCESS &&
-               gsl_linalg_cholesky_invert(H) == GSL_SUCCESS;
-    }
+    gsl_matrix *const H = wb_memory_need(gsl_matrix_alloc(n, n));
+    gsl_matrix *const M = wb_memory_need(gsl_matrix_alloc(n, n));
+    gsl_matrix *const HM = wb_memory_need(gsl_matrix_alloc(n, n));
+    gsl_matrix_set_identity(H);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, H);
+    gsl_matrix_set_identity(M);
+    gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &priors.matrix, &priors.matrix, know_nothing, M);
+    gsl_blas_dgemm(CblasTrans, CblasNoTrans, variance, &readings.matrix, &readings.matrix, 1.0, M);
+    const bool good = gsl_linalg_cholesky_decomp1(H) == GSL_SUCCESS &&
+                      gsl_linalg_cholesky_invert(H) == GSL_SUCCESS;
     if (good) {
         gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, H, M, 0.0, HM);
         gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, HM, H, 0.0, covariance);
@@ -351,11 +346,11 @@ static bool slope_of_share(struct problem *p, const gsl_vector *x, const gsl_vec
                            gsl_matrix *J)
 {
     double moved[WB_THREE_POINT_MOST_FREE];
-    double *const r = calloc(f->size, sizeof *r);
+    double *const r = wb_memory_new(f->size, sizeof *r);
     const double share = share_of(p, x->data), by = share > 0.5 ? -share_step : share_step;
     memcpy(moved, x->data, (size_t)p->n_free * sizeof *moved);
     moved[SHARE] = share + by - 0.5;
-    const bool good = r && residuals(p, moved, r) == GSL_SUCCESS && p->run.reached;
+    const bool good = residuals(p, moved, r) == GSL_SUCCESS && p->run.reached;
     for (size_t i = 0; good && i < f->size; i++)
         gsl_matrix_set(J, i, SHARE, (r[i] - gsl_vector_get(f, i)) / by);
     if (good)
@@ -400,10 +395,8 @@ static void find_errors(struct problem *p, gsl_multifit_nlinear_workspace *w,
 {
     const size_t n = (size_t)p->n_free, contact = n - 1, bow = (size_t)p->n_law;
     const double span = p->data->info.length;
-    gsl_matrix *const covariance = gsl_matrix_alloc(n, n);
+    gsl_matrix *const covariance = wb_memory_need(gsl_matrix_alloc(n, n));
     fit->first_contact_error = (double)NAN;
-    if (!covariance)
-        return;
     double sum = 0.0;
     for (size_t i = 0; i < (size_t)p->data->n_points; i++)
         sum += pow(gsl_vector_get(w->f, i), 2);
@@ -462,8 +455,8 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
     if (p->status != WB_OK)
         return p->status;
     /* The curve of the answer itself, not of the last trial. */
-    double *const r = calloc((size_t)p->n_residuals, sizeof *r);
-    const int status = r ? residuals(p, w->x->data, r) : GSL_ENOMEM;
+    double *const r = wb_memory_new((size_t)p->n_residuals, sizeof *r);
+    const int status = residuals(p, w->x->data, r);
     double sum = 0.0;
     for (int i = 0; status == GSL_SUCCESS && i < p->data->n_points; i++)
         sum += r[i] * r[i];
@@ -516,11 +509,8 @@ enum wb_status wb_three_point_fit_run(struct wb_three_point_fit *fit,
     WB_TRY(wb_three_point_model_create(&p.model, &data->info, bench, &law, settings->n_elements));
 
     gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
-    const enum wb_status status =
-        w ? search(&p, bench, w, fit, why)
-          : wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);
-    if (w)
-        gsl_multifit_nlinear_free(w);
+    const enum wb_status status = search(&p, bench, w, fit, why);
+    gsl_multifit_nlinear_free(w);
     wb_three_point_model_destroy(p.model);
     fit->runs = p.runs;
     fit->cpu_s = wb_progress_thread_cpu() - begin;

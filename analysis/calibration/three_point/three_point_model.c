@@ -6,6 +6,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_spline.h>
 
+#include "base/memory.h"
 #include "fe/rod/section.h"
 
 #define WB_LOG_DOMAIN "three-point"
@@ -37,20 +38,17 @@ struct wb_three_point_model {
     struct way up, back;
 };
 
-static bool take_way(struct way *way, int n)
+static void take_way(struct way *way, int n)
 {
     way->n = n;
-    way->spline = gsl_spline_alloc(gsl_interp_steffen, (size_t)n);
-    way->accel = gsl_interp_accel_alloc();
-    return way->spline && way->accel;
+    way->spline = wb_memory_need(gsl_spline_alloc(gsl_interp_steffen, (size_t)n));
+    way->accel = wb_memory_need(gsl_interp_accel_alloc());
 }
 
 static void release_way(struct way *way)
 {
-    if (way->spline)
-        gsl_spline_free(way->spline);
-    if (way->accel)
-        gsl_interp_accel_free(way->accel);
+    gsl_spline_free(way->spline);
+    gsl_interp_accel_free(way->accel);
 }
 
 enum wb_status wb_three_point_model_create(struct wb_three_point_model **out,
@@ -60,11 +58,9 @@ enum wb_status wb_three_point_model_create(struct wb_three_point_model **out,
 {
     struct wb_section section = {0};
     *out = NULL;
-    struct wb_three_point_model *const model = calloc(1, sizeof *model);
-    if (!model || !take_way(&model->up, STEPS + 1) || !take_way(&model->back, BACK + 1)) {
-        wb_three_point_model_destroy(model);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a three-point bending test");
-    }
+    struct wb_three_point_model *const model = wb_memory_new(1, sizeof *model);
+    take_way(&model->up, STEPS + 1);
+    take_way(&model->back, BACK + 1);
     model->info = *info;
     enum wb_status status = wb_section_init_law(&section, info->outer_diameter, law, 0);
     if (status == WB_OK) {
@@ -157,11 +153,11 @@ static bool draw_back(struct way *back)
         back->travel[k] = travel;
         back->force[k] = force;
     }
-    if (back->spline)
-        gsl_spline_free(back->spline);
-    back->spline = gsl_spline_alloc(gsl_interp_steffen, (size_t)back->n);
-    return back->spline &&
-           gsl_spline_init(back->spline, back->travel, back->force, (size_t)back->n) == GSL_SUCCESS;
+    if ((unsigned)back->n < gsl_interp_type_min_size(gsl_interp_steffen))
+        return false;
+    gsl_spline_free(back->spline);
+    back->spline = wb_memory_need(gsl_spline_alloc(gsl_interp_steffen, (size_t)back->n));
+    return gsl_spline_init(back->spline, back->travel, back->force, (size_t)back->n) == GSL_SUCCESS;
 }
 
 /* Steps that come to where the nose leaves the wire, which is a kink: the curve ends there. */
