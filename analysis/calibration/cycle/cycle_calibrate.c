@@ -10,6 +10,7 @@
 
 #include "analysis/calibration/paper/first_guess.h"
 #include "analysis/calibration/paper/first_guess_private.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"
 #include "base/workers.h"
@@ -797,9 +798,7 @@ enum wb_status wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
     /* GSL's own handler aborts; its codes are looked at here. */
     gsl_set_error_handler_off();
     WB_TRY(check_datasets(datasets, n, why));
-    calibration->members = calloc((size_t)n, sizeof *calibration->members);
-    if (!calibration->members)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d specimens", n);
+    calibration->members = wb_memory_new((size_t)n, sizeof *calibration->members);
     for (int i = 0; i < n; i++)
         calibration->members[i].sample = datasets[i]->info.sample;
     const enum wb_status status = run(calibration, datasets, settings, why);

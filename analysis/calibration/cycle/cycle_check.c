@@ -11,6 +11,7 @@
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/holds.h"
 #include "base/circle.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "check"
@@ -287,29 +288,22 @@ static bool check_length(struct wb_cycle_remarks *remarks, const struct loading 
 }
 
 /* That the points can be taken. */
-static enum wb_status check_points(struct wb_cycle_remarks *remarks,
-                                   const struct wb_dataset *dataset)
+static void check_points(struct wb_cycle_remarks *remarks, const struct wb_dataset *dataset)
 {
     struct wb_reason why = {.text = ""};
     struct wb_cycle_data data;
-    const enum wb_status status = wb_cycle_data_take(&data, dataset, NULL, &why);
-    wb_cycle_data_release(&data);
-    if (status == WB_ERR_MEMORY)
-        return wb_fail(status, "%s", why.text);
-    if (status != WB_OK)
+    if (wb_cycle_data_take(&data, dataset, NULL, &why) != WB_OK)
         say(remarks, WB_CHECK_UNUSABLE, dataset->info.sample, "%s", why.text);
-    return WB_OK;
+    wb_cycle_data_release(&data);
 }
 
-enum wb_status wb_cycle_check_data(struct wb_cycle_remarks *remarks,
-                                   const struct wb_dataset *const *datasets, int n)
+void wb_cycle_check_data(struct wb_cycle_remarks *remarks, const struct wb_dataset *const *datasets,
+                         int n)
 {
     for (int i = 0; i < n; i++) {
         struct loading loading = {.dataset = datasets[i]};
-        const size_t most = datasets[i]->n_rows + datasets[i]->n_shape_rows + 1;
-        loading.memory = calloc(most, sizeof *loading.memory);
-        if (!loading.memory)
-            return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows", most);
+        loading.memory =
+            wb_memory_new(datasets[i]->n_rows + datasets[i]->n_shape_rows, sizeof *loading.memory);
         look_at_loading(&loading);
         /* The plainest first: a wrong unit makes everything that follows look wrong. */
         const bool told =
@@ -317,9 +311,8 @@ enum wb_status wb_cycle_check_data(struct wb_cycle_remarks *remarks,
                               check_forces(remarks, &loading) || check_length(remarks, &loading));
         free(loading.memory);
         if (!told)
-            WB_TRY(check_points(remarks, datasets[i]));
+            check_points(remarks, datasets[i]);
     }
-    return WB_OK;
 }
 
 /* --- fits --- */
@@ -429,9 +422,9 @@ static void check_misfit(struct wb_cycle_remarks *remarks, const struct specimen
         100.0 * s->fit->unloading_misfit, 100.0 * fmax(misfit_share, misfit_noise * noise));
 }
 
-/* Refits with other lengths, longer where the level is too high. *better is the length that fits
+/* Refits with other lengths, longer where the level is too high. Returns the length that fits
  * clearly better; 0: none. */
-static enum wb_status find_length(const struct specimen *s, double *better)
+static double find_length(const struct specimen *s)
 {
     const struct wb_cycle_answer *const answers = s->member->answers;
     const enum wb_candidate candidate = answers[WB_CANDIDATE_LUDWIK_KINEMATIC].is_fitted
@@ -440,11 +433,10 @@ static enum wb_status find_length(const struct specimen *s, double *better)
     const struct wb_cycle_grid none = {0.0, 0.0};
     struct wb_cycle_fit_settings settings;
     const struct wb_cycle_fit *const labelled = &answers[candidate].fit;
-    double least = better_fit * labelled->misfit;
+    double least = better_fit * labelled->misfit, better = 0.0;
 
-    *better = 0.0;
     if (!answers[candidate].is_fitted)
-        return WB_OK;
+        return better;
     wb_cycle_fit_default_settings(&settings);
     for (size_t i = 0; i < sizeof other_lengths / sizeof other_lengths[0]; i++) {
         const double ratio = labelled->level > 0.0 ? other_lengths[i] : 1.0 / other_lengths[i];
@@ -456,19 +448,15 @@ static enum wb_status find_length(const struct specimen *s, double *better)
         /* The same stiffness and yield force of the longer wire. */
         start.material.youngs_modulus *= pow(ratio, 3);
         start.material.yield_stress *= ratio;
-        const enum wb_status status =
-            wb_cycle_fit_run(&fit, &data, candidate, &start, &none, &settings, &why);
-        if (status == WB_ERR_MEMORY)
-            return status;
-        if (status != WB_OK)
+        if (wb_cycle_fit_run(&fit, &data, candidate, &start, &none, &settings, &why) != WB_OK)
             continue;
         if (fit.misfit < least && fabs(fit.level) < better_level * fabs(labelled->level)) {
             least = fit.misfit;
-            *better = data.info.length;
+            better = data.info.length;
         }
         wb_cycle_fit_release(&fit);
     }
-    return WB_OK;
+    return better;
 }
 
 /* Level, force at zero deflection and bow hang together: a wrong zero of force or counterweight
@@ -479,7 +467,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
     const struct wb_cycle_data *const data = s->data;
     const double length = data->info.length, level = s->fit->level;
     const struct wb_cycle_bow bow = wb_cycle_fit_bow(s->fit, length);
-    double zero, bow_before, deviation, better = 0.0;
+    double zero, bow_before, deviation;
 
     WB_TRY(computed_zero(s, &zero));
     /* Behind the first points, where the strand still takes the load over from the rest. */
@@ -504,8 +492,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
                 s->wire, s->sample, bow_before / WB_MM, bow.tip / WB_MM, apart, bow_limit);
         return WB_OK;
     }
-    if (!length_is_seen)
-        WB_TRY(find_length(s, &better));
+    const double better = length_is_seen ? 0.0 : find_length(s);
     if (better > 0.0) {
         say(remarks, WB_CHECK_DOUBT, s->sample,
             "wire '%s', sample %d: a length of about %.0f mm fits clearly better than the %g mm "
@@ -659,7 +646,7 @@ enum wb_status wb_cycle_check_calibrate(struct wb_cycle_calibration *calibration
 {
     *remarks = (struct wb_cycle_remarks){.n = 0};
     *calibration = (struct wb_cycle_calibration){.n_members = 0};
-    WB_TRY(wb_cycle_check_data(remarks, datasets, n));
+    wb_cycle_check_data(remarks, datasets, n);
     WB_TRY(wb_cycle_check_refuse(remarks, why));
     WB_TRY(wb_cycle_calibrate_run(calibration, datasets, n, settings, why));
     enum wb_status status = wb_cycle_check_run(remarks, calibration, datasets);

@@ -5,9 +5,9 @@
 #include "analysis/calibration/cycle/cycle_check.h"
 
 /* Checks the rows of n datasets of one wire, before a calibration. At most one remark that makes a
- * dataset unusable, the plainest. Fails only without memory. */
-WB_MUST_CHECK enum wb_status wb_cycle_check_data(struct wb_cycle_remarks *remarks,
-                                                 const struct wb_dataset *const *datasets, int n);
+ * dataset unusable, the plainest. */
+void wb_cycle_check_data(struct wb_cycle_remarks *remarks, const struct wb_dataset *const *datasets,
+                         int n);
 
 /* Checks what a calibration made of them; `datasets` are the same, in the same order. It computes
  * a few points of each specimen, and refits one whose length is in doubt and cannot be seen. Fails

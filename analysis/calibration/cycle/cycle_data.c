@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/dataset/fit.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "cycle"
@@ -103,16 +104,15 @@ struct rows {
     double *line_x, *line_y; /* (n_line) what a line was drawn through last, less the means */
 };
 
-static bool take_memory(struct rows *rows, size_t most)
+static void take_memory(struct rows *rows, size_t most)
 {
-    double *const memory = calloc(6 * (most + 1), sizeof *memory);
+    double *const memory = wb_memory_new(6 * most, sizeof *memory);
     *rows = (struct rows){.x = memory,
-                          .y = memory + (most + 1),
-                          .smooth = memory + 2 * (most + 1),
-                          .sorted = memory + 3 * (most + 1),
-                          .line_x = memory + 4 * (most + 1),
-                          .line_y = memory + 5 * (most + 1)};
-    return memory;
+                          .y = memory + most,
+                          .smooth = memory + 2 * most,
+                          .sorted = memory + 3 * most,
+                          .line_x = memory + 4 * most,
+                          .line_y = memory + 5 * most};
 }
 
 /* A line by medians: the slope of rows half the stretch apart, then the height. Returns the median
@@ -469,13 +469,9 @@ enum wb_status wb_cycle_data_take(struct wb_cycle_data *data, const struct wb_da
                           "wire '%s', sample %d: the tip is not raised by a strand or a vertical "
                           "force: expected such a test",
                           dataset->info.wire, dataset->info.sample);
-    const size_t most = dataset->n_rows + dataset->n_shape_rows;
-    data->points = calloc(MOST_POINTS, sizeof *data->points);
-    data->places = calloc(dataset->n_shape_rows + 1, sizeof *data->places);
-    if (!data->points || !data->places || !take_memory(&rows, most)) {
-        wb_cycle_data_release(data);
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", most);
-    }
+    data->points = wb_memory_new(MOST_POINTS, sizeof *data->points);
+    data->places = wb_memory_new(dataset->n_shape_rows, sizeof *data->places);
+    take_memory(&rows, dataset->n_rows + dataset->n_shape_rows);
     const enum wb_status status = take(data, dataset, &rows, settings ? settings : &defaults, why);
     free(rows.x);
     if (status != WB_OK)

@@ -16,6 +16,7 @@
 #include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/least_squares.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "cycle"
@@ -457,8 +458,8 @@ static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
 static int find_slopes(struct problem *p, const double *x)
 {
     double moved[WB_FIT_MOST_FREE];
-    double *const other = calloc((size_t)p->n_residuals, sizeof *other);
-    int status = other ? GSL_SUCCESS : GSL_ENOMEM;
+    double *const other = wb_memory_new((size_t)p->n_residuals, sizeof *other);
+    int status = GSL_SUCCESS;
     for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
         memcpy(moved, x, (size_t)p->n_free * sizeof *moved);
         moved[k] += difference;
@@ -534,10 +535,8 @@ static void weigh_again(struct problem *p, int i, double ratio)
 static void set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
 {
     const int n = p->data->n_points;
-    double *const sizes = calloc((size_t)n, sizeof *sizes);
+    double *const sizes = wb_memory_new((size_t)n, sizeof *sizes);
     *n_outliers = 0;
-    if (!sizes)
-        return;
     double *const raw = p->tension; /* free to use until the next run */
     for (int i = 0; i < n; i++) {
         raw[i] = fabs(gsl_vector_get(f, (size_t)i)) / sqrt(p->weight[i]);
@@ -706,19 +705,18 @@ static bool find_covariance(const struct problem *p, const gsl_vector *f, const 
                             gsl_matrix *covariance)
 {
     const size_t n = (size_t)p->n_free;
-    gsl_matrix *const squares = gsl_matrix_alloc(n, n), *const rest = gsl_matrix_alloc(n, n);
-    int *const group = calloc((size_t)p->n_residuals, sizeof *group);
-    bool good = squares && rest && group;
-    if (good) {
-        const int n_groups = group_residuals(p, f, group);
-        gsl_matrix_set_identity(squares);
-        gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);
-        gsl_matrix_set_identity(covariance);
-        gsl_matrix_scale(covariance, surest);
-        for (int g = 0; g < n_groups && good; g++)
-            good = add_group(J, f, group, g, squares, rest, covariance);
-        good = good && add_priors(J, group, squares, rest, covariance);
-    }
+    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
+    gsl_matrix *const rest = wb_memory_need(gsl_matrix_alloc(n, n));
+    int *const group = wb_memory_new((size_t)p->n_residuals, sizeof *group);
+    const int n_groups = group_residuals(p, f, group);
+    bool good = true;
+    gsl_matrix_set_identity(squares);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);
+    gsl_matrix_set_identity(covariance);
+    gsl_matrix_scale(covariance, surest);
+    for (int g = 0; g < n_groups && good; g++)
+        good = add_group(J, f, group, g, squares, rest, covariance);
+    good = good && add_priors(J, group, squares, rest, covariance);
     gsl_matrix_free(squares);
     gsl_matrix_free(rest);
     free(group);
@@ -814,11 +812,10 @@ bool wb_cycle_fit_strongest(const struct wb_cycle_fit *fit, int *one, int *other
 static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_cycle_fit *fit)
 {
-    gsl_matrix *const covariance = gsl_matrix_alloc((size_t)p->n_free, (size_t)p->n_free);
+    gsl_matrix *const covariance =
+        wb_memory_need(gsl_matrix_alloc((size_t)p->n_free, (size_t)p->n_free));
     double sum;
     fit->ln_strength_error = fit->exponent_error = fit->bow_angle_error = (double)NAN;
-    if (!covariance)
-        return;
     gsl_blas_ddot(w->f, w->f, &sum);
     if (gsl_multifit_nlinear_covar(w->J, 0.0, covariance) == GSL_SUCCESS) {
         const double variance = sum / fmax(1.0, p->n_residuals - p->n_free);
@@ -861,9 +858,9 @@ static void find_misfits(struct wb_cycle_fit *fit, struct problem *p)
     fit->unloading_misfit =
         counts[1] > 0 ? sqrt(sums[1] / counts[1]) / data->max_force : (double)NAN;
 
-    double *const r = calloc((size_t)(data->n_places + data->n_markers + 1), sizeof *r);
+    double *const r = wb_memory_new((size_t)(data->n_places + data->n_markers), sizeof *r);
     double sum = 0.0;
-    int n = r ? place_residuals(p, r) : 0;
+    const int n = place_residuals(p, r);
     for (int i = 0; i < n; i++)
         sum += r[i] * r[i];
     fit->place_rms =
@@ -980,27 +977,21 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
 
     const size_t points = (size_t)data->n_points;
     const struct wb_cycle_model_settings how = {settings->n_elements, settings->n_fibres};
-    p.tension = calloc(points, sizeof *p.tension);
-    p.weight = calloc(points, sizeof *p.weight);
-    p.distance = calloc((size_t)data->n_places + 1, sizeof *p.distance);
-    p.last = calloc((size_t)p.n_residuals, sizeof *p.last);
-    p.slopes_f = calloc((size_t)p.n_residuals, sizeof *p.slopes_f);
-    p.slopes = gsl_matrix_calloc((size_t)p.n_residuals, (size_t)p.n_free);
-    fit->tension = calloc(points, sizeof *fit->tension);
+    p.tension = wb_memory_new(points, sizeof *p.tension);
+    p.weight = wb_memory_new(points, sizeof *p.weight);
+    p.distance = wb_memory_new((size_t)data->n_places, sizeof *p.distance);
+    p.last = wb_memory_new((size_t)p.n_residuals, sizeof *p.last);
+    p.slopes_f = wb_memory_new((size_t)p.n_residuals, sizeof *p.slopes_f);
+    p.slopes = wb_memory_need(gsl_matrix_calloc((size_t)p.n_residuals, (size_t)p.n_free));
+    fit->tension = wb_memory_new(points, sizeof *fit->tension);
     gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
-    enum wb_status status = WB_OK;
-    if (!p.tension || !p.weight || !p.distance || !p.last || !p.slopes_f || !p.slopes ||
-        !fit->tension || !w)
-        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);
-    for (int i = 0; status == WB_OK && i < data->n_points; i++)
+    for (int i = 0; i < data->n_points; i++)
         p.weight[i] = 1.0;
-    if (status == WB_OK)
-        status = wb_cycle_model_create(&p.model, data, &law, &how);
+    enum wb_status status = wb_cycle_model_create(&p.model, data, &law, &how);
     if (status == WB_OK)
         status = search(fit, &p, w, why);
     fit->runs = p.runs;
-    if (w)
-        gsl_multifit_nlinear_free(w);
+    gsl_multifit_nlinear_free(w);
     wb_cycle_model_destroy(p.model);
     free(p.tension);
     free(p.weight);

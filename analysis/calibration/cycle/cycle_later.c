@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/calibration/cycle/cycle_model.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "cycle"
@@ -143,20 +144,15 @@ static enum wb_status predict(struct wb_cycle_later *later, const struct wb_data
     }
     struct wb_cycle_data path = *data;
     const size_t most = (size_t)(data->n_points + later->n + 2 * later->n_cycles + 2);
-    path.points = calloc(most, sizeof *path.points);
-    double *const tension = calloc(most, sizeof *tension);
-    int *const index = calloc(most, sizeof *index);
+    path.points = wb_memory_new(most, sizeof *path.points);
+    double *const tension = wb_memory_new(most, sizeof *tension);
+    int *const index = wb_memory_new(most, sizeof *index);
     const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
     const struct wb_cycle_model_settings how = {0, 0};
     struct wb_cycle_model *model = NULL;
     struct wb_cycle_run run;
-    enum wb_status status = WB_OK;
-    if (!path.points || !tension || !index)
-        status = wb_fail(WB_ERR_MEMORY, "no memory for later cycles");
-    if (status == WB_OK) {
-        make_path(&path, index, later, dataset, data);
-        status = wb_cycle_model_create(&model, &path, &fit->law, &how);
-    }
+    make_path(&path, index, later, dataset, data);
+    enum wb_status status = wb_cycle_model_create(&model, &path, &fit->law, &how);
     if (status == WB_OK)
         status = wb_cycle_model_run(model, &fit->law, &specimen, tension, NULL, &run);
     for (int i = 0; status == WB_OK && i < later->n; i++)
@@ -171,20 +167,16 @@ static enum wb_status predict(struct wb_cycle_later *later, const struct wb_data
 enum wb_status wb_cycle_later_predict(struct wb_cycle_later *later,
                                       const struct wb_dataset *dataset,
                                       const struct wb_cycle_data *data,
-                                      const struct wb_cycle_fit *fit, struct wb_reason *why)
+                                      const struct wb_cycle_fit *fit)
 {
     *later = (struct wb_cycle_later){.sample = dataset->info.sample,
                                      .n_cycles = wb_cycle_later_count(dataset)};
     if (later->n_cycles < 2 || data->n_loading == data->n_points)
         return WB_OK;
     const int n_bins = (int)(2.0 * data->top / step) + 2;
-    struct bin *const bins = calloc((size_t)n_bins, sizeof *bins);
-    later->points = calloc((size_t)(2 * n_bins * later->n_cycles), sizeof *later->points);
-    enum wb_status status = WB_OK;
-    if (!bins || !later->points)
-        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for later cycles");
-    if (status == WB_OK)
-        status = predict(later, dataset, data, fit, bins, n_bins);
+    struct bin *const bins = wb_memory_new((size_t)n_bins, sizeof *bins);
+    later->points = wb_memory_new((size_t)(2 * n_bins * later->n_cycles), sizeof *later->points);
+    const enum wb_status status = predict(later, dataset, data, fit, bins, n_bins);
     free(bins);
     if (status == WB_OK)
         judge(later, data->max_force);

@@ -32,12 +32,11 @@ struct wb_cycle_later {
 int wb_cycle_later_count(const struct wb_dataset *dataset);
 
 /* Of the dataset that `data` was taken from. Rows with less than `data`'s smallest tension are left
- * out. `why` receives the reason of a failure; NULL: it is logged. */
+ * out. */
 WB_MUST_CHECK enum wb_status wb_cycle_later_predict(struct wb_cycle_later *later,
                                                     const struct wb_dataset *dataset,
                                                     const struct wb_cycle_data *data,
-                                                    const struct wb_cycle_fit *fit,
-                                                    struct wb_reason *why);
+                                                    const struct wb_cycle_fit *fit);
 void wb_cycle_later_release(struct wb_cycle_later *later); /* accepts a zeroed one */
 
 #endif

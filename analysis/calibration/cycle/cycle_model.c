@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "fe/rod/section.h"
 #include "fe/trial/cantilever.h"
 
@@ -20,9 +21,7 @@ enum wb_status wb_cycle_model_create(struct wb_cycle_model **out, const struct w
                                      const struct wb_cycle_model_settings *settings)
 {
     *out = NULL;
-    struct wb_cycle_model *const model = calloc(1, sizeof *model);
-    if (!model)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a computed cycle");
+    struct wb_cycle_model *const model = wb_memory_new(1, sizeof *model);
     model->data = data;
     model->info = data->info;
     enum wb_status status =

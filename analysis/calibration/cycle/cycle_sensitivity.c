@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "calibrate"
 
 /* Change of what is shared: so large that the fits' ends, which are known to a few 1e-4, tell it,
@@ -124,9 +126,7 @@ enum wb_status wb_cycle_sensitivity_find(const struct wb_cycle_calibration *cali
     if (calibration->is_stopped)
         return WB_OK;
     const size_t n = (size_t)calibration->members[0].data.n_points;
-    struct wb_cycle_point *const points = calloc(n + 1, sizeof *points);
-    if (!points)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu points", n);
+    struct wb_cycle_point *const points = wb_memory_new(n, sizeof *points);
     const enum wb_status status = find(calibration, settings, points, sensitivities);
     free(points);
     return status;

@@ -8,6 +8,7 @@
 
 #include "analysis/calibration/cycle/cycle_fit.h"
 #include "analysis/calibration/cycle/cycle_model.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "calibrate"
 
@@ -109,19 +110,18 @@ static bool find_errors(const struct problem *p, const gsl_vector *base, double 
                         double *exponent)
 {
     const size_t rows = p->slopes->size1;
-    gsl_multifit_linear_workspace *const w = gsl_multifit_linear_alloc(rows, NUMBERS);
-    gsl_matrix *const covariance = gsl_matrix_alloc(NUMBERS, NUMBERS);
-    gsl_vector *const x = gsl_vector_alloc(NUMBERS);
+    gsl_multifit_linear_workspace *const w =
+        wb_memory_need(gsl_multifit_linear_alloc(rows, NUMBERS));
+    gsl_matrix *const covariance = wb_memory_need(gsl_matrix_alloc(NUMBERS, NUMBERS));
+    gsl_vector *const x = wb_memory_need(gsl_vector_alloc(NUMBERS));
     double sum = (double)NAN;
-    bool found =
-        w && covariance && x && gsl_multifit_linear(p->slopes, base, x, covariance, &sum, w) == 0;
+    bool found = gsl_multifit_linear(p->slopes, base, x, covariance, &sum, w) == 0;
     if (found) {
         *stress = sqrt(gsl_matrix_get(covariance, STRESS, STRESS)) * p->scale[STRESS];
         *exponent = sqrt(gsl_matrix_get(covariance, EXPONENT, EXPONENT)) * p->scale[EXPONENT];
         found = *stress > 0.0 && *exponent > 0.0 && isfinite(*stress) && isfinite(*exponent);
     }
-    if (w)
-        gsl_multifit_linear_free(w);
+    gsl_multifit_linear_free(w);
     gsl_matrix_free(covariance);
     gsl_vector_free(x);
     return found;
@@ -133,22 +133,22 @@ static bool adapt(const struct problem *p, const gsl_vector *base, double *numbe
     const size_t rows = p->slopes->size1;
     gsl_matrix_const_view free_slopes =
         gsl_matrix_const_submatrix(p->slopes, 0, 0, rows, NUISANCES);
-    gsl_multifit_linear_workspace *const w = gsl_multifit_linear_alloc(rows, NUISANCES);
-    gsl_matrix *const covariance = gsl_matrix_alloc(NUISANCES, NUISANCES);
-    gsl_vector *const x = gsl_vector_alloc(NUISANCES), *const y = gsl_vector_alloc(rows);
+    gsl_multifit_linear_workspace *const w =
+        wb_memory_need(gsl_multifit_linear_alloc(rows, NUISANCES));
+    gsl_matrix *const covariance = wb_memory_need(gsl_matrix_alloc(NUISANCES, NUISANCES));
+    gsl_vector *const x = wb_memory_need(gsl_vector_alloc(NUISANCES));
+    gsl_vector *const y = wb_memory_need(gsl_vector_alloc(rows));
     double sum;
-    bool adapted = w && covariance && x && y;
-    for (size_t i = 0; adapted && i < rows; i++) {
+    for (size_t i = 0; i < rows; i++) {
         double now = gsl_vector_get(base, i);
         for (size_t k = NUISANCES; k < NUMBERS; k++)
             now += gsl_matrix_get(p->slopes, i, k) * (numbers[k] - p->best[k]) / p->scale[k];
         gsl_vector_set(y, i, -now);
     }
-    adapted = adapted && gsl_multifit_linear(&free_slopes.matrix, y, x, covariance, &sum, w) == 0;
+    const bool adapted = gsl_multifit_linear(&free_slopes.matrix, y, x, covariance, &sum, w) == 0;
     for (size_t k = 0; adapted && k < NUISANCES; k++)
         numbers[k] = p->best[k] + gsl_vector_get(x, k) * p->scale[k];
-    if (w)
-        gsl_multifit_linear_free(w);
+    gsl_multifit_linear_free(w);
     gsl_matrix_free(covariance);
     gsl_vector_free(x);
     gsl_vector_free(y);
@@ -247,10 +247,8 @@ static void find_region(struct wb_cycle_valley *valley, int n_points)
 
 static enum wb_status find(struct wb_cycle_valley *valley, struct problem *p, struct wb_reason *why)
 {
-    gsl_vector *const base = gsl_vector_alloc(p->slopes->size1);
+    gsl_vector *const base = wb_memory_need(gsl_vector_alloc(p->slopes->size1));
     double stress, exponent;
-    if (!base)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", p->loading.n_points);
     enum wb_status status = find_slopes(p, base, &valley->best_misfit);
     if (status == WB_OK &&
         (!isfinite(valley->best_misfit) || !find_errors(p, base, &stress, &exponent)))
@@ -309,14 +307,10 @@ enum wb_status wb_cycle_valley_find(struct wb_cycle_valley *valley,
     law_of(&p, p.best, &law);
     const struct wb_cycle_model_settings how = {p.settings.n_elements, p.settings.n_fibres};
     const size_t n = (size_t)p.loading.n_points;
-    p.tension = calloc(n, sizeof *p.tension);
-    p.residual = calloc(n, sizeof *p.residual);
-    p.slopes = gsl_matrix_alloc(n + 2, NUMBERS);
-    enum wb_status status = WB_OK;
-    if (!p.tension || !p.residual || !p.slopes)
-        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu points", n);
-    if (status == WB_OK)
-        status = wb_cycle_model_create(&p.model, &p.loading, &law, &how);
+    p.tension = wb_memory_new(n, sizeof *p.tension);
+    p.residual = wb_memory_new(n, sizeof *p.residual);
+    p.slopes = wb_memory_need(gsl_matrix_alloc(n + 2, NUMBERS));
+    enum wb_status status = wb_cycle_model_create(&p.model, &p.loading, &law, &how);
     if (status == WB_OK)
         status = find(valley, &p, why);
     wb_cycle_model_destroy(p.model);

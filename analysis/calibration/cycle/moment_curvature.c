@@ -31,6 +31,7 @@
 
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/calibration/law/bending.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "moment"
@@ -440,9 +441,7 @@ static enum wb_status take(struct wb_moment_cloud *cloud, struct fitting *f,
                            struct wb_reason *why)
 {
     const struct wb_cycle_data *const data = f->data;
-    cloud->points = calloc((size_t)data->n_points * STATIONS + 1, sizeof *cloud->points);
-    if (!cloud->points)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for moments over curvatures");
+    cloud->points = wb_memory_new((size_t)data->n_points * STATIONS, sizeof *cloud->points);
     find_offsets(f);
     for (int pass = 0; pass < PASSES; pass++) {
         f->has_curve = pass > 0 && find_curve(f, cloud);
@@ -471,22 +470,17 @@ enum wb_status wb_moment_curvature_take(struct wb_moment_cloud *cloud,
     *cloud = (struct wb_moment_cloud){0};
     WB_TRY(wb_cycle_data_take(&data, dataset, &how, why));
     struct wb_test_info info = dataset->info;
-    struct fitting *const f = calloc(1, sizeof *f);
-    enum wb_status status = WB_OK;
-    if (!f) {
-        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for a shape");
-    } else {
-        f->data = &data;
-        f->info = &info;
-        if (specimen) {
-            wb_cycle_model_bend(specimen, &info);
-            f->level = specimen->level;
-        }
-        status =
-            take(cloud, f, s,
-                 s->bow_deviation > 0.0 ? s->bow_deviation : stated_bow_deviation(dataset), why);
-        free(f);
+    struct fitting *const f = wb_memory_new(1, sizeof *f);
+    f->data = &data;
+    f->info = &info;
+    if (specimen) {
+        wb_cycle_model_bend(specimen, &info);
+        f->level = specimen->level;
     }
+    const enum wb_status status =
+        take(cloud, f, s, s->bow_deviation > 0.0 ? s->bow_deviation : stated_bow_deviation(dataset),
+             why);
+    free(f);
     wb_cycle_data_release(&data);
     if (status != WB_OK)
         wb_moment_curvature_release(cloud);

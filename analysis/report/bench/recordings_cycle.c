@@ -63,7 +63,7 @@ static enum wb_status draw_curve(struct wb_recordings_cycle *cycle)
 
 /* The first specimen with the most cycles: later ones are predicted. */
 static enum wb_status predict_later(struct wb_recordings_cycle *cycle,
-                                    const struct wb_dataset *const *datasets, struct wb_reason *why)
+                                    const struct wb_dataset *const *datasets)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     int best = 0;
@@ -73,7 +73,7 @@ static enum wb_status predict_later(struct wb_recordings_cycle *cycle,
     }
     const struct wb_cycle_member *const member = &c->members[best];
     return wb_cycle_later_predict(&cycle->later, datasets[best], &member->data,
-                                  &member->answers[c->chosen].fit, why);
+                                  &member->answers[c->chosen].fit);
 }
 
 /* The valley is looked at from Ludwik's best law; a specimen without one has none. */
@@ -144,7 +144,7 @@ enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle *cycle,
     enum wb_status status =
         cycle->calibration.is_stopped ? wb_fail_to(why, WB_ERR_DATA, "stopped") : draw_curve(cycle);
     if (status == WB_OK)
-        status = predict_later(cycle, datasets, why);
+        status = predict_later(cycle, datasets);
     if (status == WB_OK)
         status = wb_cycle_sensitivity_find(&cycle->calibration, &settings, cycle->sensitivities);
     if (status == WB_OK)

@@ -66,7 +66,7 @@ static void predict(const struct wb_dataset *dataset, struct wb_law law, double 
     law.isotropic_share = share;
     const struct wb_cycle_fit fit = {.law = law};
     assert_int_equal(wb_cycle_data_take(&data, dataset, NULL, NULL), WB_OK);
-    assert_int_equal(wb_cycle_later_predict(later, dataset, &data, &fit, NULL), WB_OK);
+    assert_int_equal(wb_cycle_later_predict(later, dataset, &data, &fit), WB_OK);
     assert_int_equal(later->n_cycles, CYCLES);
     assert_true(later->n > 30);
     wb_cycle_data_release(&data);
