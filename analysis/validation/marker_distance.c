@@ -6,6 +6,7 @@
 
 #include "analysis/dataset/curve.h"
 #include "analysis/dataset/fit.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "marker_distance"
 
@@ -159,21 +160,16 @@ enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
     const double step = range->step, last = range->last;
     struct wb_marker_distance result = {(double)NAN, (double)NAN, 0};
     struct gallery gallery = {.step = step, .is_follower = datasets[0]->info.is_follower};
-    struct wb_reason *const why = wb_computed_reason(computed);
-    WB_TRY(collect_positions(&gallery, datasets, n, last, why));
+    WB_TRY(collect_positions(&gallery, datasets, n, last, wb_computed_reason(computed)));
     if (gallery.n_positions == 0) {
         *distance = result;
         return WB_OK;
     }
     gallery.n_frames = (int)ceil(last / step - 1e-9) + 1;
     const size_t size = (size_t)gallery.n_frames * (size_t)gallery.n_positions;
-    gallery.x = malloc(size * sizeof *gallery.x);
-    gallery.y = malloc(size * sizeof *gallery.y);
-    enum wb_status status = WB_OK;
-    if (!gallery.x || !gallery.y)
-        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d shapes", gallery.n_frames);
-    if (status == WB_OK)
-        status = fill(&gallery, computed, material);
+    gallery.x = wb_memory_new(size, sizeof *gallery.x);
+    gallery.y = wb_memory_new(size, sizeof *gallery.y);
+    const enum wb_status status = fill(&gallery, computed, material);
     if (status == WB_OK) {
         compare(&result, &gallery, datasets, n, last);
         *distance = result;

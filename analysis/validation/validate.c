@@ -15,6 +15,7 @@
 #include "analysis/validation/validate_private.h"
 #include "analysis/validation/validate_tables.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -65,16 +66,12 @@ static int beyond_zero(const struct wb_curve *curve)
 }
 
 /* Room for a prediction of a curve. */
-static enum wb_status take_room(struct wb_prediction *prediction, const struct wb_curve *curve,
-                                struct wb_reason *why)
+static void take_room(struct wb_prediction *prediction, const struct wb_curve *curve)
 {
     const size_t size = (size_t)curve->n;
     prediction->n = curve->n;
-    prediction->value = calloc(size, sizeof *prediction->value);
-    prediction->error = malloc(size * sizeof *prediction->error);
-    if (!prediction->value || !prediction->error)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for a prediction of %d points", curve->n);
-    return WB_OK;
+    prediction->value = wb_memory_new(size, sizeof *prediction->value);
+    prediction->error = wb_memory_new(size, sizeof *prediction->error);
 }
 
 /* How far the predicted values are off. */
@@ -92,10 +89,9 @@ static void judge(struct wb_prediction *prediction, const struct wb_curve *curve
 }
 
 static enum wb_status predict(struct wb_prediction *prediction, struct wb_computed *computed,
-                              const struct wb_material *material, const struct wb_curve *curve,
-                              struct wb_reason *why)
+                              const struct wb_material *material, const struct wb_curve *curve)
 {
-    WB_TRY(take_room(prediction, curve, why));
+    take_room(prediction, curve);
     WB_TRY(wb_computed_curve(computed, material, curve->n, curve->step, prediction->value,
                              &prediction->n_reached));
     judge(prediction, curve);
@@ -109,11 +105,8 @@ static enum wb_status predict_mean(struct wb_prediction *prediction,
                                    const struct wb_material *material, const struct wb_curve *curve,
                                    const struct wb_computed_settings *how)
 {
-    WB_TRY(take_room(prediction, curve, how->why));
-    double *const value = malloc((size_t)curve->n * sizeof *value);
-    if (!value)
-        return wb_fail_to(how->why, WB_ERR_MEMORY, "no memory for a prediction of %d points",
-                          curve->n);
+    take_room(prediction, curve);
+    double *const value = wb_memory_new((size_t)curve->n, sizeof *value);
     enum wb_status status = WB_OK;
     prediction->n_reached = curve->n;
     for (int i = 0; status == WB_OK && i < n; i++) {
@@ -157,11 +150,9 @@ static enum wb_status find_sensitivity(double *G, const struct wb_validate_resul
                                        const struct wb_computed_settings *how)
 {
     const struct wb_curve *const curve = &result->curve;
-    double *const value = malloc(2 * (size_t)curve->n * sizeof *value);
+    double *const value = wb_memory_new(2 * (size_t)curve->n, sizeof *value);
     enum wb_status status = WB_OK;
     bool complete = true;
-    if (!value)
-        return wb_fail_to(how->why, WB_ERR_MEMORY, "no memory for %d points", curve->n);
     for (int side = 0; status == WB_OK && side < 2; side++) {
         const struct wb_law scaled = stiffer(law, side == 0 ? exp(-SMALL) : exp(SMALL));
         struct wb_computed_settings with = *how;
@@ -250,8 +241,7 @@ static enum wb_status predict_elastic(struct wb_validate_result *result,
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
     without.law = NULL;
     WB_TRY(wb_computed_create(&computed, &result->info, material, &without));
-    const enum wb_status status =
-        predict(&result->elastic, computed, &elastic, &result->curve, how->why);
+    const enum wb_status status = predict(&result->elastic, computed, &elastic, &result->curve);
     wb_computed_destroy(computed);
     return status;
 }
@@ -358,13 +348,9 @@ enum wb_status wb_validate_run(struct wb_validate_result *result,
     const struct wb_curve_grid grid = {.step = settings->step,
                                        .force_step = settings->force_step,
                                        .largest_deflection = settings->largest_deflection};
-    struct wb_dataset *const bent = malloc((size_t)n * sizeof *bent);
-    const struct wb_dataset **const list = malloc((size_t)n * sizeof *list);
-    enum wb_status status = bent && list ? WB_OK : WB_ERR_MEMORY;
-    if (status != WB_OK)
-        status = wb_fail_to(why, status, "no memory for %d datasets", n);
-    if (status == WB_OK)
-        status = wb_curve_average_on(&made.curve, datasets, n, &grid, why);
+    struct wb_dataset *const bent = wb_memory_new((size_t)n, sizeof *bent);
+    const struct wb_dataset **const list = wb_memory_new((size_t)n, sizeof *list);
+    enum wb_status status = wb_curve_average_on(&made.curve, datasets, n, &grid, why);
     if (status == WB_OK) {
         wb_curve_mean_info(datasets, n, &made.info);
         wb_curve_warn_unknown_shapes(datasets, n);
@@ -531,9 +517,7 @@ find_shape(const struct wb_properties *properties, const struct wb_test_info *in
     struct wb_computed *computed;
     if (points->n < 2 || !isfinite(target))
         return wb_fail(WB_ERR_ARGUMENT, "a shape needs at least two points and a finite target");
-    double *const s = malloc((size_t)points->n * sizeof *s);
-    if (!s)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a shape of %d points", points->n);
+    double *const s = wb_memory_new((size_t)points->n, sizeof *s);
     enum wb_status status = wb_computed_create(&computed, info, material, &how);
     if (status == WB_OK) {
         for (int i = 0; i < points->n; i++)

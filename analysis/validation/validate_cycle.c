@@ -6,6 +6,7 @@
 
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/calibration/cycle/cycle_model.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "validate"
@@ -65,7 +66,7 @@ static void add_descent(struct wb_cycle_data *path)
     add_point(path, lowest);
 }
 
-static enum wb_status make_path(struct sample *sample)
+static void make_path(struct sample *sample)
 {
     struct wb_cycle_data *const path = &sample->path;
     size_t most = 1;
@@ -75,10 +76,8 @@ static enum wb_status make_path(struct sample *sample)
         most += (size_t)sample->data[k].n_points + (size_t)(descent / step) + 4;
     }
     path->top = sample->data[0].top;
-    path->points = calloc(most, sizeof *path->points);
-    sample->tension = malloc(most * sizeof *sample->tension);
-    if (!path->points || !sample->tension)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a path of %zu points", most);
+    path->points = wb_memory_new(most, sizeof *path->points);
+    sample->tension = wb_memory_new(most, sizeof *sample->tension);
     add_point(path, 0.0);
     for (int k = 0; k < sample->n_cycles; k++) {
         const struct wb_cycle_data *const data = &sample->data[k];
@@ -93,7 +92,6 @@ static enum wb_status make_path(struct sample *sample)
         if (k == 0)
             sample->end_of_first = path->n_points;
     }
-    return WB_OK;
 }
 
 static bool is_finite(const struct sample *sample, int begin, int end)
@@ -141,7 +139,7 @@ static enum wb_status compute(struct sample *sample, const struct wb_law *law,
     const bool has_way_back = sample->data[0].n_points > sample->data[0].n_loading;
     if (has_way_back)
         take_later(sample, dataset);
-    WB_TRY(make_path(sample));
+    make_path(sample);
     WB_TRY(wb_cycle_model_create(&model, &sample->path, law, &how));
     const enum wb_status status =
         wb_cycle_model_run(model, law, &specimen, sample->tension, NULL, &run);
@@ -190,8 +188,8 @@ static double squares_of(const struct sample *sample)
     return sum;
 }
 
-static enum wb_status find_mean(struct wb_validate_cycles *cycles, const struct sample *samples,
-                                int n, double max_force)
+static void find_mean(struct wb_validate_cycles *cycles, const struct sample *samples, int n,
+                      double max_force)
 {
     double high = (double)INFINITY, low = 0.0, squares = 0.0;
     long points = 0;
@@ -206,13 +204,11 @@ static enum wb_status find_mean(struct wb_validate_cycles *cycles, const struct 
         cycles->n_samples++;
     }
     if (cycles->n_samples == 0)
-        return WB_OK;
+        return;
     cycles->sample_rms = sqrt(squares / (double)points) / max_force;
     cycles->n = high >= low ? (int)((high - low) / step + 1e-9) + 1 : 0;
     const size_t size = (size_t)cycles->n;
-    cycles->deflection = calloc(3 * size + 1, sizeof *cycles->deflection);
-    if (!cycles->deflection)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d points", cycles->n);
+    cycles->deflection = wb_memory_new(3 * size, sizeof *cycles->deflection);
     cycles->measured = cycles->deflection + size;
     cycles->computed = cycles->measured + size;
     squares = 0.0;
@@ -232,7 +228,6 @@ static enum wb_status find_mean(struct wb_validate_cycles *cycles, const struct 
     }
     if (cycles->n > 0)
         cycles->rms = sqrt(squares / cycles->n);
-    return WB_OK;
 }
 
 /* --- the residual deflection --- */
@@ -331,17 +326,14 @@ enum wb_status wb_validate_cycles_run(struct wb_validate_cycles *cycles, const s
                                           .sample_rms = none,
                                           .residual_measured = none,
                                           .residual_computed = none};
-    struct sample *const samples = calloc((size_t)n, sizeof *samples);
-    if (!samples)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d samples", n);
+    struct sample *const samples = wb_memory_new((size_t)n, sizeof *samples);
     enum wb_status status = WB_OK;
     for (int i = 0; status == WB_OK && i < n; i++) {
         status = compute(&samples[i], law, datasets[i], settings, &cycles->why);
         cycles->clamp_curvature = fmax(cycles->clamp_curvature, samples[i].curvature);
     }
-    if (status == WB_OK)
-        status = find_mean(cycles, samples, n, settings->max_force);
     if (status == WB_OK) {
+        find_mean(cycles, samples, n, settings->max_force);
         find_residual(cycles, samples, n);
         find_loops(cycles, samples, n);
     }

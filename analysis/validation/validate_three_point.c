@@ -11,6 +11,7 @@
 #include "analysis/validation/validate.h"
 #include "analysis/validation/validate_tables.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"
 
@@ -479,9 +480,7 @@ enum wb_status wb_validate_three_point_run(struct wb_validate_three_point *resul
     WB_TRY(wb_validate_check_wire(properties, &result->info, why));
     result->is_compliance_known = result->info.machine.compliance.known;
     wb_three_point_calibrate_bench(&result->info.machine, &result->bench, result->ends);
-    result->tests = calloc((size_t)n, sizeof *result->tests);
-    if (!result->tests)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", n);
+    result->tests = wb_memory_new((size_t)n, sizeof *result->tests);
     enum wb_status status = take_tests(&g, datasets, why);
     if (status == WB_OK)
         status = create(&g, &result->bench, g.law, &g.model);
