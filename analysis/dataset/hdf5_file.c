@@ -7,8 +7,6 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-#define WB_LOG_DOMAIN "hdf5"
-
 enum {
     CHUNK_ROWS = 16384,
     DEFLATE_LEVEL = 6,
@@ -151,9 +149,7 @@ enum wb_status wb_hdf5_file_write(const char *path, const struct wb_columns *tab
         file >= 0 && put_all(file, tables, n, source, is_virtual) ? take_image(file, &size) : NULL;
     H5Fclose(file);
     H5Eset_auto2(H5E_DEFAULT, print, context);
-    if (!image)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the tables of '%s'", path);
-    const enum wb_status status = wb_file_write(path, image, size);
+    const enum wb_status status = wb_file_write(path, wb_memory_need(image), size);
     free(image);
     return status;
 }

@@ -56,7 +56,7 @@ struct wb_validate_cycle_settings {
 };
 
 /* Predicts the cycles of n datasets of one kind; a follower test has none. A sample that cannot be
- * computed is left out, see `why`. Fails only for what makes no law, and without memory. */
+ * computed is left out, see `why`. Fails only for an invalid law. */
 WB_MUST_CHECK enum wb_status
 wb_validate_cycles_run(struct wb_validate_cycles *cycles, const struct wb_law *law,
                        const struct wb_dataset *const *datasets, int n,

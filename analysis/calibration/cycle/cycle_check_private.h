@@ -10,8 +10,7 @@ void wb_cycle_check_data(struct wb_cycle_remarks *remarks, const struct wb_datas
                          int n);
 
 /* Checks what a calibration made of them; `datasets` are the same, in the same order. It computes
- * a few points of each specimen, and refits one whose length is in doubt and cannot be seen. Fails
- * only without memory. */
+ * a few points of each specimen, and refits one whose length is in doubt and cannot be seen. */
 WB_MUST_CHECK enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
                                                 const struct wb_cycle_calibration *calibration,
                                                 const struct wb_dataset *const *datasets);

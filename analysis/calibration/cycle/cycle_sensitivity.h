@@ -34,8 +34,7 @@ struct wb_cycle_sensitivity {
 };
 
 /* Of the first specimen of a calibration that ended well; of one that was stopped nothing is
- * looked for. A fit that fails or does not converge
- * leaves NaN; otherwise fails only without memory. */
+ * looked for. A fit that fails or does not converge leaves NaN. */
 WB_MUST_CHECK enum wb_status
 wb_cycle_sensitivity_find(const struct wb_cycle_calibration *calibration,
                           const struct wb_cycle_calibrate_settings *settings,

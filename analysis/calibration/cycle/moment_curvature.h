@@ -77,7 +77,7 @@ struct wb_moment_comparison {
  * stretches of curvature in which at least half the specimens have two points; a comparison without
  * stretches says nothing. A specimen's points share what their cameras and bow are off by, so that
  * an average over them is not taken to be better than one of them; the scatter of several specimens
- * counts too. Two neighbouring stretches must agree before they warn. Fails only without memory. */
+ * counts too. Two neighbouring stretches must agree before they warn. */
 WB_MUST_CHECK enum wb_status
 wb_moment_curvature_compare(const struct wb_moment_cloud *const *clouds, int n,
                             const struct wb_law *law, double diameter,

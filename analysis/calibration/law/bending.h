@@ -12,7 +12,7 @@ struct wb_bending {
 };
 
 /* Of a solid circle, up to `largest` (1/m, above 0). Moments (N m) of a first loading at n
- * curvatures (1/m, at least 0). Fails only without memory. */
+ * curvatures (1/m, at least 0). Fails only for an invalid law. */
 WB_MUST_CHECK enum wb_status wb_bending_describe(const struct wb_law *law, double diameter,
                                                  double largest, struct wb_bending *bending);
 WB_MUST_CHECK enum wb_status wb_bending_moments(const struct wb_law *law, double diameter, int n,
