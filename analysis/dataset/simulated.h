@@ -7,7 +7,6 @@
 #define WB_ANALYSIS_DATASET_SIMULATED_H
 
 #include "analysis/dataset/dataset.h"
-#include "base/status.h"
 #include "fe/material/law.h"
 #include "fe/model/wire_model.h"
 #include "fe/trial/loading_steps.h"

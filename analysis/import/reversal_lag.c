@@ -1,7 +1,6 @@
 #include "analysis/import/reversal_lag.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/least_squares.h"

@@ -1,7 +1,6 @@
 #include "analysis/solve/solve_settings.h"
 
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"

@@ -9,7 +9,6 @@
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/calibration/cycle/cycle_fit.h"
 #include "analysis/dataset/dataset.h"
-#include "base/reason.h"
 #include "base/status.h"
 
 struct wb_cycle_later_point {

@@ -12,7 +12,6 @@
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "base/json.h"
-#include "base/reason.h"
 #include "base/status.h"
 
 enum wb_cycle_shared {
