@@ -190,8 +190,8 @@ static void draw_text(cairo_t *cairo, const struct wb_layout_panel *layout,
 }
 
 /* The fields, below all else. */
-static enum wb_status draw_image(cairo_t *cairo, const struct wb_layout_panel *layout,
-                                 const struct wb_series *series)
+static void draw_image(cairo_t *cairo, const struct wb_layout_panel *layout,
+                       const struct wb_series *series)
 {
     const double left = wb_layout_x(layout, series->x[0]), top = wb_layout_y(layout, series->y[1]);
     const double width = wb_layout_x(layout, series->x[1]) - left;
@@ -207,29 +207,25 @@ static enum wb_status draw_image(cairo_t *cairo, const struct wb_layout_panel *l
     cairo_pattern_set_filter(cairo_get_source(cairo), CAIRO_FILTER_GOOD);
     cairo_paint(cairo);
     cairo_restore(cairo);
-    const enum wb_status status = wb_canvas_status(cairo_surface_status(image), "an image");
     cairo_surface_destroy(image);
-    return status;
 }
 
-static enum wb_status draw_fields(cairo_t *cairo, const struct wb_layout_panel *layout)
+static void draw_fields(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
     const struct wb_panel *const panel = layout->panel;
     const struct wb_place_box *const plot = &layout->plot;
-    enum wb_status status = WB_OK;
     cairo_save(cairo);
     cairo_rectangle(cairo, plot->x, plot->y, plot->width, plot->height);
     cairo_clip(cairo);
-    for (int i = 0; i < panel->n_series && status == WB_OK; i++) {
+    for (int i = 0; i < panel->n_series; i++) {
         if (panel->series[i].kind == WB_SERIES_IMAGE && panel->series[i].n > 0)
-            status = draw_image(cairo, layout, &panel->series[i]);
+            draw_image(cairo, layout, &panel->series[i]);
     }
-    for (int i = 0; i < panel->n_series && status == WB_OK; i++) {
+    for (int i = 0; i < panel->n_series; i++) {
         if (panel->series[i].kind == WB_SERIES_FIELD)
-            status = wb_shading_draw_field(cairo, layout, &panel->series[i]);
+            wb_shading_draw_field(cairo, layout, &panel->series[i]);
     }
     cairo_restore(cairo);
-    return status;
 }
 
 static void draw_series(cairo_t *cairo, const struct wb_layout_panel *layout)
@@ -418,18 +414,18 @@ static void clear_behind(cairo_t *cairo, const struct wb_layout_panel *layout)
     cairo_fill(cairo);
 }
 
-static enum wb_status draw_panel(cairo_t *cairo, const struct wb_layout_panel *layout)
+static void draw_panel(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
     const struct wb_panel *const panel = layout->panel;
     if (panel->is_bar) {
         wb_shading_draw_bar(cairo, layout);
-        return WB_OK;
+        return;
     }
     if (panel->is_inset)
         clear_behind(cairo, layout);
     if (!panel->hidden_axes)
         draw_grid(cairo, layout);
-    WB_TRY(draw_fields(cairo, layout));
+    draw_fields(cairo, layout);
     draw_series(cairo, layout);
     if (!panel->hidden_axes)
         draw_axes(cairo, layout);
@@ -439,27 +435,29 @@ static enum wb_status draw_panel(cairo_t *cairo, const struct wb_layout_panel *l
     }
     if (layout->has_legend)
         draw_legend(cairo, layout);
-    return WB_OK;
 }
 
 enum wb_status wb_canvas_draw_figure(cairo_t *cairo, const struct wb_figure *figure, double x,
                                      double y)
 {
     if (figure->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory describing figure '%s'", figure->name);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "figure '%s' has too many panels, a field without a range of colours, or an "
+                       "empty image",
+                       figure->name);
     cairo_save(cairo);
     cairo_translate(cairo, x, y);
     struct wb_layout layout;
-    enum wb_status status = wb_layout_compute(&layout, figure, cairo);
-    for (int i = 0; status == WB_OK && i < layout.n_panels; i++) {
-        status = draw_panel(cairo, &layout.panels[i]);
-        if (status == WB_OK && layout.insets[i].panel)
-            status = draw_panel(cairo, &layout.insets[i]);
+    wb_layout_compute(&layout, figure, cairo);
+    for (int i = 0; i < layout.n_panels; i++) {
+        draw_panel(cairo, &layout.panels[i]);
+        if (layout.insets[i].panel)
+            draw_panel(cairo, &layout.insets[i]);
     }
-    if (status == WB_OK && figure->footer) {
+    if (figure->footer) {
         const struct wb_typeset_style style = wb_layout_footer_style();
         wb_typeset_draw(cairo, figure->width - 1.0, layout.footer_y, figure->footer, &style);
     }
     cairo_restore(cairo);
-    return status == WB_OK ? wb_canvas_status(cairo_status(cairo), figure->name) : status;
+    return wb_canvas_status(cairo_status(cairo), figure->name);
 }

@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "contour"
 
 /* Intervals along an edge of a face, points of a face. */
@@ -285,25 +287,19 @@ static void cross(const struct work *work, int a, int b, double begin, double at
     at[1] = p->y + part * (q->y - p->y);
 }
 
-static enum wb_status add_segment(struct work *work, int level, const double from[2],
-                                  const double to[2])
+static void add_segment(struct work *work, int level, const double from[2], const double to[2])
 {
     if (work->n_segments == work->capacity) {
-        const int capacity = work->capacity ? 2 * work->capacity : 4096;
-        struct segment *const larger =
-            realloc(work->segments, (size_t)capacity * sizeof *work->segments);
-        if (!larger)
-            return wb_fail(WB_ERR_MEMORY, "out of memory drawing a field");
-        work->segments = larger;
-        work->capacity = capacity;
+        work->capacity = 2 * work->capacity + 4096;
+        work->segments =
+            wb_memory_resize(work->segments, (size_t)work->capacity, sizeof *work->segments);
     }
     work->segments[work->n_segments++] =
         (struct segment){level, {from[0], from[1]}, {to[0], to[1]}, false};
-    return WB_OK;
 }
 
 /* The isolines through a triangle: from where its outline leaves the region to where it enters. */
-static enum wb_status cut_triangle(struct work *work, const struct triangle *triangle)
+static void cut_triangle(struct work *work, const struct triangle *triangle)
 {
     const int *const v = triangle->vertex;
     const double values[3] = {work->vertices[v[0]].value, work->vertices[v[1]].value,
@@ -320,13 +316,12 @@ static enum wb_status cut_triangle(struct work *work, const struct triangle *tri
             if (values[k] < begin && values[next] >= begin)
                 cross(work, v[k], v[next], begin, enters);
         }
-        WB_TRY(add_segment(work, level, leaves, enters));
+        add_segment(work, level, leaves, enters);
     }
-    return WB_OK;
 }
 
 /* The parts of a side that end a region. */
-static enum wb_status cut_side(struct work *work, const struct side *side)
+static void cut_side(struct work *work, const struct side *side)
 {
     const struct point *const a = &work->vertices[side->from], *const b = &work->vertices[side->to];
     const int all = levels_reached(work, fmin(a->value, b->value));
@@ -346,9 +341,8 @@ static enum wb_status cut_side(struct work *work, const struct side *side)
             cross(work, side->from, side->to, begin, from);
         if (b->value < begin)
             cross(work, side->from, side->to, begin, to);
-        WB_TRY(add_segment(work, level, from, to));
+        add_segment(work, level, from, to);
     }
-    return WB_OK;
 }
 
 /* --- loops --- */
@@ -395,30 +389,24 @@ static int find_start(const struct work *work, int first, int end, const double 
     return -1;
 }
 
-static enum wb_status push(struct work *work, const double at[2])
+static void push(struct work *work, const double at[2])
 {
     if (work->n_loop == work->loop_capacity) {
-        const int capacity = work->loop_capacity ? 2 * work->loop_capacity : 1024;
-        double(*const larger)[2] = realloc(work->loop, (size_t)capacity * sizeof *larger);
-        if (!larger)
-            return wb_fail(WB_ERR_MEMORY, "out of memory drawing a field");
-        work->loop = larger;
-        work->loop_capacity = capacity;
+        work->loop_capacity = 2 * work->loop_capacity + 1024;
+        work->loop = wb_memory_resize(work->loop, (size_t)work->loop_capacity, sizeof *work->loop);
     }
     memcpy(work->loop[work->n_loop++], at, sizeof *work->loop);
-    return WB_OK;
 }
 
 /* Follows the segments from one on until they come back or end. */
-static enum wb_status chain(struct work *work, int first, int end, int start)
+static void chain(struct work *work, int first, int end, int start)
 {
     work->n_loop = 0;
     for (int i = start; i >= 0; i = find_start(work, first, end, work->segments[i].to)) {
         work->segments[i].used = true;
         if (compare_places(work, work->segments[i].from, work->segments[i].to) != 0)
-            WB_TRY(push(work, work->segments[i].from));
+            push(work, work->segments[i].from);
     }
-    return WB_OK;
 }
 
 /* Whether all points between two of a loop lie near the line that joins them. */
@@ -449,30 +437,25 @@ int wb_contour_thin(double (*points)[2], int n, double most)
     return kept;
 }
 
-static enum wb_status take_loop(struct wb_contour *contour, const struct work *work, int level)
+static void take_loop(struct wb_contour *contour, const struct work *work, int level)
 {
     if (work->n_loop < 3)
-        return WB_OK;
+        return;
     const size_t n_points = (size_t)contour->n_points + (size_t)work->n_loop;
-    struct wb_contour_loop *const loops =
-        realloc(contour->loops, ((size_t)contour->n_loops + 1) * sizeof *loops);
-    if (loops)
-        contour->loops = loops;
-    double(*const points)[2] = realloc(contour->points, n_points * sizeof *points);
-    if (points)
-        contour->points = points;
-    if (!loops || !points)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing a field");
-    loops[contour->n_loops++] = (struct wb_contour_loop){level, contour->n_points, work->n_loop};
-    memcpy(points[contour->n_points], work->loop, (size_t)work->n_loop * sizeof *points);
+    contour->loops =
+        wb_memory_resize(contour->loops, (size_t)contour->n_loops + 1, sizeof *contour->loops);
+    contour->points = wb_memory_resize(contour->points, n_points, sizeof *contour->points);
+    contour->loops[contour->n_loops++] =
+        (struct wb_contour_loop){level, contour->n_points, work->n_loop};
+    memcpy(contour->points[contour->n_points], work->loop,
+           (size_t)work->n_loop * sizeof *work->loop);
     contour->n_points += work->n_loop;
-    return WB_OK;
 }
 
-static enum wb_status chain_all(struct wb_contour *contour, struct work *work)
+static void chain_all(struct wb_contour *contour, struct work *work)
 {
     if (work->n_segments == 0)
-        return WB_OK;
+        return;
     qsort_r(work->segments, (size_t)work->n_segments, sizeof *work->segments, by_level_and_start,
             work);
     for (int first = 0, end; first < work->n_segments; first = end) {
@@ -482,46 +465,36 @@ static enum wb_status chain_all(struct wb_contour *contour, struct work *work)
         for (int i = first; i < end; i++) {
             if (work->segments[i].used)
                 continue;
-            WB_TRY(chain(work, first, end, i));
+            chain(work, first, end, i);
             work->n_loop =
                 wb_contour_thin(work->loop, work->n_loop, stray / same_place * work->grid);
-            WB_TRY(take_loop(contour, work, level));
+            take_loop(contour, work, level);
         }
     }
-    return WB_OK;
 }
 
 /* --- all of it --- */
 
-static enum wb_status take_memory(struct work *work, int n_faces)
+static void find_regions(struct wb_contour *contour, struct work *work, int n_faces,
+                         const struct wb_contour_face *faces)
 {
-    const size_t n = (size_t)n_faces * POINTS + 1;
-    const size_t n_triangles = (size_t)n_faces * 2 * CUTS * CUTS + 1;
-    work->points = calloc(n, sizeof *work->points);
-    work->vertices = calloc(n, sizeof *work->vertices);
-    work->triangles = calloc(n_triangles, sizeof *work->triangles);
-    work->sides = calloc(3 * n_triangles, sizeof *work->sides);
-    if (!work->points || !work->vertices || !work->triangles || !work->sides)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing a field");
-    return WB_OK;
-}
-
-static enum wb_status find_regions(struct wb_contour *contour, struct work *work, int n_faces,
-                                   const struct wb_contour_face *faces)
-{
-    WB_TRY(take_memory(work, n_faces));
+    const size_t n = (size_t)n_faces * POINTS, n_triangles = (size_t)n_faces * 2 * CUTS * CUTS;
+    work->points = wb_memory_new(n, sizeof *work->points);
+    work->vertices = wb_memory_new(n, sizeof *work->vertices);
+    work->triangles = wb_memory_new(n_triangles, sizeof *work->triangles);
+    work->sides = wb_memory_new(3 * n_triangles, sizeof *work->sides);
     place_points(work, n_faces, faces);
     round_points(work);
     number_vertices(work);
     cut_faces(work);
     find_edges(work);
     for (int i = 0; i < work->n_triangles; i++)
-        WB_TRY(cut_triangle(work, &work->triangles[i]));
+        cut_triangle(work, &work->triangles[i]);
     for (int i = 0; i < work->n_sides; i++) {
         if (!work->sides[i].is_inside)
-            WB_TRY(cut_side(work, &work->sides[i]));
+            cut_side(work, &work->sides[i]);
     }
-    return chain_all(contour, work);
+    chain_all(contour, work);
 }
 
 enum wb_status wb_contour_create(struct wb_contour *contour, int n_faces,
@@ -537,16 +510,14 @@ enum wb_status wb_contour_create(struct wb_contour *contour, int n_faces,
             "faces, 1 to 1000 levels, and a range that rises",
             n_faces, levels->n, levels->low, levels->high);
     struct work work = {.levels = levels};
-    const enum wb_status status = find_regions(contour, &work, n_faces, faces);
+    find_regions(contour, &work, n_faces, faces);
     free(work.points);
     free(work.vertices);
     free(work.triangles);
     free(work.sides);
     free(work.segments);
     free(work.loop);
-    if (status != WB_OK)
-        wb_contour_release(contour);
-    return status;
+    return WB_OK;
 }
 
 void wb_contour_release(struct wb_contour *contour)

@@ -7,22 +7,14 @@
 #include <string.h>
 
 #include "analysis/plot/figure_private.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "figure"
 
-static char *copy_text(struct wb_figure *figure, const char *text)
-{
-    if (!text)
-        return NULL;
-    char *const copy = strdup(text);
-    figure->failed |= !copy;
-    return copy;
-}
-
-static void replace_text(struct wb_figure *figure, char **target, const char *text)
+static void replace_text(char **target, const char *text)
 {
     free(*target);
-    *target = copy_text(figure, text);
+    *target = text ? wb_memory_text(text) : NULL;
 }
 
 enum wb_status wb_figure_create(struct wb_figure **out, const char *name, double width,
@@ -36,16 +28,10 @@ enum wb_status wb_figure_create(struct wb_figure **out, const char *name, double
     if (!*name || !(width >= 60.0 && width <= 5000.0 && height >= 40.0 && height <= 5000.0))
         return wb_fail(WB_ERR_ARGUMENT, "figure '%s': no name, or a size of %g x %g points", name,
                        width, height);
-    struct wb_figure *figure = calloc(1, sizeof *figure);
-    if (!figure)
-        return wb_fail(WB_ERR_MEMORY, "out of memory making figure '%s'", name);
-    figure->name = copy_text(figure, name);
+    struct wb_figure *const figure = wb_memory_new(1, sizeof *figure);
+    figure->name = wb_memory_text(name);
     figure->width = width;
     figure->height = height;
-    if (figure->failed) {
-        wb_figure_destroy(figure);
-        return wb_fail(WB_ERR_MEMORY, "out of memory making figure '%s'", name);
-    }
     *out = figure;
     return WB_OK;
 }
@@ -99,16 +85,12 @@ double wb_figure_height(const struct wb_figure *figure)
 
 void wb_figure_set_footer(struct wb_figure *figure, const char *markup)
 {
-    replace_text(figure, &figure->footer, markup);
+    replace_text(&figure->footer, markup);
 }
 
 static struct wb_panel *create_panel(struct wb_figure *figure)
 {
-    struct wb_panel *const panel = calloc(1, sizeof *panel);
-    if (!panel) {
-        figure->failed = true;
-        return NULL;
-    }
+    struct wb_panel *const panel = wb_memory_new(1, sizeof *panel);
     panel->figure = figure;
     panel->x_range[0] = panel->x_range[1] = (double)NAN;
     panel->y_range[0] = panel->y_range[1] = (double)NAN;
@@ -119,18 +101,14 @@ struct wb_panel *wb_figure_add_panel(struct wb_figure *figure)
 {
     if (figure->n_panels == WB_FIGURE_PANELS) {
         figure->failed = true;
-        return NULL;
+        return figure->panels[WB_FIGURE_PANELS - 1];
     }
-    struct wb_panel *const panel = create_panel(figure);
-    if (panel)
-        figure->panels[figure->n_panels++] = panel;
-    return panel;
+    return figure->panels[figure->n_panels++] = create_panel(figure);
 }
 
 void wb_figure_set_width(struct wb_panel *panel, double width)
 {
-    if (panel)
-        panel->width = width;
+    panel->width = width;
 }
 
 /* The number of colours that is drawn. */
@@ -146,69 +124,53 @@ void wb_figure_add_colour_bar(struct wb_figure *figure, const struct wb_figure_c
                               const char *label)
 {
     struct wb_panel *const panel = wb_figure_add_panel(figure);
-    if (!panel)
-        return;
     panel->is_bar = true;
     panel->width = 46.0;
     panel->colours = complete(colours);
-    replace_text(figure, &panel->y_label, label);
+    replace_text(&panel->y_label, label);
 }
 
-/* The other builders take a NULL panel, which is what running out of memory leaves behind. */
 struct wb_panel *wb_figure_add_inset(struct wb_panel *panel)
 {
-    if (!panel)
-        return NULL;
     if (panel->inset || panel->is_inset) {
         panel->figure->failed = true;
-        return NULL;
+        return panel;
     }
     panel->inset = create_panel(panel->figure);
-    if (panel->inset)
-        panel->inset->is_inset = true;
+    panel->inset->is_inset = true;
     return panel->inset;
 }
 
 void wb_figure_set_axes(struct wb_panel *panel, const char *x_label, const char *y_label)
 {
-    if (!panel)
-        return;
-    replace_text(panel->figure, &panel->x_label, x_label);
-    replace_text(panel->figure, &panel->y_label, y_label);
+    replace_text(&panel->x_label, x_label);
+    replace_text(&panel->y_label, y_label);
 }
 
 void wb_figure_set_title(struct wb_panel *panel, const char *markup)
 {
-    if (panel)
-        replace_text(panel->figure, &panel->title, markup);
+    replace_text(&panel->title, markup);
 }
 
 void wb_figure_set_x_range(struct wb_panel *panel, double low, double high)
 {
-    if (!panel)
-        return;
     panel->x_range[0] = low;
     panel->x_range[1] = high;
 }
 
 void wb_figure_set_y_range(struct wb_panel *panel, double low, double high)
 {
-    if (!panel)
-        return;
     panel->y_range[0] = low;
     panel->y_range[1] = high;
 }
 
 void wb_figure_set_logarithmic_y(struct wb_panel *panel)
 {
-    if (panel)
-        panel->logarithmic_y = true;
+    panel->logarithmic_y = true;
 }
 
 void wb_figure_set_y_names(struct wb_panel *panel, int n, const char *const *names)
 {
-    if (!panel)
-        return;
     panel->n_y_names = n < WB_SCALE_TICKS ? n : WB_SCALE_TICKS;
     for (int i = 0; i < panel->n_y_names; i++)
         snprintf(panel->y_names[i], sizeof panel->y_names[i], "%s", names[i]);
@@ -216,51 +178,37 @@ void wb_figure_set_y_names(struct wb_panel *panel, int n, const char *const *nam
 
 void wb_figure_set_equal_aspect(struct wb_panel *panel)
 {
-    if (panel)
-        panel->equal_aspect = true;
+    panel->equal_aspect = true;
 }
 
 void wb_figure_set_right_axis(struct wb_panel *panel, const char *label, double factor)
 {
-    if (!panel)
-        return;
-    replace_text(panel->figure, &panel->right_label, label);
+    replace_text(&panel->right_label, label);
     panel->right_factor = factor > 0.0 && isfinite(factor) ? factor : 0.0;
 }
 
 void wb_figure_hide_axes(struct wb_panel *panel)
 {
-    if (panel)
-        panel->hidden_axes = true;
+    panel->hidden_axes = true;
 }
 
 static struct wb_series *add_series(struct wb_panel *panel, enum wb_series_kind kind,
                                     const char *label)
 {
-    if (!panel)
-        return NULL;
     if (panel->n_series == panel->capacity) {
-        const int capacity = panel->capacity ? 2 * panel->capacity : 8;
-        struct wb_series *const larger =
-            realloc(panel->series, (size_t)capacity * sizeof *panel->series);
-        if (!larger) {
-            panel->figure->failed = true;
-            return NULL;
-        }
-        panel->series = larger;
-        panel->capacity = capacity;
+        panel->capacity = 2 * panel->capacity + 8;
+        panel->series =
+            wb_memory_resize(panel->series, (size_t)panel->capacity, sizeof *panel->series);
     }
     struct wb_series *const series = &panel->series[panel->n_series++];
-    *series = (struct wb_series){.kind = kind, .label = copy_text(panel->figure, label)};
+    *series = (struct wb_series){.kind = kind, .label = label ? wb_memory_text(label) : NULL};
     return series;
 }
 
-static double *copy_values(struct wb_figure *figure, const double *values, size_t n)
+static double *copy_values(const double *values, size_t n)
 {
-    double *const copy = malloc((n ? n : 1) * sizeof *copy);
-    if (!copy)
-        figure->failed = true;
-    else if (n)
+    double *const copy = wb_memory_new(n, sizeof *copy);
+    if (n)
         memcpy(copy, values, n * sizeof *copy);
     return copy;
 }
@@ -269,56 +217,47 @@ void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, con
                         const double *y, const struct wb_figure_style *style)
 {
     struct wb_series *const series = add_series(panel, WB_SERIES_LINE, label);
-    if (!series)
-        return;
     series->style = *style;
-    series->x = copy_values(panel->figure, x, n);
-    series->y = copy_values(panel->figure, y, n);
-    series->n = series->x && series->y ? n : 0;
+    series->x = copy_values(x, n);
+    series->y = copy_values(y, n);
+    series->n = n;
 }
 
 void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *const edges[2], struct wb_colour colour)
 {
     struct wb_series *const series = add_series(panel, WB_SERIES_BAND, label);
-    if (!series)
-        return;
     series->style.colour = colour;
-    series->x = copy_values(panel->figure, x, n);
-    series->y = copy_values(panel->figure, edges[0], n);
-    series->high = copy_values(panel->figure, edges[1], n);
-    series->n = series->x && series->y && series->high ? n : 0;
+    series->x = copy_values(x, n);
+    series->y = copy_values(edges[0], n);
+    series->high = copy_values(edges[1], n);
+    series->n = n;
 }
 
 void wb_figure_add_area(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *y, struct wb_colour colour)
 {
     struct wb_series *const series = add_series(panel, WB_SERIES_AREA, label);
-    if (!series)
-        return;
     series->style.colour = colour;
-    series->x = copy_values(panel->figure, x, n);
-    series->y = copy_values(panel->figure, y, n);
-    series->n = series->x && series->y ? n : 0;
+    series->x = copy_values(x, n);
+    series->y = copy_values(y, n);
+    series->n = n;
 }
 
 void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_contour_face *faces,
                          const struct wb_figure_colours *colours)
 {
     struct wb_series *const series = add_series(panel, WB_SERIES_FIELD, NULL);
-    if (!series)
-        return;
     series->colours = complete(colours);
     const struct wb_contour_levels levels = {series->colours.low, series->colours.high,
                                              series->colours.n};
     const size_t n = (size_t)n_faces * 8;
-    series->x = malloc((n + 1) * sizeof *series->x);
-    series->y = malloc((n + 1) * sizeof *series->y);
-    if (!series->x || !series->y ||
-        wb_contour_create(&series->contour, n_faces, faces, &levels) != WB_OK) {
+    if (wb_contour_create(&series->contour, n_faces, faces, &levels) != WB_OK) {
         panel->figure->failed = true;
         return;
     }
+    series->x = wb_memory_new(n, sizeof *series->x);
+    series->y = wb_memory_new(n, sizeof *series->y);
     for (size_t i = 0; i < n; i++) {
         series->x[i] = faces[i / 8].x[i % 8];
         series->y[i] = faces[i / 8].y[i % 8];
@@ -329,30 +268,26 @@ void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_co
 void wb_figure_add_image(struct wb_panel *panel, const struct wb_figure_image *image)
 {
     struct wb_series *const series = add_series(panel, WB_SERIES_IMAGE, NULL);
-    if (!series)
-        return;
     const size_t n = (size_t)image->width * (size_t)image->height;
     const double x[2] = {image->low[0], image->high[0]}, y[2] = {image->low[1], image->high[1]};
-    series->x = copy_values(panel->figure, x, 2);
-    series->y = copy_values(panel->figure, y, 2);
-    series->pixels = malloc(n * sizeof *series->pixels);
-    if (!series->pixels || n == 0) {
+    series->x = copy_values(x, 2);
+    series->y = copy_values(y, 2);
+    if (n == 0) {
         panel->figure->failed = true;
         return;
     }
+    series->pixels = wb_memory_new(n, sizeof *series->pixels);
     memcpy(series->pixels, image->pixels, n * sizeof *series->pixels);
     series->pixels_across = image->width;
     series->pixels_down = image->height;
-    series->n = series->x && series->y ? 2 : 0;
+    series->n = 2;
 }
 
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup)
 {
     struct wb_series *const series = add_series(panel, WB_SERIES_TEXT, markup);
-    if (!series)
-        return;
     series->side = side;
-    series->x = copy_values(panel->figure, &x, 1);
-    series->y = copy_values(panel->figure, &y, 1);
-    series->n = series->x && series->y ? 1 : 0;
+    series->x = copy_values(&x, 1);
+    series->y = copy_values(&y, 1);
+    series->n = 1;
 }

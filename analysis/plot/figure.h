@@ -10,8 +10,9 @@
  *
  * Values are given in the units that the axes' labels name. Labels, titles and legend entries are
  * Pango markup (<i>, <sub>, <sup>, <b>; &amp; for &). A NaN in a series breaks its line. Builders
- * copy what they are given, return nothing and never fail visibly: running out of memory is
- * remembered and reported when the figure is drawn. The same description gives the same bytes.
+ * copy what they are given, return nothing and never fail visibly: a panel too many or a field
+ * without a range of colours is reported when the figure is drawn. The same description gives the
+ * same bytes.
  *
  * Fields on 8-node faces are drawn as filled contours, see contour.h; a colour bar is a panel of
  * its own. Scenes in space are images, see view.h.

@@ -56,7 +56,7 @@ struct wb_figure {
     double width, height;
     int n_panels;
     struct wb_panel *panels[WB_FIGURE_PANELS];
-    bool failed; /* out of memory, or more panels than there are places, or no field's colours */
+    bool failed; /* too many panels or insets, no field's colours, or an empty image */
 };
 
 WB_MUST_CHECK enum wb_status wb_figure_pdf(const struct wb_figure *figure, const char *date_utc,

@@ -381,11 +381,10 @@ static void lay_frame(struct wb_layout_panel *layout, cairo_t *cairo)
 }
 
 /* Places what there is of inset and legend into the plot as it is laid; tells which found room. */
-static enum wb_status place_inside(struct wb_layout_panel *layout, struct wb_layout_panel *inset,
-                                   cairo_t *cairo, bool *inset_fits, bool *legend_fits)
+static void place_inside(struct wb_layout_panel *layout, struct wb_layout_panel *inset,
+                         cairo_t *cairo, bool *inset_fits, bool *legend_fits)
 {
-    struct wb_place *place;
-    WB_TRY(wb_place_create(&place, layout->plot.width, layout->plot.height));
+    struct wb_place *const place = wb_place_create(layout->plot.width, layout->plot.height);
     mark_series(place, layout, cairo);
     *inset_fits = !inset->panel || place_inset(place, layout, inset);
     *legend_fits = true;
@@ -397,25 +396,23 @@ static enum wb_status place_inside(struct wb_layout_panel *layout, struct wb_lay
         layout->legend.y += layout->plot.y;
     }
     wb_place_destroy(place);
-    return WB_OK;
 }
 
-static enum wb_status lay_panel(struct wb_layout_panel *layout, struct wb_layout_panel *inset,
-                                cairo_t *cairo)
+static void lay_panel(struct wb_layout_panel *layout, struct wb_layout_panel *inset, cairo_t *cairo)
 {
     struct wb_typeset_size size;
     bool inset_fits, legend_fits;
     layout->has_legend = wb_layout_legend(layout, cairo, NULL, NULL, &size) > 0;
     lay_frame(layout, cairo);
-    WB_TRY(place_inside(layout, inset, cairo, &inset_fits, &legend_fits));
+    place_inside(layout, inset, cairo, &inset_fits, &legend_fits);
     if (!legend_fits) {
         /* The legend goes above the axes; the plot is smaller then, so the inset moves too. */
         layout->legend_outside = true;
         lay_frame(layout, cairo);
-        WB_TRY(place_inside(layout, inset, cairo, &inset_fits, &legend_fits));
+        place_inside(layout, inset, cairo, &inset_fits, &legend_fits);
     }
     if (inset_fits)
-        return WB_OK;
+        return;
 
     /* An inset without room stands to the right of the axes. */
     inset->room = layout->room;
@@ -424,12 +421,11 @@ static enum wb_status lay_panel(struct wb_layout_panel *layout, struct wb_layout
     inset->room.x = layout->room.x + layout->room.width + 6.0;
     lay_frame(layout, cairo);
     struct wb_layout_panel none = {0};
-    WB_TRY(place_inside(layout, &none, cairo, &inset_fits, &legend_fits));
+    place_inside(layout, &none, cairo, &inset_fits, &legend_fits);
     if (!legend_fits) {
         layout->legend_outside = true;
         lay_frame(layout, cairo);
     }
-    return WB_OK;
 }
 
 /* A colour bar, as high as the plot before it. */
@@ -473,8 +469,7 @@ static void share_width(struct wb_layout *layout, const struct wb_figure *figure
     }
 }
 
-enum wb_status wb_layout_compute(struct wb_layout *layout, const struct wb_figure *figure,
-                                 cairo_t *cairo)
+void wb_layout_compute(struct wb_layout *layout, const struct wb_figure *figure, cairo_t *cairo)
 {
     memset(layout, 0, sizeof *layout);
     const struct wb_typeset_style footer = wb_layout_footer_style();
@@ -495,10 +490,9 @@ enum wb_status wb_layout_compute(struct wb_layout *layout, const struct wb_figur
         struct wb_layout_panel *const inset = &layout->insets[i];
         inset->panel = panel->panel->inset;
         inset->text_size = 6.2;
-        WB_TRY(lay_panel(panel, inset, cairo));
+        lay_panel(panel, inset, cairo);
         struct wb_layout_panel none = {0};
         if (inset->panel)
-            WB_TRY(lay_panel(inset, &none, cairo));
+            lay_panel(inset, &none, cairo);
     }
-    return WB_OK;
 }

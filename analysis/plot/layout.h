@@ -39,8 +39,7 @@ struct wb_typeset_style wb_layout_footer_style(void);
 #define WB_LAYOUT_PADDING 4.0
 
 /* Lays out a figure; `cairo` only measures text. */
-WB_MUST_CHECK enum wb_status wb_layout_compute(struct wb_layout *layout,
-                                               const struct wb_figure *figure, cairo_t *cairo);
+void wb_layout_compute(struct wb_layout *layout, const struct wb_figure *figure, cairo_t *cairo);
 
 /* A value's place in points. */
 double wb_layout_x(const struct wb_layout_panel *panel, double value);

@@ -9,6 +9,7 @@
 #include "analysis/plot/canvas.h"
 #include "analysis/plot/figure_private.h"
 #include "base/file.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "figure"
 
@@ -34,7 +35,6 @@ struct id_list {
     size_t n, capacity;
     const char **starts; /* into the text */
     size_t *lengths;
-    bool failed;
 };
 
 static size_t number_of_id(struct id_list *ids, const char *start, size_t length)
@@ -44,18 +44,9 @@ static size_t number_of_id(struct id_list *ids, const char *start, size_t length
             return i;
     }
     if (ids->n == ids->capacity) {
-        const size_t capacity = ids->capacity ? 2 * ids->capacity : 64;
-        const char **const starts = realloc(ids->starts, capacity * sizeof *starts);
-        if (starts)
-            ids->starts = starts;
-        size_t *const lengths = realloc(ids->lengths, capacity * sizeof *lengths);
-        if (lengths)
-            ids->lengths = lengths;
-        if (!starts || !lengths) {
-            ids->failed = true;
-            return 0;
-        }
-        ids->capacity = capacity;
+        ids->capacity = 2 * ids->capacity + 64;
+        ids->starts = wb_memory_resize(ids->starts, ids->capacity, sizeof *ids->starts);
+        ids->lengths = wb_memory_resize(ids->lengths, ids->capacity, sizeof *ids->lengths);
     }
     ids->starts[ids->n] = start;
     ids->lengths[ids->n] = length;
@@ -70,7 +61,7 @@ static enum wb_status rename_ids(const struct wb_text *raw, const char *name, st
     static const char closings[] = {'"', '"', ')'};
     struct id_list ids = {0};
     const char *position = wb_text_string(raw);
-    while (*position && !ids.failed) {
+    while (*position) {
         const char *next = NULL;
         char closing = 0;
         for (size_t i = 0; i < 3; i++) {
@@ -91,7 +82,7 @@ static enum wb_status rename_ids(const struct wb_text *raw, const char *name, st
     }
     free(ids.starts);
     free(ids.lengths);
-    if (ids.failed || svg->failed)
+    if (svg->failed)
         return wb_fail(WB_ERR_MEMORY, "out of memory drawing figure '%s'", name);
     return WB_OK;
 }

@@ -2,9 +2,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#define WB_LOG_DOMAIN "place"
+#include "base/memory.h"
 
 static const double cell = 1.5; /* pt */
 
@@ -14,23 +13,15 @@ struct wb_place {
     unsigned char *taken; /* (rows x columns) */
 };
 
-enum wb_status wb_place_create(struct wb_place **out, double width, double height)
+struct wb_place *wb_place_create(double width, double height)
 {
-    *out = NULL;
-    struct wb_place *place = calloc(1, sizeof *place);
-    if (!place)
-        return wb_fail(WB_ERR_MEMORY, "out of memory placing a legend");
+    struct wb_place *const place = wb_memory_new(1, sizeof *place);
     place->width = width;
     place->height = height;
     place->columns = (int)fmax(1.0, ceil(width / cell));
     place->rows = (int)fmax(1.0, ceil(height / cell));
-    place->taken = calloc((size_t)place->columns * (size_t)place->rows, 1);
-    if (!place->taken) {
-        free(place);
-        return wb_fail(WB_ERR_MEMORY, "out of memory placing a legend");
-    }
-    *out = place;
-    return WB_OK;
+    place->taken = wb_memory_new((size_t)place->columns * (size_t)place->rows, 1);
+    return place;
 }
 
 void wb_place_destroy(struct wb_place *place)
@@ -113,8 +104,8 @@ void wb_place_mark_segment(struct wb_place *place, double x0, double y0, double 
 static int *sum_table(const struct wb_place *place)
 {
     const int stride = place->columns + 1;
-    int *sums = calloc((size_t)stride * (size_t)(place->rows + 1), sizeof *sums);
-    for (int row = 0; sums && row < place->rows; row++) {
+    int *const sums = wb_memory_new((size_t)stride * (size_t)(place->rows + 1), sizeof *sums);
+    for (int row = 0; row < place->rows; row++) {
         for (int column = 0; column < place->columns; column++)
             sums[(row + 1) * stride + column + 1] =
                 place->taken[row * place->columns + column] + sums[row * stride + column + 1] +
@@ -219,8 +210,6 @@ bool wb_place_find(const struct wb_place *place, double width, double height, do
     if (window.rows > place->rows || window.columns > place->columns)
         return false;
     int *const sums = sum_table(place);
-    if (!sums)
-        return false;
     const bool found = best_corner(place, sums, &window) || nearest_spot(place, sums, &window);
     free(sums);
     if (!found)

@@ -8,8 +8,6 @@
 
 #include <stdbool.h>
 
-#include "base/status.h"
-
 struct wb_place; /* opaque */
 
 struct wb_place_box {
@@ -17,7 +15,7 @@ struct wb_place_box {
 };
 
 /* An empty plot of that size, pt. */
-WB_MUST_CHECK enum wb_status wb_place_create(struct wb_place **out, double width, double height);
+struct wb_place *wb_place_create(double width, double height);
 void wb_place_destroy(struct wb_place *place); /* accepts NULL */
 
 /* Marks a segment with half a width around it; a point is a segment of no length. Parts outside of

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WB_LOG_DOMAIN "figure"
+#include "base/memory.h"
 
 static const double finest = 0.04; /* pt: by so much a drawn line may stray */
 
@@ -55,13 +55,11 @@ static void draw_outline(cairo_t *cairo, enum wb_figure_outline outline)
     cairo_stroke(cairo);
 }
 
-enum wb_status wb_shading_draw_field(cairo_t *cairo, const struct wb_layout_panel *layout,
-                                     const struct wb_series *series)
+void wb_shading_draw_field(cairo_t *cairo, const struct wb_layout_panel *layout,
+                           const struct wb_series *series)
 {
     const struct wb_contour *const contour = &series->contour;
-    double(*const points)[2] = malloc(((size_t)contour->n_points + 1) * sizeof *points);
-    if (!points)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing a field");
+    double(*const points)[2] = wb_memory_new((size_t)contour->n_points, sizeof *points);
     cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_WINDING);
     for (int i = 0; i < contour->n_loops;) {
         const int level = contour->loops[i].level;
@@ -75,7 +73,6 @@ enum wb_status wb_shading_draw_field(cairo_t *cairo, const struct wb_layout_pane
         draw_outline(cairo, series->colours.outline);
     }
     free(points);
-    return WB_OK;
 }
 
 void wb_shading_draw_bar(cairo_t *cairo, const struct wb_layout_panel *layout)

@@ -7,9 +7,8 @@
 #include "analysis/plot/layout.h"
 
 /* A series of the kind WB_SERIES_FIELD, within the panel's scales. */
-WB_MUST_CHECK enum wb_status wb_shading_draw_field(cairo_t *cairo,
-                                                   const struct wb_layout_panel *layout,
-                                                   const struct wb_series *series);
+void wb_shading_draw_field(cairo_t *cairo, const struct wb_layout_panel *layout,
+                           const struct wb_series *series);
 
 /* A panel that is a colour bar. */
 void wb_shading_draw_bar(cairo_t *cairo, const struct wb_layout_panel *layout);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/vec3.h"
 
 #define WB_LOG_DOMAIN "figure"
@@ -168,7 +169,7 @@ static void find_normal(struct painter *p, int j, int k, bool closed)
     wb_vec3_normalise(v->normal);
 }
 
-static enum wb_status refine(struct painter *p, const struct wb_view_sheet *sheet)
+static void refine(struct painter *p, const struct wb_view_sheet *sheet)
 {
     const int spans = sheet->closed ? sheet->n_around : sheet->n_around - 1;
     const int finer = (ROUND + spans - 1) / spans;
@@ -176,9 +177,7 @@ static enum wb_status refine(struct painter *p, const struct wb_view_sheet *shee
 
     p->n_around = spans * finer + (sheet->closed ? 0 : 1);
     p->n_along = (sheet->n_along - 1) * finer_along + 1;
-    p->grid = malloc((size_t)p->n_along * (size_t)p->n_around * sizeof *p->grid);
-    if (!p->grid)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing a surface");
+    p->grid = wb_memory_new((size_t)p->n_along * (size_t)p->n_around, sizeof *p->grid);
     for (int j = 0; j < p->n_along; j++)
         for (int k = 0; k < p->n_around; k++)
             place_vertex(p, sheet, (double)j / finer_along, (double)k / finer,
@@ -186,7 +185,6 @@ static enum wb_status refine(struct painter *p, const struct wb_view_sheet *shee
     for (int j = 0; j < p->n_along; j++)
         for (int k = 0; k < p->n_around; k++)
             find_normal(p, j, k, sheet->closed);
-    return WB_OK;
 }
 
 /* --- colours --- */
@@ -312,9 +310,9 @@ static void draw_cap(struct painter *p, const struct wb_view_sheet *sheet, int s
     }
 }
 
-static enum wb_status draw_sheet(struct painter *p, const struct wb_view_sheet *sheet)
+static void draw_sheet(struct painter *p, const struct wb_view_sheet *sheet)
 {
-    WB_TRY(refine(p, sheet));
+    refine(p, sheet);
     const int n = p->n_around, spans = sheet->closed ? n : n - 1;
 
     for (int j = 0; j < p->n_along - 1; j++)
@@ -330,8 +328,6 @@ static enum wb_status draw_sheet(struct painter *p, const struct wb_view_sheet *
         draw_cap(p, sheet, p->n_along - 1);
     }
     free(p->grid);
-    p->grid = NULL;
-    return WB_OK;
 }
 
 /* --- pixels --- */
@@ -406,20 +402,14 @@ static void set_up(struct painter *p)
 
 enum wb_status wb_view_draw(const struct wb_view_scene *scene, uint32_t *pixels)
 {
-    enum wb_status status = WB_OK;
-
     WB_TRY(check(scene));
     struct painter p = {
         .scene = scene, .width = SAMPLES * scene->width, .height = SAMPLES * scene->height};
-    p.samples = calloc((size_t)p.width * (size_t)p.height, sizeof *p.samples);
-    if (!p.samples)
-        return wb_fail(WB_ERR_MEMORY, "no memory for an image of %d x %d pixels", scene->width,
-                       scene->height);
+    p.samples = wb_memory_new((size_t)p.width * (size_t)p.height, sizeof *p.samples);
     set_up(&p);
-    for (int i = 0; i < scene->n_sheets && status == WB_OK; i++)
-        status = draw_sheet(&p, &scene->sheets[i]);
-    if (status == WB_OK)
-        resolve(&p, pixels);
+    for (int i = 0; i < scene->n_sheets; i++)
+        draw_sheet(&p, &scene->sheets[i]);
+    resolve(&p, pixels);
     free(p.samples);
-    return status;
+    return WB_OK;
 }
