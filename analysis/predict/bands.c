@@ -8,6 +8,7 @@
 #include <gsl/gsl_statistics_double.h>
 
 #include "analysis/predict/hypercube.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"
 #include "base/workers.h"
@@ -89,10 +90,8 @@ static enum wb_status do_run(void *context, int index)
 {
     struct runs *const runs = context;
     const struct wb_inputs *const inputs = runs->inputs;
-    struct wb_bundle_model *const model = malloc(sizeof *model);
+    struct wb_bundle_model *const model = wb_memory_new(1, sizeof *model);
 
-    if (!model)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a run of the bundle");
     *model = runs->model;
     runs->limited[index] =
         !wb_inputs_apply(inputs, runs->u + (size_t)index * (size_t)inputs->n_dimensions, model,
@@ -225,7 +224,7 @@ static enum wb_status add_ranking(struct runs *runs, const char *of, double at,
 {
     const struct wb_inputs *const inputs = runs->inputs;
     const size_t columns = (size_t)inputs->n_columns;
-    double *const values = calloc((size_t)runs->n, columns * sizeof *values);
+    double *const values = wb_memory_new((size_t)runs->n, columns * sizeof *values);
     struct wb_bands_ranking *const ranking = &out->ranking[out->n_rankings];
     struct wb_ranking_data data = {
         .n_columns = inputs->n_columns,
@@ -236,8 +235,6 @@ static enum wb_status add_ranking(struct runs *runs, const char *of, double at,
         .seed = runs->settings->seed,
     };
 
-    if (!values)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a ranking");
     for (int i = 0; i < runs->n; i++) {
         if (!isfinite(result[(size_t)i * stride]))
             continue;
@@ -285,7 +282,7 @@ static enum wb_status prepare_model(struct wb_bundle_model *model, const char *p
     return WB_OK;
 }
 
-static enum wb_status take_memory(struct runs *runs, struct wb_memory *memory)
+static void take_memory(struct runs *runs, struct wb_memory *memory)
 {
     const size_t n = (size_t)runs->n;
     runs->values = wb_memory_take(memory, n, (size_t)runs->inputs->n_columns * sizeof(double));
@@ -295,7 +292,6 @@ static enum wb_status take_memory(struct runs *runs, struct wb_memory *memory)
     runs->limited = wb_memory_take(memory, n, sizeof(bool));
     runs->lost = wb_memory_take(memory, n, sizeof(bool));
     runs->sorted = wb_memory_take(memory, n, sizeof(double));
-    return memory->failed ? wb_fail(WB_ERR_MEMORY, "no memory for %d runs", runs->n) : WB_OK;
 }
 
 /* Once by itself first: what the model refuses is said once. */
@@ -336,9 +332,8 @@ static enum wb_status compute_case(struct wb_bands *bands, struct runs *runs)
     struct wb_memory memory = {0};
 
     runs->n_rows = runs->model.run.rows + 1;
-    enum wb_status status = take_memory(runs, &memory);
-    if (status == WB_OK)
-        status = run_all(runs, out->variant.name, &bands->stopped);
+    take_memory(runs, &memory);
+    enum wb_status status = run_all(runs, out->variant.name, &bands->stopped);
     if (status == WB_OK && !bands->stopped) {
         describe_case(runs, out);
         find_forces(runs, out);
@@ -355,9 +350,7 @@ static enum wb_status compute_variant(struct wb_bands *bands, const char *path,
                                       const struct wb_bands_settings *settings, const double *u,
                                       const struct wb_bundle_variant *variant)
 {
-    struct runs *const runs = calloc(1, sizeof *runs);
-    if (!runs)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the bundle");
+    struct runs *const runs = wb_memory_new(1, sizeof *runs);
     runs->inputs = &bands->inputs;
     runs->settings = settings;
     runs->n = bands->runs;
@@ -381,11 +374,10 @@ static enum wb_status compute_all(struct wb_bands *bands, const char *path,
     const struct wb_bundle_variant *const variants = is_swept ? settings->variants : u->scenario;
     const int n = is_swept ? settings->n_variants : u->n_scenarios;
     const int dimensions = bands->inputs.n_dimensions;
-    double *const points = calloc((size_t)bands->runs, (size_t)dimensions * sizeof *points);
+    double *const points = wb_memory_new((size_t)bands->runs, (size_t)dimensions * sizeof *points);
+    enum wb_status status = WB_OK;
 
-    if (!points)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d runs", bands->runs);
-    enum wb_status status = wb_hypercube_fill(bands->seed, bands->runs, dimensions, points);
+    wb_hypercube_fill(bands->seed, bands->runs, dimensions, points);
     for (int i = -1; i < n && status == WB_OK && !bands->stopped; i++)
         status = compute_variant(bands, path, settings, points, i < 0 ? &file : &variants[i]);
     free(points);
@@ -395,9 +387,7 @@ static enum wb_status compute_all(struct wb_bands *bands, const char *path,
 static enum wb_status init(struct wb_bands *bands, const char *path,
                            const struct wb_bands_settings *settings)
 {
-    struct wb_bundle_model *const model = malloc(sizeof *model);
-    if (!model)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle");
+    struct wb_bundle_model *const model = wb_memory_new(1, sizeof *model);
     enum wb_status status = wb_bundle_model_read(model, path);
     if (status == WB_OK)
         status = wb_inputs_init(&bands->inputs, model);
@@ -412,16 +402,14 @@ static enum wb_status init(struct wb_bands *bands, const char *path,
                        "numbers of a run, and at most %d cases",
                        bands->runs, settings->n_variants + 1, LEAST_RUNS, bands->inputs.n_columns,
                        WB_BANDS_CASES);
-    bands->cases = calloc(WB_BANDS_CASES, sizeof *bands->cases);
-    return bands->cases ? WB_OK : wb_fail(WB_ERR_MEMORY, "no memory for bands");
+    bands->cases = wb_memory_new(WB_BANDS_CASES, sizeof *bands->cases);
+    return WB_OK;
 }
 
 enum wb_status wb_bands_create(struct wb_bands **out, const char *path,
                                const struct wb_bands_settings *settings)
 {
-    struct wb_bands *const bands = calloc(1, sizeof *bands);
-    if (!bands)
-        return wb_fail(WB_ERR_MEMORY, "no memory for bands");
+    struct wb_bands *const bands = wb_memory_new(1, sizeof *bands);
     enum wb_status status = init(bands, path, settings);
     if (status == WB_OK)
         status = compute_all(bands, path, settings);

@@ -1,12 +1,10 @@
 #include "analysis/predict/hypercube.h"
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/random.h"
-
-#define WB_LOG_DOMAIN "bands"
 
 /* A run with the stratum that it is to have in a dimension. */
 struct place {
@@ -58,14 +56,14 @@ static void rank(int n, struct place *places, double *strata)
         strata[places[i].run] = i - 0.5 * (n - 1);
 }
 
-enum wb_status wb_hypercube_fill(uint64_t seed, int n, int dimensions, double *points)
+void wb_hypercube_fill(uint64_t seed, int n, int dimensions, double *points)
 {
     const double inside = 1e-9; /* of a stratum: 0 and 1 have no normal quantile */
     const size_t size = (size_t)n;
-    double *const strata = calloc(size * (size_t)dimensions, sizeof *strata);
-    struct place *const places = calloc(size, sizeof *places);
+    double *const strata = wb_memory_new(size * (size_t)dimensions, sizeof *strata);
+    struct place *const places = wb_memory_new(size, sizeof *places);
 
-    for (int d = 0; strata && places && d < dimensions; d++) {
+    for (int d = 0; d < dimensions; d++) {
         double *const own = strata + (size_t)d * size;
         shuffle(seed, d, n, own);
         for (int k = 0; k < d; k++)
@@ -78,10 +76,6 @@ enum wb_status wb_hypercube_fill(uint64_t seed, int n, int dimensions, double *p
                 (own[i] + 0.5 * (n - 1) + within) / n;
         }
     }
-    const bool has_memory = strata && places;
     free(strata);
     free(places);
-    return has_memory
-               ? WB_OK
-               : wb_fail(WB_ERR_MEMORY, "no memory for %d points in %d dimensions", n, dimensions);
 }

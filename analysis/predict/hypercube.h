@@ -10,11 +10,8 @@
 
 #include <stdint.h>
 
-#include "base/status.h"
-
 /* Fills points (n x dimensions, fewer than n), each within (0, 1): the same numbers for the same
- * seed. Fails without memory. */
-WB_MUST_CHECK enum wb_status wb_hypercube_fill(uint64_t seed, int n, int dimensions,
-                                               double *points);
+ * seed. */
+void wb_hypercube_fill(uint64_t seed, int n, int dimensions, double *points);
 
 #endif

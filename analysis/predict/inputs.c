@@ -7,6 +7,7 @@
 
 #include "analysis/calibration/properties/properties.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "bands"
@@ -69,9 +70,7 @@ static enum wb_status take_properties(struct wb_inputs_wires *wires,
                                       const struct wb_bundle_spread *spread,
                                       const struct wb_wire *wire, const char *path)
 {
-    struct wb_properties *const p = malloc(sizeof *p);
-    if (!p)
-        return wb_fail(WB_ERR_MEMORY, "no memory for properties");
+    struct wb_properties *const p = wb_memory_new(1, sizeof *p);
     enum wb_status status = wb_properties_read(spread->properties, p);
     if (status == WB_OK)
         status = check_properties(p, spread, wire, path);

@@ -63,16 +63,13 @@ static void take_ranks(int n, const double *values, int stride, struct pair *pai
     }
 }
 
-static enum wb_status rank_all(struct work *work)
+static void rank_all(struct work *work)
 {
     const struct wb_ranking_data *const d = work->data;
     struct pair *const pairs = wb_memory_take(&work->memory, (size_t)d->n, sizeof *pairs);
-    if (work->memory.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the ranks of %d runs", d->n);
     for (int c = 0; c < d->n_columns; c++)
         take_ranks(d->n, d->columns + c, d->n_columns, pairs, work->ranks + c, d->n_columns + 1);
     take_ranks(d->n, d->result, 1, pairs, work->ranks + d->n_columns, d->n_columns + 1);
-    return WB_OK;
 }
 
 /* --- regression --- */
@@ -213,20 +210,16 @@ enum wb_status wb_ranking_compute(struct wb_ranking *ranking, const struct wb_ra
                        "most %d, and at least four runs more than inputs",
                        data->n_columns, data->n_groups, data->n, WB_RANKING_COLUMNS,
                        WB_RANKING_GROUPS);
-    struct work *const work = calloc(1, sizeof *work);
-    if (!work)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a ranking");
+    struct work *const work = wb_memory_new(1, sizeof *work);
     struct wb_memory *const m = &work->memory;
     work->data = data;
     work->ranks =
         wb_memory_take(m, (size_t)data->n * (size_t)(data->n_columns + 1), sizeof(double));
     work->order = wb_memory_take(m, (size_t)data->n, sizeof(int));
     work->sampled = wb_memory_take(m, (size_t)(data->n_groups + 1) * RESAMPLES, sizeof(double));
-    const enum wb_status status =
-        m->failed ? wb_fail(WB_ERR_MEMORY, "no memory for a ranking") : rank_all(work);
-    if (status == WB_OK)
-        rank(work, ranking);
+    rank_all(work);
+    rank(work, ranking);
     wb_memory_release(m);
     free(work);
-    return status;
+    return WB_OK;
 }

@@ -39,7 +39,7 @@ struct wb_ranking_data {
     uint64_t seed;         /* of the resampling */
 };
 
-/* Fails without memory, and where there are too few runs or too many inputs. */
+/* Fails where there are too few runs or too many inputs. */
 WB_MUST_CHECK enum wb_status wb_ranking_compute(struct wb_ranking *ranking,
                                                 const struct wb_ranking_data *data);
 

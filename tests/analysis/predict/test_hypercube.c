@@ -14,7 +14,7 @@ static double points[N * D], others[N * D];
 static void each_stratum_of_each_dimension_has_one_point(void **state)
 {
     (void)state;
-    assert_int_equal(wb_hypercube_fill(7, N, D, points), WB_OK);
+    wb_hypercube_fill(7, N, D, points);
     for (int d = 0; d < D; d++) {
         bool is_taken[N] = {false};
         for (int i = 0; i < N; i++) {
@@ -32,7 +32,7 @@ static void points_lie_anywhere_in_their_stratum(void **state)
 {
     (void)state;
     double square = 0.0;
-    assert_int_equal(wb_hypercube_fill(7, N, D, points), WB_OK);
+    wb_hypercube_fill(7, N, D, points);
     for (int i = 0; i < N * D; i++) {
         const double off = points[i] * N - floor(points[i] * N) - 0.5;
         square += off * off / (N * D);
@@ -45,7 +45,7 @@ static void dimensions_are_not_correlated(void **state)
 {
     (void)state;
     double largest = 0.0;
-    assert_int_equal(wb_hypercube_fill(3, N, D, points), WB_OK);
+    wb_hypercube_fill(3, N, D, points);
     for (int a = 0; a < D; a++)
         for (int b = 0; b < a; b++) {
             double sum = 0.0;
@@ -60,10 +60,10 @@ static void dimensions_are_not_correlated(void **state)
 static void the_same_seed_gives_the_same_points_and_another_one_others(void **state)
 {
     (void)state;
-    assert_int_equal(wb_hypercube_fill(3, N, D, points), WB_OK);
-    assert_int_equal(wb_hypercube_fill(3, N, D, others), WB_OK);
+    wb_hypercube_fill(3, N, D, points);
+    wb_hypercube_fill(3, N, D, others);
     assert_memory_equal(points, others, sizeof points);
-    assert_int_equal(wb_hypercube_fill(4, N, D, others), WB_OK);
+    wb_hypercube_fill(4, N, D, others);
     int same = 0;
     for (int i = 0; i < N * D; i++)
         same += (int)(points[i] * N) == (int)(others[i] * N);
