@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/program.h"
 #include "base/text.h"
 
@@ -188,9 +189,7 @@ static enum wb_status submit(const struct wb_jobs_plan *plan, const char *folder
                                       {"--time", o->time},
                                       {"--mem", o->memory}};
     const size_t n_options = sizeof options / sizeof options[0];
-    const char **const words = calloc(2 * n_options + (size_t)o->n_extra + 5, sizeof *words);
-    if (!words)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
+    const char **const words = wb_memory_new(2 * n_options + (size_t)o->n_extra + 5, sizeof *words);
     size_t k = 0;
     words[k++] = "sbatch";
     words[k++] = "--parsable";

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/timing.h"
 #include "base/units.h"
 
@@ -65,10 +66,8 @@ static int by_output(const void *a, const void *b)
 static enum wb_status check_unique(const struct wb_jobs_plan *plan)
 {
     const size_t n = (size_t)plan->n;
-    const struct wb_jobs_plan_item **const sorted = calloc(n + 1, sizeof(void *));
+    const struct wb_jobs_plan_item **const sorted = wb_memory_new(n, sizeof(void *));
     enum wb_status status = WB_OK;
-    if (!sorted)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu runs", n);
     for (size_t i = 0; i < n; i++)
         sorted[i] = &plan->items[i];
     qsort(sorted, n, sizeof(void *), by_name);
@@ -164,9 +163,7 @@ enum wb_status wb_jobs_plan_init(struct wb_jobs_plan *plan, const struct wb_job 
     };
     if (!options->folder || n < 0)
         return wb_fail(WB_ERR_ARGUMENT, "runs need a folder for their logs");
-    plan->items = calloc((size_t)n + 1, sizeof *plan->items);
-    if (!plan->items)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d runs", n);
+    plan->items = wb_memory_new((size_t)n, sizeof *plan->items);
     const enum wb_status status = fill(plan, jobs);
     if (status != WB_OK)
         wb_jobs_plan_release(plan);

@@ -9,6 +9,7 @@
 #include "analysis/jobs/jobs_array.h"
 #include "analysis/jobs/jobs_queue.h"
 #include "base/interrupt.h"
+#include "base/memory.h"
 #include "base/timing.h"
 #include "base/units.h"
 
@@ -94,11 +95,9 @@ enum wb_status wb_jobs_slurm_find_queued(struct wb_jobs_plan *plan)
 
 static enum wb_status submit_missing(const struct wb_jobs_plan *plan)
 {
-    struct wb_jobs_plan_item **const missing = calloc((size_t)plan->n + 1, sizeof(void *));
+    struct wb_jobs_plan_item **const missing = wb_memory_new((size_t)plan->n, sizeof(void *));
     enum wb_status status = WB_OK;
     int n = 0;
-    if (!missing)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
     for (int i = 0; i < plan->n; i++)
         if (plan->items[i].state == WB_JOBS_PLAN_TODO && !plan->items[i].queued)
             missing[n++] = &plan->items[i];
