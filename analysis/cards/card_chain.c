@@ -8,6 +8,8 @@
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_vector.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "card"
 
 struct wb_card_chain_segment wb_card_chain_segment(const struct wb_card_chain *chain, int i)
@@ -45,20 +47,18 @@ static enum wb_status solve(const struct wb_card_chain *chain, bool is_torsion, 
 {
     const size_t n = (size_t)chain->n;
     const double h = chain->length / chain->n;
-    gsl_matrix *const mass = gsl_matrix_alloc(n, n), *const stiffness = gsl_matrix_alloc(n, n);
-    gsl_vector *const values = gsl_vector_alloc(n);
-    gsl_eigen_gensymm_workspace *const work = gsl_eigen_gensymm_alloc(n);
-    int failed = !mass || !stiffness || !values || !work;
+    gsl_matrix *const mass = wb_memory_need(gsl_matrix_alloc(n, n));
+    gsl_matrix *const stiffness = wb_memory_need(gsl_matrix_alloc(n, n));
+    gsl_vector *const values = wb_memory_need(gsl_vector_alloc(n));
+    gsl_eigen_gensymm_workspace *const work = wb_memory_need(gsl_eigen_gensymm_alloc(n));
+    fill_mass(chain, is_torsion, mass);
+    gsl_matrix_set_identity(stiffness);
+    gsl_matrix_scale(stiffness, (is_torsion ? chain->torsion : chain->bending) / h);
+    bool failed = gsl_eigen_gensymm(stiffness, mass, values, work) != GSL_SUCCESS;
     if (!failed) {
-        fill_mass(chain, is_torsion, mass);
-        gsl_matrix_set_identity(stiffness);
-        gsl_matrix_scale(stiffness, (is_torsion ? chain->torsion : chain->bending) / h);
-        failed = gsl_eigen_gensymm(stiffness, mass, values, work) != GSL_SUCCESS;
-        if (!failed) {
-            *lowest = sqrt(gsl_vector_min(values));
-            *highest = sqrt(gsl_vector_max(values));
-            failed = !(isfinite(*lowest) && *lowest > 0.0 && isfinite(*highest));
-        }
+        *lowest = sqrt(gsl_vector_min(values));
+        *highest = sqrt(gsl_vector_max(values));
+        failed = !(isfinite(*lowest) && *lowest > 0.0 && isfinite(*highest));
     }
     gsl_matrix_free(mass);
     gsl_matrix_free(stiffness);

@@ -41,7 +41,7 @@ struct wb_card_chain_segment wb_card_chain_segment(const struct wb_card_chain *c
 struct wb_card_chain_modes {
     double lowest_bending, highest_bending, highest_torsion;
 };
-/* Fails without memory, or for numbers that make no chain (WB_ERR_ARGUMENT). */
+/* WB_ERR_ARGUMENT for numbers that make no chain. */
 WB_MUST_CHECK enum wb_status wb_card_chain_modes(const struct wb_card_chain *chain,
                                                  struct wb_card_chain_modes *modes);
 
