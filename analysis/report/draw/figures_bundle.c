@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/report/pdf.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/swept/swept_section.h"
 
@@ -379,9 +380,7 @@ enum wb_status wb_figures_bundle_draw(struct wb_figure **figure, const char *fig
     drawing.point = 2.0 * drawing.reach / (panel - 2.0 * margin);
     const double height = panel - margin + above + below + footer;
 
-    struct pen *const pen = calloc(1, sizeof *pen);
-    if (!pen)
-        return wb_fail(WB_ERR_MEMORY, "no memory to draw bundles");
+    struct pen *const pen = wb_memory_new(1, sizeof *pen);
     enum wb_status status = wb_figure_create(figure, figure_name, figure_width(n), height);
     if (status == WB_OK)
         status = draw_panels(*figure, pen, &drawing, n, models);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/plot/view.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "base/vec3.h"
 
@@ -119,24 +120,20 @@ static double length_of(const struct wb_view_sheet *sheet)
     return length;
 }
 
-static enum wb_status make_drawing(struct drawing *d, const struct wb_surface *surface,
-                                   double most_stress)
+static void make_drawing(struct drawing *d, const struct wb_surface *surface, double most_stress)
 {
     const size_t nodes = (size_t)count_nodes(surface);
 
     *d = (struct drawing){.surface = surface};
-    d->sheets = calloc((size_t)surface->n, sizeof *d->sheets);
-    d->position = calloc(nodes, sizeof *d->position);
-    d->value = calloc(nodes, sizeof *d->value);
-    if (!d->sheets || !d->position || !d->value)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing a bundle");
+    d->sheets = wb_memory_new((size_t)surface->n, sizeof *d->sheets);
+    d->position = wb_memory_new(nodes, sizeof *d->position);
+    d->value = wb_memory_new(nodes, sizeof *d->value);
     make_sheets(d);
     if (!(most_stress > 0.0))
         most_stress = WB_MPA * round_up(wb_figures_surface_most_stress(surface) / WB_MPA);
     d->colours = (struct wb_figure_colours){
         .map = WB_PALETTE_SEQUENTIAL, .low = 0.0, .high = most_stress / WB_MPA};
     d->length = length_of(&d->sheets[0]);
-    return WB_OK;
 }
 
 static void release_drawing(struct drawing *d)
@@ -208,10 +205,8 @@ static enum wb_status add_picture(struct wb_panel *panel, const struct drawing *
         .width = across,
         .height = down,
     };
-    uint32_t *pixels = calloc((size_t)across * (size_t)down, sizeof *pixels);
+    uint32_t *const pixels = wb_memory_new((size_t)across * (size_t)down, sizeof *pixels);
 
-    if (!pixels)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing a bundle");
     memcpy(scene.low, window->low, sizeof scene.low);
     memcpy(scene.high, window->high, sizeof scene.high);
     const enum wb_status status = wb_view_draw(&scene, pixels);
@@ -316,9 +311,8 @@ enum wb_status wb_figures_surface_draw(struct wb_figure **figure, const char *fi
     *figure = NULL;
     if (surface->n == 0)
         return wb_fail(WB_ERR_ARGUMENT, "figure '%s': there is no surface", figure_name);
-    enum wb_status status = make_drawing(&d, surface, s->most_stress);
-    if (status == WB_OK)
-        status = wb_figure_create(figure, figure_name, width, height);
+    make_drawing(&d, surface, s->most_stress);
+    enum wb_status status = wb_figure_create(figure, figure_name, width, height);
     if (status == WB_OK)
         status = add_whole(*figure, &d, whole, whole / height, s->title);
     if (status == WB_OK)
