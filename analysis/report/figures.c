@@ -5,9 +5,8 @@
 #include <string.h>
 
 #include "analysis/report/pdf.h"
+#include "base/memory.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "report"
 
 const struct wb_figure_style wb_figures_reference_style = {.colour = WB_PALETTE_PALE(0.75),
                                                            .width = 3.6};
@@ -55,9 +54,7 @@ enum wb_status wb_figures_create(struct wb_figures *figures, const struct wb_fig
     for (size_t i = 0; i < n_rows; i++)
         most += (size_t)count_of(&rows[i], results);
     *figures = (struct wb_figures){.n = 0};
-    figures->items = calloc(most + 1, sizeof *figures->items);
-    if (!figures->items)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
+    figures->items = wb_memory_new(most, sizeof *figures->items);
     const enum wb_status status = draw_all(figures, rows, n_rows, results);
     if (status != WB_OK)
         wb_figures_release(figures);
@@ -128,48 +125,41 @@ void wb_figures_set_title(struct wb_panel *panel, const char *plain)
 
 double *wb_figures_scaled(const double *values, int n, double unit)
 {
-    double *const scaled = malloc(((size_t)n + 1) * sizeof *scaled);
-    for (int i = 0; scaled && i < n; i++)
+    double *const scaled = wb_memory_new((size_t)n, sizeof *scaled);
+    for (int i = 0; i < n; i++)
         scaled[i] = values[i] / unit;
     return scaled;
 }
 
 double *wb_figures_deflections(const struct wb_curve *curve)
 {
-    double *const mm = malloc(((size_t)curve->n + 1) * sizeof *mm);
-    for (int i = 0; mm && i < curve->n; i++)
+    double *const mm = wb_memory_new((size_t)curve->n, sizeof *mm);
+    for (int i = 0; i < curve->n; i++)
         mm[i] = i * curve->step / WB_MM;
     return mm;
 }
 
-enum wb_status wb_figures_add_curve(struct wb_panel *panel, const char *label,
-                                    const struct wb_curve *curve, const double *values, double unit,
-                                    const struct wb_figure_style *style)
+void wb_figures_add_curve(struct wb_panel *panel, const char *label, const struct wb_curve *curve,
+                          const double *values, double unit, const struct wb_figure_style *style)
 {
     double *const x = wb_figures_deflections(curve);
     double *const y = wb_figures_scaled(values, curve->n, unit);
-    const bool there = x && y;
-    if (there)
-        wb_figure_add_line(panel, label, (size_t)curve->n, x, y, style);
+    wb_figure_add_line(panel, label, (size_t)curve->n, x, y, style);
     free(x);
     free(y);
-    return there ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
 }
 
-enum wb_status wb_figures_add_range(struct wb_panel *panel, const char *label,
-                                    const struct wb_curve *curve, struct wb_colour colour)
+void wb_figures_add_range(struct wb_panel *panel, const char *label, const struct wb_curve *curve,
+                          struct wb_colour colour)
 {
     if (curve->n_samples < 2)
-        return WB_OK;
+        return;
     double *const x = wb_figures_deflections(curve);
     double *const low = wb_figures_scaled(curve->low, curve->n, WB_MN);
     double *const high = wb_figures_scaled(curve->high, curve->n, WB_MN);
     const double *const edges[2] = {low, high};
-    const bool there = x && low && high;
-    if (there)
-        wb_figure_add_band(panel, label, (size_t)curve->n, x, edges, wb_palette_fade(colour, 0.22));
+    wb_figure_add_band(panel, label, (size_t)curve->n, x, edges, wb_palette_fade(colour, 0.22));
     free(x);
     free(low);
     free(high);
-    return there ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
 }

@@ -75,17 +75,14 @@ WB_MUST_CHECK enum wb_status wb_figures_start_simulation(struct wb_figure **figu
 /* A title of plain text. */
 void wb_figures_set_title(struct wb_panel *panel, const char *plain);
 
-/* Copies in another unit; the deflections of a curve in mm. NULL when out of memory. */
+/* Copies in another unit; the deflections of a curve in mm; for free(). */
 double *wb_figures_scaled(const double *values, int n, double unit);
 double *wb_figures_deflections(const struct wb_curve *curve);
 
 /* A line of `values` on the curve's deflections, and the range of its samples. */
-WB_MUST_CHECK enum wb_status wb_figures_add_curve(struct wb_panel *panel, const char *label,
-                                                  const struct wb_curve *curve,
-                                                  const double *values, double unit,
-                                                  const struct wb_figure_style *style);
-WB_MUST_CHECK enum wb_status wb_figures_add_range(struct wb_panel *panel, const char *label,
-                                                  const struct wb_curve *curve,
-                                                  struct wb_colour colour);
+void wb_figures_add_curve(struct wb_panel *panel, const char *label, const struct wb_curve *curve,
+                          const double *values, double unit, const struct wb_figure_style *style);
+void wb_figures_add_range(struct wb_panel *panel, const char *label, const struct wb_curve *curve,
+                          struct wb_colour colour);
 
 #endif

@@ -7,9 +7,8 @@
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
+#include "base/memory.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "report"
 
 /* N mm2 in one N m2; mJ in one J. */
 static const double N_MM2 = 1e-6, MILLI = 1e-3;
@@ -34,15 +33,10 @@ static const char *measured_of(const struct wb_figures_item *item)
     return wb_recordings_draw_measured(item->results);
 }
 
-/* Columns of numbers to draw; NULL when out of memory. */
+/* Columns of numbers to draw. */
 static double *columns_of(int n_columns, int n)
 {
-    return calloc((size_t)n_columns * ((size_t)n + 1), sizeof(double));
-}
-
-static enum wb_status no_memory(void)
-{
-    return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
+    return wb_memory_new((size_t)n_columns * (size_t)n, sizeof(double));
 }
 
 /* --- both ways --- */
@@ -76,15 +70,12 @@ static void title_sample(struct wb_panel *panel, const struct wb_cycle_member *m
     wb_figure_set_title(panel, title);
 }
 
-static enum wb_status add_ways(struct wb_panel *panel, const struct wb_cycle_member *member,
-                               const struct wb_cycle_fit *fit, struct wb_colour colour,
-                               bool has_legend)
+static void add_ways(struct wb_panel *panel, const struct wb_cycle_member *member,
+                     const struct wb_cycle_fit *fit, struct wb_colour colour, bool has_legend)
 {
     const int most = member->data.n_points;
     double *const x = columns_of(3, most), *const measured = x + most,
                   *const computed = x + 2 * most;
-    if (!x)
-        return no_memory();
     const struct wb_figure_style points[2] = {
         {.colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 3.2},
         {.colour = colour, .marker = WB_MARKER_RING, .marker_size = 3.6}};
@@ -106,7 +97,6 @@ static enum wb_status add_ways(struct wb_panel *panel, const struct wb_cycle_mem
                            &points[k]);
     }
     free(x);
-    return WB_OK;
 }
 
 enum wb_status wb_recordings_cycle_figures_ways(struct wb_figures_item *item)
@@ -129,8 +119,8 @@ enum wb_status wb_recordings_cycle_figures_ways(struct wb_figures_item *item)
         struct wb_panel *const panel = wb_figure_add_panel(item->figure);
         wb_figure_set_axes(panel, deflection_axis, i == 0 ? "Tension (mN)" : "");
         title_sample(panel, member);
-        WB_TRY(add_ways(panel, member, &member->answers[c->chosen].fit,
-                        wb_palette_wire(item->index), i == 0));
+        add_ways(panel, member, &member->answers[c->chosen].fit, wb_palette_wire(item->index),
+                 i == 0);
     }
     return WB_OK;
 }
@@ -144,15 +134,13 @@ static double outlier_limit(const struct wb_cycle_member *member, const struct w
     return 5.0 * fmax(noise, fit->misfit * member->data.max_force);
 }
 
-static enum wb_status add_residuals(struct wb_panel *panel, const struct wb_cycle_member *member,
-                                    const struct wb_cycle_fit *fit, struct wb_colour colour)
+static void add_residuals(struct wb_panel *panel, const struct wb_cycle_member *member,
+                          const struct wb_cycle_fit *fit, struct wb_colour colour)
 {
     const int most = member->data.n_points;
     double *const x = columns_of(5, most), *const measured = x + most,
                   *const computed = x + 2 * most;
     double *const off_x = x + 3 * most, *const off = x + 4 * most;
-    if (!x)
-        return no_memory();
     const struct wb_figure_style ways[2] = {
         {.colour = colour, .width = 0.9, .marker = WB_MARKER_CIRCLE, .marker_size = 2.2},
         {.colour = colour, .width = 0.7, .marker = WB_MARKER_RING, .marker_size = 2.6}};
@@ -177,7 +165,6 @@ static enum wb_status add_residuals(struct wb_panel *panel, const struct wb_cycl
     if (n_off > 0)
         wb_figure_add_line(panel, "outliers", (size_t)n_off, off_x, off, &outliers);
     free(x);
-    return WB_OK;
 }
 
 /* The largest residual of any sample, % of F_max: all panels have the same scale. */
@@ -220,8 +207,7 @@ enum wb_status wb_recordings_cycle_figures_residuals(struct wb_figures_item *ite
         struct wb_panel *const panel = wb_figure_add_panel(item->figure);
         wb_figure_set_axes(panel, deflection_axis, i == 0 ? "% of <i>F</i><sub>max</sub>" : "");
         wb_figure_set_y_range(panel, -end, end);
-        WB_TRY(add_residuals(panel, member, &member->answers[c->chosen].fit,
-                             wb_palette_wire(item->index)));
+        add_residuals(panel, member, &member->answers[c->chosen].fit, wb_palette_wire(item->index));
     }
     return WB_OK;
 }
@@ -246,13 +232,11 @@ static void start_compared(struct compared *to, struct wb_figure *figure, const 
 
 /* A way or a cycle: `label` of the measured points and of their error, `line` (NULL: none) of what
  * is computed. Odd ones have rings and broken lines. x in mm, forces in mN. */
-static enum wb_status add_compared(const struct compared *to, const char *label, const char *line,
-                                   int n, const double *x, const double *measured,
-                                   const double *computed, struct wb_colour colour, bool is_odd)
+static void add_compared(const struct compared *to, const char *label, const char *line, int n,
+                         const double *x, const double *measured, const double *computed,
+                         struct wb_colour colour, bool is_odd)
 {
     double *const error = columns_of(1, n);
-    if (!error)
-        return no_memory();
     for (int i = 0; i < n; i++)
         error[i] = 100.0 * WB_MN * (computed[i] - measured[i]) / to->max_force;
     const struct wb_figure_style points = {
@@ -264,20 +248,16 @@ static enum wb_status add_compared(const struct compared *to, const char *label,
     wb_figure_add_line(to->forces, line, (size_t)n, x, computed, &ink);
     wb_figure_add_line(to->errors, label, (size_t)n, x, error, &thin);
     free(error);
-    return WB_OK;
 }
 
-static enum wb_status add_later(struct wb_figure *figure, const struct wb_cycle_later *later,
-                                double max_force)
+static void add_later(struct wb_figure *figure, const struct wb_cycle_later *later,
+                      double max_force)
 {
     double *const x = columns_of(3, later->n), *const measured = x + later->n;
     double *const computed = x + 2 * later->n;
-    enum wb_status status = WB_OK;
     struct compared to;
-    if (!x)
-        return no_memory();
     start_compared(&to, figure, "Tension (mN)", max_force);
-    for (int cycle = 2; status == WB_OK && cycle <= later->n_cycles; cycle++) {
+    for (int cycle = 2; cycle <= later->n_cycles; cycle++) {
         int n = 0;
         for (int i = 0; i < later->n; i++) {
             const struct wb_cycle_later_point *const p = &later->points[i];
@@ -289,12 +269,10 @@ static enum wb_status add_later(struct wb_figure *figure, const struct wb_cycle_
         }
         char label[40];
         snprintf(label, sizeof label, "cycle %d", cycle);
-        status =
-            add_compared(&to, label, cycle == later->n_cycles ? "predicted" : NULL, n, x, measured,
-                         computed, wb_palette_sequence(cycle - 2, later->n_cycles), cycle % 2 != 0);
+        add_compared(&to, label, cycle == later->n_cycles ? "predicted" : NULL, n, x, measured,
+                     computed, wb_palette_sequence(cycle - 2, later->n_cycles), cycle % 2 != 0);
     }
     free(x);
-    return status;
 }
 
 static double max_force_of(const struct wb_cycle_calibration *c, int sample)
@@ -323,14 +301,14 @@ enum wb_status wb_recordings_cycle_figures_later(struct wb_figures_item *item)
                    "measured, %.2f mJ predicted. Right: computed less measured.",
                    later->sample, measured_of(item), 100.0 * later->rms,
                    later->measured_energy / MILLI, later->computed_energy / MILLI);
-    return add_later(item->figure, later, max_force_of(&cycle->calibration, later->sample));
+    add_later(item->figure, later, max_force_of(&cycle->calibration, later->sample));
+    return WB_OK;
 }
 
 /* --- the other length --- */
 
-static enum wb_status add_prediction(struct wb_figure *figure,
-                                     const struct wb_validate_result *result,
-                                     struct wb_colour colour)
+static void add_prediction(struct wb_figure *figure, const struct wb_validate_result *result,
+                           struct wb_colour colour)
 {
     const struct wb_curve *const curve = &result->curve;
     const struct wb_validate_cycles *const back = &result->cycles;
@@ -339,8 +317,6 @@ static enum wb_status add_prediction(struct wb_figure *figure,
                   *const computed = x + 2 * most;
     struct compared to;
     int n = 0;
-    if (!x)
-        return no_memory();
     start_compared(&to, figure, "Force <i>F</i> (mN)", curve->max_force);
     /* Points as far apart as those of the way back, and no others than the beam reached. */
     const int every = (int)fmax(1.0, round(WB_MM / curve->step));
@@ -349,18 +325,16 @@ static enum wb_status add_prediction(struct wb_figure *figure,
         measured[n] = curve->force[i] / WB_MN;
         computed[n++] = result->elastoplastic.force[i] / WB_MN;
     }
-    enum wb_status status = add_compared(&to, "loading", back->n > 0 ? NULL : "predicted", n, x,
-                                         measured, computed, colour, false);
+    add_compared(&to, "loading", back->n > 0 ? NULL : "predicted", n, x, measured, computed, colour,
+                 false);
     for (int i = 0; i < back->n; i++) {
         x[i] = back->deflection[i] / WB_MM;
         measured[i] = back->measured[i] / WB_MN;
         computed[i] = back->computed[i] / WB_MN;
     }
-    if (status == WB_OK && back->n > 0)
-        status = add_compared(&to, "unloading", "predicted", back->n, x, measured, computed, colour,
-                              true);
+    if (back->n > 0)
+        add_compared(&to, "unloading", "predicted", back->n, x, measured, computed, colour, true);
     free(x);
-    return status;
 }
 
 enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *item)
@@ -385,7 +359,8 @@ enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *it
         wb_text_append(&item->caption, ", %.2f %% on unloading", 100.0 * result->cycles.rms);
     wb_text_append(&item->caption,
                    ". Forces less that at zero deflection; right: computed less measured.");
-    return add_prediction(item->figure, result, wb_palette_wire(item->index));
+    add_prediction(item->figure, result, wb_palette_wire(item->index));
+    return WB_OK;
 }
 
 /* --- EI of the samples --- */
@@ -535,15 +510,13 @@ static void add_cloud_band(struct wb_panel *panel, const struct wb_recordings_cy
 
 /* The measured cloud: moments from shapes and tension alone, loading only, from where they mean
  * something. */
-static enum wb_status add_cloud(struct wb_panel *panel, const struct wb_recordings_cycle *cycle)
+static void add_cloud(struct wb_panel *panel, const struct wb_recordings_cycle *cycle)
 {
     bool is_named = false;
     for (int i = 0; i < cycle->calibration.n_members; i++) {
         const struct wb_moment_cloud *const cloud = &cycle->clouds[i];
         double *const x = columns_of(2, cloud->n), *const y = x + cloud->n;
         int n = 0;
-        if (!x)
-            return no_memory();
         for (int k = 0; k < cloud->n; k++) {
             const struct wb_moment_point *const point = &cloud->points[k];
             if (point->is_unloading || point->is_band)
@@ -560,13 +533,12 @@ static enum wb_status add_cloud(struct wb_panel *panel, const struct wb_recordin
         is_named |= n > 0;
         free(x);
     }
-    return WB_OK;
 }
 
 /* The law's line, and its band where there is one. A law that does not follow the data has a broken
  * line and no band: the specimens' scatter is not what it is uncertain by. */
-static enum wb_status add_law(struct wb_panel *panel, const char *label, const char *band_label,
-                              const struct wb_recordings_cycle *cycle, struct wb_colour colour)
+static void add_law(struct wb_panel *panel, const char *label, const char *band_label,
+                    const struct wb_recordings_cycle *cycle, struct wb_colour colour)
 {
     const struct wb_recordings_cycle_curve *const curve = &cycle->curve;
     const bool is_refuted = wb_recordings_cycle_is_refuted(cycle);
@@ -575,18 +547,15 @@ static enum wb_status add_law(struct wb_panel *panel, const char *label, const c
     double *const low = wb_figures_scaled(curve->low, n, WB_NMM);
     double *const high = wb_figures_scaled(curve->high, n, WB_NMM);
     const double *const edges[2] = {low, high};
-    const bool has_memory = moment && low && high;
     const struct wb_figure_style line = {
         .colour = colour, .width = 1.6, .dash = is_refuted ? WB_DASH_DASHED : WB_DASH_SOLID};
-    if (has_memory && isfinite(curve->low[n - 1]) && !is_refuted)
+    if (isfinite(curve->low[n - 1]) && !is_refuted)
         wb_figure_add_band(panel, band_label, (size_t)n, curve->curvature, edges,
                            wb_palette_fade(colour, 0.22));
-    if (has_memory)
-        wb_figure_add_line(panel, label, (size_t)n, curve->curvature, moment, &line);
+    wb_figure_add_line(panel, label, (size_t)n, curve->curvature, moment, &line);
     free(moment);
     free(low);
     free(high);
-    return has_memory ? WB_OK : no_memory();
 }
 
 static const char broken_line[] =
@@ -628,8 +597,8 @@ enum wb_status wb_recordings_cycle_figures_moments(struct wb_figures_item *item)
         wb_text_append(&item->caption, "%s", broken_line);
     struct wb_panel *const panel = add_moment_panel(item->figure);
     add_cloud_band(panel, cycle);
-    WB_TRY(add_cloud(panel, cycle));
-    WB_TRY(add_law(panel, "law", "95 %", cycle, wb_palette_wire(item->index)));
+    add_cloud(panel, cycle);
+    add_law(panel, "law", "95 %", cycle, wb_palette_wire(item->index));
     add_rest(panel, "let go", cycle, wb_palette_ink());
     return WB_OK;
 }
@@ -654,7 +623,7 @@ enum wb_status wb_recordings_cycle_figures_all_moments(struct wb_figures_item *i
             panel = add_moment_panel(item->figure);
         }
         wb_pages_escape(label, sizeof label, wire->wanted->label);
-        WB_TRY(add_law(panel, label, NULL, cycle, wb_palette_wire(i)));
+        add_law(panel, label, NULL, cycle, wb_palette_wire(i));
         add_rest(panel, NULL, cycle, wb_palette_wire(i));
         any_refuted |= wb_recordings_cycle_is_refuted(cycle);
     }
@@ -702,14 +671,9 @@ static enum wb_status add_region(struct wb_panel *panel, const struct wb_cycle_v
             faces[i].value[k] = -faces[i].value[k];
     }
     WB_TRY(wb_contour_create(&contour, n_faces, faces, &levels));
-    enum wb_status status = WB_OK;
-    for (int i = 0; i < contour.n_loops && status == WB_OK; i++) {
+    for (int i = 0; i < contour.n_loops; i++) {
         const struct wb_contour_loop *const loop = &contour.loops[i];
         double *const x = columns_of(2, loop->n + 1), *const y = x + loop->n + 1;
-        if (!x) {
-            status = no_memory();
-            break;
-        }
         for (int k = 0; k <= loop->n; k++) {
             x[k] = contour.points[loop->first + k % loop->n][0];
             y[k] = contour.points[loop->first + k % loop->n][1];
@@ -723,7 +687,7 @@ static enum wb_status add_region(struct wb_panel *panel, const struct wb_cycle_v
         free(x);
     }
     wb_contour_release(&contour);
-    return status;
+    return WB_OK;
 }
 
 /* Whether a value lies so near to a region that the region can be seen beside it. */

@@ -3,15 +3,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/report/bench/recordings_cycle_figures.h"
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
+#include "base/memory.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "report"
 
 /* --- what they share --- */
 
@@ -104,17 +102,11 @@ static int n_cycles(const struct wb_dataset *dataset)
 
 /* Adds the rows of one cycle (only its loading, or all of it but slack) as a line. Below zero
  * deflection, where no cycle is, the tip lies on its rest. */
-static enum wb_status add_rows(struct wb_panel *panel, const char *label,
-                               const struct wb_dataset *dataset, int cycle, bool loading_only,
-                               const struct wb_figure_style *style)
+static void add_rows(struct wb_panel *panel, const char *label, const struct wb_dataset *dataset,
+                     int cycle, bool loading_only, const struct wb_figure_style *style)
 {
-    double *const x = malloc((dataset->n_rows + 1) * sizeof *x);
-    double *const y = malloc((dataset->n_rows + 1) * sizeof *y);
-    if (!x || !y) {
-        free(x);
-        free(y);
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
-    }
+    double *const x = wb_memory_new(dataset->n_rows, sizeof *x);
+    double *const y = wb_memory_new(dataset->n_rows, sizeof *y);
     const double longest = wb_dataset_gap(dataset);
     size_t n = 0;
     double last = (double)NAN;
@@ -135,7 +127,6 @@ static enum wb_status add_rows(struct wb_panel *panel, const char *label,
         wb_figure_add_line(panel, label, n, x, y, style);
     free(x);
     free(y);
-    return WB_OK;
 }
 
 /* --- the paper's Fig. 9 --- */
@@ -183,7 +174,7 @@ static enum wb_status draw_cycles(struct wb_figures_item *item)
         const struct wb_figure_style style = {
             .colour = wb_palette_sequence(most - cycle, most),
             .width = most > 1 ? 2.8 - 2.2 * (cycle - 1) / (most - 1) : 1.0};
-        WB_TRY(add_rows(panel, label, &best->dataset, cycle, false, &style));
+        add_rows(panel, label, &best->dataset, cycle, false, &style);
     }
     return WB_OK;
 }
@@ -212,7 +203,7 @@ static enum wb_status draw_samples(struct wb_figures_item *item)
     struct wb_panel *const panel = add_force_panel(item, curve->max_force);
     char label[64];
     snprintf(label, sizeof label, "range of %d", curve->n_samples);
-    WB_TRY(wb_figures_add_range(panel, label, curve, colour));
+    wb_figures_add_range(panel, label, curve, colour);
     const struct wb_figure_style mean = {.colour = colour, .width = 1.6};
     for (int i = 0; i < tests->n; i++) {
         const struct wb_dataset *const dataset = &tests->items[i].dataset;
@@ -222,9 +213,10 @@ static enum wb_status draw_samples(struct wb_figures_item *item)
         snprintf(label, sizeof label, "sample %d", sample);
         const struct wb_figure_style style = {
             .colour = wb_palette_sample(sample), .width = 1.0, .dash = dashes[(sample + 2) % 3]};
-        WB_TRY(add_rows(panel, label, dataset, 1, true, &style));
+        add_rows(panel, label, dataset, 1, true, &style);
     }
-    return wb_figures_add_curve(panel, "mean", curve, curve->force, WB_MN, &mean);
+    wb_figures_add_curve(panel, "mean", curve, curve->force, WB_MN, &mean);
+    return WB_OK;
 }
 
 /* --- the paper's Fig. 10 --- */
@@ -422,16 +414,16 @@ static enum wb_status add_shapes(struct wb_panel *inset,
     return WB_OK;
 }
 
-static enum wb_status add_measured(struct wb_panel *panel, const struct wb_curve *curve,
-                                   struct wb_colour colour)
+static void add_measured(struct wb_panel *panel, const struct wb_curve *curve,
+                         struct wb_colour colour)
 {
     char label[80];
     if (curve->n_samples > 1)
         snprintf(label, sizeof label, "range of %d samples", curve->n_samples);
-    WB_TRY(wb_figures_add_range(panel, label, curve, colour));
+    wb_figures_add_range(panel, label, curve, colour);
     snprintf(label, sizeof label, curve->n_samples > 1 ? "measured, mean" : "measured");
     const struct wb_figure_style style = {.colour = colour, .width = 1.6};
-    return wb_figures_add_curve(panel, label, curve, curve->force, WB_MN, &style);
+    wb_figures_add_curve(panel, label, curve, curve->force, WB_MN, &style);
 }
 
 static const struct wb_figure_style computed_style = {
@@ -449,14 +441,14 @@ static enum wb_status draw_step(struct wb_figures_item *item, enum wb_recordings
     WB_TRY(wb_recordings_draw_start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH, 208.0));
     struct wb_panel *const panel = add_force_panel(item, result->curve.max_force);
     wb_figure_set_y_range(panel, (double)NAN, room * result->curve.max_force / WB_MN);
-    WB_TRY(add_measured(panel, &result->curve, colour));
-    WB_TRY(wb_figures_add_curve(panel, labels[purpose], &result->curve, result->elastoplastic.force,
-                                WB_MN, &computed_style));
+    add_measured(panel, &result->curve, colour);
+    wb_figures_add_curve(panel, labels[purpose], &result->curve, result->elastoplastic.force, WB_MN,
+                         &computed_style);
     const struct wb_figure_style elastic = {
         .colour = wb_palette_grey(), .width = 1.2, .dash = WB_DASH_DOTTED};
     if (purpose == WB_RECORDINGS_VALIDATION)
-        WB_TRY(wb_figures_add_curve(panel, "computed, linear elastic", &result->curve,
-                                    result->elastic.force, WB_MN, &elastic));
+        wb_figures_add_curve(panel, "computed, linear elastic", &result->curve,
+                             result->elastic.force, WB_MN, &elastic);
     return add_shapes(wb_figure_add_inset(panel), wire, &wire->steps[purpose], colour);
 }
 
@@ -520,21 +512,19 @@ static enum wb_status draw_error(struct wb_figures_item *item)
         snprintf(label, sizeof label, "%s, %g mm: RMS %.4f, <i>F</i><sub>max</sub> %.1f mN",
                  wb_recordings_purposes[k], results->campaign->length[k] / WB_MM,
                  result->elastoplastic.rms, result->curve.max_force / WB_MN);
-        WB_TRY(wb_figures_add_curve(panel, label, &result->curve, result->elastoplastic.error, 1.0,
-                                    &styles[k]));
+        wb_figures_add_curve(panel, label, &result->curve, result->elastoplastic.error, 1.0,
+                             &styles[k]);
     }
     return WB_OK;
 }
 
 /* --- the search --- */
 
-static enum wb_status add_path(struct wb_figure *figure, const struct wb_calibrate_result *result,
-                               struct wb_colour colour)
+static void add_path(struct wb_figure *figure, const struct wb_calibrate_result *result,
+                     struct wb_colour colour)
 {
     const int n = result->n_path;
-    double *const values = malloc(4 * ((size_t)n + 1) * sizeof *values);
-    if (!values)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
+    double *const values = wb_memory_new(4 * (size_t)n, sizeof *values);
     double *const step = values, *const error = values + n, *const k = values + 2 * n,
                   *const exponent = values + 3 * n;
     for (int i = 0; i < n; i++) {
@@ -568,7 +558,6 @@ static enum wb_status add_path(struct wb_figure *figure, const struct wb_calibra
         .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
     wb_figure_add_line(path, "calibrated", 1, &last_n, &last_k, &end);
     free(values);
-    return WB_OK;
 }
 
 static enum wb_status draw_optimiser(struct wb_figures_item *item)
@@ -582,7 +571,8 @@ static enum wb_status draw_optimiser(struct wb_figures_item *item)
     wb_text_append(&item->caption,
                    "Left: error of the best corner of the simplex after each iteration. "
                    "Right: its path from the first guess to the calibrated values.");
-    return add_path(item->figure, &wire->calibration, wb_palette_wire(item->index));
+    add_path(item->figure, &wire->calibration, wb_palette_wire(item->index));
+    return WB_OK;
 }
 
 /* --- all wires in one --- */
@@ -593,9 +583,8 @@ static const char *route_of(const struct wb_recordings_results *results)
     return results->campaign->whole_cycle ? ", by the paper's route" : "";
 }
 
-static enum wb_status add_overview(struct wb_panel *panel,
-                                   const struct wb_recordings_results *results, int index,
-                                   const struct wb_validate_result *result)
+static void add_overview(struct wb_panel *panel, const struct wb_recordings_results *results,
+                         int index, const struct wb_validate_result *result)
 {
     static const enum wb_figure_marker markers[] = {WB_MARKER_CIRCLE, WB_MARKER_SQUARE,
                                                     WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND};
@@ -603,24 +592,23 @@ static enum wb_status add_overview(struct wb_panel *panel,
     const struct wb_colour colour = wb_palette_wire(index);
     char label[160];
     snprintf(label, sizeof label, "%s, measured", results->wires[index].wanted->label);
-    WB_TRY(wb_figures_add_range(panel, NULL, curve, colour));
+    wb_figures_add_range(panel, NULL, curve, colour);
     /* Every tenth point carries a marker, so that wires differ without their colours. */
     double *const x = wb_figures_deflections(curve);
     double *const y = wb_figures_scaled(curve->force, curve->n, WB_MN);
     int n = 0;
-    for (int i = 0; x && y && i < curve->n; i += 10, n++) {
+    for (int i = 0; i < curve->n; i += 10, n++) {
         x[n] = x[i];
         y[n] = y[i];
     }
     const struct wb_figure_style points = {
         .colour = colour, .marker = markers[index % 4], .marker_size = 4.2};
-    if (x && y)
-        wb_figure_add_line(panel, label, (size_t)n, x, y, &points);
+    wb_figure_add_line(panel, label, (size_t)n, x, y, &points);
     free(x);
     free(y);
     snprintf(label, sizeof label, "%s, computed", results->wires[index].wanted->label);
     const struct wb_figure_style line = {.colour = colour, .width = 1.3};
-    return wb_figures_add_curve(panel, label, curve, result->elastoplastic.force, WB_MN, &line);
+    wb_figures_add_curve(panel, label, curve, result->elastoplastic.force, WB_MN, &line);
 }
 
 static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_purpose purpose)
@@ -638,7 +626,7 @@ static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_
             panel = wb_figure_add_panel(item->figure);
             set_force_axes(panel, 0.0);
         }
-        WB_TRY(add_overview(panel, results, i, result));
+        add_overview(panel, results, i, result);
     }
     return WB_OK;
 }
@@ -688,8 +676,8 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
                  validation->curve.max_force / WB_MN);
         const struct wb_figure_style style = {
             .colour = wb_palette_wire(i), .width = 1.3, .dash = dashes[i % 4]};
-        WB_TRY(wb_figures_add_curve(panel, label, &validation->curve,
-                                    validation->elastoplastic.error, 1.0, &style));
+        wb_figures_add_curve(panel, label, &validation->curve, validation->elastoplastic.error, 1.0,
+                             &style);
     }
     wb_text_append(&item->caption,
                    "Error of the prediction at %g mm%s (eq. 18): distance of mean force, %s, and "

@@ -3,17 +3,15 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/calibration/properties/properties.h"
 #include "analysis/report/draw/figures_surface.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
 #include "analysis/validation/validate.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "report"
 
 static const double millijoule = 1e-3;
 static const double panel_height = 190.0;
@@ -25,21 +23,19 @@ static const struct wb_figure_style dynamic_style = {.colour = WB_PALETTE_INK, .
 static const struct wb_figure_style constant_style = {
     .colour = {0.835, 0.369, 0.0, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
 
-static enum wb_status add_run(struct wb_panel *panel, const char *label,
-                              const struct wb_bundles_result *run,
-                              const struct wb_figure_style *style)
+static void add_run(struct wb_panel *panel, const char *label, const struct wb_bundles_result *run,
+                    const struct wb_figure_style *style)
 {
-    return run ? wb_figures_add_curve(panel, label, &run->curve, run->curve.force, 1.0, style)
-               : WB_OK;
+    if (run)
+        wb_figures_add_curve(panel, label, &run->curve, run->curve.force, 1.0, style);
 }
 
-static enum wb_status add_published(struct wb_panel *panel, const char *label,
-                                    const struct wb_bundles_result *run)
+static void add_published(struct wb_panel *panel, const char *label,
+                          const struct wb_bundles_result *run)
 {
-    if (!run || !run->published)
-        return WB_OK;
-    return wb_figures_add_curve(panel, label, &run->curve, run->published, 1.0,
-                                &wb_figures_reference_style);
+    if (run && run->published)
+        wb_figures_add_curve(panel, label, &run->curve, run->published, 1.0,
+                             &wb_figures_reference_style);
 }
 
 static enum wb_status start(struct wb_figure **figure, const char *kind, int index, double height)
@@ -95,8 +91,8 @@ static enum wb_status draw_sections(struct wb_figures_item *item)
 
 /* --- constant and decaying friction --- */
 
-static enum wb_status add_forces(struct wb_panel *panel, const struct wb_bundles_results *results,
-                                 const struct wb_bundles_bundle *bundle)
+static void add_forces(struct wb_panel *panel, const struct wb_bundles_results *results,
+                       const struct wb_bundles_bundle *bundle)
 {
     const struct wb_bundles_result *const dynamic =
         wb_bundles_results_usable(results, bundle->dynamic);
@@ -108,9 +104,9 @@ static enum wb_status add_forces(struct wb_panel *panel, const struct wb_bundles
                                  constant ? constant->curve.max_force : 0.0));
     /* Room above for the legend, so that the panels are alike. */
     wb_figure_set_y_range(panel, 0.0, 1.25 * largest);
-    WB_TRY(add_published(panel, "published", any));
-    WB_TRY(add_run(panel, "constant", constant, &constant_style));
-    return add_run(panel, "decaying", dynamic, &dynamic_style);
+    add_published(panel, "published", any);
+    add_run(panel, "constant", constant, &constant_style);
+    add_run(panel, "decaying", dynamic, &dynamic_style);
 }
 
 static enum wb_status draw_forces(struct wb_figures_item *item)
@@ -135,27 +131,23 @@ static enum wb_status draw_forces(struct wb_figures_item *item)
     for (int i = group->first, n = 0; i < group->first + group->n; i++) {
         const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
         if (wb_bundles_results_either(results, bundle))
-            WB_TRY(add_forces(add_force_panel(item->figure, bundle->label, n++ == 0), results,
-                              bundle));
+            add_forces(add_force_panel(item->figure, bundle->label, n++ == 0), results, bundle);
     }
     return WB_OK;
 }
 
 /* --- errors --- */
 
-static enum wb_status add_error(struct wb_panel *panel, const char *bundle, const char *friction,
-                                const struct wb_bundles_result *run,
-                                const struct wb_figure_style *style)
+static void add_error(struct wb_panel *panel, const char *bundle, const char *friction,
+                      const struct wb_bundles_result *run, const struct wb_figure_style *style)
 {
     struct wb_text label = {0};
     if (!run || !run->published || !isfinite(run->rms))
-        return WB_OK;
+        return;
     wb_text_append_escaped(&label, bundle);
     wb_text_append(&label, ", %s: RMS %.4f", friction, run->rms);
-    const enum wb_status status =
-        wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, run->error, 1.0, style);
+    wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, run->error, 1.0, style);
     wb_text_release(&label);
-    return status;
 }
 
 static enum wb_status draw_errors(struct wb_figures_item *item)
@@ -183,10 +175,10 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
         const struct wb_figure_style solid = {.colour = wb_palette_wire(i), .width = 1.5};
         const struct wb_figure_style dashed = {
             .colour = wb_palette_wire(i), .width = 1.1, .dash = WB_DASH_DASHED};
-        WB_TRY(add_error(panel, bundle->label, "decaying",
-                         wb_bundles_results_usable(results, bundle->dynamic), &solid));
-        WB_TRY(add_error(panel, bundle->label, "constant",
-                         wb_bundles_results_usable(results, bundle->constant), &dashed));
+        add_error(panel, bundle->label, "decaying",
+                  wb_bundles_results_usable(results, bundle->dynamic), &solid);
+        add_error(panel, bundle->label, "constant",
+                  wb_bundles_results_usable(results, bundle->constant), &dashed);
     }
     return WB_OK;
 }
@@ -212,7 +204,7 @@ static double energy_of(const struct wb_bundles_energy *row, enum energy kind)
     return of[kind];
 }
 
-static enum wb_status add_energies(struct wb_panel *panel, const struct wb_bundles_result *run)
+static void add_energies(struct wb_panel *panel, const struct wb_bundles_result *run)
 {
     static const char *const labels[ENERGIES] = {"internal", "friction", "kinetic", "artificial"};
     const struct wb_figure_style styles[ENERGIES] = {
@@ -223,10 +215,8 @@ static enum wb_status add_energies(struct wb_panel *panel, const struct wb_bundl
     };
     const size_t n = run ? (size_t)run->n_energies : 0;
     if (n == 0)
-        return WB_OK;
-    double *const values = malloc(2 * n * sizeof *values);
-    if (!values)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
+        return;
+    double *const values = wb_memory_new(2 * n, sizeof *values);
     for (int kind = 0; kind < ENERGIES; kind++) {
         for (size_t i = 0; i < n; i++) {
             values[i] = run->energies[i].time;
@@ -235,7 +225,6 @@ static enum wb_status add_energies(struct wb_panel *panel, const struct wb_bundl
         wb_figure_add_line(panel, labels[kind], n, values, values + n, &styles[kind]);
     }
     free(values);
-    return WB_OK;
 }
 
 static double largest_energy(const struct wb_bundles_result *run)
@@ -272,7 +261,7 @@ static enum wb_status draw_energies(struct wb_figures_item *item)
         wb_figure_set_axes(panel, "Time of the model (s)", n++ == 0 ? "Energy (mJ)" : "");
         /* Room above for the legend, so that the panels are alike. */
         wb_figure_set_y_range(panel, 0.0, 1.3 * largest_energy(run) / millijoule);
-        WB_TRY(add_energies(panel, run));
+        add_energies(panel, run);
     }
     return WB_OK;
 }
@@ -325,8 +314,8 @@ static enum wb_status draw_shape(struct wb_figures_item *item)
 
 /* --- studies --- */
 
-static enum wb_status draw_study(struct wb_figure *figure, const struct wb_bundles_results *results,
-                                 const struct wb_bundles_study *study, bool first)
+static void draw_study(struct wb_figure *figure, const struct wb_bundles_results *results,
+                       const struct wb_bundles_study *study, bool first)
 {
     static const enum wb_figure_dash dashes[] = {WB_DASH_SOLID, WB_DASH_DASHED, WB_DASH_DOTTED,
                                                  WB_DASH_MIXED};
@@ -341,14 +330,12 @@ static enum wb_status draw_study(struct wb_figure *figure, const struct wb_bundl
         if (!run)
             continue;
         if (!published)
-            WB_TRY(add_published(panel, "published", run));
+            add_published(panel, "published", run);
         published = true;
         wb_text_append_escaped(&label, study->labels[i]);
-        const enum wb_status status = add_run(panel, wb_text_string(&label), run, &style);
+        add_run(panel, wb_text_string(&label), run, &style);
         wb_text_release(&label);
-        WB_TRY(status);
     }
-    return WB_OK;
 }
 
 static enum wb_status draw_studies(struct wb_figures_item *item)
@@ -378,7 +365,7 @@ static enum wb_status draw_studies(struct wb_figures_item *item)
                    item->index == 0 && campaign->printed_source[0] ? ", after the paper's Fig. 18"
                                                                    : "");
     for (int k = 2 * item->index; k < 2 * item->index + 2 && k < campaign->n_studies; k++)
-        WB_TRY(draw_study(item->figure, results, &campaign->studies[k], k == 2 * item->index));
+        draw_study(item->figure, results, &campaign->studies[k], k == 2 * item->index);
     return WB_OK;
 }
 
@@ -454,8 +441,7 @@ static struct wb_figure_style beam_style(int index)
         .colour = wb_palette_wire(index), .width = 1.2, .dash = WB_DASH_DASHED};
 }
 
-static enum wb_status add_fit(struct wb_panel *panel, const struct wb_bundles_results *results,
-                              int index)
+static void add_fit(struct wb_panel *panel, const struct wb_bundles_results *results, int index)
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
@@ -464,16 +450,14 @@ static enum wb_status add_fit(struct wb_panel *panel, const struct wb_bundles_re
     struct wb_text label = {0};
     wb_text_append_escaped(&label, bundle->label);
     wb_text_append(&label, ", 3D");
-    enum wb_status status = add_run(panel, wb_text_string(&label), run, &solid);
+    add_run(panel, wb_text_string(&label), run, &solid);
     wb_text_release(&label);
-    if (status != WB_OK || !fit)
-        return status;
+    if (!fit)
+        return;
     wb_text_append_escaped(&label, bundle->label);
     wb_text_append(&label, ", 1D: RMS %.4f", fit->result.rms);
-    status =
-        wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, fit->force, 1.0, &beam);
+    wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, fit->force, 1.0, &beam);
     wb_text_release(&label);
-    return status;
 }
 
 static enum wb_status draw_fit(struct wb_figures_item *item)
@@ -506,7 +490,7 @@ static enum wb_status draw_fit(struct wb_figures_item *item)
     wb_figure_set_y_range(panel, 0.0, 1.3 * largest);
     for (int i = 0; i < campaign->n_bundles; i++)
         if (campaign->bundles[i].has_rod || !some_rod)
-            WB_TRY(add_fit(panel, results, i));
+            add_fit(panel, results, i);
     if (campaign->inset < 0 || !wb_bundles_results_fit(results, campaign->inset))
         return WB_OK;
     const struct wb_figure_style solid = solid_style(campaign->inset),

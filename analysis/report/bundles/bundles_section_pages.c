@@ -6,8 +6,6 @@
 #include "analysis/report/pages.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "report"
-
 static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
 
 /* --- curves --- */
@@ -24,8 +22,8 @@ static int shown_run(const struct wb_bundles_results *results,
                : bundle->dynamic;
 }
 
-static enum wb_status add_bundle(struct wb_figure *figure, const struct wb_bundles_results *results,
-                                 const struct wb_bundles_bundle *bundle, bool first)
+static void add_bundle(struct wb_figure *figure, const struct wb_bundles_results *results,
+                       const struct wb_bundles_bundle *bundle, bool first)
 {
     const int run = shown_run(results, bundle);
     const struct wb_bundles_result *const explicit = wb_bundles_results_usable(results, run);
@@ -36,13 +34,13 @@ static enum wb_status add_bundle(struct wb_figure *figure, const struct wb_bundl
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", first ? "Force (N)" : "");
     if (explicit) {
         largest = fmax(largest, explicit->curve.max_force);
-        WB_TRY(wb_figures_add_curve(panel, "explicit 3D", &explicit->curve, explicit->curve.force,
-                                    1.0, &wb_figures_reference_style));
+        wb_figures_add_curve(panel, "explicit 3D", &explicit->curve, explicit->curve.force, 1.0,
+                             &wb_figures_reference_style);
     }
     /* Room above for the legend, so that the panels are alike. */
     wb_figure_set_y_range(panel, 0.0, 1.25 * largest);
-    return wb_figures_add_curve(panel, "section model", &section->curve, section->curve.force, 1.0,
-                                &section_style);
+    wb_figures_add_curve(panel, "section model", &section->curve, section->curve.force, 1.0,
+                         &section_style);
 }
 
 enum wb_status wb_bundles_section_draw(struct wb_figures_item *item)
@@ -62,7 +60,7 @@ enum wb_status wb_bundles_section_draw(struct wb_figures_item *item)
                            "Force over deflection of the section model and of the explicit one, "
                            "with the same constant friction where there is such a run.");
         }
-        WB_TRY(add_bundle(item->figure, results, bundle, first));
+        add_bundle(item->figure, results, bundle, first);
     }
     return WB_OK;
 }
