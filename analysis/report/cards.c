@@ -8,6 +8,7 @@
 
 #include "analysis/cards/card.h"
 #include "analysis/report/pages.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -42,22 +43,18 @@ static void make_stem(const struct wb_cards *cards, const char *wire, char stem[
 }
 
 /* The text becomes the list's. */
-static enum wb_status add_file(struct wb_cards *cards, const char *stem, const char *ending,
-                               struct wb_text *text)
+static void add_file(struct wb_cards *cards, const char *stem, const char *ending,
+                     struct wb_text *text)
 {
     if (cards->n == cards->capacity) {
-        const int capacity = cards->capacity > 0 ? 2 * cards->capacity : 16;
-        struct wb_cards_file *const files = realloc(cards->files, (size_t)capacity * sizeof *files);
-        if (!files)
-            return wb_fail(WB_ERR_MEMORY, "no memory for the report's cards");
-        cards->files = files;
-        cards->capacity = capacity;
+        cards->capacity = 2 * cards->capacity + 16;
+        cards->files =
+            wb_memory_resize(cards->files, (size_t)cards->capacity, sizeof *cards->files);
     }
     struct wb_cards_file *const file = &cards->files[cards->n++];
     snprintf(file->name, sizeof file->name, "cards/%s.%s", stem, ending);
     file->bytes = *text;
     *text = (struct wb_text){.length = 0};
-    return WB_OK;
 }
 
 static enum wb_status add_cards(struct wb_cards *cards, struct wb_cards_law *law,
@@ -70,9 +67,9 @@ static enum wb_status add_cards(struct wb_cards *cards, struct wb_cards_law *law
         const struct wb_card_kind *const kind = &wb_card_kinds[k];
         struct wb_text text = {0};
         struct wb_reason why = {.text = ""};
-        enum wb_status status = wb_card_write(kind, source, &settings, &text, &why);
+        const enum wb_status status = wb_card_write(kind, source, &settings, &text, &why);
         if (status == WB_OK)
-            status = add_file(cards, law->stem, kind->ending, &text);
+            add_file(cards, law->stem, kind->ending, &text);
         wb_text_release(&text);
         if (status == WB_ERR_UNSUPPORTED) {
             wb_warn("no card %s: %s", kind->name, why.text);
@@ -86,16 +83,11 @@ static enum wb_status add_cards(struct wb_cards *cards, struct wb_cards_law *law
     return WB_OK;
 }
 
-/* NULL: no memory. */
 static struct wb_cards_law *add_law(struct wb_cards *cards, const char *stem,
                                     const struct wb_card_source *source)
 {
-    struct wb_cards_law *const laws =
-        realloc(cards->laws, (size_t)(cards->n_laws + 1) * sizeof *laws);
-    if (!laws)
-        return NULL;
-    cards->laws = laws;
-    struct wb_cards_law *const law = &laws[cards->n_laws++];
+    cards->laws = wb_memory_resize(cards->laws, (size_t)cards->n_laws + 1, sizeof *cards->laws);
+    struct wb_cards_law *const law = &cards->laws[cards->n_laws++];
     *law = (struct wb_cards_law){
         .curvature = wb_card_source_curvature(source),
         .has_way_back = wb_card_source_has_way_back(source),
@@ -118,12 +110,8 @@ enum wb_status wb_cards_add(struct wb_cards *cards, const char *wire, struct wb_
         wb_text_release(properties);
         return WB_OK;
     }
-    const enum wb_status status = add_file(cards, stem, "yaml", properties);
-    wb_text_release(properties);
-    WB_TRY(status);
-    struct wb_cards_law *const law = add_law(cards, stem, &source);
-    return law ? add_cards(cards, law, &source)
-               : wb_fail(WB_ERR_MEMORY, "no memory for the report's cards");
+    add_file(cards, stem, "yaml", properties);
+    return add_cards(cards, add_law(cards, stem, &source), &source);
 }
 
 enum wb_status wb_cards_add_fit(struct wb_cards *cards, const struct wb_calibrate_result *result,

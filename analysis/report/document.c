@@ -4,24 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 
-static char *copy_text(struct wb_document *document, const char *text)
+static char *copy_text(const char *text)
 {
-    char *const copy = strdup(text ? text : "");
-    document->failed |= !copy;
-    return copy;
+    return wb_memory_text(text ? text : "");
 }
 
 void wb_document_init(struct wb_document *document, const char *kind, const char *title,
                       const char *subtitle, const char *footer, const char *date_utc)
 {
     memset(document, 0, sizeof *document);
-    document->kind = copy_text(document, kind);
-    document->title = copy_text(document, title);
-    document->subtitle = copy_text(document, subtitle);
-    document->footer = copy_text(document, footer);
-    document->date_utc = copy_text(document, date_utc);
+    document->kind = copy_text(kind);
+    document->title = copy_text(title);
+    document->subtitle = copy_text(subtitle);
+    document->footer = copy_text(footer);
+    document->date_utc = copy_text(date_utc);
 }
 
 static void destroy_table(struct wb_document_table *table)
@@ -61,7 +60,7 @@ void wb_document_release(struct wb_document *document)
 void wb_document_set_number(struct wb_document *document, const char *number)
 {
     free(document->number);
-    document->number = copy_text(document, number);
+    document->number = copy_text(number);
 }
 
 void wb_document_move_to_front(struct wb_document *document, int first)
@@ -78,18 +77,12 @@ static struct wb_document_block *add_block(struct wb_document *document, enum wb
                                            const char *text)
 {
     if (document->n == document->capacity) {
-        const int capacity = document->capacity ? 2 * document->capacity : 64;
-        struct wb_document_block *const larger =
-            realloc(document->blocks, (size_t)capacity * sizeof *larger);
-        if (!larger) {
-            document->failed = true;
-            return NULL;
-        }
-        document->blocks = larger;
-        document->capacity = capacity;
+        document->capacity = 2 * document->capacity + 64;
+        document->blocks = wb_memory_resize(document->blocks, (size_t)document->capacity,
+                                            sizeof *document->blocks);
     }
     struct wb_document_block *const block = &document->blocks[document->n++];
-    *block = (struct wb_document_block){.kind = kind, .text = copy_text(document, text)};
+    *block = (struct wb_document_block){.kind = kind, .text = copy_text(text)};
     return block;
 }
 
@@ -97,10 +90,8 @@ void wb_document_heading(struct wb_document *document, int level, const char *an
                          const char *text)
 {
     struct wb_document_block *const block = add_block(document, WB_BLOCK_HEADING, text);
-    if (!block)
-        return;
     block->level = level;
-    block->anchor = copy_text(document, anchor);
+    block->anchor = copy_text(anchor);
 }
 
 void wb_document_paragraph(struct wb_document *document, const char *markup)
@@ -111,16 +102,12 @@ void wb_document_paragraph(struct wb_document *document, const char *markup)
 void wb_document_notice(struct wb_document *document, enum wb_document_tone tone,
                         const char *markup)
 {
-    struct wb_document_block *const block = add_block(document, WB_BLOCK_NOTICE, markup);
-    if (block)
-        block->tone = tone;
+    add_block(document, WB_BLOCK_NOTICE, markup)->tone = tone;
 }
 
 void wb_document_item(struct wb_document *document, enum wb_document_tone tone, const char *markup)
 {
-    struct wb_document_block *const block = add_block(document, WB_BLOCK_ITEM, markup);
-    if (block)
-        block->tone = tone;
+    add_block(document, WB_BLOCK_ITEM, markup)->tone = tone;
 }
 
 void wb_document_code(struct wb_document *document, const char *text)
@@ -146,8 +133,6 @@ void wb_document_figures(struct wb_document *document, const struct wb_figure *f
                          const char *second_caption)
 {
     struct wb_document_block *const block = add_block(document, WB_BLOCK_FIGURES, NULL);
-    if (!block)
-        return;
     block->figures[0] = first;
     block->captions[0] = number_caption(document, first_caption);
     block->figures[1] = second;
@@ -158,51 +143,30 @@ void wb_document_figures(struct wb_document *document, const struct wb_figure *f
 struct wb_document_table *wb_document_table(struct wb_document *document, const char *caption,
                                             int n_columns, const struct wb_document_column *columns)
 {
-    struct wb_document_block *const block = add_block(document, WB_BLOCK_TABLE, NULL);
-    struct wb_document_table *const table = calloc(1, sizeof *table);
-    if (!block || !table || n_columns > WB_DOCUMENT_COLUMNS) {
-        document->failed = true;
-        free(table);
-        return NULL;
-    }
-    block->table = table;
-    table->document = document;
-    table->n_columns = n_columns;
-    table->caption = caption ? copy_text(document, caption) : NULL;
-    for (int i = 0; i < n_columns; i++) {
+    struct wb_document_table *const table = wb_memory_new(1, sizeof *table);
+    add_block(document, WB_BLOCK_TABLE, NULL)->table = table;
+    document->failed |= n_columns > WB_DOCUMENT_COLUMNS;
+    table->n_columns = n_columns < WB_DOCUMENT_COLUMNS ? n_columns : WB_DOCUMENT_COLUMNS;
+    table->caption = caption ? copy_text(caption) : NULL;
+    for (int i = 0; i < table->n_columns; i++) {
         table->columns[i] = columns[i];
-        table->columns[i].heading = copy_text(document, columns[i].heading);
+        table->columns[i].heading = copy_text(columns[i].heading);
     }
     return table;
 }
 
-static bool grow(struct wb_document_table *table)
-{
-    const int capacity = table->capacity ? 2 * table->capacity : 16;
-    struct wb_document_cell *const cells =
-        realloc(table->cells, (size_t)(capacity * table->n_columns) * sizeof *cells);
-    if (cells)
-        table->cells = cells;
-    bool *const begins = realloc(table->begins_group, (size_t)capacity * sizeof *begins);
-    if (begins)
-        table->begins_group = begins;
-    if (!cells || !begins)
-        return false;
-    table->capacity = capacity;
-    return true;
-}
-
 void wb_document_row(struct wb_document_table *table, bool begins_group)
 {
-    if (!table)
-        return;
-    if (table->n_rows == table->capacity && !grow(table)) {
-        table->document->failed = true;
-        return;
+    if (table->n_rows == table->capacity) {
+        table->capacity = 2 * table->capacity + 16;
+        table->cells = wb_memory_resize(table->cells, (size_t)(table->capacity * table->n_columns),
+                                        sizeof *table->cells);
+        table->begins_group = wb_memory_resize(table->begins_group, (size_t)table->capacity,
+                                               sizeof *table->begins_group);
     }
     for (int i = 0; i < table->n_columns; i++)
         table->cells[table->n_rows * table->n_columns + i] =
-            (struct wb_document_cell){.text = copy_text(table->document, NULL)};
+            (struct wb_document_cell){.text = copy_text(NULL)};
     table->begins_group[table->n_rows++] = begins_group;
     table->n_cells = 0;
 }
@@ -210,11 +174,11 @@ void wb_document_row(struct wb_document_table *table, bool begins_group)
 void wb_document_cell(struct wb_document_table *table, enum wb_document_tone tone,
                       const char *markup)
 {
-    if (!table || table->n_rows == 0 || table->n_cells == table->n_columns)
+    if (table->n_rows == 0 || table->n_cells == table->n_columns)
         return;
     struct wb_document_cell *const cell =
         &table->cells[(table->n_rows - 1) * table->n_columns + table->n_cells++];
     free(cell->text);
-    cell->text = copy_text(table->document, markup);
+    cell->text = copy_text(markup);
     cell->tone = tone;
 }

@@ -3,8 +3,9 @@
  *
  * Text is the markup that Pango and HTML share: <b>, <i>, <sub>, <sup>, <tt>, and &amp; &lt; &gt;.
  * Kind, title, subtitle, footer, number, headings and code are plain text.
- * Builders copy text, return nothing and remember running out of memory in `failed`, which
- * the views refuse. Figures are borrowed and must outlive the document.
+ * Builders copy text and return nothing. A text without memory, or a table of too many columns, is
+ * remembered in `failed`, which the views refuse. Figures are borrowed and must outlive the
+ * document.
  */
 #ifndef WB_ANALYSIS_REPORT_DOCUMENT_H
 #define WB_ANALYSIS_REPORT_DOCUMENT_H
@@ -47,7 +48,6 @@ struct wb_document_cell {
 #define WB_DOCUMENT_COLUMNS 11
 
 struct wb_document_table {
-    struct wb_document *document;
     char *caption; /* NULL: none */
     int n_columns, n_rows, capacity;
     int n_cells;                                            /* of the last row */
@@ -102,8 +102,7 @@ void wb_document_figures(struct wb_document *document, const struct wb_figure *f
                          const char *first_caption, const struct wb_figure *second,
                          const char *second_caption);
 
-/* A table; the handle (NULL when out of memory, which the next two accept) lives as long as the
- * document. */
+/* A table of at most WB_DOCUMENT_COLUMNS columns; the handle lives as long as the document. */
 struct wb_document_table *wb_document_table(struct wb_document *document, const char *caption,
                                             int n_columns,
                                             const struct wb_document_column *columns);

@@ -12,6 +12,7 @@
 #include "base/config.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "base/memory.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -56,10 +57,8 @@ static enum wb_status draw(struct outputs *outputs, const struct wb_document *do
                            const struct wb_figures *figures, const struct wb_cards *cards,
                            struct wb_json *numbers)
 {
-    const size_t most = 2 * (size_t)figures->n + (size_t)cards->n + 3;
-    outputs->items = calloc(most, sizeof *outputs->items);
-    if (!outputs->items)
-        return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
+    outputs->items =
+        wb_memory_new(2 * (size_t)figures->n + (size_t)cards->n + 3, sizeof *outputs->items);
     WB_TRY(wb_pdf_render(document, add_output(outputs, "", "report", "pdf")));
     WB_TRY(wb_html_render(document, add_output(outputs, "", "report", "html")));
     for (int i = 0; i < figures->n; i++) {
@@ -84,7 +83,7 @@ static enum wb_status draw(struct outputs *outputs, const struct wb_document *do
 
 static void release(struct outputs *outputs)
 {
-    for (int i = 0; outputs->items && i < outputs->n; i++)
+    for (int i = 0; i < outputs->n; i++)
         wb_text_release(&outputs->items[i].bytes);
     free(outputs->items);
 }

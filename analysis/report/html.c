@@ -73,8 +73,6 @@ static const char *tone_class(enum wb_document_tone tone)
 
 static void put_table(struct wb_text *html, const struct wb_document_table *table)
 {
-    if (!table)
-        return;
     wb_text_append(html, "<div class=\"table\"><table>\n");
     wb_text_append(html, "<thead><tr>");
     bool any = false;
@@ -216,7 +214,9 @@ static void put_head(struct wb_text *html, const struct wb_document *document)
 enum wb_status wb_html_render(const struct wb_document *document, struct wb_text *html)
 {
     if (document->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
+        return wb_fail(WB_ERR_MEMORY,
+                       "out of memory writing the report, or a table of more than %d columns",
+                       WB_DOCUMENT_COLUMNS);
     put_head(html, document);
     put_navigation(html, document);
     bool in_list = false;

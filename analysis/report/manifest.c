@@ -8,6 +8,7 @@
 #include "analysis/report/numbers.h"
 #include "base/build.h"
 #include "base/hash.h"
+#include "base/memory.h"
 #include "base/reads.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -90,8 +91,7 @@ static void add_input(struct input *inputs, int *n, const char *what, const char
 }
 
 /* Sorted: the order of reading depends on threads, and nobody asks for it. */
-static enum wb_status put_inputs(struct wb_json *root, const struct wb_kind *kind,
-                                 const void *results)
+static void put_inputs(struct wb_json *root, const struct wb_kind *kind, const void *results)
 {
     const struct wb_kind_outcome *const outcome = results;
     struct wb_json *const list = wb_json_set_array(root, "inputs");
@@ -101,9 +101,7 @@ static enum wb_status put_inputs(struct wb_json *root, const struct wb_kind *kin
     while (kind->recordings && kind->recordings(results, n_recordings, &recording))
         n_recordings++;
     struct input *const inputs =
-        calloc((size_t)(n_recordings + wb_reads_count() + 1), sizeof *inputs);
-    if (!inputs)
-        return wb_fail(WB_ERR_MEMORY, "no room for the list of inputs");
+        wb_memory_new((size_t)(n_recordings + wb_reads_count()), sizeof *inputs);
     for (int i = 0; i < n_recordings && kind->recordings(results, i, &recording); i++) {
         if (recording.sha256)
             add_input(inputs, &n, "recording", recording.name, recording.sha256);
@@ -116,7 +114,6 @@ static enum wb_status put_inputs(struct wb_json *root, const struct wb_kind *kin
             put_sum(list, inputs[i].what, inputs[i].name, inputs[i].sha256);
     }
     free(inputs);
-    return WB_OK;
 }
 
 /* Those that report.json lists, itself among them. */
@@ -169,7 +166,7 @@ static enum wb_status fill(struct wb_json *root, const struct wb_kind *kind, con
     if (laboratory->amends.report[0])
         wb_json_set_text(root, "amends", laboratory->amends.report);
     wb_numbers_put_campaign(root, outcome->campaign);
-    WB_TRY(put_inputs(root, kind, results));
+    put_inputs(root, kind, results);
     WB_TRY(put_files(root, folder));
     return put_build(root);
 }

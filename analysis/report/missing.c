@@ -8,6 +8,7 @@
 
 #include "analysis/solve/solve.h"
 #include "base/hash.h"
+#include "base/memory.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -74,8 +75,6 @@ static enum wb_status add_job(struct all *all, const struct wb_simulation_entry 
         one->settings.checkpoint = one->checkpoint;
     }
     one->command = wb_solve_settings_command(&one->settings);
-    if (!one->command)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
     all->jobs[all->n++] = (struct wb_job){
         .name = entry->wanted->log,
         .run = run_one,
@@ -96,10 +95,8 @@ static enum wb_status add_jobs(struct all *all, wb_simulation_list *list, const 
         n += wb_simulation_is_missing(entry.result);
     if (n == 0)
         return WB_OK;
-    all->jobs = calloc(n, sizeof *all->jobs);
-    all->texts = calloc(n, sizeof *all->texts);
-    if (!all->jobs || !all->texts)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
+    all->jobs = wb_memory_new(n, sizeof *all->jobs);
+    all->texts = wb_memory_new(n, sizeof *all->texts);
     WB_TRY(wb_hash_file("/proc/self/exe", all->program));
     for (int i = 0; list(results, i, &entry); i++) {
         if (wb_simulation_is_missing(entry.result))

@@ -415,8 +415,6 @@ static double needed_height(struct pen *pen, const struct wb_document_table *tab
 
 static void put_table(struct pen *pen, const struct wb_document_table *table)
 {
-    if (!table)
-        return;
     double widths[WB_DOCUMENT_COLUMNS];
     find_widths(pen, table, widths);
     const struct wb_typeset_style caption = {
@@ -488,7 +486,7 @@ static double height_of_next(struct pen *pen, int index)
         return figures_height(pen, block);
     if (block->kind == WB_BLOCK_HEADING)
         return 30.0 + height_of_next(pen, index + 1);
-    if (block->kind == WB_BLOCK_TABLE && block->table) {
+    if (block->kind == WB_BLOCK_TABLE) {
         double widths[WB_DOCUMENT_COLUMNS];
         find_widths(pen, block->table, widths);
         return needed_height(pen, block->table, widths);
@@ -549,7 +547,9 @@ static void set_metadata(cairo_surface_t *surface, const struct wb_document *doc
 enum wb_status wb_pdf_render(const struct wb_document *document, struct wb_text *pdf)
 {
     if (document->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
+        return wb_fail(WB_ERR_MEMORY,
+                       "out of memory writing the report, or a table of more than %d columns",
+                       WB_DOCUMENT_COLUMNS);
     cairo_surface_t *const surface =
         cairo_pdf_surface_create_for_stream(wb_canvas_append, pdf, page_width, page_height);
     set_metadata(surface, document);

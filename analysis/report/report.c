@@ -2,12 +2,12 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/report/manifest.h"
 #include "analysis/report/missing.h"
 #include "analysis/report/openpgp.h"
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/reads.h"
 
@@ -158,10 +158,8 @@ static enum wb_status make(struct making *making)
     const struct wb_kind *const kind = making->kind;
     const struct wb_report_order *const order = making->order;
     bool ends = false;
-    making->campaign = calloc(1, kind->campaign_size);
-    making->results = calloc(1, kind->results_size);
-    if (!making->campaign || !making->results)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
+    making->campaign = wb_memory_new(1, kind->campaign_size);
+    making->results = wb_memory_new(1, kind->results_size);
     if (order->has_manifest || order->key)
         wb_reads_start();
     WB_TRY(wb_kind_read(kind, making->campaign, order->campaign));
@@ -197,10 +195,8 @@ enum wb_status wb_report_make(enum wb_report_end *end, const struct wb_kind *con
     making.kind = kinds[kind];
     const enum wb_status status = make(&making);
     wb_reads_stop();
-    if (making.results)
-        making.kind->release(making.results);
-    if (making.campaign)
-        making.kind->release_campaign(making.campaign);
+    making.kind->release(making.results);
+    making.kind->release_campaign(making.campaign);
     free(making.results);
     free(making.campaign);
     if (status == WB_OK)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/report/reasons.h"
+#include "base/memory.h"
 #include "fe/model/model_inputs.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -61,8 +62,6 @@ static enum wb_status show_command(struct wb_simulation *simulation, const char 
     if (settings.model)
         settings.model = shown;
     char **const words = wb_solve_settings_command(&settings);
-    if (!words)
-        return wb_fail(WB_ERR_MEMORY, "no room for the command of %s", simulation->name);
     show(simulation, "wirebench");
     for (char **word = words; *word; word++)
         show(simulation, *word);
@@ -81,11 +80,8 @@ enum wb_status wb_simulation_set(struct wb_simulation *simulation,
     simulation->inputs = inputs;
     wb_model_inputs_sum(inputs, simulation->inputs_sha256);
     simulation->settings = *settings;
-    if (settings->model) {
-        simulation->settings.model = strdup(settings->model);
-        if (!simulation->settings.model)
-            return wb_fail(WB_ERR_MEMORY, "no room for the settings of %s", simulation->name);
-    }
+    if (settings->model)
+        simulation->settings.model = wb_memory_text(settings->model);
     return show_command(simulation, shown);
 }
 
