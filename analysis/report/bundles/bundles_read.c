@@ -1,15 +1,13 @@
 /* The runs of a campaign of bundles: wb_bundles_run_read() of bundles.h. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "analysis/dataset/simulated_bundle.h"
 #include "analysis/report/bundles/bundles.h"
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/model/bundle_override.h"
-
-#define WB_LOG_DOMAIN "campaign"
 
 /* What a run has in place of its bundle's, as the command's options say it; has_... tells what else
  * was given. */
@@ -88,9 +86,7 @@ static enum wb_status read_model(const struct wb_bundles *all, const struct wb_c
                                  char path[WB_PATH])
 {
     WB_TRY(wb_campaign_find(&all->head, node, "bundle", "bundles", name, path, run->model_name));
-    run->model = calloc(1, sizeof *run->model);
-    if (!run->model)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
+    run->model = wb_memory_new(1, sizeof *run->model);
     struct wb_bundle_model *const m = run->model;
     s->override.dead_force = s->dead_force;
     s->override.no_weight = s->has_weight && !s->weight;

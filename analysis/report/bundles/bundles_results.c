@@ -9,8 +9,7 @@
 #include "analysis/report/reasons.h"
 #include "base/circle.h"
 #include "base/interrupt.h"
-
-#define WB_LOG_DOMAIN "report"
+#include "base/memory.h"
 
 const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundles_results *results,
                                                           int run)
@@ -179,9 +178,7 @@ static enum wb_status compute_fitted(struct wb_bundles_fit *fit,
         .n_elements = settings->n_elements, .n_fibres = settings->n_fibres, .why = why};
     struct wb_computed *computed;
     int n_reached;
-    fit->force = malloc((size_t)run->curve.n * sizeof *fit->force);
-    if (!fit->force)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory fitting a bundle");
+    fit->force = wb_memory_new((size_t)run->curve.n, sizeof *fit->force);
     WB_TRY(
         wb_computed_create(&computed, &run->simulation.dataset.info, &fit->result.material, &how));
     const enum wb_status status = wb_computed_curve(computed, &fit->result.material, run->curve.n,

@@ -8,6 +8,7 @@
 #include "analysis/calibration/paper/computed.h"
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/errors.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -84,9 +85,7 @@ static enum wb_status parse_energies(struct wb_bundles_result *result, char *tex
                                      struct wb_reason *why)
 {
     char *line = strsep(&text, "\n");
-    result->energies = calloc(result->simulation.dataset.n_rows + 1, sizeof *result->energies);
-    if (!result->energies)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading '%s'", path);
+    result->energies = wb_memory_new(result->simulation.dataset.n_rows, sizeof *result->energies);
     if (strcmp(line, energies_header) != 0)
         return wb_fail_to(why, WB_ERR_FORMAT, "%s:1: expected the columns %s", path,
                           energies_header);
@@ -203,10 +202,8 @@ enum wb_status wb_bundles_run_compare(struct wb_bundles_result *result,
     if (!beam)
         return WB_OK;
     const int n = result->curve.n;
-    result->published = malloc((size_t)n * sizeof *result->published);
-    result->error = malloc((size_t)n * sizeof *result->error);
-    if (!result->published || !result->error)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory comparing a bundle");
+    result->published = wb_memory_new((size_t)n, sizeof *result->published);
+    result->error = wb_memory_new((size_t)n, sizeof *result->error);
     WB_TRY(compute_published(result, beam, fit, why));
     if (result->n_published < n)
         return WB_OK;

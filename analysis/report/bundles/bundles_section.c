@@ -6,6 +6,7 @@
 
 #include "analysis/dataset/errors.h"
 #include "analysis/dataset/simulated_section.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/section/section_layout.h"
 
@@ -59,17 +60,14 @@ static enum wb_status compute(struct wb_bundles_section *section,
     return status;
 }
 
-static enum wb_status compare(struct wb_bundles_section *section, const struct wb_curve *explicit)
+static void compare(struct wb_bundles_section *section, const struct wb_curve *explicit)
 {
     const int n = section->curve.n < explicit->n ? section->curve.n : explicit->n;
-    double *const error = malloc((size_t)n * sizeof *error);
-    if (!error)
-        return wb_fail(WB_ERR_MEMORY, "out of memory comparing a bundle");
+    double *const error = wb_memory_new((size_t)n, sizeof *error);
     wb_errors_curve(n, explicit->force, section->curve.force, explicit->max_force, error);
     section->rms = wb_errors_rms(n, error);
     section->largest = wb_errors_largest(n, error);
     free(error);
-    return WB_OK;
 }
 
 /* A bundle that the model is not made for is no fault: its reason is said once, without the path.
@@ -90,9 +88,9 @@ void wb_bundles_section_compute(struct wb_bundles_section *section,
 {
     struct wb_reason why = {.text = ""};
     section->rms = section->largest = (double)NAN;
-    enum wb_status status = compute(section, run->model, step, &why);
+    const enum wb_status status = compute(section, run->model, step, &why);
     if (status == WB_OK && explicit && explicit->n > 0)
-        status = compare(section, explicit);
+        compare(section, explicit);
     section->state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
     if (status != WB_OK)
         keep_reason(section, run->model, status, &why);
