@@ -5,11 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/material/hardening.h"
 #include "fe/material/material_file.h"
-
-#define WB_LOG_DOMAIN "campaign"
 
 enum {
     MOST_GROUPS = 100,
@@ -43,9 +42,7 @@ static enum wb_status read_tests(const struct wb_config_node *list, struct wb_ma
     const int n = wb_config_length(list);
     if (n < 1 || n > MOST_TESTS)
         return wb_config_refuse(list, NULL, "tests: expected a list of 1 to %d files", MOST_TESTS);
-    group->tests = calloc((size_t)n, sizeof *group->tests);
-    if (!group->tests)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %d tests", n);
+    group->tests = wb_memory_new((size_t)n, sizeof *group->tests);
     for (; group->n_tests < n; group->n_tests++) {
         char *const name = group->tests[group->n_tests];
         const struct wb_config_key key = {
@@ -158,9 +155,7 @@ enum wb_status wb_machines_keys(void *context, const struct wb_config_node *root
     const int n = wb_config_length(groups);
     if (n < 1 || n > MOST_GROUPS)
         return wb_config_refuse(root, "groups", "expected a list of 1 to %d groups", MOST_GROUPS);
-    campaign->groups = calloc((size_t)n, sizeof *campaign->groups);
-    if (!campaign->groups)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %d groups", n);
+    campaign->groups = wb_memory_new((size_t)n, sizeof *campaign->groups);
     for (int i = 0; i < n; i++) {
         campaign->n_groups = i + 1;
         WB_TRY(read_group(campaign, wb_config_item(groups, i), &campaign->groups[i]));

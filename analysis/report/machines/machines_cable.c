@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WB_LOG_DOMAIN "cable"
+#include "base/memory.h"
 
 static const double zeros[WB_MACHINES_ZEROS] = {0.5, 2.0};
 
@@ -18,15 +18,15 @@ struct input {
 };
 
 /* Of the tests of some groups, each a series, at one curvature. */
-static enum wb_status find_mean(const struct input *in, const int *groups, int n_groups,
-                                double curvature, struct wb_cable_mean *mean)
+static struct wb_cable_mean find_mean(const struct input *in, const int *groups, int n_groups,
+                                      double curvature)
 {
     int most = 0, n = 0;
     for (int s = 0; s < n_groups; s++)
         most += in->campaign->groups[groups[s]].n_tests;
-    double *const moment = calloc((size_t)most, sizeof *moment);
-    int *const series = calloc((size_t)most, sizeof *series);
-    for (int s = 0; s < n_groups && moment && series; s++) {
+    double *const moment = wb_memory_new((size_t)most, sizeof *moment);
+    int *const series = wb_memory_new((size_t)most, sizeof *series);
+    for (int s = 0; s < n_groups; s++) {
         const struct wb_machines_group *const group = &in->campaign->groups[groups[s]];
         const double d = wb_cable_deflection(curvature, group->machine.span);
         for (int i = 0; i < group->n_tests; i++) {
@@ -39,25 +39,23 @@ static enum wb_status find_mean(const struct input *in, const int *groups, int n
             series[n++] = s;
         }
     }
-    if (moment && series)
-        *mean = wb_cable_mean(moment, series, n);
-    const bool is_complete = moment && series;
+    const struct wb_cable_mean mean = wb_cable_mean(moment, series, n);
     free(moment);
     free(series);
-    return is_complete ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for the cable");
+    return mean;
 }
 
 /* `wires`: groups that the wires are taken from. */
-static enum wb_status place(const struct input *in, int layer, const int *wires, int n_wires,
-                            double curvature, double axial, struct wb_cable_place *out)
+static struct wb_cable_place place(const struct input *in, int layer, const int *wires, int n_wires,
+                                   double curvature, double axial)
 {
     const struct wb_machines_cable *const cable = &in->campaign->cable;
-    struct wb_cable_mean of_layer, of_wire, of_core;
-    WB_TRY(find_mean(in, &layer, 1, curvature, &of_layer));
-    WB_TRY(find_mean(in, wires, n_wires, curvature, &of_wire));
-    WB_TRY(find_mean(in, &cable->core, 1, curvature, &of_core));
-    wb_cable_place(out, &of_layer, &of_wire, &of_core, cable->ring.n_wires, axial);
-    return WB_OK;
+    const struct wb_cable_mean of_layer = find_mean(in, &layer, 1, curvature);
+    const struct wb_cable_mean of_wire = find_mean(in, wires, n_wires, curvature);
+    const struct wb_cable_mean of_core = find_mean(in, &cable->core, 1, curvature);
+    struct wb_cable_place out;
+    wb_cable_place(&out, &of_layer, &of_wire, &of_core, cable->ring.n_wires, axial);
+    return out;
 }
 
 static enum wb_status compute_layer(struct wb_machines_layer *layer, const struct input *in,
@@ -77,21 +75,17 @@ static enum wb_status compute_layer(struct wb_machines_layer *layer, const struc
     WB_TRY(wb_cable_axial_moments(&cable->ring, layer->curvature, WB_MACHINES_PLACES, axial, NULL));
     for (int k = 0; k < WB_MACHINES_PLACES; k++) {
         const double curvature = layer->curvature[k];
-        struct wb_cable_mean of_first;
-        struct wb_cable_place other;
-        WB_TRY(place(in, layer->group, cable->wires, cable->n_wires, curvature, axial[k],
-                     &layer->place[k]));
-        WB_TRY(find_mean(in, &first, 1, curvature, &of_first));
-        layer->over_first[k] = layer->place[k].measured / of_first.mean;
-        for (int s = 0; s < cable->n_wires; s++) {
-            WB_TRY(place(in, layer->group, &cable->wires[s], 1, curvature, axial[k], &other));
-            layer->chi_of_series[s][k] = other.chi.value;
-        }
+        layer->place[k] =
+            place(in, layer->group, cable->wires, cable->n_wires, curvature, axial[k]);
+        layer->over_first[k] = layer->place[k].measured / find_mean(in, &first, 1, curvature).mean;
+        for (int s = 0; s < cable->n_wires; s++)
+            layer->chi_of_series[s][k] =
+                place(in, layer->group, &cable->wires[s], 1, curvature, axial[k]).chi.value;
         for (int z = 0; z < WB_MACHINES_ZEROS; z++) {
             const struct input moved = {in->campaign, in->groups, zeros[z]};
-            WB_TRY(place(&moved, layer->group, cable->wires, cable->n_wires, curvature, axial[k],
-                         &other));
-            layer->chi_of_zero[z][k] = other.chi.value;
+            layer->chi_of_zero[z][k] =
+                place(&moved, layer->group, cable->wires, cable->n_wires, curvature, axial[k])
+                    .chi.value;
         }
     }
     return WB_OK;

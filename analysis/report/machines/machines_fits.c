@@ -6,8 +6,7 @@
 
 #include "base/file.h"
 #include "base/interrupt.h"
-
-#define WB_LOG_DOMAIN "report"
+#include "base/memory.h"
 
 /* Whether a group is of the wire with which the fit begins. */
 static bool is_of(const struct wb_machines *campaign, const struct wb_machines_fit *fit, int group)
@@ -34,15 +33,13 @@ static void fit_wire(struct wb_machines_fit *fit, const struct wb_dataset *const
                                           settings.fit.n_elements, &fit->why) == WB_OK;
 }
 
-static enum wb_status compute_wire(struct wb_machines_fit *fit, const struct wb_machines *campaign,
-                                   const struct wb_machines_group_results *groups, int n_threads)
+static void compute_wire(struct wb_machines_fit *fit, const struct wb_machines *campaign,
+                         const struct wb_machines_group_results *groups, int n_threads)
 {
     int most = 0;
     for (int g = fit->first; g < campaign->n_groups; g++)
         most += campaign->groups[g].n_tests;
-    const struct wb_dataset **const datasets = calloc((size_t)most, sizeof *datasets);
-    if (!datasets)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %d tests", most);
+    const struct wb_dataset **const datasets = wb_memory_new((size_t)most, sizeof *datasets);
     for (int g = fit->first; g < campaign->n_groups; g++) {
         for (int i = 0; i < campaign->groups[g].n_tests && is_of(campaign, fit, g); i++) {
             if (groups[g].tests[i].is_usable)
@@ -52,7 +49,6 @@ static enum wb_status compute_wire(struct wb_machines_fit *fit, const struct wb_
     if (fit->n > 0)
         fit_wire(fit, datasets, n_threads);
     free(datasets);
-    return WB_OK;
 }
 
 static bool is_first_of_its_wire(const struct wb_machines *campaign, int group)
@@ -72,27 +68,23 @@ int wb_machines_fits_count_wires(const struct wb_machines *campaign)
     return n;
 }
 
-enum wb_status wb_machines_fits_compute(struct wb_machines_fits *fits,
-                                        const struct wb_machines *campaign,
-                                        const struct wb_machines_group_results *groups,
-                                        const struct wb_machines_fits_order *order)
+void wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
+                              const struct wb_machines_group_results *groups,
+                              const struct wb_machines_fits_order *order)
 {
     memset(fits, 0, sizeof *fits);
     if (!campaign->calibrates)
-        return WB_OK;
-    fits->fits = calloc((size_t)campaign->n_groups, sizeof *fits->fits);
-    if (!fits->fits)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %d wires", campaign->n_groups);
+        return;
+    fits->fits = wb_memory_new((size_t)campaign->n_groups, sizeof *fits->fits);
     for (int g = 0; g < campaign->n_groups && !wb_interrupted(); g++) {
         if (!is_first_of_its_wire(campaign, g))
             continue;
         struct wb_machines_fit *const fit = &fits->fits[fits->n++];
         fit->first = g;
-        WB_TRY(compute_wire(fit, campaign, groups, order->n_threads));
+        compute_wire(fit, campaign, groups, order->n_threads);
         if (order->told)
             order->told(order->context, fits->n, campaign->groups[g].piece.wire);
     }
-    return WB_OK;
 }
 
 int wb_machines_fits_list(const struct wb_machines_fit *fit, const struct wb_machines *campaign,

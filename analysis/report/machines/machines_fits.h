@@ -32,10 +32,9 @@ struct wb_machines_fits_order {
 };
 
 /* Ctrl-C leaves the rest out. */
-WB_MUST_CHECK enum wb_status
-wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
-                         const struct wb_machines_group_results *groups,
-                         const struct wb_machines_fits_order *order);
+void wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
+                              const struct wb_machines_group_results *groups,
+                              const struct wb_machines_fits_order *order);
 
 /* The files of the tests that a fit is made of, the first WB_PROPERTIES_MOST_DATASETS; returns how
  * many. */

@@ -10,9 +10,8 @@
 #include "analysis/report/numbers.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
+#include "base/memory.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "report"
 
 static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
 
@@ -24,8 +23,8 @@ static int count_groups(const void *context)
     return results->campaign->n_groups;
 }
 
-static enum wb_status add_tests(struct wb_panel *panel, const struct wb_machines_group *group,
-                                const struct wb_machines_group_results *results)
+static void add_tests(struct wb_panel *panel, const struct wb_machines_group *group,
+                      const struct wb_machines_group_results *results)
 {
     static const struct wb_figure_style style = {.colour = {0.45, 0.5, 0.56, 1.0}, .width = 0.6};
     bool named = false;
@@ -34,9 +33,7 @@ static enum wb_status add_tests(struct wb_panel *panel, const struct wb_machines
         const size_t n = test->dataset.n_rows;
         if (!test->is_usable)
             continue;
-        double *const x = malloc(2 * n * sizeof *x);
-        if (!x)
-            return wb_fail(WB_ERR_MEMORY, "out of memory for a figure");
+        double *const x = wb_memory_new(2 * n, sizeof *x);
         for (size_t k = 0; k < n; k++) {
             x[k] = (test->dataset.rows[k].deflection - test->start) / WB_MM;
             x[n + k] = test->dataset.rows[k].force / WB_MN;
@@ -45,12 +42,11 @@ static enum wb_status add_tests(struct wb_panel *panel, const struct wb_machines
         named = true;
         free(x);
     }
-    return WB_OK;
 }
 
 /* The mean last: tests would cover it. */
-static enum wb_status add_curves(struct wb_panel *panel, const struct wb_machines_group *group,
-                                 const struct wb_machines_group_results *results)
+static void add_curves(struct wb_panel *panel, const struct wb_machines_group *group,
+                       const struct wb_machines_group_results *results)
 {
     static const struct wb_figure_style style = {.colour = WB_PALETTE_INK, .width = 1.4};
     static const struct wb_colour pale = WB_PALETTE_PALE(0.5);
@@ -65,9 +61,8 @@ static enum wb_status add_curves(struct wb_panel *panel, const struct wb_machine
     const double *const edges[2] = {low, high};
     if (results->n_usable > 1)
         wb_figure_add_band(panel, "mean \xc2\xb1 s", WB_MACHINES_GRID, x, edges, pale);
-    WB_TRY(add_tests(panel, group, results));
+    add_tests(panel, group, results);
     wb_figure_add_line(panel, "mean, usable range", WB_MACHINES_GRID, x, y, &style);
-    return WB_OK;
 }
 
 /* "4: six wires", or the name alone where it has no label of its own. */
@@ -97,7 +92,8 @@ static enum wb_status draw_group(struct wb_figures_item *item)
     wb_text_append_escaped(&item->caption, group->label);
     wb_text_append(&item->caption, ", %d of %d tests, span %.4g mm.", of->n_usable, group->n_tests,
                    group->machine.span / WB_MM);
-    return add_curves(panel, group, of);
+    add_curves(panel, group, of);
+    return WB_OK;
 }
 
 static const struct wb_figures_row figures[] = {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -33,7 +34,7 @@ static enum wb_status import_test(const struct wb_machines_group *group, int ind
     return status;
 }
 
-static enum wb_status load_test(const struct wb_machines_results *results, int g, int index)
+static void load_test(const struct wb_machines_results *results, int g, int index)
 {
     const struct wb_machines *const campaign = results->campaign;
     const struct wb_machines_group *const group = &campaign->groups[g];
@@ -47,15 +48,12 @@ static enum wb_status load_test(const struct wb_machines_results *results, int g
         !wb_file_exists(path)) {
         test->is_missing = true;
         wb_text_append(&test->problem, "not there");
-        return WB_OK;
+        return;
     }
     const enum wb_status status = import_test(group, index, path, test, &why);
-    if (status == WB_ERR_MEMORY)
-        return wb_fail(status, "%s", why.text);
     test->is_usable = status == WB_OK;
     if (!test->is_usable)
         wb_text_append(&test->problem, "%s", why.text);
-    return WB_OK;
 }
 
 enum wb_status wb_machines_results_load(void *context, const void *of)
@@ -66,19 +64,15 @@ enum wb_status wb_machines_results_load(void *context, const void *of)
     results->campaign = campaign;
     results->outcome.campaign = &campaign->head;
     results->has_folder = !campaign->environment[0] || getenv(campaign->environment);
-    results->groups = calloc((size_t)campaign->n_groups, sizeof *results->groups);
-    if (!results->groups)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the groups");
+    results->groups = wb_memory_new((size_t)campaign->n_groups, sizeof *results->groups);
     if (!results->has_folder)
         wb_warn("%s is not set: it names the folder of the data", campaign->environment);
     for (int g = 0; g < campaign->n_groups; g++) {
         const int n = campaign->groups[g].n_tests;
-        results->groups[g].tests = calloc((size_t)n, sizeof *results->groups[g].tests);
-        if (!results->groups[g].tests)
-            return wb_fail(WB_ERR_MEMORY, "out of memory for the tests");
+        results->groups[g].tests = wb_memory_new((size_t)n, sizeof *results->groups[g].tests);
         for (int i = 0; i < n; i++) {
             const struct wb_machines_test *const test = &results->groups[g].tests[i];
-            WB_TRY(load_test(results, g, i));
+            load_test(results, g, i);
             results->outcome.n_wanted++;
             results->outcome.n_missing += test->is_missing;
             results->outcome.n_usable += test->is_usable;
@@ -189,7 +183,7 @@ enum wb_status wb_machines_results_compute(void *context, int n_threads, wb_kind
             progress(progress_context, g + 1, campaign->groups[g].label);
     }
     WB_TRY(wb_machines_cable_compute(&results->cable, campaign, results->groups));
-    WB_TRY(wb_machines_fits_compute(&results->fits, campaign, results->groups, &order));
+    wb_machines_fits_compute(&results->fits, campaign, results->groups, &order);
     if (wb_interrupted()) {
         results->outcome.interrupted = true;
         return WB_OK;
@@ -203,7 +197,7 @@ void wb_machines_results_release(void *context)
     struct wb_machines_results *const results = context;
     for (int g = 0; results->groups && g < results->campaign->n_groups; g++) {
         struct wb_machines_group_results *const group = &results->groups[g];
-        for (int i = 0; group->tests && i < results->campaign->groups[g].n_tests; i++) {
+        for (int i = 0; i < results->campaign->groups[g].n_tests; i++) {
             wb_text_release(&group->tests[i].problem);
             wb_dataset_release(&group->tests[i].dataset);
         }
