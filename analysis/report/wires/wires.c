@@ -8,9 +8,8 @@
 #include "analysis/dataset/simulated.h"
 #include "analysis/report/campaign.h"
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "campaign"
 
 const char *wb_wires_command(enum wb_wires_solver solver)
 {
@@ -25,9 +24,7 @@ static enum wb_status read_model(const struct wb_wires *comparison,
 {
     WB_TRY(
         wb_campaign_find(&comparison->head, node, "model", "models", name, path, item->model_name));
-    item->model = calloc(1, sizeof *item->model);
-    if (!item->model)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
+    item->model = wb_memory_new(1, sizeof *item->model);
     return wb_wire_model_read(item->model, path);
 }
 

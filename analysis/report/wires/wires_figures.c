@@ -3,13 +3,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
+#include "base/memory.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "report"
 
 static const double degrees = 180.0 / 3.14159265358979323846; /* degrees of a radian */
 
@@ -384,14 +382,12 @@ struct drawing {
     struct wb_figure_colours colours;
 };
 
-static enum wb_status add_part(struct wb_panel *panel, const struct wb_field *field, int part,
-                               const struct drawing *drawing)
+static void add_part(struct wb_panel *panel, const struct wb_field *field, int part,
+                     const struct drawing *drawing)
 {
-    struct wb_contour_face *const faces = malloc((2 * (size_t)field->n_faces + 1) * sizeof *faces);
+    struct wb_contour_face *const faces = wb_memory_new(2 * (size_t)field->n_faces, sizeof *faces);
     struct rings rings = {.n = 0};
     int n = 0;
-    if (!faces)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
     for (int i = 0; i < field->n_faces; i++) {
         const struct wb_contour_face face =
             face_of(&field->faces[i], drawing->view, drawing->quantity);
@@ -410,14 +406,13 @@ static enum wb_status add_part(struct wb_panel *panel, const struct wb_field *fi
     if (n > 0)
         wb_figure_add_field(panel, n, faces, &colours);
     free(faces);
-    return WB_OK;
 }
 
-static enum wb_status add_field(struct wb_panel *panel, const struct wb_field *field,
-                                const struct drawing *drawing)
+static void add_field(struct wb_panel *panel, const struct wb_field *field,
+                      const struct drawing *drawing)
 {
-    WB_TRY(add_part(panel, field, 1, drawing));
-    return add_part(panel, field, 0, drawing);
+    add_part(panel, field, 1, drawing);
+    add_part(panel, field, 0, drawing);
 }
 
 /* --- scales --- */
@@ -507,12 +502,12 @@ static enum wb_status draw_stress(struct wb_figure **figure, const struct wb_wir
     wb_figure_set_title(panel, title);
     wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(panel);
-    WB_TRY(add_field(panel, along, &drawing));
+    add_field(panel, along, &drawing);
     ring(panel, peak.position[0] / WB_MM, peak.position[1] / WB_MM);
     if (across) {
         add_cross_section(*figure, across, &panel);
         drawing.view = FROM_THE_CLAMP;
-        WB_TRY(add_field(panel, across, &drawing));
+        add_field(panel, across, &drawing);
     }
     wb_figure_add_colour_bar(*figure, &drawing.colours, "MPa");
     return WB_OK;
@@ -547,8 +542,8 @@ static enum wb_status draw_elastoplastic(struct wb_figures_item *item)
 /* --- Fig. 5a --- */
 
 /* Solid and rod beside each other, with their scale. */
-static enum wb_status add_pair(struct wb_figure *figure, const struct wb_field *const fields[2],
-                               enum quantity quantity)
+static void add_pair(struct wb_figure *figure, const struct wb_field *const fields[2],
+                     enum quantity quantity)
 {
     static const char *const models[] = {"3D", "1D fibres"};
     struct drawing drawing = {.view = FROM_THE_CLAMP, .quantity = quantity};
@@ -564,12 +559,11 @@ static enum wb_status add_pair(struct wb_figure *figure, const struct wb_field *
         wb_figure_set_title(panel, title);
         drawing.cells = i == WB_WIRES_ROD;
         if (fields[i])
-            WB_TRY(add_part(panel, fields[i], 0, &drawing));
+            add_part(panel, fields[i], 0, &drawing);
         else
             wb_figure_add_text(panel, 0.0, 0.0, 0, "missing");
     }
     wb_figure_add_colour_bar(figure, &drawing.colours, "MPa");
-    return WB_OK;
 }
 
 static enum wb_status draw_residual(struct wb_figures_item *item)
@@ -599,8 +593,9 @@ static enum wb_status draw_residual(struct wb_figures_item *item)
         wb_pages_escape(label, sizeof label,
                         results->comparison->cases[WB_WIRES_RESIDUAL + item->index].label),
         figure_number(in, results, "5a"));
-    WB_TRY(add_pair(item->figure, fields, AXIAL));
-    return add_pair(item->figure, fields, VON_MISES);
+    add_pair(item->figure, fields, AXIAL);
+    add_pair(item->figure, fields, VON_MISES);
+    return WB_OK;
 }
 
 static int count_residual(const void *context)
@@ -629,9 +624,8 @@ static void extend(struct extent *extent, const struct wb_field *field)
     }
 }
 
-static enum wb_status add_loaded(struct wb_figure *figure, const char *label,
-                                 const struct wb_field *field, const struct extent *extent,
-                                 const struct wb_figure_colours *colours)
+static void add_loaded(struct wb_figure *figure, const char *label, const struct wb_field *field,
+                       const struct extent *extent, const struct wb_figure_colours *colours)
 {
     const struct drawing drawing = {
         .view = FROM_THE_SIDE, .quantity = VON_MISES, .colours = *colours};
@@ -643,7 +637,7 @@ static enum wb_status add_loaded(struct wb_figure *figure, const char *label,
     wb_figure_set_equal_aspect(panel);
     wb_figure_set_x_range(panel, extent->low[0], extent->high[0]);
     wb_figure_set_y_range(panel, extent->low[1], extent->high[1]);
-    return add_field(panel, field, &drawing);
+    add_field(panel, field, &drawing);
 }
 
 /* Longitudinal sections under the force, without and with residual stresses: as many as are
@@ -694,7 +688,7 @@ static enum wb_status draw_residual_stress(struct wb_figures_item *item)
                    "largest value of the core.",
                    force_of(results), figure_number(in, results, "5b"));
     for (int i = 0; i < loaded.n; i++)
-        WB_TRY(add_loaded(item->figure, loaded.labels[i], loaded.fields[i], extent, &colours));
+        add_loaded(item->figure, loaded.labels[i], loaded.fields[i], extent, &colours);
     wb_figure_add_colour_bar(item->figure, &colours, "MPa");
     return WB_OK;
 }

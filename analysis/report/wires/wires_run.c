@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -40,10 +41,8 @@ static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_mo
     const size_t n = dataset->n_shape_rows - first;
     if (n < 2)
         return wb_fail_to(why, WB_ERR_DATA, "it has no shape of its last row");
-    run->s = malloc(n * sizeof *run->s);
-    run->shape = malloc(n * sizeof *run->shape);
-    if (!run->s || !run->shape)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading a dataset");
+    run->s = wb_memory_new(n, sizeof *run->s);
+    run->shape = wb_memory_new(n, sizeof *run->shape);
     for (size_t i = 0; i < n; i++) {
         const struct wb_shape_row *const row = &dataset->shape_rows[first + i];
         const double z = isfinite(row->z) ? row->z : 0.0;
@@ -74,31 +73,27 @@ static int row_before_loading(const struct wb_wires_run *run)
 
 /* Tips along the last step. Its rows stand at equal steps of the force when there are as many as
  * the model asks for; else the path was followed through a limit point. */
-static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wire_model *model,
-                                   struct wb_reason *why)
+static void take_loading(struct wb_wires_run *run, const struct wb_wire_model *model)
 {
     const struct wb_dataset *const dataset = &run->simulation.dataset;
     const int first = row_before_loading(run), rows = model->step[model->n_steps - 1].rows;
     if (first < 0 || first + 1 + rows != (int)dataset->n_rows)
-        return WB_OK;
-    run->loading = malloc(((size_t)rows + 1) * sizeof *run->loading);
-    run->loaded = malloc(((size_t)rows + 1) * sizeof *run->loaded);
-    if (!run->loading || !run->loaded)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading a dataset");
+        return;
+    run->loading = wb_memory_new((size_t)rows + 1, sizeof *run->loading);
+    run->loaded = wb_memory_new((size_t)rows + 1, sizeof *run->loaded);
     size_t at = 0;
     for (int i = 0; i <= rows; i++) {
         const double t = dataset->rows[first + i].t;
         while (at < dataset->n_shape_rows && dataset->shape_rows[at].t <= t)
             at++;
         if (at == 0 || dataset->shape_rows[at - 1].t != t)
-            return WB_OK;
+            return;
         const struct wb_shape_row *const tip = &dataset->shape_rows[at - 1];
         run->loading[i] = run->force * i / rows;
         memcpy(run->loaded[i], (double[3]){tip->x, tip->y, isfinite(tip->z) ? tip->z : 0.0},
                sizeof run->loaded[i]);
     }
     run->n_loading = rows + 1;
-    return WB_OK;
 }
 
 /* Stored fields are continued from inside the elements and overshoot where the plastic zone begins:
@@ -132,7 +127,7 @@ static enum wb_status take(void *context, struct wb_reason *why)
     struct wb_wires_run *const run = loading->run;
     read_simulation(run);
     WB_TRY(take_end(run, model, why));
-    WB_TRY(take_loading(run, model, why));
+    take_loading(run, model);
     WB_TRY(wb_fields_read(&run->fields, loading->item->datasets[loading->solver].path, why));
     keep_to_law(&run->fields, model);
     return WB_OK;
