@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "base/config.h"
+#include "base/memory.h"
 #include "fe/model/bundle_uncertainty.h"
-
-#define WB_LOG_DOMAIN "campaign"
 
 enum {
     MOST_RUNS = 100000,
@@ -76,9 +75,7 @@ static enum wb_status read_bundle(const struct wb_predictions *all,
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     WB_TRY(wb_campaign_find(&all->head, node, "bundle", "bundles", name, path, bundle->model_name));
-    bundle->model = calloc(1, sizeof *bundle->model);
-    if (!bundle->model)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
+    bundle->model = wb_memory_new(1, sizeof *bundle->model);
     WB_TRY(wb_bundle_model_read(bundle->model, path));
     if (!bundle->model->has_uncertainty)
         return wb_config_refuse(node, "bundle",

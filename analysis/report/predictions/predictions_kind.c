@@ -9,9 +9,8 @@
 #include "analysis/report/draw/figures_bundle.h"
 #include "analysis/report/numbers.h"
 #include "analysis/report/pages.h"
+#include "base/memory.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "report"
 
 static const char *const side_names[] = {"below", "within", "above", "not reached"};
 
@@ -49,16 +48,14 @@ static enum wb_status draw_section(struct wb_figures_item *item)
 }
 
 /* The rows of a test, over the bands. */
-static enum wb_status add_test(struct wb_panel *panel, const char *label,
-                               const struct wb_predictions_verdict *verdict)
+static void add_test(struct wb_panel *panel, const char *label,
+                     const struct wb_predictions_verdict *verdict)
 {
     static const struct wb_figure_style style = {.colour = WB_PALETTE_INK, .width = 1.0};
     const size_t n = verdict->dataset.n_rows;
     struct wb_text escaped = {0};
-    double *const x = malloc(2 * (n > 0 ? n : 1) * sizeof *x);
+    double *const x = wb_memory_new(2 * n, sizeof *x);
     size_t used = 0;
-    if (!x)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a figure");
     for (size_t i = 0; i < n; i++) {
         if (verdict->dataset.rows[i].phase == WB_PHASE_SLACK)
             continue;
@@ -71,7 +68,6 @@ static enum wb_status add_test(struct wb_panel *panel, const char *label,
     wb_figure_add_line(panel, wb_text_string(&escaped), used, x, x + n, &style);
     wb_text_release(&escaped);
     free(x);
-    return WB_OK;
 }
 
 static enum wb_status draw_bands(struct wb_figures_item *item)
@@ -92,7 +88,7 @@ static enum wb_status draw_bands(struct wb_figures_item *item)
     for (int i = 0; i < bundle->n_tests; i++) {
         if (of->tests[i].state != WB_SIMULATION_USABLE)
             continue;
-        WB_TRY(add_test(panels[0], bundle->tests[i].label, &of->tests[i]));
+        add_test(panels[0], bundle->tests[i].label, &of->tests[i]);
         n_tests++;
     }
     if (n_tests > 0)
