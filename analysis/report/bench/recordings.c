@@ -7,10 +7,9 @@
 #include <string.h>
 
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "daq/recording/index.h"
-
-#define WB_LOG_DOMAIN "campaign"
 
 const char *const wb_recordings_purposes[] = {"calibration", "validation"};
 
@@ -83,16 +82,10 @@ static enum wb_status read_reference(const struct wb_config_node *node,
 
 /* --- recordings --- */
 
-static enum wb_status add_test(struct wb_recordings_tests *tests,
-                               const struct wb_recordings_test *test)
+static void add_test(struct wb_recordings_tests *tests, const struct wb_recordings_test *test)
 {
-    struct wb_recordings_test *const larger =
-        realloc(tests->items, ((size_t)tests->n + 1) * sizeof *tests->items);
-    if (!larger)
-        return wb_fail(WB_ERR_MEMORY, "out of memory listing recordings");
-    tests->items = larger;
+    tests->items = wb_memory_resize(tests->items, (size_t)tests->n + 1, sizeof *tests->items);
     tests->items[tests->n++] = *test;
-    return WB_OK;
 }
 
 static enum wb_status take_entry(struct wb_recordings_test *test, const struct wb_index *index,
@@ -135,7 +128,8 @@ static enum wb_status add_file(struct wb_recordings_tests *tests, const char *pa
                  entry                       ? "the index lists it, but the file is not there"
                  : strpbrk(test.name, "*?[") ? "no file matches this pattern"
                                              : "no such file");
-    return add_test(tests, &test);
+    add_test(tests, &test);
+    return WB_OK;
 }
 
 static int by_sample(const void *a, const void *b)
@@ -173,7 +167,7 @@ static enum wb_status take_from_index(const struct reading *reading,
             snprintf(test.missing, sizeof test.missing, "not in the index of recordings");
         else
             snprintf(test.missing, sizeof test.missing, "%s", reading->index_problem);
-        WB_TRY(add_test(tests, &test));
+        add_test(tests, &test);
     }
     if (tests->n > 1)
         qsort(tests->items, (size_t)tests->n, sizeof *tests->items, by_sample);
@@ -243,9 +237,7 @@ static enum wb_status read_excluded(struct reading *reading, const struct wb_con
     if (list && n < 1)
         return wb_config_refuse(list, "excluded",
                                 "expected a list of recordings that are not used");
-    reading->excluded = calloc((size_t)n + 1, sizeof *reading->excluded);
-    if (!reading->excluded)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
+    reading->excluded = wb_memory_new((size_t)n, sizeof *reading->excluded);
     for (; reading->n_excluded < n; reading->n_excluded++) {
         const struct wb_config_node *const node = wb_config_item(list, reading->n_excluded);
         struct exclusion *const one = &reading->excluded[reading->n_excluded];
@@ -305,9 +297,7 @@ static enum wb_status read_wires(struct reading *reading, const struct wb_config
     const int n = wb_config_length(list);
     if (n < 1)
         return wb_config_refuse(list, "wires", "expected a list of at least one wire");
-    campaign->wires = calloc((size_t)n, sizeof *campaign->wires);
-    if (!campaign->wires)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
+    campaign->wires = wb_memory_new((size_t)n, sizeof *campaign->wires);
     for (int i = 0; i < n; i++) {
         const struct wb_config_node *const node = wb_config_item(list, i);
         struct wb_recordings_wire *const wire = &campaign->wires[campaign->n_wires++];

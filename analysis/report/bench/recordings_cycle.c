@@ -8,6 +8,7 @@
 #include "analysis/calibration/cycle/cycle_json.h"
 #include "analysis/calibration/law/bending.h"
 #include "base/interrupt.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -96,13 +97,11 @@ static enum wb_status take_clouds(struct wb_recordings_cycle *cycle,
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const size_t n = (size_t)c->n_members;
-    cycle->clouds = calloc(n, sizeof *cycle->clouds);
-    const struct wb_moment_cloud **const taken = calloc(n, sizeof *taken);
+    cycle->clouds = wb_memory_new(n, sizeof *cycle->clouds);
+    const struct wb_moment_cloud **const taken = wb_memory_new(n, sizeof *taken);
     int n_taken = 0;
     enum wb_status status = WB_OK;
-    if (!cycle->clouds || !taken)
-        status = wb_fail(WB_ERR_MEMORY, "no memory for %zu specimens", n);
-    for (int i = 0; status == WB_OK && i < c->n_members; i++) {
+    for (int i = 0; i < c->n_members; i++) {
         const struct wb_cycle_fit *const fit = &c->members[i].answers[c->chosen].fit;
         const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
         struct wb_reason why = {.text = ""};
@@ -113,7 +112,7 @@ static enum wb_status take_clouds(struct wb_recordings_cycle *cycle,
         else
             cycle->clouds[i] = (struct wb_moment_cloud){.n = 0};
     }
-    if (status == WB_OK && n_taken > 0) {
+    if (n_taken > 0) {
         status = wb_moment_curvature_compare(
             taken, n_taken, &c->law, c->members[0].data.info.outer_diameter, &cycle->comparison);
         cycle->has_comparison = status == WB_OK;

@@ -13,6 +13,7 @@
 #include "analysis/report/bench/recordings_results_private.h"
 #include "analysis/report/reasons.h"
 #include "base/interrupt.h"
+#include "base/memory.h"
 #include "daq/recording/recording.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -185,8 +186,9 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
     struct wb_recordings_results_wire *const wire = job->wire;
     struct wb_recordings_results_step *const step = &wire->steps[job->purpose];
     const bool calibrates = job->purpose == WB_RECORDINGS_CALIBRATION;
-    const struct wb_dataset **const datasets = calloc((size_t)step->tests.n + 1, sizeof *datasets);
-    const int n = datasets ? usable_datasets(&step->tests, datasets) : 0;
+    const struct wb_dataset **const datasets =
+        wb_memory_new((size_t)step->tests.n, sizeof *datasets);
+    const int n = usable_datasets(&step->tests, datasets);
     if (n == 0 || (!calibrates && !wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))) {
         wb_text_append(&step->problem, "%s", n == 0 ? no_recording : no_calibration);
         free(datasets);
@@ -226,8 +228,8 @@ static void run_cycle(const struct wb_recordings *campaign, const struct job *jo
     const struct wb_recordings_results_tests *const tests = &wire->steps[job->purpose].tests;
     enum wb_recordings_results_state *const state = &wire->cycle_states[job->purpose];
     struct wb_text *const problem = &wire->cycle_problems[job->purpose];
-    const struct wb_dataset **const datasets = calloc((size_t)tests->n + 1, sizeof *datasets);
-    const int n = datasets ? usable_datasets(tests, datasets) : 0;
+    const struct wb_dataset **const datasets = wb_memory_new((size_t)tests->n, sizeof *datasets);
+    const int n = usable_datasets(tests, datasets);
     if (n == 0 || (!calibrates && !wb_recordings_results_cycle(wire))) {
         wb_text_append(problem, "%s", n == 0 ? no_recording : no_calibration);
         free(datasets);
@@ -375,16 +377,13 @@ static void run_threads(struct schedule *schedule, int n_threads)
 
 /* --- all of it --- */
 
-static enum wb_status prepare_tests(struct wb_recordings_results_tests *tests,
-                                    const struct wb_recordings_tests *wanted)
+static void prepare_tests(struct wb_recordings_results_tests *tests,
+                          const struct wb_recordings_tests *wanted)
 {
-    tests->items = calloc((size_t)wanted->n + 1, sizeof *tests->items);
-    if (!tests->items)
-        return wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
+    tests->items = wb_memory_new((size_t)wanted->n, sizeof *tests->items);
     tests->n = wanted->n;
     for (int i = 0; i < wanted->n; i++)
         tests->items[i].wanted = &wanted->items[i];
-    return WB_OK;
 }
 
 enum wb_status wb_recordings_results_load(void *context, const void *of)
@@ -396,9 +395,7 @@ enum wb_status wb_recordings_results_load(void *context, const void *of)
     outcome->campaign = &campaign->head;
     outcome->n_wanted = wb_recordings_count(campaign, &outcome->n_missing);
     outcome->n_steps = outcome->n_wanted;
-    results->wires = calloc((size_t)campaign->n_wires, sizeof *results->wires);
-    if (!results->wires)
-        return wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
+    results->wires = wb_memory_new((size_t)campaign->n_wires, sizeof *results->wires);
     results->n_wires = campaign->n_wires;
     for (int i = 0; i < campaign->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &results->wires[i];
@@ -409,7 +406,7 @@ enum wb_status wb_recordings_results_load(void *context, const void *of)
             wire->steps[k].state = is_wanted ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
             wire->cycle_states[k] = has_cycle ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
             outcome->n_steps += is_wanted + has_cycle;
-            WB_TRY(prepare_tests(&wire->steps[k].tests, &wire->wanted->tests[k]));
+            prepare_tests(&wire->steps[k].tests, &wire->wanted->tests[k]);
         }
     }
     return WB_OK;
@@ -476,9 +473,7 @@ enum wb_status wb_recordings_results_compute(void *of, int n_threads, wb_kind_pr
                                 .results = results,
                                 .progress = progress,
                                 .context = context};
-    schedule.jobs = calloc((size_t)results->outcome.n_steps, sizeof *schedule.jobs);
-    if (!schedule.jobs)
-        return wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
+    schedule.jobs = wb_memory_new((size_t)results->outcome.n_steps, sizeof *schedule.jobs);
     add_jobs(&schedule);
     if (n_threads <= 0) {
         const long cores = sysconf(_SC_NPROCESSORS_ONLN);
