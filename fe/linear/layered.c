@@ -121,9 +121,7 @@ enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks, const in
      * depend on the machine's load to the last bit; and the blocks are too small to share well. */
     openblas_set_num_threads(1);
 
-    struct wb_layered *layered = calloc(1, sizeof *layered);
-    if (!layered)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a layered system");
+    struct wb_layered *const layered = wb_memory_new(1, sizeof *layered);
     layered->n_blocks = n_blocks;
     layered->n_unknowns = first[n_blocks];
     layered->symmetric = symmetric;
@@ -132,8 +130,6 @@ enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks, const in
     layered->blocks = wb_memory_take(&layered->memory, (size_t)n_blocks, sizeof *layered->blocks);
     layered->block_of = wb_memory_take(&layered->memory, n, sizeof *layered->block_of);
     layered->pivots = wb_memory_take(&layered->memory, n, sizeof *layered->pivots);
-    if (layered->memory.failed)
-        goto no_memory;
 
     layered->n_entries = lay_out(layered, first, link);
     double wanted = 1.0;
@@ -147,15 +143,9 @@ enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks, const in
         &layered->memory, (size_t)layered->n_most * (size_t)layered->n_most, sizeof(double));
     layered->bunch =
         wb_memory_take(&layered->memory, (size_t)layered->n_bunch, sizeof *layered->bunch);
-    if (layered->memory.failed)
-        goto no_memory;
     hand_out(layered);
     *out = layered;
     return WB_OK;
-
-no_memory:
-    wb_layered_destroy(layered);
-    return wb_fail(WB_ERR_MEMORY, "no memory for a layered system of %d unknowns", first[n_blocks]);
 }
 
 void wb_layered_destroy(struct wb_layered *layered)

@@ -104,7 +104,7 @@ static struct wb_solid_settings complete_settings(const struct wb_solid_settings
     return s;
 }
 
-static enum wb_status copy_model(struct wb_solid *solid, const struct wb_solid_model *model)
+static void copy_model(struct wb_solid *solid, const struct wb_solid_model *model)
 {
     const size_t n = 3 * (size_t)model->mesh->n_nodes;
 
@@ -112,17 +112,14 @@ static enum wb_status copy_model(struct wb_solid *solid, const struct wb_solid_m
     solid->n_supports = model->n_supports;
     solid->supports =
         wb_memory_take(&solid->memory, (size_t)model->n_supports + 1, sizeof *solid->supports);
-    if (model->nodal_force)
-        solid->nodal_force = wb_memory_take(&solid->memory, n, sizeof *solid->nodal_force);
-    if (solid->memory.failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for supports and loads");
     memcpy(solid->supports, model->supports, (size_t)model->n_supports * sizeof *solid->supports);
-    if (model->nodal_force)
+    if (model->nodal_force) {
+        solid->nodal_force = wb_memory_take(&solid->memory, n, sizeof *solid->nodal_force);
         memcpy(solid->nodal_force, model->nodal_force, n * sizeof *solid->nodal_force);
-    return WB_OK;
+    }
 }
 
-static enum wb_status take_memory(struct wb_solid *solid)
+static void take_memory(struct wb_solid *solid)
 {
     const size_t n = 3 * (size_t)solid->body.mesh->n_nodes;
     double **const vectors[] = {&solid->u,    &solid->committed, &solid->before,
@@ -133,10 +130,6 @@ static enum wb_status take_memory(struct wb_solid *solid)
         *vectors[i] = wb_memory_take(&solid->memory, n, sizeof(double));
     solid->right = wb_memory_take(&solid->memory, (size_t)solid->body.n_equations * COLUMNS,
                                   sizeof *solid->right);
-    return solid->memory.failed
-               ? wb_fail(WB_ERR_MEMORY, "out of memory for %zu displacements and %d equations", n,
-                         solid->body.n_equations)
-               : WB_OK;
 }
 
 enum wb_status wb_solid_create(struct wb_solid **out, const struct wb_solid_model *model,
@@ -149,26 +142,18 @@ enum wb_status wb_solid_create(struct wb_solid **out, const struct wb_solid_mode
                        "the strand is %g m long above x = %g m: expected a length of 0 or more",
                        model->strand_length, model->strand_x);
 
-    struct wb_solid *solid = calloc(1, sizeof *solid);
-    if (!solid)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a solid");
+    struct wb_solid_body body;
+    WB_TRY(wb_solid_body_init(&body, model));
+    struct wb_solid *const solid = wb_memory_new(1, sizeof *solid);
     solid->settings = complete_settings(settings);
     solid->pace = solid->settings.first_increment;
-
-    enum wb_status status = wb_solid_body_init(&solid->body, model);
-    if (status == WB_OK)
-        status = wb_solid_tip_init(&solid->tip, model->mesh, model->parts);
-    if (status == WB_OK)
-        status = wb_solid_update_init(&solid->update, model->mesh);
-    if (status == WB_OK)
-        status = copy_model(solid, model);
-    if (status == WB_OK)
-        status = take_memory(solid);
-    if (status != WB_OK)
-        wb_solid_destroy(solid);
-    else
-        *out = solid;
-    return status;
+    solid->body = body;
+    wb_solid_tip_init(&solid->tip, model->mesh, model->parts);
+    wb_solid_update_init(&solid->update, model->mesh);
+    copy_model(solid, model);
+    take_memory(solid);
+    *out = solid;
+    return WB_OK;
 }
 
 void wb_solid_destroy(struct wb_solid *solid)

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/material/hardening.h"
 
 #define WB_LOG_DOMAIN "solid"
@@ -44,18 +45,15 @@ static enum wb_status create_tangent(struct wb_solid_body *body)
 {
     const struct wb_solid_mesh *mesh = body->mesh;
     const size_t n = (size_t)mesh->n_layers;
-    int *first = malloc((n + 1) * sizeof *first), *link = malloc(n * sizeof *link);
-    enum wb_status status = WB_ERR_MEMORY;
+    int *const first = wb_memory_new(n + 1, sizeof *first);
+    int *const link = wb_memory_new(n, sizeof *link);
 
-    if (first && link) {
-        for (int l = 0; l <= mesh->n_layers; l++)
-            first[l] = equations_before(body, mesh->layer[l]);
-        for (int l = 0; l < mesh->n_layers; l++)
-            link[l] = equations_before(body, mesh->link[l]);
-        status = wb_layered_create(&body->tangent, mesh->n_layers, first, link, !body->has_contact);
-    } else {
-        status = wb_fail(WB_ERR_MEMORY, "out of memory for %d layers", mesh->n_layers);
-    }
+    for (int l = 0; l <= mesh->n_layers; l++)
+        first[l] = equations_before(body, mesh->layer[l]);
+    for (int l = 0; l < mesh->n_layers; l++)
+        link[l] = equations_before(body, mesh->link[l]);
+    const enum wb_status status =
+        wb_layered_create(&body->tangent, mesh->n_layers, first, link, !body->has_contact);
     free(first);
     free(link);
     return status;
@@ -161,13 +159,8 @@ enum wb_status wb_solid_body_init(struct wb_solid_body *body, const struct wb_so
     body->element_stiffness =
         wb_memory_take(&body->memory, WB_HEX20_UNKNOWNS * WB_HEX20_UNKNOWNS, sizeof(double));
 
-    enum wb_status status = WB_OK;
-    if (body->memory.failed)
-        status = wb_fail(WB_ERR_MEMORY, "out of memory for %d elements", mesh->n_elements);
-    if (status == WB_OK) {
-        memcpy(body->parts, model->parts, (size_t)mesh->n_parts * sizeof *body->parts);
-        status = number_equations(body, model);
-    }
+    memcpy(body->parts, model->parts, (size_t)mesh->n_parts * sizeof *body->parts);
+    enum wb_status status = number_equations(body, model);
     if (status == WB_OK)
         status = prepare_elements(body, model);
     if (status == WB_OK)

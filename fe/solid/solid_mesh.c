@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/solid/solid_mesh_private.h"
 
 #define WB_LOG_DOMAIN "mesh"
@@ -38,10 +39,6 @@ enum wb_status wb_solid_mesh_init(struct wb_solid_mesh *mesh, int n_nodes, int n
     made.part = wb_memory_take(&made.memory, (size_t)n_elements, sizeof *made.part);
     made.layer = wb_memory_take(&made.memory, 2, sizeof *made.layer);
     made.link = wb_memory_take(&made.memory, 1, sizeof *made.link);
-    if (made.memory.failed) {
-        wb_solid_mesh_release(&made);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a mesh of %d elements", n_elements);
-    }
     made.layer[1] = n_nodes;
     *mesh = made;
     return WB_OK;
@@ -89,9 +86,7 @@ enum wb_status wb_solid_mesh_longitudinal(const struct wb_solid_mesh *mesh,
     }
     if (found == 0)
         return wb_fail(WB_ERR_ARGUMENT, "no face of the mesh lies on the plane z = 0");
-    struct wb_solid_face *list = calloc((size_t)found, sizeof *list);
-    if (!list)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d faces", found);
+    struct wb_solid_face *const list = wb_memory_new((size_t)found, sizeof *list);
 
     int next = 0;
     for (int e = 0; e < mesh->n_elements; e++) {
@@ -121,9 +116,7 @@ enum wb_status wb_solid_mesh_section(const struct wb_solid_mesh *mesh, double x,
             section = i / 2;
     }
     const int in_slice = mesh->n_tip_faces;
-    struct wb_solid_face *list = calloc((size_t)in_slice, sizeof *list);
-    if (!list)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d faces", in_slice);
+    struct wb_solid_face *const list = wb_memory_new((size_t)in_slice, sizeof *list);
 
     const int first = (section > 0 ? section - 1 : 0) * in_slice;
     for (int q = 0; q < in_slice; q++)
@@ -178,8 +171,7 @@ static void section_release(struct section *s)
     wb_memory_release(&s->memory);
 }
 
-static enum wb_status section_init(struct section *s, int most_nodes, int most_quads,
-                                   int most_edges)
+static void section_init(struct section *s, int most_nodes, int most_quads, int most_edges)
 {
     *s = (struct section){0};
     s->at = wb_memory_take(&s->memory, (size_t)most_nodes, sizeof *s->at);
@@ -187,19 +179,13 @@ static enum wb_status section_init(struct section *s, int most_nodes, int most_q
     s->quad = wb_memory_take(&s->memory, (size_t)most_quads, sizeof *s->quad);
     s->part = wb_memory_take(&s->memory, (size_t)most_quads, sizeof *s->part);
     s->edge = wb_memory_take(&s->memory, (size_t)most_edges + 1, sizeof *s->edge);
-    if (s->memory.failed) {
-        section_release(s);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a section of %d elements", most_quads);
-    }
-    return WB_OK;
 }
 
-static enum wb_status lattice_init(struct lattice *lattice, int ni, int nj)
+static void lattice_init(struct lattice *lattice, int ni, int nj)
 {
     lattice->ni = ni;
     lattice->nj = nj;
-    lattice->id = calloc((size_t)ni * (size_t)nj, sizeof *lattice->id);
-    return lattice->id ? WB_OK : wb_fail(WB_ERR_MEMORY, "no memory for %d x %d nodes", ni, nj);
+    lattice->id = wb_memory_new((size_t)ni * (size_t)nj, sizeof *lattice->id);
 }
 
 /* Adds the node at grid point (i, j), if elements have one there, and returns its number. */
@@ -344,35 +330,27 @@ static void fill_wire_section(struct section *s, const struct wb_solid_mesh_wire
     }
 }
 
-static enum wb_status wire_section(struct section *s, const struct wb_solid_mesh_wire *wire)
+static void wire_section(struct section *s, const struct wb_solid_mesh_wire *wire)
 {
     const int m = wire->section_density;
     struct lattice square = {0}, ring[PARTS] = {{0}};
     const int nodes = 12 * m * m + 8 * m + 1 + wire->n_parts * (24 * m * m + 16 * m);
 
-    WB_TRY(section_init(s, nodes, 4 * m * m + wire->n_parts * 8 * m * m, 8 * m));
-    enum wb_status status = lattice_init(&square, 4 * m + 1, 4 * m + 1);
-    for (int p = 0; p < wire->n_parts && status == WB_OK; p++)
-        status = lattice_init(&ring[p], 2 * m + 1, 16 * m);
-    if (status == WB_OK)
-        fill_wire_section(s, wire, &square, ring);
-    else
-        section_release(s);
+    section_init(s, nodes, 4 * m * m + wire->n_parts * 8 * m * m, 8 * m);
+    lattice_init(&square, 4 * m + 1, 4 * m + 1);
+    for (int p = 0; p < wire->n_parts; p++)
+        lattice_init(&ring[p], 2 * m + 1, 16 * m);
+    fill_wire_section(s, wire, &square, ring);
     free(square.id);
     for (int p = 0; p < PARTS; p++)
         free(ring[p].id);
-    return status;
 }
 
-static enum wb_status block_section(struct section *s, int ny, int nz)
+static void block_section(struct section *s, int ny, int nz)
 {
     struct lattice lattice;
-    WB_TRY(section_init(s, (2 * ny + 1) * (2 * nz + 1), ny * nz, 0));
-    const enum wb_status status = lattice_init(&lattice, 2 * ny + 1, 2 * nz + 1);
-    if (status != WB_OK) {
-        section_release(s);
-        return status;
-    }
+    section_init(s, (2 * ny + 1) * (2 * nz + 1), ny * nz, 0);
+    lattice_init(&lattice, 2 * ny + 1, 2 * nz + 1);
     for (int i = 0; i <= 2 * ny; i++) {
         for (int j = 0; j <= 2 * nz; j++)
             *lattice_at(&lattice, i, j) =
@@ -380,7 +358,6 @@ static enum wb_status block_section(struct section *s, int ny, int nz)
     }
     add_quads(s, &lattice, ny, nz, 0);
     free(lattice.id);
-    return WB_OK;
 }
 
 /* Node numbers in the sweep: node i of section l, and halfway between section l - 1 and l. */
@@ -471,10 +448,6 @@ static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s,
     made.pair = s->n_edges > 0
                     ? wb_memory_take(&made.memory, (size_t)made.n_pairs, sizeof *made.pair)
                     : NULL;
-    if (made.memory.failed) {
-        wb_solid_mesh_release(&made);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a mesh of %lld elements", elements);
-    }
 
     fill_elements(&made, s, slices);
     for (int l = 0; l <= slices; l++) {
@@ -495,14 +468,11 @@ static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s,
 }
 
 /* Clamp, tip faces and axis of a swept wire; `centre` is the axis' node in the section. */
-static enum wb_status mark_wire(struct wb_solid_mesh *mesh, const struct section *s, int slices,
-                                int centre)
+static void mark_wire(struct wb_solid_mesh *mesh, const struct section *s, int slices, int centre)
 {
     mesh->clamp = wb_memory_take(&mesh->memory, (size_t)s->n, sizeof *mesh->clamp);
     mesh->tip_face = wb_memory_take(&mesh->memory, (size_t)s->n_quads, sizeof *mesh->tip_face);
     mesh->axis = wb_memory_take(&mesh->memory, 2 * (size_t)slices + 1, sizeof *mesh->axis);
-    if (mesh->memory.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a mesh of %d elements", mesh->n_elements);
 
     mesh->n_clamp = s->n;
     for (int i = 0; i < s->n; i++)
@@ -519,7 +489,6 @@ static enum wb_status mark_wire(struct wb_solid_mesh *mesh, const struct section
         if (l > 0)
             mesh->axis[2 * l - 1] = halfway_node(s, l, centre);
     }
-    return WB_OK;
 }
 
 static void place_along(void *context, const double unit[3], double position[3])
@@ -561,20 +530,17 @@ enum wb_status wb_solid_mesh_sweep(struct wb_solid_mesh *mesh,
     struct wb_solid_mesh made;
     double length = wire->length;
     WB_TRY(check_wire(wire));
-    WB_TRY(wire_section(&section, wire));
+    wire_section(&section, wire);
 
     const struct placement along = {place_along, &length};
-    enum wb_status status = sweep(&made, &section, wire->elements_along, &along);
+    const enum wb_status status = sweep(&made, &section, wire->elements_along, &along);
     if (status == WB_OK) {
         made.n_parts = wire->n_parts;
         int centre = 0;
         while (section.at[centre][0] != 0.0 || section.at[centre][1] != 0.0)
             centre++;
-        status = mark_wire(&made, &section, wire->elements_along, centre);
-        if (status == WB_OK)
-            *mesh = made;
-        else
-            wb_solid_mesh_release(&made);
+        mark_wire(&made, &section, wire->elements_along, centre);
+        *mesh = made;
     }
     section_release(&section);
     return status;
@@ -598,7 +564,7 @@ enum wb_status wb_solid_mesh_block(struct wb_solid_mesh *mesh, int nx, int ny, i
         return wb_fail(WB_ERR_ARGUMENT,
                        "the block has %d x %d x %d elements: expected 1 to %d, 1 to %d and 1 to %d",
                        nx, ny, nz, MOST_ALONG, most, most);
-    WB_TRY(block_section(&section, ny, nz));
+    block_section(&section, ny, nz);
     const struct placement to = {map ? map : place_unit, context};
     const enum wb_status status = sweep(mesh, &section, nx, &to);
     section_release(&section);

@@ -73,7 +73,7 @@ struct wb_solid_mesh_wire {
 
 /* Conforming O-grid, curved edges with their midside nodes on the circles. Midside nodes of the
  * inner square as in any smooth grid; elements well shaped (positive Jacobian at all corners). Mesh
- * lines lie on the planes y = 0 and z = 0. Errors: WB_ERR_ARGUMENT for an impossible wire, memory.
+ * lines lie on the planes y = 0 and z = 0. WB_ERR_ARGUMENT for an impossible wire.
  */
 WB_MUST_CHECK enum wb_status wb_solid_mesh_sweep(struct wb_solid_mesh *mesh,
                                                  const struct wb_solid_mesh_wire *wire);

@@ -4,10 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/vec3.h"
 #include "fe/solid/hex20.h"
-
-#define WB_LOG_DOMAIN "solid"
 
 enum {
     N = WB_SOLID_TIP_UNKNOWNS
@@ -18,8 +17,8 @@ struct sums {
     double one, yy, zz; /* of E, E y^2, E z^2 */
 };
 
-static enum wb_status find_nodes(struct wb_solid_tip_section *tip, const struct wb_solid_mesh *mesh,
-                                 int *place)
+static void find_nodes(struct wb_solid_tip_section *tip, const struct wb_solid_mesh *mesh,
+                       int *place)
 {
     for (int i = 0; i < mesh->n_nodes; i++)
         place[i] = -1;
@@ -29,14 +28,11 @@ static enum wb_status find_nodes(struct wb_solid_tip_section *tip, const struct 
             if (place[node] < 0)
                 place[node] = tip->n_nodes++;
         }
-    tip->node = calloc((size_t)tip->n_nodes, sizeof *tip->node);
-    tip->pattern = calloc((size_t)tip->n_nodes, sizeof *tip->pattern);
-    if (!tip->node || !tip->pattern)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the wire's end");
+    tip->node = wb_memory_new((size_t)tip->n_nodes, sizeof *tip->node);
+    tip->pattern = wb_memory_new((size_t)tip->n_nodes, sizeof *tip->pattern);
     for (int i = 0; i < mesh->n_nodes; i++)
         if (place[i] >= 0)
             tip->node[place[i]] = i;
-    return WB_OK;
 }
 
 static void add_faces(struct wb_solid_tip_section *tip, const struct wb_solid_mesh *mesh,
@@ -72,23 +68,17 @@ static void add_faces(struct wb_solid_tip_section *tip, const struct wb_solid_me
     tip->radius = sqrt((sums.yy + sums.zz) / sums.one);
 }
 
-enum wb_status wb_solid_tip_init(struct wb_solid_tip_section *tip, const struct wb_solid_mesh *mesh,
-                                 const struct wb_solid_part *parts)
+void wb_solid_tip_init(struct wb_solid_tip_section *tip, const struct wb_solid_mesh *mesh,
+                       const struct wb_solid_part *parts)
 {
     *tip = (struct wb_solid_tip_section){0};
     if (mesh->n_tip_faces == 0)
-        return WB_OK;
+        return;
 
-    int *place = malloc((size_t)mesh->n_nodes * sizeof *place);
-    if (!place)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the wire's end");
-    const enum wb_status status = find_nodes(tip, mesh, place);
-    if (status == WB_OK)
-        add_faces(tip, mesh, parts, place);
-    else
-        wb_solid_tip_release(tip);
+    int *const place = wb_memory_new((size_t)mesh->n_nodes, sizeof *place);
+    find_nodes(tip, mesh, place);
+    add_faces(tip, mesh, parts, place);
     free(place);
-    return status;
 }
 
 void wb_solid_tip_release(struct wb_solid_tip_section *tip)

@@ -12,7 +12,6 @@
 #ifndef WB_FE_SOLID_SOLID_TIP_H
 #define WB_FE_SOLID_SOLID_TIP_H
 
-#include "base/status.h"
 #include "fe/solid/solid_model.h"
 
 enum {
@@ -28,9 +27,8 @@ struct wb_solid_tip_section {
 };
 
 /* From a swept mesh's end faces and each part's Young's modulus. */
-WB_MUST_CHECK enum wb_status wb_solid_tip_init(struct wb_solid_tip_section *tip,
-                                               const struct wb_solid_mesh *mesh,
-                                               const struct wb_solid_part *parts);
+void wb_solid_tip_init(struct wb_solid_tip_section *tip, const struct wb_solid_mesh *mesh,
+                       const struct wb_solid_part *parts);
 void wb_solid_tip_release(struct wb_solid_tip_section *tip); /* accepts a zeroed one */
 
 /* z for displacements u (3 n_nodes). */

@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/vec3.h"
-
-#define WB_LOG_DOMAIN "solid"
 
 static double inner(const double *a, const double *b)
 {
@@ -40,23 +39,18 @@ static void turn(const double w[3], const double v[3], double out[3])
         out[i] = v[i] + change[i];
 }
 
-enum wb_status wb_solid_update_init(struct wb_solid_update *update,
-                                    const struct wb_solid_mesh *mesh)
+void wb_solid_update_init(struct wb_solid_update *update, const struct wb_solid_mesh *mesh)
 {
     *update = (struct wb_solid_update){.mesh = mesh};
     if (mesh->n_axis < 2)
-        return WB_OK;
+        return;
 
     const double start = mesh->node[mesh->axis[0]][0];
     const double length = mesh->node[mesh->axis[mesh->n_axis - 1]][0] - start;
     const int n = mesh->n_axis;
-    update->first = calloc((size_t)n + 2, sizeof *update->first);
-    update->node = calloc((size_t)mesh->n_nodes, sizeof *update->node);
-    update->section = calloc((size_t)n, sizeof *update->section);
-    if (!update->first || !update->node || !update->section) {
-        wb_solid_update_release(update);
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %d sections", n);
-    }
+    update->first = wb_memory_new((size_t)n + 2, sizeof *update->first);
+    update->node = wb_memory_new((size_t)mesh->n_nodes, sizeof *update->node);
+    update->section = wb_memory_new((size_t)n, sizeof *update->section);
     update->n_sections = n;
 
     /* Counting sort by section; first[s + 1] is where section s goes on, and in the end its end. */
@@ -74,7 +68,6 @@ enum wb_status wb_solid_update_init(struct wb_solid_update *update,
     for (int s = n; s > 0; s--)
         update->first[s] = update->first[s - 1];
     update->first[0] = 0;
-    return WB_OK;
 }
 
 void wb_solid_update_release(struct wb_solid_update *update)

@@ -10,7 +10,6 @@
 #ifndef WB_FE_SOLID_SOLID_UPDATE_H
 #define WB_FE_SOLID_SOLID_UPDATE_H
 
-#include "base/status.h"
 #include "fe/solid/solid_mesh.h"
 
 struct wb_solid_update_section {
@@ -28,8 +27,7 @@ struct wb_solid_update {
     struct wb_solid_update_section *section;
 };
 
-WB_MUST_CHECK enum wb_status wb_solid_update_init(struct wb_solid_update *update,
-                                                  const struct wb_solid_mesh *mesh);
+void wb_solid_update_init(struct wb_solid_update *update, const struct wb_solid_mesh *mesh);
 void wb_solid_update_release(struct wb_solid_update *update); /* accepts a zeroed one */
 
 /* u (3 n_nodes) moves by `scale` times `increment`. */
