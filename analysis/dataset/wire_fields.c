@@ -194,10 +194,9 @@ static const double corners[8][2] = {{0, 0},   {1, 0},   {1, 1},   {0, 1},
 static enum wb_status add_rod_section(struct wb_fields *fields, const char *state,
                                       const struct wb_wire1d *rod, double s)
 {
-    struct wb_wire1d_fibre *fibres;
     struct wb_field *field;
     int n;
-    WB_TRY(wb_wire1d_section(rod, s, &fibres, &n));
+    struct wb_wire1d_fibre *const fibres = wb_wire1d_section(rod, s, &n);
     const enum wb_status status = wb_fields_add(fields, state, s, n, &field, NULL);
     for (int f = 0; status == WB_OK && f < n; f++) {
         const struct wb_wire1d_fibre *const fibre = &fibres[f];
@@ -269,9 +268,9 @@ static enum wb_status add_rod_slices(struct wb_fields *fields, const struct wb_w
     for (int i = 0; i < n_slices; i++) {
         struct slice slice = {.begin = model->length * i / n_slices,
                               .end = model->length * (i + 1) / n_slices};
-        struct wb_wire1d_fibre *fibres;
         int n;
-        WB_TRY(wb_wire1d_section(rod, 0.5 * (slice.begin + slice.end), &fibres, &n));
+        struct wb_wire1d_fibre *const fibres =
+            wb_wire1d_section(rod, 0.5 * (slice.begin + slice.end), &n);
         enum wb_status status = WB_OK;
         if (i == 0) {
             for (int f = 0; f < n; f++)

@@ -93,7 +93,7 @@ static enum wb_status take_solid(struct run *run, const char *state)
 {
     const struct wb_solid_mesh *const mesh = wb_wire3d_mesh(run->solid);
     struct wb_wire3d_fields fields;
-    WB_TRY(wb_wire3d_fields(run->solid, &fields));
+    wb_wire3d_fields(run->solid, &fields);
     enum wb_status status = WB_OK;
     if (state)
         status = wb_wire_fields_solid(&run->fields, &run->model, state, mesh, &fields);

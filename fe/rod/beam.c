@@ -123,7 +123,7 @@ static enum wb_status check_model(const struct wb_beam_model *model)
     return WB_OK;
 }
 
-static bool take_memory(struct wb_beam *beam)
+static void take_memory(struct wb_beam *beam)
 {
     const size_t nodes = (size_t)beam->n_nodes, elements = (size_t)beam->n_elements;
 
@@ -159,7 +159,6 @@ static bool take_memory(struct wb_beam *beam)
     beam->banded.diagonal = wb_memory_take(&beam->memory, elements, sizeof *beam->banded.diagonal);
     beam->banded.upper = wb_memory_take(&beam->memory, elements, sizeof *beam->banded.upper);
     beam->banded.right = wb_memory_take(&beam->memory, elements, sizeof *beam->banded.right);
-    return !beam->memory.failed;
 }
 
 enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *model)
@@ -167,16 +166,10 @@ enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *
     *out = NULL;
     WB_TRY(check_model(model));
 
-    struct wb_beam *beam = calloc(1, sizeof *beam);
-    if (!beam)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a beam");
-
-    const enum wb_status status = wb_fibres_create(&beam->fibres, model->section);
-    if (status != WB_OK) {
-        wb_beam_destroy(beam);
-        return status;
-    }
-
+    struct wb_fibres *fibres;
+    WB_TRY(wb_fibres_create(&fibres, model->section));
+    struct wb_beam *const beam = wb_memory_new(1, sizeof *beam);
+    beam->fibres = fibres;
     beam->n_elements = model->n_elements;
     beam->n_nodes = 2 * model->n_elements + 1;
     beam->length = model->length;
@@ -184,11 +177,7 @@ enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *
     beam->load_x = model->load_x;
     beam->load_y = model->load_y;
     beam->history_size = wb_fibres_history_size(beam->fibres) * (size_t)(beam->n_elements * POINTS);
-    if (!take_memory(beam)) {
-        wb_beam_destroy(beam);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a beam of %d elements", model->n_elements);
-    }
-
+    take_memory(beam);
     wb_rod_shape_init(&beam->shape, beam->element_length);
     const enum wb_status bent =
         wb_beam_set_curvature(beam, model->natural_curvature, model->curvature_context);

@@ -632,9 +632,7 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
     if (section->n_fibres < 1 || section->n_materials < 1)
         return wb_fail(WB_ERR_ARGUMENT, "a section without fibres cannot carry anything");
 
-    struct wb_fibres *f = calloc(1, sizeof *f);
-    if (!f)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a section");
+    struct wb_fibres *const f = wb_memory_new(1, sizeof *f);
 
     int n = 0;
     for (int m = 0; m < section->n_materials; m++) {
@@ -661,10 +659,6 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
     f->batches = wb_memory_take(&f->memory, materials, sizeof *f->batches);
     f->materials = wb_memory_take(&f->memory, materials, sizeof *f->materials);
     f->tables = wb_memory_take(&f->memory, materials, sizeof *f->tables);
-    if (f->memory.failed) {
-        wb_fibres_destroy(f);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
-    }
 
     sort_fibres(f, section);
     choose_fastest(f);

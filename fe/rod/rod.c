@@ -106,7 +106,7 @@ static enum wb_status check_model(const struct wb_rod_model *model)
     return WB_OK;
 }
 
-static bool take_memory(struct wb_rod *rod)
+static void take_memory(struct wb_rod *rod)
 {
     const size_t nodes = (size_t)rod->n_nodes, elements = (size_t)rod->n_elements;
     const size_t points = (size_t)rod->n_points;
@@ -129,7 +129,6 @@ static bool take_memory(struct wb_rod *rod)
     chain->upper = wb_memory_take(&rod->memory, elements, sizeof *chain->upper);
     chain->lower = wb_memory_take(&rod->memory, elements, sizeof *chain->lower);
     chain->right = wb_memory_take(&rod->memory, elements, sizeof *chain->right);
-    return !rod->memory.failed;
 }
 
 enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *model)
@@ -137,9 +136,7 @@ enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *mod
     *out = NULL;
     WB_TRY(check_model(model));
 
-    struct wb_rod *rod = calloc(1, sizeof *rod);
-    if (!rod)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a rod");
+    struct wb_rod *const rod = wb_memory_new(1, sizeof *rod);
     rod->section = model->section;
     rod->n_elements = model->n_elements;
     rod->n_nodes = 2 * model->n_elements + 1;
@@ -150,10 +147,7 @@ enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *mod
     rod->has_balance = model->has_balance;
     memcpy(rod->load, model->load, sizeof rod->load);
     wb_rod_shape_init(&rod->shape, model->length / model->n_elements);
-    if (!take_memory(rod)) {
-        wb_rod_destroy(rod);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a rod of %d elements", model->n_elements);
-    }
+    take_memory(rod);
     if (!lay_out(rod, model)) {
         wb_rod_destroy(rod);
         return wb_fail(WB_ERR_ARGUMENT, "the natural curvature is not finite everywhere");

@@ -153,7 +153,7 @@ static enum wb_status check_parts(int n_parts, const struct wb_rod_section_part 
     return WB_OK;
 }
 
-static bool take_memory(struct wb_rod_section *s)
+static void take_memory(struct wb_rod_section *s)
 {
     const size_t parts = (size_t)s->n_parts, n = (size_t)s->n, rings = (size_t)s->n_rings;
 
@@ -165,7 +165,6 @@ static bool take_memory(struct wb_rod_section *s)
     s->area = wb_memory_take(&s->memory, n, sizeof *s->area);
     s->radius = wb_memory_take(&s->memory, parts * rings, sizeof *s->radius);
     s->edge = wb_memory_take(&s->memory, parts * (rings + 1), sizeof *s->edge);
-    return !s->memory.failed;
 }
 
 enum wb_status wb_rod_section_create(struct wb_rod_section **out, int n_parts,
@@ -182,18 +181,12 @@ enum wb_status wb_rod_section_create(struct wb_rod_section **out, int n_parts,
         complete.n_around = DEFAULT_AROUND;
     WB_TRY(check_parts(n_parts, parts, &complete));
 
-    struct wb_rod_section *s = calloc(1, sizeof *s);
-    if (!s)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a section");
+    struct wb_rod_section *const s = wb_memory_new(1, sizeof *s);
     s->n_parts = n_parts;
     s->n_rings = complete.n_rings;
     s->n_around = complete.n_around;
     s->n = n_parts * s->n_rings * s->n_around;
-    if (!take_memory(s)) {
-        const int n = s->n;
-        wb_rod_section_destroy(s);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
-    }
+    take_memory(s);
     for (int i = 0; i < n_parts; i++) {
         wb_rod_fibre_law_init(&s->laws[i], &parts[i].material, &s->tables[i]);
         fill_part(s, i, 0.5 * parts[i].inner_diameter, 0.5 * parts[i].outer_diameter);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/interpolate.h"
+#include "base/memory.h"
 #include "fe/linear/banded.h"
 #include "fe/linear/signature.h"
 
@@ -111,9 +112,7 @@ enum wb_status wb_rod_solver_create(struct wb_rod_solver **out,
             s.force_tolerance, s.smallest_increment, s.largest_increment, s.most_rotation,
             s.max_iterations);
 
-    struct wb_rod_solver *solver = calloc(1, sizeof *solver);
-    if (!solver)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a rod's solver");
+    struct wb_rod_solver *const solver = wb_memory_new(1, sizeof *solver);
     solver->model = *model;
     solver->settings = s;
     solver->scale_force = wb_rod_scale_force(model->rod);

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "fe/material/hardening.h"
 
 #define WB_LOG_DOMAIN "section"
@@ -34,26 +35,15 @@ double wb_section_shear_modulus(const struct wb_material *material)
 }
 
 /* Grows the section by n fibres and one material; the fibres are for the caller to fill. */
-static enum wb_status grow(struct wb_section *section, const struct wb_material *material, int n,
-                           struct wb_fibre **fibres)
+static struct wb_fibre *grow(struct wb_section *section, const struct wb_material *material, int n)
 {
-    struct wb_fibre *more_fibres =
-        realloc(section->fibres, (size_t)(section->n_fibres + n) * sizeof *more_fibres);
-    if (!more_fibres)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", section->n_fibres + n);
-    section->fibres = more_fibres;
-
-    struct wb_material *more_materials =
-        realloc(section->materials, (size_t)(section->n_materials + 1) * sizeof *more_materials);
-    if (!more_materials)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d materials", section->n_materials + 1);
-    section->materials = more_materials;
-
-    *fibres = section->fibres + section->n_fibres;
-    section->materials[section->n_materials] = *material;
+    section->fibres =
+        wb_memory_resize(section->fibres, (size_t)(section->n_fibres + n), sizeof *section->fibres);
+    section->materials = wb_memory_resize(section->materials, (size_t)section->n_materials + 1,
+                                          sizeof *section->materials);
+    section->materials[section->n_materials++] = *material;
     section->n_fibres += n;
-    section->n_materials++;
-    return WB_OK;
+    return section->fibres + section->n_fibres - n;
 }
 
 /* Gauss-Chebyshev strips of the solid circle of radius R. */
@@ -135,9 +125,8 @@ enum wb_status wb_section_add_ring(struct wb_section *section, double inner_diam
     if (ring && count % 2 == 1)
         count++;
 
-    struct wb_fibre *fibres = NULL;
     const int index = section->n_materials;
-    WB_TRY(grow(section, material, count, &fibres));
+    struct wb_fibre *const fibres = grow(section, material, count);
     if (ring)
         fill_ring(fibres, count, 0.5 * inner_diameter, 0.5 * outer_diameter);
     else
@@ -168,11 +157,7 @@ enum wb_status wb_section_init_law(struct wb_section *section, double diameter,
     WB_TRY(wb_section_init_circle(section, diameter, &law->material, n));
     if (wb_law_is_plain(law))
         return WB_OK;
-    section->overlay = calloc(1, sizeof *section->overlay);
-    if (!section->overlay) {
-        wb_section_release(section);
-        return wb_fail(WB_ERR_MEMORY, "no memory for an overlay");
-    }
+    section->overlay = wb_memory_new(1, sizeof *section->overlay);
     wb_law_overlay(law, section->overlay);
     return WB_OK;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/linear/banded.h"
 #include "fe/rod/beam.h"
@@ -124,12 +125,6 @@ enum wb_status wb_cantilever_create(struct wb_cantilever **out,
     const struct wb_cantilever_settings complete = complete_settings(settings);
     WB_TRY(check_model(model, &complete));
 
-    struct wb_cantilever *c = calloc(1, sizeof *c);
-    if (!c)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a cantilever");
-    c->model = *model;
-    c->settings = complete;
-
     const struct wb_beam_model beam = {
         .section = model->section,
         .length = model->length,
@@ -139,11 +134,12 @@ enum wb_status wb_cantilever_create(struct wb_cantilever **out,
         .load_x = model->mass_per_length * model->gravity_x,
         .load_y = model->mass_per_length * model->gravity_y,
     };
-    const enum wb_status status = wb_beam_create(&c->beam, &beam);
-    if (status != WB_OK) {
-        free(c);
-        return status;
-    }
+    struct wb_beam *created;
+    WB_TRY(wb_beam_create(&created, &beam));
+    struct wb_cantilever *const c = wb_memory_new(1, sizeof *c);
+    c->model = *model;
+    c->settings = complete;
+    c->beam = created;
     c->model.section = NULL;
     wb_cantilever_reset(c);
     *out = c;

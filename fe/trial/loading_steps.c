@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "loading steps"
 
 enum {
@@ -41,21 +43,12 @@ enum wb_status wb_loading_steps_init(struct wb_loading_steps *loading,
     WB_TRY(check_plan(plan));
 
     const int rows = wb_loading_steps_planned_rows(plan);
-    loading->rows = calloc((size_t)rows, sizeof *loading->rows);
-    if (!loading->rows)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d rows", rows);
+    const size_t positions = (size_t)rows * (size_t)plan->n_shape;
+    loading->rows = wb_memory_new((size_t)rows, sizeof *loading->rows);
     loading->capacity = rows;
     loading->n_shape = plan->n_shape;
-    if (plan->n_shape == 0)
-        return WB_OK;
-
-    const size_t positions = (size_t)rows * (size_t)plan->n_shape;
-    loading->shape_x = calloc(positions, sizeof *loading->shape_x);
-    loading->shape_y = calloc(positions, sizeof *loading->shape_y);
-    if (!loading->shape_x || !loading->shape_y) {
-        wb_loading_steps_release(loading);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d shapes", rows);
-    }
+    loading->shape_x = wb_memory_new(positions, sizeof *loading->shape_x);
+    loading->shape_y = wb_memory_new(positions, sizeof *loading->shape_y);
     return WB_OK;
 }
 

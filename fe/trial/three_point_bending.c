@@ -114,7 +114,7 @@ static enum wb_status check_model(const struct wb_three_point_bending_model *m)
     return WB_OK;
 }
 
-static bool take_memory(struct wb_three_point_bending *b)
+static void take_memory(struct wb_three_point_bending *b)
 {
     const size_t nodes = (size_t)b->n_nodes;
     b->unbalanced = wb_memory_take(&b->memory, nodes, sizeof *b->unbalanced);
@@ -123,7 +123,6 @@ static bool take_memory(struct wb_three_point_bending *b)
     b->band.width = WIDTH;
     b->band.values =
         wb_memory_take(&b->memory, 3 * nodes * (size_t)wb_band_row(WIDTH), sizeof *b->band.values);
-    return !b->memory.failed;
 }
 
 /* The gap of a roller when the wire lies with its middle at (0, y), turned by `turn`; false where
@@ -217,9 +216,7 @@ enum wb_status wb_three_point_bending_create(struct wb_three_point_bending **out
     *out = NULL;
     WB_TRY(check_model(model));
 
-    struct wb_three_point_bending *b = calloc(1, sizeof *b);
-    if (!b)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bending test");
+    struct wb_three_point_bending *const b = wb_memory_new(1, sizeof *b);
     b->model = *model;
     if (b->model.overhang == 0.0)
         b->model.overhang = default_overhang * model->span;
@@ -240,10 +237,7 @@ enum wb_status wb_three_point_bending_create(struct wb_three_point_bending **out
     enum wb_status status = wb_beam_create(&b->beam, &beam);
     if (status == WB_OK) {
         b->n_nodes = wb_beam_count_nodes(b->beam);
-        if (!take_memory(b))
-            status = wb_fail(WB_ERR_MEMORY, "no memory for a bending test");
-    }
-    if (status == WB_OK) {
+        take_memory(b);
         /* The beam scales by E I / length^2. */
         const double EI = wb_beam_scale_force(b->beam) * beam.length * beam.length;
         const double stiffness = 48.0 * EI / pow(model->span, 3);

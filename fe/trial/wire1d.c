@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/rod/rod_solver.h"
 
 #define WB_LOG_DOMAIN "wire1d"
@@ -74,16 +75,11 @@ enum wb_status wb_wire1d_create(struct wb_wire1d **out, const struct wb_wire_mod
         given = *settings;
     const struct wb_rod_section_layout layout = {given.n_rings, given.n_around};
 
-    struct wb_wire1d *wire = calloc(1, sizeof *wire);
-    if (!wire)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
+    struct wb_wire1d *const wire = wb_memory_new(1, sizeof *wire);
     wire->model = model;
     wire->n_elements = given.n_elements == 0 ? DEFAULT_ELEMENTS : given.n_elements;
-    wire->shape = calloc(MOST_SHAPE, sizeof *wire->shape);
-    enum wb_status status =
-        wire->shape ? WB_OK : wb_fail(WB_ERR_MEMORY, "no memory for a wire's shape");
-    if (status == WB_OK)
-        status = make_section(wire, &layout);
+    wire->shape = wb_memory_new(MOST_SHAPE, sizeof *wire->shape);
+    enum wb_status status = make_section(wire, &layout);
     if (status == WB_OK)
         status = make_rod(wire);
     if (status != WB_OK)
@@ -262,13 +258,10 @@ static int nearest_point(const struct wb_wire1d *wire, double s)
     return nearest;
 }
 
-enum wb_status wb_wire1d_section(const struct wb_wire1d *wire, double s,
-                                 struct wb_wire1d_fibre **fibres, int *n)
+struct wb_wire1d_fibre *wb_wire1d_section(const struct wb_wire1d *wire, double s, int *n)
 {
     const int count = wb_rod_section_fibres(wire->section);
-    struct wb_wire1d_fibre *out = calloc((size_t)count, sizeof *out);
-    if (!out)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", count);
+    struct wb_wire1d_fibre *const out = wb_memory_new((size_t)count, sizeof *out);
 
     double at, strain[WB_ROD_SECTION_STRAINS];
     const double *history;
@@ -288,7 +281,6 @@ enum wb_status wb_wire1d_section(const struct wb_wire1d *wire, double s,
         };
         wb_rod_section_stress(wire->section, i, strain, history, &f->axial, &f->shear, &f->plastic);
     }
-    *fibres = out;
     *n = count;
-    return WB_OK;
+    return out;
 }

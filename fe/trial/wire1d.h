@@ -43,8 +43,7 @@ struct wb_wire1d_fibre {
     double plastic;                    /* equivalent plastic strain */
     int part;
 };
-WB_MUST_CHECK enum wb_status wb_wire1d_section(const struct wb_wire1d *wire, double s,
-                                               struct wb_wire1d_fibre **fibres, int *n);
+struct wb_wire1d_fibre *wb_wire1d_section(const struct wb_wire1d *wire, double s, int *n);
 
 /* Of the present state at arc length s: position of the axis (m) and the section's frame, rows:
  * unit vectors along the wire, the section's y, its z. */

@@ -6,10 +6,9 @@
 #include <string.h>
 
 #include "base/interpolate.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/solid/solid.h"
-
-#define WB_LOG_DOMAIN "wire3d"
 
 /* Past a limit point the path is followed by the arc length: as long as this share of the wire per
  * increment, at most as often. */
@@ -78,10 +77,8 @@ static enum wb_status make_solid(struct wb_wire3d *wire)
 {
     const struct wb_wire_model *m = wire->model;
     struct wb_solid_part parts[WB_WIRE_MODEL_PARTS];
-    struct wb_solid_support *supports =
-        calloc(3 * (size_t)wire->mesh.n_clamp + 1, sizeof *supports);
-    if (!supports)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the clamp");
+    struct wb_solid_support *const supports =
+        wb_memory_new(3 * (size_t)wire->mesh.n_clamp + 1, sizeof *supports);
 
     for (int p = 0; p < m->n_parts; p++)
         parts[p] =
@@ -105,9 +102,7 @@ static enum wb_status make_solid(struct wb_wire3d *wire)
 enum wb_status wb_wire3d_create(struct wb_wire3d **out, const struct wb_wire_model *model)
 {
     *out = NULL;
-    struct wb_wire3d *wire = calloc(1, sizeof *wire);
-    if (!wire)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a wire");
+    struct wb_wire3d *const wire = wb_memory_new(1, sizeof *wire);
     wire->model = model;
 
     enum wb_status status = make_mesh(wire);
@@ -363,16 +358,10 @@ static bool begin(struct run *r)
 /* Virgin again. */
 static enum wb_status begin_anew(struct wb_wire3d *wire)
 {
-    struct wb_solid *const used = wire->solid;
-    const enum wb_status status = make_solid(wire);
-
-    if (status != WB_OK) {
-        wire->solid = used;
-        return status;
-    }
-    wb_solid_destroy(used);
+    wb_solid_destroy(wire->solid);
+    wire->solid = NULL; /* also after an allocation that fails */
     wire->sliding = 0.0;
-    return WB_OK;
+    return make_solid(wire);
 }
 
 enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
@@ -386,9 +375,7 @@ enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
     if (wire->has_run)
         WB_TRY(begin_anew(wire));
     wire->has_run = true;
-    r.shape = calloc((size_t)run->n_shape + 1, sizeof *r.shape);
-    if (!r.shape)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %d positions", run->n_shape);
+    r.shape = wb_memory_new((size_t)run->n_shape, sizeof *r.shape);
     run->n_elements = wire->mesh.n_elements;
     run->n_unknowns = wb_solid_unknowns(wire->solid);
     run->converged = begin(&r);
@@ -406,18 +393,16 @@ const struct wb_solid_mesh *wb_wire3d_mesh(const struct wb_wire3d *wire)
 }
 
 /* Replaces the elements' own values at a node by their mean over the elements of one part. */
-static enum wb_status average_by_part(const struct wb_solid_mesh *mesh,
-                                      struct wb_wire3d_fields *fields)
+static void average_by_part(const struct wb_solid_mesh *mesh, struct wb_wire3d_fields *fields)
 {
     enum {
         VALUES = 7
     };
     const size_t places = (size_t)mesh->n_nodes * (size_t)mesh->n_parts;
-    double(*sum)[VALUES] = calloc(places, sizeof *sum);
-    int *count = calloc(places, sizeof *count);
-    const bool taken = sum && count;
+    double(*const sum)[VALUES] = wb_memory_new(places, sizeof *sum);
+    int *const count = wb_memory_new(places, sizeof *count);
 
-    for (int pass = 0; taken && pass < 2; pass++)
+    for (int pass = 0; pass < 2; pass++)
         for (int e = 0; e < mesh->n_elements; e++)
             for (int k = 0; k < WB_SOLID_MESH_NODES; k++) {
                 const size_t at =
@@ -433,7 +418,6 @@ static enum wb_status average_by_part(const struct wb_solid_mesh *mesh,
             }
     free(sum);
     free(count);
-    return taken ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for fields");
 }
 
 /* What is continued from inside an element to its nodes overshoots where the plastic zone begins:
@@ -456,31 +440,23 @@ static void keep_to_law(const struct wb_wire3d *wire, struct wb_wire3d_fields *f
         }
 }
 
-enum wb_status wb_wire3d_fields(const struct wb_wire3d *wire, struct wb_wire3d_fields *fields)
+void wb_wire3d_fields(const struct wb_wire3d *wire, struct wb_wire3d_fields *fields)
 {
     const struct wb_solid_mesh *mesh = &wire->mesh;
     const double *u = wb_solid_displacement(wire->solid);
 
     *fields = (struct wb_wire3d_fields){
-        .position = calloc((size_t)mesh->n_nodes, sizeof *fields->position),
-        .stress = calloc((size_t)mesh->n_elements, sizeof *fields->stress),
-        .plastic = calloc((size_t)mesh->n_elements, sizeof *fields->plastic),
+        .position = wb_memory_new((size_t)mesh->n_nodes, sizeof *fields->position),
+        .stress = wb_memory_new((size_t)mesh->n_elements, sizeof *fields->stress),
+        .plastic = wb_memory_new((size_t)mesh->n_elements, sizeof *fields->plastic),
     };
-    if (!fields->position || !fields->stress || !fields->plastic) {
-        wb_wire3d_fields_release(fields);
-        return wb_fail(WB_ERR_MEMORY, "out of memory for fields of %d elements", mesh->n_elements);
-    }
     for (int a = 0; a < mesh->n_nodes; a++)
         for (int i = 0; i < 3; i++)
             fields->position[a][i] = mesh->node[a][i] + u[3 * a + i];
     for (int e = 0; e < mesh->n_elements; e++)
         wb_solid_nodal_stress(wire->solid, e, fields->stress[e], fields->plastic[e]);
-    const enum wb_status status = average_by_part(mesh, fields);
-    if (status == WB_OK)
-        keep_to_law(wire, fields);
-    else
-        wb_wire3d_fields_release(fields);
-    return status;
+    average_by_part(mesh, fields);
+    keep_to_law(wire, fields);
 }
 
 void wb_wire3d_fields_release(struct wb_wire3d_fields *fields)

@@ -40,8 +40,7 @@ WB_MUST_CHECK enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wir
 const struct wb_solid_mesh *wb_wire3d_mesh(const struct wb_wire3d *wire);
 
 /* Fields of the present state, allocated; wb_wire3d_fields_release() accepts a zeroed one. */
-WB_MUST_CHECK enum wb_status wb_wire3d_fields(const struct wb_wire3d *wire,
-                                              struct wb_wire3d_fields *fields);
+void wb_wire3d_fields(const struct wb_wire3d *wire, struct wb_wire3d_fields *fields);
 void wb_wire3d_fields_release(struct wb_wire3d_fields *fields);
 
 /* Of the last converged state: largest penetration, opening and accumulated slip of the interface

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/interpolate.h"
+#include "base/memory.h"
 #include "fe/trial/wire_run_private.h"
 
 #define WB_LOG_DOMAIN "wire run"
@@ -31,15 +32,9 @@ enum wb_status wb_wire_run_init(struct wb_wire_run *run, const struct wb_wire_mo
 
     const size_t rows = (size_t)wb_wire_run_planned_rows(model) + WB_WIRE_RUN_SPARE;
     const size_t n = (size_t)n_shape;
-    run->rows = calloc(rows, sizeof *run->rows);
-    if (n_shape > 0) {
-        run->shape_s = calloc(n, sizeof *run->shape_s);
-        run->shape = calloc(rows * n, sizeof *run->shape);
-    }
-    if (!run->rows || (n_shape > 0 && (!run->shape_s || !run->shape))) {
-        wb_wire_run_release(run);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
-    }
+    run->rows = wb_memory_new(rows, sizeof *run->rows);
+    run->shape_s = wb_memory_new(n, sizeof *run->shape_s);
+    run->shape = wb_memory_new(rows * n, sizeof *run->shape);
     run->capacity = (int)rows;
     run->n_shape = n_shape;
     for (int i = 0; i < n_shape; i++)

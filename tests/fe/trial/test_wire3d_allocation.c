@@ -1,4 +1,7 @@
-/* The 3D wire fails cleanly wherever memory ends, and takes none while it steps. */
+/* Wherever memory ends for the 3D wire is an error, and it takes none while it steps. */
+#include <string.h>
+
+#include "base/memory.h"
 #include "fe/trial/wire3d.h"
 #include "tests/check.h"
 #include "tests/fe/allocations.h"
@@ -23,63 +26,82 @@ static struct wb_wire_model make_model(bool contact)
     return model;
 }
 
+struct attempt {
+    struct wb_wire_model model;
+    struct wb_wire3d *wire;
+    struct wb_wire_run run;
+    struct wb_wire3d_fields fields;
+};
+
+static enum wb_status create(void *context)
+{
+    struct attempt *const a = context;
+    return wb_wire3d_create(&a->wire, &a->model);
+}
+
+static enum wb_status init_run(void *context)
+{
+    struct attempt *const a = context;
+    return wb_wire_run_init(&a->run, &a->model, 7);
+}
+
+static enum wb_status run(void *context)
+{
+    struct attempt *const a = context;
+    a->run.n_rows = 0;
+    return wb_wire3d_run(a->wire, &a->run, NULL);
+}
+
+static enum wb_status take_fields(void *context)
+{
+    struct attempt *const a = context;
+    wb_wire3d_fields(a->wire, &a->fields);
+    return WB_OK;
+}
+
+/* Lets each allocation of a call fail, until the call succeeds; returns how many it has. */
+static int fail_everywhere(enum wb_status (*call)(void *context), struct attempt *attempt)
+{
+    enum wb_status status;
+    fail_at = 0;
+    do {
+        fail_at++;
+        allocations = 0;
+        status = wb_memory_try(call, attempt);
+        assert_true(status == WB_OK || (status == WB_ERR_MEMORY && allocations == fail_at));
+    } while (status != WB_OK);
+    const int n = fail_at - 1;
+    fail_at = 0;
+    return n;
+}
+
 static void every_missing_piece_of_memory_is_an_error(void **unused)
 {
     (void)unused;
     wb_log_set_sink(discard_message, NULL);
     for (int contact = 0; contact < 2; contact++) {
-        const struct wb_wire_model model = make_model(contact);
-        struct wb_wire3d *wire;
-        struct wb_wire3d_fields fields;
-        struct wb_wire_run run;
-        enum wb_status status;
+        struct attempt a = {.model = make_model(contact)};
+        struct wb_wire_row rows[3];
 
-        fail_at = 0;
-        do {
-            fail_at++;
-            allocations = 0;
-            status = wb_wire3d_create(&wire, &model);
-            assert_true(status == WB_OK || (status == WB_ERR_MEMORY && !wire));
-        } while (status != WB_OK);
-        assert_true(fail_at > 30);
-
-        fail_at = 0;
-        do {
-            fail_at++;
-            allocations = 0;
-            status = wb_wire_run_init(&run, &model, 7);
-            assert_true(status == WB_OK || status == WB_ERR_MEMORY);
-        } while (status != WB_OK);
-        assert_int_equal(fail_at, 4);
+        assert_true(fail_everywhere(create, &a) > 29);
+        assert_int_equal(fail_everywhere(init_run, &a), 3);
 
         /* Once more from the virgin state takes a solid's memory, stepping takes none: as much for
          * many rows as for one. */
-        fail_at = 0;
         allocations = 0;
-        assert_int_equal(wb_wire3d_run(wire, &run, NULL), WB_OK);
-        assert_true(run.converged && run.n_rows == 3);
+        assert_int_equal(run(&a), WB_OK);
+        assert_true(a.run.converged && a.run.n_rows == 3);
         assert_int_equal(allocations, 1);
-        do {
-            fail_at++;
-            allocations = 0;
-            run.n_rows = 0;
-            status = wb_wire3d_run(wire, &run, NULL);
-            assert_true(status == WB_OK || status == WB_ERR_MEMORY);
-        } while (status != WB_OK);
-        assert_true(run.converged && run.n_rows == 3 && fail_at > 20);
+        memcpy(rows, a.run.rows, sizeof rows);
+        assert_true(fail_everywhere(run, &a) > 19);
+        assert_true(a.run.converged && a.run.n_rows == 3);
+        for (int i = 0; i < 3; i++)
+            assert_memory_equal(a.run.rows[i].tip, rows[i].tip, sizeof rows[i].tip);
 
-        fail_at = 0;
-        do {
-            fail_at++;
-            allocations = 0;
-            status = wb_wire3d_fields(wire, &fields);
-            assert_true(status == WB_OK || status == WB_ERR_MEMORY);
-        } while (status != WB_OK);
-        assert_int_equal(fail_at, 6);
-        fail_at = 0;
-        wb_wire3d_fields_release(&fields);
-        wb_wire_run_release(&run);
-        wb_wire3d_destroy(wire);
+        assert_int_equal(fail_everywhere(take_fields, &a), 5);
+        wb_wire3d_fields_release(&a.fields);
+        wb_wire_run_release(&a.run);
+        wb_wire3d_destroy(a.wire);
     }
     wb_log_set_sink(NULL, NULL);
 }
