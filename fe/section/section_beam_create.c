@@ -1,10 +1,9 @@
 /* Memory, materials and matrix of the section model's beam. */
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/section/section_beam.h"
-
-#define WB_LOG_DOMAIN "section"
 
 enum {
     DEFAULT_ELEMENTS = 24,
@@ -58,9 +57,7 @@ static enum wb_status make_materials(struct wb_section_beam *beam)
 static enum wb_status make_matrix(struct wb_section_beam *beam)
 {
     const int n = beam->n_elements;
-    int *const first = calloc((size_t)n + 1, sizeof *first);
-    if (!first)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d elements", n);
+    int *const first = wb_memory_new((size_t)n + 1, sizeof *first);
     for (int i = 0; i < n; i++)
         first[i] = i * beam->per_station;
     first[n] = beam->n_unknowns;
@@ -69,7 +66,7 @@ static enum wb_status make_matrix(struct wb_section_beam *beam)
     return status;
 }
 
-static enum wb_status take_memory(struct wb_section_beam *beam)
+static void take_memory(struct wb_section_beam *beam)
 {
     struct wb_memory *const memory = &beam->memory;
     const size_t n = (size_t)beam->n_unknowns, m = (size_t)beam->n_elements;
@@ -97,7 +94,6 @@ static enum wb_status take_memory(struct wb_section_beam *beam)
     beam->response_before = wb_memory_take(memory, wires, sizeof *beam->response_before);
     beam->stress_before = wb_memory_take(memory, segments, sizeof *beam->stress_before);
     beam->strain_before = wb_memory_take(memory, segments, sizeof *beam->strain_before);
-    return memory->failed ? wb_fail(WB_ERR_MEMORY, "no memory for %zu unknowns", n) : WB_OK;
 }
 
 static enum wb_status prepare(struct wb_section_beam *beam)
@@ -109,8 +105,9 @@ static enum wb_status prepare(struct wb_section_beam *beam)
         (beam->n_elements - 1) * beam->per_station + (is_capped ? 2 : beam->per_station);
     WB_TRY(make_materials(beam));
     WB_TRY(make_matrix(beam));
-    WB_TRY(wb_section_pressure_create(&beam->pressure, &beam->layout, beam->n_elements));
-    return take_memory(beam);
+    beam->pressure = wb_section_pressure_create(&beam->layout, beam->n_elements);
+    take_memory(beam);
+    return WB_OK;
 }
 
 enum wb_status wb_section_beam_create(struct wb_section_beam **out,
@@ -118,9 +115,7 @@ enum wb_status wb_section_beam_create(struct wb_section_beam **out,
                                       const struct wb_section_beam_settings *settings)
 {
     *out = NULL;
-    struct wb_section_beam *const beam = calloc(1, sizeof *beam);
-    if (!beam)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle");
+    struct wb_section_beam *const beam = wb_memory_new(1, sizeof *beam);
     beam->model = model;
     beam->friction = mu;
     if (settings)

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "section"
@@ -476,7 +477,7 @@ static void lay_tape(struct layout_work *work)
 
 /* --- whole --- */
 
-static enum wb_status take_memory(struct wb_section_layout *layout)
+static void take_memory(struct wb_section_layout *layout)
 {
     struct wb_memory *const m = &layout->memory;
 
@@ -487,7 +488,6 @@ static enum wb_status take_memory(struct wb_section_layout *layout)
     layout->segments = wb_memory_take(m, MOST_NODES, sizeof *layout->segments);
     layout->bonds = wb_memory_take(m, MOST_NODES, sizeof *layout->bonds);
     layout->pulls = wb_memory_take(m, 2 * MOST_NODES, sizeof *layout->pulls);
-    return m->failed ? wb_fail(WB_ERR_MEMORY, "no memory for a section") : WB_OK;
 }
 
 enum wb_status wb_section_layout_create(struct wb_section_layout *layout,
@@ -495,26 +495,21 @@ enum wb_status wb_section_layout_create(struct wb_section_layout *layout,
 {
     *layout = (struct wb_section_layout){.n_unknowns = 1};
     WB_TRY(wb_section_layout_check(model, NULL));
-    struct layout_work *const work = calloc(1, sizeof *work);
-    enum wb_status status =
-        work ? take_memory(layout) : wb_fail(WB_ERR_MEMORY, "no memory for a section");
-    if (status == WB_OK) {
-        work->model = model;
-        work->layout = layout;
-        find_images(work, may_mirror);
-        place_wires(work);
-        find_contacts(work);
-        if (model->has_tape)
-            lay_tape(work);
-        number_nodes(work);
-        add_segments(work);
-        add_bonds(work);
-        add_pulls(work);
-    } else {
-        wb_section_layout_release(layout);
-    }
+    struct layout_work *const work = wb_memory_new(1, sizeof *work);
+    take_memory(layout);
+    work->model = model;
+    work->layout = layout;
+    find_images(work, may_mirror);
+    place_wires(work);
+    find_contacts(work);
+    if (model->has_tape)
+        lay_tape(work);
+    number_nodes(work);
+    add_segments(work);
+    add_bonds(work);
+    add_pulls(work);
     free(work);
-    return status;
+    return WB_OK;
 }
 
 void wb_section_layout_release(struct wb_section_layout *layout)

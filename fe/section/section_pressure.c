@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WB_LOG_DOMAIN "section"
+#include "base/memory.h"
 
 enum {
     BLOCK_TRIES = 3, /* exchanges of all at once without progress before they go one by one */
@@ -193,13 +193,10 @@ static void fill(struct wb_section_pressure *p, const struct wb_section_layout *
         }
 }
 
-enum wb_status wb_section_pressure_create(struct wb_section_pressure **out,
-                                          const struct wb_section_layout *layout, int n_places)
+struct wb_section_pressure *wb_section_pressure_create(const struct wb_section_layout *layout,
+                                                       int n_places)
 {
-    *out = NULL;
-    struct wb_section_pressure *const p = calloc(1, sizeof *p);
-    if (!p)
-        return wb_fail(WB_ERR_MEMORY, "no memory for contacts");
+    struct wb_section_pressure *const p = wb_memory_new(1, sizeof *p);
     const size_t n = (size_t)layout->n_contacts, rows = 2 * (size_t)layout->n_wires;
     const size_t places = (size_t)n_places;
 
@@ -216,11 +213,6 @@ enum wb_status wb_section_pressure_create(struct wb_section_pressure **out,
     p->n_pressed = wb_memory_take(&p->memory, places, sizeof(int));
     p->list = wb_memory_take(&p->memory, places * n, sizeof(int));
     p->factor = wb_memory_take(&p->memory, places * n * n, sizeof(double));
-    if (p->memory.failed) {
-        wb_section_pressure_destroy(p);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu contacts at %zu places", n, places);
-    }
     fill(p, layout);
-    *out = p;
-    return WB_OK;
+    return p;
 }

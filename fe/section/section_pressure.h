@@ -13,15 +13,13 @@
 #ifndef WB_FE_SECTION_SECTION_PRESSURE_H
 #define WB_FE_SECTION_SECTION_PRESSURE_H
 
-#include "base/status.h"
 #include "fe/section/section_layout.h"
 
 struct wb_section_pressure; /* opaque */
 
 /* For n places along the bundle, each with contacts of its own. The layout is copied. */
-WB_MUST_CHECK enum wb_status wb_section_pressure_create(struct wb_section_pressure **out,
-                                                        const struct wb_section_layout *layout,
-                                                        int n_places);
+struct wb_section_pressure *wb_section_pressure_create(const struct wb_section_layout *layout,
+                                                       int n_places);
 void wb_section_pressure_destroy(struct wb_section_pressure *pressure); /* accepts NULL */
 
 /* Forces (n_contacts) of the loads (2 n_wires: of each wire upwards and across) at a place. Returns

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "section"
 
 enum {
@@ -28,14 +30,10 @@ enum wb_status wb_section_run_init(struct wb_section_run *run, const struct wb_b
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected 2 to %d", n_shape,
                        MOST_SHAPE);
     const size_t rows = (size_t)wb_bundle_model_rows(model), n = (size_t)n_shape;
-    run->rows = calloc(rows, sizeof *run->rows);
-    run->shape_s = calloc(n, sizeof *run->shape_s);
-    run->shape = calloc(rows * n, sizeof *run->shape);
-    run->curve = calloc((size_t)model->run.rows, sizeof *run->curve);
-    if (!run->rows || !run->shape_s || !run->shape || !run->curve) {
-        wb_section_run_release(run);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
-    }
+    run->rows = wb_memory_new(rows, sizeof *run->rows);
+    run->shape_s = wb_memory_new(n, sizeof *run->shape_s);
+    run->shape = wb_memory_new(rows * n, sizeof *run->shape);
+    run->curve = wb_memory_new((size_t)model->run.rows, sizeof *run->curve);
     run->capacity = (int)rows;
     run->n_shape = n_shape;
     for (int i = 0; i < n_shape; i++)
@@ -93,10 +91,8 @@ static enum wb_status find_rigidity(struct wb_section_run_rigidity *out,
     const struct wb_section_solver_settings settings = {.beam = {.is_elastic = true}};
     struct wb_section_solver *solver;
     struct wb_section_solver_point point;
-    struct wb_bundle_model *const other = malloc(sizeof *other);
+    struct wb_bundle_model *const other = wb_memory_new(1, sizeof *other);
 
-    if (!other)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle");
     *other = *model;
     other->length = length;
     other->loads = (struct wb_bundle_loads){0};
@@ -232,13 +228,11 @@ static enum wb_status find_curve(struct wb_section_run *run, const struct wb_bun
     const bool is_own = !model->loads.weight && !(model->loads.strand_length > 0.0);
     const int rows = is_own && run->n_rows <= model->run.rows ? run->n_rows - 1 : model->run.rows;
     const int stride = (model->run.rows + CURVE_POINTS - 1) / CURVE_POINTS;
-    struct wb_bundle_model *const other = is_own ? NULL : malloc(sizeof *other);
+    struct wb_bundle_model *const other = is_own ? NULL : wb_memory_new(1, sizeof *other);
     struct wb_section_solver *solver = NULL;
     int n = 0;
 
     if (!is_own) {
-        if (!other)
-            return wb_fail(WB_ERR_MEMORY, "no memory for a bundle");
         *other = *model;
         other->loads = (struct wb_bundle_loads){0};
         const enum wb_status status = wb_section_solver_create(&solver, other, settings);

@@ -4,10 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/section/section_energy.h"
-
-#define WB_LOG_DOMAIN "section"
 
 enum {
     DEFAULT_ITERATIONS = 40,
@@ -343,9 +342,7 @@ enum wb_status wb_section_solver_create(struct wb_section_solver **out,
                                         const struct wb_section_solver_settings *settings)
 {
     *out = NULL;
-    struct wb_section_solver *const s = calloc(1, sizeof *s);
-    if (!s)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle");
+    struct wb_section_solver *const s = wb_memory_new(1, sizeof *s);
     fill_settings(s, settings);
     const enum wb_status status =
         wb_section_beam_create(&s->beam, model, settings->friction, &s->settings.beam);
@@ -356,10 +353,6 @@ enum wb_status wb_section_solver_create(struct wb_section_solver **out,
     const size_t n = (size_t)s->beam->n_unknowns;
     s->step = wb_memory_take(&s->memory, n, sizeof(double));
     s->right = wb_memory_take(&s->memory, RIGHT_SIDES * n, sizeof(double));
-    if (s->memory.failed) {
-        wb_section_solver_destroy(s);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu unknowns", n);
-    }
     if (model->loads.weight)
         set_weight(s, model);
     s->loads.strand = model->loads.strand_length;
