@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "fe/bundle/bundle_part.h"
 #include "fe/bundle/bundle_parts.h"
 #include "fe/bundle/bundle_private.h"
@@ -55,9 +56,7 @@ enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_m
     if (!(settings->duration > 0.0 && isfinite(settings->duration)))
         return wb_fail(WB_ERR_ARGUMENT, "the duration is %g s: expected a number above 0",
                        settings->duration);
-    struct wb_bundle *bundle = calloc(1, sizeof *bundle);
-    if (!bundle)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a bundle");
+    struct wb_bundle *const bundle = wb_memory_new(1, sizeof *bundle);
     enum wb_status status =
         wb_team_agree(wb_bundle_part_create_whole(&bundle->whole, model, mesh, safety));
     if (status == WB_OK) {

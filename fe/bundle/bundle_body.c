@@ -4,9 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/units.h"
-
-#define WB_LOG_DOMAIN "bundle"
 
 /* --- one body --- */
 
@@ -54,16 +53,12 @@ static enum wb_swept_hex_formulation formulation_of(const struct wb_bundle_mesh 
 }
 
 /* The section's area errs where its second moment is fitted; mass is the wire's own. */
-static enum wb_status share_mass(struct wb_bundle_type *type, const struct wb_wire *wire)
+static void share_mass(struct wb_bundle_type *type, const struct wb_wire *wire)
 {
     const double mass = wb_wire_mass_per_length(wire);
-
-    type->node_mass = calloc((size_t)type->section.n_nodes, sizeof *type->node_mass);
-    if (!type->node_mass)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for masses");
+    type->node_mass = wb_memory_new((size_t)type->section.n_nodes, sizeof *type->node_mass);
     for (int k = 0; k < type->section.n_nodes; k++)
         type->node_mass[k] = mass * type->section.share[k];
-    return WB_OK;
 }
 
 enum wb_status wb_bundle_bodies_create_step(const struct wb_bundle_bodies *bodies,
@@ -102,22 +97,21 @@ static enum wb_status make_type(struct wb_bundle_bodies *bodies, int t)
         .double_precision = bodies->model->run.double_precision,
     };
     WB_TRY(wb_swept_hex_create(&type->hex, &model));
-    WB_TRY(share_mass(type, wire));
+    share_mass(type, wire);
     return wb_bundle_bodies_create_step(bodies, wb_swept_hex_layout(type->hex), type->node_mass,
                                         bodies->gravity, &type->step);
 }
 
-enum wb_status wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
-                                              struct wb_bundle_body *body,
-                                              struct wb_swept_layout layout)
+void wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
+                                    struct wb_bundle_body *body, struct wb_swept_layout layout)
 {
     const size_t n = wb_swept_size(&layout);
 
     body->layout = layout;
     body->is_double = bodies->model->run.double_precision;
-    WB_TRY(wb_swept_allocate((void **)&body->position, n, sizeof *body->position));
-    WB_TRY(wb_swept_allocate((void **)&body->velocity, n, sizeof *body->velocity));
-    return wb_swept_allocate(&body->force, n, wb_bundle_body_force_size(body));
+    body->position = wb_swept_allocate(n, sizeof *body->position);
+    body->velocity = wb_swept_allocate(n, sizeof *body->velocity);
+    body->force = wb_swept_allocate(n, wb_bundle_body_force_size(body));
 }
 
 /* A straight body: section points at every station, padding too. */
@@ -134,14 +128,14 @@ static void place(const struct wb_bundle_bodies *bodies, struct wb_bundle_body *
     }
 }
 
-static enum wb_status make_wire(struct wb_bundle_bodies *bodies, int w)
+static void make_wire(struct wb_bundle_bodies *bodies, int w)
 {
     const struct wb_packing_circle *circle = &bodies->model->packing.wire[w];
     struct wb_bundle_type *type = &bodies->type[bodies->model->type_of[w]];
     struct wb_bundle_body *body = &bodies->wire[w];
 
-    WB_TRY(wb_swept_hex_state_create(&bodies->wire_state[w], type->hex));
-    WB_TRY(wb_bundle_bodies_create_fields(bodies, body, wb_swept_hex_layout(type->hex)));
+    bodies->wire_state[w] = wb_swept_hex_state_create(type->hex);
+    wb_bundle_bodies_create_fields(bodies, body, wb_swept_hex_layout(type->hex));
     body->step = type->step;
     body->node_mass = type->node_mass;
     for (int k = 0; k < body->layout.n_nodes; k++) {
@@ -153,7 +147,6 @@ static enum wb_status make_wire(struct wb_bundle_bodies *bodies, int w)
     body->start /= body->mass;
     bodies->positions[w] = body->position;
     bodies->forces[w] = body->force;
-    return WB_OK;
 }
 
 /* Smaller ones gain nothing by fetching ahead: seven wires of the engineering mesh, 0.7 MB, lose
@@ -185,7 +178,7 @@ enum wb_status wb_bundle_bodies_init(struct wb_bundle_bodies *bodies,
     for (int t = 0; t < model->n_types; t++)
         WB_TRY(make_type(bodies, t));
     for (int w = 0; w < bodies->n_wires; w++)
-        WB_TRY(make_wire(bodies, w));
+        make_wire(bodies, w);
     bodies->is_large = is_large(bodies);
     return WB_OK;
 }

@@ -92,9 +92,8 @@ void wb_bundle_bodies_release(struct wb_bundle_bodies *bodies);
 
 /* Makes zeroed fields for another body; makes the integrator of a body, which the caller destroys.
  */
-WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
-                                                            struct wb_bundle_body *body,
-                                                            struct wb_swept_layout layout);
+void wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
+                                    struct wb_bundle_body *body, struct wb_swept_layout layout);
 WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_step(const struct wb_bundle_bodies *bodies,
                                                           struct wb_swept_layout layout,
                                                           const double *node_mass, double gravity,

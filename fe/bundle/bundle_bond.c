@@ -3,11 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "fe/bundle/bundle_tape.h"
 #include "fe/swept/swept_cohesion.h"
 #include "fe/swept/swept_tape_contact.h"
-
-#define WB_LOG_DOMAIN "bundle"
 
 enum {
     SAMPLES = 64,      /* of the outline, for each node of the ring */
@@ -81,10 +80,8 @@ static enum wb_status make_cohesion(const struct wb_bundle_bodies *bodies,
     const struct wb_bundle_interface *interface = &bodies->model->interface;
     const int n = bodies->ring.layout.n_nodes;
     struct wb_swept_cohesion_settings settings;
-    struct wb_swept_cohesion_bond *bonds =
-        calloc((size_t)n * (size_t)bodies->extent.n_stations, sizeof *bonds);
-    if (!bonds)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the tape's bonds");
+    struct wb_swept_cohesion_bond *const bonds =
+        wb_memory_new((size_t)n * (size_t)bodies->extent.n_stations, sizeof *bonds);
 
     wb_swept_cohesion_default_settings(&settings);
     settings.normal_stiffness = interface->normal_stiffness;
@@ -126,30 +123,25 @@ static enum wb_status make_contact(struct wb_bundle_bond *bond,
                                         bodies->n_wires, wires);
 }
 
-static enum wb_status scale_masses(struct wb_bundle_bond *bond)
+static void scale_masses(struct wb_bundle_bond *bond)
 {
     const struct wb_bundle_bodies *bodies = bond->bodies;
     const size_t n = (size_t)bodies->ring.layout.n_nodes;
     const double scale = bodies->spacing * bodies->model->run.mass_scaling;
 
-    bond->ring_mass = calloc(n, sizeof *bond->ring_mass);
-    bond->ring_inertia = calloc(n, sizeof *bond->ring_inertia);
-    if (!bond->ring_mass || !bond->ring_inertia)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the tape's bonds");
+    bond->ring_mass = wb_memory_new(n, sizeof *bond->ring_mass);
+    bond->ring_inertia = wb_memory_new(n, sizeof *bond->ring_inertia);
     for (size_t k = 0; k < n; k++) {
         bond->ring_mass[k] = bodies->tape_mass[k] * scale;
         bond->ring_inertia[k] = bodies->tape_inertia[k] * scale;
     }
-    return WB_OK;
 }
 
 enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bundle_bodies *bodies,
                                      struct wb_reason *reason)
 {
     *out = NULL;
-    struct wb_bundle_bond *bond = calloc(1, sizeof *bond);
-    if (!bond)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the tape's bonds");
+    struct wb_bundle_bond *const bond = wb_memory_new(1, sizeof *bond);
     bond->bodies = bodies;
 
     struct wb_swept_cohesion_wire wires[WB_PACKING_MOST];
@@ -159,13 +151,13 @@ enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bund
         status = make_cohesion(bodies, wires, true, &bond->windings);
     if (status == WB_OK)
         status = make_contact(bond, wires, reason);
-    if (status == WB_OK)
-        status = scale_masses(bond);
-    if (status != WB_OK)
+    if (status != WB_OK) {
         wb_bundle_bond_destroy(bond);
-    else
-        *out = bond;
-    return status;
+        return status;
+    }
+    scale_masses(bond);
+    *out = bond;
+    return WB_OK;
 }
 
 void wb_bundle_bond_destroy(struct wb_bundle_bond *bond)

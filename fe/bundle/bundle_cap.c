@@ -3,9 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/vec3.h"
-
-#define WB_LOG_DOMAIN "bundle"
 
 enum {
     MOST_ITERATIONS = 20
@@ -285,7 +284,7 @@ static void list_parts(struct wb_bundle_cap *cap)
         .body = &bodies->directors, .node_mass = bodies->tape_inertia, .turns_only = true};
 }
 
-static enum wb_status find_arms(struct wb_bundle_cap *cap, double length)
+static void find_arms(struct wb_bundle_cap *cap, double length)
 {
     for (int p = 0; p < cap->n_parts; p++) {
         struct part *part = &cap->part[p];
@@ -301,15 +300,12 @@ static enum wb_status find_arms(struct wb_bundle_cap *cap, double length)
     for (int p = 0; p < cap->n_parts; p++) {
         struct part *part = &cap->part[p];
         const int n = part->body->layout.n_nodes;
-        part->arm = calloc((size_t)n, sizeof *part->arm);
-        if (!part->arm)
-            return wb_fail(WB_ERR_MEMORY, "out of memory for the capped end");
+        part->arm = wb_memory_new((size_t)n, sizeof *part->arm);
         for (int k = 0; k < n; k++)
             for (int c = 0; c < 3; c++)
                 part->arm[k][c] = part->body->position[end_of(part, k, c)] -
                                   (part->turns_only ? 0.0 : cap->motion.centre[c]);
     }
-    return WB_OK;
 }
 
 /* M' = beta M - (beta - 1) M 1 1^T M / (1^T M 1), of each body. */
@@ -335,27 +331,17 @@ static void find_moment(struct wb_bundle_cap *cap, double length)
     }
 }
 
-enum wb_status wb_bundle_cap_create(struct wb_bundle_cap **out,
-                                    const struct wb_bundle_bodies *bodies)
+struct wb_bundle_cap *wb_bundle_cap_create(const struct wb_bundle_bodies *bodies)
 {
     const double length = 0.5 * bodies->spacing * bodies->model->run.mass_scaling;
-
-    *out = NULL;
-    struct wb_bundle_cap *cap = calloc(1, sizeof *cap);
-    if (!cap)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the capped end");
+    struct wb_bundle_cap *const cap = wb_memory_new(1, sizeof *cap);
     cap->bodies = bodies;
     cap->motion.turned[0] = 1.0;
     list_parts(cap);
-    const enum wb_status status = find_arms(cap, length);
-    if (status != WB_OK) {
-        wb_bundle_cap_destroy(cap);
-        return status;
-    }
+    find_arms(cap, length);
     find_moment(cap, length);
     wb_bundle_bodies_hold(bodies, bodies->extent.n_stations - 1);
-    *out = cap;
-    return WB_OK;
+    return cap;
 }
 
 void wb_bundle_cap_destroy(struct wb_bundle_cap *cap)

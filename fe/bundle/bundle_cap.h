@@ -18,15 +18,13 @@
 #define WB_FE_BUNDLE_BUNDLE_CAP_H
 
 #include "base/checkpoint.h"
-#include "base/status.h"
 #include "fe/bundle/bundle_body.h"
 
 struct wb_bundle_cap; /* opaque */
 
 /* Makes the cap of straight bodies, wires and tape, and holds their last station. The bodies must
  * outlive it. */
-WB_MUST_CHECK enum wb_status wb_bundle_cap_create(struct wb_bundle_cap **out,
-                                                  const struct wb_bundle_bodies *bodies);
+struct wb_bundle_cap *wb_bundle_cap_create(const struct wb_bundle_bodies *bodies);
 void wb_bundle_cap_destroy(struct wb_bundle_cap *cap); /* accepts NULL */
 
 /* Makes one step of the cap under the forces in the bodies' fields, and sets the velocities of the

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/bundle/bundle_tape.h"
 #include "fe/swept/swept_frequency.h"
@@ -67,7 +68,7 @@ static enum wb_status build(struct wb_bundle_part *part, const struct wb_bundle_
     hold_stations(bodies);
     /* Not where it is only in the halo. */
     if (model->tip == WB_BUNDLE_TIP_CAPPED && wb_bundle_bodies_have_tip(bodies))
-        return wb_bundle_cap_create(&part->cap, bodies);
+        part->cap = wb_bundle_cap_create(bodies);
     return WB_OK;
 }
 
@@ -77,9 +78,7 @@ static enum wb_status create(struct wb_bundle_part **out, const struct wb_bundle
                              const struct wb_bundle_part *whole)
 {
     *out = NULL;
-    struct wb_bundle_part *part = calloc(1, sizeof *part);
-    if (!part)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a bundle");
+    struct wb_bundle_part *const part = wb_memory_new(1, sizeof *part);
     enum wb_status status = wb_bundle_bodies_init(&part->bodies, model, mesh, extent);
     if (status == WB_OK)
         status = build(part, whole);
@@ -99,9 +98,7 @@ static enum wb_status bound_wire(const struct wb_bundle_part *part, int w, doubl
     const int n = type->section.n_nodes;
     double omega, added = 0.0;
 
-    double *mass = calloc((size_t)n, sizeof *mass);
-    if (!mass)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for masses");
+    double *const mass = wb_memory_new((size_t)n, sizeof *mass);
     for (int k = 0; k < n; k++)
         mass[k] = type->node_mass[k] * bodies->spacing * run->mass_scaling;
     const enum wb_status status =

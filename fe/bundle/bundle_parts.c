@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
@@ -404,11 +405,7 @@ static void bring(struct wb_bundle_parts *parts, int number, int from, int end, 
 
     load(whole, there, states, &cargo);
     const size_t size = cargo.size;
-    cargo = (struct cargo){.bytes = malloc(size)};
-    if (!cargo.bytes) {
-        wb_error("no memory to gather a bundle of %zu bytes", size);
-        wb_team_abort(1);
-    }
+    cargo = (struct cargo){.bytes = wb_memory_resize(NULL, size, 1)};
     if (member) {
         struct wb_bundle_bodies *bodies = &member->part->bodies;
         const int first = bodies->extent.first;
@@ -581,11 +578,7 @@ static void save_part(struct wb_bundle_parts *parts, int number, struct wb_check
     }
     size_t size = own.size;
     wb_team_share(&size, sizeof size, number / parts->n_here);
-    unsigned char *bytes = member ? own.bytes : malloc(size);
-    if (!bytes) {
-        wb_error("no memory for a checkpoint of %zu bytes", size);
-        wb_team_abort(1);
-    }
+    unsigned char *const bytes = member ? own.bytes : wb_memory_resize(NULL, size, 1);
     wb_team_share(bytes, size, number / parts->n_here);
     wb_checkpoint_append(out, bytes, size);
     if (!member)
@@ -657,24 +650,18 @@ enum wb_status wb_bundle_parts_create(struct wb_bundle_parts **out, struct wb_bu
     const struct wb_bundle_bodies *bodies = &whole->bodies;
 
     *out = NULL;
-    struct wb_bundle_parts *parts = calloc(1, sizeof *parts);
-    if (!parts)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for parts of a bundle");
+    struct wb_bundle_parts *const parts = wb_memory_new(1, sizeof *parts);
     parts->whole = whole;
     parts->count = count;
     parts->n_here = count / wb_team_ranks();
+    parts->first = wb_team_rank() * parts->n_here;
     parts->halo = halo_of(bodies->model, bodies->mesh);
-    parts->border = calloc((size_t)count + 1, sizeof *parts->border);
-    parts->here = calloc((size_t)parts->n_here, sizeof *parts->here);
-    enum wb_status status = WB_OK;
-    if (!parts->border || !parts->here)
-        status = wb_fail(WB_ERR_MEMORY, "out of memory for parts of a bundle");
+    parts->border = wb_memory_new((size_t)count + 1, sizeof *parts->border);
+    parts->here = wb_memory_new((size_t)parts->n_here, sizeof *parts->here);
+    /* The threads last: none may have been started where an allocation fails. */
+    enum wb_status status = make_parts(parts);
     if (status == WB_OK)
         status = wb_team_create(&parts->team, parts->n_here, packet_size(bodies, parts->halo));
-    if (status == WB_OK) {
-        parts->first = wb_team_first(parts->team);
-        status = make_parts(parts);
-    }
     status = wb_team_agree(status);
     if (status != WB_OK)
         wb_bundle_parts_destroy(parts);
@@ -688,7 +675,7 @@ void wb_bundle_parts_destroy(struct wb_bundle_parts *parts)
     if (!parts)
         return;
     wb_team_destroy(parts->team);
-    for (int i = 0; parts->here && i < parts->n_here; i++)
+    for (int i = 0; i < parts->n_here; i++)
         if (parts->here[i].part != parts->whole)
             wb_bundle_part_destroy(parts->here[i].part);
     free(parts->border);

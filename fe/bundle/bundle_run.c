@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "fe/bundle/bundle_parts.h"
@@ -96,15 +97,9 @@ enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,
                        n_shape, MOST_SHAPE);
 
     const size_t rows = (size_t)wb_bundle_model_rows(model), n = (size_t)n_shape;
-    result->rows = calloc(rows, sizeof *result->rows);
-    if (n_shape > 0) {
-        result->shape_s = calloc(n, sizeof *result->shape_s);
-        result->shape = calloc(rows * n, sizeof *result->shape);
-    }
-    if (!result->rows || (n_shape > 0 && (!result->shape_s || !result->shape))) {
-        wb_bundle_result_release(result);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
-    }
+    result->rows = wb_memory_new(rows, sizeof *result->rows);
+    result->shape_s = wb_memory_new(n, sizeof *result->shape_s);
+    result->shape = wb_memory_new(rows * n, sizeof *result->shape);
     result->capacity = (int)rows;
     result->n_shape = n_shape;
     for (int i = 0; i < n_shape; i++)
@@ -271,13 +266,10 @@ static enum wb_status find_checkpoint(struct run *r, struct wb_checkpoint *c)
     WB_TRY(wb_team_agree(status));
     wb_team_share(&size, sizeof size, 0);
     if (wb_team_rank() > 0 && size > 0) {
-        c->bytes = malloc(size);
+        c->bytes = wb_memory_new(size, 1);
         c->size = size;
         wb_checkpoint_rewind(c);
-        if (!c->bytes)
-            status = wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint of %zu bytes", size);
     }
-    WB_TRY(wb_team_agree(status));
     wb_team_share(c->bytes, size, 0);
     return WB_OK;
 }
@@ -301,9 +293,9 @@ static enum wb_status resume(struct run *r, struct wb_checkpoint *c)
 
 enum verdict {
     GO_ON,
-    DONE,     /* or stopped, or lost: nothing more is to be done */
-    ANEW,     /* with another duration */
-    NO_MEMORY /* or another error that is not the run's */
+    DONE,  /* or stopped, or lost: nothing more is to be done */
+    ANEW,  /* with another duration */
+    FAILED /* an error that is not the run's */
 };
 
 static int branches_of(const struct wb_bundle_model *model)
@@ -318,7 +310,7 @@ static enum verdict lose(struct run *r)
     if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE) {
         if (reason->text[0])
             wb_error("%s", reason->text);
-        return NO_MEMORY;
+        return FAILED;
     }
     r->status = WB_OK;
     r->result->converged = false;
@@ -654,7 +646,7 @@ static enum verdict show_place(struct run *r)
         return GO_ON;
     (void)wb_bundle_whole(r->bundle); /* all ranks take part in that */
     r->status = wb_team_agree(observer->place(observer->context, r->result, &r->row, r->bundle));
-    return r->status == WB_OK ? GO_ON : NO_MEMORY;
+    return r->status == WB_OK ? GO_ON : FAILED;
 }
 
 /* From half a step before a row's place to half a step after it. */
@@ -787,7 +779,7 @@ static enum verdict attempt(struct run *r)
     if (r->status != WB_OK) {
         wb_bundle_destroy(r->bundle);
         r->bundle = NULL;
-        return NO_MEMORY;
+        return FAILED;
     }
     h->time_step = wb_bundle_time_step(r->bundle);
     h->hexahedra = wb_bundle_hexahedra(r->bundle);

@@ -1,9 +1,9 @@
 #include "fe/bundle/bundle_tape.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -133,8 +133,8 @@ static enum wb_status make_ring(struct wb_bundle_bodies *bodies)
     const struct wb_swept_layout layout =
         wb_swept_layout(elements_of(bodies) + !closed, bodies->extent.n_stations);
 
-    WB_TRY(wb_bundle_bodies_create_fields(bodies, &bodies->ring, layout));
-    WB_TRY(wb_bundle_bodies_create_fields(bodies, &bodies->directors, layout));
+    wb_bundle_bodies_create_fields(bodies, &bodies->ring, layout);
+    wb_bundle_bodies_create_fields(bodies, &bodies->directors, layout);
     place_ring(bodies);
     const struct wb_swept_tape_model model = {
         .material = tape->material.material,
@@ -148,7 +148,8 @@ static enum wb_status make_ring(struct wb_bundle_bodies *bodies)
         .double_precision = bodies->model->run.double_precision,
     };
     WB_TRY(wb_swept_tape_create(&bodies->tape, &model));
-    return wb_swept_tape_state_create(&bodies->tape_state, bodies->tape);
+    bodies->tape_state = wb_swept_tape_state_create(bodies->tape);
+    return WB_OK;
 }
 
 static enum wb_status make_steps(struct wb_bundle_bodies *bodies,
@@ -157,10 +158,8 @@ static enum wb_status make_steps(struct wb_bundle_bodies *bodies,
     const struct wb_swept_layout layout = bodies->ring.layout;
     const size_t n = (size_t)layout.n_nodes;
 
-    bodies->tape_mass = calloc(n, sizeof *bodies->tape_mass);
-    bodies->tape_inertia = calloc(n, sizeof *bodies->tape_inertia);
-    if (!bodies->tape_mass || !bodies->tape_inertia)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the tape");
+    bodies->tape_mass = wb_memory_new(n, sizeof *bodies->tape_mass);
+    bodies->tape_inertia = wb_memory_new(n, sizeof *bodies->tape_inertia);
     wb_swept_tape_masses(bodies->tape, bodies->tape_mass, bodies->tape_inertia);
     if (whole) {
         memcpy(bodies->tape_mass, whole->tape_mass, n * sizeof *bodies->tape_mass);

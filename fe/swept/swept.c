@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/swept/swept_kernel.h"
 
 #define WB_LOG_DOMAIN "swept"
@@ -70,33 +71,24 @@ const char *wb_swept_instructions_name(enum wb_swept_instructions instructions)
     return names[instructions == WB_SWEPT_BEST ? best_supported() : instructions];
 }
 
-/* Zeroed; NULL without memory. */
-static void *allocate(size_t count, size_t size)
+void *wb_swept_allocate(size_t count, size_t size)
 {
-    if (size == 0 || count > SIZE_MAX / 2 / size)
-        return NULL;
+    const bool fits = size > 0 && count <= SIZE_MAX / 2 / size;
     const size_t bytes =
         (count * size + WB_SWEPT_ALIGNMENT) / WB_SWEPT_ALIGNMENT * WB_SWEPT_ALIGNMENT;
-    void *memory = aligned_alloc(WB_SWEPT_ALIGNMENT, bytes);
-    return memory ? memset(memory, 0, bytes) : NULL;
-}
-
-enum wb_status wb_swept_allocate(void **out, size_t count, size_t size)
-{
-    *out = allocate(count, size);
-    return *out ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for %zu values", count);
+    return memset(wb_memory_need(fits ? aligned_alloc(WB_SWEPT_ALIGNMENT, bytes) : NULL), 0, bytes);
 }
 
 void *wb_swept_take(struct wb_memory *memory, size_t count, size_t size)
 {
-    return wb_memory_keep(memory, allocate(count, size));
+    return wb_memory_keep(memory, wb_swept_allocate(count, size));
 }
 
 void *wb_swept_kernel_convert(struct wb_memory *memory, bool is_double, const double *numbers,
                               size_t count)
 {
     void *const out = wb_swept_take(memory, count, wb_swept_kernel_real_size(is_double));
-    for (size_t i = 0; out && i < count; i++)
+    for (size_t i = 0; i < count; i++)
         wb_swept_kernel_put(is_double, out, (ptrdiff_t)i, numbers[i]);
     return out;
 }

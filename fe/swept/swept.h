@@ -67,7 +67,7 @@ WB_MUST_CHECK enum wb_status wb_swept_choose_instructions(enum wb_swept_instruct
 const char *wb_swept_instructions_name(enum wb_swept_instructions instructions);
 
 /* Zeroed, aligned memory for `count` values of `size` bytes; free() it. */
-WB_MUST_CHECK enum wb_status wb_swept_allocate(void **out, size_t count, size_t size);
+void *wb_swept_allocate(size_t count, size_t size);
 
 /* The same as one array of an object (base/memory.h). */
 void *wb_swept_take(struct wb_memory *memory, size_t count, size_t size);

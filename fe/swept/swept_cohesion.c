@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/swept/swept_cohesion_kernel.h"
 #include "fe/swept/swept_private.h"
 
@@ -135,34 +136,25 @@ static enum wb_status find_facing(const struct wb_swept_cohesion *c,
 /* --- strips --- */
 
 /* The strip of the block of station j that goes where `f` does: one there is, or a new one. */
-static enum wb_status find_strip(struct wb_swept_cohesion *c, int k, const struct facing *f,
-                                 int from, int *out)
+static int find_strip(struct wb_swept_cohesion *c, int k, const struct facing *f, int from)
 {
     for (int s = c->n_strips - 1; s >= from; s--) {
         const struct wb_swept_cohesion_strip *strip = &c->strip[s];
         if (strip->node == k && strip->to == f->to && strip->partner[0] == f->partner[0] &&
-            strip->partner[1] == f->partner[1] && strip->outwards == f->outwards) {
-            *out = s;
-            return WB_OK;
-        }
+            strip->partner[1] == f->partner[1] && strip->outwards == f->outwards)
+            return s;
     }
     if (c->n_strips == c->room) {
-        const int room = 2 * c->room + 64;
-        struct wb_swept_cohesion_strip *strip = realloc(c->strip, (size_t)room * sizeof *strip);
-        if (strip)
-            c->strip = strip;
-        double *numbers = realloc(c->numbers, (size_t)room * ROWS * LANES * sizeof *numbers);
-        if (numbers)
-            c->numbers = numbers;
-        if (!strip || !numbers)
-            return wb_fail(WB_ERR_MEMORY, "no memory for %d strips of a bond", room);
-        c->room = room;
+        c->room = 2 * c->room + 64;
+        const size_t room = (size_t)c->room;
+        c->strip = wb_memory_resize(c->strip, room, sizeof *c->strip);
+        c->numbers = wb_memory_resize(c->numbers, room * ROWS * LANES, sizeof *c->numbers);
     }
-    *out = c->n_strips++;
-    memset(c->numbers + (size_t)*out * ROWS * LANES, 0, ROWS * LANES * sizeof *c->numbers);
-    c->strip[*out] =
+    const int added = c->n_strips++;
+    memset(c->numbers + (size_t)added * ROWS * LANES, 0, ROWS * LANES * sizeof *c->numbers);
+    c->strip[added] =
         (struct wb_swept_cohesion_strip){k, f->to, {f->partner[0], f->partner[1]}, f->outwards};
-    return WB_OK;
+    return added;
 }
 
 static enum wb_status add_bond(struct wb_swept_cohesion *c,
@@ -171,7 +163,6 @@ static enum wb_status add_bond(struct wb_swept_cohesion *c,
 {
     const int n_stations = layout_of(c)->n_stations;
     struct facing f;
-    int s = 0;
 
     if (bond->to == WB_SWEPT_COHESION_FREE)
         return WB_OK;
@@ -182,7 +173,7 @@ static enum wb_status add_bond(struct wb_swept_cohesion *c,
                        "wire from 0 to %d, or %d for the tape, and a share above 0, at most 1",
                        k, bond->to, bond->share, c->n_wires - 1, WB_SWEPT_COHESION_TAPE);
     WB_TRY(find_facing(c, wires, bond, k, j, &f));
-    WB_TRY(find_strip(c, k, &f, from, &s));
+    const int s = find_strip(c, k, &f, from);
     double *rows = c->numbers + (size_t)s * ROWS * LANES + j % LANES;
     rows[WB_SWEPT_COHESION_WEIGHT * LANES] = f.weight;
     rows[WB_SWEPT_COHESION_OFFSET * LANES] = f.offset;
@@ -255,15 +246,11 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
     c->first = wb_memory_take(&c->memory, n_blocks + 1, sizeof *c->first);
     c->strip_of = wb_memory_take(&c->memory, (size_t)layout->n_nodes * (size_t)layout->n_stations,
                                  sizeof *c->strip_of);
-    if (!c->first || !c->strip_of)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
     WB_TRY(make_strips(c, wires, bond));
     c->rows = wb_swept_kernel_convert(&c->memory, is_double, c->numbers,
                                       (size_t)c->n_strips * ROWS * LANES);
     c->damage = wb_swept_take(&c->memory, (size_t)c->n_strips * LANES,
                               wb_swept_kernel_real_size(is_double));
-    if (c->memory.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
     c->model = (struct wb_swept_cohesion_kernel_model){
         .stride = layout->stride,
         .first = c->first,
@@ -287,9 +274,7 @@ enum wb_status wb_swept_cohesion_create(struct wb_swept_cohesion **out,
                                         const struct wb_swept_cohesion_bond *bond)
 {
     *out = NULL;
-    struct wb_swept_cohesion *c = calloc(1, sizeof *c);
-    if (!c)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
+    struct wb_swept_cohesion *const c = wb_memory_new(1, sizeof *c);
     c->tape = tape;
     c->tape_model = wb_swept_tape_get_model(tape);
     c->settings = *settings;

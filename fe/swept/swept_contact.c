@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/swept/swept_contact_kernel.h"
 #include "fe/swept/swept_private.h"
 
@@ -213,7 +214,7 @@ static enum wb_status find_weights(const struct wb_swept_contact_wire *wire, int
     return WB_OK;
 }
 
-static enum wb_status allocate(struct wb_swept_contact *c, int n_surface)
+static void allocate(struct wb_swept_contact *c, int n_surface)
 {
     struct wb_swept_contact_model *m = &c->model;
     struct wb_memory *const memory = &c->memory;
@@ -239,10 +240,7 @@ static enum wb_status allocate(struct wb_swept_contact *c, int n_surface)
     c->node_memory = wb_memory_take(memory, surface, sizeof *c->node_memory);
     c->side_memory = wb_memory_take(memory, 2 * pairs, sizeof *c->side_memory);
     c->weight_memory = wb_memory_take(memory, surface, sizeof *c->weight_memory);
-    if (memory->failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of %d wires", m->n_wires);
     c->youngs_modulus = c->radius + m->n_wires;
-    return WB_OK;
 }
 
 static void point_at_memory(struct wb_swept_contact *c)
@@ -335,19 +333,15 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
         WB_TRY(check_wire(&wires[w], w));
         n_surface += wires[w].n_surface;
     }
-    struct wb_swept_contact *c = calloc(1, sizeof *c);
-    if (!c)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of %d wires", n_wires);
+    struct wb_swept_contact *const c = wb_memory_new(1, sizeof *c);
     c->settings = *settings;
     c->settings.instructions = instructions;
     c->kernel = kernels[instructions][settings->double_precision];
     c->spacing = spacing;
     size_model(c, n_wires, n_stations);
-    enum wb_status status = allocate(c, n_surface);
-    if (status == WB_OK) {
-        point_at_memory(c);
-        status = take_wires(c, wires);
-    }
+    allocate(c, n_surface);
+    point_at_memory(c);
+    const enum wb_status status = take_wires(c, wires);
     if (status != WB_OK) {
         wb_swept_contact_destroy(c);
         return status;

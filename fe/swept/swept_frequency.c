@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "swept"
@@ -183,12 +184,10 @@ static void scale_lines(double *K, size_t n, size_t step, const double *roots, i
 
 static enum wb_status largest_eigenvalue(double *K, int n, double *value)
 {
-    double *values = calloc((size_t)n, sizeof *values);
+    double *const values = wb_memory_new((size_t)n, sizeof *values);
     lapack_int found = 0, ignored = 0;
     double vector = 0.0;
 
-    if (!values)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d eigenvalues", n);
     const lapack_int info = LAPACKE_dsyevx(LAPACK_ROW_MAJOR, 'N', 'I', 'U', n, K, n, 0.0, 0.0, n, n,
                                            0.0, &found, values, &vector, 1, &ignored);
     *value = values[0];
@@ -219,9 +218,7 @@ enum wb_status wb_swept_frequency_bound(const struct wb_swept_hex *hex, const do
                            "node %d has a mass of %g kg/m: expected a number above 0", k,
                            node_mass[k]);
     }
-    double *K = calloc(n * n + (size_t)n_nodes, sizeof *K);
-    if (!K)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a layer of %d nodes", n_nodes);
+    double *const K = wb_memory_new(n * n + (size_t)n_nodes, sizeof *K);
     double *roots = K + n * n;
     for (int k = 0; k < n_nodes; k++)
         roots[k] = sqrt(0.5 * node_mass[k] * m->element_length);

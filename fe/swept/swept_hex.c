@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/circle.h"
+#include "base/memory.h"
 #include "fe/material/hardening.h"
 #include "fe/swept/swept_hex_kernel.h"
 #include "fe/swept/swept_private.h"
@@ -91,14 +92,12 @@ static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_q
     }
 }
 
-static enum wb_status make_constants(struct wb_swept_hex *hex)
+static void make_constants(struct wb_swept_hex *hex)
 {
     const struct wb_swept_section *section = hex->model.section;
     const size_t count = (size_t)section->n_quads * CONSTANTS;
 
     hex->rows = wb_memory_take(&hex->memory, count, sizeof *hex->rows);
-    if (!hex->rows)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d elements of a section", section->n_quads);
     for (int e = 0; e < section->n_quads; e++) {
         struct wb_swept_quad quad;
         double at[4][2];
@@ -109,7 +108,6 @@ static enum wb_status make_constants(struct wb_swept_hex *hex)
     }
     hex->constants =
         wb_swept_kernel_convert(&hex->memory, hex->model.double_precision, hex->rows, count);
-    return WB_OK;
 }
 
 static enum wb_status check(const struct wb_swept_hex_model *m)
@@ -168,10 +166,8 @@ static enum wb_status fill(struct wb_swept_hex *hex)
     WB_TRY(wb_swept_choose_instructions(&hex->model.instructions, m->instructions));
     hex->kernel = kernels[m->instructions][m->double_precision];
     hex->n_points = m->formulation == WB_SWEPT_HEX_ONE_POINT ? 1 : 4;
-    WB_TRY(make_constants(hex));
+    make_constants(hex);
     WB_TRY(make_table(hex));
-    if (hex->memory.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
     hex->numbers = (struct wb_swept_hex_kernel_model){
         .layout = wb_swept_layout(m->section->n_nodes, m->n_elements + 1),
         .n_quads = m->section->n_quads,
@@ -208,9 +204,7 @@ enum wb_status wb_swept_hex_create(struct wb_swept_hex **out,
                                    const struct wb_swept_hex_model *model)
 {
     *out = NULL;
-    struct wb_swept_hex *hex = calloc(1, sizeof *hex);
-    if (!hex)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
+    struct wb_swept_hex *const hex = wb_memory_new(1, sizeof *hex);
     hex->model = *model;
     if (hex->model.hourglass == 0.0)
         hex->model.hourglass = default_hourglass;
@@ -266,8 +260,7 @@ void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double sti
         stiffness[1 + i] = row[WB_SWEPT_HEX_K_ALONG + i];
 }
 
-enum wb_status wb_swept_hex_state_create(struct wb_swept_hex_state **out,
-                                         const struct wb_swept_hex *hex)
+struct wb_swept_hex_state *wb_swept_hex_state_create(const struct wb_swept_hex *hex)
 {
     const struct wb_swept_layout *layout = &hex->numbers.layout;
     const size_t points = (size_t)layout->stride * (size_t)hex->numbers.n_quads * //
@@ -275,20 +268,12 @@ enum wb_status wb_swept_hex_state_create(struct wb_swept_hex_state **out,
     const size_t vectors =
         (size_t)(WB_SWEPT_HEX_KERNEL_NODE + WB_SWEPT_HEX_KERNEL_CARRY) * (size_t)layout->n_nodes;
 
-    *out = NULL;
-    struct wb_swept_hex_state *state = calloc(1, sizeof *state);
-    if (!state)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
+    struct wb_swept_hex_state *const state = wb_memory_new(1, sizeof *state);
     state->hex = hex;
     state->history_size = points * WB_SWEPT_HEX_KERNEL_HISTORY;
     state->history = wb_swept_take(&state->memory, state->history_size, real_size(hex));
     state->workspace = wb_swept_take(&state->memory, vectors * WB_SWEPT_LANES, real_size(hex));
-    if (state->memory.failed) {
-        wb_swept_hex_state_destroy(state);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
-    }
-    *out = state;
-    return WB_OK;
+    return state;
 }
 
 void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state)

@@ -84,8 +84,7 @@ const char *wb_swept_hex_best_instructions(void);
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4]);
 
 /* One wire's histories, virgin. The hex must outlive it. */
-WB_MUST_CHECK enum wb_status wb_swept_hex_state_create(struct wb_swept_hex_state **out,
-                                                       const struct wb_swept_hex *hex);
+struct wb_swept_hex_state *wb_swept_hex_state_create(const struct wb_swept_hex *hex);
 void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
 
 /* What a checkpoint keeps of a state: `bytes` at the address returned. */

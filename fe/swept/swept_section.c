@@ -2,9 +2,9 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "swept"
@@ -103,8 +103,7 @@ void wb_swept_section_quad(const struct wb_swept_section *section, int quad,
     hourglass_vector(at, out);
 }
 
-static enum wb_status allocate(struct wb_swept_section *section, int n_nodes, int n_quads,
-                               int n_outline)
+static void allocate(struct wb_swept_section *section, int n_nodes, int n_quads, int n_outline)
 {
     *section = (struct wb_swept_section){.n_nodes = n_nodes, .n_quads = n_quads};
     section->node = wb_memory_take(&section->memory, (size_t)n_nodes, sizeof *section->node);
@@ -113,10 +112,6 @@ static enum wb_status allocate(struct wb_swept_section *section, int n_nodes, in
     section->outline =
         wb_memory_take(&section->memory, (size_t)n_outline + 1, sizeof *section->outline);
     section->n_outline = n_outline;
-    if (!section->memory.failed)
-        return WB_OK;
-    wb_swept_section_release(section);
-    return wb_fail(WB_ERR_MEMORY, "no memory for a section of %d elements", n_quads);
 }
 
 void wb_swept_section_release(struct wb_swept_section *section)
@@ -181,7 +176,7 @@ enum wb_status wb_swept_section_init(struct wb_swept_section *section, int n_nod
                            "element %d of the section has node %d: expected 0 to %d", i / 4,
                            quad[i / 4][i % 4], n_nodes - 1);
     }
-    WB_TRY(allocate(section, n_nodes, n_quads, 0));
+    allocate(section, n_nodes, n_quads, 0);
     memcpy(section->node, node, (size_t)n_nodes * sizeof *node);
     memcpy(section->quad, quad, (size_t)n_quads * sizeof *quad);
     for (int e = 0; e < n_quads; e++) {
@@ -261,8 +256,8 @@ enum wb_status wb_swept_section_init_circle(struct wb_swept_section *section, do
     if (!(diameter > 0.0 && isfinite(diameter)))
         return wb_fail(WB_ERR_ARGUMENT, "the circle's diameter is %g m: expected a number above 0",
                        diameter);
-    WB_TRY(allocate(section, (core + 1) * (core + 1) + 4 * core * rings,
-                    core * core + 4 * core * rings, 4 * core));
+    allocate(section, (core + 1) * (core + 1) + 4 * core * rings, core * core + 4 * core * rings,
+             4 * core);
 
     const double share = 0.5 * core / (0.5 * core + rings);
     const double reach = rings > 0 ? fmin(core_reach * share, 0.9) : 1.0;

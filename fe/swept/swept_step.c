@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "swept"
@@ -237,23 +238,18 @@ static enum wb_status check(const struct wb_swept_step_model *m)
     return WB_OK;
 }
 
-static enum wb_status allocate(struct wb_swept_step *step)
+static void allocate(struct wb_swept_step *step)
 {
     const size_t n = (size_t)step->model.layout.n_nodes;
     const size_t stride = (size_t)step->model.layout.stride;
 
-    step->node_mass = calloc(2 * n, sizeof *step->node_mass);
-    step->held = calloc(3 * stride, sizeof *step->held);
-    if (!step->node_mass || !step->held)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the masses of %zu stations", stride);
-    void *lines;
-    WB_TRY(wb_swept_allocate(&lines, 8 * stride, sizeof *step->length));
-    step->length = lines;
+    step->node_mass = wb_memory_new(2 * n, sizeof *step->node_mass);
+    step->held = wb_memory_new(3 * stride, sizeof *step->held);
+    step->length = wb_swept_allocate(8 * stride, sizeof *step->length);
     step->inverse_node = step->node_mass + n;
     step->extra = step->length + stride;
     step->inverse = step->extra + stride;
     step->weight = step->inverse + 3 * stride;
-    return WB_OK;
 }
 
 enum wb_status wb_swept_step_create(struct wb_swept_step **out,
@@ -265,15 +261,9 @@ enum wb_status wb_swept_step_create(struct wb_swept_step **out,
     m.mass_scaling = m.mass_scaling == 0.0 ? 1.0 : m.mass_scaling;
     m.selective = m.selective == 0.0 ? 1.0 : m.selective;
     WB_TRY(check(&m));
-    struct wb_swept_step *step = calloc(1, sizeof *step);
-    if (!step)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a body");
+    struct wb_swept_step *const step = wb_memory_new(1, sizeof *step);
     step->model = m;
-    const enum wb_status status = allocate(step);
-    if (status != WB_OK) {
-        wb_swept_step_destroy(step);
-        return status;
-    }
+    allocate(step);
     step->model.node_mass = step->node_mass;
     for (int k = 0; k < m.layout.n_nodes; k++) {
         step->node_mass[k] = model->node_mass[k];

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/vec3.h"
 #include "fe/material/hardening.h"
 #include "fe/swept/swept_private.h"
@@ -328,7 +329,7 @@ static void set_numbers(struct wb_swept_tape *tape)
     }
 }
 
-static enum wb_status allocate(struct wb_swept_tape *tape)
+static void allocate(struct wb_swept_tape *tape)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
     const size_t nodes = (size_t)layout->n_nodes, stride = (size_t)layout->stride;
@@ -340,13 +341,10 @@ static enum wb_status allocate(struct wb_swept_tape *tape)
     tape->position = wb_swept_take(&tape->memory, wb_swept_size(layout), sizeof(double));
     tape->director = wb_swept_take(&tape->memory, wb_swept_size(layout), sizeof(double));
     tape->area = wb_swept_take(&tape->memory, nodes * (stride + 2), sizeof(double));
-    if (tape->memory.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a tape of %zu nodes", nodes);
     tape->mass = tape->area + nodes * stride;
     tape->inertia = tape->mass + nodes;
     tape->numbers.reference = tape->reference;
     tape->numbers.length_stiffness = tape->length_stiffness;
-    return WB_OK;
 }
 
 static enum wb_status fill(struct wb_swept_tape *tape)
@@ -360,12 +358,10 @@ static enum wb_status fill(struct wb_swept_tape *tape)
     WB_TRY(wb_swept_choose_instructions(&tape->model.instructions, m->instructions));
     tape->kernel = kernels[m->instructions][m->double_precision];
     set_numbers(tape);
-    WB_TRY(allocate(tape));
+    allocate(tape);
     WB_TRY(wb_hardening_tabulate_octaves(&radial, WB_SWEPT_TAPE_TERMS, &table[0][0]));
     tape->numbers.table = wb_swept_kernel_convert(&tape->memory, m->double_precision, &table[0][0],
                                                   sizeof table / sizeof table[0][0]);
-    if (!tape->numbers.table)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a tape's hardening");
     for (int row = 0; row < 3 * m->layout.n_nodes; row++) {
         const size_t at = (size_t)row * (size_t)m->layout.stride;
         memcpy(tape->position + at, m->position + at,
@@ -379,9 +375,7 @@ enum wb_status wb_swept_tape_create(struct wb_swept_tape **out,
                                     const struct wb_swept_tape_model *model)
 {
     *out = NULL;
-    struct wb_swept_tape *tape = calloc(1, sizeof *tape);
-    if (!tape)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a tape");
+    struct wb_swept_tape *const tape = wb_memory_new(1, sizeof *tape);
     tape->model = *model;
     if (tape->model.hourglass == 0.0)
         tape->model.hourglass = default_hourglass;
@@ -446,28 +440,19 @@ void wb_swept_tape_masses(const struct wb_swept_tape *tape, double *mass, double
 
 /* --- states --- */
 
-enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
-                                          const struct wb_swept_tape *tape)
+struct wb_swept_tape_state *wb_swept_tape_state_create(const struct wb_swept_tape *tape)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
     const size_t real = wb_swept_kernel_real_size(tape->model.double_precision);
 
-    *out = NULL;
-    struct wb_swept_tape_state *state = calloc(1, sizeof *state);
-    if (!state)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a tape");
+    struct wb_swept_tape_state *const state = wb_memory_new(1, sizeof *state);
     state->tape = tape;
     state->history_size = (size_t)tape->numbers.n_elements * (size_t)layout->stride *
                           (size_t)tape->numbers.n_points * WB_SWEPT_TAPE_HISTORY;
     state->history = wb_swept_take(&state->memory, state->history_size, real);
     state->carry =
         wb_swept_take(&state->memory, (size_t)layout->n_nodes * WB_SWEPT_TAPE_CARRY * LANES, real);
-    if (state->memory.failed) {
-        wb_swept_tape_state_destroy(state);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a tape");
-    }
-    *out = state;
-    return WB_OK;
+    return state;
 }
 
 void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state)
@@ -684,15 +669,12 @@ static bool is_same(const struct element *a, const struct element *b)
 
 /* How much larger a node's share of the elements, at the most, is than what it is given: masses are
  * means over the stations. */
-static enum wb_status largest_shares(const struct wb_swept_tape *tape, double *of_mass,
-                                     double *of_inertia)
+static void largest_shares(const struct wb_swept_tape *tape, double *of_mass, double *of_inertia)
 {
     const struct wb_swept_tape_model *m = &tape->model;
     const size_t stride = (size_t)m->layout.stride;
-    double *share = calloc((size_t)m->layout.n_nodes * stride, sizeof *share);
+    double *const share = wb_memory_new((size_t)m->layout.n_nodes * stride, sizeof *share);
 
-    if (!share)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a tape");
     *of_mass = *of_inertia = 0.0;
     for (int k = 0; k < tape->numbers.n_elements; k++) {
         for (int j = 0; j < tape->numbers.n_along; j++) {
@@ -713,14 +695,13 @@ static enum wb_status largest_shares(const struct wb_swept_tape *tape, double *o
         }
     }
     free(share);
-    return WB_OK;
 }
 
 enum wb_status wb_swept_tape_stiffness_per_mass(const struct wb_swept_tape *tape, double *largest)
 {
     double of_mass = 0.0, of_inertia = 0.0, most = 0.0;
 
-    WB_TRY(largest_shares(tape, &of_mass, &of_inertia));
+    largest_shares(tape, &of_mass, &of_inertia);
     for (int k = 0; k < tape->numbers.n_elements; k++) {
         struct element before;
         for (int j = 0; j < tape->numbers.n_along; j++) {

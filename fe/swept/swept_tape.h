@@ -93,8 +93,7 @@ WB_MUST_CHECK enum wb_status wb_swept_tape_stiffness_per_mass(const struct wb_sw
                                                               double *largest);
 
 /* Histories of one tape, virgin. The tape must outlive it. */
-WB_MUST_CHECK enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
-                                                        const struct wb_swept_tape *tape);
+struct wb_swept_tape_state *wb_swept_tape_state_create(const struct wb_swept_tape *tape);
 void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state);
 
 /* What a checkpoint keeps of a state: `bytes` at the address returned. */

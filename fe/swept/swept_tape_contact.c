@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/vec3.h"
 #include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape_contact_kernel.h"
@@ -500,8 +501,7 @@ static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int 
     return WB_OK;
 }
 
-static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
-                                 const struct wb_swept_cohesion_wire *wires)
+static void copy_wires(struct wb_swept_tape_contact *c, const struct wb_swept_cohesion_wire *wires)
 {
     double smallest = (double)INFINITY;
     size_t nodes = 0;
@@ -510,8 +510,6 @@ static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
         nodes += (size_t)wires[w].n_surface;
     c->surface = wb_memory_take(&c->memory, (size_t)c->n_wires + 1, sizeof *c->surface);
     c->surface_nodes = wb_memory_take(&c->memory, nodes + 1, sizeof *c->surface_nodes);
-    if (!c->surface || !c->surface_nodes)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
     nodes = 0;
     for (int w = 0; w < c->n_wires; w++) {
         c->surface[w] =
@@ -523,10 +521,9 @@ static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
     }
     if (c->settings.margin == 0.0)
         c->settings.margin = default_margin * smallest;
-    return WB_OK;
 }
 
-static enum wb_status allocate(struct wb_swept_tape_contact *c)
+static void allocate(struct wb_swept_tape_contact *c)
 {
     const struct wb_swept_layout *layout = layout_of(c);
     const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
@@ -542,22 +539,18 @@ static enum wb_status allocate(struct wb_swept_tape_contact *c)
     c->rows = wb_swept_take(&c->memory, places * ROWS * LANES, real_size(c));
     c->history = wb_swept_take(
         &c->memory, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride, real_size(c));
-    return c->memory.failed ? wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape")
-                            : WB_OK;
 }
 
-static enum wb_status fill(struct wb_swept_tape_contact *c,
-                           const struct wb_swept_cohesion_wire *wires)
+static void fill(struct wb_swept_tape_contact *c, const struct wb_swept_cohesion_wire *wires)
 {
     const struct wb_swept_layout *layout = layout_of(c);
     const struct wb_swept_tape_contact_settings *s = &c->settings;
 
-    WB_TRY(check(s, c->n_wires, wires));
     c->kernel = kernels[c->tape_model->instructions][c->tape_model->double_precision];
     if (c->settings.refresh_interval == 0)
         c->settings.refresh_interval = default_interval;
-    WB_TRY(copy_wires(c, wires));
-    WB_TRY(allocate(c));
+    copy_wires(c, wires);
+    allocate(c);
     c->model = (struct wb_swept_tape_contact_kernel_model){
         .n_stations = layout->n_stations,
         .stride = layout->stride,
@@ -571,7 +564,6 @@ static enum wb_status fill(struct wb_swept_tape_contact *c,
         .counted = wb_swept_range_within(c->tape_model->counted, layout->n_stations),
     };
     wb_swept_tape_contact_reset(c);
-    return WB_OK;
 }
 
 enum wb_status wb_swept_tape_contact_create(struct wb_swept_tape_contact **out,
@@ -581,19 +573,14 @@ enum wb_status wb_swept_tape_contact_create(struct wb_swept_tape_contact **out,
                                             int n_wires, const struct wb_swept_cohesion_wire *wires)
 {
     *out = NULL;
-    struct wb_swept_tape_contact *c = calloc(1, sizeof *c);
-    if (!c)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
+    WB_TRY(check(settings, n_wires, wires));
+    struct wb_swept_tape_contact *const c = wb_memory_new(1, sizeof *c);
     c->tape = tape;
     c->tape_model = wb_swept_tape_get_model(tape);
     c->cohesion = cohesion;
     c->settings = *settings;
     c->n_wires = n_wires;
-    const enum wb_status status = fill(c, wires);
-    if (status != WB_OK) {
-        wb_swept_tape_contact_destroy(c);
-        return status;
-    }
+    fill(c, wires);
     *out = c;
     return WB_OK;
 }

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "team"
 
 enum {
@@ -108,7 +110,7 @@ static enum wb_status start_threads(struct wb_team *team)
     return WB_OK;
 }
 
-static enum wb_status allocate(struct wb_team *team)
+static void allocate(struct wb_team *team)
 {
     enum {
         OF_A_MEMBER = 2 * SLOTS + 2
@@ -117,10 +119,8 @@ static enum wb_status allocate(struct wb_team *team)
     const size_t room = (team->packet_size * sizeof(double) + LINE - 1) / LINE * LINE;
     const size_t n = (size_t)team->n_threads;
 
-    team->member = aligned_alloc(LINE, n * sizeof *team->member);
-    team->memory = aligned_alloc(LINE, n * OF_A_MEMBER * (room > 0 ? room : LINE));
-    if (!team->member || !team->memory)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the packets of %d threads", team->n_threads);
+    team->member = wb_memory_need(aligned_alloc(LINE, n * sizeof *team->member));
+    team->memory = wb_memory_need(aligned_alloc(LINE, n * OF_A_MEMBER * (room > 0 ? room : LINE)));
     double *at = team->memory;
     for (int i = 0; i < team->n_threads; i++) {
         struct member *m = &team->member[i];
@@ -129,7 +129,6 @@ static enum wb_status allocate(struct wb_team *team)
         for (int b = 0; b < OF_A_MEMBER; b++, at += room / sizeof *at)
             *(b < 2 * SLOTS ? &m->out[b / SLOTS][b % SLOTS] : &m->in[b - 2 * SLOTS]) = at;
     }
-    return WB_OK;
 }
 
 enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size)
@@ -141,9 +140,7 @@ enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size)
         return wb_fail(WB_ERR_UNSUPPORTED,
                        "this MPI does not let several threads of a rank send; use one thread and "
                        "more ranks");
-    struct wb_team *team = calloc(1, sizeof *team);
-    if (!team)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d threads", n_threads);
+    struct wb_team *const team = wb_memory_new(1, sizeof *team);
     team->n_threads = n_threads;
     team->first = wb_team_rank() * n_threads;
     team->size = wb_team_ranks() * n_threads;
@@ -152,9 +149,8 @@ enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size)
     pthread_mutex_init(&team->lock, NULL);
     pthread_cond_init(&team->begin, NULL);
     pthread_cond_init(&team->end, NULL);
-    enum wb_status status = allocate(team);
-    if (status == WB_OK)
-        status = start_threads(team);
+    allocate(team);
+    const enum wb_status status = start_threads(team);
     if (status != WB_OK)
         wb_team_destroy(team);
     else
@@ -179,11 +175,6 @@ void wb_team_destroy(struct wb_team *team)
     free(team->memory);
     free(team->member);
     free(team);
-}
-
-int wb_team_first(const struct wb_team *team)
-{
-    return team->first;
 }
 
 /* --- rounds --- */

@@ -19,13 +19,11 @@
 
 struct wb_team; /* opaque */
 
-/* `n_threads` members in each rank, in the order of ranks, whose packets have `size` numbers. The
- * threads are started here and sleep between calls of wb_team_run(). */
+/* `n_threads` members in each rank, in the order of ranks, whose packets have `size` numbers: those
+ * of this rank begin with wb_team_rank() * n_threads. The threads are started here and sleep
+ * between calls of wb_team_run(). */
 WB_MUST_CHECK enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size);
 void wb_team_destroy(struct wb_team *team); /* accepts NULL */
-
-/* The first member of this rank; then come n_threads - 1 more. */
-int wb_team_first(const struct wb_team *team);
 
 /* Calls work(context, member) for the members of this rank, each in its thread, the first in the
  * caller's; returns when all are done. */

@@ -2,6 +2,7 @@
 #include <mpi.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "fe/team/team_ranks.h"
 
 #define WB_LOG_DOMAIN "team"
@@ -64,9 +65,7 @@ void wb_team_sum(double *values, int n)
 {
     if (n_ranks == 1)
         return;
-    double *all = malloc((size_t)n * (size_t)n_ranks * sizeof *all);
-    if (!all)
-        wb_team_abort(1);
+    double *const all = wb_memory_new((size_t)n * (size_t)n_ranks, sizeof *all);
     MPI_Allgather(values, n, MPI_DOUBLE, all, n, MPI_DOUBLE, MPI_COMM_WORLD);
     for (int i = 0; i < n; i++) {
         values[i] = all[i];

@@ -48,11 +48,6 @@ struct bench {
     struct wire wire[WIRES];
 };
 
-static bool field(const struct wb_swept_layout *layout, void **out)
-{
-    return wb_swept_allocate(out, wb_swept_size(layout), sizeof(double)) == WB_OK;
-}
-
 /* Arcs in the plane of x and y. */
 static void bend(const struct bench *b, double curvature, double *position)
 {
@@ -89,17 +84,12 @@ static bool bench_create(struct bench *b, const struct wb_swept_hex_model *model
         return false;
     for (int w = 0; w < WIRES; w++) {
         struct wire *wire = &b->wire[w];
-        void *memory[4];
-        for (int i = 0; i < 4; i++) {
-            if (!field(&b->layout, &memory[i]))
-                return false;
-        }
-        wire->bent[0] = memory[0];
-        wire->bent[1] = memory[1];
-        wire->velocity = memory[2];
-        wire->force = memory[3];
-        if (wb_swept_hex_state_create(&wire->state, b->hex) != WB_OK)
-            return false;
+        const size_t size = wb_swept_size(&b->layout);
+        wire->bent[0] = wb_swept_allocate(size, sizeof(double));
+        wire->bent[1] = wb_swept_allocate(size, sizeof(double));
+        wire->velocity = wb_swept_allocate(size, sizeof(double));
+        wire->force = wb_swept_allocate(size, sizeof(double));
+        wire->state = wb_swept_hex_state_create(b->hex);
         bend(b, 30.0, wire->bent[0]);
         bend(b, -30.0, wire->bent[1]);
     }

@@ -81,14 +81,9 @@ static bool make_bundle(const struct problem *problem, struct bundle *bundle)
     }
     for (int w = 0; w < problem->n_wires; w++) {
         const size_t size = wb_swept_size(&bundle->layout);
-        for (int odd = 0; odd < 2; odd++) {
-            void *memory;
-            if (wb_swept_allocate(&memory, size, sizeof(double)) != WB_OK)
-                return false;
-            bundle->position[odd][w] = memory;
-        }
-        if (wb_swept_allocate(&bundle->force[w], size, sizeof(float)) != WB_OK)
-            return false;
+        for (int odd = 0; odd < 2; odd++)
+            bundle->position[odd][w] = wb_swept_allocate(size, sizeof(double));
+        bundle->force[w] = wb_swept_allocate(size, sizeof(float));
         place_wire(problem, bundle, w);
     }
     return true;

@@ -81,7 +81,7 @@ static enum wb_status create(struct sleeve *s, enum wb_swept_instructions instru
 
     *s = (struct sleeve){.layout = model.layout};
     for (int i = 0; i < 6; i++)
-        WB_TRY(wb_swept_allocate(fields[i], wb_swept_size(&s->layout), sizeof(double)));
+        *fields[i] = wb_swept_allocate(wb_swept_size(&s->layout), sizeof(double));
     for (int k = 0; k < NODES; k++) {
         for (int j = 0; j <= ALONG; j++) {
             double *at = s->position + 3 * k * s->layout.stride + j;
@@ -92,7 +92,7 @@ static enum wb_status create(struct sleeve *s, enum wb_swept_instructions instru
     }
     model.position = s->position;
     WB_TRY(wb_swept_tape_create(&s->tape, &model));
-    WB_TRY(wb_swept_tape_state_create(&s->state, s->tape));
+    s->state = wb_swept_tape_state_create(s->tape);
     memcpy(s->director, wb_swept_tape_directors(s->tape),
            wb_swept_size(&s->layout) * sizeof(double));
     return make_steps(s, is_double);
@@ -154,11 +154,11 @@ struct wire {
     void *force;
 };
 
-static enum wb_status create_wire(struct wire *w, double its_radius)
+static void create_wire(struct wire *w, double its_radius)
 {
     *w = (struct wire){.layout = wb_swept_layout(SURFACE, ALONG + 1)};
-    WB_TRY(wb_swept_allocate((void **)&w->position, wb_swept_size(&w->layout), sizeof(double)));
-    WB_TRY(wb_swept_allocate(&w->force, wb_swept_size(&w->layout), sizeof(double)));
+    w->position = wb_swept_allocate(wb_swept_size(&w->layout), sizeof(double));
+    w->force = wb_swept_allocate(wb_swept_size(&w->layout), sizeof(double));
     for (int k = 0; k < SURFACE; k++) {
         w->surface[k] = k;
         w->node[k][0] = its_radius * sin(2.0 * M_PI * k / SURFACE);
@@ -170,7 +170,6 @@ static enum wb_status create_wire(struct wire *w, double its_radius)
             at[2 * w->layout.stride] = w->node[k][1];
         }
     }
-    return WB_OK;
 }
 
 /* Least ns a node and step, of a sleeve on a wire as large, pressed together. */
@@ -189,7 +188,7 @@ static enum wb_status time_wire(struct sleeve *s, double ns[2])
         bond[i] = (struct wb_swept_cohesion_bond){0, 1.0};
     wb_swept_cohesion_default_settings(&bonded);
     wb_swept_tape_contact_default_settings(&touching);
-    WB_TRY(create_wire(&w, radius - 0.099e-3));
+    create_wire(&w, radius - 0.099e-3);
     const struct wb_swept_cohesion_wire wire = {.node = (const double(*)[2])w.node,
                                                 .n_nodes = SURFACE,
                                                 .n_surface = SURFACE,

@@ -42,7 +42,6 @@ static inline void contacts_init(struct contacts *c,
                            .is_double = settings->double_precision,
                            .layout = wb_swept_layout(CONTACTS_NODES, n_stations)};
     for (int w = 0; w < n_wires; w++) {
-        void *memory;
         c->radius[w] = radius[w];
         for (int k = 0; k < CONTACTS_SURFACE; k++) {
             const double angle = 2.0 * M_PI * k / CONTACTS_SURFACE + (k == 2 ? 0.2 : 0.0);
@@ -56,12 +55,9 @@ static inline void contacts_init(struct contacts *c,
                                                   .node = (const double(*)[2])c->node[w],
                                                   .radius = radius[w],
                                                   .youngs_modulus = 1e9};
-        assert_int_equal(wb_swept_allocate(&memory, wb_swept_size(&c->layout), sizeof(double)),
-                         WB_OK);
-        c->position[w] = memory;
-        assert_int_equal(wb_swept_allocate(&c->force[w], wb_swept_size(&c->layout),
-                                           c->is_double ? sizeof(double) : sizeof(float)),
-                         WB_OK);
+        c->position[w] = wb_swept_allocate(wb_swept_size(&c->layout), sizeof(double));
+        c->force[w] = wb_swept_allocate(wb_swept_size(&c->layout),
+                                        c->is_double ? sizeof(double) : sizeof(float));
     }
     assert_int_equal(
         wb_swept_contact_create(&c->contact, settings, n_wires, wires, n_stations, spacing), WB_OK);

@@ -18,9 +18,7 @@ struct swept_body {
 
 static inline double *swept_field(const struct wb_swept_layout *layout)
 {
-    void *field;
-    assert_int_equal(wb_swept_allocate(&field, wb_swept_size(layout), sizeof(double)), WB_OK);
-    return field;
+    return wb_swept_allocate(wb_swept_size(layout), sizeof(double));
 }
 
 static inline size_t swept_at(const struct wb_swept_layout *layout, int node, int component,
@@ -45,7 +43,7 @@ static inline struct swept_body swept_body_create(const struct wb_swept_hex_mode
 {
     struct swept_body body = {0};
     assert_int_equal(wb_swept_hex_create(&body.hex, model), WB_OK);
-    assert_int_equal(wb_swept_hex_state_create(&body.state, body.hex), WB_OK);
+    body.state = wb_swept_hex_state_create(body.hex);
     body.layout = wb_swept_hex_layout(body.hex);
     body.position = swept_field(&body.layout);
     body.force = swept_field(&body.layout);
