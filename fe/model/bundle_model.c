@@ -7,11 +7,10 @@
 #include <string.h>
 
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/model/model_file.h"
 #include "fe/model/packing_touch.h"
-
-#define WB_LOG_DOMAIN "bundle"
 
 static const double pi = 3.14159265358979323846;
 static const double touching = 1e-9; /* m: wires so near to the tape touch it */
@@ -975,9 +974,7 @@ enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *p
 enum wb_status wb_bundle_model_read_variant(struct wb_bundle_model *model, const char *path,
                                             const struct wb_bundle_variant *variant)
 {
-    struct wb_bundle_model *const read = calloc(1, sizeof *read);
-    if (!read)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
+    struct wb_bundle_model *const read = wb_memory_new(1, sizeof *read);
     struct reader reader = {.model = read, .variant = variant};
     const enum wb_status status = read_all(&reader, path);
     wb_model_file_close(&reader.file);

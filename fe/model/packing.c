@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 #define WB_LOG_DOMAIN "packing"
 
 /* Between the centres. */
@@ -720,9 +722,7 @@ enum wb_status wb_packing_settle(struct wb_packing *packing)
 {
     static const double firm = 0.01; /* wires do not pass each other */
     struct ring ring;
-    struct memory *const memory = calloc(1, sizeof *memory);
-    if (!memory)
-        return wb_fail(WB_ERR_MEMORY, "no memory to settle wires");
+    struct memory *const memory = wb_memory_new(1, sizeof *memory);
     ring_enter(&ring, packing);
     shake(&ring);
     const enum wb_status status = ring_settle(&ring, memory, firm, packing);
@@ -856,9 +856,7 @@ enum wb_status wb_packing_densest(struct wb_packing *packing, int n, const doubl
     struct ring ring;
     struct record best;
     WB_TRY(take(&found, n, diameter));
-    struct memory *const memory = calloc(1, sizeof *memory);
-    if (!memory)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the search of a packing");
+    struct memory *const memory = wb_memory_new(1, sizeof *memory);
     ring_enter(&ring, &found);
     search(&ring, memory, settings, &best);
     memcpy(ring.x, best.x, sizeof ring.x);
