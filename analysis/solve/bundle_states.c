@@ -19,13 +19,13 @@ static enum wb_status begin_anew(struct wb_bundle_states *states, int attempt)
     return states->wants_vtk ? wb_vtk_file_series_restart(states->series) : WB_OK;
 }
 
-static enum wb_status take_fields(struct wb_bundle_states *states, const struct wb_bundle *bundle)
+static void take_fields(struct wb_bundle_states *states, const struct wb_bundle *bundle)
 {
     if (states->has_fields)
-        return wb_bundle_fields_take(&states->fields, bundle);
-    WB_TRY(wb_bundle_fields_init(&states->fields, bundle));
+        wb_bundle_fields_take(&states->fields, bundle);
+    else
+        wb_bundle_fields_init(&states->fields, bundle);
     states->has_fields = true;
-    return WB_OK;
 }
 
 static enum wb_status take(struct wb_bundle_states *states, int number,
@@ -39,7 +39,7 @@ static enum wb_status take(struct wb_bundle_states *states, int number,
 
     if (!surface && !vtk)
         return WB_OK;
-    WB_TRY(take_fields(states, bundle));
+    take_fields(states, bundle);
     if (surface) {
         wb_surface_release(&states->surface);
         wb_surface_take(&states->surface, &states->fields);

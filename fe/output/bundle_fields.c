@@ -5,11 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/bundle/bundle_part.h"
 #include "fe/material/material.h"
 #include "fe/swept/swept_hex_stress.h"
-
-#define WB_LOG_DOMAIN "bundle"
 
 enum {
     TENSOR = 6
@@ -48,7 +47,7 @@ static void count(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bod
     f->n_quads = tape_quads(bodies);
 }
 
-static enum wb_status allocate(struct wb_bundle_fields *f)
+static void allocate(struct wb_bundle_fields *f)
 {
     const size_t points = (size_t)f->n_points;
     const size_t cells = (size_t)f->n_hexahedra + (size_t)f->n_quads;
@@ -61,22 +60,16 @@ static enum wb_status allocate(struct wb_bundle_fields *f)
     f->hexahedron = wb_memory_take(&f->memory, (size_t)f->n_hexahedra, sizeof *f->hexahedron);
     f->quad = wb_memory_take(&f->memory, (size_t)f->n_quads + 1, sizeof *f->quad);
     f->body = wb_memory_take(&f->memory, cells, sizeof *f->body);
-    if (!f->memory.failed)
-        return WB_OK;
-    return wb_fail(WB_ERR_MEMORY, "no memory for the fields of %d points", f->n_points);
 }
 
-static enum wb_status set_outline(struct wb_bundle_fields *f, struct wb_bundle_fields_body *body,
-                                  const struct wb_swept_section *section)
+static void set_outline(struct wb_bundle_fields *f, struct wb_bundle_fields_body *body,
+                        const struct wb_swept_section *section)
 {
     body->n_outline = section->n_outline;
     body->outline =
         wb_memory_take(&f->memory, (size_t)section->n_outline + 1, sizeof *body->outline);
-    if (!body->outline)
-        return wb_fail(WB_ERR_MEMORY, "no memory for an outline");
     for (int i = 0; i < section->n_outline; i++)
         body->outline[i] = section->outline[i];
-    return WB_OK;
 }
 
 /* Positions of a field at the body's points. */
@@ -134,7 +127,7 @@ static void mesh_tape(struct wb_bundle_fields *f, const struct wb_bundle_bodies 
         }
 }
 
-static enum wb_status make_mesh(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies)
+static void make_mesh(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies)
 {
     int first = 0, cell = 0;
 
@@ -154,27 +147,20 @@ static enum wb_status make_mesh(struct wb_bundle_fields *f, const struct wb_bund
             mesh_tape(f, bodies);
             continue;
         }
-        WB_TRY(set_outline(f, &f->bodies[b], section_of(bodies, b)));
+        set_outline(f, &f->bodies[b], section_of(bodies, b));
         cell = mesh_wire(f, bodies, b, cell);
     }
-    return WB_OK;
 }
 
-enum wb_status wb_bundle_fields_init(struct wb_bundle_fields *fields,
-                                     const struct wb_bundle *bundle)
+void wb_bundle_fields_init(struct wb_bundle_fields *fields, const struct wb_bundle *bundle)
 {
     const struct wb_bundle_bodies *bodies = &wb_bundle_whole(bundle)->bodies;
 
     *fields = (struct wb_bundle_fields){0};
     count(fields, bodies);
-    enum wb_status status = allocate(fields);
-    if (status == WB_OK)
-        status = make_mesh(fields, bodies);
-    if (status == WB_OK)
-        status = wb_bundle_fields_take(fields, bundle);
-    if (status != WB_OK)
-        wb_bundle_fields_release(fields);
-    return status;
+    allocate(fields);
+    make_mesh(fields, bodies);
+    wb_bundle_fields_take(fields, bundle);
 }
 
 void wb_bundle_fields_release(struct wb_bundle_fields *fields)
@@ -264,8 +250,7 @@ static void take_tape(struct wb_bundle_fields *f, const struct wb_bundle_bodies 
     }
 }
 
-enum wb_status wb_bundle_fields_take(struct wb_bundle_fields *fields,
-                                     const struct wb_bundle *bundle)
+void wb_bundle_fields_take(struct wb_bundle_fields *fields, const struct wb_bundle *bundle)
 {
     const struct wb_bundle_bodies *bodies = &wb_bundle_whole(bundle)->bodies;
     int most = 0;
@@ -274,13 +259,10 @@ enum wb_status wb_bundle_fields_take(struct wb_bundle_fields *fields,
         const int n = fields->bodies[b].n_nodes * fields->bodies[b].n_stations;
         most = n > most ? n : most;
     }
-    struct sum *sums = malloc((size_t)most * sizeof *sums);
-    if (!sums)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the stresses at %d points", most);
+    struct sum *const sums = wb_memory_new((size_t)most, sizeof *sums);
     for (int w = 0; w < bodies->n_wires; w++)
         take_wire(fields, bodies, w, sums);
     if (bodies->has_tape)
         take_tape(fields, bodies, sums);
     free(sums);
-    return WB_OK;
 }

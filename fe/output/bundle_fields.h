@@ -16,7 +16,6 @@
 #include <stdbool.h>
 
 #include "base/memory.h"
-#include "base/status.h"
 #include "fe/bundle/bundle.h"
 
 struct wb_bundle_fields_body {
@@ -44,13 +43,11 @@ struct wb_bundle_fields {
     struct wb_memory memory; /* of all arrays */
 };
 
-/* The mesh of a bundle, with its present state. On failure nothing needs a release. */
-WB_MUST_CHECK enum wb_status wb_bundle_fields_init(struct wb_bundle_fields *fields,
-                                                   const struct wb_bundle *bundle);
+/* The mesh of a bundle, with its present state. */
+void wb_bundle_fields_init(struct wb_bundle_fields *fields, const struct wb_bundle *bundle);
 /* The present state of the same bundle, or of another of the same model and mesh. Takes as long as
  * about ten steps. */
-WB_MUST_CHECK enum wb_status wb_bundle_fields_take(struct wb_bundle_fields *fields,
-                                                   const struct wb_bundle *bundle);
+void wb_bundle_fields_take(struct wb_bundle_fields *fields, const struct wb_bundle *bundle);
 void wb_bundle_fields_release(struct wb_bundle_fields *fields); /* accepts a zeroed one */
 
 #endif

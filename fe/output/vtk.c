@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/material/material.h"
 #include "fe/output/vtk_private.h"
@@ -24,7 +25,7 @@ struct state {
     struct wb_memory memory;    /* of all arrays */
 };
 
-static enum wb_status number_points(struct state *state)
+static void number_points(struct state *state)
 {
     const struct wb_solid_mesh *const mesh = state->mesh;
     const size_t most = (size_t)mesh->n_parts * (size_t)mesh->n_nodes;
@@ -32,8 +33,6 @@ static enum wb_status number_points(struct state *state)
     state->node = wb_memory_take(&state->memory, most, sizeof *state->node);
     state->element = wb_memory_take(&state->memory, most, sizeof *state->element);
     state->slot = wb_memory_take(&state->memory, most, sizeof *state->slot);
-    if (state->memory.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu points of a VTK file", most);
     for (size_t i = 0; i < most; i++)
         state->number[i] = -1;
     for (int e = 0; e < mesh->n_elements; e++) {
@@ -47,7 +46,6 @@ static enum wb_status number_points(struct state *state)
             state->slot[*number] = k;
         }
     }
-    return WB_OK;
 }
 
 static bool are_finite(const double *values, size_t n)
@@ -160,9 +158,8 @@ enum wb_status wb_vtk_write(const char *path, const struct wb_solid_mesh *mesh,
 {
     struct state state = {.mesh = mesh, .fields = fields};
     WB_TRY(check_fields(mesh, fields));
-    enum wb_status status = number_points(&state);
-    if (status == WB_OK)
-        status = write_state(path, &state);
+    number_points(&state);
+    const enum wb_status status = write_state(path, &state);
     wb_memory_release(&state.memory);
     return status;
 }
