@@ -9,6 +9,7 @@
 #include "analysis/calibration/cycle/cycle_check.h"
 #include "analysis/calibration/properties/method.h"
 #include "analysis/dataset/exclusion.h"
+#include "base/memory.h"
 #include "library/handles.h"
 #include "library/options.h"
 
@@ -121,9 +122,7 @@ static enum wb_status run_paper(struct job *job, struct wb_text *text)
 static enum wb_status run_cycle(struct job *job, struct wb_text *text)
 {
     struct wb_cycle_calibration calibration = {0};
-    struct wb_cycle_remarks *const remarks = calloc(1, sizeof *remarks);
-    if (!remarks)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the remarks of a calibration");
+    struct wb_cycle_remarks *const remarks = wb_memory_new(1, sizeof *remarks);
     const enum wb_status status =
         wb_cycle_check_calibrate(&calibration, remarks, job->datasets, job->n, &job->cycle, NULL);
     for (int i = 0; i < remarks->n; i++)
@@ -189,11 +188,9 @@ static enum wb_status take_datasets(struct job *job,
         return wb_fail(WB_ERR_ARGUMENT, "%zu datasets: expected 1 or more", n);
     WB_TRY(wb_call_need(datasets, "datasets"));
     job->n = (int)n;
-    job->datasets = calloc(n, sizeof(struct wb_dataset *));
-    job->origins = calloc(n, sizeof *job->origins);
-    job->names = calloc(n, sizeof *job->names);
-    if (!job->datasets || !job->origins || !job->names)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu datasets", n);
+    job->datasets = wb_memory_new(n, sizeof(struct wb_dataset *));
+    job->origins = wb_memory_new(n, sizeof *job->origins);
+    job->names = wb_memory_new(n, sizeof *job->names);
     for (size_t i = 0; i < n; i++) {
         WB_TRY(wb_call_need(datasets[i], "a dataset"));
         if (datasets[i]->dataset.info.kind == WB_TEST_TENSILE)
@@ -219,9 +216,7 @@ enum wirebench_status wirebench_calibrate(struct wirebench_properties **out,
     if (status == WB_OK)
         status = take_datasets(&job, datasets, n);
     struct wirebench_properties *const properties =
-        status == WB_OK ? calloc(1, sizeof *properties) : NULL;
-    if (status == WB_OK && !properties)
-        status = wb_fail(WB_ERR_MEMORY, "no memory for properties");
+        status == WB_OK ? wb_memory_new(1, sizeof *properties) : NULL;
     if (status == WB_OK)
         status = calibrate(&job, properties);
     free(job.datasets);

@@ -4,6 +4,7 @@
 
 #include "analysis/align/align.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "library/handles.h"
 #include "library/options.h"
 
@@ -44,9 +45,7 @@ enum wirebench_status wirebench_dataset_read(struct wirebench_dataset **out, con
     wb_call_begin();
     if (wb_call_need(out, "out") != WB_OK || wb_call_need(folder, "folder") != WB_OK)
         return wb_call_end(WB_ERR_ARGUMENT);
-    struct wirebench_dataset *const dataset = calloc(1, sizeof *dataset);
-    if (!dataset)
-        return wb_call_end(wb_fail(WB_ERR_MEMORY, "no memory for a dataset"));
+    struct wirebench_dataset *const dataset = wb_memory_new(1, sizeof *dataset);
     const enum wb_status status = read_dataset(dataset, folder);
     if (status == WB_OK)
         *out = dataset;
@@ -115,9 +114,7 @@ enum wirebench_status wirebench_dataset_align(struct wirebench_dataset **out,
         (alignment &&
          wb_call_take(&given, sizeof given, alignment, "wirebench_alignment") != WB_OK))
         return wb_call_end(WB_ERR_ARGUMENT);
-    struct wirebench_dataset *const dataset = calloc(1, sizeof *dataset);
-    if (!dataset)
-        return wb_call_end(wb_fail(WB_ERR_MEMORY, "no memory for a dataset"));
+    struct wirebench_dataset *const dataset = wb_memory_new(1, sizeof *dataset);
     const enum wb_status status = align_dataset(dataset, recording_path, &given);
     if (status != WB_OK) {
         wirebench_dataset_close(dataset);

@@ -4,6 +4,7 @@
 
 #include "analysis/calibration/law/bending.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "library/handles.h"
 
 #define WB_LOG_DOMAIN "library"
@@ -68,9 +69,7 @@ enum wirebench_status wirebench_properties_create(struct wirebench_properties **
     if (wb_call_need(out, "out") != WB_OK ||
         wb_call_take(&given, sizeof given, law, "wirebench_law") != WB_OK)
         return wb_call_end(WB_ERR_ARGUMENT);
-    struct wirebench_properties *const properties = calloc(1, sizeof *properties);
-    if (!properties)
-        return wb_call_end(wb_fail(WB_ERR_MEMORY, "no memory for properties"));
+    struct wirebench_properties *const properties = wb_memory_new(1, sizeof *properties);
     const enum wb_status status = make(properties, &given);
     if (status == WB_OK)
         *out = properties;
@@ -86,9 +85,7 @@ enum wirebench_status wirebench_properties_read(struct wirebench_properties **ou
     wb_call_begin();
     if (wb_call_need(out, "out") != WB_OK || wb_call_need(path_or_name, "path_or_name") != WB_OK)
         return wb_call_end(WB_ERR_ARGUMENT);
-    struct wirebench_properties *const properties = calloc(1, sizeof *properties);
-    if (!properties)
-        return wb_call_end(wb_fail(WB_ERR_MEMORY, "no memory for properties"));
+    struct wirebench_properties *const properties = wb_memory_new(1, sizeof *properties);
     enum wb_status status = wb_file_find_fixture(path, "wires", path_or_name, NULL);
     if (status == WB_OK)
         status = wb_card_source_read(&properties->source, path);

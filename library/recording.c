@@ -41,23 +41,17 @@ struct wirebench_recording {
 static enum wb_status keep_meta(void *context, const char *key, const char *value)
 {
     struct wirebench_recording *const recording = context;
-    struct meta *const grown =
-        realloc(recording->meta, (size_t)(recording->n_meta + 1) * sizeof *grown);
-    if (!grown)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the recording's texts");
-    recording->meta = grown;
-    struct meta *const meta = &grown[recording->n_meta++];
+    recording->meta =
+        wb_memory_resize(recording->meta, (size_t)recording->n_meta + 1, sizeof *recording->meta);
+    struct meta *const meta = &recording->meta[recording->n_meta++];
     meta->key = wb_memory_keep(&recording->memory, strdup(key));
     meta->value = wb_memory_keep(&recording->memory, strdup(value));
-    return recording->memory.failed ? wb_fail(WB_ERR_MEMORY, "no memory for the recording's texts")
-                                    : WB_OK;
+    return WB_OK;
 }
 
 static enum wb_status open_recording(struct wirebench_recording *recording, const char *path)
 {
     recording->path = wb_memory_keep(&recording->memory, strdup(path));
-    if (recording->memory.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a recording");
     WB_TRY(wb_recording_open(&recording->recording, path));
     const enum wb_status status =
         wb_recording_each_meta(recording->recording, keep_meta, recording);
@@ -70,9 +64,7 @@ enum wirebench_status wirebench_recording_open(struct wirebench_recording **out,
     wb_call_begin();
     if (wb_call_need(out, "out") != WB_OK || wb_call_need(path, "path") != WB_OK)
         return wb_call_end(WB_ERR_ARGUMENT);
-    struct wirebench_recording *const recording = calloc(1, sizeof *recording);
-    if (!recording)
-        return wb_call_end(wb_fail(WB_ERR_MEMORY, "no memory for a recording"));
+    struct wirebench_recording *const recording = wb_memory_new(1, sizeof *recording);
     const enum wb_status status = open_recording(recording, path);
     if (status == WB_OK)
         *out = recording;
@@ -98,18 +90,14 @@ void wirebench_recording_close(struct wirebench_recording *recording)
 
 /* --- what it holds --- */
 
-static enum wb_status keep_problems(struct wirebench_recording *recording)
+static void keep_problems(struct wirebench_recording *recording)
 {
     char text[PROBLEM_SIZE];
     for (int at = 0; wb_survey_problem(&recording->survey, &at, text, sizeof text);) {
-        char(*const grown)[PROBLEM_SIZE] =
-            realloc(recording->problems, (size_t)(recording->n_problems + 1) * sizeof *grown);
-        if (!grown)
-            return wb_fail(WB_ERR_MEMORY, "no memory for the recording's faults");
-        recording->problems = grown;
-        memcpy(grown[recording->n_problems++], text, sizeof text);
+        recording->problems = wb_memory_resize(
+            recording->problems, (size_t)recording->n_problems + 1, sizeof *recording->problems);
+        memcpy(recording->problems[recording->n_problems++], text, sizeof text);
     }
-    return WB_OK;
 }
 
 static enum wb_status survey(struct wirebench_recording *recording)
@@ -120,7 +108,7 @@ static enum wb_status survey(struct wirebench_recording *recording)
     WB_TRY(wb_survey_run(recording->recording, true, &recording->survey));
     if (wb_recording_sha256(recording->path, recording->sha256, NULL) != WB_OK)
         recording->sha256[0] = '\0';
-    WB_TRY(keep_problems(recording));
+    keep_problems(recording);
     recording->is_surveyed = true;
     return WB_OK;
 }
