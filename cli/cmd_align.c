@@ -6,6 +6,7 @@
 #include "analysis/align/align.h"
 #include "base/file.h"
 #include "base/interrupt.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
@@ -146,12 +147,8 @@ int wb_cmd_align(int argc, char **argv)
     wb_interrupt_install();
 
     size_t n_done = 0;
-    int code = WB_EXIT_FAILED;
-    struct result *const results = calloc(n, sizeof *results);
-    if (!results)
-        wb_error("out of memory");
-    else
-        code = wb_command_exit(run(&options, results, &n_done));
+    struct result *const results = wb_memory_new(n, sizeof *results);
+    int code = wb_command_exit(run(&options, results, &n_done));
     if (code == WB_EXIT_OK)
         code = options.common.json ? print_json(results, n_done) : print_text(results, n_done);
     for (size_t i = 0; i < n_done; i++) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/plot/figure.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/info.h"
@@ -85,7 +86,7 @@ static char *meta(struct facts *facts, const char *key)
 {
     char *value = NULL;
     if (wb_recording_meta(facts->recording, key, &value) != WB_OK)
-        return strdup("");
+        return wb_memory_text("");
     return value;
 }
 
@@ -102,8 +103,8 @@ static enum wb_status gather(struct facts *facts, const char *path)
         facts->has_rig = wb_replay_rig(facts->recording, &facts->rig) == WB_OK;
     if (facts->survey.has_specimen) {
         char *text = meta(facts, "specimen");
-        facts->has_specimen = text && wb_specimen_parse(text, "the recording's specimen",
-                                                        &facts->specimen, NULL) == WB_OK;
+        facts->has_specimen =
+            wb_specimen_parse(text, "the recording's specimen", &facts->specimen, NULL) == WB_OK;
         free(text);
     }
     return WB_OK;
@@ -114,7 +115,7 @@ static enum wb_status gather(struct facts *facts, const char *path)
 static void print_meta(struct facts *facts, const char *label, const char *key)
 {
     char *value = meta(facts, key);
-    if (value && value[0])
+    if (value[0])
         printf("  %-10s %s\n", label, value);
     free(value);
 }
@@ -137,8 +138,7 @@ static void print_settings(struct facts *facts)
 {
     char *const value = meta(facts, "stage_settings"), *rest = NULL;
     size_t used = 0;
-    for (char *word = value ? strtok_r(value, "\n", &rest) : NULL; word;
-         word = strtok_r(NULL, "\n", &rest)) {
+    for (char *word = strtok_r(value, "\n", &rest); word; word = strtok_r(NULL, "\n", &rest)) {
         const size_t n = strlen(word) + 1;
         if (used == 0 || used + n > SETTINGS_COLUMNS) {
             printf("%s  %-10s", used ? "\n" : "", used ? "" : "settings");
@@ -156,7 +156,7 @@ static void print_check(struct facts *facts)
 {
     struct wb_check_log_entry check;
     char text[WB_CHECK_LOG_LINE], *const line = meta(facts, "load_cell_check");
-    if (line && wb_check_log_parse(line, &check)) {
+    if (wb_check_log_parse(line, &check)) {
         wb_check_log_describe(&check, text);
         printf("  %-10s %s\n", "cell check", text);
     }
@@ -240,7 +240,7 @@ static enum wb_status add_event(void *context, const struct wb_event *event)
 static void add_meta(struct facts *facts, struct wb_json *root, const char *key)
 {
     char *value = meta(facts, key);
-    wb_json_set_text(root, key, value && value[0] ? value : NULL);
+    wb_json_set_text(root, key, value[0] ? value : NULL);
     free(value);
 }
 
@@ -248,7 +248,7 @@ static void add_check(struct facts *facts, struct wb_json *root)
 {
     struct wb_check_log_entry check;
     char *const line = meta(facts, "load_cell_check");
-    if (line && wb_check_log_parse(line, &check)) {
+    if (wb_check_log_parse(line, &check)) {
         struct wb_json *const item = wb_json_set_object(root, "load_cell_check");
         wb_json_set_text(item, "utc", check.utc);
         wb_json_set_number(item, "known_mass_g", check.known / WB_G);

@@ -10,6 +10,7 @@
 #include "analysis/validation/validate_tables.h"
 #include "analysis/validation/validate_three_point.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
@@ -102,10 +103,8 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
 {
     const struct wb_datasets *const datasets = &o->datasets;
     const struct wb_dataset **const members =
-        malloc((size_t)datasets->n * sizeof(struct wb_dataset *));
+        wb_memory_new((size_t)datasets->n, sizeof(struct wb_dataset *));
     int n = 0;
-    if (!members)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d datasets", datasets->n);
     for (int i = 0; i < datasets->n; i++) {
         if (groups->of[i] == group)
             members[n++] = datasets->pointers[i];
@@ -124,10 +123,8 @@ static enum wb_status run_groups(struct options *o, const struct wb_properties *
                                  struct groups *groups)
 {
     const size_t n = (size_t)o->datasets.n;
-    groups->of = calloc(n, sizeof *groups->of);
-    groups->items = calloc(n, sizeof *groups->items);
-    if (!groups->of || !groups->items)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d datasets", o->datasets.n);
+    groups->of = wb_memory_new(n, sizeof *groups->of);
+    groups->items = wb_memory_new(n, sizeof *groups->items);
     groups->n = wb_curve_group(o->datasets.pointers, o->datasets.n, groups->of);
     for (int i = 0; i < groups->n; i++)
         WB_TRY(run_group(o, properties, groups, i));

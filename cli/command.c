@@ -4,10 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/number.h"
 #include "cli/complete.h"
-
-#define WB_LOG_DOMAIN "command"
 
 const struct argp_option wb_command_help_options[] = {
     {"help", 'h', NULL, 0, "Show this help", -1},
@@ -76,13 +75,8 @@ static void take_argument(struct argp_state *state, const char *argument,
     if (common->least == 0)
         return;
     const size_t n = (size_t)common->n + 1;
-    const char **const inputs = realloc(common->inputs, n * sizeof *inputs);
-    if (!inputs) {
-        argp_failure(state, WB_EXIT_FAILED, 0, "out of memory");
-        return;
-    }
-    inputs[common->n++] = argument;
-    common->inputs = inputs;
+    common->inputs = wb_memory_resize(common->inputs, n, sizeof *common->inputs);
+    common->inputs[common->n++] = argument;
 }
 
 static void check(struct argp_state *state, const struct wb_command_common *common)

@@ -8,6 +8,7 @@
 #include "analysis/dataset/exclusion.h"
 #include "analysis/quicklook.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "cli/command.h"
 
 #define WB_LOG_DOMAIN "datasets"
@@ -77,10 +78,8 @@ enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const 
                                 unsigned kinds)
 {
     datasets->n = n;
-    datasets->items = calloc((size_t)n, sizeof *datasets->items);
-    datasets->pointers = calloc((size_t)n, sizeof(struct wb_dataset *));
-    if (!datasets->items || !datasets->pointers)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d datasets", n);
+    datasets->items = wb_memory_new((size_t)n, sizeof *datasets->items);
+    datasets->pointers = wb_memory_new((size_t)n, sizeof(struct wb_dataset *));
     for (int i = 0; i < n; i++)
         WB_TRY(check_name(names[i]));
     for (int i = 0; i < n; i++) {
@@ -93,7 +92,7 @@ enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const 
 
 void wb_datasets_release(struct wb_datasets *datasets)
 {
-    for (int i = 0; datasets->items && i < datasets->n; i++)
+    for (int i = 0; i < datasets->n; i++)
         wb_dataset_release(&datasets->items[i]);
     free(datasets->items);
     free(datasets->pointers);

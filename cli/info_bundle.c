@@ -6,6 +6,7 @@
 
 #include "analysis/dataset/simulated_bundle.h"
 #include "analysis/report/draw/figures_bundle.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "cli/info.h"
 #include "fe/model/bundle_model.h"
@@ -232,9 +233,7 @@ static int tell(const struct wb_info_options *options, const struct wb_bundle_mo
 int wb_info_bundle(const struct wb_info_options *options)
 {
     char path[WB_PATH];
-    struct wb_bundle_model *const model = malloc(sizeof *model);
-    if (!model)
-        return wb_command_exit(wb_fail(WB_ERR_MEMORY, "no memory for a bundle"));
+    struct wb_bundle_model *const model = wb_memory_new(1, sizeof *model);
     enum wb_status status = wb_file_find_fixture(path, "bundles", options->common.input, NULL);
     if (status == WB_OK)
         status = wb_bundle_model_read(model, path);

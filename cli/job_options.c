@@ -1,8 +1,7 @@
 #include "cli/job_options.h"
 
-#include <stdlib.h>
-
 #include "analysis/jobs/jobs.h"
+#include "base/memory.h"
 #include "cli/command.h"
 
 enum {
@@ -48,13 +47,8 @@ static void add_extra(struct argp_state *state, struct wb_jobs_options *o, const
                    "--slurm-option: expected an option of sbatch such as --qos=long, not "
                    "'%s'",
                    option);
-    const char **const extra = realloc(o->extra, ((size_t)o->n_extra + 1) * sizeof *extra);
-    if (!extra) {
-        argp_failure(state, WB_EXIT_FAILED, 0, "out of memory");
-        return;
-    }
-    extra[o->n_extra++] = option;
-    o->extra = extra;
+    o->extra = wb_memory_resize(o->extra, (size_t)o->n_extra + 1, sizeof *o->extra);
+    o->extra[o->n_extra++] = option;
 }
 
 static void check(struct argp_state *state, const struct wb_jobs_options *o)

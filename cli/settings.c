@@ -5,10 +5,9 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "base/memory.h"
 #include "cli/command.h"
 #include "cli/complete.h"
-
-#define WB_LOG_DOMAIN "command"
 
 enum {
     FIRST_KEY = 10000 /* beyond the keys of commands */
@@ -109,14 +108,10 @@ static void begin(struct line *line, const struct wb_settings_command *command, 
     *line = (struct line){
         .command = command,
         .input = input,
-        .entries = calloc(most + 1, sizeof *line->entries),
-        .options = calloc(most + n_own + command->n_sources + 1, sizeof *line->options),
-        .help = calloc(most + 1, sizeof *line->help),
+        .entries = wb_memory_new(most + 1, sizeof *line->entries),
+        .options = wb_memory_new(most + n_own + command->n_sources + 1, sizeof *line->options),
+        .help = wb_memory_new(most + 1, sizeof *line->help),
     };
-    if (!line->entries || !line->options || !line->help) {
-        wb_error("out of memory");
-        exit(WB_EXIT_FAILED);
-    }
     for (size_t s = 0; s < command->n_sources; s++) {
         const struct wb_settings_source *const source = &command->sources[s];
         for (size_t t = 0; t < source->n_tables; t++)
