@@ -1,6 +1,4 @@
 /* The ranks of a build without MPI: one. */
-#include <stdlib.h>
-
 #include "fe/team/team_ranks.h"
 
 #define WB_LOG_DOMAIN "team"
@@ -17,11 +15,6 @@ enum wb_status wb_team_start(void)
 
 void wb_team_end(void)
 {
-}
-
-void wb_team_abort(int code)
-{
-    exit(code);
 }
 
 int wb_team_rank(void)

@@ -16,6 +16,13 @@ static bool joined, threaded;
 static int own_rank, n_ranks = 1;
 static MPI_Request under_way[2][SLOTS];
 
+/* An allocation that fails ends the program; the other ranks would wait for it. */
+static void abort_others(void)
+{
+    if (joined)
+        MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
+}
+
 enum wb_status wb_team_start(void)
 {
     int provided = MPI_THREAD_SINGLE;
@@ -30,6 +37,7 @@ enum wb_status wb_team_start(void)
         under_way[i / SLOTS][i % SLOTS] = MPI_REQUEST_NULL;
     threaded = provided >= MPI_THREAD_MULTIPLE;
     joined = true;
+    atexit(abort_others);
     return WB_OK;
 }
 
@@ -41,13 +49,6 @@ void wb_team_end(void)
     joined = false;
     own_rank = 0;
     n_ranks = 1;
-}
-
-void wb_team_abort(int code)
-{
-    if (joined)
-        MPI_Abort(MPI_COMM_WORLD, code);
-    exit(code);
 }
 
 int wb_team_rank(void)

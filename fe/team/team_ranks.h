@@ -19,8 +19,6 @@ int wb_team_started(void);
 WB_MUST_CHECK enum wb_status wb_team_start(void);
 /* Leaves them; waits until all do. */
 void wb_team_end(void);
-/* Ends all ranks at once, with an exit code, where they can no longer agree. */
-void wb_team_abort(int code);
 
 int wb_team_rank(void);  /* from 0 */
 int wb_team_ranks(void); /* 1 without mpirun */
