@@ -8,6 +8,7 @@
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/plot/figure.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "quicklook"
@@ -195,12 +196,10 @@ struct line {
     double *x, *y; /* one allocation, owned by x */
 };
 
-static enum wb_status allocate_line(struct line *line, size_t most)
+static struct line allocate_line(size_t most)
 {
-    line->n = 0;
-    line->x = malloc((2 * most + 2) * sizeof *line->x);
-    line->y = line->x ? line->x + most + 1 : NULL;
-    return line->x ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for a figure");
+    double *const x = wb_memory_new(2 * most + 2, sizeof *x);
+    return (struct line){.x = x, .y = x + most + 1};
 }
 
 static void add_curve(struct wb_panel *panel, const struct wb_dataset *dataset, int cycle,
@@ -267,11 +266,10 @@ static void set_title(struct wb_panel *panel, const struct wb_dataset *dataset)
 
 static enum wb_status draw_curve(struct wb_figure **out, const struct wb_dataset *dataset)
 {
-    struct line line;
     int n_cycles = 1;
     for (size_t i = 0; i < dataset->n_rows; i++)
         n_cycles = dataset->rows[i].cycle > n_cycles ? dataset->rows[i].cycle : n_cycles;
-    WB_TRY(allocate_line(&line, dataset->n_rows));
+    struct line line = allocate_line(dataset->n_rows);
     const enum wb_status status = wb_figure_create(out, "force-deflection", WIDTH, HEIGHT);
     if (status == WB_OK) {
         struct wb_panel *const panel = wb_figure_add_panel(*out);
@@ -308,10 +306,9 @@ static double largest_shape(const struct wb_dataset *dataset, size_t *last)
 
 static enum wb_status draw_shapes(struct wb_figure **out, const struct wb_dataset *dataset)
 {
-    struct line line;
     size_t last;
     const double largest = largest_shape(dataset, &last);
-    WB_TRY(allocate_line(&line, dataset->n_shape_rows));
+    struct line line = allocate_line(dataset->n_shape_rows);
     const enum wb_status status = wb_figure_create(out, "shapes", WIDTH, HEIGHT);
     if (status == WB_OK) {
         struct wb_panel *const panel = wb_figure_add_panel(*out);

@@ -12,6 +12,7 @@
 #include "analysis/dataset/holds.h"
 #include "analysis/plot/figure.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "daq/protocol/average.h"
 
@@ -92,14 +93,9 @@ struct wb_series_test *wb_series_results_add(struct wb_series_results *results, 
 {
     struct wb_align_settings settings;
     struct wb_reason why = {.text = ""};
-    struct wb_series_test *const larger =
-        realloc(results->tests, ((size_t)results->n + 1) * sizeof *larger);
-    if (!larger) {
-        wb_error("out of memory for the tests of a series");
-        return NULL;
-    }
-    results->tests = larger;
-    struct wb_series_test *const test = &larger[results->n++];
+    results->tests =
+        wb_memory_resize(results->tests, (size_t)results->n + 1, sizeof *results->tests);
+    struct wb_series_test *const test = &results->tests[results->n++];
     memset(test, 0, sizeof *test);
     snprintf(test->name, sizeof test->name, "%s", wb_file_name(path));
     test->number = number;
@@ -297,9 +293,7 @@ enum wb_status wb_series_results_draw(const struct wb_series_results *results, c
     const size_t most = largest_rows(results);
     if (most == 0)
         return wb_fail(WB_ERR_DATA, "no test of the series can be drawn");
-    double *const x = malloc(2 * most * sizeof *x);
-    if (!x)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a figure");
+    double *const x = wb_memory_new(2 * most, sizeof *x);
     enum wb_status status = wb_figure_create(&figure, "series", WIDTH, HEIGHT);
     if (status == WB_OK) {
         struct wb_panel *const panel = wb_figure_add_panel(figure);

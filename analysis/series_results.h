@@ -40,7 +40,7 @@ struct wb_series_results {
 };
 
 /* Aligns a recording and adds it; one that cannot be aligned is added with its problem. Returns the
- * test, which stays in its place until the next one is added, or NULL without memory. */
+ * test, which stays in its place until the next one is added. */
 struct wb_series_test *wb_series_results_add(struct wb_series_results *results, const char *path,
                                              int number);
 void wb_series_results_release(struct wb_series_results *results);

@@ -23,10 +23,10 @@ _Static_assert(sizeof(char *) <= sizeof(int64_t), "pointers of at most 64 bits")
 
 static void grow(struct wb_columns *table)
 {
-    table->capacity = table->capacity ? 2 * table->capacity : FIRST_ROWS;
+    const size_t capacity = table->capacity ? 2 * table->capacity : FIRST_ROWS;
     for (int i = 0; i < table->n; i++)
-        table->items[i].reals =
-            wb_memory_resize(table->items[i].reals, table->capacity, sizeof(double));
+        table->items[i].reals = wb_memory_resize(table->items[i].reals, capacity, sizeof(double));
+    table->capacity = capacity;
 }
 
 void wb_columns_add_row(struct wb_columns *table, const union wb_cell *cells)

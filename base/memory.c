@@ -87,8 +87,9 @@ void *wb_memory_keep(struct wb_memory *memory, void *block)
 {
     wb_memory_need(block);
     if (memory->n == memory->room) {
-        memory->room = 2 * memory->room + 8;
-        memory->blocks = wb_memory_resize(memory->blocks, memory->room, sizeof *memory->blocks);
+        const size_t room = 2 * memory->room + 8;
+        memory->blocks = wb_memory_resize(memory->blocks, room, sizeof *memory->blocks);
+        memory->room = room; /* not before: the object may live on where there is none */
     }
     memory->blocks[memory->n++] = block;
     return block;

@@ -38,7 +38,6 @@ void *wb_memory_need(void *block) __attribute__((returns_nonnull));
 
 /* All zero at first. */
 struct wb_memory {
-    bool failed; /* never: goes with its last reader */
     void **blocks; /* (n), owned */
     size_t n, room;
 };

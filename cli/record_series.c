@@ -282,8 +282,6 @@ static enum wb_status settle(struct run *run, int number, const char *path)
         return WB_OK;
     }
     struct wb_series_test *const test = wb_series_results_add(&run->results, path, number);
-    if (!test)
-        return WB_ERR_MEMORY;
     if (test->is_usable)
         snprintf(entry.wire, sizeof entry.wire, "%s", test->dataset.info.wire);
     else
@@ -428,8 +426,6 @@ static enum wb_status look_back(struct run *run)
         WB_TRY(wb_file_join(path, run->folder, entry->file));
         struct wb_series_test *const test =
             wb_series_results_add(&run->results, path, entry->number);
-        if (!test)
-            return WB_ERR_MEMORY;
         test->excluded = entry->excluded;
         test->sample = entry->sample;
     }

@@ -44,14 +44,14 @@ static enum wb_status keep_meta(void *context, const char *key, const char *valu
     recording->meta =
         wb_memory_resize(recording->meta, (size_t)recording->n_meta + 1, sizeof *recording->meta);
     struct meta *const meta = &recording->meta[recording->n_meta++];
-    meta->key = wb_memory_keep(&recording->memory, strdup(key));
-    meta->value = wb_memory_keep(&recording->memory, strdup(value));
+    meta->key = wb_memory_keep(&recording->memory, wb_memory_text(key));
+    meta->value = wb_memory_keep(&recording->memory, wb_memory_text(value));
     return WB_OK;
 }
 
 static enum wb_status open_recording(struct wirebench_recording *recording, const char *path)
 {
-    recording->path = wb_memory_keep(&recording->memory, strdup(path));
+    recording->path = wb_memory_keep(&recording->memory, wb_memory_text(path));
     WB_TRY(wb_recording_open(&recording->recording, path));
     const enum wb_status status =
         wb_recording_each_meta(recording->recording, keep_meta, recording);

@@ -21,6 +21,8 @@ ask: [notes]
 travel_mm: 12
 END
 
+# A person judges on a real day, whatever day the virtual test has: today, or at midnight tomorrow.
+day="\\($(date -u +%F)\\|$(date -u -d tomorrow +%F)\\)"
 fail() {
     echo "FAILED: $*"
     failures=$((failures + 1))
@@ -57,7 +59,7 @@ stopped_and_gone_on_with() {
     holds info 'notes  *first note'
     holds info 'series  *s, test 1'
     "$wirebench" info "$folder/a/s-002-type1-L85-2.wbr" >"$folder/info" 2>&1
-    holds info 'EXCLUDED  *by A. Tester on 2026-11-25: the wire slipped'
+    holds info "EXCLUDED  *by A. Tester on $day: the wire slipped"
     holds info 'sample 2'
     "$wirebench" info "$folder/a/s-002-type1-L85-2.wbr" --json >"$folder/info" 2>&1
     holds info '"reason": "the wire slipped"'
@@ -65,7 +67,7 @@ stopped_and_gone_on_with() {
     holds dataset/dataset.json 'the test was excluded by A. Tester'
     "$wirebench" calibrate "$folder/dataset" -o "$folder/properties.yaml" 2>"$folder/refused" &&
         fail 'an excluded test was calibrated'
-    holds refused 'the test was excluded by A. Tester on 2026-11-25: the wire slipped. Leave'
+    holds refused "the test was excluded by A. Tester on $day: the wire slipped. Leave"
     # The third one twice: somebody leaned on the bench.
     series a 'n\n\nr I leaned on the bench\nn\n\n\n' --figure "$folder/a.svg" --json
     expect a 0 '"specimens_done": 3'
@@ -92,8 +94,8 @@ wires:
 END
     "$wirebench" report "$folder/campaign.yaml" -o "$folder/report" >"$folder/report.out" 2>&1
     holds report.out '2 of 2 recordings used'
-    holds report/report.html 's-002-type1-L85-2.wbr</b>: excluded by A. Tester on 2026-11-25: the wire slipped'
-    holds report/report.html 's-003-type1-L85-3.wbr</b>: excluded by A. Tester on 2026-11-25: I leaned on'
+    holds report/report.html "s-002-type1-L85-2.wbr</b>: excluded by A. Tester on $day: the wire slipped"
+    holds report/report.html "s-003-type1-L85-3.wbr</b>: excluded by A. Tester on $day: I leaned on"
     holds report/report.json '"reason": "the wire slipped"'
 }
 
