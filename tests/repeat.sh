@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs tests again and again: none may depend on how busy the machine is. By default the suites daq,
-# live and cli ten times on the machine as it is and ten times beside four busy processes per core,
-# and all fast tests three times. Results are kept in BUILD_FOLDER/repeat.txt, so that the same
+# live and process ten times on the machine as it is and ten times beside four busy processes per
+# core, and all fast tests three times. Results are kept in BUILD_FOLDER/repeat.txt, so that the same
 # command continues after an interrupt; another revision of the source starts over, as does
 # removing the file. Prints how many runs had no failure and which tests failed; exits with 1 if
 # any did.
@@ -14,7 +14,7 @@ alone=${2:-10} beside=${3:-10} whole=${4:-3}
 if [ $# -gt 4 ]; then
     shift 4
 else
-    set -- --suite daq --suite live --suite cli
+    set -- --suite daq --suite live --suite process
 fi
 [ -f "$build/build.ninja" ] || { echo "no build folder $build" >&2; exit 2; }
 ninja -C "$build" --quiet || exit 2
