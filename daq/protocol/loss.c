@@ -191,7 +191,7 @@ static void fit_period(struct wb_loss *loss)
                                         *const last = &loss->windows[loss->n_windows - 1].earliest;
     const double step = 0.04 * (loss->n_windows - 1) / (last->number - first->number);
     const bool is_clear = loss->doubt < 0.5 / WINDOW;
-    double best = INFINITY;
+    double best = (double)INFINITY;
     for (double off = loss->doubt; off > -loss->doubt; off -= step) {
         const double period = loss->learnt * (1.0 + off), left = misfit(loss, period);
         if (left < best) {
@@ -347,7 +347,7 @@ void wb_loss_add(struct wb_loss *loss, double t)
 static void add_end(const struct wb_loss *loss, struct wb_loss_counts *counts)
 {
     struct wb_loss_open open = {0};
-    double least = INFINITY;
+    double least = (double)INFINITY;
     if (!loss->is_fitted || loss->n_windows < 2)
         return;
     const struct wb_loss_window *const last = &loss->windows[loss->n_windows - 1];
