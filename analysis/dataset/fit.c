@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_multifit.h>
 
@@ -75,4 +76,18 @@ size_t wb_fit_first_at(const double *values, size_t stride, size_t n, double at)
             high = middle;
     }
     return low;
+}
+
+/* By halves: gsl_cdf_fdist_Qinv() (GSL 2.7.1) is NaN for some degrees, as 11 and 1602. */
+double wb_fit_fisher_limit(double level, double numerator, double denominator)
+{
+    double low = -700.0, high = 700.0; /* of ln F */
+    while (high - low > 1e-13 * fmax(1.0, fabs(low))) {
+        const double middle = 0.5 * (low + high);
+        if (gsl_cdf_fdist_Q(exp(middle), numerator, denominator) > level)
+            low = middle;
+        else
+            high = middle;
+    }
+    return exp(high);
 }

@@ -1,5 +1,5 @@
-/* Straight lines and parabolas through measured points, medians, and places in sorted ones. GSL's
- * error handler, which aborts, must be off. */
+/* Straight lines and parabolas through measured points, medians, places in sorted ones, and the
+ * limit of an F-test. GSL's error handler, which aborts, must be off. */
 #ifndef WB_ANALYSIS_DATASET_FIT_H
 #define WB_ANALYSIS_DATASET_FIT_H
 
@@ -24,6 +24,10 @@ void wb_fit_sort(double *values, size_t n);
 
 /* Sorts the values; NaN when n is 0. */
 double wb_fit_median(double *values, size_t n);
+
+/* What Fisher's F with these degrees of freedom (1 or more) exceeds with the probability `level`,
+ * within (0, 1). */
+double wb_fit_fisher_limit(double level, double numerator, double denominator);
 
 /* Index of the first of n ascending values that is not below `at`; n when all are. Each lies
  * `stride` bytes after the one before: in an array of structs, the struct's size. */

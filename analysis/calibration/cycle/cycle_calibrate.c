@@ -10,6 +10,7 @@
 
 #include "analysis/calibration/paper/first_guess.h"
 #include "analysis/calibration/paper/first_guess_private.h"
+#include "analysis/dataset/fit.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"
@@ -415,12 +416,12 @@ static void choose(struct wb_cycle_calibration *calibration)
         const double noise = rank->misfit / calibration->repeat_noise;
         const double corrected = count_points(calibration) / dof;
         rank->f_ratio = noise * noise * corrected;
-        rank->f_limit = gsl_cdf_fdist_Qinv(f_level, dof, fmax(1.0, degrees));
+        rank->f_limit = wb_fit_fisher_limit(f_level, dof, fmax(1.0, degrees));
         rank->is_rejected = !(rank->f_ratio <= rank->f_limit);
         rank->counts = ratio <= counts_up_to;
         const double best_dof = freedom(calibration, best);
         const bool like_best =
-            ratio * ratio * best_dof / dof <= gsl_cdf_fdist_Qinv(f_level, dof, best_dof);
+            ratio * ratio * best_dof / dof <= wb_fit_fisher_limit(f_level, dof, best_dof);
         if (!rank->is_rejected &&
             (simplest < 0 || rank->candidate < calibration->ranked[simplest].candidate))
             simplest = i;

@@ -3,11 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_multifit.h>
 
 #include "analysis/calibration/cycle/cycle_fit.h"
 #include "analysis/calibration/cycle/cycle_model.h"
+#include "analysis/dataset/fit.h"
 #include "base/memory.h"
 
 #define WB_LOG_DOMAIN "calibrate"
@@ -230,7 +230,7 @@ static void take_face(struct wb_cycle_valley *valley, int i, int k)
 static void find_region(struct wb_cycle_valley *valley, int n_points)
 {
     const int degrees = n_points > NUMBERS ? n_points - NUMBERS : 1;
-    const double f = gsl_cdf_fdist_Pinv(confidence, 2.0, degrees);
+    const double f = wb_fit_fisher_limit(1.0 - confidence, 2.0, degrees);
     const struct wb_cycle_valley_node *const nodes = &valley->nodes[0][0];
     for (int i = 0; i < WB_VALLEY_NODES * WB_VALLEY_NODES; i++) {
         if (nodes[i].misfit < valley->best_misfit)
