@@ -457,6 +457,12 @@ static double number_of(const struct wb_bending *bending, const double *moment, 
     }
 }
 
+/* A residual curvature is a part of the largest. */
+static double largest_value(enum number number)
+{
+    return number == SPRINGBACK ? 1.0 : (double)INFINITY;
+}
+
 /* Mean of logarithms and its interval. */
 static void average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
                     enum number number, const struct wb_cycle_calibrate_settings *settings,
@@ -484,7 +490,7 @@ static void average(const struct wb_cycle_calibration *calibration, enum wb_cand
     const double half = gsl_cdf_tdist_Qinv(0.5 * (1.0 - coverage), degrees) * deviation / sqrt(n);
     estimate->deviation = deviation;
     estimate->low = exp(mean - half);
-    estimate->high = exp(mean + half);
+    estimate->high = fmin(exp(mean + half), largest_value(number));
 }
 
 /* Root mean square over the specimens. */
@@ -518,6 +524,7 @@ static void estimate_number(struct wb_cycle_calibration *calibration, enum numbe
         estimate->candidates_low = fmin(estimate->candidates_low, other.value * exp(-error));
         estimate->candidates_high = fmax(estimate->candidates_high, other.value * exp(error));
     }
+    estimate->candidates_high = fmin(estimate->candidates_high, largest_value(number));
 }
 
 static void add_square(double *sum, double moved, double value, double moved_by)

@@ -24,10 +24,13 @@ enum {
 
 /* The first of the curvatures of the equivalent, over the largest. */
 static const double first_of_equivalent = 0.01;
-/* Plastic strain at which its hardening stress is a free number; its largest exponent. */
 /* Of numbers that make no law: far above any other. */
 static const double lost_residual = 1e3;
-static const double middle_plastic_strain = 3e-3, largest_exponent = 1.5;
+/* Plastic strain at which its hardening stress is a free number; its exponents. */
+static const double middle_plastic_strain = 3e-3, least_exponent = 1e-3, largest_exponent = 1.5;
+/* Its least yield strain, over the outer fibre's at the first curvature: of a wire that yields from
+ * the start the best one would be none. */
+static const double least_yield_strain = 0.1;
 
 /* A section point with its history. */
 struct point {
@@ -132,6 +135,7 @@ enum wb_status wb_bending_moments(const struct wb_law *law, double diameter, int
 
 struct equivalent {
     double diameter, poissons_ratio;
+    double least_strain; /* of yield */
     double curvature[EQUIVALENT_POINTS], moment[EQUIVALENT_POINTS];
     struct wb_material material;
     enum wb_status status;
@@ -143,12 +147,14 @@ static int equivalent_residuals(const gsl_vector *x, void *context, gsl_vector *
     double M[EQUIVALENT_POINTS];
     struct wb_reason why;
     struct wb_law law;
-    const double n = largest_exponent / (1.0 + exp(-gsl_vector_get(x, 3)));
+    const double n =
+        least_exponent + (largest_exponent - least_exponent) / (1.0 + exp(-gsl_vector_get(x, 3)));
+    const double E = exp(gsl_vector_get(x, 0));
     e->material = (struct wb_material){
         .hardening = WB_HARDENING_ISOTROPIC_POWER,
-        .youngs_modulus = exp(gsl_vector_get(x, 0)),
+        .youngs_modulus = E,
         .poissons_ratio = e->poissons_ratio,
-        .yield_stress = exp(gsl_vector_get(x, 1)),
+        .yield_stress = E * (e->least_strain + exp(gsl_vector_get(x, 1))),
         .strength_coefficient = exp(gsl_vector_get(x, 2)) / pow(middle_plastic_strain, n),
         .hardening_exponent = n,
     };
@@ -186,7 +192,7 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
         yields++;
     const double last_strain = R * e->curvature[EQUIVALENT_POINTS - 1];
     double start[EQUIVALENT_FREE] = {
-        log(E), log(E * R * e->curvature[yields]),
+        log(E), log(R * e->curvature[yields] - e->least_strain),
         log(fmax(wb_law_virgin_stress(law, 0.3 * last_strain, NULL), 1e-3 * E * last_strain)), 0.3};
     const gsl_vector_view x = gsl_vector_view_array(start, EQUIVALENT_FREE);
     int info = 0;
@@ -218,6 +224,7 @@ enum wb_status wb_bending_ludwik(const struct wb_law *law, double diameter, doub
     struct equivalent e = {
         .diameter = diameter, .poissons_ratio = law->material.poissons_ratio, .status = WB_OK};
     choose_curvatures(largest, e.curvature);
+    e.least_strain = least_yield_strain * 0.5 * diameter * e.curvature[0];
     WB_TRY(wb_bending_moments(law, diameter, EQUIVALENT_POINTS, e.curvature, e.moment));
     WB_TRY(find_equivalent(&e, law, misfit));
     *equivalent = e.material;

@@ -19,8 +19,10 @@ WB_MUST_CHECK enum wb_status wb_bending_moments(const struct wb_law *law, double
                                                 const double *curvature, double *moment);
 
 /* Ludwik's law with isotropic hardening that bends like `law` on a first loading: E, sigma_Y, K and
- * n by least squares on ln M at curvatures up to `largest`. What it says of the way back is
- * another rule's. *misfit is the root mean square of the relative differences of M. */
+ * n by least squares on ln M at curvatures up to `largest`. It yields at a thousandth of the
+ * largest strain or above: for a law that yields from the start the misfit tells how far that is
+ * off. What it says of the way back is another rule's. *misfit is the root mean square of the
+ * relative differences of M. */
 WB_MUST_CHECK enum wb_status wb_bending_ludwik(const struct wb_law *law, double diameter,
                                                double largest, struct wb_material *equivalent,
                                                double *misfit);

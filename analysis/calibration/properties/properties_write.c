@@ -317,6 +317,21 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
     put_settings(text, settings);
 }
 
+/* Nothing is written that could not be read again. */
+static enum wb_status write_readable(const char *path, struct wb_text *text)
+{
+    struct wb_properties read;
+    struct wb_reason why = {.text = ""};
+    enum wb_status status = wb_properties_parse(wb_text_string(text), path, &read, &why);
+    if (status == WB_OK)
+        status = wb_file_write_text(path, text);
+    else
+        status = wb_fail(status, "'%s' is not written, because it could not be read again: %s",
+                         path, why.text);
+    wb_text_release(text);
+    return status;
+}
+
 void wb_properties_format_cycle(struct wb_text *text,
                                 const struct wb_cycle_calibration *calibration,
                                 const struct wb_cycle_calibrate_settings *settings,
@@ -343,9 +358,7 @@ enum wb_status wb_properties_write_cycle(const char *path,
                 calibration->n_members);
     format_cycle(&text, calibration, &properties, settings);
     put_datasets(&text, names, n_names);
-    const enum wb_status status = wb_file_write_text(path, &text);
-    wb_text_release(&text);
-    return status;
+    return write_readable(path, &text);
 }
 
 enum wb_status wb_properties_write(const char *path, const struct wb_calibrate_result *result,
@@ -357,9 +370,7 @@ enum wb_status wb_properties_write(const char *path, const struct wb_calibrate_r
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
     format(&text, result, settings);
     put_datasets(&text, names, n_names);
-    const enum wb_status status = wb_file_write_text(path, &text);
-    wb_text_release(&text);
-    return status;
+    return write_readable(path, &text);
 }
 
 /* --- calibrations on three-point bending --- */
@@ -466,7 +477,5 @@ enum wb_status wb_properties_write_three_point(const char *path,
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
     format_three_point(&text, calibration);
     put_datasets(&text, names, n_names);
-    const enum wb_status status = wb_file_write_text(path, &text);
-    wb_text_release(&text);
-    return status;
+    return write_readable(path, &text);
 }

@@ -159,6 +159,28 @@ static void the_equivalent_of_parallel_parts_bends_like_them(void **unused)
         assert_close_relative(other[i], M[i], 3.0 * misfit);
 }
 
+/* The first part yields before the first curvature that is compared: without a bound the best
+ * yield stress would be none at all. */
+static void the_equivalent_of_a_wire_that_yields_at_once_has_a_yield_stress(void **unused)
+{
+    (void)unused;
+    const double strain = 0.5 * DIAMETER * largest;
+    for (double first = 1e-6; first < 2e-3; first *= 10.0) {
+        const struct wb_law_part parts[] = {{9e9, first * strain},
+                                            {1e9, 0.02 * strain},
+                                            {1e9, 0.3 * strain},
+                                            {0.5e9, (double)INFINITY}};
+        struct wb_law law;
+        struct wb_material found;
+        double misfit;
+        wb_law_init_parallel(&law, parts, 4, 0.0, 0.39);
+        assert_int_equal(wb_bending_ludwik(&law, DIAMETER, largest, &found, &misfit), WB_OK);
+        assert_true(found.yield_stress >= 0.999e-3 * strain * found.youngs_modulus);
+        assert_true(found.hardening_exponent >= 1e-3 && found.strength_coefficient > 0.0);
+        assert_true(misfit < 0.1);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -168,6 +190,7 @@ int main(void)
         cmocka_unit_test(the_loops_energy_is_the_integral_between_its_branches),
         cmocka_unit_test(moments_are_those_of_a_first_loading_each),
         cmocka_unit_test(the_equivalent_of_ludwiks_law_is_itself),
+        cmocka_unit_test(the_equivalent_of_a_wire_that_yields_at_once_has_a_yield_stress),
         cmocka_unit_test(the_equivalent_of_parallel_parts_bends_like_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,6 +4,7 @@
 
 #include "analysis/calibration/cycle/cycle_json.h"
 #include "analysis/calibration/properties/properties.h"
+#include "base/file.h"
 #include "base/units.h"
 #include "tests/analysis/calibration/properties_path.h"
 #include "tests/check.h"
@@ -181,6 +182,23 @@ static void an_existing_file_is_kept_without_force(void **state)
     assert_int_equal(write_made(&made, true), WB_OK);
     assert_int_equal(write_made(&made, false), WB_ERR_EXISTS);
     assert_message("--force");
+}
+
+static void what_could_not_be_read_again_is_not_written(void **state)
+{
+    (void)state;
+    struct made made;
+    remove(path);
+    make(&made);
+    made.calibration.springback.candidates_high = 1.2;
+    assert_true(write_made(&made, true) != WB_OK);
+    assert_message("candidates_high");
+    assert_false(wb_file_exists(path));
+    make(&made);
+    made.calibration.ludwik.yield_stress = 1e-5;
+    assert_true(write_made(&made, true) != WB_OK);
+    assert_message("yield_stress_MPa");
+    assert_false(wb_file_exists(path));
 }
 
 static void a_refuted_rule_leaves_only_ranges(void **state)
@@ -426,6 +444,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_has_what_the_calibration_had),
         cmocka_unit_test(an_existing_file_is_kept_without_force),
+        cmocka_unit_test(what_could_not_be_read_again_is_not_written),
         cmocka_unit_test(a_refuted_rule_leaves_only_ranges),
         cmocka_unit_test(what_was_stopped_says_so_and_leaves_the_rule_untested),
         cmocka_unit_test(without_a_way_back_there_is_no_springback),
