@@ -53,8 +53,6 @@ bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *w,
             before = now;
             continue;
         }
-        if (search->gives_up && search->gives_up(search->context, i, gain))
-            return false;
         before = now;
     }
     return false;

@@ -22,17 +22,14 @@ struct wb_least_squares_search {
     int patience;         /* more than so often in a row: a step may overshoot to an equal height */
     /* Set by the residuals where they cannot be computed: ends the search. */
     const enum wb_status *status;
-    /* Whether to end early: asked after `iteration`, from 0, which made the sum of squares smaller
-     * by this part. NULL: never. */
-    bool (*gives_up)(void *context, int iteration, double gain);
     /* Asked where it would end, `moved` by its last iteration or not: whether the slopes were poor
      * and are better now, so that it goes on. NULL: they were good. */
     bool (*goes_on)(void *context, bool moved);
     void *context;
 };
 
-/* Iterates an initialized workspace to its end; false when the iterations ran out, it gave up, or
- * the residuals failed. Adds to *iterations (NULL: not wanted). */
+/* Iterates an initialized workspace to its end; false when the iterations ran out, or the
+ * residuals failed. Adds to *iterations (NULL: not wanted). */
 bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *workspace,
                               const struct wb_least_squares_search *search, int *iterations);
 

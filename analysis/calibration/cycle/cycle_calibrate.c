@@ -34,8 +34,6 @@ static const double range_errors = 2.0;
 static const double largest_range = 2.3;
 /* Level of the F-tests, coverage of the intervals. */
 static const double f_level = 0.01, coverage = 0.95;
-/* A fit that stays this many times above the best misfit of the specimen is given up. */
-static const double hopeless_ratio = 4.0, hopeless_least = 5e-3;
 /* When K and n get digits. */
 static const double largest_ln_strength_error = 0.10, largest_exponent_error = 0.03;
 static const double wanted_precision = 0.05;
@@ -182,54 +180,105 @@ static double best_misfit(const struct wb_cycle_member *member)
     return best;
 }
 
-/* Fits a candidate; that the beam cannot follow it is a result. */
+/* Fits a candidate from a law near by, and keeps it where it is better than what there is. That the
+ * beam cannot follow it is a result. */
 static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
                               const struct wb_law *start, const struct wb_cycle_grid *grid,
-                              const struct wb_cycle_calibrate_settings *given)
+                              const struct wb_cycle_calibrate_settings *settings)
 {
     struct wb_cycle_answer *const answer = &member->answers[candidate];
-    struct wb_cycle_fit_settings settings = given->fit;
-    if (given->left_out >> candidate & 1U)
+    struct wb_cycle_fit fit;
+    if (settings->left_out >> candidate & 1U)
         return WB_OK;
-    const double best = best_misfit(member);
-    if (isfinite(best))
-        settings.hopeless = fmax(hopeless_ratio * best, hopeless_least);
-    const enum wb_status status = wb_cycle_fit_run(&answer->fit, &member->data, candidate, start,
-                                                   grid, &settings, &member->why);
+    const enum wb_status status =
+        wb_cycle_fit_run(&fit, &member->data, candidate, start, grid, &settings->fit, &member->why);
     if (status == WB_ERR_CONVERGENCE)
         return WB_OK;
-    answer->is_fitted = status == WB_OK;
-    return status;
+    WB_TRY(status);
+    if (!answer->is_fitted || fit.misfit < answer->fit.misfit) {
+        wb_cycle_fit_release(&answer->fit);
+        answer->fit = fit;
+        answer->is_fitted = true;
+    } else {
+        wb_cycle_fit_release(&fit);
+    }
+    return WB_OK;
+}
+
+static const struct wb_cycle_fit *better(const struct wb_cycle_fit *one,
+                                         const struct wb_cycle_fit *other)
+{
+    return one && (!other || one->misfit <= other->misfit) ? one : other;
+}
+
+static const struct wb_cycle_fit *fit_of(const struct wb_cycle_member *member,
+                                         enum wb_candidate candidate)
+{
+    const struct wb_cycle_answer *const answer = &member->answers[candidate];
+    return answer->is_fitted ? &answer->fit : NULL;
+}
+
+/* The fit of a contained law is one of the law that contains it, with a share at its end: the prior
+ * of the share, or a search that stopped early, may have kept that from it. */
+static void take_contained(struct wb_cycle_member *member, enum wb_candidate candidate,
+                           const struct wb_cycle_fit *contained)
+{
+    struct wb_cycle_answer *const answer = &member->answers[candidate];
+    const size_t n = (size_t)member->data.n_points;
+    if (!answer->is_fitted || !contained || better(&answer->fit, contained) == &answer->fit)
+        return;
+    wb_cycle_fit_release(&answer->fit);
+    answer->fit = *contained;
+    answer->fit.candidate = candidate;
+    answer->fit.n_law++;
+    answer->fit.n_free++;
+    answer->fit.is_at_bound = true;
+    answer->fit.tension = wb_memory_new(n, sizeof(double));
+    memcpy(answer->fit.tension, contained->tension, n * sizeof(double));
+}
+
+/* Fits a candidate from the better of two fits (NULL: none); where it comes out worse than the
+ * other, also from that. */
+static enum wb_status fit_from(struct wb_cycle_member *member, enum wb_candidate candidate,
+                               const struct wb_cycle_fit *one, const struct wb_cycle_fit *other,
+                               const struct wb_cycle_grid *grid,
+                               const struct wb_cycle_calibrate_settings *settings)
+{
+    const struct wb_cycle_fit *const first = better(one, other);
+    const struct wb_cycle_fit *const second = first == one ? other : one;
+    if (first)
+        WB_TRY(fit_one(member, candidate, &first->law, grid, settings));
+    const bool is_worse = second && better(second, fit_of(member, candidate)) == second;
+    return is_worse ? fit_one(member, candidate, &second->law, grid, settings) : WB_OK;
 }
 
 static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *member)
 {
     const struct wb_cycle_fit *best = NULL;
-    for (int c = WB_CANDIDATE_LUDWIK_ISOTROPIC; c <= WB_CANDIDATE_LUDWIK_MIXED; c++) {
-        const struct wb_cycle_answer *const answer = &member->answers[c];
-        if (answer->is_fitted && (!best || answer->fit.misfit < best->misfit))
-            best = &answer->fit;
-    }
+    for (int c = WB_CANDIDATE_LUDWIK_ISOTROPIC; c <= WB_CANDIDATE_LUDWIK_MIXED; c++)
+        best = better(best, fit_of(member, c));
     return best;
 }
 
-/* Ludwik's candidates: kinematic first, which most wires are nearest to. */
+/* Ludwik's candidates. */
 static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct wb_dataset *dataset,
                                   const struct wb_cycle_calibrate_settings *settings)
 {
-    static const enum wb_candidate order[] = {
-        WB_CANDIDATE_LUDWIK_KINEMATIC, WB_CANDIDATE_LUDWIK_ISOTROPIC, WB_CANDIDATE_LUDWIK_MIXED};
     const struct wb_cycle_grid none = {0.0, 0.0};
     struct wb_law start;
     WB_TRY(wb_cycle_data_take(&member->data, dataset, &settings->data, &member->why));
     first_law(&member->data, &start);
+    WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, settings));
     if (member->data.n_loading == member->data.n_points)
-        return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, settings);
-    for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
-        const struct wb_cycle_fit *const near = best_ludwik(member);
-        const bool is_mixed = order[i] == WB_CANDIDATE_LUDWIK_MIXED;
-        WB_TRY(fit_one(member, order[i], is_mixed && near ? &near->law : &start, &none, settings));
-    }
+        return WB_OK;
+    WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, &none, settings));
+    const struct wb_cycle_fit *const isotropic = fit_of(member, WB_CANDIDATE_LUDWIK_ISOTROPIC);
+    const struct wb_cycle_fit *const kinematic = fit_of(member, WB_CANDIDATE_LUDWIK_KINEMATIC);
+    if (!isotropic && !kinematic)
+        return fit_one(member, WB_CANDIDATE_LUDWIK_MIXED, &start, &none, settings);
+    WB_TRY(fit_from(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic, kinematic, &none, settings));
+    take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic);
+    take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, kinematic);
     return WB_OK;
 }
 
@@ -241,12 +290,10 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     if (!near || member->data.n_loading == member->data.n_points)
         return WB_OK;
     WB_TRY(fit_one(member, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, grid, settings));
-    /* Parts that follow the test with the one rule are nearest to those with both; parts that were
-     * bent out of shape by the wrong rule are farther away than Ludwik's curve. */
-    const struct wb_cycle_answer *const pure = &member->answers[WB_CANDIDATE_PARALLEL_KINEMATIC];
-    const bool is_nearer = pure->is_fitted && pure->fit.misfit < near->misfit;
-    return fit_one(member, WB_CANDIDATE_PARALLEL_MIXED, is_nearer ? &pure->fit.law : &near->law,
-                   grid, settings);
+    const struct wb_cycle_fit *const pure = fit_of(member, WB_CANDIDATE_PARALLEL_KINEMATIC);
+    WB_TRY(fit_from(member, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
+    take_contained(member, WB_CANDIDATE_PARALLEL_MIXED, pure);
+    return WB_OK;
 }
 
 /* --- specimens side by side --- */
@@ -391,7 +438,9 @@ static int by_misfit(const void *a, const void *b)
     const struct wb_cycle_rank *const x = a, *const y = b;
     if (x->is_fitted != y->is_fitted)
         return x->is_fitted ? -1 : 1;
-    return (x->misfit > y->misfit) - (x->misfit < y->misfit);
+    if (x->misfit != y->misfit)
+        return x->misfit > y->misfit ? 1 : -1;
+    return (int)x->candidate - (int)y->candidate; /* of equals the simpler first */
 }
 
 /* Ranks the candidates and chooses one. */

@@ -51,9 +51,6 @@ static const double huber_limit = 2.5;
  * less than this part. */
 static const double arrived = 2e-4;
 static const double settled_sum = 1e-4;
-/* A gain of an iteration below this part is too slow for a fit that is far off. */
-static const double slow_gain = 0.1;
-static const int first_judged = 3;
 /* Where a group of residuals is left out, a number that nothing else tells stays finite by a prior
  * of this weight; and a standard error is at least the root of this. Units of the free numbers. */
 static const double know_nothing = 1e-6, surest = 1e-12;
@@ -202,7 +199,6 @@ const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS] = {
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings)
 {
     const struct wb_setting_table table = {.rows = wb_cycle_fit_rows, .n = WB_CYCLE_FIT_ROWS};
-    *settings = (struct wb_cycle_fit_settings){.hopeless = 0.0};
     wb_setting_fill(&table, settings);
 }
 
@@ -552,16 +548,6 @@ static void set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
     free(sizes);
 }
 
-/* RMS of the force residuals over the largest force. */
-static double force_misfit(const struct problem *p, const gsl_vector *f)
-{
-    const int n = p->data->n_points;
-    double sum = 0.0;
-    for (int i = 0; i < n; i++)
-        sum += gsl_vector_get(f, (size_t)i) * gsl_vector_get(f, (size_t)i) / p->weight[i];
-    return sqrt(sum / n) * p->force_scale / p->data->max_force;
-}
-
 /* Begins again where it is, with differences for slopes. */
 static bool renew_slopes(struct problem *p, gsl_multifit_nlinear_workspace *w)
 {
@@ -587,15 +573,6 @@ struct fitted {
     gsl_multifit_nlinear_workspace *workspace;
 };
 
-/* A fit that is far off and comes nearer too slowly. */
-static bool is_hopeless(void *context, int iteration, double gain)
-{
-    const struct fitted *const f = context;
-    const double limit = f->problem->settings->hopeless;
-    return iteration >= first_judged && gain < slow_gain && limit > 0.0 &&
-           force_misfit(f->problem, f->workspace->f) > limit;
-}
-
 /* Slopes that were carried on may be too poor for a better step: the end is where differences find
  * none. */
 static bool takes_differences(void *context, bool moved)
@@ -615,7 +592,6 @@ static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *i
         .smallest_step = arrived,
         .smallest_gain = settled_sum,
         .status = &p->status,
-        .gives_up = is_hopeless,
         .goes_on = takes_differences,
         .context = &fitted,
     };

@@ -51,9 +51,8 @@ struct wb_cycle_fit_settings {
     int n_final_elements; /* of the last run */
     int n_fibres;         /* over the diameter */
     int max_iterations;
-    double hopeless; /* a fit whose misfit stays above this is ended early; 0: none is */
 };
-/* Rows of all but `hopeless`, with range and default. */
+/* Their rows, with range and default. */
 enum {
     WB_CYCLE_FIT_ROWS = 11
 };
@@ -98,8 +97,8 @@ struct wb_cycle_fit {
     double *tension;
 };
 
-/* Fits one candidate. `start` gives a law near by (Ludwik's), from which all start; `grid` is used
- * by parallel parts. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted.
+/* Fits one candidate. `start` gives a law near by, from which all start; `grid` is used by parallel
+ * parts. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted.
  * WB_ERR_CONVERGENCE where the beam cannot compute the start; `why` receives it, NULL: logged. */
 WB_MUST_CHECK enum wb_status
 wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,

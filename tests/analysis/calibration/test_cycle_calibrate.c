@@ -5,6 +5,7 @@
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "base/units.h"
+#include "tests/analysis/calibration/containing.h"
 #include "tests/analysis/fast_rig.h"
 #include "tests/check.h"
 
@@ -167,6 +168,15 @@ static void the_ranking_is_by_misfit_and_the_choice_by_the_f_test(void **unused)
     assert_int_equal(all.chosen, WB_CANDIDATE_PARALLEL_KINEMATIC);
     assert_int_equal(all.ranked[WB_CANDIDATES - 1].candidate, WB_CANDIDATE_LUDWIK_ISOTROPIC);
     assert_true(all.is_supported && all.has_unloading);
+}
+
+static void a_law_fits_no_worse_than_one_that_it_contains(void **unused)
+{
+    (void)unused;
+    assert_true(worst_of_containing(&all) <= 0.0);
+    for (int i = 0; i < SPECIMENS; i++)
+        for (int k = 0; k < WB_CANDIDATES; k++)
+            assert_true(all.members[i].answers[k].fit.is_converged);
 }
 
 static void the_range_holds_the_candidates_that_count(void **unused)
@@ -377,6 +387,7 @@ int main(void)
         cmocka_unit_test(a_pooled_deviation_takes_the_place_of_the_own),
         cmocka_unit_test(one_specimen_has_a_range_and_no_interval),
         cmocka_unit_test(the_ranking_is_by_misfit_and_the_choice_by_the_f_test),
+        cmocka_unit_test(a_law_fits_no_worse_than_one_that_it_contains),
         cmocka_unit_test(the_range_holds_the_candidates_that_count),
         cmocka_unit_test(a_wire_without_a_way_back_is_ludwiks_and_not_supported),
         cmocka_unit_test(what_is_stopped_gives_the_specimens_that_were_fitted),

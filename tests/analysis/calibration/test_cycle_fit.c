@@ -272,15 +272,6 @@ static void the_wrong_rule_shows_in_the_misfit(void **unused)
                      WB_OK);
     assert_true(found.misfit > 0.01);
     wb_cycle_fit_release(&found);
-
-    /* A fit that is to be given up there costs less. */
-    const int runs = found.runs;
-    settings.hopeless = 0.005;
-    assert_int_equal(wb_cycle_fit_run(&found, &s.data, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, NULL,
-                                      &settings, NULL),
-                     WB_OK);
-    assert_true(found.runs < runs && !found.is_converged && found.misfit > 0.01);
-    wb_cycle_fit_release(&found);
 }
 
 /* A normal number of standard deviation 1, from uniform ones that repeat. */

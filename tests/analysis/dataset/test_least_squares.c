@@ -90,30 +90,6 @@ static void small_gains_end_it_when_patience_does(void **unused)
     }
 }
 
-static bool third(void *context, int iteration, double gain)
-{
-    double *const gains = context;
-    gains[iteration] = gain;
-    return iteration == 2;
-}
-
-static void a_search_may_be_given_up(void **unused)
-{
-    (void)unused;
-    struct decay decay = {0};
-    double gains[8] = {0.0};
-    struct wb_least_squares_search how = {.max_iterations = 100,
-                                          .smallest_step = 1e-8,
-                                          .smallest_gain = 1e-12,
-                                          .gives_up = third,
-                                          .context = gains};
-    double x[2];
-    int iterations;
-    assert_false(search(&decay, &how, x, &iterations));
-    assert_int_equal(iterations, 3);
-    assert_true(gains[0] > 0.0 && gains[2] > 0.0 && gains[3] == 0.0);
-}
-
 static void a_failure_of_the_residuals_ends_the_search(void **unused)
 {
     (void)unused;
@@ -175,7 +151,6 @@ int main(void)
         cmocka_unit_test(decay_is_found_again),
         cmocka_unit_test(small_gains_end_it_when_patience_does),
         cmocka_unit_test(iterations_run_out),
-        cmocka_unit_test(a_search_may_be_given_up),
         cmocka_unit_test(a_failure_of_the_residuals_ends_the_search),
         cmocka_unit_test(moduli_stay_positive_and_grow_evenly),
         cmocka_unit_test(the_elastic_part_may_be_as_stiff_as_it_is),

@@ -1,0 +1,34 @@
+/* A law fits no worse than a law that it contains. */
+#ifndef WB_TESTS_ANALYSIS_CALIBRATION_CONTAINING_H
+#define WB_TESTS_ANALYSIS_CALIBRATION_CONTAINING_H
+
+#include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "tests/check.h"
+
+/* How much of the misfit of a contained law the misfit of one that contains it lies above it, at
+ * most, over all specimens. */
+static inline double worst_of_containing(const struct wb_cycle_calibration *c)
+{
+    static const struct {
+        enum wb_candidate containing, contained;
+    } pairs[] = {
+        {WB_CANDIDATE_LUDWIK_MIXED, WB_CANDIDATE_LUDWIK_ISOTROPIC},
+        {WB_CANDIDATE_LUDWIK_MIXED, WB_CANDIDATE_LUDWIK_KINEMATIC},
+        {WB_CANDIDATE_PARALLEL_MIXED, WB_CANDIDATE_PARALLEL_KINEMATIC},
+    };
+    double worst = 0.0;
+    for (int i = 0; i < c->n_members; i++) {
+        for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+            const struct wb_cycle_answer *const answers = c->members[i].answers;
+            const struct wb_cycle_answer *const containing = &answers[pairs[k].containing];
+            const struct wb_cycle_answer *const contained = &answers[pairs[k].contained];
+            if (!containing->is_fitted || !contained->is_fitted)
+                continue;
+            const double off = containing->fit.misfit - contained->fit.misfit;
+            worst = fmax(worst, off / contained->fit.misfit);
+        }
+    }
+    return worst;
+}
+
+#endif
