@@ -41,7 +41,7 @@ build_with_clang() {
 }
 
 test_under_sanitizers() {
-    configure_sanitizers build-sanitize address,undefined &&
+    configure_sanitizers build-sanitize address,undefined -Dvector_kernels=true &&
         meson test -C build-sanitize --setup sanitize --no-suite slow --no-suite headers --print-errorlogs
 }
 

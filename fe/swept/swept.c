@@ -31,7 +31,7 @@ static bool is_supported(enum wb_swept_instructions instructions)
     switch (instructions) {
     case WB_SWEPT_BASELINE:
         return true;
-#ifdef __x86_64__
+#ifdef WB_SWEPT_VECTOR_KERNELS
     case WB_SWEPT_AVX2:
         return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case WB_SWEPT_AVX512:
@@ -58,7 +58,8 @@ enum wb_status wb_swept_choose_instructions(enum wb_swept_instructions *chosen,
     const enum wb_swept_instructions set = wanted == WB_SWEPT_BEST ? best_supported() : wanted;
     if (!is_supported(set))
         return wb_fail(WB_ERR_UNSUPPORTED,
-                       "this processor does not have the vector instructions that were asked for");
+                       "this processor, or this build, does not have the vector instructions "
+                       "that were asked for");
     *chosen = set;
     return WB_OK;
 }

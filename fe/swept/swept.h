@@ -32,7 +32,7 @@ enum {
 
 /* Instructions of the processor that kernels use. */
 enum wb_swept_instructions {
-    WB_SWEPT_BEST, /* of what this processor has */
+    WB_SWEPT_BEST, /* of what this processor and this build have */
     WB_SWEPT_BASELINE,
     WB_SWEPT_AVX2,
     WB_SWEPT_AVX512
@@ -59,11 +59,11 @@ size_t wb_swept_size(const struct wb_swept_layout *layout);
 struct wb_swept_range wb_swept_range_within(struct wb_swept_range range, int n);
 
 /* The instructions to use where these are wanted: never WB_SWEPT_BEST. WB_ERR_UNSUPPORTED when this
- * processor does not have them. */
+ * processor, or this build (option vector_kernels), does not have them. */
 WB_MUST_CHECK enum wb_status wb_swept_choose_instructions(enum wb_swept_instructions *chosen,
                                                           enum wb_swept_instructions wanted);
 
-/* "baseline", "avx2", "avx512"; of WB_SWEPT_BEST, of what this processor has. */
+/* "baseline", "avx2", "avx512"; of WB_SWEPT_BEST, of what this processor and this build have. */
 const char *wb_swept_instructions_name(enum wb_swept_instructions instructions);
 
 /* Zeroed, aligned memory for `count` values of `size` bytes; free() it. */

@@ -15,7 +15,7 @@
 #include "fe/swept/swept.h"
 
 /* Declares the versions of a kernel, and lists them as [enum wb_swept_instructions][is double]. */
-#ifdef __x86_64__
+#ifdef WB_SWEPT_VECTOR_KERNELS
 #define WB_SWEPT_KERNEL_DECLARE(kernel)                                                            \
     extern const struct kernel kernel##_float_baseline, kernel##_double_baseline;                  \
     extern const struct kernel kernel##_float_avx2, kernel##_double_avx2;                          \
