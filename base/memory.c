@@ -70,6 +70,16 @@ void *wb_memory_resize(void *block, size_t count, size_t size)
     return larger;
 }
 
+void *wb_memory_room(void *block, size_t *room, size_t n, size_t size)
+{
+    if (block && n <= *room)
+        return block;
+    const size_t doubled = 2 * *room + 16, larger = doubled > n ? doubled : n;
+    void *const grown = wb_memory_resize(block, larger, size);
+    *room = larger; /* not before: who owns the block may live on where there is no memory */
+    return grown;
+}
+
 void *wb_memory_need(void *block)
 {
     if (!block)
@@ -86,11 +96,8 @@ char *wb_memory_text(const char *text)
 void *wb_memory_keep(struct wb_memory *memory, void *block)
 {
     wb_memory_need(block);
-    if (memory->n == memory->room) {
-        const size_t room = 2 * memory->room + 8;
-        memory->blocks = wb_memory_resize(memory->blocks, room, sizeof *memory->blocks);
-        memory->room = room; /* not before: the object may live on where there is none */
-    }
+    memory->blocks =
+        wb_memory_room(memory->blocks, &memory->room, memory->n + 1, sizeof *memory->blocks);
     memory->blocks[memory->n++] = block;
     return block;
 }

@@ -30,6 +30,11 @@ void *wb_memory_new(size_t count, size_t size) __attribute__((returns_nonnull));
  * not zeroed. */
 void *wb_memory_resize(void *block, size_t count, size_t size) __attribute__((returns_nonnull));
 
+/* The same block, or NULL, with room for `n` elements at least: *room is what it has. Where it is
+ * too small it doubles, so that elements added one by one cost little. */
+void *wb_memory_room(void *block, size_t *room, size_t n, size_t size)
+    __attribute__((returns_nonnull));
+
 /* A copy of a text, released with free(). */
 char *wb_memory_text(const char *text) __attribute__((returns_nonnull));
 

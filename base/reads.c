@@ -9,7 +9,8 @@
 static struct {
     pthread_mutex_t lock;
     bool is_on;
-    int n, capacity;
+    int n;
+    size_t capacity;
     struct wb_read *items; /* (capacity) */
 } reads = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
@@ -33,10 +34,8 @@ static bool is_noted(const struct wb_read *read)
 
 static void add(struct wb_read *read)
 {
-    if (reads.n == reads.capacity) {
-        reads.capacity = reads.capacity > 0 ? 2 * reads.capacity : 64;
-        reads.items = wb_memory_resize(reads.items, (size_t)reads.capacity, sizeof *reads.items);
-    }
+    reads.items =
+        wb_memory_room(reads.items, &reads.capacity, (size_t)reads.n + 1, sizeof *reads.items);
     reads.items[reads.n++] = *read;
     read->path = NULL;
 }

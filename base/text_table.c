@@ -231,10 +231,7 @@ struct lines {
 
 static void add_line(struct lines *lines, char *text, int number)
 {
-    if (lines->n == lines->room) {
-        lines->room = lines->room ? 2 * lines->room : 256;
-        lines->items = wb_memory_resize(lines->items, lines->room, sizeof *lines->items);
-    }
+    lines->items = wb_memory_room(lines->items, &lines->room, lines->n + 1, sizeof *lines->items);
     lines->items[lines->n++] = (struct line){text, number};
 }
 

@@ -25,10 +25,7 @@
 
 void wb_align_list_add(struct wb_align_list *list, const void *item, size_t size)
 {
-    if (list->n == list->capacity) {
-        list->capacity = list->capacity ? 2 * list->capacity : 1024;
-        list->items = wb_memory_resize(list->items, list->capacity, size);
-    }
+    list->items = wb_memory_room(list->items, &list->capacity, list->n + 1, size);
     memcpy((char *)list->items + list->n++ * size, item, size);
 }
 

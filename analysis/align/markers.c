@@ -40,22 +40,13 @@
 
 /* --- the cloud --- */
 
-static void *reserve(void *memory, size_t *capacity, size_t needed, size_t item)
-{
-    if (needed <= *capacity)
-        return memory;
-    *capacity = *capacity ? 2 * *capacity : 1024;
-    while (*capacity < needed)
-        *capacity *= 2;
-    return wb_memory_resize(memory, *capacity, item);
-}
-
 void wb_point_cloud_add(struct wb_point_cloud *cloud, const struct wb_mocap_frame *frame)
 {
-    cloud->frames =
-        reserve(cloud->frames, &cloud->frames_capacity, cloud->n_frames + 1, sizeof *cloud->frames);
-    cloud->points = reserve(cloud->points, &cloud->points_capacity,
-                            cloud->n_points + (size_t)frame->n_markers, sizeof *cloud->points);
+    cloud->frames = wb_memory_room(cloud->frames, &cloud->frames_capacity, cloud->n_frames + 1,
+                                   sizeof *cloud->frames);
+    cloud->points =
+        wb_memory_room(cloud->points, &cloud->points_capacity,
+                       cloud->n_points + (size_t)frame->n_markers, sizeof *cloud->points);
     struct wb_point_frame *const added = &cloud->frames[cloud->n_frames++];
     *added = (struct wb_point_frame){
         .t_ns = frame->t_ns,

@@ -144,7 +144,8 @@ enum wb_status wb_surface_write(const struct wb_surface *surface, const char *fo
 struct reader {
     struct wb_csv_table table;
     struct wb_surface *surface;
-    int n_nodes, capacity; /* of the last body */
+    int n_nodes; /* of the last body */
+    size_t capacity;
 };
 
 /* A row as it stands in the file. */
@@ -221,17 +222,16 @@ static enum wb_status begin_body(struct reader *reader, const struct row *row)
         wb_memory_resize(surface->bodies, (size_t)surface->n + 1, sizeof *surface->bodies);
     surface->bodies[surface->n++] =
         (struct wb_surface_body){.is_tape = row->is_tape, .closed = row->closed};
-    reader->n_nodes = reader->capacity = 0;
+    reader->n_nodes = 0;
+    reader->capacity = 0;
     return WB_OK;
 }
 
 static void append_to_body(struct reader *reader, struct wb_surface_body *body,
                            const struct wb_surface_node *node)
 {
-    if (reader->n_nodes == reader->capacity) {
-        reader->capacity = reader->capacity ? 2 * reader->capacity : 1024;
-        body->nodes = wb_memory_resize(body->nodes, (size_t)reader->capacity, sizeof *body->nodes);
-    }
+    body->nodes = wb_memory_room(body->nodes, &reader->capacity, (size_t)reader->n_nodes + 1,
+                                 sizeof *body->nodes);
     body->nodes[reader->n_nodes++] = *node;
 }
 

@@ -61,10 +61,12 @@ struct work {
     struct point *vertices; /* one for each vertex */
     struct triangle *triangles;
     struct side *sides;
-    int n_segments, capacity;
+    int n_segments;
+    size_t capacity;
     struct segment *segments;
     double (*loop)[2]; /* the loop that is being chained */
-    int n_loop, loop_capacity;
+    int n_loop;
+    size_t loop_capacity;
 };
 
 /* --- points and triangles --- */
@@ -289,11 +291,8 @@ static void cross(const struct work *work, int a, int b, double begin, double at
 
 static void add_segment(struct work *work, int level, const double from[2], const double to[2])
 {
-    if (work->n_segments == work->capacity) {
-        work->capacity = 2 * work->capacity + 4096;
-        work->segments =
-            wb_memory_resize(work->segments, (size_t)work->capacity, sizeof *work->segments);
-    }
+    work->segments = wb_memory_room(work->segments, &work->capacity, (size_t)work->n_segments + 1,
+                                    sizeof *work->segments);
     work->segments[work->n_segments++] =
         (struct segment){level, {from[0], from[1]}, {to[0], to[1]}, false};
 }
@@ -391,10 +390,8 @@ static int find_start(const struct work *work, int first, int end, const double 
 
 static void push(struct work *work, const double at[2])
 {
-    if (work->n_loop == work->loop_capacity) {
-        work->loop_capacity = 2 * work->loop_capacity + 1024;
-        work->loop = wb_memory_resize(work->loop, (size_t)work->loop_capacity, sizeof *work->loop);
-    }
+    work->loop = wb_memory_room(work->loop, &work->loop_capacity, (size_t)work->n_loop + 1,
+                                sizeof *work->loop);
     memcpy(work->loop[work->n_loop++], at, sizeof *work->loop);
 }
 

@@ -195,11 +195,8 @@ void wb_figure_hide_axes(struct wb_panel *panel)
 static struct wb_series *add_series(struct wb_panel *panel, enum wb_series_kind kind,
                                     const char *label)
 {
-    if (panel->n_series == panel->capacity) {
-        panel->capacity = 2 * panel->capacity + 8;
-        panel->series =
-            wb_memory_resize(panel->series, (size_t)panel->capacity, sizeof *panel->series);
-    }
+    panel->series = wb_memory_room(panel->series, &panel->capacity, (size_t)panel->n_series + 1,
+                                   sizeof *panel->series);
     struct wb_series *const series = &panel->series[panel->n_series++];
     *series = (struct wb_series){.kind = kind, .label = label ? wb_memory_text(label) : NULL};
     return series;

@@ -47,7 +47,8 @@ struct wb_panel {
     double width;                     /* pt; 0: a share of what is left */
     bool is_bar;                      /* of colours: */
     struct wb_figure_colours colours; /* those; the label is y_label */
-    int n_series, capacity;
+    int n_series;
+    size_t capacity;
     struct wb_series *series;
 };
 

@@ -46,11 +46,8 @@ static void make_stem(const struct wb_cards *cards, const char *wire, char stem[
 static void add_file(struct wb_cards *cards, const char *stem, const char *ending,
                      struct wb_text *text)
 {
-    if (cards->n == cards->capacity) {
-        cards->capacity = 2 * cards->capacity + 16;
-        cards->files =
-            wb_memory_resize(cards->files, (size_t)cards->capacity, sizeof *cards->files);
-    }
+    cards->files =
+        wb_memory_room(cards->files, &cards->capacity, (size_t)cards->n + 1, sizeof *cards->files);
     struct wb_cards_file *const file = &cards->files[cards->n++];
     snprintf(file->name, sizeof file->name, "cards/%s.%s", stem, ending);
     file->bytes = *text;

@@ -24,7 +24,8 @@ struct wb_cards_law {                /* one, with all its files */
 };
 
 struct wb_cards {
-    int n, capacity;
+    int n;
+    size_t capacity;
     struct wb_cards_file *files; /* (n), owned */
     int n_laws;
     struct wb_cards_law *laws; /* (n_laws), owned */

@@ -76,11 +76,8 @@ void wb_document_move_to_front(struct wb_document *document, int first)
 static struct wb_document_block *add_block(struct wb_document *document, enum wb_document_kind kind,
                                            const char *text)
 {
-    if (document->n == document->capacity) {
-        document->capacity = 2 * document->capacity + 64;
-        document->blocks = wb_memory_resize(document->blocks, (size_t)document->capacity,
-                                            sizeof *document->blocks);
-    }
+    document->blocks = wb_memory_room(document->blocks, &document->capacity,
+                                      (size_t)document->n + 1, sizeof *document->blocks);
     struct wb_document_block *const block = &document->blocks[document->n++];
     *block = (struct wb_document_block){.kind = kind, .text = copy_text(text)};
     return block;

@@ -72,7 +72,8 @@ struct wb_document {
     char *title, *subtitle, *footer; /* footer: on every page */
     char *number;                    /* of the report, on every page; NULL: none */
     char *date_utc;                  /* of the document: of its latest data; "" unknown */
-    int n, capacity, n_figures;
+    int n, n_figures;
+    size_t capacity;
     struct wb_document_block *blocks;
     bool failed;
 };

@@ -304,10 +304,7 @@ static bool read_row(struct wb_recording_salvage *s, const struct cell *cell, bo
 
 static void keep(struct wb_recording_salvage *s, const struct place *place)
 {
-    if (s->n_places == s->capacity) {
-        s->capacity = s->capacity ? 2 * s->capacity : 4096;
-        s->places = wb_memory_resize(s->places, s->capacity, sizeof *s->places);
-    }
+    s->places = wb_memory_room(s->places, &s->capacity, s->n_places + 1, sizeof *s->places);
     s->places[s->n_places++] = *place;
 }
 

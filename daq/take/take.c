@@ -81,19 +81,6 @@ size_t wb_take_frame_at(const struct wb_take *take, size_t frame, struct wb_moca
 
 /* --- for readers --- */
 
-/* Makes room for `more` items after `n`. */
-static void reserve(void **items, size_t *capacity, size_t n, size_t more, size_t size)
-{
-    if (n + more <= *capacity)
-        return;
-    const size_t larger = *capacity ? *capacity + *capacity / 2 : 256;
-    *capacity = larger < n + more ? n + more : larger;
-    *items = wb_memory_resize(*items, *capacity, size);
-}
-
-#define RESERVE(which, items, n, more)                                                             \
-    reserve((void **)&(items), &(which), (n), (more), sizeof *(items))
-
 void wb_take_copy_name(char *to, size_t size, const char *from, size_t n)
 {
     while (n > 0 && (isspace((unsigned char)from[n - 1]) || from[n - 1] == '\0'))
@@ -118,7 +105,8 @@ struct wb_take_quoted wb_take_quote(const char *cell, size_t n)
 
 size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n)
 {
-    RESERVE(take->capacity[0], take->points, take->n_points, 1);
+    take->points =
+        wb_memory_room(take->points, &take->capacity[0], take->n_points + 1, sizeof *take->points);
     struct wb_take_point *const point = &take->points[take->n_points];
     *point = (struct wb_take_point){.kind = kind};
     wb_take_copy_name(point->name, sizeof point->name, name, n);
@@ -128,14 +116,16 @@ size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const cha
 void wb_take_add_frame(struct wb_take *take, int32_t number, double t)
 {
     /* One more, for the end of the last. */
-    RESERVE(take->capacity[1], take->frames, take->n_frames, 2);
+    take->frames =
+        wb_memory_room(take->frames, &take->capacity[1], take->n_frames + 2, sizeof *take->frames);
     take->frames[take->n_frames++] =
         (struct wb_take_frame){.number = number, .t = t, .first = take->n_places};
 }
 
 void wb_take_add_place(struct wb_take *take, uint32_t point, const double position[3])
 {
-    RESERVE(take->capacity[2], take->places, take->n_places, 1);
+    take->places =
+        wb_memory_room(take->places, &take->capacity[2], take->n_places + 1, sizeof *take->places);
     struct wb_take_place *const place = &take->places[take->n_places++];
     place->point = point;
     for (int k = 0; k < 3; k++)
@@ -153,7 +143,7 @@ void wb_take_drop_frame(struct wb_take *take)
 float *wb_take_add_analog(struct wb_take *take, size_t n)
 {
     const size_t used = (take->n_frames > 0 ? take->n_frames - 1 : 0) * n;
-    RESERVE(take->capacity[3], take->analog, used, n);
+    take->analog = wb_memory_room(take->analog, &take->capacity[3], used + n, sizeof *take->analog);
     return take->analog + used;
 }
 

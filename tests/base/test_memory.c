@@ -42,6 +42,33 @@ static void blocks_grow_and_texts_are_copied(void **unused)
     free(copy);
 }
 
+static void room_doubles_and_what_is_in_it_stays(void **unused)
+{
+    (void)unused;
+    size_t room = 0, last = 0;
+    int *numbers = NULL, n_grown = 0;
+    for (int i = 0; i < 5000; i++) {
+        numbers = wb_memory_room(numbers, &room, (size_t)i + 1, sizeof *numbers);
+        assert_true(room > (size_t)i && (room == last || room >= 2 * last));
+        n_grown += room != last;
+        last = room;
+        numbers[i] = i;
+    }
+    assert_true(n_grown > 1 && n_grown < 15);
+    numbers = wb_memory_room(numbers, &room, 100000, sizeof *numbers);
+    assert_true(room >= 100000);
+    for (int i = 0; i < 5000; i++)
+        assert_int_equal(numbers[i], i);
+    free(numbers);
+}
+
+/* Noted only after it has grown: who owns the block goes on below wb_memory_try(). */
+static enum wb_status too_much_room(void *context)
+{
+    (void)wb_memory_room(NULL, context, SIZE_MAX / 2, 16);
+    return WB_OK;
+}
+
 /* Larger than any memory: no library is asked for it. */
 static enum wb_status too_much(void *context)
 {
@@ -103,6 +130,9 @@ static void tried_function_ends_at_the_allocation(void **unused)
     assert_int_equal(wb_log_set_gravest(WB_LOG_ERROR), WB_LOG_ERROR);
     assert_int_equal(wb_memory_try(try_within, &went_on), WB_ERR_MEMORY);
     assert_int_equal(messages.n, 4);
+    size_t room = 3;
+    assert_int_equal(wb_memory_try(too_much_room, &room), WB_ERR_MEMORY);
+    assert_int_equal(room, 3);
     assert_false(went_on || wb_memory_is_guarded());
     wb_log_set_sink(NULL, NULL);
     assert_int_equal(wb_memory_try(fail_otherwise, &went_on), WB_ERR_DATA);
@@ -141,6 +171,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arrays_are_zeroed_and_apart),
         cmocka_unit_test(blocks_grow_and_texts_are_copied),
+        cmocka_unit_test(room_doubles_and_what_is_in_it_stays),
         cmocka_unit_test(tried_function_ends_at_the_allocation),
         cmocka_unit_test(program_ends_with_one_message),
     };
