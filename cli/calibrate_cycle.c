@@ -164,9 +164,9 @@ static void print_law(const struct wb_cycle_calibration *c)
 {
     const struct wb_law *const law = &c->law;
     char a[NUMBER], b[NUMBER];
-    printf("%s law, %s hardening", law->form == WB_LAW_LUDWIK ? "Ludwik's" : "parallel parts'",
-           wb_law_rule_name(law));
-    if (law->isotropic_share > 0.0 && law->isotropic_share < 1.0)
+    static const char *const forms[] = {"Ludwik's", "parallel parts'", "Chaboche's"};
+    printf("%s law, %s hardening", forms[law->form], wb_law_rule_name(law));
+    if (wb_law_has_share(law))
         printf(", isotropic share %.2f", law->isotropic_share);
     printf(", over the outer diameter\n  %-8s %10s MPa\n", "E",
            format(law->material.youngs_modulus / WB_MPA, a));
@@ -177,6 +177,14 @@ static void print_law(const struct wb_cycle_calibration *c)
                             "MPa");
         print_ludwik_number(c, "n", c->is_exponent_identifiable, m->hardening_exponent, "");
     }
+    if (law->form == WB_LAW_CHABOCHE) {
+        printf("  %-8s %10s MPa\n", "sigma_Y", format(law->material.yield_stress / WB_MPA, a));
+        printf("  %-8s %10s MPa, b %s\n", "Q", format(law->saturation / WB_MPA, a),
+               format(law->rate, b));
+    }
+    for (int i = 0; i < law->n_backs; i++)
+        printf("  C%-7d %10s MPa, gamma%d %s\n", i + 1, format(law->backs[i].modulus / WB_MPA, a),
+               i + 1, format(law->backs[i].recovery, b));
     for (int i = 0; i < law->n_parts; i++) {
         const struct wb_law_part *const part = &law->parts[i];
         printf("  part %-3d %10s MPa", i + 1, format(part->modulus / WB_MPA, a));

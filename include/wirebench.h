@@ -242,8 +242,15 @@ struct wirebench_part {
         yield_strain; /* 1, ascending from part to part; INFINITY: stays elastic, the last only */
 };
 
+/* A back stress: dX = modulus dep - recovery X dp. */
+struct wirebench_back {
+    double modulus;  /* C, Pa, above 0 */
+    double recovery; /* gamma, 1, at least 0 */
+};
+
 enum {
-    WIREBENCH_MOST_PARTS = 12
+    WIREBENCH_MOST_PARTS = 12,
+    WIREBENCH_MOST_BACKS = 3
 };
 
 /* The stress-strain law of the homogenised wire, over its outer diameter. */
@@ -260,8 +267,15 @@ struct wirebench_law {
     /* Or parallel parts. */
     int n_parts;
     struct wirebench_part parts[WIREBENCH_MOST_PARTS];
-    /* Share of kinematic hardening, 0 (isotropic) to 1; how the wire yields on the way back. */
+    /* Share of kinematic hardening, 0 (isotropic) to 1; how the wire yields on the way back. Of the
+     * area; with `is_combined`, of Ludwik's hardening stress in one law. */
     double kinematic_share;
+    /* Or Chaboche's law, where n_backs or saturation is above 0: E and sigma_Y from above, a yield
+     * stress that grows by saturation (1 - exp(-rate p)), and back stresses. */
+    double saturation, rate; /* Q, Pa; b, 1 */
+    int n_backs;
+    int is_combined;
+    struct wirebench_back backs[WIREBENCH_MOST_BACKS];
 };
 
 /* A number with its interval of 95 % over specimens, and its range over the laws that the data do
@@ -289,6 +303,14 @@ struct wirebench_properties_info {
     int n_samples;
     int is_rule_supported; /* the data support the hardening rule */
     int is_virtual, is_simulation;
+    /* As in wirebench_law. Of Chaboche's law E, sigma_Y, K and n above are the isotropic Ludwik law
+     * that bends alike on a first loading, kinematic_share is the part of the hardening that moves
+     * the surface, and these are its own E and sigma_Y. */
+    double saturation, rate;
+    int n_backs;
+    int is_combined;
+    struct wirebench_back backs[WIREBENCH_MOST_BACKS];
+    double law_youngs_modulus, law_yield_stress;
 };
 
 /* Properties of a law that the caller gives. */

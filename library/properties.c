@@ -10,6 +10,24 @@
 #define WB_LOG_DOMAIN "library"
 
 _Static_assert((int)WB_LAW_MOST_PARTS == (int)WIREBENCH_MOST_PARTS, "parts");
+_Static_assert((int)WB_LAW_MOST_BACKS == (int)WIREBENCH_MOST_BACKS, "back stresses");
+
+static enum wb_status make_chaboche(const struct wirebench_law *given,
+                                    const struct wb_material *material, struct wb_law *law)
+{
+    struct wb_law_back backs[WB_LAW_MOST_BACKS];
+    if (given->n_backs < 0 || given->n_backs > WB_LAW_MOST_BACKS)
+        return wb_fail(WB_ERR_ARGUMENT, "n_backs: %d: expected 0 to %d", given->n_backs,
+                       WB_LAW_MOST_BACKS);
+    if (given->n_parts > 0)
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "n_parts: %d: expected 0 beside n_backs or saturation: one law",
+                       given->n_parts);
+    for (int i = 0; i < given->n_backs; i++)
+        backs[i] = (struct wb_law_back){given->backs[i].modulus, given->backs[i].recovery};
+    wb_law_init_chaboche(law, material, given->saturation, given->rate, backs, given->n_backs);
+    return wb_law_check(law, NULL);
+}
 
 static enum wb_status make_law(const struct wirebench_law *given, struct wb_law *law)
 {
@@ -34,12 +52,15 @@ static enum wb_status make_law(const struct wirebench_law *given, struct wb_law 
     for (int i = 0; i < given->n_parts; i++)
         parts[i] = (struct wb_law_part){given->parts[i].modulus, given->parts[i].yield_strain};
     const double isotropic_share = 1.0 - given->kinematic_share;
+    if (given->n_backs != 0 || given->saturation != 0.0)
+        return make_chaboche(given, &material, law);
     if (given->n_parts > 0 || given->yield_stress == 0.0) {
         wb_law_init_parallel(law, parts, given->n_parts > 0 ? given->n_parts : 1, isotropic_share,
                              given->poissons_ratio);
     } else {
         wb_law_init_ludwik(law, &material);
         law->isotropic_share = isotropic_share;
+        law->is_combined = given->is_combined;
     }
     return wb_law_check(law, NULL);
 }
@@ -139,11 +160,19 @@ enum wirebench_status wirebench_properties_describe(const struct wirebench_prope
         .is_rule_supported = p->is_rule_supported,
         .is_virtual = p->is_virtual,
         .is_simulation = p->is_simulation,
+        .saturation = law->saturation,
+        .rate = law->rate,
+        .n_backs = law->n_backs,
+        .is_combined = law->is_combined,
+        .law_youngs_modulus = law->material.youngs_modulus,
+        .law_yield_stress = law->material.yield_stress,
     };
     for (int i = 0; i < 4; i++)
         mine.deviation[i] = p->deviation[i];
     for (int i = 0; i < law->n_parts; i++)
         mine.parts[i] = (struct wirebench_part){law->parts[i].modulus, law->parts[i].yield_strain};
+    for (int i = 0; i < law->n_backs; i++)
+        mine.backs[i] = (struct wirebench_back){law->backs[i].modulus, law->backs[i].recovery};
     return wb_call_end(wb_call_give(info, &mine, sizeof mine, "wirebench_properties_info"));
 }
 

@@ -19,6 +19,7 @@ static const double last_strain = 0.1, overlay_poisson = 0.49, largest_poisson =
 
 struct dialect {
     const char *kind, *density, *elastic, *plastic;
+    bool has_combined;  /* hardening with saturating back stresses */
     const char *advice; /* on elements, after the common one */
 };
 
@@ -87,12 +88,40 @@ static void tabulate_parallel(const struct wb_law *law, struct table *table)
     }
 }
 
+/* Chaboche's virgin curve, at plastic strains that grow by a factor from a thousandth of the yield
+ * strain on. */
+static void tabulate_chaboche(const struct wb_law *law, struct table *table)
+{
+    const double E = law->material.youngs_modulus;
+    const double first = 1e-3 * law->material.yield_stress / E;
+    *table = (struct table){.n = 1, .stress = {law->material.yield_stress}};
+    for (int i = 0; i < MOST_POINTS - 1; i++) {
+        const double wanted = first * pow(last_strain / first, (double)i / (MOST_POINTS - 2));
+        /* The total strain at this plastic strain: the stress grows with both. */
+        double strain = wanted;
+        for (int pass = 0; pass < 100; pass++) {
+            double tangent;
+            const double stress = wb_law_virgin_stress(law, strain, &tangent);
+            const double off = wanted - (strain - stress / E);
+            const double slope = fmax(1.0 - tangent / E, 1e-3);
+            strain += off / slope;
+            if (fabs(off) < 1e-12 * wanted)
+                break;
+        }
+        const double stress = wb_law_virgin_stress(law, strain, NULL);
+        table->stress[table->n] = stress;
+        table->strain[table->n++] = strain - stress / E;
+    }
+}
+
 static void tabulate(const struct wb_law *law, struct table *table)
 {
     if (law->form == WB_LAW_LUDWIK)
         tabulate_ludwik(&law->material, table);
-    else
+    else if (law->form == WB_LAW_PARALLEL)
         tabulate_parallel(law, table);
+    else
+        tabulate_chaboche(law, table);
 }
 
 /* --- keywords --- */
@@ -169,12 +198,38 @@ static void put_plain(struct wb_text *text, const struct dialect *dialect, const
                          .share = 1.0};
     tabulate(law, &table);
     snprintf(m.name, sizeof m.name, "%s", name);
+    if (law->is_combined && law->isotropic_share < 1.0)
+        wb_text_append(text, "** The law hardens in part kinematically, in a way that this program "
+                             "does not have. The table is\n"
+                             "** isotropic: right for a first loading, not for the way back.\n");
     if (table.error > 0.0)
         wb_text_append(text,
                        "** Chords of the table lie at most %.2g of the stress beside the "
                        "curve.\n",
                        table.error);
     put_material(text, dialect, &m);
+}
+
+/* Back stresses and growth as the program has them. */
+static void put_chaboche(struct wb_text *text, const struct dialect *dialect,
+                         const struct wb_law *law, const char *name, double density)
+{
+    const struct table none = {.n = 0};
+    struct material m = {.density = density,
+                         .modulus = law->material.youngs_modulus,
+                         .poisson = law->material.poissons_ratio,
+                         .table = &none,
+                         .share = 1.0};
+    snprintf(m.name, sizeof m.name, "%s", name);
+    put_material(text, dialect, &m);
+    wb_text_append(text,
+                   "*PLASTIC, HARDENING=COMBINED, DATA TYPE=PARAMETERS, NUMBER BACKSTRESSES=%d\n"
+                   "%.10e",
+                   law->n_backs, law->material.yield_stress);
+    for (int i = 0; i < law->n_backs; i++)
+        wb_text_append(text, ", %.10e, %.10e", law->backs[i].modulus, law->backs[i].recovery);
+    wb_text_append(text, "\n*CYCLIC HARDENING, PARAMETERS\n%.10e, %.10e, %.10e\n",
+                   law->material.yield_stress, law->saturation, law->rate);
 }
 
 static enum wb_status write(const struct dialect *dialect, const struct wb_card_source *source,
@@ -200,7 +255,9 @@ static enum wb_status write(const struct dialect *dialect, const struct wb_card_
     if (!(p->mass_per_length > 0.0))
         wb_text_append(text, "** The wire's mass is not known: without density, for static steps "
                              "alone.\n");
-    if (p->law.isotropic_share >= 1.0)
+    if (p->law.form == WB_LAW_CHABOCHE && dialect->has_combined && p->law.n_backs > 0)
+        put_chaboche(text, dialect, &p->law, name, p->mass_per_length / area);
+    else if (!wb_law_is_overlay(&p->law) || p->law.isotropic_share >= 1.0)
         put_plain(text, dialect, &p->law, name, p->mass_per_length / area);
     else
         put_overlay(text, dialect, &p->law, name, p->mass_per_length / area);
@@ -231,6 +288,7 @@ enum wb_status wb_card_solid_abaqus(const struct wb_card_source *source,
         .density = "*DENSITY",
         .elastic = "*ELASTIC, TYPE=ISOTROPIC",
         .plastic = "*PLASTIC, HARDENING=ISOTROPIC",
+        .has_combined = true,
         .advice = "Elements: C3D20R, or C3D20RH where Poisson's ratio is close to 0.5. Include "
                   "with *INCLUDE, INPUT=FILE.",
     };

@@ -263,6 +263,12 @@ void wb_card_source_append(const struct wb_card_source *source, const char *kind
                            const char *prefix, struct wb_text *text)
 {
     const struct wb_properties *const p = &source->properties;
+    static const char *const forms[] = {
+        [WB_LAW_LUDWIK] = "Ludwik's, sigma_Y + K ep^n",
+        [WB_LAW_PARALLEL] = "parallel parts",
+        [WB_LAW_CHABOCHE] = "Chaboche's, yield stress sigma_Y + Q (1 - exp(-b p)), back stresses "
+                            "dX = C dep - gamma X dp",
+    };
     const char *const warning = wb_card_source_warning(source);
     struct wb_text numbers = {0};
     if (warning)
@@ -274,8 +280,7 @@ void wb_card_source_append(const struct wb_card_source *source, const char *kind
         "Wire: outer diameter %.6g m, mass %.6g kg/m; homogenised, a solid circle of one law.",
         p->outer_diameter, p->mass_per_length);
     wb_law_append_numbers(&numbers, &p->law);
-    put(text, prefix, "Law: %s, %s; %s; Poisson's ratio %.6g.",
-        p->law.form == WB_LAW_LUDWIK ? "Ludwik's, sigma_Y + K ep^n" : "parallel parts",
+    put(text, prefix, "Law: %s, %s; %s; Poisson's ratio %.6g.", forms[p->law.form],
         wb_law_rule_name(&p->law), wb_text_string(&numbers), p->law.material.poissons_ratio);
     wb_text_release(&numbers);
     put_interval(text, prefix, source);

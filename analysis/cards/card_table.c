@@ -9,6 +9,7 @@
 #include "base/json.h"
 #include "base/number.h"
 #include "base/version.h"
+#include "fe/material/law_json.h"
 
 #define WB_LOG_DOMAIN "card"
 
@@ -49,18 +50,7 @@ static void set_law(struct wb_json *object, const struct wb_law *law)
     wb_json_set_number(entry, "isotropic_share", law->isotropic_share);
     wb_json_set_number(entry, "youngs_modulus_Pa", m->youngs_modulus);
     wb_json_set_number(entry, "poissons_ratio", m->poissons_ratio);
-    if (law->form == WB_LAW_LUDWIK) {
-        wb_json_set_number(entry, "yield_stress_Pa", m->yield_stress);
-        wb_json_set_number(entry, "strength_coefficient_Pa", m->strength_coefficient);
-        wb_json_set_number(entry, "hardening_exponent", m->hardening_exponent);
-        return;
-    }
-    struct wb_json *const parts = wb_json_set_array(entry, "parts");
-    for (int i = 0; i < law->n_parts; i++) {
-        struct wb_json *const part = wb_json_append_object(parts);
-        wb_json_set_number(part, "modulus_Pa", law->parts[i].modulus);
-        wb_json_set_number(part, "yield_strain", law->parts[i].yield_strain);
-    }
+    wb_law_json_numbers(entry, law, "Pa", 1.0);
 }
 
 static void set_curve(struct wb_json *object, const struct wb_card_curve *curve)

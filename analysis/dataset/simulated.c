@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "base/version.h"
+#include "fe/material/law_json.h"
 #include "fe/model/model_inputs.h"
 
 static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
@@ -84,31 +85,20 @@ static void add_rows(struct wb_dataset *dataset, const struct wb_loading_steps *
 static void describe_law(struct wb_json *simulation, const struct wb_law *law)
 {
     const struct wb_material *const material = &law->material;
-    const bool is_parallel = law->form == WB_LAW_PARALLEL;
-    const bool is_elastic = !is_parallel && material->hardening == WB_HARDENING_NONE_ELASTIC;
+    const bool is_ludwik = law->form == WB_LAW_LUDWIK;
+    const bool is_elastic = is_ludwik && material->hardening == WB_HARDENING_NONE_ELASTIC;
     wb_json_set_text(simulation, "law", is_elastic ? "elastic" : "elastoplastic");
     wb_json_set_number(simulation, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
     wb_json_set_number(simulation, "poissons_ratio", material->poissons_ratio);
     if (is_elastic)
         return;
-    if (!is_parallel) {
-        wb_json_set_number(simulation, "yield_stress_MPa", material->yield_stress / WB_MPA);
-        wb_json_set_number(simulation, "strength_coefficient_MPa",
-                           material->strength_coefficient / WB_MPA);
-        wb_json_set_number(simulation, "hardening_exponent", material->hardening_exponent);
-    }
+    if (is_ludwik)
+        wb_law_json_numbers(simulation, law, "MPa", WB_MPA);
     wb_json_set_text(simulation, "form", wb_law_form_name(law->form));
     wb_json_set_text(simulation, "hardening", wb_law_rule_name(law));
     wb_json_set_number(simulation, "isotropic_share", law->isotropic_share);
-    if (!is_parallel)
-        return;
-    struct wb_json *const parts = wb_json_set_array(simulation, "parts");
-    for (int i = 0; i < law->n_parts; i++) {
-        struct wb_json *const part = wb_json_append_object(parts);
-        wb_json_set_number(part, "modulus_MPa", law->parts[i].modulus / WB_MPA);
-        if (isfinite(law->parts[i].yield_strain))
-            wb_json_set_number(part, "yield_strain", law->parts[i].yield_strain);
-    }
+    if (!is_ludwik)
+        wb_law_json_numbers(simulation, law, "MPa", WB_MPA);
 }
 
 void wb_simulated_cantilever_inputs(struct wb_json *object,

@@ -22,6 +22,13 @@ static const double same_diameter = 1e-6;
 
 /* --- wires --- */
 
+/* Of a law of another form its Ludwik equivalent is drawn, with this rule. */
+static void keep_rule(struct wb_inputs_wires *wires, const struct wb_law *law)
+{
+    wires->isotropic_share = law->isotropic_share;
+    wires->is_combined = law->is_combined;
+}
+
 static void keep_law(struct wb_inputs_wires *wires, const struct wb_bundle_spread *spread,
                      const struct wb_material *law)
 {
@@ -75,7 +82,7 @@ static enum wb_status take_properties(struct wb_inputs_wires *wires,
     if (status == WB_OK)
         status = check_properties(p, spread, wire, path);
     if (status == WB_OK) {
-        wires->isotropic_share = p->law.isotropic_share;
+        keep_rule(wires, &p->law);
         if (p->n_specimens >= WB_SPECIMENS_LEAST)
             take_specimens(wires, p);
         else
@@ -109,7 +116,7 @@ static enum wb_status take_wires(struct wb_inputs *inputs, const struct wb_bundl
                        model->path, wire->name, wire->name, wire->name);
     if (spread->properties[0])
         return take_properties(wires, spread, wire, model->path);
-    wires->isotropic_share = wire->law.isotropic_share;
+    keep_rule(wires, &wire->law);
     keep_law(wires, spread, &wire->material);
     snprintf(wires->source, sizeof wires->source, "tolerances about the wire's file");
     return WB_OK;
@@ -260,11 +267,12 @@ static bool take_law(const struct wb_inputs_wires *wires, int count, struct hand
         q[2] += stress;
         q[3] += stress;
     }
-    const bool is_isotropic = wires->isotropic_share == 1.0;
+    const bool is_bent = wires->isotropic_share == 1.0 || wires->is_combined;
     const bool is_law =
-        wb_specimens_law(q, is_isotropic ? most_exponent : straight_exponent, &wire->material);
+        wb_specimens_law(q, is_bent ? most_exponent : straight_exponent, &wire->material);
     wb_law_init_ludwik(&wire->law, &wire->material);
     wire->law.isotropic_share = wires->isotropic_share;
+    wire->law.is_combined = wires->is_combined;
     return is_law;
 }
 

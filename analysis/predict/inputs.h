@@ -21,7 +21,8 @@ struct wb_inputs_wires {
     struct wb_specimens specimens;
     double mean[WB_SPECIMENS_QUANTITIES]; /* of a law without specimens */
     double tolerance[3];                  /* of E, sigma_Y, stresses beyond yield */
-    double isotropic_share;               /* of the hardening rule */
+    double isotropic_share;               /* of the hardening rule, */
+    bool is_combined;                     /* which is combined; else mixed */
     char source[WB_INPUTS_NAME];          /* for people */
 };
 

@@ -28,6 +28,12 @@ enum wb_status wb_solve_law_tell(const struct wb_wire *wire)
     double difference;
     if (!wire->has_properties || wb_law_is_plain(law))
         return WB_OK;
+    if (law->form == WB_LAW_CHABOCHE) {
+        wb_info("wire %s has Chaboche's law: computed with the four numbers beside it, its Ludwik "
+                "equivalent; loading is nearly the same, the way back is not",
+                wire->name);
+        return WB_OK;
+    }
     if (law->form == WB_LAW_LUDWIK || !(strain > 0.0)) {
         wb_info("wire %s has a law with %s hardening: computed with its four numbers and isotropic "
                 "hardening; loading is the same, the way back is not",

@@ -39,9 +39,44 @@ void wb_law_init_parallel(struct wb_law *law, const struct wb_law_part *parts, i
     }
 }
 
+void wb_law_init_combined(struct wb_law *law, const struct wb_material *material,
+                          double isotropic_share)
+{
+    wb_law_init_ludwik(law, material);
+    law->isotropic_share = isotropic_share;
+    law->is_combined = true;
+}
+
+void wb_law_init_chaboche(struct wb_law *law, const struct wb_material *material, double saturation,
+                          double rate, const struct wb_law_back *backs, int n_backs)
+{
+    *law = (struct wb_law){
+        .form = WB_LAW_CHABOCHE,
+        .is_combined = true,
+        .material = {.hardening = WB_HARDENING_NONE_ELASTIC,
+                     .youngs_modulus = material->youngs_modulus,
+                     .poissons_ratio = material->poissons_ratio,
+                     .yield_stress = material->yield_stress},
+        .saturation = saturation,
+        .rate = rate,
+        .n_backs = n_backs,
+    };
+    double all = saturation;
+    for (int i = 0; i < n_backs && i < WB_LAW_MOST_BACKS; i++) {
+        law->backs[i] = backs[i];
+        all += backs[i].recovery > 0.0 ? backs[i].modulus / backs[i].recovery : (double)INFINITY;
+    }
+    law->isotropic_share = saturation > 0.0 ? saturation / all : 0.0;
+}
+
 bool wb_law_is_plain(const struct wb_law *law)
 {
-    return law->form == WB_LAW_LUDWIK && law->isotropic_share == 1.0;
+    return law->form == WB_LAW_LUDWIK && law->isotropic_share == 1.0 && !law->is_combined;
+}
+
+bool wb_law_is_overlay(const struct wb_law *law)
+{
+    return !law->is_combined && !wb_law_is_plain(law);
 }
 
 static enum wb_status check_parts(const struct wb_law *law, struct wb_reason *why)
@@ -74,20 +109,52 @@ static enum wb_status check_parts(const struct wb_law *law, struct wb_reason *wh
     return WB_OK;
 }
 
+static enum wb_status check_chaboche(const struct wb_law *law, struct wb_reason *why)
+{
+    const struct wb_material *const m = &law->material;
+    if (!(isfinite(m->youngs_modulus) && m->youngs_modulus > 0.0 && isfinite(m->yield_stress) &&
+          m->yield_stress > 0.0))
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "Young's modulus %g Pa, yield stress %g Pa: expected both above 0",
+                          m->youngs_modulus, m->yield_stress);
+    if (!(isfinite(law->saturation) && law->saturation >= 0.0 && isfinite(law->rate) &&
+          law->rate >= 0.0))
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "the yield stress grows by %g Pa with the rate %g: expected 0 or more",
+                          law->saturation, law->rate);
+    if (law->n_backs < 0 || law->n_backs > WB_LAW_MOST_BACKS)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%d back stresses: expected 0 to %d", law->n_backs,
+                          WB_LAW_MOST_BACKS);
+    for (int i = 0; i < law->n_backs; i++) {
+        const struct wb_law_back *const back = &law->backs[i];
+        if (!(isfinite(back->modulus) && back->modulus > 0.0 && isfinite(back->recovery) &&
+              back->recovery >= 0.0))
+            return wb_fail_to(why, WB_ERR_ARGUMENT,
+                              "back stress %d: modulus %g Pa, recovery %g: expected above 0, and 0 "
+                              "or more",
+                              i + 1, back->modulus, back->recovery);
+    }
+    return WB_OK;
+}
+
 enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why)
 {
+    if (law->form == WB_LAW_CHABOCHE)
+        return check_chaboche(law, why);
     if (!(law->isotropic_share >= 0.0 && law->isotropic_share <= 1.0))
         return wb_fail_to(why, WB_ERR_ARGUMENT, "isotropic share %g: expected 0 to 1",
                           law->isotropic_share);
     if (law->form == WB_LAW_PARALLEL)
-        return check_parts(law, why);
+        return law->is_combined
+                   ? wb_fail_to(why, WB_ERR_ARGUMENT, "parallel parts have no combined hardening")
+                   : check_parts(law, why);
     if (!wb_hardening_law(&law->material)->growth)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
                           "Ludwik's law needs a material whose yield stress grows");
     char text[120];
     if (!wb_hardening_is_possible(&law->material, text, sizeof text))
         return wb_fail_to(why, WB_ERR_ARGUMENT, "%s", text);
-    if (law->isotropic_share < 1.0 && law->material.hardening_exponent > 1.0)
+    if (wb_law_is_overlay(law) && law->material.hardening_exponent > 1.0)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
                           "hardening exponent %g: expected at most 1 with kinematic or mixed "
                           "hardening, where a curve that steepens would give work back",
@@ -208,8 +275,44 @@ double wb_law_overlay_stress(const struct wb_overlay *overlay, double strain, do
     return stress;
 }
 
+/* Growth of the yield stress and back stresses together at plastic strain p of a first loading. */
+static double chaboche_growth(const struct wb_law *law, double p, double *slope)
+{
+    double sum = -law->saturation * expm1(-law->rate * p);
+    *slope = law->saturation * law->rate * exp(-law->rate * p);
+    for (int i = 0; i < law->n_backs; i++) {
+        const double C = law->backs[i].modulus, gamma = law->backs[i].recovery;
+        sum += gamma > 0.0 ? -C / gamma * expm1(-gamma * p) : C * p;
+        *slope += C * exp(-gamma * p);
+    }
+    return sum;
+}
+
+/* Newton's method on E (e - p) = sigma_Y + growth(p). What it solves grows ever slower in p, so
+ * that it comes from below and never goes too far. */
+static double chaboche_stress(const struct wb_law *law, double strain, double *tangent)
+{
+    const double E = law->material.youngs_modulus, over = E * strain - law->material.yield_stress;
+    double p = 0.0, slope = 0.0;
+    if (over > 0.0) {
+        for (int i = 0; i < 100; i++) {
+            const double left = over - E * p - chaboche_growth(law, p, &slope);
+            const double step = left / (E + slope);
+            p += step;
+            if (!(step > 1e-15 * p))
+                break;
+        }
+        (void)chaboche_growth(law, p, &slope);
+    }
+    if (tangent)
+        *tangent = over > 0.0 ? E * slope / (E + slope) : E;
+    return E * (strain - p);
+}
+
 double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tangent)
 {
+    if (law->form == WB_LAW_CHABOCHE)
+        return chaboche_stress(law, strain, tangent);
     if (law->form == WB_LAW_PARALLEL) {
         struct wb_overlay overlay;
         wb_law_overlay(law, &overlay);
@@ -232,12 +335,26 @@ double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tan
 
 const char *wb_law_form_name(enum wb_law_form form)
 {
-    return form == WB_LAW_LUDWIK ? "ludwik" : "parallel";
+    static const char *const names[] = {"ludwik", "parallel", "chaboche"};
+    return names[form];
+}
+
+const char *wb_law_form_words(enum wb_law_form form)
+{
+    static const char *const words[] = {"Ludwik's law", "law of parallel parts", "Chaboche's law"};
+    return words[form];
+}
+
+bool wb_law_has_share(const struct wb_law *law)
+{
+    return law->form != WB_LAW_CHABOCHE &&
+           (law->is_combined || (law->isotropic_share > 0.0 && law->isotropic_share < 1.0));
 }
 
 const char *wb_law_rule_name(const struct wb_law *law)
 {
-    return law->isotropic_share == 1.0   ? "isotropic"
+    return law->is_combined              ? "combined"
+           : law->isotropic_share == 1.0 ? "isotropic"
            : law->isotropic_share == 0.0 ? "kinematic"
                                          : "mixed";
 }
@@ -256,6 +373,14 @@ void wb_law_append_numbers(struct wb_text *text, const struct wb_law *law)
         wb_text_append(text, "%s%.2e", before, law->parts[i].yield_strain);
         before = ", ";
     }
-    if (law->isotropic_share > 0.0 && law->isotropic_share < 1.0)
+    if (law->form == WB_LAW_CHABOCHE) {
+        wb_text_append(text, "E %.4g MPa, sigma_Y %.4g MPa, Q %.4g MPa, b %.4g",
+                       m->youngs_modulus / WB_MPA, m->yield_stress / WB_MPA,
+                       law->saturation / WB_MPA, law->rate);
+        for (int i = 0; i < law->n_backs; i++)
+            wb_text_append(text, ", C%d %.4g MPa, gamma%d %.4g", i + 1,
+                           law->backs[i].modulus / WB_MPA, i + 1, law->backs[i].recovery);
+    }
+    if (wb_law_has_share(law))
         wb_text_append(text, "; isotropic share %.2f", law->isotropic_share);
 }

@@ -1,20 +1,28 @@
 /* The law of a homogenised wire under bending: a virgin stress-strain curve and a hardening rule.
  *
- * Two forms of the curve, stress F(e) over total strain e >= 0:
+ * Three forms of the curve, stress F(e) over total strain e >= 0:
  *   - Ludwik's, the paper's eqs. 1 to 6: F = E e up to sigma_Y, then sigma_Y + K ep^n;
  *   - parallel parts (Prandtl-Ishlinskii; Besseling's overlay): elastic-plastic parts that share
- *     the strain, F = sum_i E_i min(e, e_i), of which the last may stay elastic (e_i infinite).
+ *     the strain, F = sum_i E_i min(e, e_i), of which the last may stay elastic (e_i infinite);
+ *   - Chaboche's, with saturating back stresses and Voce's growth of the yield stress: F = E e up
+ *     to sigma_Y, then sigma_Y + Q (1 - exp(-b ep)) + sum_i C_i / gamma_i (1 - exp(-gamma_i ep)).
  *
  * The rule says what happens when the strain turns back. With isotropic hardening the wire yields
  * again at the stress that it reached, in either direction. With kinematic hardening it yields
  * earlier: every branch is the virgin curve at twice the size (Masing's rule), it returns to the
- * point of its turn, and a closed loop is forgotten from there on. Mixed hardening has a share
- * beta, `isotropic_share`, of the area with the first and the rest with the second, both with the
- * same virgin curve; so beta leaves a first loading as it is.
+ * point of its turn, and a closed loop is forgotten from there on. Two rules lie between, with the
+ * same virgin curve for each share beta, `isotropic_share`:
+ *   - mixed: a share beta of the area hardens isotropically, the rest kinematically;
+ *   - combined (Hodge 1957; Simo and Hughes, Computational Inelasticity, box 3.2): one yield
+ *     surface grows by beta H(p) and moves by (1 - beta) dH, with H = K p^n of the accumulated
+ *     plastic strain p. Ludwik's form only; 1 is isotropic hardening, 0 not Masing's rule.
+ * Chaboche's form (Lemaitre and Chaboche, Mechanics of Solid Materials, 5.4) has its own:
  *
- * An overlay is what a section of either form computes with. Ludwik's curve becomes an overlay of
- * WB_LAW_LUDWIK_PARTS parts, a chain of chords that follows the curve in the mean. With isotropic
- * hardening alone Ludwik's law needs none: its material is computed exactly.
+ *     |stress - sum X_i| = sigma_Y + R,  dR = b (Q - R) dp,  dX_i = C_i dep - gamma_i X_i dp.
+ *
+ * An overlay is what a section computes with in kinematic and mixed hardening. Ludwik's curve
+ * becomes an overlay of WB_LAW_LUDWIK_PARTS parts, a chain of chords that follows the curve in the
+ * mean. The other rules need none: a step of them is computed exactly.
  */
 #ifndef WB_FE_MATERIAL_LAW_H
 #define WB_FE_MATERIAL_LAW_H
@@ -29,11 +37,13 @@
 
 enum wb_law_form {
     WB_LAW_LUDWIK,
-    WB_LAW_PARALLEL
+    WB_LAW_PARALLEL,
+    WB_LAW_CHABOCHE
 };
 
 enum {
     WB_LAW_MOST_PARTS = 12,   /* of a wire's file */
+    WB_LAW_MOST_BACKS = 3,    /* back stresses */
     WB_LAW_LUDWIK_PARTS = 27, /* of Ludwik's curve; the last is elastic */
     WB_OVERLAY_MOST_PARTS = 28
 };
@@ -43,13 +53,23 @@ struct wb_law_part {
     double yield_strain; /* e_i, 1, ascending; INFINITY: elastic, only the last */
 };
 
+struct wb_law_back {
+    double modulus;  /* C_i, Pa, above 0 */
+    double recovery; /* gamma_i, 1, at least 0; 0: Prager's, which does not saturate */
+};
+
 struct wb_law {
     enum wb_law_form form;
-    double isotropic_share;      /* beta, 0 (kinematic) to 1 (isotropic) */
+    double isotropic_share;      /* beta, 0 (kinematic) to 1 (isotropic); of Chaboche's Q over all
+                                    that it may harden by */
+    bool is_combined;            /* beta is of the hardening stress; else of the area */
     struct wb_material material; /* Ludwik: isotropic power law; parallel parts: elastic, with E the
-                                    sum of their moduli */
+                                    sum of their moduli; Chaboche: elastic, with sigma_Y */
     int n_parts;                 /* of parallel parts */
     struct wb_law_part parts[WB_LAW_MOST_PARTS];
+    double saturation, rate; /* Q, Pa, and b, 1, at least 0: of Chaboche's yield stress */
+    int n_backs;
+    struct wb_law_back backs[WB_LAW_MOST_BACKS];
 };
 
 /* Parallel parts as a section computes with them. */
@@ -67,28 +87,44 @@ void wb_law_init_ludwik(struct wb_law *law, const struct wb_material *material);
 void wb_law_init_parallel(struct wb_law *law, const struct wb_law_part *parts, int n,
                           double isotropic_share, double poissons_ratio);
 
+/* Ludwik's law with combined hardening. */
+void wb_law_init_combined(struct wb_law *law, const struct wb_material *material,
+                          double isotropic_share);
+
+/* Chaboche's law; of `material` E, Poisson's ratio and the yield stress count. */
+void wb_law_init_chaboche(struct wb_law *law, const struct wb_material *material, double saturation,
+                          double rate, const struct wb_law_back *backs, int n_backs);
+
 /* Whether it is Ludwik's with isotropic hardening alone, which its material says by itself. */
 bool wb_law_is_plain(const struct wb_law *law);
+
+/* Whether an overlay computes it: kinematic and mixed hardening. */
+bool wb_law_is_overlay(const struct wb_law *law);
 
 /* WB_ERR_ARGUMENT for what makes no law: also for Ludwik's with n above 1 and a kinematic share,
  * whose curve steepens behind the yield point: its parts would give work back. `why` receives
  * which; NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why);
 
-/* The overlay of a law that wb_law_check() takes. Ludwik's ends at a strain of 0.1 or 50 times the
- * yield strain, beyond which its stress goes on along the last slope. */
+/* The overlay of a law that wb_law_check() takes and wb_law_is_overlay(). Ludwik's ends at a strain
+ * of 0.1 or 50 times the yield strain, beyond which its stress goes on along the last slope. */
 void wb_law_overlay(const struct wb_law *law, struct wb_overlay *overlay);
 
-/* F(e) of the law, Pa, at a strain e >= 0; *tangent (Pa, may be NULL) is its slope. Ludwik's is
- * exact. */
+/* F(e) of the law, Pa, at a strain e >= 0; *tangent (Pa, may be NULL) is its slope. Exact. */
 double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tangent);
 
-/* "ludwik" or "parallel"; "isotropic", "kinematic" or "mixed". */
+/* "ludwik", "parallel" or "chaboche", as in files; "Ludwik's law", "law of parallel parts" or
+ * "Chaboche's law"; "isotropic", "kinematic", "mixed" or "combined". */
 const char *wb_law_form_name(enum wb_law_form form);
+const char *wb_law_form_words(enum wb_law_form form);
 const char *wb_law_rule_name(const struct wb_law *law);
 
+/* Whether its rule is mixed or combined with a share to tell. */
+bool wb_law_has_share(const struct wb_law *law);
+
 /* Appends the law's numbers in one line of words: "E 4527 MPa, sigma_Y 4.52 MPa, K 1325 MPa, n
- * 0.9", or the parts' moduli and yield strains, and the isotropic share of a mixed rule. */
+ * 0.9", or the parts' moduli and yield strains, or Chaboche's; and the isotropic share of a mixed
+ * or combined rule. */
 void wb_law_append_numbers(struct wb_text *text, const struct wb_law *law);
 
 #endif

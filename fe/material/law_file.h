@@ -1,15 +1,22 @@
 /* The `law` block of a wire's properties, in wire files and in PROPERTIES.yaml:
  *
  *     law:
- *       form: parallel         # or ludwik: of the four numbers beside the block
- *       hardening: mixed       # isotropic, kinematic or mixed
- *       isotropic_share: 0.3   # of mixed hardening
+ *       form: parallel         # or ludwik: of the four numbers beside the block; or chaboche
+ *       hardening: mixed       # isotropic, kinematic, mixed; combined: of ludwik and chaboche
+ *       isotropic_share: 0.3   # of mixed hardening, and of combined with ludwik
  *       parts:                 # of parallel parts, by ascending yield strain
  *         - {modulus_MPa: 2600, yield_strain: 0.00012}
  *         - {modulus_MPa: 350}   # without it the last stays elastic
+ *       chaboche:              # of form chaboche
+ *         youngs_modulus_MPa: 4500
+ *         yield_stress_MPa: 2.1
+ *         saturation_MPa: 1.4  # Q, by which the yield stress grows; without it 0
+ *         rate: 300            # b, of that
+ *         back_stresses:       # up to three, C and gamma
+ *           - {modulus_MPa: 2600, recovery: 900}
  *
  * Without the block the law is Ludwik's with isotropic hardening. The four numbers beside a block
- * of parallel parts are their equivalent for solvers that know Ludwik's law alone.
+ * of another form are their equivalent for solvers that know Ludwik's law alone.
  */
 #ifndef WB_FE_MATERIAL_LAW_FILE_H
 #define WB_FE_MATERIAL_LAW_FILE_H

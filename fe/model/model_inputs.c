@@ -7,6 +7,7 @@
 
 #include "base/units.h"
 #include "fe/material/hardening.h"
+#include "fe/material/law_json.h"
 
 static const double place_step = 1e-9; /* m: packings found on two machines are nearer */
 
@@ -38,14 +39,10 @@ void wb_model_inputs_law(struct wb_json *object, const struct wb_law *law)
     set_material(object, &law->material);
     wb_json_set_text(object, "form", wb_law_form_name(law->form));
     wb_json_set_number(object, "isotropic_share", law->isotropic_share);
-    if (law->form != WB_LAW_PARALLEL)
-        return;
-    struct wb_json *const parts = wb_json_set_array(object, "parts");
-    for (int i = 0; i < law->n_parts; i++) {
-        struct wb_json *const part = wb_json_append_object(parts);
-        wb_json_set_number(part, "modulus_MPa", law->parts[i].modulus / WB_MPA);
-        wb_json_set_number(part, "yield_strain", law->parts[i].yield_strain);
-    }
+    if (law->is_combined)
+        wb_json_set_text(object, "rule", wb_law_rule_name(law));
+    if (law->form != WB_LAW_LUDWIK)
+        wb_law_json_numbers(object, law, "MPa", WB_MPA);
 }
 
 /* --- bundles --- */

@@ -242,9 +242,10 @@ void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *mater
         beam->points[g].G = wb_fibres_shear_stiffness(beam->fibres);
 }
 
-enum wb_status wb_beam_set_overlay(struct wb_beam *beam, const struct wb_overlay *overlay)
+enum wb_status wb_beam_set_law(struct wb_beam *beam, const struct wb_law *law)
 {
-    WB_TRY(wb_fibres_set_overlay(beam->fibres, overlay));
+    WB_TRY(wb_law_check(law, NULL));
+    WB_TRY(wb_fibres_set_law(beam->fibres, law));
     for (int g = 0; g < beam->n_elements * POINTS; g++)
         beam->points[g].G = wb_fibres_shear_stiffness(beam->fibres);
     return WB_OK;

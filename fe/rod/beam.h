@@ -46,9 +46,8 @@ void wb_beam_reset(struct wb_beam *beam);
 /* Exchanges the section's materials, as many as the section has. */
 void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *materials);
 
-/* The same with the overlay of a section that has one, for one of at most as many parts. */
-WB_MUST_CHECK enum wb_status wb_beam_set_overlay(struct wb_beam *beam,
-                                                 const struct wb_overlay *overlay);
+/* The same with the law of a section of one law: wb_fibres_set_law(). */
+WB_MUST_CHECK enum wb_status wb_beam_set_law(struct wb_beam *beam, const struct wb_law *law);
 
 /* Exchanges the natural curvature (1/m over arc length; NULL: straight) and resets the beam.
  * WB_ERR_ARGUMENT where it is not finite. */

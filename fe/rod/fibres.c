@@ -5,23 +5,26 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fe/linear/processor.h"
 #include "fe/material/hardening.h"
 #include "fe/material/law.h"
 #include "fe/rod/fibres_private.h"
+#include "fe/rod/lanes.h"
 
 #define WB_LOG_DOMAIN "fibres"
 
 enum {
-    LANES = 4, /* fibres of a material are padded to a multiple of this */
     /* The first double says whether the point ever yielded, the second how many parts of an overlay
      * may have; the rest is padding. */
     HISTORY_HEAD = 8,
-    HISTORY_ROWS = 3 /* plastic strain, accumulated plastic strain, yield or back stress */
+    HISTORY_ROWS = 3, /* plastic strain, accumulated plastic strain, yield or back stress */
+    MOST_PASSES = 50
 };
 
 /* See fe/material/material.c. */
 static const double on_surface = 1e-12;
+/* A step of Chaboche's law is solved where what is left is this part of the stresses that it is the
+ * difference of. */
+static const double settled = 1e-12;
 
 /* Fibres of one material, contiguous and padded with fibres without area. */
 struct batch {
@@ -29,6 +32,14 @@ struct batch {
     int begin, end; /* padded indices */
     /* Of the material's hardening law, at hand for the inner loop. */
     bool grows, moves, has_constant_exponent;
+};
+
+enum wb_fibres_kind {
+    BY_MATERIAL,
+    BY_POINT_LAW,
+    AS_OVERLAY,
+    LUDWIK_COMBINED,
+    CHABOCHE
 };
 
 struct wb_fibres {
@@ -44,8 +55,11 @@ struct wb_fibres {
     double EA, ES, EI;                 /* elastic N = EA eps + ES kappa, M = ES eps + EI kappa */
     double shear_ratio;                /* the section's shear stiffness over the fibres' sum */
     double shear_stiffness;
-    struct wb_overlay *overlay; /* of a section that has one; owned; its fibres are of one batch */
-    int overlay_capacity;       /* parts that the history has room for */
+    enum wb_fibres_kind kind;
+    /* Of a section with a law; its fibres are of one batch. */
+    int capacity;               /* parts or back stresses that the history has room for */
+    struct wb_law law;          /* combined hardening */
+    struct wb_overlay *overlay; /* kinematic and mixed hardening; owned */
     double tail[WB_OVERLAY_MOST_PARTS + 1]; /* Pa: sum of the moduli from a part on, */
     double full[WB_OVERLAY_MOST_PARTS + 1]; /* and stress of all parts before it once they yield */
     double compliance;                      /* 1/Pa: of all parts while they are elastic */
@@ -91,20 +105,33 @@ static double shear_sum(const struct wb_fibres *f)
 }
 
 /* Rows of the history: of an overlay the plastic strain of each part, and three of the share with
- * isotropic hardening. */
+ * isotropic hardening; of combined hardening one for each back stress. */
 static int history_rows(const struct wb_fibres *f)
 {
-    if (f->overlay)
-        return f->overlay_capacity + HISTORY_ROWS;
-    return f->point_laws ? f->point_history : HISTORY_ROWS;
+    return f->kind == BY_POINT_LAW ? f->point_history : HISTORY_ROWS + f->capacity;
 }
 
-enum wb_status wb_fibres_set_overlay(struct wb_fibres *f, const struct wb_overlay *overlay)
+static enum wb_fibres_kind kind_of(const struct wb_law *law)
 {
-    if (!f->overlay || overlay->n > f->overlay_capacity)
-        return wb_fail(WB_ERR_ARGUMENT, "an overlay of %d parts: the section has room for %d",
-                       overlay->n, f->overlay ? f->overlay_capacity : 0);
-    *f->overlay = *overlay;
+    if (wb_law_is_overlay(law))
+        return AS_OVERLAY;
+    return wb_law_is_plain(law)           ? BY_MATERIAL
+           : law->form == WB_LAW_CHABOCHE ? CHABOCHE
+                                          : LUDWIK_COMBINED;
+}
+
+/* Rows of the history beyond HISTORY_ROWS that the law needs. */
+static int rows_of(const struct wb_law *law)
+{
+    if (wb_law_is_overlay(law))
+        return law->form == WB_LAW_LUDWIK ? WB_LAW_LUDWIK_PARTS : law->n_parts;
+    return law->form == WB_LAW_CHABOCHE ? law->n_backs : law->is_combined;
+}
+
+static void set_overlay(struct wb_fibres *f, const struct wb_law *law)
+{
+    struct wb_overlay *const overlay = f->overlay;
+    wb_law_overlay(law, overlay);
     f->tail[overlay->n] = 0.0;
     for (int i = overlay->n - 1; i >= 0; i--)
         f->tail[i] = f->tail[i + 1] + overlay->modulus[i];
@@ -120,8 +147,24 @@ enum wb_status wb_fibres_set_overlay(struct wb_fibres *f, const struct wb_overla
     wb_fibres_set_materials(f, &elastic);
     f->yield_strain = overlay->yield_strain[0];
     for (int i = 0; i < f->n; i++)
-        f->virgin[HISTORY_HEAD + (f->overlay_capacity + 2) * f->n + i] =
+        f->virgin[HISTORY_HEAD + (f->capacity + 2) * f->n + i] =
             elastic.youngs_modulus * overlay->yield_strain[0];
+}
+
+enum wb_status wb_fibres_set_law(struct wb_fibres *f, const struct wb_law *law)
+{
+    if (kind_of(law) != f->kind || rows_of(law) > f->capacity || f->n_materials != 1)
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "a section of another law, or of fewer parts or back stresses");
+    f->law = *law;
+    if (f->kind == AS_OVERLAY) {
+        set_overlay(f, law);
+        return WB_OK;
+    }
+    wb_fibres_set_materials(f, &law->material);
+    f->yield_strain = law->material.yield_stress / law->material.youngs_modulus;
+    for (int i = 0; i < f->n && f->kind != BY_MATERIAL; i++)
+        f->virgin[HISTORY_HEAD + 2 * f->n + i] = 0.0;
     return WB_OK;
 }
 
@@ -180,64 +223,24 @@ double wb_fibres_shear_stiffness(const struct wb_fibres *fibres)
     return fibres->shear_stiffness;
 }
 
-/* Four fibres at a time, as vectors of the compiler: it makes of them what the target has, without
- * a vector unit too. Comparisons give masks, all bits of a lane set or none. */
-typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8), may_alias));
-typedef long long masks
-    __attribute__((vector_size(LANES * sizeof(long long)), aligned(8), may_alias));
-
-static const long long sign_bit = (long long)0x8000000000000000ULL;
-
-static WB_ALWAYS_INLINE lanes load(const double *p)
-{
-    return *(const lanes *)p;
-}
-
-static WB_ALWAYS_INLINE void store(double *p, lanes v)
-{
-    *(lanes *)p = v;
-}
-
-static WB_ALWAYS_INLINE lanes select_lanes(masks mask, lanes yes, lanes no)
-{
-    return (lanes)((mask & (masks)yes) | (~mask & (masks)no));
-}
-
-static WB_ALWAYS_INLINE lanes absolute(lanes v)
-{
-    return (lanes)((masks)v & ~sign_bit);
-}
-
-static WB_ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
-{
-    return (lanes)(((masks)size & ~sign_bit) | ((masks)sign & sign_bit));
-}
-
-static WB_ALWAYS_INLINE double smallest_of(lanes v)
-{
-    const double a = v[0] < v[1] ? v[0] : v[1], b = v[2] < v[3] ? v[2] : v[3];
-    return a < b ? a : b;
-}
-
-static WB_ALWAYS_INLINE double largest_of(lanes v)
-{
-    const double a = v[0] > v[1] ? v[0] : v[1], b = v[2] > v[3] ? v[2] : v[3];
-    return a > b ? a : b;
-}
-
-static WB_ALWAYS_INLINE bool any(masks mask)
-{
-    long long all = 0;
-    for (int i = 0; i < LANES; i++)
-        all |= mask[i];
-    return all != 0;
-}
-
 /* Where the history of four fibres is read and written. */
 struct rows {
     const double *plastic, *accumulated, *third;
     double *plastic_after, *accumulated_after, *third_after;
 };
+
+static WB_ALWAYS_INLINE struct rows rows_at(const struct wb_fibres *f, const double *rows,
+                                            double *rows_after, int i)
+{
+    return (struct rows){
+        .plastic = rows + i,
+        .accumulated = rows + f->n + i,
+        .third = rows + 2 * f->n + i,
+        .plastic_after = rows_after + i,
+        .accumulated_after = rows_after + f->n + i,
+        .third_after = rows_after + 2 * f->n + i,
+    };
+}
 
 struct answer {
     lanes stress, tangent;
@@ -407,14 +410,7 @@ static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct stra
 
     for (int b = 0; b < f->n_materials; b++) {
         for (int i = f->batches[b].begin; i < f->batches[b].end; i += LANES) {
-            const struct rows h = {
-                .plastic = rows + i,
-                .accumulated = rows + f->n + i,
-                .third = rows + 2 * f->n + i,
-                .plastic_after = rows_after + i,
-                .accumulated_after = rows_after + f->n + i,
-                .third_after = rows_after + 2 * f->n + i,
-            };
+            const struct rows h = rows_at(f, rows, rows_after, i);
             const lanes y = load(f->y + i), area = load(f->area + i);
             const struct answer answer = respond_of(f, &f->batches[b], eps - y * kappa, &h);
             add_fibres(&sums, answer.stress * area, answer.tangent * area, y);
@@ -519,19 +515,12 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
     after[1] = active.now;
     const double *const rows = before + HISTORY_HEAD;
     double *const rows_after = after + HISTORY_HEAD;
-    const double *const grown = rows + f->overlay_capacity * f->n;
-    double *const grown_after = rows_after + f->overlay_capacity * f->n;
+    const double *const grown = rows + f->capacity * f->n;
+    double *const grown_after = rows_after + f->capacity * f->n;
     struct sums sums = {{0}, {0}, {0}, {0}, {0}};
 
     for (int i = 0; i < f->n; i += LANES) {
-        const struct rows h = {
-            .plastic = grown + i,
-            .accumulated = grown + f->n + i,
-            .third = grown + 2 * f->n + i,
-            .plastic_after = grown_after + i,
-            .accumulated_after = grown_after + f->n + i,
-            .third_after = grown_after + 2 * f->n + i,
-        };
+        const struct rows h = rows_at(f, grown, grown_after, i);
         const lanes y = load(f->y + i), area = load(f->area + i);
         const lanes strain = eps - y * kappa;
         lanes force = {0}, stiffness = {0};
@@ -547,6 +536,161 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
             stiffness += beta * growing.tangent * area;
         }
         add_fibres(&sums, force, stiffness, y);
+    }
+    take_sums(&sums, response);
+}
+
+/* Ludwik's law with combined hardening: the surface grows by beta H and moves by the rest, and a
+ * step has the plastic strain that isotropic hardening would give for
+ *
+ *     c = |trial - X_0| - sigma_Y + (1 - beta) H(p_0) + E p_0 = E p + H(p).
+ *
+ * The third row is H, the fourth the back stress X. */
+static WB_ALWAYS_INLINE struct answer respond_combined(const struct wb_fibres *f, lanes strain,
+                                                       const struct rows *h, const double *backs,
+                                                       double *backs_after)
+{
+    const struct wb_material *const m = &f->materials[0];
+    const double E = m->youngs_modulus, sigma_Y = m->yield_stress;
+    const double beta = f->law.isotropic_share;
+    const lanes plastic = load(h->plastic), p0 = load(h->accumulated), H0 = load(h->third);
+    const lanes back = load(backs);
+    const lanes trial = E * (strain - plastic), distance = trial - back;
+    const lanes size = absolute(distance), yield = sigma_Y + beta * H0;
+    const masks yields = size - yield > on_surface * yield;
+    struct answer answer = {trial, all_lanes(E)};
+    lanes p = p0, H = H0;
+    if (any(yields)) {
+        const lanes c = size - sigma_Y + (1.0 - beta) * H0 + E * p0;
+        const lanes r = plastic_ratio(m, &f->tables[0], yields, c);
+        const lanes power_part =
+            exponents(m, f->batches[0].has_constant_exponent, r * c * (1.0 / E)) * (1.0 - r);
+        p = select_lanes(yields, r * c * (1.0 / E), p0);
+        H = select_lanes(yields, (1.0 - r) * c, H0);
+        answer.stress = trial - with_sign(E * (p - p0), distance);
+        answer.tangent = select_lanes(yields, E * power_part / (r + power_part), answer.tangent);
+    }
+    store(h->plastic_after, plastic + with_sign(p - p0, distance));
+    store(h->accumulated_after, p);
+    store(h->third_after, H);
+    store(backs_after, back + with_sign((1.0 - beta) * (H - H0), distance));
+    return answer;
+}
+
+/* One of the stresses that Chaboche's law hardens by in a step: room (1 - exp(-rate d)) over its
+ * increment d of plastic strain; over a rate of 0, slope d. */
+struct term {
+    lanes room;
+    double rate, slope;
+};
+
+static WB_ALWAYS_INLINE lanes value_of(const struct term *term, lanes d, lanes *slope)
+{
+    if (term->rate == 0.0) {
+        *slope += term->slope;
+        return term->slope * d;
+    }
+    const lanes value = term->room * one_less_exponential(term->rate * d);
+    *slope += term->rate * (term->room - value);
+    return value;
+}
+
+/* Solves E d + all terms = over by Newton's method, to what rounding leaves of the terms. Their sum
+ * grows ever slower in d: its tangent at 0 gives the least that d can be, and from any place a step
+ * ends below the solution. It begins where the parabola of the first two derivatives has it. */
+static WB_ALWAYS_INLINE lanes solve_terms(double E, const struct term *terms, int n, lanes over,
+                                          lanes *values, lanes *slope)
+{
+    lanes first = all_lanes(E), second = {0}, enough = over;
+    for (int i = 0; i < n; i++) {
+        const lanes begins = terms[i].rate * terms[i].room + terms[i].slope;
+        first += begins;
+        second += terms[i].rate * begins;
+        enough += absolute(terms[i].room);
+    }
+    enough *= settled;
+    const lanes least = over / first;
+    lanes d = least + 0.5 * second * least * least / first;
+    for (int pass = 0; pass < MOST_PASSES; pass++) {
+        lanes left = over - E * d;
+        *slope = (lanes){0};
+        for (int i = 0; i < n; i++) {
+            values[i] = value_of(&terms[i], d, slope);
+            left -= values[i];
+        }
+        if (!any(absolute(left) > enough))
+            break;
+        const lanes next = d + left / (E + *slope);
+        d = select_lanes(next > least, next, least);
+    }
+    return d;
+}
+
+/* Chaboche's law. In a step the strain does not turn, so that its rates are integrated exactly:
+ * with the increment d of plastic strain and the sign s of the distance from the back stress,
+ *
+ *     R = R_0 + (Q - R_0) (1 - exp(-b d)),
+ *     s X_i = s X_i0 + (C_i / gamma_i - s X_i0) (1 - exp(-gamma_i d)),
+ *     |trial - X_0| = sigma_Y + R + sum s (X_i - X_i0) + E d.
+ *
+ * The third row is R; then the X_i follow. */
+static WB_ALWAYS_INLINE struct answer respond_chaboche(const struct wb_fibres *f, lanes strain,
+                                                       const struct rows *h, const double *backs,
+                                                       double *backs_after)
+{
+    const struct wb_law *const law = &f->law;
+    const double E = law->material.youngs_modulus, sigma_Y = law->material.yield_stress;
+    const int n_backs = law->n_backs;
+    const lanes plastic = load(h->plastic), grown = load(h->third), none = {0};
+    const lanes trial = E * (strain - plastic);
+    lanes distance = trial;
+    for (int i = 0; i < n_backs; i++)
+        distance -= load(backs + i * (ptrdiff_t)f->n);
+    const lanes over = absolute(distance) - sigma_Y - grown;
+    const masks yields = over > on_surface * (sigma_Y + grown);
+    struct answer answer = {trial, all_lanes(E)};
+    lanes d = none, values[1 + WB_LAW_MOST_BACKS] = {{0}, {0}, {0}, {0}};
+    if (any(yields)) {
+        struct term terms[1 + WB_LAW_MOST_BACKS] = {{law->saturation - grown, law->rate, 0.0}};
+        lanes slope;
+        for (int i = 0; i < n_backs; i++) {
+            const struct wb_law_back *const back = &law->backs[i];
+            const lanes X = with_sign(none + 1.0, distance) * load(backs + i * (ptrdiff_t)f->n);
+            terms[1 + i] = back->recovery > 0.0 ? (struct term){back->modulus / back->recovery - X,
+                                                                back->recovery, 0.0}
+                                                : (struct term){none, 0.0, back->modulus};
+        }
+        d = solve_terms(E, terms, 1 + n_backs, select_lanes(yields, over, none), values, &slope);
+        answer.stress = trial - with_sign(E * d, distance);
+        answer.tangent = select_lanes(yields, E * slope / (E + slope), answer.tangent);
+    }
+    store(h->plastic_after, plastic + with_sign(d, distance));
+    store(h->accumulated_after, load(h->accumulated) + d);
+    store(h->third_after, grown + values[0]);
+    for (int i = 0; i < n_backs; i++)
+        store(backs_after + i * (ptrdiff_t)f->n,
+              load(backs + i * (ptrdiff_t)f->n) + with_sign(values[1 + i], distance));
+    return answer;
+}
+
+/* All fibres of a section with a law of combined hardening. */
+static WB_ALWAYS_INLINE void respond_law(const struct wb_fibres *f, struct strains strains,
+                                         const double *before, double *after,
+                                         struct wb_fibres_response *response)
+{
+    const double *const rows = before + HISTORY_HEAD;
+    double *const rows_after = after + HISTORY_HEAD;
+    struct sums sums = {{0}, {0}, {0}, {0}, {0}};
+    for (int i = 0; i < f->n; i += LANES) {
+        const struct rows h = rows_at(f, rows, rows_after, i);
+        const double *const backs = rows + HISTORY_ROWS * f->n + i;
+        double *const backs_after = rows_after + HISTORY_ROWS * f->n + i;
+        const lanes y = load(f->y + i), area = load(f->area + i);
+        const lanes strain = strains.eps - y * strains.kappa;
+        const struct answer answer = f->kind == CHABOCHE
+                                         ? respond_chaboche(f, strain, &h, backs, backs_after)
+                                         : respond_combined(f, strain, &h, backs, backs_after);
+        add_fibres(&sums, answer.stress * area, answer.tangent * area, y);
     }
     take_sums(&sums, response);
 }
@@ -580,8 +724,10 @@ static WB_ALWAYS_INLINE void respond_any(const struct wb_fibres *f, struct strai
                                          const double *before, double *after,
                                          struct wb_fibres_response *response)
 {
-    if (f->overlay)
+    if (f->kind == AS_OVERLAY)
         respond_overlay(f, strains, before, after, response);
+    else if (f->kind == LUDWIK_COMBINED || f->kind == CHABOCHE)
+        respond_law(f, strains, before, after, response);
     else
         respond_rows(f, strains, before + HISTORY_HEAD, after + HISTORY_HEAD, response);
 }
@@ -643,11 +789,11 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
     const size_t count = (size_t)n, materials = (size_t)section->n_materials;
     f->n = n;
     f->n_materials = section->n_materials;
-    if (section->overlay) {
-        f->overlay_capacity = section->overlay->n;
-        f->overlay = wb_memory_take(&f->memory, 1, sizeof *f->overlay);
-    }
     f->point_laws = section->point_laws;
+    f->kind = section->law ? kind_of(section->law) : f->point_laws ? BY_POINT_LAW : BY_MATERIAL;
+    f->capacity = section->law ? rows_of(section->law) : 0;
+    if (f->kind == AS_OVERLAY)
+        f->overlay = wb_memory_take(&f->memory, 1, sizeof *f->overlay);
     for (int m = 0; f->point_laws && m < section->n_materials; m++)
         f->point_history = f->point_laws[m].n_history > f->point_history
                                ? f->point_laws[m].n_history
@@ -663,9 +809,9 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
     sort_fibres(f, section);
     choose_fastest(f);
     f->shear_ratio = 1.0;
-    if (section->overlay) {
+    if (section->law) {
         f->materials[0] = section->materials[0];
-        if (wb_fibres_set_overlay(f, section->overlay) != WB_OK) {
+        if (wb_fibres_set_law(f, section->law) != WB_OK) {
             wb_fibres_destroy(f);
             return WB_ERR_ARGUMENT;
         }

@@ -31,10 +31,9 @@ void wb_fibres_destroy(struct wb_fibres *fibres);
 /* Exchanges the materials (as many as the section has) and tabulates their laws again. */
 void wb_fibres_set_materials(struct wb_fibres *fibres, const struct wb_material *materials);
 
-/* Exchanges the overlay of a section that has one, for one of at most as many parts: else
- * WB_ERR_ARGUMENT. */
-WB_MUST_CHECK enum wb_status wb_fibres_set_overlay(struct wb_fibres *fibres,
-                                                   const struct wb_overlay *overlay);
+/* Exchanges the law of a section that was made of one, for one of the same form and rule and of at
+ * most as many parts or back stresses: else WB_ERR_ARGUMENT. */
+WB_MUST_CHECK enum wb_status wb_fibres_set_law(struct wb_fibres *fibres, const struct wb_law *law);
 
 /* Doubles in the history of one section point. All zero is the virgin state. */
 size_t wb_fibres_history_size(const struct wb_fibres *fibres);

@@ -155,10 +155,8 @@ enum wb_status wb_section_init_law(struct wb_section *section, double diameter,
     wb_section_init_empty(section);
     WB_TRY(wb_law_check(law, NULL));
     WB_TRY(wb_section_init_circle(section, diameter, &law->material, n));
-    if (wb_law_is_plain(law))
-        return WB_OK;
-    section->overlay = wb_memory_new(1, sizeof *section->overlay);
-    wb_law_overlay(law, section->overlay);
+    section->law = wb_memory_new(1, sizeof *section->law);
+    *section->law = *law;
     return WB_OK;
 }
 
@@ -168,6 +166,6 @@ void wb_section_release(struct wb_section *section)
         return;
     free(section->fibres);
     free(section->materials);
-    free(section->overlay);
+    free(section->law);
     *section = (struct wb_section){0};
 }

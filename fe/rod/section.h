@@ -37,7 +37,7 @@ struct wb_section {
     double shear_stiffness;        /* G A k, N, elastic */
     /* NULL: the fibres have their materials' own laws. Else all fibres have this one, and the only
      * material says their shear stiffness; owned. */
-    struct wb_overlay *overlay;
+    struct wb_law *law;
     /* NULL, or a law for each material instead of the material's own, which then says the elastic
      * stiffness; (n_materials), borrowed. */
     const struct wb_point_law *point_laws;

@@ -163,14 +163,7 @@ void wb_cantilever_reset(struct wb_cantilever *cantilever)
 
 enum wb_status wb_cantilever_set_law(struct wb_cantilever *cantilever, const struct wb_law *law)
 {
-    WB_TRY(wb_law_check(law, NULL));
-    if (wb_law_is_plain(law)) {
-        wb_cantilever_set_materials(cantilever, &law->material);
-        return WB_OK;
-    }
-    struct wb_overlay overlay;
-    wb_law_overlay(law, &overlay);
-    return wb_beam_set_overlay(cantilever->beam, &overlay);
+    return wb_beam_set_law(cantilever->beam, law);
 }
 
 enum wb_status wb_cantilever_set_curvature(struct wb_cantilever *cantilever,

@@ -287,14 +287,7 @@ void wb_three_point_bending_reset(struct wb_three_point_bending *bending)
 enum wb_status wb_three_point_bending_set_law(struct wb_three_point_bending *bending,
                                               const struct wb_law *law)
 {
-    WB_TRY(wb_law_check(law, NULL));
-    if (wb_law_is_plain(law)) {
-        wb_beam_set_materials(bending->beam, &law->material);
-    } else {
-        struct wb_overlay overlay;
-        wb_law_overlay(law, &overlay);
-        WB_TRY(wb_beam_set_overlay(bending->beam, &overlay));
-    }
+    WB_TRY(wb_beam_set_law(bending->beam, law));
     wb_three_point_bending_reset(bending);
     return WB_OK;
 }

@@ -90,7 +90,7 @@ def _plain(value):
     if not isinstance(value, _c.Structure):
         return value
     fields = {name: _plain(getattr(value, name)) for name, *_ in value._fields_ if name != "size"}
-    for name in ("natural_shape", "parts"):
+    for name in ("natural_shape", "parts", "backs"):
         if "n_" + name in fields:
             fields[name] = fields[name][:fields.pop("n_" + name)]
     return _types.SimpleNamespace(**fields)
@@ -252,16 +252,23 @@ class Properties(_Handle):
 
     def __init__(self, outer_diameter, youngs_modulus=0.0, yield_stress=0.0,
                  strength_coefficient=0.0, hardening_exponent=0.0, *, parts=(), kinematic_share=0.0,
-                 poissons_ratio=0.0, mass_per_length=0.0):
-        """Ludwik's law, or parallel parts [(modulus, yield strain), ...]: struct wirebench_law."""
+                 poissons_ratio=0.0, mass_per_length=0.0, is_combined=False, saturation=0.0,
+                 rate=0.0, backs=()):
+        """Ludwik's law, parallel parts [(modulus, yield strain), ...], or Chaboche's with back
+        stresses [(modulus, recovery), ...]: struct wirebench_law."""
         if len(parts) > _s.MOST_PARTS:
             raise ValueError("at most %d parts, not %d" % (_s.MOST_PARTS, len(parts)))
+        if len(backs) > _s.MOST_BACKS:
+            raise ValueError("at most %d back stresses, not %d" % (_s.MOST_BACKS, len(backs)))
         law = _s.Law(size=_c.sizeof(_s.Law), outer_diameter=outer_diameter,
                      youngs_modulus=youngs_modulus, yield_stress=yield_stress,
                      strength_coefficient=strength_coefficient,
                      hardening_exponent=hardening_exponent, n_parts=len(parts),
                      kinematic_share=kinematic_share, poissons_ratio=poissons_ratio,
-                     mass_per_length=mass_per_length)
+                     mass_per_length=mass_per_length, is_combined=bool(is_combined),
+                     saturation=saturation, rate=rate, n_backs=len(backs))
+        for i, (modulus, recovery) in enumerate(backs):
+            law.backs[i] = _s.Back(modulus, recovery)
         for i, (modulus, yield_strain) in enumerate(parts):
             law.parts[i] = _s.Part(modulus, yield_strain)
         super().__init__(_lib.wirebench_properties_create, _c.byref(law))

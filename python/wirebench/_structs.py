@@ -8,6 +8,7 @@ import ctypes as c
 REAL, INTEGER, TEXT = range(3)
 MOST_SHAPE = 4
 MOST_PARTS = 12
+MOST_BACKS = 3
 
 DOUBLES = c.POINTER(c.c_double)
 INTS = c.POINTER(c.c_int)
@@ -54,6 +55,9 @@ DatasetInfo = _struct("DatasetInfo", _SIZE, ("wire", c.c_char_p), *_ints("kind s
                       *_ints("is_follower is_virtual is_simulation is_complete"))
 
 Part = _struct("Part", *_doubles("modulus yield_strain"))
+Back = _struct("Back", *_doubles("modulus recovery"))
+_CHABOCHE = (*_doubles("saturation rate"), *_ints("n_backs is_combined"),
+             ("backs", Back * MOST_BACKS))
 
 _LUDWIK = _doubles("youngs_modulus yield_stress strength_coefficient hardening_exponent")
 
@@ -62,7 +66,7 @@ Alignment = _struct("Alignment", _SIZE, ("rig", c.c_char_p), ("specimen", c.c_ch
 
 Law = _struct("Law", _SIZE, *_doubles("outer_diameter mass_per_length poissons_ratio"), *_LUDWIK,
               ("n_parts", c.c_int), ("parts", Part * MOST_PARTS),
-              ("kinematic_share", c.c_double))
+              ("kinematic_share", c.c_double), *_CHABOCHE)
 
 Estimate = _struct("Estimate", *_doubles("value low high candidates_low candidates_high"))
 
@@ -72,7 +76,8 @@ PropertiesInfo = _struct("PropertiesInfo", _SIZE, ("wire", c.c_char_p), ("method
                          ("parts", Part * MOST_PARTS),
                          *_doubles("kinematic_share rms largest_curvature"),
                          ("rigidity", Estimate), ("springback", Estimate),
-                         *_ints("n_samples is_rule_supported is_virtual is_simulation"))
+                         *_ints("n_samples is_rule_supported is_virtual is_simulation"),
+                         *_CHABOCHE, *_doubles("law_youngs_modulus law_yield_stress"))
 
 Bending = _struct("Bending", _SIZE, *_doubles("rigidity springback loop_energy"))
 
@@ -103,8 +108,8 @@ Calibration = _struct("Calibration", _SIZE, *_ints("method threads"),
 
 # The header's name of each.
 STRUCTS = {"column": Column, "recording_info": RecordingInfo, "stream": Stream,
-           "dataset_info": DatasetInfo, "alignment": Alignment, "part": Part, "law": Law, "estimate": Estimate,
-           "properties_info": PropertiesInfo, "bending": Bending, "cantilever": Cantilever,
+           "dataset_info": DatasetInfo, "alignment": Alignment, "part": Part, "back": Back, "law": Law,
+           "estimate": Estimate, "properties_info": PropertiesInfo, "bending": Bending, "cantilever": Cantilever,
            "cantilever_result": CantileverResult, "three_point": ThreePoint,
            "three_point_result": ThreePointResult, "calibration": Calibration}
 

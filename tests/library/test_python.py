@@ -173,6 +173,22 @@ class Mechanics(unittest.TestCase):
         with self.assertRaises(ValueError):
             wirebench.Properties(self.diameter, parts=[(1e9, 1e-3)] * 13)
 
+    def test_chaboches_law_arrives_with_its_back_stresses(self):
+        backs = [(2.6e9, 900.0), (0.7e9, 60.0)]
+        wire = wirebench.Properties(self.diameter, 5.6e9, 2.2e6, saturation=1.4e6, rate=250.0,
+                                    backs=backs)
+        info = wire.info
+        self.assertEqual([(b.modulus, b.recovery) for b in info.backs], backs)
+        self.assertEqual((info.law_youngs_modulus, info.law_yield_stress, info.saturation,
+                          info.rate), (5.6e9, 2.2e6, 1.4e6, 250.0))
+        rigidity = 5.6e9 * math.pi * self.diameter**4 / 64
+        np.testing.assert_allclose(wire.bend(30.0).rigidity, rigidity, rtol=1e-9)
+        self.assertLess(wire.moments([30.0])[0], 0.5 * 30.0 * rigidity)
+        with self.assertRaisesRegex(wirebench.Error, "n_parts"):
+            wirebench.Properties(self.diameter, 5.6e9, 2.2e6, backs=backs, parts=[(1e9, 1e-3)])
+        with self.assertRaises(ValueError):
+            wirebench.Properties(self.diameter, 5.6e9, 2.2e6, backs=backs * 2)
+
     def test_what_is_out_of_reach_is_a_warning(self):
         wire = wirebench.Properties(self.diameter, self.modulus)
         with self.assertWarnsRegex(wirebench.Incomplete, "row 1 of 2"):

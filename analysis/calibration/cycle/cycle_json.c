@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/units.h"
+#include "fe/material/law_json.h"
 
 /* N mm2 in one N m2; N mm in one N m; mJ/m in one J/m. */
 static const double N_MM2 = 1e-6, N_MM = 1e-3, MILLI = 1e-3;
@@ -36,21 +37,7 @@ static void put_law(struct wb_json *object, const struct wb_law *law)
     wb_json_set_number(object, "isotropic_share", law->isotropic_share);
     wb_json_set_number(object, "youngs_modulus_MPa", law->material.youngs_modulus / WB_MPA);
     wb_json_set_number(object, "poissons_ratio", law->material.poissons_ratio);
-    if (law->form == WB_LAW_LUDWIK) {
-        wb_json_set_number(object, "yield_stress_MPa", law->material.yield_stress / WB_MPA);
-        wb_json_set_number(object, "strength_coefficient_MPa",
-                           law->material.strength_coefficient / WB_MPA);
-        wb_json_set_number(object, "hardening_exponent", law->material.hardening_exponent);
-        return;
-    }
-    struct wb_json *const parts = wb_json_set_array(object, "parts");
-    for (int i = 0; i < law->n_parts; i++) {
-        struct wb_json *const part = wb_json_append_object(parts);
-        wb_json_set_number(part, "modulus_MPa", law->parts[i].modulus / WB_MPA);
-        wb_json_set_number(part, "yield_strain",
-                           isfinite(law->parts[i].yield_strain) ? law->parts[i].yield_strain
-                                                                : (double)NAN);
-    }
+    wb_law_json_numbers(object, law, "MPa", WB_MPA);
 }
 
 static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *c)

@@ -569,6 +569,38 @@ static void put_parts(struct wb_document *document, const struct wb_law *law)
     }
 }
 
+static void put_chaboche(struct wb_document *document, const struct wb_law *law)
+{
+    const struct wb_document_column columns[] = {{"Hardening"},
+                                                 {.heading = "Modulus (MPa)", .right = true},
+                                                 {.heading = "Rate", .right = true},
+                                                 {.heading = "Saturates at (MPa)", .right = true}};
+    char caption[400];
+    snprintf(caption, sizeof caption,
+             "Chaboche's law: <i>E</i> = %.0f MPa; yields at %.3f MPa on either side of the sum of "
+             "the back stresses, and this yield stress grows. Modulus: slope over plastic strain "
+             "at first; rate: <i>\xce\xb3</i> of a back stress, <i>b</i> of the yield stress. "
+             "Means over the samples.",
+             law->material.youngs_modulus / WB_MPA, law->material.yield_stress / WB_MPA);
+    struct wb_document_table *const table =
+        wb_document_table(document, caption, WB_COUNT(columns), columns);
+    for (int i = -1; i < law->n_backs; i++) {
+        char name[40];
+        const bool grows = i < 0;
+        const double modulus = grows ? law->saturation * law->rate : law->backs[i].modulus;
+        const double rate = grows ? law->rate : law->backs[i].recovery;
+        snprintf(name, sizeof name, grows ? "yield stress" : "back stress %d", i + 1);
+        wb_document_row(table, false);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%s", name);
+        put_number(table, modulus / WB_MPA);
+        put_number(table, rate);
+        if (rate > 0.0)
+            put_number(table, modulus / rate / WB_MPA);
+        else
+            wb_pages_cell(table, WB_TONE_QUIET, "never");
+    }
+}
+
 static void put_law(struct wb_document *document, const struct wb_recordings_cycle *cycle)
 {
     struct wb_text text = {0};
@@ -578,8 +610,11 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
     if (wb_recordings_cycle_is_refuted(cycle))
         wb_text_append(&text, "No law follows the data; these are the numbers of the chosen one, "
                               "not of the wire. ");
-    if (c->law.form == WB_LAW_PARALLEL) {
-        put_parts(document, &c->law);
+    if (c->law.form != WB_LAW_LUDWIK) {
+        if (c->law.form == WB_LAW_PARALLEL)
+            put_parts(document, &c->law);
+        else
+            put_chaboche(document, &c->law);
         wb_text_append(&text,
                        "Ludwik's law that bends alike on a first loading (RMS %.1f %% of <i>M</i>)"
                        ": <i>E</i> = %.0f MPa, <i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = "

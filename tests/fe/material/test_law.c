@@ -148,6 +148,39 @@ static void what_makes_no_law_is_refused(void **unused)
     assert_int_equal(wb_law_check(&law, NULL), WB_ERR_ARGUMENT);
 }
 
+static void what_makes_no_combined_law_is_refused(void **unused)
+{
+    (void)unused;
+    const struct wb_material elastic = {
+        .youngs_modulus = 5e9, .poissons_ratio = 0.39, .yield_stress = 2e6};
+    const struct wb_law_back back = {2e9, 500.0};
+    struct wb_law good, law;
+    wb_law_init_chaboche(&good, &elastic, 1e6, 200.0, &back, 1);
+    assert_int_equal(wb_law_check(&good, NULL), WB_OK);
+    assert_close(good.isotropic_share, 1e6 / (1e6 + 2e9 / 500.0), 1e-15);
+    double *const numbers[] = {
+        &law.material.youngs_modulus, &law.material.yield_stress, &law.saturation, &law.rate,
+        &law.backs[0].modulus,        &law.backs[0].recovery};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        law = good;
+        *numbers[i] = -1.0;
+        assert_int_equal(wb_law_check(&law, NULL), WB_ERR_ARGUMENT);
+        *numbers[i] = (double)NAN;
+        assert_int_equal(wb_law_check(&law, NULL), WB_ERR_ARGUMENT);
+    }
+    law = good;
+    law.n_backs = WB_LAW_MOST_BACKS + 1;
+    assert_int_equal(wb_law_check(&law, NULL), WB_ERR_ARGUMENT);
+    const struct wb_law_part part = {3e9, 1e-3};
+    wb_law_init_parallel(&law, &part, 1, 0.5, 0.39);
+    law.is_combined = true;
+    assert_int_equal(wb_law_check(&law, NULL), WB_ERR_ARGUMENT);
+    /* One surface gives no work back, however its growth steepens. */
+    const struct wb_material steepens = ludwik(5000, 4, 3000, 1.2);
+    wb_law_init_combined(&law, &steepens, 0.5);
+    assert_int_equal(wb_law_check(&law, NULL), WB_OK);
+}
+
 static void rules_have_names(void **unused)
 {
     (void)unused;
@@ -160,6 +193,15 @@ static void rules_have_names(void **unused)
     law.isotropic_share = 1.0;
     assert_string_equal(wb_law_rule_name(&law), "isotropic");
     assert_false(wb_law_is_plain(&law));
+    const struct wb_material m = ludwik(5000, 4, 3000, 0.8);
+    wb_law_init_combined(&law, &m, 1.0);
+    assert_string_equal(wb_law_rule_name(&law), "combined");
+    assert_false(wb_law_is_plain(&law) || wb_law_is_overlay(&law));
+    assert_true(wb_law_has_share(&law));
+    wb_law_init_chaboche(&law, &m, 0.0, 0.0, NULL, 0);
+    assert_string_equal(wb_law_rule_name(&law), "combined");
+    assert_string_equal(wb_law_form_name(law.form), "chaboche");
+    assert_false(wb_law_has_share(&law) || wb_law_is_overlay(&law));
 }
 
 int main(void)
@@ -170,6 +212,7 @@ int main(void)
         cmocka_unit_test(the_virgin_curve_is_ludwiks),
         cmocka_unit_test(parallel_parts_add_up),
         cmocka_unit_test(what_makes_no_law_is_refused),
+        cmocka_unit_test(what_makes_no_combined_law_is_refused),
         cmocka_unit_test(rules_have_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -65,6 +65,37 @@ static void what_is_written_reads_back_the_same(void **unused)
     }
 }
 
+static void combined_hardening_reads_back_the_same(void **unused)
+{
+    (void)unused;
+    const struct wb_material elastic = {
+        .youngs_modulus = 4.5123456789e9, .poissons_ratio = 0.39, .yield_stress = 2.1e6 / 3.0};
+    const struct wb_law_back backs[] = {{2.6e9 / 7.0, 900.0 / 7.0}, {1e8, 0.0}};
+    for (int i = 0; i < 4; i++) {
+        struct wb_law law, back;
+        struct wb_text text = {0};
+        if (i < 3)
+            wb_law_init_chaboche(&law, &elastic, 1.4e6 / 3.0, 1000.0 / 3.0, backs, i);
+        else
+            wb_law_init_combined(&law, &ludwik, 1.0 / 3.0);
+        wb_law_file_append(&text, &law);
+        assert_int_equal(read_text(wb_text_string(&text), &ludwik, &back), WB_OK);
+        assert_int_equal(back.form, law.form);
+        assert_true(back.is_combined);
+        assert_close_relative(back.isotropic_share, law.isotropic_share, 1e-15);
+        assert_close_relative(back.material.youngs_modulus, law.material.youngs_modulus, 1e-15);
+        assert_close_relative(back.material.yield_stress, law.material.yield_stress, 1e-15);
+        assert_true(back.material.poissons_ratio == law.material.poissons_ratio);
+        assert_close_relative(back.saturation, law.saturation, 1e-15);
+        assert_true(back.rate == law.rate && back.n_backs == law.n_backs);
+        for (int k = 0; k < law.n_backs; k++) {
+            assert_close_relative(back.backs[k].modulus, law.backs[k].modulus, 1e-15);
+            assert_true(back.backs[k].recovery == law.backs[k].recovery);
+        }
+        wb_text_release(&text);
+    }
+}
+
 static void what_is_no_law_is_refused_with_its_line(void **unused)
 {
     (void)unused;
@@ -85,6 +116,30 @@ static void what_is_no_law_is_refused_with_its_line(void **unused)
         {"law: {form: parallel, hardening: kinematic, parts: [{modulus_MPa: 1, yield_strain: 0.1}, "
          "{modulus_MPa: 1, yield_strain: 0.1}]}",
          "expected more than"},
+        {"law: {form: parallel, hardening: combined, isotropic_share: 0.3, parts: [{modulus_MPa: "
+         "1}]}",
+         "hardening"},
+        {"law: {form: ludwik, hardening: combined}", "isotropic_share"},
+        {"law: {form: chaboche, hardening: combined}", "chaboche"},
+        {"law: {form: chaboche, hardening: kinematic, chaboche: {youngs_modulus_MPa: 1, "
+         "yield_stress_MPa: 1}}",
+         "hardening"},
+        {"law: {form: chaboche, hardening: combined, isotropic_share: 1, chaboche: "
+         "{youngs_modulus_MPa: 1, yield_stress_MPa: 1}}",
+         "isotropic_share"},
+        {"law: {form: ludwik, hardening: isotropic, chaboche: {youngs_modulus_MPa: 1}}",
+         "chaboche"},
+        {"law: {form: chaboche, hardening: combined, parts: [], chaboche: {youngs_modulus_MPa: 1, "
+         "yield_stress_MPa: 1}}",
+         "parts"},
+        {"law: {form: chaboche, hardening: combined, chaboche: {youngs_modulus_MPa: 1}}",
+         "yield_stress_MPa"},
+        {"law: {form: chaboche, hardening: combined, chaboche: {youngs_modulus_MPa: 1, "
+         "yield_stress_MPa: 1, back_stresses: [{modulus_MPa: 0, recovery: 1}]}}",
+         "modulus_MPa"},
+        {"law: {form: chaboche, hardening: combined, chaboche: {youngs_modulus_MPa: 1, "
+         "yield_stress_MPa: 1, back_stresses: []}}",
+         "back_stresses"},
     };
     struct wb_law law;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -107,6 +162,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_a_block_the_law_is_the_papers),
         cmocka_unit_test(what_is_written_reads_back_the_same),
+        cmocka_unit_test(combined_hardening_reads_back_the_same),
         cmocka_unit_test(what_is_no_law_is_refused_with_its_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,55 +1,7 @@
 /* Sections of a law with a hardening rule: parallel parts, and Ludwik's curve as an overlay. */
-#include <stdlib.h>
-
 #include "fe/material/law.h"
-#include "fe/rod/fibres.h"
-#include "fe/rod/fibres_private.h"
+#include "tests/fe/rod/points.h"
 #include "tests/fe/rod/wires.h"
-
-#define DIAMETER 1.25e-3
-
-/* One section point with its history. */
-struct point {
-    struct wb_section section;
-    struct wb_fibres *fibres;
-    double *before, *after;
-};
-
-static struct point make_point(const struct wb_law *law, int n)
-{
-    struct point p = {.before = NULL};
-    assert_int_equal(wb_section_init_law(&p.section, DIAMETER, law, n), WB_OK);
-    assert_int_equal(wb_fibres_create(&p.fibres, &p.section), WB_OK);
-    const size_t size = wb_fibres_history_size(p.fibres);
-    p.before = calloc(size, sizeof *p.before);
-    p.after = calloc(size, sizeof *p.after);
-    assert_true(p.before && p.after);
-    return p;
-}
-
-static void release_point(struct point *p)
-{
-    wb_fibres_destroy(p->fibres);
-    wb_section_release(&p->section);
-    free(p->before);
-    free(p->after);
-}
-
-static struct wb_fibres_response respond(struct point *p, double eps, double kappa)
-{
-    struct wb_fibres_response r;
-    wb_fibres_respond(p->fibres, eps, kappa, p->before, p->after, &r);
-    return r;
-}
-
-static double bend(struct point *p, double kappa)
-{
-    const struct wb_fibres_response r = respond(p, 0.0, kappa);
-    double *const old = p->before;
-    p->before = p->after;
-    p->after = old;
-    return r.M;
-}
 
 /* The moment of a first loading. */
 static double virgin_moment(const struct wb_law *law, double kappa, int n)
@@ -309,18 +261,15 @@ static void an_overlay_is_exchanged_for_one_of_no_more_parts(void **unused)
 {
     (void)unused;
     const struct wb_law five = parallel_law(0.0), other = parallel_law(0.4), many = ludwik_law(0.0);
-    struct wb_overlay overlay;
     struct point p = make_point(&five, 20);
-    wb_law_overlay(&other, &overlay);
-    assert_int_equal(wb_fibres_set_overlay(p.fibres, &overlay), WB_OK);
+    assert_int_equal(wb_fibres_set_law(p.fibres, &other), WB_OK);
     (void)bend(&p, 30.0);
     const double M = bend(&p, 4.0);
     struct point fresh = make_point(&other, 20);
     (void)bend(&fresh, 30.0);
     assert_true(M == bend(&fresh, 4.0));
-    wb_law_overlay(&many, &overlay);
     wb_log_set_sink(discard_message, NULL);
-    assert_int_equal(wb_fibres_set_overlay(p.fibres, &overlay), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_fibres_set_law(p.fibres, &many), WB_ERR_ARGUMENT);
     wb_log_set_sink(NULL, NULL);
     release_point(&p);
     release_point(&fresh);

@@ -1,0 +1,393 @@
+/* Sections of laws with combined hardening: Chaboche's, and Ludwik's with one surface that grows
+ * and moves. Against their closed forms and their rates, integrated in small steps by a code of its
+ * own. */
+#include "fe/material/hardening.h"
+#include "fe/material/law.h"
+#include "fe/rod/lanes.h"
+#include "tests/fe/rod/points.h"
+#include "tests/fe/rod/wires.h"
+
+static const struct wb_material elastic = {
+    WB_HARDENING_NONE_ELASTIC, 5641.0 * WB_MPA, 0.39, 2.2 * WB_MPA, 0.0, 0.0};
+static const struct wb_law_back two_backs[] = {{2600.0 * WB_MPA, 900.0}, {700.0 * WB_MPA, 60.0}};
+
+static struct wb_law chaboche(double saturation, double rate, int n_backs)
+{
+    struct wb_law law;
+    wb_law_init_chaboche(&law, &elastic, saturation, rate, two_backs, n_backs);
+    return law;
+}
+
+static struct wb_law combined(double share)
+{
+    const struct wb_material m = {
+        WB_HARDENING_ISOTROPIC_POWER, 5641.0 * WB_MPA, 0.39, 4.95 * WB_MPA, 850.0 * WB_MPA, 0.78};
+    struct wb_law law;
+    wb_law_init_combined(&law, &m, share);
+    return law;
+}
+
+enum {
+    LAWS = 7
+};
+
+static struct wb_law law_of(int i)
+{
+    struct wb_law law = chaboche(1.4 * WB_MPA, 250.0, 2);
+    switch (i) {
+    case 0:
+        return law;
+    case 1:
+        return chaboche(0.0, 0.0, 1);
+    case 2:
+        return chaboche(1.4 * WB_MPA, 250.0, 0);
+    case 3:
+        law.backs[1].recovery = 0.0; /* Prager's */
+        return law;
+    case 4:
+        return combined(0.0);
+    case 5:
+        return combined(0.3);
+    default:
+        return combined(1.0);
+    }
+}
+
+static double area(void)
+{
+    return M_PI * DIAMETER * DIAMETER / 4.0;
+}
+
+/* The stress of a stretched section: all fibres have the same. */
+static double stretch(struct point *p, double strain, double *tangent)
+{
+    const struct wb_fibres_response r = respond(p, strain, 0.0);
+    double *const old = p->before;
+    p->before = p->after;
+    p->after = old;
+    if (tangent)
+        *tangent = r.D11 / area();
+    return r.N / area();
+}
+
+/* --- a law's rates, in small steps --- */
+
+struct rates {
+    const struct wb_law *law;
+    double strain, plastic, accumulated, grown, back[WB_LAW_MOST_BACKS];
+};
+
+static double distance_of(const struct rates *r)
+{
+    double distance = r->law->material.youngs_modulus * (r->strain - r->plastic);
+    for (int i = 0; i < WB_LAW_MOST_BACKS; i++)
+        distance -= r->back[i];
+    return distance;
+}
+
+/* What d(plastic strain) = s dp changes: growth and back stresses per dp. */
+static void find_rates(const struct rates *r, double s, double *growth, double *back)
+{
+    const struct wb_law *const law = r->law;
+    const struct wb_material *const m = &law->material;
+    memset(back, 0, WB_LAW_MOST_BACKS * sizeof *back);
+    if (law->form == WB_LAW_CHABOCHE) {
+        *growth = law->rate * (law->saturation - r->grown);
+        for (int i = 0; i < law->n_backs; i++)
+            back[i] = s * law->backs[i].modulus - law->backs[i].recovery * r->back[i];
+        return;
+    }
+    const double slope = m->strength_coefficient * m->hardening_exponent *
+                         pow(r->accumulated, m->hardening_exponent - 1.0);
+    *growth = law->isotropic_share * slope;
+    back[0] = s * (1.0 - law->isotropic_share) * slope;
+}
+
+static void move_by(struct rates *r, double s, double dp, double growth, const double *back)
+{
+    r->plastic += s * dp;
+    r->accumulated += dp;
+    r->grown += growth * dp;
+    for (int i = 0; i < WB_LAW_MOST_BACKS; i++)
+        r->back[i] += back[i] * dp;
+}
+
+/* Stretches to a strain by n steps, each by the midpoint rule. */
+static double integrate(struct rates *r, double strain, int n)
+{
+    const double E = r->law->material.youngs_modulus, step = (strain - r->strain) / n;
+    for (int k = 0; k < n; k++) {
+        double growth, back[WB_LAW_MOST_BACKS];
+        r->strain += step;
+        double over = fabs(distance_of(r)) - r->law->material.yield_stress - r->grown;
+        if (over <= 0.0)
+            continue;
+        const double s = distance_of(r) > 0.0 ? 1.0 : -1.0;
+        struct rates middle = *r;
+        if (middle.accumulated == 0.0)
+            middle.accumulated = r->accumulated = 1e-30;
+        for (int half = 0; half < 2; half++) {
+            find_rates(&middle, s, &growth, back);
+            double slope = E + growth;
+            for (int i = 0; i < WB_LAW_MOST_BACKS; i++)
+                slope += s * back[i];
+            const double dp = over / slope;
+            if (half == 0) {
+                middle = *r;
+                move_by(&middle, s, 0.5 * dp, growth, back);
+            } else {
+                move_by(r, s, dp, growth, back);
+            }
+        }
+    }
+    return E * (r->strain - r->plastic);
+}
+
+/* --- facts --- */
+
+static void the_exponential_is_the_librarys(void **unused)
+{
+    (void)unused;
+    double largest = 0.0;
+    for (double x = 1e-12; x < 720.0; x *= 1.01) {
+        const lanes got = one_less_exponential((lanes){x, 0.5 * x, 0.0, 1.3 * x});
+        largest = fmax(largest, fabs(got[0] + expm1(-x)));
+        largest = fmax(largest, fabs(got[1] + expm1(-0.5 * x)));
+        largest = fmax(largest, fabs(got[3] + expm1(-1.3 * x)));
+        assert_true(got[2] == 0.0);
+    }
+    assert_true(largest < 3e-16);
+}
+
+static void a_first_loading_is_the_virgin_curve_in_any_steps(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < LAWS; i++) {
+        const struct wb_law law = law_of(i);
+        struct point p = make_point(&law, 20);
+        for (int k = 1; k <= 40; k++) {
+            const double strain = 5e-4 * k;
+            double slope, tangent;
+            const double stress = wb_law_virgin_stress(&law, strain, &slope);
+            assert_close_relative(stretch(&p, strain, &tangent), stress, 1e-10);
+            assert_close(tangent, slope, 1e-9 * law.material.youngs_modulus);
+            struct point fresh = make_point(&law, 20);
+            assert_close_relative(stretch(&fresh, strain, NULL), stress, 1e-10);
+            release_point(&fresh);
+        }
+        release_point(&p);
+    }
+}
+
+static void chaboches_virgin_curve_is_the_closed_form(void **unused)
+{
+    (void)unused;
+    const struct wb_law law = law_of(0);
+    for (double p = 1e-6; p < 0.1; p *= 3.0) {
+        double stress = law.material.yield_stress + law.saturation * (1.0 - exp(-law.rate * p));
+        for (int i = 0; i < 2; i++)
+            stress += law.backs[i].modulus / law.backs[i].recovery *
+                      (1.0 - exp(-law.backs[i].recovery * p));
+        const double strain = p + stress / law.material.youngs_modulus;
+        assert_close_relative(wb_law_virgin_stress(&law, strain, NULL), stress, 1e-12);
+    }
+}
+
+/* Any way there and back, against the rates: their error goes with the square of the step. */
+static void a_path_that_turns_follows_the_rates(void **unused)
+{
+    (void)unused;
+    static const double turns[] = {4e-3, -1e-3, 2e-3, -6e-3, 8e-3, 0.0};
+    for (int i = 0; i < LAWS; i++) {
+        const struct wb_law law = law_of(i);
+        double difference[2] = {0.0, 0.0};
+        for (int fine = 0; fine < 2; fine++) {
+            struct point p = make_point(&law, 4);
+            struct rates rates = {.law = &law};
+            for (size_t k = 0; k < sizeof turns / sizeof turns[0]; k++) {
+                const double expected = integrate(&rates, turns[k], fine ? 160000 : 40000);
+                const double got = stretch(&p, turns[k], NULL);
+                difference[fine] = fmax(difference[fine], fabs(got - expected));
+            }
+            release_point(&p);
+        }
+        /* Of Ludwik's law the slope is infinite where it yields first. */
+        assert_true(difference[1] < (law.form == WB_LAW_CHABOCHE ? 2e-5 : 1e-3) * WB_MPA);
+        assert_true(difference[1] < 0.6 * difference[0]);
+    }
+}
+
+static void tangents_are_slopes(void **unused)
+{
+    (void)unused;
+    uint64_t random = 11;
+    for (int i = 0; i < LAWS; i++) {
+        const struct wb_law law = law_of(i);
+        struct point p = make_point(&law, 20);
+        for (int step = 0; step < 100; step++) {
+            const double eps = 2e-3 * (test_random(&random) - 0.5);
+            const double kappa = 60.0 * (test_random(&random) - 0.5), d = 1e-8, dk = 1e-5;
+            const struct wb_fibres_response r = respond(&p, eps, kappa);
+            const struct wb_fibres_response e0 = respond(&p, eps - d, kappa);
+            const struct wb_fibres_response e1 = respond(&p, eps + d, kappa);
+            const struct wb_fibres_response k0 = respond(&p, eps, kappa - dk);
+            const struct wb_fibres_response k1 = respond(&p, eps, kappa + dk);
+            const double EA = wb_fibres_axial_stiffness(p.fibres);
+            const double EI = wb_fibres_bending_stiffness(p.fibres);
+            assert_close(r.D11, (e1.N - e0.N) / (2.0 * d), 1e-4 * EA);
+            assert_close(r.D12, (k1.N - k0.N) / (2.0 * dk), 1e-4 * EA * DIAMETER);
+            assert_close(r.D22, (k1.M - k0.M) / (2.0 * dk), 1e-4 * EI);
+            (void)bend(&p, kappa);
+        }
+        release_point(&p);
+    }
+}
+
+/* With share 1 combined hardening is isotropic, with share 0 the surface only moves. */
+static void shares_of_ludwiks_hardening_have_their_ends(void **unused)
+{
+    (void)unused;
+    const struct wb_law growing = combined(1.0), moving = combined(0.0);
+    struct wb_law plain = growing;
+    uint64_t random = 5;
+    plain.is_combined = false;
+    struct point p = make_point(&growing, 20), same = make_point(&plain, 20);
+    for (int step = 0; step < 200; step++) {
+        const double kappa = 60.0 * (test_random(&random) - 0.5);
+        const double M = bend(&same, kappa);
+        assert_close(bend(&p, kappa), M, 1e-9 * fabs(M) + 1e-13);
+    }
+    release_point(&p);
+    release_point(&same);
+
+    struct point q = make_point(&moving, 4);
+    const double E = moving.material.youngs_modulus, sigma_Y = moving.material.yield_stress;
+    const double top = stretch(&q, 6e-3, NULL);
+    const double elastic_range = 2.0 * sigma_Y / E;
+    double tangent;
+    assert_close_relative(stretch(&q, 6e-3 - 0.999 * elastic_range, &tangent),
+                          top - 0.999 * 2.0 * sigma_Y, 1e-9);
+    assert_close_relative(tangent, E, 1e-12);
+    (void)stretch(&q, 6e-3 - 1.001 * elastic_range, &tangent);
+    assert_true(tangent < 0.5 * E);
+    release_point(&q);
+}
+
+/* Stress between two limits with one saturating back stress and no growth: the plastic strain of a
+ * cycle, by Lemaitre and Chaboche, Mechanics of Solid Materials, 5.4.4, is
+ *
+ *     1/gamma ln (((C/gamma)^2 - (least + sigma_Y)^2) / ((C/gamma)^2 - (most - sigma_Y)^2)).
+ */
+static double hold_stress(struct point *p, double stress)
+{
+    double low = -0.1, high = 0.1;
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        if (respond(p, middle, 0.0).N < stress * area())
+            low = middle;
+        else
+            high = middle;
+    }
+    assert_close(stretch(p, high, NULL), stress, 1e-9 * WB_MPA);
+    return high;
+}
+
+static void ratchetting_is_that_of_the_closed_form(void **unused)
+{
+    (void)unused;
+    const struct wb_law law = law_of(1);
+    const double ratio = law.backs[0].modulus / law.backs[0].recovery;
+    const double most = law.material.yield_stress + 0.8 * ratio;
+    const double least = -law.material.yield_stress - 0.5 * ratio;
+    const double expected = log((1.0 - 0.5 * 0.5) / (1.0 - 0.8 * 0.8)) / law.backs[0].recovery;
+    struct point p = make_point(&law, 4);
+    double before = hold_stress(&p, most);
+    for (int cycle = 0; cycle < 5; cycle++) {
+        (void)hold_stress(&p, least);
+        const double strain = hold_stress(&p, most);
+        assert_close_relative(strain - before, expected, 1e-6);
+        before = strain;
+    }
+    release_point(&p);
+}
+
+/* Between two strains the loop closes, gives no work back and has the width that saturation says.
+ */
+static void loops_close_and_take_work(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < LAWS; i++) {
+        const struct wb_law law = law_of(i);
+        struct point p = make_point(&law, 20);
+        double M[2] = {0.0, 0.0}, work = 0.0, last = 0.0, at = 0.0;
+        for (int cycle = 0; cycle < 60; cycle++) {
+            work = 0.0;
+            for (int step = 1; step <= 80; step++) {
+                const double part = step <= 40 ? step / 20.0 - 1.0 : 3.0 - step / 20.0;
+                const double next = bend(&p, 25.0 * part);
+                work += 0.5 * (last + next) * (25.0 * part - at);
+                at = 25.0 * part;
+                last = next;
+                if (step == 40) {
+                    M[0] = M[1];
+                    M[1] = next;
+                }
+            }
+            /* A surface that grows on and on ends elastic. */
+            assert_true(work > (law.form == WB_LAW_CHABOCHE ? 1e-3 : -1e-12) * fabs(25.0 * last));
+        }
+        assert_close_relative(M[0], M[1], law.form == WB_LAW_CHABOCHE ? 1e-3 : 2e-2);
+        release_point(&p);
+    }
+}
+
+static void vector_instructions_do_not_change_a_bit(void **unused)
+{
+    (void)unused;
+    uint64_t random = 43;
+    for (int i = 0; i < LAWS; i++) {
+        const struct wb_law law = law_of(i);
+        struct point fastest = make_point(&law, 20), portable = make_point(&law, 20);
+        wb_fibres_set_portable(portable.fibres);
+        for (int step = 0; step < 200; step++) {
+            const double kappa = 80.0 * (test_random(&random) - 0.5);
+            assert_true(bend(&fastest, kappa) == bend(&portable, kappa));
+        }
+        release_point(&fastest);
+        release_point(&portable);
+    }
+}
+
+static void a_law_is_exchanged_for_one_of_its_kind(void **unused)
+{
+    (void)unused;
+    const struct wb_law two = law_of(0), one = law_of(1), other = combined(0.3);
+    struct point p = make_point(&two, 20), fresh = make_point(&one, 20);
+    assert_int_equal(wb_fibres_set_law(p.fibres, &one), WB_OK);
+    (void)bend(&p, 30.0);
+    (void)bend(&fresh, 30.0);
+    assert_true(bend(&p, 4.0) == bend(&fresh, 4.0));
+    wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_fibres_set_law(fresh.fibres, &two), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_fibres_set_law(p.fibres, &other), WB_ERR_ARGUMENT);
+    wb_log_set_sink(NULL, NULL);
+    release_point(&p);
+    release_point(&fresh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_exponential_is_the_librarys),
+        cmocka_unit_test(a_first_loading_is_the_virgin_curve_in_any_steps),
+        cmocka_unit_test(chaboches_virgin_curve_is_the_closed_form),
+        cmocka_unit_test(a_path_that_turns_follows_the_rates),
+        cmocka_unit_test(tangents_are_slopes),
+        cmocka_unit_test(shares_of_ludwiks_hardening_have_their_ends),
+        cmocka_unit_test(ratchetting_is_that_of_the_closed_form),
+        cmocka_unit_test(loops_close_and_take_work),
+        cmocka_unit_test(vector_instructions_do_not_change_a_bit),
+        cmocka_unit_test(a_law_is_exchanged_for_one_of_its_kind),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
