@@ -22,8 +22,8 @@ enum {
 
 /* See fe/material/material.c. */
 static const double on_surface = 1e-12;
-/* A step of Chaboche's law is solved where what is left is this part of the stresses that it is the
- * difference of. */
+/* A step of Chaboche's law is solved where what is left of the stress beyond the surface is this
+ * part of it. */
 static const double settled = 1e-12;
 
 /* Fibres of one material, contiguous and padded with fibres without area. */
@@ -596,21 +596,26 @@ static WB_ALWAYS_INLINE lanes value_of(const struct term *term, lanes d, lanes *
 }
 
 /* Solves E d + all terms = over by Newton's method, to what rounding leaves of the terms. Their sum
- * grows ever slower in d: its tangent at 0 gives the least that d can be, and from any place a step
- * ends below the solution. It begins where the parabola of the first two derivatives has it. */
+ * grows ever slower in d, so that from any place a step ends below the solution; the least that d
+ * can be is known of its tangent at 0 and of its value where the terms have saturated. It begins
+ * where the parabola of the first two derivatives has the solution, if that is near. */
 static WB_ALWAYS_INLINE lanes solve_terms(double E, const struct term *terms, int n, lanes over,
                                           lanes *values, lanes *slope)
 {
-    lanes first = all_lanes(E), second = {0}, enough = over;
+    lanes first = all_lanes(E), second = {0}, all = {0};
+    double last = E;
     for (int i = 0; i < n; i++) {
         const lanes begins = terms[i].rate * terms[i].room + terms[i].slope;
         first += begins;
         second += terms[i].rate * begins;
-        enough += absolute(terms[i].room);
+        all += terms[i].room;
+        last += terms[i].slope;
     }
-    enough *= settled;
-    const lanes least = over / first;
-    lanes d = least + 0.5 * second * least * least / first;
+    const lanes enough = settled * over;
+    const lanes tangent = over / first, saturated = (over - all) * (1.0 / last);
+    const lanes least = select_lanes(saturated > tangent, saturated, tangent);
+    const lanes bend = 0.5 * second * tangent / first;
+    lanes d = select_lanes((bend < 1.0) & (saturated < tangent), tangent * (1.0 + bend), least);
     for (int pass = 0; pass < MOST_PASSES; pass++) {
         lanes left = over - E * d;
         *slope = (lanes){0};
@@ -619,11 +624,11 @@ static WB_ALWAYS_INLINE lanes solve_terms(double E, const struct term *terms, in
             left -= values[i];
         }
         if (!any(absolute(left) > enough))
-            break;
+            return d;
         const lanes next = d + left / (E + *slope);
         d = select_lanes(next > least, next, least);
     }
-    return d;
+    return all_lanes((double)NAN); /* a beam ends where a stress is no number */
 }
 
 /* Chaboche's law. In a step the strain does not turn, so that its rates are integrated exactly:

@@ -69,28 +69,27 @@ static WB_ALWAYS_INLINE lanes all_lanes(double value)
     return value - (lanes){0};
 }
 
-/* 1 - exp(-x) for x >= 0, to 1e-16. The exponential is 2^-k times that of what is left of x beyond
- * k ln 2, at most ln 2 / 2 on either side of 0: Taylor's polynomial, whose terms are added in pairs
- * so that none waits for all before it. */
+/* 1 - exp(-x) for x >= 0, to some 1e-16 of it. The exponential is 2^-k times that of what is left
+ * of x beyond k ln 2, at most ln 2 / 2 on either side of 0. That less one is Taylor's polynomial,
+ * whose terms are added in pairs so that none waits for all before it. */
 static WB_ALWAYS_INLINE lanes one_less_exponential(lanes x)
 {
     const double per_ln2 = 1.4426950408889634074, to_integer = 6755399441055744.0; /* 1.5 * 2^52 */
     const double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
-    const lanes most = all_lanes(700.0);
+    const lanes most = all_lanes(700.0), one = all_lanes(1.0);
     const lanes size = select_lanes(x < most, x, most);
     const lanes shifted = to_integer - size * per_ln2;
     const lanes k = to_integer - shifted;
     const lanes r = -((size - k * ln2_high) - k * ln2_low);
     const lanes r2 = r * r, r4 = r2 * r2;
-    const lanes first = (1.0 + r) + (1.0 / 2 + r * (1.0 / 6)) * r2;
-    const lanes second = (1.0 / 24 + r * (1.0 / 120)) + (1.0 / 720 + r * (1.0 / 5040)) * r2;
+    const lanes first = (1.0 / 2 + r * (1.0 / 6)) + (1.0 / 24 + r * (1.0 / 120)) * r2;
+    const lanes second = (1.0 / 720 + r * (1.0 / 5040)) + (1.0 / 40320 + r * (1.0 / 362880)) * r2;
     const lanes third =
-        (1.0 / 40320 + r * (1.0 / 362880)) + (1.0 / 3628800 + r * (1.0 / 39916800)) * r2;
-    const lanes last = 1.0 / 479001600 + r * (1.0 / 6227020800);
-    const lanes sum = (first + second * r4) + (third + last * r4) * (r4 * r4);
-    /* -k stands in the lowest bits of `shifted`: to the exponent with it. */
-    const lanes power = (lanes)(((masks)shifted << 52) + (masks)sum);
-    return 1.0 - power;
+        (1.0 / 3628800 + r * (1.0 / 39916800)) + (1.0 / 479001600 + r * (1.0 / 6227020800)) * r2;
+    const lanes less_one = r + r2 * (first + (second + third * r4) * r4);
+    /* -k stands in the lowest bits of `shifted`: to the exponent of 1 with it. */
+    const lanes power = (lanes)(((masks)shifted << 52) + (masks)one);
+    return (1.0 - power) - power * less_one;
 }
 
 #endif

@@ -25,6 +25,9 @@ static const double elastic_zone = 0.05;
 /* Deflection over length from there on in which the slope past yield is taken, and the smallest
  * exponent made of it. */
 static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
+/* Chaboche's laws are fitted where the best of the others leaves more than this, over F_max, and
+ * than this many times the repeat noise. */
+static const double follows_up_to = 1e-3, follows_noise = 2.5;
 /* Candidates count up to this many times the best misfit. */
 static const double counts_up_to = 2.0;
 /* Standard errors of a fit on either side of a candidate's number. */
@@ -218,8 +221,8 @@ static const struct wb_cycle_fit *fit_of(const struct wb_cycle_member *member,
     return answer->is_fitted ? &answer->fit : NULL;
 }
 
-/* The fit of a contained law is one of the law that contains it, with a share at its end: the prior
- * of the share, or a search that stopped early, may have kept that from it. */
+/* The fit of a contained law is one of the law that contains it, with a share at its end or a back
+ * stress of nothing: their priors, or a search that stopped early, may have kept that from it. */
 static void take_contained(struct wb_cycle_member *member, enum wb_candidate candidate,
                            const struct wb_cycle_fit *contained)
 {
@@ -230,8 +233,8 @@ static void take_contained(struct wb_cycle_member *member, enum wb_candidate can
     wb_cycle_fit_release(&answer->fit);
     answer->fit = *contained;
     answer->fit.candidate = candidate;
-    answer->fit.n_law++;
-    answer->fit.n_free++;
+    answer->fit.n_law = wb_candidate_numbers(candidate);
+    answer->fit.n_free += answer->fit.n_law - contained->n_law;
     answer->fit.is_at_bound = true;
     answer->fit.tension = wb_memory_new(n, sizeof(double));
     memcpy(answer->fit.tension, contained->tension, n * sizeof(double));
@@ -257,7 +260,7 @@ static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *memb
     const struct wb_cycle_fit *best = NULL;
     for (int c = WB_CANDIDATE_LUDWIK_ISOTROPIC; c <= WB_CANDIDATE_LUDWIK_MIXED; c++)
         best = better(best, fit_of(member, c));
-    return best;
+    return better(best, fit_of(member, WB_CANDIDATE_LUDWIK_COMBINED));
 }
 
 /* Ludwik's candidates. */
@@ -274,11 +277,15 @@ static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct w
     WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, &none, settings));
     const struct wb_cycle_fit *const isotropic = fit_of(member, WB_CANDIDATE_LUDWIK_ISOTROPIC);
     const struct wb_cycle_fit *const kinematic = fit_of(member, WB_CANDIDATE_LUDWIK_KINEMATIC);
-    if (!isotropic && !kinematic)
-        return fit_one(member, WB_CANDIDATE_LUDWIK_MIXED, &start, &none, settings);
+    if (!isotropic && !kinematic) {
+        WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_MIXED, &start, &none, settings));
+        return fit_one(member, WB_CANDIDATE_LUDWIK_COMBINED, &start, &none, settings);
+    }
     WB_TRY(fit_from(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic, kinematic, &none, settings));
     take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic);
     take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, kinematic);
+    WB_TRY(fit_from(member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, kinematic, &none, settings));
+    take_contained(member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic);
     return WB_OK;
 }
 
@@ -296,13 +303,35 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     return WB_OK;
 }
 
+static enum wb_status fit_chaboches(struct wb_cycle_member *member,
+                                    const struct wb_cycle_grid *grid,
+                                    const struct wb_cycle_calibrate_settings *settings)
+{
+    const struct wb_cycle_fit *const near = best_ludwik(member);
+    if (!near)
+        return WB_OK;
+    WB_TRY(fit_one(member, WB_CANDIDATE_CHABOCHE_ONE, &near->law, grid, settings));
+    const struct wb_cycle_fit *const one = fit_of(member, WB_CANDIDATE_CHABOCHE_ONE);
+    WB_TRY(fit_from(member, WB_CANDIDATE_CHABOCHE_TWO, one, near, grid, settings));
+    take_contained(member, WB_CANDIDATE_CHABOCHE_TWO, one);
+    return WB_OK;
+}
+
 /* --- specimens side by side --- */
+
+enum stage {
+    LUDWIKS,
+    PARALLELS, /* from here on with the scale of all specimens' strains */
+    CHABOCHES, /* where the others leave something */
+    STAGES
+};
 
 struct work {
     struct wb_cycle_calibration *calibration;
     const struct wb_dataset *const *datasets;
     const struct wb_cycle_calibrate_settings *settings;
-    const struct wb_cycle_grid *grid; /* NULL: Ludwik's candidates */
+    enum stage stage;
+    struct wb_cycle_grid grid;
     int done, all;
     bool stopped;
     enum wb_status status; /* the first failure */
@@ -313,9 +342,10 @@ static enum wb_status fit_member(void *context, int index)
     struct work *const work = context;
     struct wb_cycle_member *const member = &work->calibration->members[index];
     const double begin = wb_progress_thread_cpu();
-    const enum wb_status status = work->grid
-                                      ? fit_parallels(member, work->grid, work->settings)
-                                      : fit_ludwiks(member, work->datasets[index], work->settings);
+    const enum wb_status status =
+        work->stage == LUDWIKS     ? fit_ludwiks(member, work->datasets[index], work->settings)
+        : work->stage == PARALLELS ? fit_parallels(member, &work->grid, work->settings)
+                                   : fit_chaboches(member, &work->grid, work->settings);
     member->cpu_s += wb_progress_thread_cpu() - begin;
     return status;
 }
@@ -332,8 +362,9 @@ static bool finish_member(void *context, int index, enum wb_status status)
     return !work->stopped;
 }
 
-static enum wb_status work_side_by_side(struct work *work)
+static enum wb_status work_side_by_side(struct work *work, enum stage stage)
 {
+    work->stage = stage;
     const struct wb_workers workers = {
         .n = work->stopped ? 0 : work->calibration->n_members,
         .n_threads = work->settings->threads,
@@ -481,6 +512,14 @@ static void choose(struct wb_cycle_calibration *calibration)
     calibration->chosen = calibration->ranked[chosen].candidate;
     calibration->is_supported = calibration->has_unloading && !calibration->is_stopped &&
                                 best->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
+}
+
+/* Whether laws of more kinds are worth their time. */
+static bool leaves_something(const struct wb_cycle_calibration *calibration)
+{
+    return calibration->n_ranked > 0 &&
+           calibration->ranked[0].misfit >
+               fmax(follows_up_to, follows_noise * calibration->repeat_noise);
 }
 
 /* Numbers of a specimen that are averaged. */
@@ -649,6 +688,39 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
     return WB_OK;
 }
 
+/* Means of the stresses that the specimens harden by, and of the logarithms of the rates, each as
+ * its stress counts: a rate of next to no stress says nothing. */
+static void average_chaboche(const struct wb_cycle_calibration *calibration,
+                             enum wb_candidate candidate, struct wb_law *average)
+{
+    const int n = calibration->n_members;
+    const struct wb_law *const first = &calibration->members[0].answers[candidate].fit.law;
+    struct wb_material material = first->material;
+    double E = 0.0, yield = 0.0, saturation = 0.0, rate = 0.0;
+    double stress[WB_LAW_MOST_BACKS] = {0.0}, recovery[WB_LAW_MOST_BACKS] = {0.0};
+    for (int i = 0; i < n; i++) {
+        const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
+        E += log(law->material.youngs_modulus) / n;
+        yield += law->material.yield_stress / n;
+        saturation += law->saturation / n;
+        rate += law->saturation * log(law->rate) / n;
+        for (int k = 0; k < law->n_backs; k++) {
+            const double end = law->backs[k].modulus / law->backs[k].recovery;
+            stress[k] += end / n;
+            recovery[k] += end * log(law->backs[k].recovery) / n;
+        }
+    }
+    struct wb_law_back backs[WB_LAW_MOST_BACKS];
+    for (int k = 0; k < first->n_backs; k++) {
+        const double gamma = exp(recovery[k] / stress[k]);
+        backs[k] = (struct wb_law_back){stress[k] * gamma, gamma};
+    }
+    material.youngs_modulus = exp(E);
+    material.yield_stress = yield;
+    wb_law_init_chaboche(average, &material, saturation, exp(rate / saturation), backs,
+                         first->n_backs);
+}
+
 /* The law of the product. Of parallel parts the means: together they carry the mean of what the
  * specimens carry. A part that one specimen has and another nearly not would be gone in the mean of
  * the logarithms. Of Ludwik's law the means of the logarithms of what it is made of. */
@@ -675,6 +747,10 @@ static void average_law(const struct wb_cycle_calibration *calibration, enum wb_
             exponent += log(m->hardening_exponent) / n;
         }
     }
+    if (first->form == WB_LAW_CHABOCHE) {
+        average_chaboche(calibration, candidate, average);
+        return;
+    }
     if (first->form == WB_LAW_PARALLEL) {
         struct wb_law_part parts[WB_LAW_MOST_PARTS];
         for (int k = 0; k < first->n_parts; k++)
@@ -689,6 +765,7 @@ static void average_law(const struct wb_cycle_calibration *calibration, enum wb_
     material.strength_coefficient = exp(hardening) / pow(plastic, material.hardening_exponent);
     wb_law_init_ludwik(average, &material);
     average->isotropic_share = share;
+    average->is_combined = first->is_combined;
 }
 
 static enum wb_status find_equivalents(struct wb_cycle_calibration *calibration)
@@ -707,7 +784,7 @@ static enum wb_status find_equivalents(struct wb_cycle_calibration *calibration)
         const struct wb_law *const law = &member->answers[calibration->chosen].fit.law;
         member->ludwik = law->material;
         member->ludwik_misfit = 0.0;
-        if (law->form == WB_LAW_PARALLEL)
+        if (law->form != WB_LAW_LUDWIK)
             WB_TRY(
                 wb_bending_ludwik(law, diameter, largest, &member->ludwik, &member->ludwik_misfit));
     }
@@ -819,10 +896,10 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
         .calibration = calibration,
         .datasets = datasets,
         .settings = settings,
-        .all = 2 * calibration->n_members,
+        .all = STAGES * calibration->n_members,
         .status = WB_OK,
     };
-    enum wb_status status = work_side_by_side(&work);
+    enum wb_status status = work_side_by_side(&work, LUDWIKS);
     if (status != WB_OK)
         return tell_failure(calibration, status, why);
     /* Specimens are taken in order, and what was begun was ended. */
@@ -833,13 +910,19 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
         if (data->n_loading == data->n_points)
             calibration->has_unloading = false;
     }
-    const struct wb_cycle_grid grid = find_grid(calibration);
-    work.grid = &grid;
+    work.grid = find_grid(calibration);
+    int n_stages = calibration->has_unloading ? PARALLELS + 1 : LUDWIKS + 1;
     if (calibration->has_unloading && !work.stopped)
-        status = work_side_by_side(&work);
+        status = work_side_by_side(&work, PARALLELS);
+    choose(calibration);
+    if (status == WB_OK && calibration->has_unloading && leaves_something(calibration)) {
+        n_stages = CHABOCHES + 1;
+        if (!work.stopped)
+            status = work_side_by_side(&work, CHABOCHES);
+    }
     if (status != WB_OK)
         return tell_failure(calibration, status, why);
-    calibration->is_stopped = work.done < (calibration->has_unloading ? work.all : work.all / 2);
+    calibration->is_stopped = work.done < n_stages * (work.all / STAGES);
     choose(calibration);
     if (calibration->n_ranked == 0)
         return tell_failure(calibration, WB_ERR_DATA, why);

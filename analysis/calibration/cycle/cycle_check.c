@@ -54,7 +54,7 @@ static const double zero_share = 0.01;
 static const double slack = 2.5e-3;
 /* Standard deviations between two estimates of the bow; and how well an alignment knows it that
  * does not say. */
-static const double bow_limit = 3.0, bow_deviation = 0.3 * WB_MM;
+static const double bow_limit = 3.0, bow_doubt = 5.0, bow_deviation = 0.3 * WB_MM;
 /* A misfit beyond this part of the largest force; or this many times the noise of the readings. */
 static const double misfit_share = 0.01, misfit_noise = 3.0;
 /* Standard deviations of ln(EI) between a specimen and the others. Those are few, and their
@@ -483,7 +483,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
         zero > slack && data->zero_tension > slack && fabs(data->zero_tension - zero) > limit;
     const bool level_off =
         fabs(level) > (bow_off ? level_limit_with_bow : level_limit) * level_deviation;
-    if (!level_off && !zero_off) {
+    if (!level_off && !zero_off && !(has_bow && apart > bow_doubt)) {
         if (bow_off)
             say(remarks, WB_CHECK_NOTE, s->sample,
                 "wire '%s', sample %d: the bow of the alignment is %.2f mm, that of the fit %.2f "

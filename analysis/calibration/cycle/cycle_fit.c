@@ -58,14 +58,24 @@ static const double know_nothing = 1e-6, surest = 1e-12;
  * nearly nothing grows by powers over a whole one, which the errors to first order mean nothing of.
  */
 static const double moved_by = 0.01, farthest = 1.0;
+/* Weak priors of Chaboche's law: of the stresses that it may harden by, about the yield stress, and
+ * of the rates, about those over which a test goes. */
+static const double stress_prior = 4.0, rate_prior = 2.0;
+/* Where its search starts: rates times the test's largest strain, of one and of two back stresses.
+ */
+static const double one_rate = 4.0, fast_rate = 20.0, slow_rate = 2.0;
+/* And the least share of either kind of hardening. */
+static const double least_share = 0.1;
 /* Residual of a run that does not reach its end: far above any other. */
 static const double lost_residual = 1e4;
 
 struct candidate {
     const char *name;
     enum wb_law_form form;
-    bool is_mixed;
+    bool has_share; /* of isotropic hardening, free */
     double isotropic_share;
+    bool is_combined;
+    int n_backs;
 };
 
 static const struct candidate candidates[WB_CANDIDATES] = {
@@ -74,11 +84,37 @@ static const struct candidate candidates[WB_CANDIDATES] = {
     [WB_CANDIDATE_LUDWIK_MIXED] = {"Ludwik, mixed", WB_LAW_LUDWIK, true, 0.5},
     [WB_CANDIDATE_PARALLEL_KINEMATIC] = {"parallel parts, kinematic", WB_LAW_PARALLEL, false, 0.0},
     [WB_CANDIDATE_PARALLEL_MIXED] = {"parallel parts, mixed", WB_LAW_PARALLEL, true, 0.5},
+    [WB_CANDIDATE_LUDWIK_COMBINED] = {"Ludwik, combined", WB_LAW_LUDWIK, true, 0.5, true, 0},
+    [WB_CANDIDATE_CHABOCHE_ONE] = {.name = "Chaboche, one back stress",
+                                   .form = WB_LAW_CHABOCHE,
+                                   .is_combined = true,
+                                   .n_backs = 1},
+    [WB_CANDIDATE_CHABOCHE_TWO] = {.name = "Chaboche, two back stresses",
+                                   .form = WB_LAW_CHABOCHE,
+                                   .is_combined = true,
+                                   .n_backs = 2},
+};
+
+/* Free numbers of Chaboche's law: logarithms of E, sigma_Y, Q and b, then of each back stress where
+ * it saturates, C / gamma, and its gamma. */
+enum {
+    MODULUS,
+    YIELD,
+    SATURATION,
+    RATE,
+    FIRST_BACK
 };
 
 const char *wb_candidate_name(enum wb_candidate candidate)
 {
     return candidates[candidate].name;
+}
+
+int wb_candidate_numbers(enum wb_candidate candidate)
+{
+    const struct candidate *const c = &candidates[candidate];
+    const int numbers = c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS : FIRST_BACK + 2 * c->n_backs;
+    return numbers + c->has_share;
 }
 
 #define AT(field) offsetof(struct wb_cycle_fit_settings, field)
@@ -250,7 +286,8 @@ static double logistic(double x)
 
 static double largest_exponent_of(const struct candidate *c)
 {
-    return c->is_mixed || c->isotropic_share < 1.0 ? largest_kinematic_exponent : largest_exponent;
+    const bool is_overlay = !c->is_combined && (c->has_share || c->isotropic_share < 1.0);
+    return is_overlay ? largest_kinematic_exponent : largest_exponent;
 }
 
 /* ln E, ln sigma_Y, ln(hardening stress at the middle), logistic exponent; or moduli over those of
@@ -258,7 +295,7 @@ static double largest_exponent_of(const struct candidate *c)
 static void law_of(const struct problem *p, const double *free, struct wb_law *law)
 {
     const struct candidate *const c = p->candidate;
-    const double share = c->is_mixed ? logistic(free[p->n_law - 1]) : c->isotropic_share;
+    const double share = c->has_share ? logistic(free[p->n_law - 1]) : c->isotropic_share;
 
     if (c->form == WB_LAW_LUDWIK) {
         const double n = largest_exponent_of(c) * logistic(free[3]);
@@ -272,6 +309,21 @@ static void law_of(const struct problem *p, const double *free, struct wb_law *l
         };
         wb_law_init_ludwik(law, &material);
         law->isotropic_share = share;
+        if (c->is_combined)
+            wb_law_init_combined(law, &material, share);
+        return;
+    }
+    if (c->form == WB_LAW_CHABOCHE) {
+        const struct wb_material material = {.youngs_modulus = exp(free[MODULUS]),
+                                             .poissons_ratio = p->poissons_ratio,
+                                             .yield_stress = exp(free[YIELD])};
+        struct wb_law_back backs[WB_LAW_MOST_BACKS];
+        for (int i = 0; i < c->n_backs; i++) {
+            const double *const back = free + FIRST_BACK + 2 * i;
+            backs[i] = (struct wb_law_back){exp(back[0] + back[1]), exp(back[1])};
+        }
+        wb_law_init_chaboche(law, &material, exp(free[SATURATION]), exp(free[RATE]), backs,
+                             c->n_backs);
         return;
     }
     struct wb_law_part parts[WB_FIT_PARTS];
@@ -284,6 +336,50 @@ static void law_of(const struct problem *p, const double *free, struct wb_law *l
                 : p->grid->first_strain * pow(ratio, (double)i / (WB_FIT_PARTS - 1));
     }
     wb_law_init_parallel(law, parts, WB_FIT_PARTS, share, p->poissons_ratio);
+}
+
+/* From another of its kind; the second of two back stresses comes of the first. */
+static void start_from_chaboche(struct problem *p, const struct wb_law *law)
+{
+    const int n = p->candidate->n_backs;
+    p->start[MODULUS] = log(law->material.youngs_modulus);
+    p->start[YIELD] = log(law->material.yield_stress);
+    p->start[SATURATION] = log(law->saturation);
+    p->start[RATE] = log(law->rate);
+    for (int i = 0; i < n; i++) {
+        const struct wb_law_back *const back = &law->backs[i < law->n_backs ? i : 0];
+        const double split = n > law->n_backs ? 2.0 : 1.0;
+        const double rate = i == 0 ? back->recovery * split : back->recovery / split;
+        p->start[FIRST_BACK + 2 * i] = log(back->modulus / back->recovery / split);
+        p->start[FIRST_BACK + 2 * i + 1] = log(rate);
+    }
+}
+
+/* From the virgin curve of another law, which hardens by as much at the test's largest strain and,
+ * of two back stresses, at a tenth of it. */
+static void start_from_curve(struct problem *p, const struct wb_law *law)
+{
+    const double E = law->material.youngs_modulus, top = p->grid->last_strain;
+    const double stress = wb_law_virgin_stress(law, top, NULL);
+    const double yield = fmin(
+        law->form == WB_LAW_PARALLEL ? 0.1 * stress : law->material.yield_stress, 0.5 * stress);
+    const double share = fmin(fmax(law->isotropic_share, least_share), 1.0 - least_share);
+    const double hardening = stress - yield;
+    p->start[MODULUS] = log(E);
+    p->start[YIELD] = log(yield);
+    p->start[SATURATION] = log(share * hardening);
+    p->start[RATE] = log(one_rate / top);
+    if (p->candidate->n_backs == 1) {
+        p->start[FIRST_BACK] = log((1.0 - share) * hardening);
+        p->start[FIRST_BACK + 1] = log(one_rate / top);
+        return;
+    }
+    const double early = wb_law_virgin_stress(law, 0.1 * top, NULL) - yield;
+    const double fast = fmin(fmax(early, 0.1 * hardening), 0.7 * hardening);
+    p->start[FIRST_BACK] = log((1.0 - share) * fast);
+    p->start[FIRST_BACK + 1] = log(fast_rate / top);
+    p->start[FIRST_BACK + 2] = log((1.0 - share) * (hardening - fast));
+    p->start[FIRST_BACK + 3] = log(slow_rate / top);
 }
 
 /* Free numbers of the law nearest to the given one. */
@@ -300,6 +396,11 @@ static void start_from(struct problem *p, const struct wb_law *law)
         p->start[1] = log(m->yield_stress);
         p->start[2] = log(m->strength_coefficient * pow(middle_plastic_strain, n));
         p->start[3] = log(part / (1.0 - part));
+    } else if (c->form == WB_LAW_CHABOCHE) {
+        if (law->form == WB_LAW_CHABOCHE)
+            start_from_chaboche(p, law);
+        else
+            start_from_curve(p, law);
     } else {
         /* Slopes of the given curve's chords between the yield strains. */
         const double ratio =
@@ -319,7 +420,7 @@ static void start_from(struct problem *p, const struct wb_law *law)
         }
     }
     /* From the side of the pure rule that was nearer. */
-    if (c->is_mixed)
+    if (c->has_share)
         p->start[p->n_law - 1] = law->isotropic_share == 1.0   ? isotropic_start
                                  : law->isotropic_share == 0.0 ? kinematic_start
                                                                : 0.0;
@@ -385,11 +486,19 @@ static int prior_residuals(const struct problem *p, const double *free, const st
     if (c->form == WB_LAW_PARALLEL) {
         at += wb_least_squares_smooth_parts(law->parts, WB_FIT_PARTS, p->settings->modulus_prior,
                                             r + at);
+    } else if (c->form == WB_LAW_CHABOCHE) {
+        const double slow = log(p->grid->last_strain);
+        r[at++] = (free[SATURATION] - free[YIELD]) / stress_prior;
+        r[at++] = (free[RATE] + slow) / rate_prior;
+        for (int i = FIRST_BACK; i < p->n_law; i += 2) {
+            r[at++] = (free[i] - free[YIELD]) / stress_prior;
+            r[at++] = (free[i + 1] + slow) / rate_prior;
+        }
     } else {
         r[at++] = (free[1] - free[2]) / yield_prior;
         r[at++] = free[3] / logistic_prior;
     }
-    if (c->is_mixed)
+    if (c->has_share)
         r[at++] = free[p->n_law - 1] / logistic_prior;
     return at;
 }
@@ -739,6 +848,9 @@ static void find_correlations(const struct problem *p, const gsl_matrix *covaria
         turn[3][3] = exponent * (1.0 - exponent / largest_exponent_of(p->candidate));
         turn[2][3] = -turn[3][3] * log(middle_plastic_strain);
     }
+    /* C of where it saturates and gamma. */
+    for (int i = FIRST_BACK; p->candidate->form == WB_LAW_CHABOCHE && i < n; i += 2)
+        turn[i][i + 1] = 1.0;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             c[i][j] = 0.0;
@@ -759,8 +871,12 @@ static void find_correlations(const struct problem *p, const gsl_matrix *covaria
 const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text[24])
 {
     static const char *const ludwik[] = {"E", "sigma_Y", "K", "n"};
+    static const char *const chaboche[] = {"E",      "sigma_Y", "Q",      "b",  "C1",
+                                           "gamma1", "C2",      "gamma2", "C3", "gamma3"};
     const bool is_ludwik = fit->law.form == WB_LAW_LUDWIK;
-    if (i >= (is_ludwik ? 4 : fit->law.n_parts))
+    if (fit->law.form == WB_LAW_CHABOCHE)
+        snprintf(text, 24, "%s", chaboche[i]);
+    else if (i >= (is_ludwik ? 4 : fit->law.n_parts))
         snprintf(text, 24, "isotropic share");
     else if (is_ludwik)
         snprintf(text, 24, "%s", ludwik[i]);
@@ -847,8 +963,10 @@ static void find_misfits(struct wb_cycle_fit *fit, struct problem *p)
 static int count_residuals(const struct problem *p)
 {
     const struct candidate *const c = p->candidate;
-    return p->data->n_points + p->data->n_places + p->data->n_markers + 2 +
-           (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS - 3 : 2) + c->is_mixed;
+    const int priors = c->form == WB_LAW_PARALLEL   ? WB_FIT_PARTS - 3
+                       : c->form == WB_LAW_CHABOCHE ? 2 + 2 * c->n_backs
+                                                    : 2;
+    return p->data->n_points + p->data->n_places + p->data->n_markers + 2 + priors + c->has_share;
 }
 
 /* The last run, with more elements. */
@@ -912,7 +1030,7 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     fit->level = specimen.level;
     fit->uneven_angle = specimen.uneven_angle;
     fit->is_at_bound = (p->candidate->form == WB_LAW_LUDWIK && fabs(free_numbers[3]) > at_bound) ||
-                       (p->candidate->is_mixed && fabs(free_numbers[p->n_law - 1]) > at_bound);
+                       (p->candidate->has_share && fabs(free_numbers[p->n_law - 1]) > at_bound);
     if (!finish_slopes(p, w))
         return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: %s: no slopes at the end",
                           p->data->info.wire, p->data->info.sample, p->candidate->name);
@@ -937,7 +1055,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
         .candidate = c,
         .grid = grid,
         .poissons_ratio = start->material.poissons_ratio,
-        .n_law = (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS : 4) + c->is_mixed,
+        .n_law = wb_candidate_numbers(candidate),
     };
     p.n_free = p.n_law + 2 + has_places(data);
     p.n_residuals = count_residuals(&p);

@@ -27,11 +27,17 @@ enum wb_candidate {
     WB_CANDIDATE_LUDWIK_MIXED,
     WB_CANDIDATE_PARALLEL_KINEMATIC,
     WB_CANDIDATE_PARALLEL_MIXED,
+    WB_CANDIDATE_LUDWIK_COMBINED,
+    WB_CANDIDATE_CHABOCHE_ONE, /* one back stress, and a yield stress that grows */
+    WB_CANDIDATE_CHABOCHE_TWO,
     WB_CANDIDATES
 };
 
 /* "Ludwik, isotropic", ... */
 const char *wb_candidate_name(enum wb_candidate candidate);
+
+/* Free numbers of its law. */
+int wb_candidate_numbers(enum wb_candidate candidate);
 
 enum {
     WB_FIT_PARTS = 7,     /* parallel parts, the last elastic */
@@ -60,7 +66,8 @@ extern const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS];
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
 
 /* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain between the
- * first two points of the data to that at the last, where the elastic part's would stand. */
+ * first two points of the data to that at the last, where the elastic part's would stand. The last
+ * is also the scale of the plastic strains over which Chaboche's stresses grow. */
 struct wb_cycle_grid {
     double first_strain, last_strain;
 };
@@ -83,8 +90,9 @@ struct wb_cycle_fit {
     int n_moved;
     double moved_by[WB_FIT_MOST_FREE];
     struct wb_law moved[WB_FIT_MOST_FREE];
-    /* How the law's numbers hang together in this fit: of ln E, ln sigma_Y, ln K and n, or of the
-     * parts' moduli; then of the isotropic share where that is free. NaN unknown. */
+    /* How the law's numbers hang together in this fit: of ln E, ln sigma_Y, ln K and n, of the
+     * parts' moduli, or of the logarithms of Chaboche's; then of the isotropic share where that is
+     * free. NaN unknown. */
     int n_numbers;
     double correlation[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
     double clamp_curvature; /* 1/m, largest */
@@ -98,7 +106,7 @@ struct wb_cycle_fit {
 };
 
 /* Fits one candidate. `start` gives a law near by, from which all start; `grid` is used by parallel
- * parts. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted.
+ * parts and Chaboche's laws. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted.
  * WB_ERR_CONVERGENCE where the beam cannot compute the start; `why` receives it, NULL: logged. */
 WB_MUST_CHECK enum wb_status
 wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,

@@ -40,7 +40,7 @@ static enum wb_status fit(const struct wb_cycle_calibration *calibration,
     const struct wb_law *const start =
         &calibration->members[0].answers[calibration->chosen].fit.law;
     const double diameter = data->info.outer_diameter, largest = calibration->largest_curvature;
-    struct wb_cycle_grid grid = {0.0, 0.0};
+    struct wb_cycle_grid grid = {.last_strain = 0.5 * diameter * largest};
     struct wb_cycle_fit found = {.tension = NULL};
     struct wb_reason why = {""};
     if (start->form == WB_LAW_PARALLEL) {

@@ -15,6 +15,8 @@ static inline double worst_of_containing(const struct wb_cycle_calibration *c)
         {WB_CANDIDATE_LUDWIK_MIXED, WB_CANDIDATE_LUDWIK_ISOTROPIC},
         {WB_CANDIDATE_LUDWIK_MIXED, WB_CANDIDATE_LUDWIK_KINEMATIC},
         {WB_CANDIDATE_PARALLEL_MIXED, WB_CANDIDATE_PARALLEL_KINEMATIC},
+        {WB_CANDIDATE_LUDWIK_COMBINED, WB_CANDIDATE_LUDWIK_ISOTROPIC},
+        {WB_CANDIDATE_CHABOCHE_TWO, WB_CANDIDATE_CHABOCHE_ONE},
     };
     double worst = 0.0;
     for (int i = 0; i < c->n_members; i++) {

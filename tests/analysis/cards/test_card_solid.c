@@ -124,6 +124,43 @@ static void materials_together_are_the_law(void **state)
     }
 }
 
+/* Combined hardening: its own where the program has it, else the virgin curve, which says so. */
+static void combined_hardening_is_the_programs_or_a_first_loading(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < WB_COUNT(kinds); k++) {
+        read_card(kinds[k].kind, kinds[k].plastic, PROPERTIES COMBINED, &card);
+        assert_int_equal(card.n, 1);
+        compare_with_law(&card, PROPERTIES COMBINED, 3e-4);
+    }
+    read_card("calculix", "*PLASTIC", PROPERTIES CHABOCHE, &card);
+    assert_int_equal(card.n, 1);
+    compare_with_law(&card, PROPERTIES CHABOCHE, 1e-3);
+
+    const struct wb_card_settings settings = card_defaults();
+    const struct wb_card_source source = source_of(PROPERTIES CHABOCHE);
+    struct wb_text text = card_of("calculix", &source, &settings);
+    assert_non_null(strstr(wb_text_string(&text), "not for the way back"));
+    wb_text_release(&text);
+    text = card_of("abaqus", &source, &settings);
+    assert_null(strstr(wb_text_string(&text), "not for the way back"));
+    const char *const plastic =
+        strstr(wb_text_string(&text),
+               "*PLASTIC, HARDENING=COMBINED, DATA TYPE=PARAMETERS, NUMBER BACKSTRESSES=2\n");
+    const char *const cyclic = strstr(wb_text_string(&text), "*CYCLIC HARDENING, PARAMETERS\n");
+    double n[5], g[3];
+    assert_true(plastic && cyclic);
+    assert_int_equal(
+        sscanf(strchr(plastic, '\n'), "%lf, %lf, %lf, %lf, %lf", n, n + 1, n + 2, n + 3, n + 4), 5);
+    assert_int_equal(sscanf(strchr(cyclic, '\n'), "%lf, %lf, %lf", g, g + 1, g + 2), 3);
+    static const double expected[] = {2e6, 2.6e9, 900.0, 0.7e9, 60.0}, grows[] = {2e6, 1.5e6, 250};
+    for (int i = 0; i < 5; i++)
+        assert_close_relative(n[i], expected[i], 1e-9);
+    for (int i = 0; i < 3; i++)
+        assert_close_relative(g[i], grows[i], 1e-9);
+    wb_text_release(&text);
+}
+
 static void tables_begin_at_zero_plastic_strain_and_rise(void **state)
 {
     (void)state;
@@ -237,6 +274,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(materials_together_are_the_law),
+        cmocka_unit_test(combined_hardening_is_the_programs_or_a_first_loading),
         cmocka_unit_test(tables_begin_at_zero_plastic_strain_and_rise),
         cmocka_unit_test(ludwik_of_any_exponent_keeps_to_its_curve),
         cmocka_unit_test(parts_share_the_mass_and_flow_alike),

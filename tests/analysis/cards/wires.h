@@ -23,6 +23,11 @@
 #define KINEMATIC "law:\n  form: parallel\n  hardening: kinematic\n" PARTS
 #define ISOTROPIC "law:\n  form: parallel\n  hardening: isotropic\n" PARTS
 #define MIXED "law:\n  form: parallel\n  hardening: mixed\n  isotropic_share: 0.3\n" PARTS
+#define COMBINED "law: {form: ludwik, hardening: combined, isotropic_share: 0.3}\n"
+#define CHABOCHE                                                                                   \
+    "law:\n  form: chaboche\n  hardening: combined\n  chaboche: {youngs_modulus_MPa: 5500, "       \
+    "yield_stress_MPa: 2, saturation_MPa: 1.5, rate: 250, back_stresses: "                         \
+    "[{modulus_MPa: 2600, recovery: 900}, {modulus_MPa: 700, recovery: 60}]}\n"
 
 static inline struct wb_card_source source_of(const char *text)
 {
