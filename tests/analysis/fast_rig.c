@@ -18,6 +18,10 @@
 
 static const double tare_time = 2.5, speed = 1.0 * WB_MM, turn_pause = 0.2, end_pause = 2.0;
 static const int strips = 12;
+/* Steps from one curvature of the truth to the next: a part that relaxes needs small ones. */
+enum {
+    TRUTH_STEPS = 40
+};
 
 void fast_rig_init(struct fast_rig *fast, int type, double length, uint64_t seed)
 {
@@ -206,13 +210,16 @@ void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature,
     /* The clamp's curvature grows about evenly in time. */
     double at = 0.0;
     for (int i = 0; i < n; i++) {
-        laws.time_step = fast->travel / speed * (curvature[i] - at) / curvature[n - 1];
-        wb_fibres_respond(fibres, 0.0, curvature[i], before, after, &response);
+        const double step = (curvature[i] - at) / TRUTH_STEPS;
+        laws.time_step = fast->travel / speed * step / curvature[n - 1];
+        for (int k = 1; k <= TRUTH_STEPS; k++) {
+            wb_fibres_respond(fibres, 0.0, at + k * step, before, after, &response);
+            double *const old = before;
+            before = after;
+            after = old;
+        }
         if (moment)
             moment[i] = response.M;
-        double *const old = before;
-        before = after;
-        after = old;
         at = curvature[i];
     }
     if (residual_curvature) {
