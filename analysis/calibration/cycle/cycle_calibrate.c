@@ -436,7 +436,9 @@ static int count_points(const struct wb_cycle_calibration *calibration)
     return n;
 }
 
-static void pool_misfit(const struct wb_cycle_calibration *calibration, struct wb_cycle_rank *rank)
+/* A search whose iterations ran out is no fit, unless that is all there is. */
+static void pool_misfit(const struct wb_cycle_calibration *calibration, bool unfinished,
+                        struct wb_cycle_rank *rank)
 {
     double sum = 0.0;
     int n = 0;
@@ -444,7 +446,7 @@ static void pool_misfit(const struct wb_cycle_calibration *calibration, struct w
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_member *const member = &calibration->members[i];
         const struct wb_cycle_answer *const answer = &member->answers[rank->candidate];
-        if (!answer->is_fitted) {
+        if (!answer->is_fitted || !(answer->fit.is_converged || unfinished)) {
             rank->is_fitted = false;
             return;
         }
@@ -480,11 +482,13 @@ static void choose(struct wb_cycle_calibration *calibration)
     double degrees;
     find_repeat_noise(calibration, &degrees);
     calibration->n_ranked = 0;
-    for (int c = 0; c < WB_CANDIDATES; c++) {
-        struct wb_cycle_rank *const rank = &calibration->ranked[c];
-        *rank = (struct wb_cycle_rank){.candidate = c};
-        pool_misfit(calibration, rank);
-        calibration->n_ranked += rank->is_fitted;
+    for (int unfinished = 0; unfinished < 2 && calibration->n_ranked == 0; unfinished++) {
+        for (int c = 0; c < WB_CANDIDATES; c++) {
+            struct wb_cycle_rank *const rank = &calibration->ranked[c];
+            *rank = (struct wb_cycle_rank){.candidate = c};
+            pool_misfit(calibration, unfinished, rank);
+            calibration->n_ranked += rank->is_fitted;
+        }
     }
     qsort(calibration->ranked, WB_CANDIDATES, sizeof calibration->ranked[0], by_misfit);
 

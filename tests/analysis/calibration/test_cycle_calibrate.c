@@ -268,6 +268,27 @@ static void what_is_stopped_later_has_the_laws_that_all_specimens_have(void **un
     wb_cycle_calibrate_release(&c);
 }
 
+/* With few iterations some searches end in time and others do not. */
+static void an_unfinished_fit_is_not_ranked(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibrate_settings settings;
+    int ranked[2] = {0, 0};
+    wb_cycle_calibrate_default_settings(&settings);
+    for (int i = 0; i < 2; i++) {
+        struct wb_cycle_calibration c;
+        settings.fit.max_iterations = i == 0 ? 12 : 1;
+        assert_int_equal(wb_cycle_calibrate_run(&c, list, 1, &settings, NULL), WB_OK);
+        for (int k = 0; k < c.n_ranked; k++)
+            ranked[i] += c.members[0].answers[c.ranked[k].candidate].fit.is_converged;
+        assert_int_equal(ranked[i], i == 0 ? c.n_ranked : 0);
+        assert_int_equal(wb_cycle_calibrate_is_converged(&c), i == 0);
+        assert_true(i == 1 || c.n_ranked < all.n_ranked);
+        wb_cycle_calibrate_release(&c);
+    }
+    assert_true(ranked[0] > 0);
+}
+
 /* The last of all fits is not cut short. */
 static void a_stop_at_the_end_is_none(void **unused)
 {
@@ -394,6 +415,7 @@ int main(void)
         cmocka_unit_test(a_wire_without_a_way_back_is_ludwiks_and_not_supported),
         cmocka_unit_test(what_is_stopped_gives_the_specimens_that_were_fitted),
         cmocka_unit_test(what_is_stopped_later_has_the_laws_that_all_specimens_have),
+        cmocka_unit_test(an_unfinished_fit_is_not_ranked),
         cmocka_unit_test(a_stop_at_the_end_is_none),
         cmocka_unit_test(an_unevenly_bent_wire_does_not_change_the_law),
         cmocka_unit_test(what_is_said_is_near_the_truth),
