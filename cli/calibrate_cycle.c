@@ -47,7 +47,7 @@ static void print_estimate(const struct wb_cycle_calibration *c, const char *nam
 {
     char value[NUMBER];
     const bool only_range = c->has_unloading && !c->is_supported;
-    printf("%-28s %9s%s%-5s", name, only_range ? "" : format(e->value / unit, value),
+    printf("%-34s %9s%s%-5s", name, only_range ? "" : format(e->value / unit, value),
            unit_name[0] ? " " : "", unit_name);
     if (!only_range)
         print_range("  interval", e->low / unit, e->high / unit);
@@ -67,21 +67,41 @@ static void print_meaning(const struct wb_cycle_calibration *c,
         printf("one specimen: no interval for the product\n");
 }
 
+static void print_stiffness(const struct wb_cycle_calibration *c, const char *what,
+                            const struct wb_cycle_stiffness *stiffness)
+{
+    char name[64];
+    for (int k = 0; k < stiffness->n; k++) {
+        snprintf(name, sizeof name, "%s %.3g 1/m", what, stiffness->curvature[k]);
+        print_estimate(c, name, &stiffness->estimate[k], N_MM2, "N mm2");
+    }
+}
+
 static void print_numbers(const struct wb_cycle_calibration *c,
                           const struct wb_cycle_calibrate_settings *settings)
 {
     char name[64], curvature[NUMBER];
-    print_estimate(c, "EI", &c->rigidity, N_MM2, "N mm2");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
         snprintf(name, sizeof name, "M at %s 1/m", format(c->curvature[k], curvature));
         print_estimate(c, name, &c->moment[k], N_MM, "N mm");
     }
+    print_stiffness(c, "unloading stiffness over", &c->unloading);
     if (c->has_unloading) {
         print_estimate(c, "springback, of a curvature", &c->springback, 1.0, "");
         print_estimate(c, "loop energy", &c->loop_energy, MILLI, "mJ/m");
     } else {
         printf("no springback and no loop energy: the tests have no way back\n");
     }
+    print_stiffness(c, "secant EI to", &c->secant);
+    print_estimate(c, "EI at zero curvature", &c->rigidity, N_MM2, "N mm2");
+    printf("the data of all specimens begin at a curvature of %.2g 1/m; below it%s",
+           c->secant.resolved, c->has_unloading ? "" : " the law speaks alone\n");
+    if (c->has_unloading)
+        printf(", and over less than %.2g 1/m behind the turn, the law speaks alone\n",
+               c->unloading.resolved);
+    if (!c->is_rigidity_resolved)
+        printf("EI at zero curvature is not resolved: take a stiffness at the curvatures of your "
+               "use\n");
     print_meaning(c, settings);
     printf("largest curvature that all specimens reached: %s 1/m; beyond it the law is not "
            "measured\n",

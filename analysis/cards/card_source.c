@@ -266,8 +266,9 @@ void wb_card_source_append(const struct wb_card_source *source, const char *kind
     static const char *const forms[] = {
         [WB_LAW_LUDWIK] = "Ludwik's, sigma_Y + K ep^n",
         [WB_LAW_PARALLEL] = "parallel parts",
-        [WB_LAW_CHABOCHE] = "Chaboche's, yield stress sigma_Y + Q (1 - exp(-b p)), back stresses "
-                            "dX = C dep - gamma X dp",
+        [WB_LAW_CHABOCHE] =
+            ("Chaboche's, yields at sigma_Y + Q (1 - exp(-b p)) about the sum of X, "
+             "dX = C dep - gamma X dp"),
     };
     const char *const warning = wb_card_source_warning(source);
     struct wb_text numbers = {0};

@@ -90,12 +90,25 @@ static enum wb_status find_springback_ratio(const struct wb_properties *p, doubl
 static enum wb_status take_rigidity(struct wb_compare_quantity *q,
                                     const struct wb_properties *const *p)
 {
-    *q = (struct wb_compare_quantity){.name = "EI", .unit = "N mm2", .factor = N_MM2};
+    *q = (struct wb_compare_quantity){
+        .name = "EI at zero curvature", .unit = "N mm2", .factor = N_MM2};
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         if (!find_group(p[i], &p[i]->rigidity, 1.0, &q->groups[i]))
             q->reason = "a file has no interval of EI";
     }
     return WB_OK;
+}
+
+static void take_unloading(struct wb_compare_quantity *q, const struct wb_properties *const *p)
+{
+    static const double curvature = 1.0;
+    *q = (struct wb_compare_quantity){
+        .name = "unloading stiffness over 1 1/m", .unit = "N mm2", .factor = N_MM2};
+    for (int i = 0; i < WB_COMPARE_SIDES; i++) {
+        const struct wb_estimate *const e = wb_cycle_stiffness_at(&p[i]->unloading, curvature);
+        if (!e || !find_group(p[i], e, 1.0, &q->groups[i]))
+            q->reason = "a file has no interval of it";
+    }
 }
 
 static enum wb_status take_springback(struct wb_compare_quantity *q,
@@ -183,11 +196,12 @@ enum wb_status wb_compare_run(struct wb_compare *compare,
         WB_TRY(check(properties[i], names[i]));
         c.curvature = fmin(c.curvature, properties[i]->largest_curvature);
     }
-    WB_TRY(take_rigidity(&c.quantities[0], properties));
-    WB_TRY(take_springback(&c.quantities[1], properties, c.curvature));
+    struct wb_compare_quantity *q = c.quantities;
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-        WB_TRY(
-            take_moment(&c.quantities[2 + k], properties, wb_cycle_moment_parts[k] * c.curvature));
+        WB_TRY(take_moment(q++, properties, wb_cycle_moment_parts[k] * c.curvature));
+    take_unloading(q++, properties);
+    WB_TRY(take_springback(q++, properties, c.curvature));
+    WB_TRY(take_rigidity(q, properties));
     for (int k = 0; k < WB_COMPARE_QUANTITIES; k++)
         decide(&c.quantities[k], within);
     decide_all(&c);

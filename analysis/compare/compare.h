@@ -19,7 +19,7 @@
 
 enum {
     WB_COMPARE_SIDES = 2,
-    WB_COMPARE_QUANTITIES = 2 + WB_CYCLE_MOMENTS
+    WB_COMPARE_QUANTITIES = 3 + WB_CYCLE_MOMENTS
 };
 
 /* Of each verdict; the intervals are of 1 - 2 alpha. */

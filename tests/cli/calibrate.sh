@@ -125,15 +125,16 @@ grep -q '^method: cycle$' cycle.yaml || fail 'the properties do not say their me
 grep -q '^law:' cycle.yaml && fail 'a law beside the four numbers that say it'
 expect 0 'unloading' "$wirebench" validate cycle.yaml L85
 "$wirebench" calibrate cycle >said || fail 'calibrate cycle'
-for line in '^EI  *85[0-9]\.[0-9] N mm2' '^M at .* 1/m .* N mm' '^springback' '^loop energy' \
+for line in '^EI at zero curvature  *85[0-9]\.[0-9] N mm2' '^unloading stiffness over 1 1/m  *8[45][0-9]\.[0-9] N mm2' \
+    '^secant EI to 2 1/m ' '^the data of all specimens begin at' '^M at .* 1/m .* N mm' '^springback' '^loop energy' \
     '^one specimen: no interval' '^Ludwik, kinematic .* not in the ranges' '^  K  *13[0-9][0-9] MPa' \
     'gain of the load cell  *1\.0' 'free length  *[123]\.' 'diameter  *0.0  *-4.0' '^settings: force_noise_mN 0.03, '; do
     grep -q "$line" said || fail "no line '$line': $(cat said)"
 done
-grep -qE '^(EI|M|springback|loop) .*[0-9]e[-+]' said && fail "exponents: $(cat said)"
-[ "$(grep -n '^EI' said | cut -d: -f1)" -eq 2 ] || fail 'EI does not come first'
+grep -qE '^(EI|M|unloading|secant|springback|loop) .*[0-9]e[-+]' said && fail "exponents: $(cat said)"
+[ "$(grep -n '^M at' said | head -n 1 | cut -d: -f1)" -eq 2 ] || fail 'moments do not come first'
 "$wirebench" calibrate cycle --json >cycle.json || fail 'calibrate --json of cycles'
-for key in flexural_rigidity_N_mm2 springback_ratio moment_curvature hardening_rule specimens \
+for key in unloading_stiffness_N_mm2 secant_stiffness_N_mm2 flexural_rigidity_N_mm2 springback_ratio moment_curvature hardening_rule specimens \
     shared_sensitivities settings; do
     grep -q "^  \"$key\": [{[]" cycle.json || fail "no $key in the JSON object"
 done

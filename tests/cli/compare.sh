@@ -30,12 +30,12 @@ compare 2 "$card" "$card" --within much
 compare 1 "$card" "$folder/none.yaml" --within 0.1
 
 compare 0 "$card" "$card" --within 1
-grep -q '^equivalent: all 7 quantities (alpha 0.05 each)' "$folder/out" || fail 'no verdict on all'
+grep -q '^equivalent: all 8 quantities (alpha 0.05 each)' "$folder/out" || fail 'no verdict on all'
 compare 3 "$card" "$card" --within 0.03
 grep -q 'cannot tell: test [0-9]* more specimens of each' "$folder/out" || fail 'no number of specimens'
 compare 4 "$card" "$folder/other/type1.yaml" --within 0.01
 grep -q '^M at .* B/A 1.6.*different$' "$folder/out" || fail 'the moments are not different'
-grep -q '^different: at least one of 7' "$folder/out" || fail 'no verdict on all'
+grep -q '^different: at least one of 8' "$folder/out" || fail 'no verdict on all'
 
 # One page, which says where the data come from, and the same bytes again.
 compare 0 "$card" "$card" --within 1 -o "$folder/page.pdf"
@@ -48,7 +48,7 @@ if command -v pdftotext >/dev/null; then
     compare 4 "$card" "$folder/other/type1.yaml" --within 0.01 -o "$folder/two.pdf"
     pdftotext -layout "$folder/two.pdf" "$folder/two.txt"
     for words in 'Virtual rig' 'Page 1 of 1' 'Verdict: different' 'B: other/type1.yaml' \
-        '7 quantities' "$(sha256sum "$card" | cut -c1-64)"; do
+        '8 quantities' "$(sha256sum "$card" | cut -c1-64)"; do
         grep -qF -e "$words" "$folder/two.txt" || fail "the page does not say '$words'"
     done
 fi
@@ -58,7 +58,7 @@ python3 - "$folder/out" <<'PYTHON' || fail 'the JSON is not what was computed'
 import json, sys
 root = json.load(open(sys.argv[1]))
 assert root["verdict"] == "equivalent" and root["alpha"] == 0.05, root
-assert root["quantities_compared"] == 7 == len(root["quantities"])
+assert root["quantities_compared"] == 8 == len(root["quantities"])
 for q in root["quantities"]:
     assert abs(q["log_ratio"]) < 1e-12 and q["A"]["n"] == 3
     assert abs(q["log_ratio_low"] + q["log_ratio_high"]) < 1e-12 and q["log_ratio_high"] > 0

@@ -20,6 +20,12 @@
 
 const double wb_cycle_moment_parts[WB_CYCLE_MOMENTS] = {0.05, 0.1, 0.3, 0.6, 1.0};
 
+const double wb_cycle_stiffness_curvatures[WB_CYCLE_STIFFNESSES - 1] = {0.5, 1.0, 2.0};
+
+/* EI is resolved where a stiffness at the smallest curvature of the data is this near to it. */
+static const double resolved_within = 0.02;
+/* Least curvature, 1/m, that is divided by. */
+static const double least_curvature = 0.05;
 /* Deflection over length at which eqs. 10 and 11 give the law from which all fits start. */
 static const double elastic_zone = 0.05;
 /* Deflection over length from there on in which the slope past yield is taken, and the smallest
@@ -532,20 +538,40 @@ enum number {
     SPRINGBACK,
     LOOP_ENERGY,
     MOMENTS,
-    NUMBERS = MOMENTS + WB_CYCLE_MOMENTS
+    SECANTS = MOMENTS + WB_CYCLE_MOMENTS,
+    UNLOADINGS = SECANTS + WB_CYCLE_STIFFNESSES,
+    NUMBERS = UNLOADINGS + WB_CYCLE_STIFFNESSES
 };
 
-static double number_of(const struct wb_bending *bending, const double *moment, enum number number)
+static double number_of(const struct wb_cycle_answer *answer, enum number number)
 {
     switch (number) {
     case RIGIDITY:
-        return bending->flexural_rigidity;
+        return answer->bending.flexural_rigidity;
     case SPRINGBACK:
-        return bending->springback;
+        return answer->bending.springback;
     case LOOP_ENERGY:
-        return bending->loop_energy;
+        return answer->bending.loop_energy;
     default:
-        return moment[number - MOMENTS];
+        return number < SECANTS      ? answer->moment[number - MOMENTS]
+               : number < UNLOADINGS ? answer->secant[number - SECANTS]
+                                     : answer->unloading[number - UNLOADINGS];
+    }
+}
+
+static double error_of(const struct wb_cycle_answer *answer, enum number number)
+{
+    switch (number) {
+    case RIGIDITY:
+        return answer->bending_error.flexural_rigidity;
+    case SPRINGBACK:
+        return answer->bending_error.springback;
+    case LOOP_ENERGY:
+        return answer->bending_error.loop_energy;
+    default:
+        return number < SECANTS      ? answer->moment_error[number - MOMENTS]
+               : number < UNLOADINGS ? answer->secant_error[number - SECANTS]
+                                     : answer->unloading_error[number - UNLOADINGS];
     }
 }
 
@@ -564,7 +590,7 @@ static void average(const struct wb_cycle_calibration *calibration, enum wb_cand
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < n; i++) {
         const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
-        const double x = log(number_of(&answer->bending, answer->moment, number));
+        const double x = log(number_of(answer, number));
         sum += x;
         squares += x * x;
     }
@@ -592,7 +618,7 @@ static double fit_error(const struct wb_cycle_calibration *calibration, enum wb_
     double squares = 0.0;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
-        const double error = number_of(&answer->bending_error, answer->moment_error, number);
+        const double error = error_of(answer, number);
         squares += error * error;
     }
     return sqrt(squares / calibration->n_members);
@@ -625,29 +651,51 @@ static void add_square(double *sum, double moved, double value, double moved_by)
     *sum += difference * difference;
 }
 
+/* What a law says of bending, into an answer. */
+static enum wb_status describe_law(const struct wb_cycle_calibration *calibration,
+                                   const struct wb_law *law, double diameter,
+                                   struct wb_cycle_answer *answer)
+{
+    const struct wb_cycle_stiffness *const s = &calibration->secant, *const u =
+                                                                         &calibration->unloading;
+    const double largest = calibration->largest_curvature;
+    WB_TRY(wb_bending_describe(law, diameter, largest, &answer->bending));
+    WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature,
+                              answer->moment));
+    return wb_bending_stiffness(law, diameter, largest, s->n, s->curvature, answer->secant, u->n,
+                                u->curvature, answer->unloading);
+}
+
 /* Errors of the logarithms of an answer, of what the moved laws make of its numbers. */
 static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double diameter,
                                          const struct wb_cycle_calibration *calibration)
 {
-    struct wb_bending *const error = &answer->bending_error, bending;
-    double moment[WB_CYCLE_MOMENTS];
+    struct wb_bending *const error = &answer->bending_error;
+    struct wb_cycle_answer moved;
     for (int i = 0; i < answer->fit.n_moved; i++) {
         const struct wb_law *const law = &answer->fit.moved[i];
         const double by = answer->fit.moved_by[i];
-        WB_TRY(wb_bending_describe(law, diameter, calibration->largest_curvature, &bending));
-        WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature, moment));
-        add_square(&error->flexural_rigidity, bending.flexural_rigidity,
+        WB_TRY(describe_law(calibration, law, diameter, &moved));
+        add_square(&error->flexural_rigidity, moved.bending.flexural_rigidity,
                    answer->bending.flexural_rigidity, by);
-        add_square(&error->springback, bending.springback, answer->bending.springback, by);
-        add_square(&error->loop_energy, bending.loop_energy, answer->bending.loop_energy, by);
+        add_square(&error->springback, moved.bending.springback, answer->bending.springback, by);
+        add_square(&error->loop_energy, moved.bending.loop_energy, answer->bending.loop_energy, by);
         for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-            add_square(&answer->moment_error[k], moment[k], answer->moment[k], by);
+            add_square(&answer->moment_error[k], moved.moment[k], answer->moment[k], by);
+        for (int k = 0; k < calibration->secant.n; k++)
+            add_square(&answer->secant_error[k], moved.secant[k], answer->secant[k], by);
+        for (int k = 0; k < calibration->unloading.n; k++)
+            add_square(&answer->unloading_error[k], moved.unloading[k], answer->unloading[k], by);
     }
     error->flexural_rigidity = sqrt(error->flexural_rigidity);
     error->springback = sqrt(error->springback);
     error->loop_energy = sqrt(error->loop_energy);
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         answer->moment_error[k] = sqrt(answer->moment_error[k]);
+    for (int k = 0; k < WB_CYCLE_STIFFNESSES; k++) {
+        answer->secant_error[k] = sqrt(answer->secant_error[k]);
+        answer->unloading_error[k] = sqrt(answer->unloading_error[k]);
+    }
     return WB_OK;
 }
 
@@ -661,10 +709,42 @@ static bool candidate_counts(const struct wb_cycle_calibration *calibration,
     return false;
 }
 
+/* Those that are stated, as far as the data go, and among them the smallest that they resolve. */
+static void choose_curvatures(struct wb_cycle_stiffness *stiffness, double resolved, double largest)
+{
+    bool is_in = false;
+    stiffness->n = 0;
+    stiffness->resolved = fmin(resolved, largest);
+    for (int k = 0; k < WB_CYCLE_STIFFNESSES - 1; k++) {
+        const double curvature = wb_cycle_stiffness_curvatures[k];
+        if (!is_in && stiffness->resolved < curvature)
+            stiffness->curvature[stiffness->n++] = stiffness->resolved;
+        is_in = is_in || stiffness->resolved <= curvature;
+        if (curvature <= largest)
+            stiffness->curvature[stiffness->n++] = curvature;
+    }
+    if (!is_in)
+        stiffness->curvature[stiffness->n++] = stiffness->resolved;
+}
+
+static bool is_near(double stiffness, double rigidity)
+{
+    return fabs(stiffness / rigidity - 1.0) <= resolved_within;
+}
+
+/* Of those the smallest that the data resolve. */
+static double resolved_value(const struct wb_cycle_stiffness *stiffness)
+{
+    int k = 0;
+    while (k < stiffness->n - 1 && stiffness->curvature[k] < stiffness->resolved)
+        k++;
+    return stiffness->estimate[k].value;
+}
+
 static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
 {
-    double moments[WB_CYCLE_MOMENTS];
     const double diameter = 2.0 * outer_radius(calibration);
+    double first = least_curvature, change = least_curvature;
 
     calibration->largest_curvature = (double)INFINITY;
     for (int i = 0; i < calibration->n_members; i++) {
@@ -672,7 +752,12 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
             &calibration->members[i].answers[calibration->chosen];
         calibration->largest_curvature =
             fmin(calibration->largest_curvature, answer->fit.clamp_curvature);
+        first = fmax(first, answer->fit.first_curvature);
+        change = fmax(change, answer->fit.turn_change);
     }
+    choose_curvatures(&calibration->secant, first, calibration->largest_curvature);
+    if (calibration->has_unloading)
+        choose_curvatures(&calibration->unloading, change, calibration->largest_curvature);
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         calibration->curvature[k] = wb_cycle_moment_parts[k] * calibration->largest_curvature;
     for (int i = 0; i < calibration->n_members; i++) {
@@ -680,11 +765,7 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
             struct wb_cycle_answer *const answer = &calibration->members[i].answers[c];
             if (!answer->is_fitted)
                 continue;
-            WB_TRY(wb_bending_describe(&answer->fit.law, diameter, calibration->largest_curvature,
-                                       &answer->bending));
-            WB_TRY(wb_bending_moments(&answer->fit.law, diameter, WB_CYCLE_MOMENTS,
-                                      calibration->curvature, moments));
-            memcpy(answer->moment, moments, sizeof moments);
+            WB_TRY(describe_law(calibration, &answer->fit.law, diameter, answer));
             if (candidate_counts(calibration, c))
                 WB_TRY(find_answer_errors(answer, diameter, calibration));
         }
@@ -840,6 +921,14 @@ static enum wb_status conclude(struct wb_cycle_calibration *calibration,
     estimate_number(calibration, LOOP_ENERGY, settings, &calibration->loop_energy);
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         estimate_number(calibration, MOMENTS + k, settings, &calibration->moment[k]);
+    for (int k = 0; k < calibration->secant.n; k++)
+        estimate_number(calibration, SECANTS + k, settings, &calibration->secant.estimate[k]);
+    for (int k = 0; k < calibration->unloading.n; k++)
+        estimate_number(calibration, UNLOADINGS + k, settings, &calibration->unloading.estimate[k]);
+    calibration->is_rigidity_resolved =
+        is_near(resolved_value(&calibration->secant), calibration->rigidity.value) ||
+        (calibration->has_unloading &&
+         is_near(resolved_value(&calibration->unloading), calibration->rigidity.value));
     for (int i = 0; i < calibration->n_ranked; i++) {
         struct wb_cycle_rank *const rank = &calibration->ranked[i];
         average(calibration, rank->candidate, RIGIDITY, settings, &rank->rigidity);
@@ -963,6 +1052,16 @@ void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration)
     }
     free(calibration->members);
     *calibration = (struct wb_cycle_calibration){.members = NULL};
+}
+
+const struct wb_estimate *wb_cycle_stiffness_at(const struct wb_cycle_stiffness *stiffness,
+                                                double curvature)
+{
+    for (int k = 0; k < stiffness->n; k++) {
+        if (stiffness->curvature[k] == curvature)
+            return &stiffness->estimate[k];
+    }
+    return NULL;
 }
 
 double wb_cycle_calibrate_length(const struct wb_cycle_calibration *calibration)

@@ -27,8 +27,12 @@
 #include "base/status.h"
 
 enum {
-    WB_CYCLE_MOMENTS = 5
+    WB_CYCLE_MOMENTS = 5,
+    WB_CYCLE_STIFFNESSES = 4 /* at most */
 };
+
+/* 1/m: where stiffness is reported, beside the smallest curvature that the data resolve. */
+extern const double wb_cycle_stiffness_curvatures[WB_CYCLE_STIFFNESSES - 1];
 
 /* Deflection over length that K and n need. */
 #define WB_CYCLE_SMALLEST_TRAVEL 0.35
@@ -44,16 +48,27 @@ struct wb_estimate {
     double deviation;                       /* s of ln over specimens (or pooled); NaN: unknown */
 };
 
+/* Stiffness at n curvatures, ascending: those that are stated, and the smallest that the data of
+ * all specimens resolve; below it the law speaks alone. */
+struct wb_cycle_stiffness {
+    int n;
+    double resolved;                                   /* 1/m */
+    double curvature[WB_CYCLE_STIFFNESSES];            /* 1/m */
+    struct wb_estimate estimate[WB_CYCLE_STIFFNESSES]; /* N m2 */
+};
+
 /* What a candidate gives for one specimen. */
 struct wb_cycle_answer {
     bool is_fitted;
     struct wb_cycle_fit fit;
     struct wb_bending bending;
-    double moment[WB_CYCLE_MOMENTS]; /* N m */
+    double moment[WB_CYCLE_MOMENTS];                                      /* N m */
+    double secant[WB_CYCLE_STIFFNESSES], unloading[WB_CYCLE_STIFFNESSES]; /* N m2 */
     /* Standard errors of the logarithms by the residuals of the fit; 0 of candidates that do not
      * count. */
     struct wb_bending bending_error;
     double moment_error[WB_CYCLE_MOMENTS];
+    double secant_error[WB_CYCLE_STIFFNESSES], unloading_error[WB_CYCLE_STIFFNESSES];
 };
 
 /* A hardening rule is supported by fits of loading and unloading up to this misfit. */
@@ -98,6 +113,12 @@ struct wb_cycle_calibration {
     struct wb_estimate rigidity, springback, loop_energy; /* N m2, 1, J/m */
     double curvature[WB_CYCLE_MOMENTS];
     struct wb_estimate moment[WB_CYCLE_MOMENTS];
+    /* Of the virgin wire from straight, and on the way back from the largest curvature over changes
+     * of it; the second without entries where no way back was measured. */
+    struct wb_cycle_stiffness secant, unloading;
+    /* EI, the slope at curvature zero, is no more than 2 % from a stiffness at the smallest
+     * curvature that the data resolve; else it is the law's alone. */
+    bool is_rigidity_resolved;
     struct wb_law law; /* means over the specimens */
     struct wb_material
         ludwik; /* its equivalent; the law itself where that is Ludwik's, isotropic */
@@ -137,6 +158,10 @@ wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
                        const struct wb_dataset *const *datasets, int n,
                        const struct wb_cycle_calibrate_settings *settings, struct wb_reason *why);
 void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration);
+
+/* The stiffness at a curvature that is stated; NULL: there is none. */
+const struct wb_estimate *wb_cycle_stiffness_at(const struct wb_cycle_stiffness *stiffness,
+                                                double curvature);
 
 /* The specimens' length, m; NaN where it is not the same. */
 double wb_cycle_calibrate_length(const struct wb_cycle_calibration *calibration);

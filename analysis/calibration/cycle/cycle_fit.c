@@ -1038,6 +1038,7 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     WB_TRY(run_finely(fit, p, why));
     fit->clamp_curvature = p->run.clamp_curvature;
     fit->first_curvature = p->run.first_curvature;
+    fit->turn_change = p->run.turn_change;
     find_misfits(fit, p);
     return WB_OK;
 }

@@ -97,6 +97,7 @@ struct wb_cycle_fit {
     double correlation[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
     double clamp_curvature; /* 1/m, largest */
     double first_curvature; /* 1/m, at the first point */
+    double turn_change;     /* 1/m, of it from the turn to the first point of the way back */
     int n_free, n_law;      /* numbers fitted; of them the law's */
     int n_outliers;         /* points weighted by less than half */
     int runs, iterations;

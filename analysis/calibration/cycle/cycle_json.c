@@ -112,12 +112,28 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
     }
 }
 
+static void put_stiffness(struct wb_json *object, const struct wb_cycle_calibration *c,
+                          const struct wb_cycle_stiffness *stiffness)
+{
+    wb_json_set_number(object, "resolved_from_1_m",
+                       stiffness->n > 0 ? stiffness->resolved : (double)NAN);
+    struct wb_json *const array = wb_json_set_array(object, "at");
+    for (int k = 0; k < stiffness->n; k++) {
+        struct wb_json *const item = wb_json_append_object(array);
+        wb_json_set_number(item, "curvature_1_m", stiffness->curvature[k]);
+        put_estimate(item, c, "value", &stiffness->estimate[k], N_MM2);
+    }
+}
+
 void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration *c)
 {
     const double unknown = (double)NAN;
     const struct wb_estimate untested = {unknown, unknown, unknown, unknown, unknown, unknown};
+    put_stiffness(wb_json_set_object(object, "unloading_stiffness_N_mm2"), c, &c->unloading);
+    put_stiffness(wb_json_set_object(object, "secant_stiffness_N_mm2"), c, &c->secant);
     put_estimate(wb_json_set_object(object, "flexural_rigidity_N_mm2"), c, "value", &c->rigidity,
                  N_MM2);
+    wb_json_set_boolean(object, "flexural_rigidity_resolved", c->is_rigidity_resolved);
     put_estimate(wb_json_set_object(object, "springback_ratio"), c, "value",
                  c->has_unloading ? &c->springback : &untested, 1.0);
     put_estimate(wb_json_set_object(object, "loop_energy_mJ_per_m"), c, "value",

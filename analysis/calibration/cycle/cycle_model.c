@@ -102,7 +102,8 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
     int place = 0;
     bool reached;
 
-    *run = (struct wb_cycle_run){0};
+    *run = (struct wb_cycle_run){.turn_change = (double)NAN};
+    double turn = 0.0;
     wb_cycle_model_bend(specimen, &model->info);
     WB_TRY(
         wb_cantilever_set_curvature(model->cantilever, wb_dataset_natural_curvature, &model->info));
@@ -124,11 +125,14 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
         if (i == 0)
             run->first_curvature = curvature;
         run->clamp_curvature = fmax(run->clamp_curvature, curvature);
+        if (i == data->n_loading)
+            run->turn_change = turn - curvature;
         for (; distance && place < data->n_places && data->places[place].point == i; place++)
             distance[place] = distance_of(model, &data->places[place]);
         if (i == data->n_loading - 1 && data->n_points > data->n_loading) {
             WB_TRY(move(model, data->top - specimen->level, &point, &reached));
-            run->clamp_curvature = fmax(run->clamp_curvature, clamp_curvature(model));
+            turn = clamp_curvature(model);
+            run->clamp_curvature = fmax(run->clamp_curvature, turn);
         }
     }
     run->reached = reached;

@@ -131,6 +131,21 @@ enum wb_status wb_bending_moments(const struct wb_law *law, double diameter, int
     return status;
 }
 
+enum wb_status wb_bending_stiffness(const struct wb_law *law, double diameter, double largest,
+                                    int n, const double *curvature, double *secant, int m,
+                                    const double *change, double *unloading)
+{
+    struct point p;
+    const enum wb_status status = make_point(&p, law, diameter);
+    for (int i = 0; i < n && status == WB_OK; i++)
+        secant[i] = moment_at(&p, curvature[i]) / curvature[i];
+    const double top = status == WB_OK ? keep_moment(&p, largest) : 0.0;
+    for (int i = 0; i < m && status == WB_OK; i++)
+        unloading[i] = (top - moment_at(&p, largest - change[i])) / change[i];
+    release_point(&p);
+    return status;
+}
+
 /* --- the equivalent of Ludwik's form --- */
 
 struct equivalent {

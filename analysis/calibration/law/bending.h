@@ -18,6 +18,14 @@ WB_MUST_CHECK enum wb_status wb_bending_describe(const struct wb_law *law, doubl
 WB_MUST_CHECK enum wb_status wb_bending_moments(const struct wb_law *law, double diameter, int n,
                                                 const double *curvature, double *moment);
 
+/* Stiffness of the section between two places of its moment, N m2: `secant` of a first loading from
+ * straight to n curvatures, and `unloading` over m changes of the curvature on the way back from
+ * `largest` (1/m, above 0, at most `largest`). */
+WB_MUST_CHECK enum wb_status wb_bending_stiffness(const struct wb_law *law, double diameter,
+                                                  double largest, int n, const double *curvature,
+                                                  double *secant, int m, const double *change,
+                                                  double *unloading);
+
 /* Ludwik's law with isotropic hardening that bends like `law` on a first loading: E, sigma_Y, K and
  * n by least squares on ln M at curvatures up to `largest`. It yields at a thousandth of the
  * largest strain or above: for a law that yields from the start the misfit tells how far that is

@@ -77,6 +77,15 @@ static struct wb_estimate known(const struct wb_cycle_calibration *calibration,
     return known;
 }
 
+static struct wb_cycle_stiffness known_stiffness(const struct wb_cycle_calibration *calibration,
+                                                 const struct wb_cycle_stiffness *stiffness)
+{
+    struct wb_cycle_stiffness known_ones = *stiffness;
+    for (int k = 0; k < known_ones.n; k++)
+        known_ones.estimate[k] = known(calibration, &stiffness->estimate[k]);
+    return known_ones;
+}
+
 /* By a way back, and to the end. */
 static bool is_rule_tested(const struct wb_cycle_calibration *calibration)
 {
@@ -144,6 +153,8 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
     properties->ludwik_misfit = calibration->ludwik_misfit;
     properties->largest_curvature = calibration->largest_curvature;
     properties->rigidity = known(calibration, &calibration->rigidity);
+    properties->secant = known_stiffness(calibration, &calibration->secant);
+    properties->unloading = known_stiffness(calibration, &calibration->unloading);
     if (calibration->has_unloading) {
         properties->springback = known(calibration, &calibration->springback);
         properties->loop_energy = known(calibration, &calibration->loop_energy);

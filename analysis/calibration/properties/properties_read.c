@@ -100,17 +100,48 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
     return given ? wb_config_value(given, &pooled) : WB_OK;
 }
 
+#define ESTIMATE_KEYS(e, unit, largest)                                                            \
+    WB_CONFIG_OPTIONAL_NUMBER("value", &(e)->value, (unit), 0.0, (largest)),                       \
+        WB_CONFIG_OPTIONAL_NUMBER("low", &(e)->low, (unit), 0.0, (largest)),                       \
+        WB_CONFIG_OPTIONAL_NUMBER("high", &(e)->high, (unit), 0.0, (largest)),                     \
+        WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &(e)->candidates_low, (unit), 0.0, (largest)), \
+        WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &(e)->candidates_high, (unit), 0.0, (largest))
+
 static enum wb_status read_estimate(const struct wb_config_node *node, double unit, double largest,
                                     struct wb_estimate *e)
 {
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_OPTIONAL_NUMBER("value", &e->value, unit, 0.0, largest),
-        WB_CONFIG_OPTIONAL_NUMBER("low", &e->low, unit, 0.0, largest),
-        WB_CONFIG_OPTIONAL_NUMBER("high", &e->high, unit, 0.0, largest),
-        WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &e->candidates_low, unit, 0.0, largest),
-        WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &e->candidates_high, unit, 0.0, largest),
-    };
+    const struct wb_config_key keys[] = {ESTIMATE_KEYS(e, unit, largest)};
     return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+}
+
+static enum wb_status read_stiffness(const struct wb_config_node *node,
+                                     struct wb_cycle_stiffness *stiffness)
+{
+    const struct wb_config_node *list = NULL;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_NUMBER("resolved_from_1_m", &stiffness->resolved, 1.0, 0.0, 1e6),
+        WB_CONFIG_NODE("at", &list),
+    };
+    if (!node)
+        return WB_OK;
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    stiffness->n = wb_config_length(list);
+    if (stiffness->n < 1 || stiffness->n > WB_CYCLE_STIFFNESSES) {
+        stiffness->n = 0;
+        return wb_config_refuse(list, "at", "expected a list of 1 to %d curvatures",
+                                WB_CYCLE_STIFFNESSES);
+    }
+    for (int k = 0; k < stiffness->n; k++) {
+        struct wb_estimate *const e = &stiffness->estimate[k];
+        *e = (struct wb_estimate){(double)NAN, (double)NAN, (double)NAN,
+                                  (double)NAN, (double)NAN, (double)NAN};
+        const struct wb_config_key item[] = {
+            WB_CONFIG_NUMBER("curvature_1_m", &stiffness->curvature[k], 1.0, 0.0, 1e6),
+            ESTIMATE_KEYS(e, N_MM2, 1e15),
+        };
+        WB_TRY(wb_config_map(wb_config_item(list, k), item, WB_COUNT(item)));
+    }
+    return WB_OK;
 }
 
 static enum wb_status read_moments(const struct wb_config_node *node,
@@ -210,7 +241,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
 {
     const struct wb_config_node *deviations = NULL, *calibration = NULL, *law = NULL;
     const struct wb_config_node *rigidity = NULL, *springback = NULL, *moments = NULL;
-    const struct wb_config_node *energy = NULL;
+    const struct wb_config_node *energy = NULL, *secant = NULL, *unloading = NULL;
     const struct wb_config_node *rule = NULL, *specimens = NULL, *three_point = NULL;
     int method = -1;
     struct wb_material *const material = &properties->material;
@@ -230,6 +261,8 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_CONFIG_OPTIONAL_CHOICE("method", &method, wb_properties_methods),
         WB_CONFIG_OPTIONAL_NODE("law", &law),
         WB_CONFIG_OPTIONAL_NUMBER("ludwik_misfit", &properties->ludwik_misfit, 1.0, 0.0, 1e6),
+        WB_CONFIG_OPTIONAL_NODE("unloading_stiffness_N_mm2", &unloading),
+        WB_CONFIG_OPTIONAL_NODE("secant_stiffness_N_mm2", &secant),
         WB_CONFIG_OPTIONAL_NODE("flexural_rigidity_N_mm2", &rigidity),
         WB_CONFIG_OPTIONAL_NODE("springback_ratio", &springback),
         WB_CONFIG_OPTIONAL_NODE("loop_energy_mJ_per_m", &energy),
@@ -253,6 +286,8 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_TRY(read_calibration(calibration, properties));
     WB_TRY(wb_law_file_read(law, material, &properties->law));
     WB_TRY(read_estimate(rigidity, N_MM2, 1e15, &properties->rigidity));
+    WB_TRY(read_stiffness(unloading, &properties->unloading));
+    WB_TRY(read_stiffness(secant, &properties->secant));
     WB_TRY(read_estimate(springback, 1.0, 1.0, &properties->springback));
     WB_TRY(read_estimate(energy, MILLI, 1e15, &properties->loop_energy));
     if (moments)

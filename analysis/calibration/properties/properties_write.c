@@ -164,30 +164,54 @@ void wb_properties_format(struct wb_text *text, const struct wb_calibrate_result
 /* --- calibrations on whole cycles --- */
 
 /* "  key: {value: 1, low: 0.9, ...}" with what is known; nothing where nothing is. */
-static void put_estimate(struct wb_text *text, const char *key, const struct wb_estimate *estimate,
-                         double unit)
+/* "{value: 1, low: 2, ...}" of what is known, behind a number of another name, if one is given. */
+static void append_estimate(struct wb_text *text, const char *name, double first,
+                            const struct wb_estimate *estimate, double unit)
 {
     const struct {
         const char *name;
         double value;
     } parts[] = {
-        {"value", estimate->value},
-        {"low", estimate->low},
-        {"high", estimate->high},
-        {"candidates_low", estimate->candidates_low},
-        {"candidates_high", estimate->candidates_high},
+        {name, first},
+        {"value", estimate->value / unit},
+        {"low", estimate->low / unit},
+        {"high", estimate->high / unit},
+        {"candidates_low", estimate->candidates_low / unit},
+        {"candidates_high", estimate->candidates_high / unit},
     };
     char number[WB_NUMBER_TEXT];
     int n = 0;
-    for (size_t i = 0; i < WB_COUNT(parts); i++) {
+    for (size_t i = name ? 0 : 1; i < WB_COUNT(parts); i++) {
         if (!isfinite(parts[i].value))
             continue;
-        wb_text_append(text, n++ == 0 ? "%s: {" : ", ", key);
-        wb_text_append(text, "%s: %s", parts[i].name,
-                       wb_number_format(parts[i].value / unit, number));
+        wb_text_append(text, "%s%s: %s", n++ > 0 ? ", " : "{", parts[i].name,
+                       wb_number_format(parts[i].value, number));
     }
-    if (n > 0)
-        wb_text_append(text, "}\n");
+    wb_text_append(text, n > 0 ? "}\n" : "{}\n");
+}
+
+static void put_estimate(struct wb_text *text, const char *key, const struct wb_estimate *estimate,
+                         double unit)
+{
+    if (!isfinite(estimate->value) && !isfinite(estimate->candidates_low))
+        return;
+    wb_text_append(text, "%s: ", key);
+    append_estimate(text, NULL, 0.0, estimate, unit);
+}
+
+static void put_stiffness(struct wb_text *text, const char *key,
+                          const struct wb_cycle_stiffness *stiffness)
+{
+    if (stiffness->n == 0)
+        return;
+    wb_text_append(text, "%s:\n", key);
+    put_number(text, "  ", "resolved_from_1_m", stiffness->resolved);
+    wb_text_append(text, "  at:\n");
+    for (int k = 0; k < stiffness->n; k++) {
+        wb_text_append(text, "    - ");
+        append_estimate(text, "curvature_1_m", stiffness->curvature[k], &stiffness->estimate[k],
+                        N_MM2);
+    }
 }
 
 static void put_moments(struct wb_text *text, const struct wb_properties *p)
@@ -296,6 +320,15 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
                          "over the laws that the data\n"
                          "# do not exclude. Gain of the cell, length, counterweight and diameter "
                          "are in neither.\n");
+    wb_text_append(text, "# Change of the moment over that of the curvature, from the largest one "
+                         "back, and from straight up.\n"
+                         "# Below the curvature that the data resolve the law speaks alone.\n");
+    put_stiffness(text, "unloading_stiffness_N_mm2", &p->unloading);
+    put_stiffness(text, "secant_stiffness_N_mm2", &p->secant);
+    wb_text_append(text, "# at zero curvature%s\n",
+                   calibration->is_rigidity_resolved
+                       ? ""
+                       : ", which the data do not resolve: take a stiffness from above");
     put_estimate(text, "flexural_rigidity_N_mm2", &p->rigidity, N_MM2);
     put_estimate(text, "springback_ratio", &p->springback, 1.0);
     if (isfinite(p->springback.candidates_low))

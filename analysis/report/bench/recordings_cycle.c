@@ -230,6 +230,16 @@ void wb_recordings_cycle_close(struct wb_recordings_cycle_pool *pool)
     pool->deviation = pool->degrees > 0 ? sqrt(pool->deviation / pool->degrees) : (double)NAN;
 }
 
+const struct wb_estimate *
+wb_recordings_cycle_stiffness(const struct wb_cycle_calibration *calibration)
+{
+    static const double curvature = 1.0;
+    const struct wb_cycle_stiffness *const stiffness =
+        calibration->unloading.n > 0 ? &calibration->unloading : &calibration->secant;
+    const struct wb_estimate *const there = wb_cycle_stiffness_at(stiffness, curvature);
+    return there ? there : &stiffness->estimate[stiffness->n - 1];
+}
+
 void wb_recordings_cycle_interval(const struct wb_recordings_cycle_pool *pool,
                                   const struct wb_recordings_cycle *cycle, double *low,
                                   double *high)

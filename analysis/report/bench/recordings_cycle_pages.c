@@ -52,8 +52,7 @@ static void put_verdict(struct wb_document_table *table, const struct wb_cycle_c
         wb_pages_cell(table, WB_TONE_GOOD, "%s", wb_candidate_name(c->chosen));
 }
 
-static void put_wire(struct wb_document_table *table, const struct wb_recordings_results *results,
-                     const struct wb_recordings_results_wire *wire)
+static void put_wire(struct wb_document_table *table, const struct wb_recordings_results_wire *wire)
 {
     const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
     wb_document_row(table, false);
@@ -63,32 +62,26 @@ static void put_wire(struct wb_document_table *table, const struct wb_recordings
         return;
     }
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    const struct wb_estimate *const EI = &c->rigidity, *const back = &c->springback;
+    const struct wb_estimate *const back = &c->springback;
+    const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const double none = (double)NAN;
-    double low = EI->low, high = EI->high;
-    if (results->pool.degrees > 0)
-        wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
     /* Where no law follows the data, the range over laws is all that is known. */
     const bool is_known = c->is_supported || !c->has_unloading;
-    put_number(table, is_known ? EI->value / N_MM2 : none);
-    put_range(table, is_known ? low / N_MM2 : none, high / N_MM2);
-    put_range(table, EI->candidates_low / N_MM2, EI->candidates_high / N_MM2);
+    put_number(table, is_known ? stiffness->value / N_MM2 : none);
+    put_range(table, is_known ? stiffness->low / N_MM2 : none, stiffness->high / N_MM2);
+    put_range(table, stiffness->candidates_low / N_MM2, stiffness->candidates_high / N_MM2);
     put_number(table, is_known && c->has_unloading ? back->value : none);
     put_range(table, c->has_unloading ? back->candidates_low : none, back->candidates_high);
     put_verdict(table, c);
     wb_pages_cell_number(table, 100.0 * best_misfit(c), 2);
 }
 
-static void put_rigidities(struct wb_document *document,
-                           const struct wb_recordings_results *results)
+static void put_laws(struct wb_document *document, const struct wb_recordings_results *results)
 {
-    const bool is_pooled = results->pool.degrees > 0;
     const struct wb_document_column columns[] = {
         {"Wire"},
-        {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true, .wraps = true},
-        {.heading = is_pooled ? "95 % (scatter pooled)" : "95 % interval",
-         .right = true,
-         .wraps = true},
+        {.heading = "Stiffness (N mm\xc2\xb2)", .right = true, .wraps = true},
+        {.heading = "95 % interval", .right = true, .wraps = true},
         {.heading = "over laws", .right = true},
         {.heading = "Spring- back", .right = true, .wraps = true},
         {.heading = "over laws", .right = true},
@@ -98,21 +91,17 @@ static void put_rigidities(struct wb_document *document,
     struct wb_text caption = {0};
     wb_text_append(
         &caption,
-        "From the first loading and unloading of each sample. <i>EI</i>: flexural rigidity of the "
-        "virgin wire. Springback: curvature that stays over the curvature it was bent to. 95 %%: "
-        "interval of the mean of the samples (Student's <i>t</i>), ");
-    if (is_pooled)
-        wb_text_append(&caption,
-                       "from the scatter of all wires' samples together, <i>s</i> of ln <i>EI</i> "
-                       "%.3f with %d degrees of freedom; ",
-                       results->pool.deviation, results->pool.degrees);
-    wb_text_append(&caption,
-                   "what all samples share is not in it. Over laws: range over all laws whose "
-                   "misfit is at most twice the best. Misfit: RMS over both ways of the best law, "
-                   "over <i>F</i><sub>max</sub>; above 0.5 %% no law follows the data.");
+        "From the first loading and unloading of each sample. Stiffness: change of the moment over "
+        "that of the curvature, of the first 1 /m on the way back from the largest curvature; "
+        "where there is no way back, from straight to 1 /m. Springback: curvature that stays over "
+        "the curvature it was bent to. 95 %%: interval of the mean of the samples (Student's "
+        "<i>t</i>), "
+        "what all samples share is not in it. Over laws: range over all laws whose "
+        "misfit is at most twice the best. Misfit: RMS over both ways of the best law, "
+        "over <i>F</i><sub>max</sub>; above 0.5 %% no law follows the data.");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
     for (int i = 0; i < results->n_wires; i++)
-        put_wire(table, results, &results->wires[i]);
+        put_wire(table, &results->wires[i]);
 }
 
 static void start_moments_row(struct wb_document_table *table, bool begins_group, const char *wire,
@@ -143,6 +132,85 @@ static void put_moments_of(struct wb_document_table *table,
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         put_range(table, (is_refuted ? M[k].candidates_low : M[k].low) / WB_NMM,
                   (is_refuted ? M[k].candidates_high : M[k].high) / WB_NMM);
+}
+
+/* Of each wire the stiffness at the curvatures that are stated: from straight, and on the way back.
+ */
+static void put_stiffness_row(struct wb_document_table *table, const struct wb_cycle_calibration *c,
+                              const struct wb_cycle_stiffness *stiffness, bool is_refuted)
+{
+    for (int k = 0; k < WB_CYCLE_STIFFNESSES - 1; k++) {
+        const double curvature = wb_cycle_stiffness_curvatures[k];
+        const struct wb_estimate *const e = wb_cycle_stiffness_at(stiffness, curvature);
+        const enum wb_document_tone tone =
+            curvature < stiffness->resolved ? WB_TONE_QUIET : WB_TONE_PLAIN;
+        if (!e || c->largest_curvature < curvature)
+            wb_pages_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
+        else if (is_refuted)
+            wb_pages_cell_range(table, tone, e->candidates_low / N_MM2, e->candidates_high / N_MM2,
+                                wb_pages_decimals(e->candidates_high / N_MM2));
+        else if (isfinite(e->low))
+            wb_pages_cell(table, tone, "%.*f (%.*f to %.*f)", wb_pages_decimals(e->value / N_MM2),
+                          e->value / N_MM2, wb_pages_decimals(e->value / N_MM2), e->low / N_MM2,
+                          wb_pages_decimals(e->value / N_MM2), e->high / N_MM2);
+        else
+            wb_pages_cell(table, tone, "%.*f", wb_pages_decimals(e->value / N_MM2),
+                          e->value / N_MM2);
+    }
+}
+
+static void put_stiffness_of(struct wb_document_table *table,
+                             const struct wb_recordings_results *results,
+                             const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+    if (!cycle)
+        return;
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const bool is_refuted = wb_recordings_cycle_is_refuted(cycle);
+    const struct wb_estimate *const EI = &c->rigidity;
+    double low = EI->low, high = EI->high;
+    if (results->pool.degrees > 0)
+        wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
+    start_moments_row(table, true, wire->wanted->label, WB_TONE_PLAIN, "on the way back");
+    wb_pages_cell_number(table, c->unloading.n > 0 ? c->unloading.resolved : (double)NAN, 2);
+    put_stiffness_row(table, c, &c->unloading, is_refuted);
+    put_number(table, is_refuted ? (double)NAN : EI->value / N_MM2);
+    start_moments_row(table, false, "", WB_TONE_PLAIN, "from straight");
+    wb_pages_cell_number(table, c->secant.resolved, 2);
+    put_stiffness_row(table, c, &c->secant, is_refuted);
+    put_range(table, (is_refuted ? EI->candidates_low : low) / N_MM2,
+              (is_refuted ? EI->candidates_high : high) / N_MM2);
+}
+
+static void put_stiffnesses(struct wb_document *document,
+                            const struct wb_recordings_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Wire"},
+        {""},
+        {.heading = "from (1/m)", .right = true, .wraps = true},
+        {.heading = "0.5 /m", .right = true},
+        {.heading = "1 /m", .right = true},
+        {.heading = "2 /m", .right = true},
+        {.heading = "<i>EI</i> at zero", .right = true, .wraps = true},
+    };
+    struct wb_text caption = {0};
+    wb_text_append(
+        &caption,
+        "Stiffness (N mm\xc2\xb2) with the interval of the mean of the samples: change of "
+        "the moment over a change of the curvature, from the largest curvature back and "
+        "from straight up. From: the smallest curvature that the data of all samples "
+        "resolve; below it, in grey, and at zero the law speaks alone.");
+    if (results->pool.degrees > 0)
+        wb_text_append(&caption,
+                       " The interval of <i>EI</i> is from the scatter of all wires' samples "
+                       "together, <i>s</i> of ln <i>EI</i> %.3f with %d degrees of freedom.",
+                       results->pool.deviation, results->pool.degrees);
+    struct wb_document_table *const table =
+        wb_pages_start_table(document, &caption, WB_COUNT(columns), columns);
+    for (int i = 0; i < results->n_wires; i++)
+        put_stiffness_of(table, results, &results->wires[i]);
 }
 
 static void put_moments(struct wb_document *document, const struct wb_recordings_results *results)
@@ -340,8 +408,9 @@ void wb_recordings_cycle_pages_summary(struct wb_document *document,
     for (int i = 0; i < results->n_wires; i++)
         any |= wb_recordings_results_cycle(&results->wires[i]) != NULL;
     if (any) {
-        put_rigidities(document, results);
+        put_laws(document, results);
         put_moments(document, results);
+        put_stiffnesses(document, results);
     }
     put_failures(document, results);
     wb_figures_put(figures, document, "bending", 0);
@@ -365,28 +434,33 @@ static void append_estimate(struct wb_text *text, const char *name, const struct
 static void put_answer(struct wb_document *document, const struct wb_recordings_cycle *cycle)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     struct wb_text text = {0};
     if (!c->has_unloading) {
         wb_text_append(&text, "<b>Rule untested.</b> There is no unloading, so Ludwik's law is "
                               "fitted to the loading alone, and nothing is said of springback. ");
     } else if (!c->is_supported) {
-        wb_text_append(&text,
-                       "<b>Hardening rule not supported by the data.</b> The best law misses both "
-                       "ways by %.2f %% of <i>F</i><sub>max</sub>. <i>EI</i> lies between %.*f and "
-                       "%.*f N mm\xc2\xb2, springback between %.3f and %.3f, over the laws that "
-                       "fit about as well. ",
-                       100.0 * best_misfit(c),
-                       wb_pages_decimals(c->rigidity.candidates_low / N_MM2),
-                       c->rigidity.candidates_low / N_MM2,
-                       wb_pages_decimals(c->rigidity.candidates_high / N_MM2),
-                       c->rigidity.candidates_high / N_MM2, c->springback.candidates_low,
-                       c->springback.candidates_high);
+        wb_text_append(
+            &text,
+            "<b>Hardening rule not supported by the data.</b> The best law misses both "
+            "ways by %.2f %% of <i>F</i><sub>max</sub>. The stiffness lies between %.*f and "
+            "%.*f N mm\xc2\xb2, springback between %.3f and %.3f, over the laws that "
+            "fit about as well. ",
+            100.0 * best_misfit(c), wb_pages_decimals(stiffness->candidates_low / N_MM2),
+            stiffness->candidates_low / N_MM2,
+            wb_pages_decimals(stiffness->candidates_high / N_MM2),
+            stiffness->candidates_high / N_MM2, c->springback.candidates_low,
+            c->springback.candidates_high);
     } else {
         const char *const name = wb_candidate_name(c->chosen);
         wb_text_append(&text, "<b>%c%s.</b> ", toupper((unsigned char)name[0]), name + 1);
     }
-    if (c->is_supported || !c->has_unloading)
-        append_estimate(&text, "<i>EI</i>", &c->rigidity, N_MM2, " N mm\xc2\xb2");
+    if (c->is_supported || !c->has_unloading) {
+        append_estimate(&text, "Moment at the largest curvature", &c->moment[WB_CYCLE_MOMENTS - 1],
+                        WB_NMM, " N mm");
+        append_estimate(&text, "; stiffness", wb_recordings_cycle_stiffness(c), N_MM2,
+                        " N mm\xc2\xb2");
+    }
     if (c->is_supported) {
         append_estimate(&text, "; springback", &c->springback, 1.0, "");
         append_estimate(&text, "; loop energy", &c->loop_energy, MILLI, " mJ/m");

@@ -83,6 +83,34 @@ static void a_hardening_circle_springs_back_by_masings_rule(void **unused)
 }
 
 /* The loop between both branches, by integrals of the closed form of a first loading. */
+/* By Masing's rule a branch is the first loading at twice the size; an isotropic wire and an
+ * elastic one come back with EI. */
+static void stiffness_on_the_way_back_is_that_of_half_the_curvature_up(void **unused)
+{
+    (void)unused;
+    static const double changes[] = {0.5, 1.0, 2.0, 20.0}, halves[] = {0.25, 0.5, 1.0, 10.0};
+    const struct wb_law_part parts[] = {
+        {2.5e9, 2e-4}, {1.5e9, 8e-4}, {0.8e9, 3e-3}, {0.5e9, (double)INFINITY}};
+    for (int rule = 0; rule < 3; rule++) {
+        struct wb_law law;
+        double secant[4], unloading[4];
+        wb_law_init_parallel(&law, rule == 2 ? parts + 3 : parts, rule == 2 ? 1 : 4, rule, 0.39);
+        law.isotropic_share = rule == 0 ? 0.0 : 1.0;
+        assert_int_equal(
+            wb_bending_stiffness(&law, DIAMETER, 30.0, 4, halves, secant, 4, changes, unloading),
+            WB_OK);
+        const double EI = law.material.youngs_modulus * M_PI * pow(DIAMETER, 4) / 64.0;
+        for (int k = 0; k < 4; k++) {
+            assert_true(secant[k] <= EI * (1.0 + 1e-12));
+            if (rule == 0)
+                assert_close_relative(unloading[k], secant[k], 1e-9);
+            else if (rule == 2 || k < 3) /* further back the isotropic one yields again */
+                assert_close_relative(unloading[k], EI, 1e-6);
+        }
+        assert_true(rule == 2 || secant[3] < 0.7 * EI);
+    }
+}
+
 static void the_loops_energy_is_the_integral_between_its_branches(void **unused)
 {
     (void)unused;
@@ -187,6 +215,7 @@ int main(void)
         cmocka_unit_test(a_perfectly_plastic_circle_springs_back_as_the_closed_form_says),
         cmocka_unit_test(an_elastic_circle_keeps_nothing),
         cmocka_unit_test(a_hardening_circle_springs_back_by_masings_rule),
+        cmocka_unit_test(stiffness_on_the_way_back_is_that_of_half_the_curvature_up),
         cmocka_unit_test(the_loops_energy_is_the_integral_between_its_branches),
         cmocka_unit_test(moments_are_those_of_a_first_loading_each),
         cmocka_unit_test(the_equivalent_of_ludwiks_law_is_itself),

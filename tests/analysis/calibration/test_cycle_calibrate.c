@@ -201,6 +201,45 @@ static void the_range_holds_the_candidates_that_count(void **unused)
     }
 }
 
+/* The stated curvatures and the smallest that the data resolve, in order; what they say of a wire
+ * of the rig is near its truth. */
+static void stiffness_is_told_where_it_is_stated(void **unused)
+{
+    (void)unused;
+    const struct wb_cycle_stiffness *const both[] = {&all.secant, &all.unloading};
+    for (int i = 0; i < 2; i++) {
+        const struct wb_cycle_stiffness *const s = both[i];
+        int n_stated = 0, n_resolved = 0;
+        for (int k = 0; k < s->n; k++) {
+            const struct wb_estimate *const e = &s->estimate[k];
+            assert_true(k == 0 || s->curvature[k] > s->curvature[k - 1]);
+            assert_true(e->low < e->value && e->value < e->high);
+            assert_true(e->candidates_low < e->value && e->value < e->candidates_high);
+            assert_true(k == 0 || e->value < s->estimate[k - 1].value);
+            n_resolved += s->curvature[k] == s->resolved;
+        }
+        for (int k = 0; k < WB_CYCLE_STIFFNESSES - 1; k++)
+            n_stated += wb_cycle_stiffness_at(s, wb_cycle_stiffness_curvatures[k]) != NULL;
+        assert_int_equal(n_stated, WB_CYCLE_STIFFNESSES - 1);
+        assert_int_equal(n_resolved, 1);
+        assert_null(wb_cycle_stiffness_at(s, 0.7));
+    }
+    /* Behind the turn the data begin nearer to it than from the rest, where wires sag. */
+    assert_true(all.unloading.resolved < 1.0 && all.unloading.resolved < all.secant.resolved);
+    assert_true(all.is_rigidity_resolved);
+    double moment[3];
+    struct fast_rig fast;
+    fast_rig_init(&fast, 2, 85.0 * WB_MM, 1);
+    fast.truth.stiffness_factor = fast.truth.yield_factor = 1.0;
+    fast_rig_truth(&fast, 3, wb_cycle_stiffness_curvatures, moment, NULL, NULL);
+    for (int k = 0; k < 3; k++) {
+        const double curvature = wb_cycle_stiffness_curvatures[k];
+        const double secant = moment[k] / curvature;
+        /* Three specimens scatter by 4 % around the wire. */
+        assert_close_relative(wb_cycle_stiffness_at(&all.secant, curvature)->value, secant, 0.06);
+    }
+}
+
 /* Without the way back there is no rule to tell. */
 static void a_wire_without_a_way_back_is_ludwiks_and_not_supported(void **unused)
 {
@@ -216,6 +255,8 @@ static void a_wire_without_a_way_back_is_ludwiks_and_not_supported(void **unused
     assert_false(c.is_supported);
     assert_int_equal(c.chosen, WB_CANDIDATE_LUDWIK_ISOTROPIC);
     assert_int_equal(c.n_ranked, 1);
+    assert_int_equal(c.unloading.n, 0);
+    assert_true(c.secant.n > 0);
     wb_cycle_calibrate_release(&c);
     datasets[0].n_rows = n_rows;
 }
@@ -412,6 +453,7 @@ int main(void)
         cmocka_unit_test(the_ranking_is_by_misfit_and_the_choice_by_the_f_test),
         cmocka_unit_test(a_law_fits_no_worse_than_one_that_it_contains),
         cmocka_unit_test(the_range_holds_the_candidates_that_count),
+        cmocka_unit_test(stiffness_is_told_where_it_is_stated),
         cmocka_unit_test(a_wire_without_a_way_back_is_ludwiks_and_not_supported),
         cmocka_unit_test(what_is_stopped_gives_the_specimens_that_were_fitted),
         cmocka_unit_test(what_is_stopped_later_has_the_laws_that_all_specimens_have),

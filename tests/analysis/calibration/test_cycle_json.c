@@ -54,6 +54,13 @@ static void make(struct made *made)
                 .specimens_for_5_percent = 4,
             },
     };
+    c->secant = (struct wb_cycle_stiffness){.n = 3, .resolved = 0.8, .curvature = {0.5, 0.8, 1.0}};
+    c->unloading =
+        (struct wb_cycle_stiffness){.n = 4, .resolved = 0.2, .curvature = {0.2, 0.5, 1.0, 2.0}};
+    for (int k = 0; k < WB_CYCLE_STIFFNESSES; k++) {
+        c->secant.estimate[k] = around(2.9e-4 - 1e-5 * k);
+        c->unloading.estimate[k] = around(3e-4 - 1e-5 * k);
+    }
     c->members = made->members;
     c->ranked[0] = (struct wb_cycle_rank){.candidate = WB_CANDIDATE_PARALLEL_MIXED,
                                           .is_fitted = true,
@@ -118,6 +125,17 @@ static void assert_estimate(const struct wb_estimate *a, const struct wb_estimat
     }
 }
 
+static void assert_stiffness(const struct wb_cycle_stiffness *a, const struct wb_cycle_stiffness *b)
+{
+    assert_true(b->n > 1);
+    assert_int_equal(a->n, b->n);
+    assert_close_relative(a->resolved, b->resolved, 1e-14);
+    for (int k = 0; k < a->n; k++) {
+        assert_close_relative(a->curvature[k], b->curvature[k], 1e-14);
+        assert_estimate(&a->estimate[k], &b->estimate[k]);
+    }
+}
+
 static void assert_material(const struct wb_material *a, const struct wb_material *b)
 {
     assert_int_equal(a->hardening, b->hardening);
@@ -150,6 +168,8 @@ static void a_file_has_what_the_calibration_had(void **state)
     assert_close_relative(read.ludwik_misfit, 0.012, 1e-14);
     assert_estimate(&read.rigidity, &direct.rigidity);
     assert_estimate(&read.springback, &direct.springback);
+    assert_stiffness(&read.secant, &direct.secant);
+    assert_stiffness(&read.unloading, &direct.unloading);
     assert_true(read.is_rule_tested && read.is_rule_supported && read.is_virtual);
     assert_int_equal(read.n_moments, WB_CYCLE_MOMENTS);
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
