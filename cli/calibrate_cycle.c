@@ -115,8 +115,12 @@ static void print_rule(const struct wb_cycle_calibration *c)
            !c->has_unloading ? "untested: the tests have no way back"
            : c->is_stopped   ? "undecided: stopped before all laws were fitted to all specimens"
            : c->is_supported ? "supported"
-                             : "not supported by the data: the best misfit is above 0.5 % of "
-                               "F_max");
+                             : "not supported by the data");
+    if (c->has_unloading && !c->is_stopped && !c->is_supported)
+        printf("the best law misses both ways by %.2f %% of F_max, expected at most %.2g %%: 0.5 "
+               "%%, or "
+               "twice the noise of the readings where that is more\n",
+               c->ranked[0].misfit / PERCENT, c->largest_supported / PERCENT);
     if (!c->has_unloading)
         printf("loading alone does not tell EI from early yield: EI may be 25 %% low\n");
     printf("%-28s %8s %8s %9s %9s %12s %10s\n", "candidate", "misfit %", "numbers", "F", "F limit",

@@ -359,8 +359,8 @@ static int deliver_cycle(const struct options *o)
     const bool is_converged = wb_cycle_calibrate_is_converged(c);
     if (is_refuted)
         wb_warn("wire '%s': hardening rule not supported by the data: no candidate follows loading "
-                "and unloading within 0.5 %% of F_max",
-                c->members[0].data.info.wire);
+                "and unloading within %.2g %% of F_max",
+                c->members[0].data.info.wire, 100.0 * c->largest_supported);
     if (!is_converged)
         wb_warn("wire '%s': the iterations ran out for a specimen (--fit-iterations)",
                 c->members[0].data.info.wire);

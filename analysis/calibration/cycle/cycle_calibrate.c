@@ -34,6 +34,9 @@ static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
 /* Chaboche's laws are fitted where the best of the others leaves more than this, over F_max, and
  * than this many times the repeat noise. */
 static const double follows_up_to = 1e-3, follows_noise = 2.5;
+/* A law that misses the force by this many times the repeat noise still follows it: the noise of
+ * neighbouring points is not all that readings have. */
+static const double supported_noise = 2.0;
 /* Candidates count up to this many times the best misfit. */
 static const double counts_up_to = 2.0;
 /* Standard errors of a fit on either side of a candidate's number. */
@@ -498,6 +501,8 @@ static void choose(struct wb_cycle_calibration *calibration)
     }
     qsort(calibration->ranked, WB_CANDIDATES, sizeof calibration->ranked[0], by_misfit);
 
+    calibration->largest_supported =
+        fmax(WB_CYCLE_LARGEST_SUPPORTED, supported_noise * calibration->repeat_noise);
     const struct wb_cycle_rank *const best = &calibration->ranked[0];
     int simplest = -1, alike = -1;
     for (int i = 0; i < calibration->n_ranked; i++) {
@@ -521,7 +526,7 @@ static void choose(struct wb_cycle_calibration *calibration)
     const int chosen = simplest >= 0 ? simplest : alike >= 0 ? alike : 0;
     calibration->chosen = calibration->ranked[chosen].candidate;
     calibration->is_supported = calibration->has_unloading && !calibration->is_stopped &&
-                                best->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
+                                best->misfit <= calibration->largest_supported;
 }
 
 /* Whether laws of more kinds are worth their time. */

@@ -71,7 +71,8 @@ struct wb_cycle_answer {
     double secant_error[WB_CYCLE_STIFFNESSES], unloading_error[WB_CYCLE_STIFFNESSES];
 };
 
-/* A hardening rule is supported by fits of loading and unloading up to this misfit. */
+/* A hardening rule is supported by fits of loading and unloading up to this misfit; on noisy data
+ * up to more. */
 #define WB_CYCLE_LARGEST_SUPPORTED 5e-3
 
 struct wb_cycle_member {
@@ -105,7 +106,9 @@ struct wb_cycle_calibration {
     struct wb_cycle_rank ranked[WB_CANDIDATES]; /* best first; those not fitted last */
     int n_ranked;
     enum wb_candidate chosen;
-    bool is_supported; /* the best misfit is at most 0.5 % of F_max, and unloading was fitted */
+    double largest_supported; /* misfit, over F_max: 0.5 %, or twice the repeat noise if that is
+                                 more */
+    bool is_supported;        /* the best misfit is at most that, and unloading was fitted */
     /* `progress` said so before all candidates were fitted to all specimens: the members are those
      * that were, and nothing is decided of the rule. */
     bool is_stopped;

@@ -44,6 +44,7 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
 {
     wb_json_set_text(object, "chosen", wb_candidate_name(c->chosen));
     wb_json_set_boolean(object, "supported", c->is_supported);
+    wb_json_set_number(object, "largest_supported_misfit", c->largest_supported);
     wb_json_set_boolean(object, "unloading_measured", c->has_unloading);
     wb_json_set_boolean(object, "stopped", c->is_stopped);
     wb_json_set_number(object, "repeat_noise", c->repeat_noise);

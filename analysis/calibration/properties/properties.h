@@ -91,9 +91,9 @@ struct wb_properties {
     /* The law, of which `material` is the Ludwik equivalent; of files without one Ludwik's,
      * isotropic, of `material`. */
     struct wb_law law;
-    double ludwik_misfit;                    /* of `material`, of M; NaN unknown */
-    double largest_curvature;                /* 1/m, of the data; NaN unknown */
-    struct wb_estimate rigidity, springback; /* N m2, 1; NaN unknown */
+    double ludwik_misfit;                        /* of `material`, of M; NaN unknown */
+    double largest_curvature;                    /* 1/m, of the data; NaN unknown */
+    struct wb_estimate rigidity, springback;     /* N m2, 1; NaN unknown */
     struct wb_cycle_stiffness secant, unloading; /* without entries unknown */
     struct wb_estimate loop_energy; /* J/m, of a loop to the largest curvature; NaN unknown */
     bool is_rule_tested, is_rule_supported;       /* false unknown */

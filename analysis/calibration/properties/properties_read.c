@@ -105,7 +105,8 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
         WB_CONFIG_OPTIONAL_NUMBER("low", &(e)->low, (unit), 0.0, (largest)),                       \
         WB_CONFIG_OPTIONAL_NUMBER("high", &(e)->high, (unit), 0.0, (largest)),                     \
         WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &(e)->candidates_low, (unit), 0.0, (largest)), \
-        WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &(e)->candidates_high, (unit), 0.0, (largest))
+        WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &(e)->candidates_high, (unit), 0.0,           \
+                                  (largest))
 
 static enum wb_status read_estimate(const struct wb_config_node *node, double unit, double largest,
                                     struct wb_estimate *e)

@@ -232,9 +232,11 @@ static void put_moments(struct wb_text *text, const struct wb_properties *p)
 static void put_rule(struct wb_text *text, const struct wb_cycle_calibration *calibration,
                      const struct wb_properties *p)
 {
-    wb_text_append(text, "# the rule is supported where a candidate follows loading and unloading "
-                         "within 0.5 %% of F_max\n"
-                         "hardening_rule:\n");
+    wb_text_append(text,
+                   "# the rule is supported where a candidate follows loading and unloading within "
+                   "%.2g %% of F_max\n"
+                   "hardening_rule:\n",
+                   100.0 * calibration->largest_supported);
     wb_text_append(text, "  chosen: \"%s\"\n", wb_candidate_name(calibration->chosen));
     wb_text_append(text, "  tested: %s\n", p->is_rule_tested ? "true" : "false");
     wb_text_append(text, "  supported: %s\n", calibration->is_supported ? "true" : "false");

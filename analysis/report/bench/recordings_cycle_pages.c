@@ -98,7 +98,8 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
         "<i>t</i>), "
         "what all samples share is not in it. Over laws: range over all laws whose "
         "misfit is at most twice the best. Misfit: RMS over both ways of the best law, "
-        "over <i>F</i><sub>max</sub>; above 0.5 %% no law follows the data.");
+        "over <i>F</i><sub>max</sub>; above 0.5 %%, or twice the noise "
+        "of the readings where that is more, no law follows the data.");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
     for (int i = 0; i < results->n_wires; i++)
         put_wire(table, &results->wires[i]);

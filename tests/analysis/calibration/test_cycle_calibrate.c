@@ -4,6 +4,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "base/random.h"
 #include "base/units.h"
 #include "tests/analysis/calibration/containing.h"
 #include "tests/analysis/fast_rig.h"
@@ -341,6 +342,36 @@ static void a_stop_at_the_end_is_none(void **unused)
     wb_cycle_calibrate_release(&c);
 }
 
+/* Ten times the noise of the rig's forces: the law is still followed as well as the readings
+ * repeat. */
+static void noise_does_not_refute_a_law(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibrate_settings settings;
+    struct wb_cycle_calibration c;
+    struct wb_dataset dataset;
+    const struct wb_dataset *const one = &dataset;
+    struct fast_rig fast;
+    double moment[WB_CYCLE_MOMENTS], residual;
+    wb_cycle_calibrate_default_settings(&settings);
+    fast_rig_init(&fast, 2, 85.0 * WB_MM, 301);
+    assert_int_equal(fast_rig_run(&fast, &dataset), WB_OK);
+    double largest = 0.0;
+    for (size_t i = 0; i < dataset.n_rows; i++)
+        largest = fmax(largest, dataset.rows[i].tension);
+    for (size_t i = 0; i < dataset.n_rows; i++)
+        dataset.rows[i].tension += 0.02 * largest * wb_random_normal(7, 0, i);
+    assert_int_equal(wb_cycle_calibrate_run(&c, &one, 1, &settings, NULL), WB_OK);
+    fast_rig_truth(&fast, WB_CYCLE_MOMENTS, c.curvature, moment, NULL, &residual);
+    assert_true(c.ranked[0].misfit > WB_CYCLE_LARGEST_SUPPORTED);
+    assert_true(c.is_supported);
+    for (int k = 2; k < WB_CYCLE_MOMENTS; k++)
+        assert_close_relative(c.moment[k].value, moment[k], 0.03);
+    assert_close(c.springback.value, residual / c.largest_curvature, 0.05);
+    wb_cycle_calibrate_release(&c);
+    wb_dataset_release(&dataset);
+}
+
 /* A natural curvature that is larger at one end looks to the forces like another law. */
 static void an_unevenly_bent_wire_does_not_change_the_law(void **unused)
 {
@@ -459,6 +490,7 @@ int main(void)
         cmocka_unit_test(what_is_stopped_later_has_the_laws_that_all_specimens_have),
         cmocka_unit_test(an_unfinished_fit_is_not_ranked),
         cmocka_unit_test(a_stop_at_the_end_is_none),
+        cmocka_unit_test(noise_does_not_refute_a_law),
         cmocka_unit_test(an_unevenly_bent_wire_does_not_change_the_law),
         cmocka_unit_test(what_is_said_is_near_the_truth),
         cmocka_unit_test(the_law_carries_the_mean_of_its_specimens),
