@@ -55,6 +55,12 @@ static const double slack = 2.5e-3;
 /* Standard deviations between two estimates of the bow; and how well an alignment knows it that
  * does not say. */
 static const double bow_limit = 3.0, bow_doubt = 5.0, bow_deviation = 0.3 * WB_MM;
+/* Nothing moves where it stays within this, m, for this time, s, and five times as long as the
+ * test's speed takes for it; the wire is bent from this part of the largest force on. */
+static const double stop_reach = 0.15 * WB_MM, stop_time = 0.8, bent_share = 0.2;
+/* A fall of the force there counts beyond so many standard errors, from this part of the largest
+ * force on; from the second on it is a doubt. */
+static const double fall_noise = 4.0, least_fall = 2e-3, doubted_fall = 5e-3;
 /* A misfit beyond this part of the largest force; or this many times the noise of the readings. */
 static const double misfit_share = 0.01, misfit_noise = 3.0;
 /* Standard deviations of ln(EI) between a specimen and the others. Those are few, and their
@@ -607,6 +613,97 @@ static void check_holds(struct wb_cycle_remarks *remarks, const struct specimen 
             s->wire, s->sample, n, n == 1 ? "" : "s", seconds);
 }
 
+/* Rows `first` to `end` - 1 between which nothing moves. */
+struct stop {
+    size_t first, end;
+};
+
+/* What moves: the stage where it is known. */
+static double place_of(const struct wb_row *row)
+{
+    return isfinite(row->stage) ? row->stage : row->deflection;
+}
+
+/* The first stop from row `from` on, of a wire that carries some of the largest force; false: there
+ * is none. Something that moves at the test's own speed leaves its place much sooner. */
+static bool find_stop(const struct specimen *s, double speed, size_t from, struct stop *stop)
+{
+    const struct wb_dataset *const d = s->dataset;
+    const double least = fmax(stop_time, 5.0 * stop_reach / speed);
+    for (size_t i = from; i < d->n_rows; i++) {
+        const struct wb_row *const row = &d->rows[i];
+        if (!(row->tension > bent_share * s->data->max_force) || !isfinite(place_of(row)))
+            continue;
+        size_t end = i + 1;
+        while (end < d->n_rows && fabs(place_of(&d->rows[end]) - place_of(row)) <= stop_reach)
+            end++;
+        if (d->rows[end - 1].t - row->t < least)
+            continue;
+        *stop = (struct stop){i, end};
+        return true;
+    }
+    return false;
+}
+
+/* Mean of the tension of some rows, and the squared standard error of that. */
+static double mean_tension(const struct wb_row *rows, size_t n, double *variance)
+{
+    double sum = 0.0, squares = 0.0;
+    for (size_t i = 0; i < n; i++)
+        sum += rows[i].tension / (double)n;
+    for (size_t i = 0; i < n; i++)
+        squares += pow(rows[i].tension - sum, 2.0);
+    *variance = squares / (double)(n - 1) / (double)n;
+    return sum;
+}
+
+/* How fast the test moves, m/s: half of its time is spent at this speed or above. */
+static double speed_of(const struct wb_dataset *d)
+{
+    double way = 0.0, time = 0.0;
+    for (size_t i = 1; i < d->n_rows; i++) {
+        const double step = fabs(place_of(&d->rows[i]) - place_of(&d->rows[i - 1]));
+        const double past = d->rows[i].t - d->rows[i - 1].t;
+        if (isfinite(step) && past > 0.0 && past < stop_time) {
+            way += step;
+            time += past;
+        }
+    }
+    return time > 0.0 ? way / time : (double)NAN;
+}
+
+/* A force that falls while nothing moves: by the largest of all stops. */
+static void check_relaxation(struct wb_cycle_remarks *remarks, const struct specimen *s)
+{
+    const struct wb_dataset *const d = s->dataset;
+    const double speed = speed_of(d);
+    double most = 0.0, at = 0.0, seconds = 0.0;
+    struct stop stop = {0, 0};
+    while (speed > 0.0 && find_stop(s, speed, stop.end, &stop)) {
+        /* It comes in and leaves within reach, in less than a tenth of the time. */
+        const size_t fifth = (stop.end - stop.first) / 5, margin = fifth / 2;
+        double before, after;
+        if (fifth < 2)
+            continue;
+        const double fall = mean_tension(&d->rows[stop.first + margin], fifth, &before) -
+                            mean_tension(&d->rows[stop.end - margin - fifth], fifth, &after);
+        if (fall <= fall_noise * sqrt(before + after) || fall <= most)
+            continue;
+        most = fall;
+        at = d->rows[stop.first].deflection;
+        seconds = d->rows[stop.end - 1].t - d->rows[stop.first].t;
+    }
+    const double share = most / s->data->max_force;
+    if (share >= least_fall)
+        say(remarks, share >= doubted_fall ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
+            "wire '%s', sample %d: the force falls by %.1f %% of the largest in %.1f s while "
+            "nothing "
+            "moves, at a deflection of %.1f mm: the wire relaxes, and no law here knows of time. "
+            "The stiffness on the way back and EI come out too high, moments too low; test again "
+            "without a stop",
+            s->wire, s->sample, 100.0 * share, seconds, at / WB_MM);
+}
+
 enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
                                   const struct wb_cycle_calibration *calibration,
                                   const struct wb_dataset *const *datasets)
@@ -629,6 +726,7 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
         };
         check_travel(remarks, &specimen);
         check_holds(remarks, &specimen);
+        check_relaxation(remarks, &specimen);
         check_natural_shape(remarks, &specimen);
         WB_TRY(check_zeros(remarks, &specimen, is_length_seen(datasets[i])));
         check_misfit(remarks, &specimen);

@@ -419,6 +419,66 @@ static void good_specimens_are_not_doubted(void **state)
     release(bench);
 }
 
+/* Two seconds at the turn, in which the force falls by a part of the largest. */
+static void stop_at_the_turn(struct wb_dataset *dataset, double fall, bool has_stage)
+{
+    enum {
+        ROWS = 40
+    };
+    size_t turn = 0;
+    for (size_t i = 1; i < dataset->n_rows; i++) {
+        if (dataset->rows[i].tension > dataset->rows[turn].tension)
+            turn = i;
+    }
+    struct wb_row *const rows =
+        calloc(dataset->n_rows + ROWS, sizeof *rows); /* the dataset releases them */
+    assert_non_null(rows);
+    memcpy(rows, dataset->rows, (turn + 1) * sizeof *rows);
+    for (size_t i = 0; i < ROWS; i++) {
+        const double past = 0.05 * (double)(i + 1);
+        rows[turn + 1 + i] = rows[turn];
+        rows[turn + 1 + i].t += past;
+        rows[turn + 1 + i].tension *=
+            1.0 - fall * (1.0 - exp(-past / 0.6)) / (1.0 - exp(-2.0 / 0.6));
+    }
+    for (size_t i = turn + 1; i < dataset->n_rows; i++) {
+        rows[i + ROWS] = dataset->rows[i];
+        rows[i + ROWS].t += 2.0;
+    }
+    free(dataset->rows);
+    dataset->rows = rows;
+    dataset->n_rows += ROWS;
+    for (size_t i = 0; i < dataset->n_rows && !has_stage; i++)
+        dataset->rows[i].stage = (double)NAN;
+}
+
+static void a_force_that_falls_while_nothing_moves_is_told(void **state)
+{
+    (void)state;
+    static const struct {
+        double fall;
+        bool has_stage;
+        int doubts, notes;
+    } cases[] = {
+        {0.053, true, 1, 0}, {0.053, false, 1, 0}, {0.0035, true, 0, 1}, {0.0, true, 0, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct bench *const bench = one(1);
+        int n[2] = {0, 0};
+        stop_at_the_turn(&bench->datasets[0], cases[i].fall, cases[i].has_stage);
+        check(bench);
+        for (int k = 0; k < bench->remarks.n; k++) {
+            const struct wb_cycle_remark *const remark = &bench->remarks.items[k];
+            if (strstr(remark->text, "relaxes"))
+                n[remark->severity == WB_CHECK_DOUBT]++;
+        }
+        assert_int_equal(n[1], cases[i].doubts);
+        assert_int_equal(n[0], cases[i].notes);
+        if (cases[i].fall > 0.05)
+            assert_told(bench, WB_CHECK_DOUBT, 1, "while nothing moves");
+        release(bench);
+    }
+}
+
 /* Last, because it changes the good specimen. */
 static void a_held_test_is_doubted_but_not_one_held_at_rest(void **state)
 {
@@ -474,6 +534,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_specimen_unlike_the_others_is_told),
         cmocka_unit_test(one_sample_is_noted),
         cmocka_unit_test(good_specimens_are_not_doubted),
+        cmocka_unit_test(a_force_that_falls_while_nothing_moves_is_told),
         cmocka_unit_test(a_held_test_is_doubted_but_not_one_held_at_rest),
     };
     const struct CMUnitTest many[] = {
