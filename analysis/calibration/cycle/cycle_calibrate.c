@@ -33,10 +33,10 @@ static const double elastic_zone = 0.05;
 static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
 /* Chaboche's laws are fitted where the best of the others leaves more than this, over F_max, and
  * than this many times the repeat noise. */
-static const double follows_up_to = 1e-3, follows_noise = 2.5;
+static const double follows_up_to = 1e-3, follows_noise = 2.0;
 /* A law that misses the force by this many times the repeat noise still follows it: the noise of
  * neighbouring points is not all that readings have. */
-static const double supported_noise = 2.0;
+static const double supported_noise = 2.0, most_supported = 2e-2;
 /* Candidates count up to this many times the best misfit. */
 static const double counts_up_to = 2.0;
 /* Standard errors of a fit on either side of a candidate's number. */
@@ -192,6 +192,17 @@ static double best_misfit(const struct wb_cycle_member *member)
     return best;
 }
 
+/* The better of two fits (NULL: none): one that ended, and then the smaller misfit. */
+static const struct wb_cycle_fit *better(const struct wb_cycle_fit *one,
+                                         const struct wb_cycle_fit *other)
+{
+    if (!one || !other)
+        return one ? one : other;
+    if (one->is_converged != other->is_converged)
+        return one->is_converged ? one : other;
+    return one->misfit <= other->misfit ? one : other;
+}
+
 /* Fits a candidate from a law near by, and keeps it where it is better than what there is. That the
  * beam cannot follow it is a result. */
 static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
@@ -207,7 +218,7 @@ static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate 
     if (status == WB_ERR_CONVERGENCE)
         return WB_OK;
     WB_TRY(status);
-    if (!answer->is_fitted || fit.misfit < answer->fit.misfit) {
+    if (better(answer->is_fitted ? &answer->fit : NULL, &fit) == &fit) {
         wb_cycle_fit_release(&answer->fit);
         answer->fit = fit;
         answer->is_fitted = true;
@@ -217,12 +228,6 @@ static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate 
     return WB_OK;
 }
 
-static const struct wb_cycle_fit *better(const struct wb_cycle_fit *one,
-                                         const struct wb_cycle_fit *other)
-{
-    return one && (!other || one->misfit <= other->misfit) ? one : other;
-}
-
 static const struct wb_cycle_fit *fit_of(const struct wb_cycle_member *member,
                                          enum wb_candidate candidate)
 {
@@ -230,8 +235,21 @@ static const struct wb_cycle_fit *fit_of(const struct wb_cycle_member *member,
     return answer->is_fitted ? &answer->fit : NULL;
 }
 
-/* The fit of a contained law is one of the law that contains it, with a share at its end or a back
- * stress of nothing: their priors, or a search that stopped early, may have kept that from it. */
+/* The same law in the form of a candidate that contains it: one yield surface that does not move,
+ * or two back stresses, alike, in place of one. */
+static void contain(enum wb_candidate candidate, struct wb_law *law)
+{
+    if (candidate == WB_CANDIDATE_LUDWIK_COMBINED)
+        law->is_combined = true;
+    if (candidate != WB_CANDIDATE_CHABOCHE_TWO)
+        return;
+    law->backs[0].modulus *= 0.5;
+    law->backs[law->n_backs++] = law->backs[0];
+}
+
+/* The fit of a contained law is one of the law that contains it, with a share at its end or two
+ * back stresses alike: priors, or a search that stopped early, may have kept that from it. A mixed
+ * law has no exponent above 1. */
 static void take_contained(struct wb_cycle_member *member, enum wb_candidate candidate,
                            const struct wb_cycle_fit *contained)
 {
@@ -239,12 +257,17 @@ static void take_contained(struct wb_cycle_member *member, enum wb_candidate can
     const size_t n = (size_t)member->data.n_points;
     if (!answer->is_fitted || !contained || better(&answer->fit, contained) == &answer->fit)
         return;
+    if (candidate == WB_CANDIDATE_LUDWIK_MIXED && contained->law.material.hardening_exponent > 1.0)
+        return;
     wb_cycle_fit_release(&answer->fit);
     answer->fit = *contained;
     answer->fit.candidate = candidate;
     answer->fit.n_law = wb_candidate_numbers(candidate);
     answer->fit.n_free += answer->fit.n_law - contained->n_law;
     answer->fit.is_at_bound = true;
+    contain(candidate, &answer->fit.law);
+    for (int i = 0; i < answer->fit.n_moved; i++)
+        contain(candidate, &answer->fit.moved[i]);
     answer->fit.tension = wb_memory_new(n, sizeof(double));
     memcpy(answer->fit.tension, contained->tension, n * sizeof(double));
 }
@@ -502,7 +525,8 @@ static void choose(struct wb_cycle_calibration *calibration)
     qsort(calibration->ranked, WB_CANDIDATES, sizeof calibration->ranked[0], by_misfit);
 
     calibration->largest_supported =
-        fmax(WB_CYCLE_LARGEST_SUPPORTED, supported_noise * calibration->repeat_noise);
+        fmax(WB_CYCLE_LARGEST_SUPPORTED,
+             fmin(supported_noise * calibration->repeat_noise, most_supported));
     const struct wb_cycle_rank *const best = &calibration->ranked[0];
     int simplest = -1, alike = -1;
     for (int i = 0; i < calibration->n_ranked; i++) {
@@ -790,14 +814,17 @@ static void average_chaboche(const struct wb_cycle_calibration *calibration,
     double stress[WB_LAW_MOST_BACKS] = {0.0}, recovery[WB_LAW_MOST_BACKS] = {0.0};
     for (int i = 0; i < n; i++) {
         const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
+        /* The fast back stress of one with the fast ones of the others. */
+        const bool is_turned = law->n_backs > 1 && law->backs[0].recovery < law->backs[1].recovery;
         E += log(law->material.youngs_modulus) / n;
         yield += law->material.yield_stress / n;
         saturation += law->saturation / n;
         rate += law->saturation * log(law->rate) / n;
         for (int k = 0; k < law->n_backs; k++) {
-            const double end = law->backs[k].modulus / law->backs[k].recovery;
+            const struct wb_law_back *const back = &law->backs[is_turned ? 1 - k : k];
+            const double end = back->modulus / back->recovery;
             stress[k] += end / n;
-            recovery[k] += end * log(law->backs[k].recovery) / n;
+            recovery[k] += end * log(back->recovery) / n;
         }
     }
     struct wb_law_back backs[WB_LAW_MOST_BACKS];

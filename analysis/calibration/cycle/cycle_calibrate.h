@@ -106,8 +106,7 @@ struct wb_cycle_calibration {
     struct wb_cycle_rank ranked[WB_CANDIDATES]; /* best first; those not fitted last */
     int n_ranked;
     enum wb_candidate chosen;
-    double largest_supported; /* misfit, over F_max: 0.5 %, or twice the repeat noise if that is
-                                 more */
+    double largest_supported; /* misfit, over F_max: 0.5 %, or twice the repeat noise up to 2 % */
     bool is_supported;        /* the best misfit is at most that, and unloading was fitted */
     /* `progress` said so before all candidates were fitted to all specimens: the members are those
      * that were, and nothing is decided of the rule. */

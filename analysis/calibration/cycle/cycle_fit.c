@@ -295,7 +295,9 @@ static double largest_exponent_of(const struct candidate *c)
 static void law_of(const struct problem *p, const double *free, struct wb_law *law)
 {
     const struct candidate *const c = p->candidate;
-    const double share = c->has_share ? logistic(free[p->n_law - 1]) : c->isotropic_share;
+    /* At its end a mixed law would be of another kind. */
+    const double share =
+        c->has_share ? fmin(logistic(free[p->n_law - 1]), 1.0 - 1e-9) : c->isotropic_share;
 
     if (c->form == WB_LAW_LUDWIK) {
         const double n = largest_exponent_of(c) * logistic(free[3]);

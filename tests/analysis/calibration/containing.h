@@ -20,6 +20,12 @@ static inline double worst_of_containing(const struct wb_cycle_calibration *c)
     };
     double worst = 0.0;
     for (int i = 0; i < c->n_members; i++) {
+        /* What was taken from a contained law has the form of the one that holds it. */
+        const struct wb_cycle_answer *const all = c->members[i].answers;
+        if (all[WB_CANDIDATE_LUDWIK_COMBINED].is_fitted)
+            assert_true(all[WB_CANDIDATE_LUDWIK_COMBINED].fit.law.is_combined);
+        if (all[WB_CANDIDATE_CHABOCHE_TWO].is_fitted)
+            assert_int_equal(all[WB_CANDIDATE_CHABOCHE_TWO].fit.law.n_backs, 2);
         for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
             const struct wb_cycle_answer *const answers = c->members[i].answers;
             const struct wb_cycle_answer *const containing = &answers[pairs[k].containing];
