@@ -618,89 +618,109 @@ struct stop {
     size_t first, end;
 };
 
-/* What moves: the stage where it is known. */
-static double place_of(const struct wb_row *row)
+/* A test's rows, and what moves: the stage where all rows know it, else the deflection. */
+struct motion {
+    const struct wb_row *rows;
+    size_t n;
+    bool has_stage;
+    double speed; /* m/s; NaN unknown */
+};
+
+static double place_of(const struct motion *m, size_t i)
 {
-    return isfinite(row->stage) ? row->stage : row->deflection;
+    return m->has_stage ? m->rows[i].stage : m->rows[i].deflection;
 }
 
-/* The first stop from row `from` on, of a wire that carries some of the largest force; false: there
- * is none. Something that moves at the test's own speed leaves its place much sooner. */
-static bool find_stop(const struct specimen *s, double speed, size_t from, struct stop *stop)
+/* The median of the speed over times that are long beside the noise of a place. */
+static double find_speed(const struct motion *m)
 {
-    const struct wb_dataset *const d = s->dataset;
-    const double least = fmax(stop_time, 5.0 * stop_reach / speed);
-    for (size_t i = from; i < d->n_rows; i++) {
-        const struct wb_row *const row = &d->rows[i];
-        if (!(row->tension > bent_share * s->data->max_force) || !isfinite(place_of(row)))
+    double *const speeds = wb_memory_new(m->n, sizeof *speeds);
+    size_t from = 0, n = 0;
+    for (size_t i = 0; i < m->n; i++) {
+        const double past = m->rows[i].t - m->rows[from].t;
+        if (past < stop_time)
+            continue;
+        const double speed = fabs(place_of(m, i) - place_of(m, from)) / past;
+        if (isfinite(speed))
+            speeds[n++] = speed;
+        from = i;
+    }
+    const double median = n > 0 ? wb_fit_median(speeds, n) : (double)NAN;
+    free(speeds);
+    return median;
+}
+
+/* The first stop from row `from` on, of a wire that carries some of the largest force, without the
+ * rows in which it may come in and leave; false: there is none. */
+static bool find_stop(const struct specimen *s, const struct motion *m, size_t from,
+                      struct stop *stop)
+{
+    const double passing = 2.0 * stop_reach / m->speed; /* s, within reach without a stop */
+    for (size_t i = from; i < m->n; i++) {
+        if (!(m->rows[i].tension > bent_share * s->data->max_force) || !isfinite(place_of(m, i)))
             continue;
         size_t end = i + 1;
-        while (end < d->n_rows && fabs(place_of(&d->rows[end]) - place_of(row)) <= stop_reach)
+        while (end < m->n && fabs(place_of(m, end) - place_of(m, i)) <= stop_reach)
             end++;
-        if (d->rows[end - 1].t - row->t < least)
+        const double begin = m->rows[i].t + passing, last = m->rows[end - 1].t - passing;
+        if (last - begin < stop_time)
             continue;
         *stop = (struct stop){i, end};
+        while (m->rows[stop->first].t < begin)
+            stop->first++;
+        while (m->rows[stop->end - 1].t > last)
+            stop->end--;
         return true;
     }
     return false;
 }
 
-/* Mean of the tension of some rows, and the squared standard error of that. */
+/* Mean of the tension of some rows, and the squared standard error of that; NaN of fewer than two
+ * that have one. */
 static double mean_tension(const struct wb_row *rows, size_t n, double *variance)
 {
     double sum = 0.0, squares = 0.0;
-    for (size_t i = 0; i < n; i++)
-        sum += rows[i].tension / (double)n;
-    for (size_t i = 0; i < n; i++)
-        squares += pow(rows[i].tension - sum, 2.0);
-    *variance = squares / (double)(n - 1) / (double)n;
-    return sum;
-}
-
-/* How fast the test moves, m/s: half of its time is spent at this speed or above. */
-static double speed_of(const struct wb_dataset *d)
-{
-    double way = 0.0, time = 0.0;
-    for (size_t i = 1; i < d->n_rows; i++) {
-        const double step = fabs(place_of(&d->rows[i]) - place_of(&d->rows[i - 1]));
-        const double past = d->rows[i].t - d->rows[i - 1].t;
-        if (isfinite(step) && past > 0.0 && past < stop_time) {
-            way += step;
-            time += past;
+    int known = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (isfinite(rows[i].tension)) {
+            sum += rows[i].tension;
+            known++;
         }
     }
-    return time > 0.0 ? way / time : (double)NAN;
+    const double mean = known > 1 ? sum / known : (double)NAN;
+    for (size_t i = 0; i < n; i++)
+        squares += isfinite(rows[i].tension) ? pow(rows[i].tension - mean, 2.0) : 0.0;
+    *variance = squares / (known - 1.0) / known;
+    return mean;
 }
 
 /* A force that falls while nothing moves: by the largest of all stops. */
 static void check_relaxation(struct wb_cycle_remarks *remarks, const struct specimen *s)
 {
-    const struct wb_dataset *const d = s->dataset;
-    const double speed = speed_of(d);
+    struct motion m = {.rows = s->dataset->rows, .n = s->dataset->n_rows, .has_stage = true};
+    for (size_t i = 0; i < m.n; i++)
+        m.has_stage = m.has_stage && isfinite(m.rows[i].stage);
+    m.speed = find_speed(&m);
     double most = 0.0, at = 0.0, seconds = 0.0;
     struct stop stop = {0, 0};
-    while (speed > 0.0 && find_stop(s, speed, stop.end, &stop)) {
-        /* It comes in and leaves within reach, in less than a tenth of the time. */
-        const size_t fifth = (stop.end - stop.first) / 5, margin = fifth / 2;
+    while (m.speed > 0.0 && find_stop(s, &m, stop.end, &stop)) {
+        const size_t fifth = (stop.end - stop.first) / 5;
         double before, after;
-        if (fifth < 2)
-            continue;
-        const double fall = mean_tension(&d->rows[stop.first + margin], fifth, &before) -
-                            mean_tension(&d->rows[stop.end - margin - fifth], fifth, &after);
-        if (fall <= fall_noise * sqrt(before + after) || fall <= most)
+        const double fall = mean_tension(&m.rows[stop.first], fifth, &before) -
+                            mean_tension(&m.rows[stop.end - fifth], fifth, &after);
+        if (!(fall > fall_noise * sqrt(before + after) && fall > most))
             continue;
         most = fall;
-        at = d->rows[stop.first].deflection;
-        seconds = d->rows[stop.end - 1].t - d->rows[stop.first].t;
+        at = m.rows[stop.first].deflection;
+        seconds = m.rows[stop.end - 1].t - m.rows[stop.first].t;
     }
     const double share = most / s->data->max_force;
     if (share >= least_fall)
         say(remarks, share >= doubted_fall ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
             "wire '%s', sample %d: the force falls by %.1f %% of the largest in %.1f s while "
-            "nothing "
-            "moves, at a deflection of %.1f mm: the wire relaxes, and no law here knows of time. "
-            "The stiffness on the way back and EI come out too high, moments too low; test again "
-            "without a stop",
+            "nothing moves, at a deflection of %.1f mm: the wire relaxes, and no law here knows of "
+            "time. The stiffness on the way back and EI come out too high, moments too low; test "
+            "again without a stop",
             s->wire, s->sample, 100.0 * share, seconds, at / WB_MM);
 }
 

@@ -419,22 +419,19 @@ static void good_specimens_are_not_doubted(void **state)
     release(bench);
 }
 
-/* Two seconds at the turn, in which the force falls by a part of the largest. */
-static void stop_at_the_turn(struct wb_dataset *dataset, double fall, bool has_stage)
+/* Some seconds at the turn, in which the force falls by a part of the largest. */
+static void stop_at_the_turn(struct wb_dataset *dataset, size_t n, double fall, bool has_stage)
 {
-    enum {
-        ROWS = 40
-    };
     size_t turn = 0;
     for (size_t i = 1; i < dataset->n_rows; i++) {
         if (dataset->rows[i].tension > dataset->rows[turn].tension)
             turn = i;
     }
     struct wb_row *const rows =
-        calloc(dataset->n_rows + ROWS, sizeof *rows); /* the dataset releases them */
+        calloc(dataset->n_rows + n, sizeof *rows); /* the dataset releases them */
     assert_non_null(rows);
     memcpy(rows, dataset->rows, (turn + 1) * sizeof *rows);
-    for (size_t i = 0; i < ROWS; i++) {
+    for (size_t i = 0; i < n; i++) {
         const double past = 0.05 * (double)(i + 1);
         rows[turn + 1 + i] = rows[turn];
         rows[turn + 1 + i].t += past;
@@ -442,12 +439,12 @@ static void stop_at_the_turn(struct wb_dataset *dataset, double fall, bool has_s
             1.0 - fall * (1.0 - exp(-past / 0.6)) / (1.0 - exp(-2.0 / 0.6));
     }
     for (size_t i = turn + 1; i < dataset->n_rows; i++) {
-        rows[i + ROWS] = dataset->rows[i];
-        rows[i + ROWS].t += 2.0;
+        rows[i + n] = dataset->rows[i];
+        rows[i + n].t += 0.05 * (double)n;
     }
     free(dataset->rows);
     dataset->rows = rows;
-    dataset->n_rows += ROWS;
+    dataset->n_rows += n;
     for (size_t i = 0; i < dataset->n_rows && !has_stage; i++)
         dataset->rows[i].stage = (double)NAN;
 }
@@ -456,15 +453,16 @@ static void a_force_that_falls_while_nothing_moves_is_told(void **state)
 {
     (void)state;
     static const struct {
+        size_t rows; /* of 0.05 s */
         double fall;
         bool has_stage;
         int doubts, notes;
-    } cases[] = {
-        {0.053, true, 1, 0}, {0.053, false, 1, 0}, {0.0035, true, 0, 1}, {0.0, true, 0, 0}};
+    } cases[] = {{40, 0.053, true, 1, 0}, {40, 0.053, false, 1, 0}, {40, 0.0035, true, 0, 1},
+                 {40, 0.0, true, 0, 0},   {7, 0.0, true, 0, 0},     {20, 0.0, true, 0, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct bench *const bench = one(1);
         int n[2] = {0, 0};
-        stop_at_the_turn(&bench->datasets[0], cases[i].fall, cases[i].has_stage);
+        stop_at_the_turn(&bench->datasets[0], cases[i].rows, cases[i].fall, cases[i].has_stage);
         check(bench);
         for (int k = 0; k < bench->remarks.n; k++) {
             const struct wb_cycle_remark *const remark = &bench->remarks.items[k];
