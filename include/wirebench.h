@@ -303,9 +303,10 @@ struct wirebench_properties_info {
     int n_samples;
     int is_rule_supported; /* the data support the hardening rule */
     int is_virtual, is_simulation;
-    /* As in wirebench_law. Of Chaboche's law E, sigma_Y, K and n above are the isotropic Ludwik law
-     * that bends alike on a first loading, kinematic_share is the part of the hardening that moves
-     * the surface, and these are its own E and sigma_Y. */
+    /* As in wirebench_law. Of Chaboche's law of a file E, sigma_Y, K and n above are the isotropic
+     * Ludwik law that bends alike on a first loading, of one that the caller gave its own with K
+     * and n 0; kinematic_share is the part of the hardening that moves the surface, and these are
+     * its own E and sigma_Y. */
     double saturation, rate;
     int n_backs;
     int is_combined;

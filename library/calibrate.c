@@ -136,7 +136,7 @@ static enum wb_status run_cycle(struct job *job, struct wb_text *text)
             lack(job, "the iterations ran out for a specimen (option fit-iterations)");
         else if (calibration.has_unloading && !calibration.is_supported)
             lack(job, "hardening rule not supported by the data: no candidate follows loading and "
-                      "unloading within 0.5 % of F_max");
+                      "unloading (hardening_rule in the properties has the limit)");
     }
     wb_cycle_calibrate_release(&calibration);
     return status;

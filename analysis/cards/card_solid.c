@@ -198,7 +198,8 @@ static void put_plain(struct wb_text *text, const struct dialect *dialect, const
                          .share = 1.0};
     tabulate(law, &table);
     snprintf(m.name, sizeof m.name, "%s", name);
-    if (law->is_combined && law->isotropic_share < 1.0)
+    if (law->form == WB_LAW_CHABOCHE ? law->n_backs > 0
+                                     : law->is_combined && law->isotropic_share < 1.0)
         wb_text_append(text, "** The law hardens in part kinematically, in a way that this program "
                              "does not have. The table is\n"
                              "** isotropic: right for a first loading, not for the way back.\n");
@@ -246,16 +247,20 @@ static enum wb_status write(const struct dialect *dialect, const struct wb_card_
             source->file, p->law.material.poissons_ratio, largest_poisson);
     make_name(name, p->wire);
     wb_card_source_append(source, dialect->kind, "** ", text);
-    wb_text_append(text,
-                   "** Plastic tables: true stress, logarithmic plastic strain; the first at zero "
-                   "plastic strain. They end\n"
-                   "** at a strain of %g, beyond which the stress stays. Use steps with NLGEOM.\n"
-                   "** %s\n",
-                   last_strain, dialect->advice);
+    const bool is_native =
+        p->law.form == WB_LAW_CHABOCHE && dialect->has_combined && p->law.n_backs > 0;
+    if (!is_native)
+        wb_text_append(text,
+                       "** Plastic tables: true stress, logarithmic plastic strain; the first at "
+                       "zero plastic strain. They end\n"
+                       "** at a strain of %g, beyond which the stress stays.",
+                       last_strain);
+    wb_text_append(text, "%s Use steps with NLGEOM.\n** %s\n", is_native ? "**" : "",
+                   dialect->advice);
     if (!(p->mass_per_length > 0.0))
         wb_text_append(text, "** The wire's mass is not known: without density, for static steps "
                              "alone.\n");
-    if (p->law.form == WB_LAW_CHABOCHE && dialect->has_combined && p->law.n_backs > 0)
+    if (is_native)
         put_chaboche(text, dialect, &p->law, name, p->mass_per_length / area);
     else if (!wb_law_is_overlay(&p->law) || p->law.isotropic_share >= 1.0)
         put_plain(text, dialect, &p->law, name, p->mass_per_length / area);

@@ -99,16 +99,28 @@ static enum wb_status take_rigidity(struct wb_compare_quantity *q,
     return WB_OK;
 }
 
-static void take_unloading(struct wb_compare_quantity *q, const struct wb_properties *const *p)
+/* At the curvature that both have, by what the law says of it over that from the file's largest. */
+static enum wb_status take_unloading(struct wb_compare_quantity *q,
+                                     const struct wb_properties *const *p, double largest)
 {
-    static const double curvature = 1.0;
+    static const double change = 1.0;
     *q = (struct wb_compare_quantity){
         .name = "unloading stiffness over 1 1/m", .unit = "N mm2", .factor = N_MM2};
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
-        const struct wb_estimate *const e = wb_cycle_stiffness_at(&p[i]->unloading, curvature);
-        if (!e || !find_group(p[i], e, 1.0, &q->groups[i]))
+        const struct wb_estimate *const e = wb_cycle_stiffness_at(&p[i]->unloading, change);
+        double here, there;
+        if (!e || largest < change || p[i]->unloading.resolved > change) {
+            q->reason = "a file does not know it";
+            continue;
+        }
+        WB_TRY(wb_bending_stiffness(&p[i]->law, p[i]->outer_diameter, largest, 0, NULL, NULL, 1,
+                                    &change, &here));
+        WB_TRY(wb_bending_stiffness(&p[i]->law, p[i]->outer_diameter, p[i]->largest_curvature, 0,
+                                    NULL, NULL, 1, &change, &there));
+        if (!find_group(p[i], e, here / there, &q->groups[i]))
             q->reason = "a file has no interval of it";
     }
+    return WB_OK;
 }
 
 static enum wb_status take_springback(struct wb_compare_quantity *q,
@@ -199,7 +211,7 @@ enum wb_status wb_compare_run(struct wb_compare *compare,
     struct wb_compare_quantity *q = c.quantities;
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         WB_TRY(take_moment(q++, properties, wb_cycle_moment_parts[k] * c.curvature));
-    take_unloading(q++, properties);
+    WB_TRY(take_unloading(q++, properties, c.curvature));
     WB_TRY(take_springback(q++, properties, c.curvature));
     WB_TRY(take_rigidity(q, properties));
     for (int k = 0; k < WB_COMPARE_QUANTITIES; k++)

@@ -140,6 +140,9 @@ static struct wb_law stiffer(const struct wb_law *law, double factor)
     scaled.material.strength_coefficient *= factor;
     for (int i = 0; i < law->n_parts; i++)
         scaled.parts[i].modulus *= factor;
+    scaled.saturation *= factor;
+    for (int i = 0; i < law->n_backs; i++)
+        scaled.backs[i].modulus *= factor;
     return scaled;
 }
 

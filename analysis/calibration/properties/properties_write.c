@@ -163,7 +163,6 @@ void wb_properties_format(struct wb_text *text, const struct wb_calibrate_result
 
 /* --- calibrations on whole cycles --- */
 
-/* "  key: {value: 1, low: 0.9, ...}" with what is known; nothing where nothing is. */
 /* "{value: 1, low: 2, ...}" of what is known, behind a number of another name, if one is given. */
 static void append_estimate(struct wb_text *text, const char *name, double first,
                             const struct wb_estimate *estimate, double unit)
@@ -190,6 +189,7 @@ static void append_estimate(struct wb_text *text, const char *name, double first
     wb_text_append(text, n > 0 ? "}\n" : "{}\n");
 }
 
+/* "key: {value: 1, low: 0.9, ...}" with what is known; nothing where nothing is. */
 static void put_estimate(struct wb_text *text, const char *key, const struct wb_estimate *estimate,
                          double unit)
 {
@@ -303,8 +303,10 @@ static void put_law(struct wb_text *text, const struct wb_cycle_calibration *cal
     put_number(text, "", "poissons_ratio", p->law.material.poissons_ratio);
     put_number(text, "", "ludwik_misfit", p->ludwik_misfit);
     wb_text_append(text, "# %s over the specimens\n",
-                   calibration->n_members > 1 ? "means of the logarithms"
-                                              : "one specimen; no mean");
+                   calibration->n_members < 2       ? "one specimen; no mean"
+                   : p->law.form == WB_LAW_PARALLEL ? "means of the moduli"
+                   : p->law.form == WB_LAW_CHABOCHE ? "means of the stresses"
+                                                    : "means of the logarithms");
     wb_law_file_append(text, &p->law);
 }
 

@@ -699,10 +699,10 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
                        m->hardening_exponent);
     } else {
         wb_text_append(&text,
-                       "Isotropic share %.2f, <i>E</i> = %.0f MPa, "
+                       "Hardening %s, isotropic share %.2f, <i>E</i> = %.0f MPa, "
                        "<i>\xcf\x83</i><sub>Y</sub> = %.2f MPa",
-                       c->law.isotropic_share, m->youngs_modulus / WB_MPA,
-                       m->yield_stress / WB_MPA);
+                       wb_law_rule_name(&c->law), c->law.isotropic_share,
+                       m->youngs_modulus / WB_MPA, m->yield_stress / WB_MPA);
         append_known(&text, "<i>K</i>", m->strength_coefficient / WB_MPA, 0, " MPa",
                      c->is_strength_identifiable);
         append_known(&text, "<i>n</i>", m->hardening_exponent, 3, "", c->is_exponent_identifiable);
