@@ -2,55 +2,62 @@
 #ifndef WB_TESTS_FE_ROD_POINTS_H
 #define WB_TESTS_FE_ROD_POINTS_H
 
-#include <stdlib.h>
-
-#include "fe/rod/fibres.h"
 #include "fe/rod/fibres_private.h"
-#include "tests/check.h"
+#include "tests/fe/rod/fibre_point.h"
+#include "tests/fe/rod/wires.h"
 
 #define DIAMETER 1.25e-3
 
-/* One section point with its history. */
-struct point {
-    struct wb_section section;
-    struct wb_fibres *fibres;
-    double *before, *after;
-};
-
-static inline struct point make_point(const struct wb_law *law, int n)
+static inline struct fibre_point make_point(const struct wb_law *law, int n)
 {
-    struct point p = {.before = NULL};
-    assert_int_equal(wb_section_init_law(&p.section, DIAMETER, law, n), WB_OK);
-    assert_int_equal(wb_fibres_create(&p.fibres, &p.section), WB_OK);
-    const size_t size = wb_fibres_history_size(p.fibres);
-    p.before = calloc(size, sizeof *p.before);
-    p.after = calloc(size, sizeof *p.after);
-    assert_true(p.before && p.after);
+    struct wb_section section;
+    assert_int_equal(wb_section_init_law(&section, DIAMETER, law, n), WB_OK);
+    const struct fibre_point p = fibre_point_make(&section);
+    wb_section_release(&section);
     return p;
 }
 
-static inline void release_point(struct point *p)
+/* Moment at a curvature, which is kept. */
+static inline double bend(struct fibre_point *p, double kappa)
 {
-    wb_fibres_destroy(p->fibres);
-    wb_section_release(&p->section);
-    free(p->before);
-    free(p->after);
-}
-
-static inline struct wb_fibres_response respond(struct point *p, double eps, double kappa)
-{
-    struct wb_fibres_response r;
-    wb_fibres_respond(p->fibres, eps, kappa, p->before, p->after, &r);
-    return r;
-}
-
-static inline double bend(struct point *p, double kappa)
-{
-    const struct wb_fibres_response r = respond(p, 0.0, kappa);
-    double *const old = p->before;
-    p->before = p->after;
-    p->after = old;
+    const struct wb_fibres_response r = fibre_point_respond(p, 0.0, kappa);
+    fibre_point_accept(p);
     return r.M;
+}
+
+/* Bends to and fro with the processor's vector instructions and without. */
+static inline void assert_same_bits(const struct wb_law *law)
+{
+    struct fibre_point fastest = make_point(law, 20), portable = make_point(law, 20);
+    uint64_t random = 43;
+    wb_fibres_set_portable(portable.fibres);
+    for (int step = 0; step < 200; step++) {
+        const double kappa = 80.0 * (test_random(&random) - 0.5);
+        assert_true(bend(&fastest, kappa) == bend(&portable, kappa));
+    }
+    fibre_point_release(&fastest);
+    fibre_point_release(&portable);
+}
+
+/* A point of a law that is exchanged for another bends as one that was made of that. */
+static inline void assert_exchanged(const struct wb_law *law, const struct wb_law *other)
+{
+    struct fibre_point p = make_point(law, 20), fresh = make_point(other, 20);
+    assert_int_equal(wb_fibres_set_law(p.fibres, other), WB_OK);
+    (void)bend(&p, 30.0);
+    (void)bend(&fresh, 30.0);
+    assert_true(bend(&p, 4.0) == bend(&fresh, 4.0));
+    fibre_point_release(&p);
+    fibre_point_release(&fresh);
+}
+
+static inline void assert_not_exchanged(const struct wb_law *law, const struct wb_law *other)
+{
+    struct fibre_point p = make_point(law, 20);
+    wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_fibres_set_law(p.fibres, other), WB_ERR_ARGUMENT);
+    wb_log_set_sink(NULL, NULL);
+    fibre_point_release(&p);
 }
 
 #endif
