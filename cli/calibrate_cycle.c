@@ -245,8 +245,8 @@ static void print_specimens(const struct wb_cycle_calibration *c)
                /* Adding zero makes no number "-0.00". */
                round(100.0 * fit->level / WB_MM) / 100.0 + 0.0,
                format(member->data.residual_deflection / WB_MM, left), fit->misfit / PERCENT,
-               format(answer->bending.flexural_rigidity / N_MM2, rigidity),
-               c->has_unloading ? format(answer->bending.springback, springback) : "-",
+               format(answer->value[WB_CYCLE_RIGIDITY] / N_MM2, rigidity),
+               c->has_unloading ? format(answer->value[WB_CYCLE_SPRINGBACK], springback) : "-",
                fit->n_outliers + member->data.n_outliers,
                fit->is_converged ? "" : "  did not converge",
                fit->is_at_bound ? "  at a bound" : "");

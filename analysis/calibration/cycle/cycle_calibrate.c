@@ -561,65 +561,22 @@ static bool leaves_something(const struct wb_cycle_calibration *calibration)
                fmax(follows_up_to, follows_noise * calibration->repeat_noise);
 }
 
-/* Numbers of a specimen that are averaged. */
-enum number {
-    RIGIDITY,
-    SPRINGBACK,
-    LOOP_ENERGY,
-    MOMENTS,
-    SECANTS = MOMENTS + WB_CYCLE_MOMENTS,
-    UNLOADINGS = SECANTS + WB_CYCLE_STIFFNESSES,
-    NUMBERS = UNLOADINGS + WB_CYCLE_STIFFNESSES
-};
-
-static double number_of(const struct wb_cycle_answer *answer, enum number number)
-{
-    switch (number) {
-    case RIGIDITY:
-        return answer->bending.flexural_rigidity;
-    case SPRINGBACK:
-        return answer->bending.springback;
-    case LOOP_ENERGY:
-        return answer->bending.loop_energy;
-    default:
-        return number < SECANTS      ? answer->moment[number - MOMENTS]
-               : number < UNLOADINGS ? answer->secant[number - SECANTS]
-                                     : answer->unloading[number - UNLOADINGS];
-    }
-}
-
-static double error_of(const struct wb_cycle_answer *answer, enum number number)
-{
-    switch (number) {
-    case RIGIDITY:
-        return answer->bending_error.flexural_rigidity;
-    case SPRINGBACK:
-        return answer->bending_error.springback;
-    case LOOP_ENERGY:
-        return answer->bending_error.loop_energy;
-    default:
-        return number < SECANTS      ? answer->moment_error[number - MOMENTS]
-               : number < UNLOADINGS ? answer->secant_error[number - SECANTS]
-                                     : answer->unloading_error[number - UNLOADINGS];
-    }
-}
-
 /* A residual curvature is a part of the largest. */
-static double largest_value(enum number number)
+static double largest_value(enum wb_cycle_number number)
 {
-    return number == SPRINGBACK ? 1.0 : (double)INFINITY;
+    return number == WB_CYCLE_SPRINGBACK ? 1.0 : (double)INFINITY;
 }
 
 /* Mean of logarithms and its interval. */
 static void average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
-                    enum number number, const struct wb_cycle_calibrate_settings *settings,
+                    enum wb_cycle_number number, const struct wb_cycle_calibrate_settings *settings,
                     struct wb_estimate *estimate)
 {
     const int n = calibration->n_members;
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < n; i++) {
         const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
-        const double x = log(number_of(answer, number));
+        const double x = log(answer->value[number]);
         sum += x;
         squares += x * x;
     }
@@ -642,19 +599,18 @@ static void average(const struct wb_cycle_calibration *calibration, enum wb_cand
 
 /* Root mean square over the specimens. */
 static double fit_error(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
-                        enum number number)
+                        enum wb_cycle_number number)
 {
     double squares = 0.0;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
-        const double error = error_of(answer, number);
-        squares += error * error;
+        squares += answer->error[number] * answer->error[number];
     }
     return sqrt(squares / calibration->n_members);
 }
 
 /* The chosen law's number with the range over the candidates that count. */
-static void estimate_number(struct wb_cycle_calibration *calibration, enum number number,
+static void estimate_number(struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
                             const struct wb_cycle_calibrate_settings *settings,
                             struct wb_estimate *estimate)
 {
@@ -674,57 +630,40 @@ static void estimate_number(struct wb_cycle_calibration *calibration, enum numbe
     estimate->candidates_high = fmin(estimate->candidates_high, largest_value(number));
 }
 
-static void add_square(double *sum, double moved, double value, double moved_by)
-{
-    const double difference = value > 0.0 ? (moved / value - 1.0) / moved_by : 0.0;
-    *sum += difference * difference;
-}
-
-/* What a law says of bending, into an answer. */
+/* What a law says of bending: numbers by enum wb_cycle_number. */
 static enum wb_status describe_law(const struct wb_cycle_calibration *calibration,
-                                   const struct wb_law *law, double diameter,
-                                   struct wb_cycle_answer *answer)
+                                   const struct wb_law *law, double diameter, double *value)
 {
-    const struct wb_cycle_stiffness *const s = &calibration->secant, *const u =
-                                                                         &calibration->unloading;
+    const struct wb_cycle_stiffness *const s = &calibration->secant;
+    const struct wb_cycle_stiffness *const u = &calibration->unloading;
     const double largest = calibration->largest_curvature;
-    WB_TRY(wb_bending_describe(law, diameter, largest, &answer->bending));
+    struct wb_bending bending;
+    WB_TRY(wb_bending_describe(law, diameter, largest, &bending));
+    value[WB_CYCLE_RIGIDITY] = bending.flexural_rigidity;
+    value[WB_CYCLE_SPRINGBACK] = bending.springback;
+    value[WB_CYCLE_LOOP_ENERGY] = bending.loop_energy;
     WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature,
-                              answer->moment));
-    return wb_bending_stiffness(law, diameter, largest, s->n, s->curvature, answer->secant, u->n,
-                                u->curvature, answer->unloading);
+                              value + WB_CYCLE_FIRST_MOMENT));
+    return wb_bending_stiffness(law, diameter, largest, s->n, s->curvature,
+                                value + WB_CYCLE_FIRST_SECANT, u->n, u->curvature,
+                                value + WB_CYCLE_FIRST_UNLOADING);
 }
 
 /* Errors of the logarithms of an answer, of what the moved laws make of its numbers. */
 static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double diameter,
                                          const struct wb_cycle_calibration *calibration)
 {
-    struct wb_bending *const error = &answer->bending_error;
-    struct wb_cycle_answer moved;
+    double moved[WB_CYCLE_NUMBERS] = {0.0};
     for (int i = 0; i < answer->fit.n_moved; i++) {
-        const struct wb_law *const law = &answer->fit.moved[i];
-        const double by = answer->fit.moved_by[i];
-        WB_TRY(describe_law(calibration, law, diameter, &moved));
-        add_square(&error->flexural_rigidity, moved.bending.flexural_rigidity,
-                   answer->bending.flexural_rigidity, by);
-        add_square(&error->springback, moved.bending.springback, answer->bending.springback, by);
-        add_square(&error->loop_energy, moved.bending.loop_energy, answer->bending.loop_energy, by);
-        for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-            add_square(&answer->moment_error[k], moved.moment[k], answer->moment[k], by);
-        for (int k = 0; k < calibration->secant.n; k++)
-            add_square(&answer->secant_error[k], moved.secant[k], answer->secant[k], by);
-        for (int k = 0; k < calibration->unloading.n; k++)
-            add_square(&answer->unloading_error[k], moved.unloading[k], answer->unloading[k], by);
+        WB_TRY(describe_law(calibration, &answer->fit.moved[i], diameter, moved));
+        for (int k = 0; k < WB_CYCLE_NUMBERS; k++) {
+            if (answer->value[k] > 0.0)
+                answer->error[k] +=
+                    pow((moved[k] / answer->value[k] - 1.0) / answer->fit.moved_by[i], 2.0);
+        }
     }
-    error->flexural_rigidity = sqrt(error->flexural_rigidity);
-    error->springback = sqrt(error->springback);
-    error->loop_energy = sqrt(error->loop_energy);
-    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-        answer->moment_error[k] = sqrt(answer->moment_error[k]);
-    for (int k = 0; k < WB_CYCLE_STIFFNESSES; k++) {
-        answer->secant_error[k] = sqrt(answer->secant_error[k]);
-        answer->unloading_error[k] = sqrt(answer->unloading_error[k]);
-    }
+    for (int k = 0; k < WB_CYCLE_NUMBERS; k++)
+        answer->error[k] = sqrt(answer->error[k]);
     return WB_OK;
 }
 
@@ -794,7 +733,7 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
             struct wb_cycle_answer *const answer = &calibration->members[i].answers[c];
             if (!answer->is_fitted)
                 continue;
-            WB_TRY(describe_law(calibration, &answer->fit.law, diameter, answer));
+            WB_TRY(describe_law(calibration, &answer->fit.law, diameter, answer->value));
             if (candidate_counts(calibration, c))
                 WB_TRY(find_answer_errors(answer, diameter, calibration));
         }
@@ -948,23 +887,25 @@ static enum wb_status conclude(struct wb_cycle_calibration *calibration,
                                const struct wb_cycle_calibrate_settings *settings)
 {
     WB_TRY(describe_answers(calibration));
-    estimate_number(calibration, RIGIDITY, settings, &calibration->rigidity);
-    estimate_number(calibration, SPRINGBACK, settings, &calibration->springback);
-    estimate_number(calibration, LOOP_ENERGY, settings, &calibration->loop_energy);
+    estimate_number(calibration, WB_CYCLE_RIGIDITY, settings, &calibration->rigidity);
+    estimate_number(calibration, WB_CYCLE_SPRINGBACK, settings, &calibration->springback);
+    estimate_number(calibration, WB_CYCLE_LOOP_ENERGY, settings, &calibration->loop_energy);
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-        estimate_number(calibration, MOMENTS + k, settings, &calibration->moment[k]);
+        estimate_number(calibration, WB_CYCLE_FIRST_MOMENT + k, settings, &calibration->moment[k]);
     for (int k = 0; k < calibration->secant.n; k++)
-        estimate_number(calibration, SECANTS + k, settings, &calibration->secant.estimate[k]);
+        estimate_number(calibration, WB_CYCLE_FIRST_SECANT + k, settings,
+                        &calibration->secant.estimate[k]);
     for (int k = 0; k < calibration->unloading.n; k++)
-        estimate_number(calibration, UNLOADINGS + k, settings, &calibration->unloading.estimate[k]);
+        estimate_number(calibration, WB_CYCLE_FIRST_UNLOADING + k, settings,
+                        &calibration->unloading.estimate[k]);
     calibration->is_rigidity_resolved =
         is_near(resolved_value(&calibration->secant), calibration->rigidity.value) ||
         (calibration->has_unloading &&
          is_near(resolved_value(&calibration->unloading), calibration->rigidity.value));
     for (int i = 0; i < calibration->n_ranked; i++) {
         struct wb_cycle_rank *const rank = &calibration->ranked[i];
-        average(calibration, rank->candidate, RIGIDITY, settings, &rank->rigidity);
-        average(calibration, rank->candidate, SPRINGBACK, settings, &rank->springback);
+        average(calibration, rank->candidate, WB_CYCLE_RIGIDITY, settings, &rank->rigidity);
+        average(calibration, rank->candidate, WB_CYCLE_SPRINGBACK, settings, &rank->springback);
         average_law(calibration, rank->candidate, &rank->law);
     }
     average_law(calibration, calibration->chosen, &calibration->law);

@@ -57,18 +57,25 @@ struct wb_cycle_stiffness {
     struct wb_estimate estimate[WB_CYCLE_STIFFNESSES]; /* N m2 */
 };
 
+/* What is reported of a law, and of a specimen with it. */
+enum wb_cycle_number {
+    WB_CYCLE_RIGIDITY,     /* EI at curvature zero, N m2 */
+    WB_CYCLE_SPRINGBACK,   /* 1 */
+    WB_CYCLE_LOOP_ENERGY,  /* J/m */
+    WB_CYCLE_FIRST_MOMENT, /* N m */
+    WB_CYCLE_FIRST_SECANT = WB_CYCLE_FIRST_MOMENT + WB_CYCLE_MOMENTS, /* N m2 */
+    WB_CYCLE_FIRST_UNLOADING = WB_CYCLE_FIRST_SECANT + WB_CYCLE_STIFFNESSES,
+    WB_CYCLE_NUMBERS = WB_CYCLE_FIRST_UNLOADING + WB_CYCLE_STIFFNESSES
+};
+
 /* What a candidate gives for one specimen. */
 struct wb_cycle_answer {
     bool is_fitted;
     struct wb_cycle_fit fit;
-    struct wb_bending bending;
-    double moment[WB_CYCLE_MOMENTS];                                      /* N m */
-    double secant[WB_CYCLE_STIFFNESSES], unloading[WB_CYCLE_STIFFNESSES]; /* N m2 */
+    double value[WB_CYCLE_NUMBERS]; /* 0 where there is no such curvature */
     /* Standard errors of the logarithms by the residuals of the fit; 0 of candidates that do not
      * count. */
-    struct wb_bending bending_error;
-    double moment_error[WB_CYCLE_MOMENTS];
-    double secant_error[WB_CYCLE_STIFFNESSES], unloading_error[WB_CYCLE_STIFFNESSES];
+    double error[WB_CYCLE_NUMBERS];
 };
 
 /* A hardening rule is supported by fits of loading and unloading up to this misfit; on noisy data

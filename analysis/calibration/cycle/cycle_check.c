@@ -544,7 +544,7 @@ static bool is_length_seen(const struct wb_dataset *dataset)
 
 static double ln_rigidity(const struct wb_cycle_calibration *calibration, int i)
 {
-    return log(calibration->members[i].answers[calibration->chosen].bending.flexural_rigidity);
+    return log(calibration->members[i].answers[calibration->chosen].value[WB_CYCLE_RIGIDITY]);
 }
 
 static void check_others(struct wb_cycle_remarks *remarks,

@@ -92,9 +92,9 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
         wb_json_set_integer(item, "sample", member->sample);
         wb_json_set_number(item, "length_mm", member->data.info.length / WB_MM);
         wb_json_set_number(item, "flexural_rigidity_N_mm2",
-                           answer->bending.flexural_rigidity / N_MM2);
+                           answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
         wb_json_set_number(item, "springback_ratio",
-                           c->has_unloading ? answer->bending.springback : (double)NAN);
+                           c->has_unloading ? answer->value[WB_CYCLE_SPRINGBACK] : (double)NAN);
         wb_json_set_number(item, "bow_mm", bow.tip / WB_MM);
         wb_json_set_number(item, "bow_uncertainty_mm", bow.deviation / WB_MM);
         wb_json_set_number(item, "uneven_bow_mm", bow.uneven / WB_MM);

@@ -369,13 +369,13 @@ enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *it
 static void range_of(const struct wb_cycle_calibration *c, const struct wb_cycle_member *member,
                      double range[2])
 {
-    range[0] = range[1] = member->answers[c->chosen].bending.flexural_rigidity / N_MM2;
+    range[0] = range[1] = member->answers[c->chosen].value[WB_CYCLE_RIGIDITY] / N_MM2;
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_answer *const answer = &member->answers[c->ranked[i].candidate];
         if (!c->ranked[i].counts || !answer->is_fitted)
             continue;
-        range[0] = fmin(range[0], answer->bending.flexural_rigidity / N_MM2);
-        range[1] = fmax(range[1], answer->bending.flexural_rigidity / N_MM2);
+        range[0] = fmin(range[0], answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
+        range[1] = fmax(range[1], answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
     }
 }
 
@@ -425,7 +425,7 @@ static int plant(const struct wb_recordings_cycle *cycle, struct wb_colour colou
         struct tree *const tree = &trees[n++];
         *tree = (struct tree){.dot = dot, .line = thin};
         snprintf(tree->name, sizeof tree->name, "sample %d", member->sample);
-        tree->value = member->answers[c->chosen].bending.flexural_rigidity / N_MM2;
+        tree->value = member->answers[c->chosen].value[WB_CYCLE_RIGIDITY] / N_MM2;
         range_of(c, member, tree->range);
     }
     return n;

@@ -565,8 +565,8 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
         const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, member->data.info.length);
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
-        put_number(table, answer->bending.flexural_rigidity / N_MM2);
-        put_number(table, c->has_unloading ? answer->bending.springback : (double)NAN);
+        put_number(table, answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
+        put_number(table, c->has_unloading ? answer->value[WB_CYCLE_SPRINGBACK] : (double)NAN);
         wb_pages_cell_number(table, member->data.residual_deflection / WB_MM, 1);
         put_signed(table, bow.tip / WB_MM, bow.deviation / WB_MM);
         wb_pages_cell_number(table, bow.uneven / WB_MM, 2);

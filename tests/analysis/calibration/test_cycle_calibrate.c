@@ -82,7 +82,7 @@ static void another_wire_is_refused(void **unused)
 
 static double rigidity_of(int member)
 {
-    return all.members[member].answers[all.chosen].bending.flexural_rigidity;
+    return all.members[member].answers[all.chosen].value[WB_CYCLE_RIGIDITY];
 }
 
 static double ln_deviation(double *mean)

@@ -90,7 +90,9 @@ static void make(struct made *made)
                                                   .is_virtual = true};
         struct wb_cycle_answer *const answer = &member->answers[c->chosen];
         answer->is_fitted = true;
-        answer->bending = (struct wb_bending){3e-4, 0.27, 0.06};
+        answer->value[WB_CYCLE_RIGIDITY] = 3e-4;
+        answer->value[WB_CYCLE_SPRINGBACK] = 0.27;
+        answer->value[WB_CYCLE_LOOP_ENERGY] = 0.06;
         answer->fit.law = c->law;
         answer->fit.bow_angle = 0.05 - 0.13 * i;
         answer->fit.bow_angle_error = 1e-3;
