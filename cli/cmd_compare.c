@@ -67,10 +67,10 @@ static void print(const struct wb_compare *c)
     for (int k = 0; k < WB_COMPARE_QUANTITIES; k++) {
         const struct wb_compare_quantity *const q = &c->quantities[k];
         if (q->reason) {
-            printf("%-24s %s\n", q->name, q->reason);
+            printf("%-31s %s\n", q->name, q->reason);
             continue;
         }
-        printf("%-24s A %.4g  B %.4g %s  B/A %.3f (%.3f to %.3f)  %s", q->name,
+        printf("%-31s A %.4g  B %.4g %s  B/A %.3f (%.3f to %.3f)  %s", q->name,
                exp(q->groups[0].mean) / q->factor, exp(q->groups[1].mean) / q->factor, q->unit,
                exp(q->welch.difference), exp(q->welch.low), exp(q->welch.high),
                wb_compare_word(q->verdict));
