@@ -55,8 +55,8 @@ static const double slack = 2.5e-3;
 /* Standard deviations between two estimates of the bow; and how well an alignment knows it that
  * does not say. */
 static const double bow_limit = 3.0, bow_doubt = 5.0, bow_deviation = 0.3 * WB_MM;
-/* Nothing moves where it stays within this, m, for this time, s, and five times as long as the
- * test's speed takes for it; the wire is bent from this part of the largest force on. */
+/* Nothing moves where it stays within this, m, for this time, s, beyond what the test's own speed
+ * takes to come in and to leave. The wire is bent from this part of the largest force on. */
 static const double stop_reach = 0.15 * WB_MM, stop_time = 0.8, bent_share = 0.2;
 /* A fall of the force there counts beyond so many standard errors, from this part of the largest
  * force on; from the second on it is a doubt. */
