@@ -2,10 +2,11 @@
 # What takes longer than .ci/run allows: slow tests, all fast tests under sanitizers, process tests
 # beside busy processes, Slurm, packages, bare Debians. Run as root (debootstrap and chroot need
 # it) once before an issue is closed; takes some hours and 12 GB below FOLDER.
-# Steps that passed are noted in build/nightly.txt, with their times: the same command on the same
-# revision continues with the others. Ends with the section of docs/verification.md, to paste there.
+# Steps that passed are noted in build/nightly.txt, with their times, and slow tests one by one in
+# build/nightly-slow.txt: the same command on the same revision continues with the others. Ends with
+# the section of docs/verification.md, to paste there.
 # Usage: tests/nightly.sh FOLDER [STEP...]   (of the names that it prints; all without)
-set -u
+set -uo pipefail
 folder=${1:?usage: tests/nightly.sh FOLDER [STEP...]}
 shift
 mkdir -p "$folder" || exit 1
@@ -19,9 +20,12 @@ cd "$(dirname "$0")/.." || exit 1
     exit 2
 }
 revision=$(git describe --always --abbrev=12)
-state=build/nightly.txt
+state=build/nightly.txt slow=build/nightly-slow.txt
 mkdir -p build
-[ "$(sed -n 1p $state 2>/dev/null)" = "$revision" ] || echo "$revision" >$state
+[ "$(sed -n 1p $state 2>/dev/null)" = "$revision" ] || {
+    echo "$revision" >$state
+    : >$slow
+}
 
 # As step, but a step that passed before is not repeated.
 wanted=("$@")
@@ -40,6 +44,18 @@ build_with_clang() {
     ninja -C build-clang --quiet
 }
 
+# The test runner's lines of earlier runs are kept, unbuffered: a test that passed is not repeated. A
+# time limit stops a test that hangs; it does not measure the machine.
+test_slow() {
+    local all left
+    all=$(list_tests build --suite slow)
+    [ -n "$all" ] || return 1
+    mapfile -t left < <(comm -23 <(echo "$all") \
+        <(sed -nE 's#^ *[0-9]+/[0-9]+ wirebench:slow / ([^ ]+) +(OK|SKIP) .*#\1#p' $slow | sort -u))
+    [ ${#left[@]} -eq 0 ] || PYTHONUNBUFFERED=1 meson test -C build --no-rebuild --suite slow \
+        --timeout-multiplier 10 --print-errorlogs "${left[@]}" | tee -a $slow
+}
+
 test_under_sanitizers() {
     configure_sanitizers build-sanitize address,undefined -Dvector_kernels=true &&
         meson test -C build-sanitize --setup sanitize --no-suite slow --no-suite headers --print-errorlogs
@@ -48,13 +64,13 @@ test_under_sanitizers() {
 # Its tests skip themselves where Slurm is missing.
 test_slurm() {
     install_packages slurm-wlm munge &&
-        meson test -C build jobs_slurm --print-errorlogs | tee "$scratch/slurm" &&
+        meson test -C build --no-rebuild jobs_slurm --print-errorlogs | tee "$scratch/slurm" &&
         grep -q '^Ok: *1' "$scratch/slurm"
 }
 
 nightly 'build' ./bootstrap build
 nightly 'clang build' build_with_clang
-nightly 'slow tests' meson test -C build --suite slow --print-errorlogs
+nightly 'slow tests' test_slow
 nightly 'fast tests under sanitizers' test_under_sanitizers
 nightly 'process tests beside busy processes' tests/repeat.sh build 0 3 0
 nightly 'Slurm' test_slurm
