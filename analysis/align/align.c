@@ -84,6 +84,15 @@ static void set_info(struct wb_align *align)
     info->strand_length = align->rig.strand.length;
     info->counterweight = align->rig.strand.counterweight;
     info->gravity = align->gravity;
+    info->uncertainty = (struct wb_test_uncertainty){
+        .gain = align->rig.load_cell.gain_uncertainty > 0.0 ? align->rig.load_cell.gain_uncertainty
+                                                            : align->checked_gain,
+        .length = align->specimen.length_uncertainty,
+        .counterweight = align->rig.strand.counterweight_uncertainty,
+        .diameter = align->wire.outer_diameter_uncertainty,
+        .density = align->wire.density_uncertainty,
+        .marker_offset = align->specimen.marker_offset_uncertainty,
+    };
     info->is_virtual = align->is_virtual;
 }
 

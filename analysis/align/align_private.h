@@ -92,7 +92,8 @@ struct wb_align {
     struct wb_rig rig;
     struct wb_specimen specimen;
     struct wb_wire wire;
-    double gravity; /* m/s2 */
+    double gravity;      /* m/s2 */
+    double checked_gain; /* standard uncertainty of the cell's gain by its last check; 0: unknown */
     bool is_virtual;
 
     /* Decoded. */

@@ -15,6 +15,7 @@
 #include "daq/recording/index.h"
 #include "daq/recording/recording_foreign.h"
 #include "daq/recording/recover.h"
+#include "daq/test/check_log.h"
 
 #define WB_LOG_DOMAIN "align"
 
@@ -339,6 +340,20 @@ static void load_gravity(struct wb_align *align, struct wb_recording *recording)
     }
 }
 
+/* A cell that passed its check may be off by the tolerance either way, and by anything between
+ * alike (JCGM 100:2008, 4.3.7). */
+static void load_check(struct wb_align *align, struct wb_recording *recording)
+{
+    struct wb_check_log_entry check;
+    char *text;
+    if (wb_recording_meta(recording, "load_cell_check", &text) != WB_OK)
+        return;
+    if (wb_check_log_parse(text, &check) && check.passed &&
+        strcmp(check.serial_number, align->rig.load_cell.serial_number) == 0)
+        align->checked_gain = check.tolerance / sqrt(3.0);
+    free(text);
+}
+
 static bool says_virtual(struct wb_recording *recording)
 {
     char *text;
@@ -421,6 +436,7 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
     align->gravity = align->rig.gravity;
     wb_align_describe(align);
     load_gravity(align, recording);
+    load_check(align, recording);
     struct wb_json *const list = wb_json_set_array(align->dataset->document, "recordings");
     struct wb_json *const entry = wb_json_append_object(list);
     wb_json_set_text(entry, "name", align->name);

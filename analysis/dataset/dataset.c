@@ -1,12 +1,14 @@
 #include "analysis/dataset/dataset.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/dataset_private.h"
+#include "base/config.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/number.h"
@@ -125,6 +127,47 @@ static void set_scaled(struct wb_json *object, const char *key, double value, do
     wb_json_set_number(object, key, isfinite(value) ? strtod(text, NULL) : (double)NAN);
 }
 
+static const struct stated {
+    const char *key;
+    size_t offset; /* in struct wb_test_uncertainty */
+    double unit;
+} stated[] = {
+    {"u_gain_percent", offsetof(struct wb_test_uncertainty, gain), WB_PERCENT},
+    {"u_length_mm", offsetof(struct wb_test_uncertainty, length), WB_MM},
+    {"u_counterweight_g", offsetof(struct wb_test_uncertainty, counterweight), WB_G},
+    {"u_outer_diameter_mm", offsetof(struct wb_test_uncertainty, diameter), WB_MM},
+    {"u_density_percent", offsetof(struct wb_test_uncertainty, density), WB_PERCENT},
+    {"u_marker_offset_mm", offsetof(struct wb_test_uncertainty, marker_offset), WB_MM},
+};
+
+/* Those that are stated. */
+static void set_uncertainty(struct wb_json *test, const struct wb_test_uncertainty *uncertainty)
+{
+    for (size_t i = 0; i < WB_COUNT(stated); i++) {
+        double u;
+        memcpy(&u, (const char *)uncertainty + stated[i].offset, sizeof u);
+        if (u > 0.0)
+            set_scaled(test, stated[i].key, u, stated[i].unit);
+    }
+}
+
+static enum wb_status get_uncertainty(const struct wb_json *test, const char *path,
+                                      struct wb_test_uncertainty *uncertainty,
+                                      struct wb_reason *why)
+{
+    for (size_t i = 0; i < WB_COUNT(stated); i++) {
+        double u = 0.0;
+        if (wb_json_get(test, stated[i].key) &&
+            (!wb_json_get_number(test, stated[i].key, &u) || !(u > 0.0)))
+            return wb_fail_to(why, WB_ERR_FORMAT,
+                              "%s: test.%s: expected a positive number, or no such key", path,
+                              stated[i].key);
+        u *= stated[i].unit;
+        memcpy((char *)uncertainty + stated[i].offset, &u, sizeof u);
+    }
+    return WB_OK;
+}
+
 static void set_info(struct wb_json *document, const struct wb_test_info *info)
 {
     struct wb_json *const test = wb_json_set_object(document, "test");
@@ -143,6 +186,7 @@ static void set_info(struct wb_json *document, const struct wb_test_info *info)
     for (int i = 0; i < info->n_natural_shape; i++)
         wb_json_append_number(shape, info->natural_shape[i]);
     set_scaled(test, "natural_bow_mm", wb_dataset_bow(info), WB_MM);
+    set_uncertainty(test, &info->uncertainty);
     wb_json_set_boolean(test, "virtual_rig", info->is_virtual);
     wb_json_set_boolean(test, "simulation", info->is_simulation);
     if (info->kind != WB_TEST_CANTILEVER)
@@ -268,6 +312,7 @@ static enum wb_status get_info(const struct wb_json *document, const char *path,
         return wb_fail_to(why, WB_ERR_FORMAT,
                           "%s: test.length_mm and test.outer_diameter_mm must be positive", path);
     WB_TRY(get_shape(test, path, info, why));
+    WB_TRY(get_uncertainty(test, path, &info->uncertainty, why));
     WB_TRY(get_flag(test, path, "virtual_rig", &info->is_virtual, why));
     WB_TRY(get_flag(test, path, "simulation", &info->is_simulation, why));
     return get_kind(document, test, path, info, why);

@@ -57,6 +57,16 @@ struct wb_shape_row {
                              column is written when any row has one other than 0 */
 };
 
+/* Standard uncertainties of what the files of a test state; 0: not stated. */
+struct wb_test_uncertainty {
+    double gain;          /* 1, of the load cell's */
+    double length;        /* m */
+    double counterweight; /* kg */
+    double diameter;      /* m, outer */
+    double density;       /* 1, of the density */
+    double marker_offset; /* m, of the markers' distance from the axis */
+};
+
 /* What every consumer needs of the test, kept typed; the same stands in dataset.json. */
 struct wb_test_info {
     char wire[64];          /* name of the product */
@@ -77,6 +87,7 @@ struct wb_test_info {
      * rad. n = 0: straight. */
     int n_natural_shape;
     double natural_shape[4];
+    struct wb_test_uncertainty uncertainty;
     bool is_virtual;    /* from a virtual rig */
     bool is_simulation; /* from `solve` */
     enum wb_test_kind kind;

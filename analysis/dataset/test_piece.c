@@ -172,6 +172,7 @@ static enum wb_status read_root(const struct wb_config_node *root, enum wb_test_
         WB_CONFIG_OPTIONAL_NUMBER("inner_diameter_mm", &said.inner_diameter, WB_MM, 1e-4, 1000),
         WB_CONFIG_OPTIONAL_NUMBER("width_mm", &said.width, WB_MM, 1e-4, 1e5),
         WB_CONFIG_OPTIONAL_NUMBER("thickness_mm", &said.thickness, WB_MM, 1e-5, 1e4),
+        WB_CONFIG_IGNORED("u_length_mm"),
         WB_CONFIG_IGNORED("markers_mm"),
         WB_CONFIG_IGNORED("marker_offset_mm"),
         WB_CONFIG_IGNORED("marker_offset_uncertainty_mm"),

@@ -310,6 +310,8 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
         WB_CONFIG_NUMBER("filter_delay_ms", &cell->filter_delay, 1e-3, 0.0, 5000.0),
         WB_CONFIG_NUMBER("filter_delay_uncertainty_ms", &cell->filter_delay_uncertainty, 1e-3, 0.0,
                          5000.0),
+        WB_CONFIG_OPTIONAL_NUMBER("u_gain_percent", &cell->gain_uncertainty, WB_PERCENT, 1e-4,
+                                  50.0),
         WB_CONFIG_OPTIONAL_NUMBER("noise_mg", &noise_mass, WB_MG, 0.0, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("check_mass_g", &cell->check_mass, WB_G, 0.0, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("check_tolerance_percent", &cell->check_tolerance, WB_PERCENT,
@@ -416,6 +418,8 @@ static enum wb_status read_strand(const struct wb_config_node *map, struct wb_ri
     const struct wb_config_key table[] = {
         WB_CONFIG_NUMBER("length_mm", &strand->length, WB_MM, 1.0, 100000.0),
         WB_CONFIG_NUMBER("counterweight_g", &strand->counterweight, WB_G, 0.0, 100000.0),
+        WB_CONFIG_OPTIONAL_NUMBER("u_counterweight_g", &strand->counterweight_uncertainty, WB_G,
+                                  1e-6, 1000.0),
     };
     return wb_config_map(map, table, WB_COUNT(table));
 }

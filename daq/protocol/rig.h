@@ -11,6 +11,7 @@
  *       calibration_date: 2026-01-15
  *       filter_delay_ms: 50
  *       filter_delay_uncertainty_ms: 5
+ *       u_gain_percent: 0.3            # optional, standard uncertainty of what it reads
  *       noise_mg: 10                   # optional, expected standard deviation
  *       check_mass_g: 10               # optional, known mass for the check of the cell
  *       check_tolerance_percent: 1     # optional
@@ -42,6 +43,7 @@
  *     strand:                          # optional, absent: the tip hangs on the cell itself
  *       length_mm: 760
  *       counterweight_g: 2.7
+ *       u_counterweight_g: 0.01        # optional, standard uncertainty
  *     limits:                          # optional
  *       force_mN: 280
  *       travel_mm: 58
@@ -78,6 +80,7 @@ struct wb_rig_load_cell {
     char calibration_date[32];
     double filter_delay;                /* s */
     double filter_delay_uncertainty;    /* s */
+    double gain_uncertainty;            /* 1, standard; 0: not stated */
     double noise;                       /* N, expected standard deviation; 0 unknown */
     double check_mass;                  /* kg, known mass to check the cell with; 0 none */
     double check_tolerance;             /* fraction of the check mass, or of a series' span */
@@ -133,8 +136,9 @@ struct wb_rig_limits {
 };
 
 struct wb_rig_strand {
-    double length;        /* m; 0: no strand, the force at the tip is vertical */
-    double counterweight; /* kg */
+    double length;                    /* m; 0: no strand, the force at the tip is vertical */
+    double counterweight;             /* kg */
+    double counterweight_uncertainty; /* kg, standard; 0: not stated */
 };
 
 struct wb_rig {

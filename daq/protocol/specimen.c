@@ -37,6 +37,8 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_spe
     const struct wb_config_key table[] = {
         WB_CONFIG_TEXT("wire", specimen->wire),
         WB_CONFIG_NUMBER("length_mm", &specimen->length, WB_MM, 1.0, 10000.0),
+        WB_CONFIG_OPTIONAL_NUMBER("u_length_mm", &specimen->length_uncertainty, WB_MM, 1e-4,
+                                  1000.0),
         WB_CONFIG_INTEGER("sample", &specimen->sample, 1, 100000),
         WB_CONFIG_NODE("markers_mm", &markers),
         WB_CONFIG_NUMBER("marker_offset_mm", &specimen->marker_offset, WB_MM, -100.0, 100.0),

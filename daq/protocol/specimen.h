@@ -2,6 +2,7 @@
  *
  *     wire: type1                  # name in fixtures/wires, or a path
  *     length_mm: 85
+ *     u_length_mm: 0.2             # optional, standard uncertainty
  *     sample: 1
  *     markers_mm: [0, 14.2, 28.3, 42.5, 56.7, 70.8, 85]   # arc length of each; the first on the
  *                                                         # clamp, the last at the strand's knot
@@ -18,8 +19,9 @@
 
 struct wb_specimen {
     char wire[160];
-    int wire_line; /* of the key `wire` in its file, for messages */
-    double length; /* m */
+    int wire_line;             /* of the key `wire` in its file, for messages */
+    double length;             /* m */
+    double length_uncertainty; /* m, standard; 0: not stated */
     int sample;
     int n_markers;                           /* 2..WB_SPECIMEN_MAX_MARKERS */
     double markers[WB_SPECIMEN_MAX_MARKERS]; /* m, ascending, first 0, last = length */

@@ -215,6 +215,8 @@ enum wb_status wb_series_specimen(const struct wb_series *series, int sample,
     wb_text_append(text, "# Like '%s', in series %s.\nwire: '%s'\nlength_mm: %.10g\nsample: %d\n",
                    wb_file_name(series->specimen_path), series->name, like->wire,
                    like->length / WB_MM, sample);
+    if (like->length_uncertainty > 0.0)
+        wb_text_append(text, "u_length_mm: %.10g\n", like->length_uncertainty / WB_MM);
     wb_text_append(text, "markers_mm: [%s", markers ? markers : "");
     for (int i = 0; !markers && i < like->n_markers; i++)
         wb_text_append(text, "%s%.10g", i > 0 ? ", " : "", like->markers[i] / WB_MM);

@@ -42,6 +42,10 @@ static enum wb_status read_wire(const struct wb_config_node *root, struct wb_wir
         WB_CONFIG_NUMBER("conductor_diameter_mm", &w.conductor_diameter, WB_MM, 0.0, 1e3),
         WB_CONFIG_NUMBER("outer_diameter_mm", &w.outer_diameter, WB_MM, 1e-3, 1e3),
         WB_CONFIG_NUMBER("density_g_cm3", &w.density, WB_G_PER_CM3, 1e-3, 30.0),
+        WB_CONFIG_OPTIONAL_NUMBER("u_outer_diameter_mm", &w.outer_diameter_uncertainty, WB_MM, 1e-5,
+                                  100.0),
+        WB_CONFIG_OPTIONAL_NUMBER("u_density_percent", &w.density_uncertainty, WB_PERCENT, 1e-4,
+                                  50.0),
         WB_CONFIG_OPTIONAL_NODE("properties", &properties),
     };
 

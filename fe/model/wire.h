@@ -3,6 +3,7 @@
  *     name: type1
  *     conductor_diameter_mm: 0.70
  *     outer_diameter_mm: 1.10
+ *     u_outer_diameter_mm: 0.01   # optional, standard uncertainty; u_density_percent as well
  *     density_g_cm3: 4.06
  *     properties:                 # optional; homogenised, over the outer diameter
  *       source: Table 3 of the paper
@@ -24,9 +25,11 @@
 
 struct wb_wire {
     char name[64];
-    double conductor_diameter;   /* m */
-    double outer_diameter;       /* m */
-    double density;              /* kg/m3, homogenised over the outer diameter */
+    double conductor_diameter; /* m */
+    double outer_diameter;     /* m */
+    double density;            /* kg/m3, homogenised over the outer diameter */
+    /* Standard uncertainties of the last two, m and a part of the density; 0: not stated. */
+    double outer_diameter_uncertainty, density_uncertainty;
     bool has_properties;         /* the file gave `properties` */
     char source[160];            /* where the properties come from */
     struct wb_material material; /* WB_HARDENING_ISOTROPIC_POWER when has_properties */

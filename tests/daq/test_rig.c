@@ -107,6 +107,19 @@ static void every_value_arrives_in_si(void **state)
     assert_int_equal(kept.n, 0);
 }
 
+static void uncertainties_are_those_that_are_stated(void **state)
+{
+    (void)state;
+    struct wb_rig rig = parse(good);
+    assert_close(rig.load_cell.gain_uncertainty, 0.0, 0.0);
+    assert_close(rig.strand.counterweight_uncertainty, 0.0, 0.0);
+    rig = parse(edited("  noise_mg: 10\n", "  noise_mg: 10\n  u_gain_percent: 0.3\n"));
+    assert_close_relative(rig.load_cell.gain_uncertainty, 3e-3, 1e-15);
+    rig = parse(
+        edited("  counterweight_g: 2.7\n", "  counterweight_g: 2.7\n  u_counterweight_g: 0.01\n"));
+    assert_close_relative(rig.strand.counterweight_uncertainty, 1e-5, 1e-15);
+}
+
 static void line_protocol_keys_are_read(void **state)
 {
     (void)state;
@@ -334,6 +347,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(every_value_arrives_in_si, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(uncertainties_are_those_that_are_stated, set_up, tear_down),
         cmocka_unit_test_setup_teardown(line_protocol_keys_are_read, set_up, tear_down),
         cmocka_unit_test_setup_teardown(virtual_rigs_are_marked_and_their_truth_is_ignored, set_up,
                                         tear_down),

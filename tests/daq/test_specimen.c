@@ -21,6 +21,12 @@ static void every_value_arrives_in_si(void **state)
     assert_close_relative(specimen.markers[6], 0.085, 1e-15);
     assert_close_relative(specimen.marker_offset, 1e-3, 1e-15);
     assert_close(specimen.marker_offset_uncertainty, 0.0, 0.0);
+    assert_close(specimen.length_uncertainty, 0.0, 0.0);
+    assert_int_equal(wb_specimen_parse("wire: type1\nlength_mm: 85\nu_length_mm: 0.25\nsample: 1\n"
+                                       "markers_mm: [0, 85]\nmarker_offset_mm: 1\n",
+                                       "s.yaml", &specimen, NULL),
+                     WB_OK);
+    assert_close_relative(specimen.length_uncertainty, 0.25e-3, 1e-15);
 }
 
 static void bad_files_are_refused_with_the_reason(void **state)
@@ -33,6 +39,7 @@ static void bad_files_are_refused_with_the_reason(void **state)
         {"wire: type1\n", "wire: ''\n", "s.yaml:1: wire: expected the name"},
         {"length_mm: 85\n", "length_mm: 85 mm\n", "s.yaml:2: length_mm: expected a plain number"},
         {"length_mm: 85\n", "length_m: 0.085\n", "s.yaml:2: length_m: unknown key"},
+        {"sample: 1\n", "sample: 1\nu_length_mm: 0\n", "s.yaml:4: u_length_mm: 0 is out of range"},
         {"length_mm: 85\n", "length_mm: 86\n", "the last marker at the strand's knot"},
         {"sample: 1\n", "sample: 1.5\n", "sample: expected a whole number"},
         {"[0, 14.2", "[1, 14.2", "s.yaml:4: markers_mm: expected 0 first"},

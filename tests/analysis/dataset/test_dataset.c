@@ -101,6 +101,8 @@ static void fill(struct wb_dataset *dataset)
     info->n_natural_shape = 2;
     info->natural_shape[0] = 0.07;
     info->natural_shape[1] = -0.011;
+    info->uncertainty = (struct wb_test_uncertainty){
+        .gain = 3e-3, .length = 2e-4, .counterweight = 1e-5, .diameter = 1e-5, .density = 0.02};
     info->is_virtual = true;
     for (int i = 0; i < 1000; i++) {
         struct wb_row row = {
@@ -150,6 +152,9 @@ static void a_dataset_comes_back_as_it_was(void **state)
     assert_same(read.info.rest_level, -0.5e-3);
     assert_int_equal(read.info.n_natural_shape, 2);
     assert_same(read.info.natural_shape[1], -0.011);
+    assert_memory_equal(&read.info.uncertainty, &written.info.uncertainty,
+                        sizeof read.info.uncertainty);
+    assert_null(wb_json_get(wb_json_get(read.document, "test"), "u_marker_offset_mm"));
     assert_true(read.info.is_virtual && !read.info.is_simulation);
     assert_int_equal(read.n_rows, written.n_rows);
     assert_int_equal(read.n_shape_rows, written.n_shape_rows);

@@ -45,6 +45,18 @@ static void properties_may_be_missing(void **unused)
     struct wb_wire wire;
     assert_int_equal(wb_wire_parse(good, "test", &wire, NULL), WB_OK);
     assert_false(wire.has_properties);
+    assert_true(wire.outer_diameter_uncertainty == 0.0 && wire.density_uncertainty == 0.0);
+}
+
+static void stated_uncertainties_are_read(void **unused)
+{
+    (void)unused;
+    char text[1024];
+    struct wb_wire wire;
+    snprintf(text, sizeof text, "%su_outer_diameter_mm: 0.02\nu_density_percent: 1.5\n", good);
+    assert_int_equal(wb_wire_parse(text, "test", &wire, NULL), WB_OK);
+    assert_close_relative(wire.outer_diameter_uncertainty, 2e-5, 1e-15);
+    assert_close_relative(wire.density_uncertainty, 0.015, 1e-15);
 }
 
 static void bad_wires_are_refused_by_file_line_and_key(void **unused)
@@ -117,6 +129,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(file_is_read_into_si_units),
         cmocka_unit_test(properties_may_be_missing),
+        cmocka_unit_test(stated_uncertainties_are_read),
         cmocka_unit_test(bad_wires_are_refused_by_file_line_and_key),
         cmocka_unit_test(shipped_wires_are_the_papers),
     };
