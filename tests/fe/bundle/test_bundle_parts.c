@@ -135,7 +135,7 @@ static void parts_in_double_are_the_whole_to_its_round_off(void **unused)
     assert_close_relative(parted.energies.plastic, whole.energies.plastic, 1e-8);
     for (int i = 0; i < SHAPE; i++)
         for (int c = 0; c < 3; c++)
-            assert_close(parted.shape[i][c], whole.shape[i][c], 1e-14);
+            assert_close(parted.shape[i][c], whole.shape[i][c], 1e-13);
 }
 
 #define BARE                                                                                       \
