@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/cycle/cycle_json.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -46,7 +47,7 @@ static void print_estimate(const struct wb_cycle_calibration *c, const char *nam
                            const struct wb_estimate *e, double unit, const char *unit_name)
 {
     char value[NUMBER];
-    const bool only_range = c->has_unloading && !c->is_supported;
+    const bool only_range = c->has_unloading && !c->is_followed;
     printf("%-34s %9s%s%-5s", name, only_range ? "" : format(e->value / unit, value),
            unit_name[0] ? " " : "", unit_name);
     if (!only_range)
@@ -58,13 +59,13 @@ static void print_estimate(const struct wb_cycle_calibration *c, const char *nam
 static void print_meaning(const struct wb_cycle_calibration *c,
                           const struct wb_cycle_calibrate_settings *settings)
 {
-    printf("intervals: 95 %% for the mean over the specimens");
+    printf("intervals: 95 %%, with all that the budget below knows");
     if (settings->pooled_degrees > 0)
-        printf(", by a deviation pooled over several wires, %g with %d degrees of freedom",
+        printf("; scatter pooled over several wires, %g with %d degrees of freedom",
                settings->pooled_deviation, settings->pooled_degrees);
     printf("\ncandidates: range over the laws with a misfit of at most twice the best\n");
-    if (c->n_members == 1 && !isfinite(c->rigidity.low))
-        printf("one specimen: no interval for the product\n");
+    if (c->n_members == 1 && !isfinite(c->rigidity.deviation))
+        printf("one specimen: how specimens scatter is not known and not in the intervals\n");
 }
 
 static void print_stiffness(const struct wb_cycle_calibration *c, const char *what,
@@ -110,39 +111,40 @@ static void print_numbers(const struct wb_cycle_calibration *c,
 
 static void print_rule(const struct wb_cycle_calibration *c)
 {
-    char limit[NUMBER];
-    printf("law: %s; hardening rule %s\n", wb_candidate_name(c->chosen),
-           !c->has_unloading ? "untested: the tests have no way back"
+    printf("law: %s; %s\n", wb_candidate_name(c->chosen),
+           !c->has_unloading ? "its hardening rule is untested: the tests have no way back"
            : c->is_stopped   ? "undecided: stopped before all laws were fitted to all specimens"
-           : c->is_supported ? "supported"
-                             : "not supported by the data");
-    if (c->has_unloading && !c->is_stopped && !c->is_supported)
-        printf("the best law misses both ways by %.2f %% of F_max, expected at most %.2g %%: 0.5 "
-               "%%, or "
-               "twice the noise of the readings where that is more\n",
-               c->ranked[0].misfit / PERCENT, c->largest_supported / PERCENT);
+           : c->is_followed  ? "it follows loading and unloading"
+                             : "no law follows loading and unloading");
+    if (c->has_unloading && !c->is_stopped && !c->is_followed)
+        printf("it misses both ways by %.2f %% of F_max, expected at most %g %%\n",
+               c->ranked[0].misfit / PERCENT, WB_CYCLE_LARGEST_FOLLOWED / PERCENT);
     if (!c->has_unloading)
         printf("loading alone does not tell EI from early yield: EI may be 25 %% low\n");
-    printf("%-28s %8s %8s %9s %9s %12s %10s\n", "candidate", "misfit %", "numbers", "F", "F limit",
+    printf("%-28s %8s %8s %8s %12s %10s\n", "candidate", "misfit %", "numbers", "weight",
            "EI N mm2", "springback");
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &c->ranked[i];
-        char ratio[NUMBER], rigidity[NUMBER], springback[NUMBER];
-        printf("%-28s %8.3f %8d %9s %9s %12s %10s%s%s\n", wb_candidate_name(rank->candidate),
-               rank->misfit / PERCENT, rank->n_free, format(rank->f_ratio, ratio),
-               format(rank->f_limit, limit), format(rank->rigidity.value / N_MM2, rigidity),
+        char rigidity[NUMBER], springback[NUMBER];
+        printf("%-28s %8.3f %8d %8.3f %12s %10s%s%s\n", wb_candidate_name(rank->candidate),
+               rank->misfit / PERCENT, rank->n_free, rank->weight,
+               format(rank->rigidity.value / N_MM2, rigidity),
                c->has_unloading ? format(rank->springback.value, springback) : "-",
                rank->candidate == c->chosen ? "  chosen" : "",
                rank->counts ? "" : "  not in the ranges");
     }
     for (int i = 0; i < c->n_ranked; i++) {
+        if (!c->ranked[i].counts)
+            continue;
         struct wb_text numbers = {.bytes = NULL};
         wb_law_append_numbers(&numbers, &c->ranked[i].law);
         printf("%s: %s\n", wb_candidate_name(c->ranked[i].candidate), wb_text_string(&numbers));
         wb_text_release(&numbers);
     }
-    printf("F: square of the misfit over the repeat noise of the readings, %.3f %% of F_max\n",
-           c->repeat_noise / PERCENT);
+    printf(
+        "weight: by the misfit on %.0f residuals that count, as neighbours miss alike, and a law's "
+        "free numbers; repeat noise of the readings %.3f %% of F_max\n",
+        c->n_independent, c->repeat_noise / PERCENT);
 }
 
 /* What would tell K and n. */
@@ -259,22 +261,40 @@ static void print_specimens(const struct wb_cycle_calibration *c)
         printf("specimens needed for EI within +-5 %%: %d\n", c->specimens_for_5_percent);
 }
 
-static void print_shared(const struct wb_calibrate_cycle *cycle)
+/* Of the numbers' standard uncertainties; in brackets what is in no interval. */
+static void print_budget(const struct wb_cycle_calibration *c)
 {
-    printf("shared by all specimens and in no interval, %% per %%:\n");
-    printf("  %-24s %8s %8s %8s %10s\n", "", "EI", "E", "M", "springback");
-    for (int i = 0; i < WB_SHARED; i++) {
-        const struct wb_cycle_sensitivity *const s = &cycle->sensitivities[i];
-        const double values[] = {s->rigidity, s->modulus, s->moment, s->springback};
-        printf("  %-24s", wb_cycle_shared_name((enum wb_cycle_shared)i));
-        for (int k = 0; k < 4; k++) {
-            if (isfinite(values[k]))
-                printf(" %*.1f", k == 3 ? 10 : 8, values[k] == 0.0 ? 0.0 : values[k]);
-            else
-                printf(" %*s", k == 3 ? 10 : 8, "-");
+    struct wb_budget_column columns[WB_BUDGET_COLUMNS];
+    char name[WB_BUDGET_TEXT], value[NUMBER];
+    const int n = wb_cycle_budget_columns(c, columns);
+    bool is_stated = true;
+    printf("standard uncertainty, %%, and what makes it up:\n");
+    for (int k = 0; k < n; k++)
+        printf("  %c: %s\n", 'a' + k, columns[k].name);
+    printf("%-42s", "");
+    for (int k = 0; k < n; k++)
+        printf(" %9c", 'a' + k);
+    printf("\n");
+    for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
+        wb_cycle_budget_row(c, i, name);
+        printf("  %-40s", name);
+        for (int k = 0; k < n; k++) {
+            const double u = wb_cycle_budget_cell(&c->budget[columns[k].number], i, &is_stated);
+            snprintf(value, sizeof value, is_stated ? "%.2f" : "(%.2f)", u / PERCENT);
+            printf(" %9s", isfinite(u) ? value : "unknown");
         }
         printf("\n");
     }
+    printf("  %-40s", "combined");
+    for (int k = 0; k < n; k++)
+        printf(" %9.2f", c->budget[columns[k].number].combined / PERCENT);
+    printf("\n  %-40s", "degrees of freedom");
+    for (int k = 0; k < n; k++)
+        printf(" %9.1f", c->budget[columns[k].number].effective_degrees);
+    printf("\n  %-40s", "factor for 95 %");
+    for (int k = 0; k < n; k++)
+        printf(" %9.2f", c->budget[columns[k].number].factor);
+    printf("\n");
 }
 
 void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle)
@@ -294,7 +314,7 @@ void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle)
     print_rule(c);
     print_law(c);
     print_specimens(c);
-    print_shared(cycle);
+    print_budget(c);
     for (int i = 0; i < cycle->remarks.n; i++)
         printf("%s: %s\n", wb_cycle_check_severity_name(cycle->remarks.items[i].severity),
                cycle->remarks.items[i].text);
@@ -324,7 +344,6 @@ int wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle)
     wb_json_set_boolean(root, "virtual_rig", info->is_virtual);
     wb_json_set_boolean(root, "simulation", info->is_simulation);
     wb_cycle_json_put(root, c);
-    wb_cycle_sensitivity_put(wb_json_set_array(root, "shared_sensitivities"), cycle->sensitivities);
     wb_cycle_check_put(wb_json_set_array(root, "remarks"), &cycle->remarks);
     put_settings(wb_json_set_object(root, "settings"), &cycle->settings);
     wb_json_set_number(root, "cpu_s", c->cpu_s);

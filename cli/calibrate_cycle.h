@@ -4,13 +4,11 @@
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "analysis/calibration/cycle/cycle_check.h"
-#include "analysis/calibration/cycle/cycle_sensitivity.h"
 
 struct wb_calibrate_cycle {
     struct wb_cycle_calibrate_settings settings;
     struct wb_cycle_calibration calibration;
     struct wb_cycle_remarks remarks; /* on the data and what was made of them */
-    struct wb_cycle_sensitivity sensitivities[WB_SHARED];
 };
 
 /* How many decimals show so many significant digits of a value without an exponent. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/paper/calibrate.h"
 #include "analysis/calibration/properties/method.h"
 #include "analysis/calibration/properties/properties.h"
@@ -334,8 +335,7 @@ static enum wb_status calibrate_on_cycles(struct options *o)
         wb_cycle_check_calibrate(&o->cycle.calibration, &o->cycle.remarks, o->datasets.pointers,
                                  o->datasets.n, settings, NULL);
     wb_progress_finish(&progress);
-    WB_TRY(status);
-    return wb_cycle_sensitivity_find(&o->cycle.calibration, settings, o->cycle.sensitivities);
+    return status;
 }
 
 static int deliver_cycle(const struct options *o)
@@ -355,12 +355,19 @@ static int deliver_cycle(const struct options *o)
     } else {
         wb_calibrate_cycle_print(&o->cycle);
     }
-    const bool is_refuted = c->has_unloading && !c->is_supported && !c->is_stopped;
+    const bool is_refuted = c->has_unloading && !c->is_followed && !c->is_stopped;
     const bool is_converged = wb_cycle_calibrate_is_converged(c);
     if (is_refuted)
-        wb_warn("wire '%s': hardening rule not supported by the data: no candidate follows loading "
-                "and unloading within %.2g %% of F_max",
-                c->members[0].data.info.wire, 100.0 * c->largest_supported);
+        wb_warn("wire '%s': no law follows loading and unloading within %g %% of F_max",
+                c->members[0].data.info.wire, 100.0 * WB_CYCLE_LARGEST_FOLLOWED);
+    char worst[WB_BUDGET_TEXT];
+    double known = 0.0;
+    const double at_most = o->cycle.settings.at_most;
+    const bool is_enough = !(at_most > 0.0) || wb_cycle_budget_is_within(c, at_most, worst, &known);
+    if (!is_enough)
+        wb_warn("wire '%s': %s is known within %.2g %% (95 %%), expected at most %g (--at-most): "
+                "the budget says what would help",
+                c->members[0].data.info.wire, worst, 100.0 * known, 100.0 * at_most);
     if (!is_converged)
         wb_warn("wire '%s': the iterations ran out for a specimen (--fit-iterations)",
                 c->members[0].data.info.wire);
@@ -368,7 +375,8 @@ static int deliver_cycle(const struct options *o)
         wb_warn("stopped with %d of %d specimens fitted, not with all laws: these are the "
                 "properties so far, the hardening rule is undecided",
                 c->n_members, o->common.n);
-    return is_refuted || !is_converged || c->is_stopped ? WB_EXIT_INCOMPLETE : WB_EXIT_OK;
+    return is_refuted || !is_enough || !is_converged || c->is_stopped ? WB_EXIT_INCOMPLETE
+                                                                      : WB_EXIT_OK;
 }
 
 static int run_cycle(struct options *o)

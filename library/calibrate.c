@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/cycle/cycle_check.h"
 #include "analysis/calibration/properties/method.h"
 #include "analysis/dataset/exclusion.h"
@@ -122,6 +123,8 @@ static enum wb_status run_paper(struct job *job, struct wb_text *text)
 static enum wb_status run_cycle(struct job *job, struct wb_text *text)
 {
     struct wb_cycle_calibration calibration = {0};
+    char worst[WB_BUDGET_TEXT];
+    double known;
     struct wb_cycle_remarks *const remarks = wb_memory_new(1, sizeof *remarks);
     const enum wb_status status =
         wb_cycle_check_calibrate(&calibration, remarks, job->datasets, job->n, &job->cycle, NULL);
@@ -134,9 +137,13 @@ static enum wb_status run_cycle(struct job *job, struct wb_text *text)
             lack(job, "stopped before all laws were fitted: the hardening rule is undecided");
         else if (!wb_cycle_calibrate_is_converged(&calibration))
             lack(job, "the iterations ran out for a specimen (option fit-iterations)");
-        else if (calibration.has_unloading && !calibration.is_supported)
-            lack(job, "hardening rule not supported by the data: no candidate follows loading and "
-                      "unloading (hardening_rule in the properties has the limit)");
+        else if (job->cycle.at_most > 0.0 &&
+                 !wb_cycle_budget_is_within(&calibration, job->cycle.at_most, worst, &known))
+            lack(job, "a number is not known as well as wanted (option at-most)");
+        else if (calibration.has_unloading && !calibration.is_followed)
+            lack(job,
+                 "no law follows loading and unloading (hardening_rule in the properties has the "
+                 "misfits)");
     }
     wb_cycle_calibrate_release(&calibration);
     return status;

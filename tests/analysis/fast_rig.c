@@ -91,7 +91,8 @@ static void read_cell(struct bench *bench, struct wb_align *align, uint64_t k, d
     wb_live_wire_move(bench->wire, travel_at(bench->fast, t), &bench->view);
     wb_sim_cell_read(&bench->cell, k, t, bench->view.tension);
     bench->cell.out.n = 0; /* nobody listens */
-    const struct wb_align_reading reading = {.t_ns = stamp(t), .force = bench->cell.reading};
+    const double force = bench->cell.reading * (1.0 + bench->fast->off.gain);
+    const struct wb_align_reading reading = {.t_ns = stamp(t), .force = force};
     if (t > 0.5 && t < tare_time) {
         bench->tare_sum += reading.force;
         bench->tare_n++;
@@ -137,6 +138,16 @@ static enum wb_status run_bench(struct bench *bench, struct wb_align *align)
     }
 }
 
+static void state_wrongly(struct wb_align *align, const struct wb_test_uncertainty *off)
+{
+    align->rig.strand.counterweight += off->counterweight;
+    align->specimen.length += off->length;
+    for (int i = 1; i < align->specimen.n_markers; i++)
+        align->specimen.markers[i] += off->length;
+    align->wire.outer_diameter += off->diameter;
+    align->wire.density *= 1.0 + off->density;
+}
+
 static enum wb_status load(struct wb_align *align, const void *context)
 {
     const struct fast_rig *const fast = context;
@@ -152,6 +163,7 @@ static enum wb_status load(struct wb_align *align, const void *context)
     align->rig = fast->rig;
     align->specimen = fast->specimen;
     align->wire = fast->wire;
+    state_wrongly(align, &fast->off);
     align->is_virtual = true;
     align->gravity = fast->rig.gravity;
     wb_align_describe(align);
@@ -188,46 +200,80 @@ enum wb_status fast_rig_run(const struct fast_rig *fast, struct wb_dataset *data
     return wb_align_run_from(dataset, &settings, load, fast, NULL);
 }
 
+/* The true section of a specimen. */
+struct truth {
+    struct wb_composite_laws laws;
+    struct wb_section section;
+    struct wb_fibres *fibres;
+    double *before, *after, *memory; /* histories */
+    double curvature;
+};
+
+static void open_truth(struct truth *truth, const struct fast_rig *fast)
+{
+    *truth = (struct truth){.curvature = 0.0};
+    if (wb_composite_build_variant(&fast->composite, fast->variant, &fast->wire,
+                                   fast->truth.stiffness_factor, fast->truth.yield_factor, strips,
+                                   &truth->laws, &truth->section) != WB_OK ||
+        wb_fibres_create(&truth->fibres, &truth->section) != WB_OK)
+        abort();
+    const size_t size = wb_fibres_history_size(truth->fibres);
+    truth->before = truth->memory = calloc(2 * size, sizeof(double));
+    if (!truth->memory)
+        abort();
+    truth->after = truth->memory + size;
+}
+
+static void close_truth(struct truth *truth)
+{
+    free(truth->memory);
+    wb_fibres_destroy(truth->fibres);
+    wb_section_release(&truth->section);
+}
+
+/* Bends it evenly on to a curvature in a time; returns the moment. */
+static double bend_truth(struct truth *truth, double curvature, double time)
+{
+    struct wb_fibres_response response = {.M = 0.0};
+    const double from = truth->curvature;
+    truth->laws.time_step = time / TRUTH_STEPS;
+    for (int k = 1; k <= TRUTH_STEPS; k++) {
+        const double at = from + (curvature - from) * k / TRUTH_STEPS;
+        wb_fibres_respond(truth->fibres, 0.0, at, truth->before, truth->after, &response);
+        double *const old = truth->before;
+        truth->before = truth->after;
+        truth->after = old;
+    }
+    truth->curvature = curvature;
+    return response.M;
+}
+
+/* The clamp's curvature grows about evenly in time. */
+static double time_of(const struct fast_rig *fast, double change, double largest)
+{
+    return fast->travel / speed * change / largest;
+}
+
 void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature, double *moment,
                     double *rigidity, double *residual_curvature)
 {
-    struct wb_composite_laws laws = {.time_step = 0.0};
-    struct wb_section section;
-    struct wb_fibres *fibres;
-    struct wb_fibres_response response;
-    if (wb_composite_build_variant(&fast->composite, fast->variant, &fast->wire,
-                                   fast->truth.stiffness_factor, fast->truth.yield_factor, strips,
-                                   &laws, &section) != WB_OK ||
-        wb_fibres_create(&fibres, &section) != WB_OK)
-        abort();
-    const size_t size = wb_fibres_history_size(fibres);
-    double *before = calloc(2 * size, sizeof *before),
-           *after = before + size, *const memory = before;
-    if (!before)
-        abort();
+    struct truth truth;
+    open_truth(&truth, fast);
     if (rigidity)
-        *rigidity = wb_fibres_bending_stiffness(fibres);
-    /* The clamp's curvature grows about evenly in time. */
-    double at = 0.0;
+        *rigidity = wb_fibres_bending_stiffness(truth.fibres);
     for (int i = 0; i < n; i++) {
-        const double step = (curvature[i] - at) / TRUTH_STEPS;
-        laws.time_step = fast->travel / speed * step / curvature[n - 1];
-        for (int k = 1; k <= TRUTH_STEPS; k++) {
-            wb_fibres_respond(fibres, 0.0, at + k * step, before, after, &response);
-            double *const old = before;
-            before = after;
-            after = old;
-        }
+        const double change = curvature[i] - truth.curvature;
+        const double M = bend_truth(&truth, curvature[i], time_of(fast, change, curvature[n - 1]));
         if (moment)
-            moment[i] = response.M;
-        at = curvature[i];
+            moment[i] = M;
     }
     if (residual_curvature) {
-        double low = 0.0, high = at;
-        laws.time_step = 0.0;
+        double low = 0.0, high = truth.curvature;
+        struct wb_fibres_response response;
+        truth.laws.time_step = 0.0;
         for (int i = 0; i < 60; i++) {
             const double middle = 0.5 * (low + high);
-            wb_fibres_respond(fibres, 0.0, middle, before, after, &response);
+            wb_fibres_respond(truth.fibres, 0.0, middle, truth.before, truth.after, &response);
             if (response.M > 0.0)
                 high = middle;
             else
@@ -235,7 +281,19 @@ void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature,
         }
         *residual_curvature = 0.5 * (low + high);
     }
-    free(memory);
-    wb_fibres_destroy(fibres);
-    wb_section_release(&section);
+    close_truth(&truth);
+}
+
+void fast_rig_unloading(const struct fast_rig *fast, double largest, int n, const double *change,
+                        double *stiffness)
+{
+    struct truth truth;
+    open_truth(&truth, fast);
+    const double top = bend_truth(&truth, largest, time_of(fast, largest, largest));
+    for (int i = 0; i < n; i++) {
+        const double step = truth.curvature - (largest - change[i]);
+        const double M = bend_truth(&truth, largest - change[i], time_of(fast, step, largest));
+        stiffness[i] = (top - M) / change[i];
+    }
+    close_truth(&truth);
 }

@@ -26,6 +26,8 @@ struct fast_rig {
     double travel;   /* m */
     int every_frame; /* of the cameras' is taken; 6: as many frames as the dataset has rows */
     double noise;    /* factor on the noise of the cell and of the markers; 1 */
+    /* How far the bench's files, and the cell, are off what is bent. */
+    struct wb_test_uncertainty off;
 };
 
 /* The paper's bench, a type (1 to 3), a length (m), a seed; one cycle of 53 mm. */
@@ -39,5 +41,10 @@ WB_MUST_CHECK enum wb_status fast_rig_run(const struct fast_rig *fast, struct wb
  * curvature is left when the moment is let go from the last. Any may be NULL. */
 void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature, double *moment,
                     double *rigidity, double *residual_curvature);
+
+/* Change of its moment on the way back from the largest curvature, over n ascending changes of the
+ * curvature, N m2. */
+void fast_rig_unloading(const struct fast_rig *fast, double largest, int n, const double *change,
+                        double *stiffness);
 
 #endif

@@ -113,7 +113,7 @@ grep -qE '^(E|sigma_Y|K|n) .*e[-+]' said && fail "exponents: $(cat said)"
 "$wirebench" calibrate --help | grep -q 'Mandatory or optional' && fail 'argp speaks of long options'
 
 # Whole cycles: the wire is Ludwik's with isotropic hardening, and that is what is found.
-expect 0 'law: Ludwik, isotropic; hardening rule supported' \
+expect 0 'law: Ludwik, isotropic; it follows loading and unloading' \
     "$wirebench" calibrate cycle --threads 2 -o cycle.yaml
 within "$(number cycle.yaml youngs_modulus_MPa)" 4515 4540
 within "$(number cycle.yaml yield_stress_MPa)" 4.47 4.57
@@ -127,22 +127,24 @@ expect 0 'unloading' "$wirebench" validate cycle.yaml L85
 "$wirebench" calibrate cycle >said || fail 'calibrate cycle'
 for line in '^EI at zero curvature  *85[0-9]\.[0-9] N mm2' '^unloading stiffness over 1 1/m  *8[45][0-9]\.[0-9] N mm2' \
     '^secant EI to 2 1/m ' '^the data of all specimens begin at' '^M at .* 1/m .* N mm' '^springback' '^loop energy' \
-    '^one specimen: no interval' '^Ludwik, kinematic .* not in the ranges' '^  K  *13[0-9][0-9] MPa' \
-    'gain of the load cell  *1\.0' 'free length  *[123]\.' 'diameter  *0.0  *-4.0' '^settings: force_noise_mN 0.03, '; do
+    '^one specimen: how specimens scatter is not known' '^Ludwik, kinematic .* not in the ranges' \
+    '^  K  *13[0-9][0-9] MPa' '^  scatter between specimens  *unknown' \
+    '^  gain of the load cell, not stated: per 1 %  *(1\.0' '^  free length, not stated: per 1 %  *([123]\.' \
+    '^  combined ' '^  factor for 95 % ' '^settings: force_noise_mN 0.03, '; do
     grep -q "$line" said || fail "no line '$line': $(cat said)"
 done
 grep -qE '^(EI|M|unloading|secant|springback|loop) .*[0-9]e[-+]' said && fail "exponents: $(cat said)"
 [ "$(grep -n '^M at' said | head -n 1 | cut -d: -f1)" -eq 2 ] || fail 'moments do not come first'
 "$wirebench" calibrate cycle --json >cycle.json || fail 'calibrate --json of cycles'
 for key in unloading_stiffness_N_mm2 secant_stiffness_N_mm2 flexural_rigidity_N_mm2 springback_ratio moment_curvature hardening_rule specimens \
-    shared_sensitivities settings; do
+    budget settings; do
     grep -q "^  \"$key\": [{[]" cycle.json || fail "no $key in the JSON object"
 done
 within "$(number cycle.json data_step_mm)" 1 1
 within "$(number cycle.json length_mm)" 85 85
 
 # Loading alone: Ludwik's law, no springback.
-expect 0 'hardening rule untested' "$wirebench" calibrate L85
+expect 0 'hardening rule is untested' "$wirebench" calibrate L85
 "$wirebench" calibrate L85 -o loading.yaml >said || fail 'calibrate L85'
 grep -q '^springback' said && fail 'springback without a way back'
 grep -q 'tested: false' loading.yaml || fail 'a rule that was not tested'
@@ -155,11 +157,22 @@ expect 1 'hold the same readings' "$wirebench" calibrate cycle cycle
     --length-mm 85 -o short || fail 'solve short'
 expect 0 'not identifiable with these data; deflect to 30 mm or more' "$wirebench" calibrate short
 
-# A rule that no candidate follows: the range alone, exit code 3, and the properties are written.
-awk -F, -v OFS=, '$3 == "unload" { $5 = $5 * (1 + 0.05 * sin($4 / 2)) } { print }' \
+# What a rig or specimen file states comes into the interval; a number that is not known well enough is an error.
+sed 's/"length_mm": 85,/"length_mm": 85, "u_length_mm": 0.85, "u_gain_percent": 0.5,/' cycle/dataset.json >table &&
+    cp -r cycle stated && cp table stated/dataset.json
+"$wirebench" calibrate stated >said || fail 'calibrate stated'
+grep -qE '^  free length, 1 %  *[123]\.' said || fail "no length in the budget: $(cat said)"
+grep -qE '^  gain of the load cell, 0.5 %  *0\.5' said || fail "no gain in the budget: $(cat said)"
+expect 0 'law: Ludwik' "$wirebench" calibrate stated --at-most 20
+expect 3 '(95 %), expected at most 2 (--at-most)' "$wirebench" calibrate stated --at-most 2
+sed 's/"u_length_mm": 0.85/"u_length_mm": -1/' table >stated/dataset.json
+expect 1 'test.u_length_mm: expected a positive number' "$wirebench" calibrate stated
+
+# A wire that no law follows: the range alone, exit code 3, and the properties are written.
+awk -F, -v OFS=, '$3 == "unload" { $5 = $5 * (1 + 0.2 * sin($4 / 2)) } { print }' \
     cycle/force_deflection.csv >table && cp -r cycle odd && cp table odd/force_deflection.csv
-expect 3 'hardening rule not supported by the data' "$wirebench" calibrate odd -o odd.yaml
-grep -q 'supported: false' odd.yaml || fail 'odd.yaml does not say that the rule is not supported'
+expect 3 'no law follows loading and unloading' "$wirebench" calibrate odd -o odd.yaml
+grep -q 'supported: false' odd.yaml || fail 'odd.yaml does not say that no law follows'
 grep -qE '^flexural_rigidity_N_mm2: \{candidates_low' odd.yaml || fail 'more than a range is given'
 expect 3 'the iterations ran out' "$wirebench" calibrate cycle --fit-iterations 1
 

@@ -8,9 +8,9 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 
+#include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/paper/first_guess.h"
 #include "analysis/calibration/paper/first_guess_private.h"
-#include "analysis/dataset/fit.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"
@@ -34,18 +34,12 @@ static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
 /* Chaboche's laws are fitted where the best of the others leaves more than this, over F_max, and
  * than this many times the repeat noise. */
 static const double follows_up_to = 1e-3, follows_noise = 2.0;
-/* A law that misses the force by this many times the repeat noise still follows it: the noise of
- * neighbouring points is not all that readings have. */
-static const double supported_noise = 2.0, most_supported = 2e-2;
-/* Candidates count up to this many times the best misfit. */
+/* Candidates count in the ranges up to this many times the best misfit. */
 static const double counts_up_to = 2.0;
-/* Standard errors of a fit on either side of a candidate's number. */
-static const double range_errors = 2.0;
-/* And at most this much of a logarithm, a factor of ten: beyond it nothing is known, and the slopes
- * that errors are made of mean nothing. */
-static const double largest_range = 2.3;
-/* Level of the F-tests, coverage of the intervals. */
-static const double f_level = 0.01, coverage = 0.95;
+/* A smaller weight is none. */
+static const double least_weight = 1e-6;
+/* Of the number of specimens that EI needs. */
+static const double coverage = 0.95;
 /* When K and n get digits. */
 static const double largest_ln_strength_error = 0.10, largest_exponent_error = 0.03;
 static const double wanted_precision = 0.05;
@@ -74,6 +68,18 @@ static const struct wb_setting rows[] = {
      .option = "pooled-degrees",
      .argument = "N",
      .help = "Degrees of freedom of --pooled-deviation"},
+    {.name = "at_most_percent",
+     .unit = "%",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, at_most),
+     .scale = WB_PERCENT,
+     .least = 0.01,
+     .largest = 1000.0,
+     .otherwise = "any",
+     .option = "at-most",
+     .argument = "P",
+     .help = "Exit with 3 where a moment, the unloading stiffness over 1 /m or springback is not "
+             "known within this part of it (95 %)"},
     {.name = "threads",
      .type = WB_SETTING_INTEGER,
      .offset = offsetof(struct wb_cycle_calibrate_settings, threads),
@@ -268,6 +274,10 @@ static void take_contained(struct wb_cycle_member *member, enum wb_candidate can
     contain(candidate, &answer->fit.law);
     for (int i = 0; i < answer->fit.n_moved; i++)
         contain(candidate, &answer->fit.moved[i]);
+    for (int i = 0; i < WB_SHARED; i++) {
+        if (answer->fit.has_altered[i])
+            contain(candidate, &answer->fit.altered[i]);
+    }
     answer->fit.tension = wb_memory_new(n, sizeof(double));
     memcpy(answer->fit.tension, contained->tension, n * sizeof(double));
 }
@@ -443,29 +453,19 @@ static struct wb_cycle_grid find_grid(const struct wb_cycle_calibration *calibra
     return grid;
 }
 
-static void find_repeat_noise(struct wb_cycle_calibration *calibration, double *degrees)
+static void find_repeat_noise(struct wb_cycle_calibration *calibration)
 {
     double sum = 0.0;
     int n = 0;
-    *degrees = 0.0;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_data *const data = &calibration->members[i].data;
         for (int k = 0; k < data->n_points; k++) {
             const double d = data->points[k].deviation / data->max_force;
             sum += d * d;
-            *degrees += fmax(0.0, data->points[k].n_rows - 2);
             n++;
         }
     }
     calibration->repeat_noise = sqrt(sum / n);
-}
-
-static int count_points(const struct wb_cycle_calibration *calibration)
-{
-    int n = 0;
-    for (int i = 0; i < calibration->n_members; i++)
-        n += calibration->members[i].data.n_points;
-    return n;
 }
 
 /* A search whose iterations ran out is no fit, unless that is all there is. */
@@ -489,15 +489,6 @@ static void pool_misfit(const struct wb_cycle_calibration *calibration, bool unf
     rank->misfit = sqrt(sum / n);
 }
 
-static double freedom(const struct wb_cycle_calibration *calibration,
-                      const struct wb_cycle_rank *rank)
-{
-    double left = count_points(calibration);
-    for (int i = 0; i < calibration->n_members; i++)
-        left -= calibration->members[i].answers[rank->candidate].fit.n_free;
-    return fmax(1.0, left);
-}
-
 static int by_misfit(const void *a, const void *b)
 {
     const struct wb_cycle_rank *const x = a, *const y = b;
@@ -508,11 +499,54 @@ static int by_misfit(const void *a, const void *b)
     return (int)x->candidate - (int)y->candidate; /* of equals the simpler first */
 }
 
-/* Ranks the candidates and chooses one. */
+/* How many residuals of a specimen say something of their own: neighbours miss alike, with a
+ * correlation r (of one and the next), and count (1 - r) / (1 + r) times. What a law does not
+ * follow is the same in all specimens, which do not add to it. */
+static double count_independent(const struct wb_cycle_calibration *calibration,
+                                enum wb_candidate candidate)
+{
+    double squares = 0.0, products = 0.0, points = 0.0;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_data *const data = &calibration->members[i].data;
+        const double *const tension = calibration->members[i].answers[candidate].fit.tension;
+        points += (double)data->n_points / calibration->n_members;
+        for (int k = 0; k < data->n_points; k++) {
+            const double r = tension[k] - data->points[k].tension;
+            squares += r * r;
+            if (k > 0 && k != data->n_loading)
+                products += r * (tension[k - 1] - data->points[k - 1].tension);
+        }
+    }
+    const double r = squares > 0.0 ? fmin(fmax(products / squares, 0.0), 0.99) : 0.0;
+    return fmax(points * (1.0 - r) / (1.0 + r), 2.0);
+}
+
+/* Weights of the candidates by Schwarz's criterion (1978): of the misfit, and what each free number
+ * costs. */
+static void weigh(struct wb_cycle_calibration *calibration)
+{
+    const struct wb_cycle_rank *const best = &calibration->ranked[0];
+    const double n = count_independent(calibration, best->candidate);
+    double least = (double)INFINITY, sum = 0.0;
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        struct wb_cycle_rank *const rank = &calibration->ranked[i];
+        rank->weight = 2.0 * n * log(rank->misfit / best->misfit) + rank->n_free * log(n);
+        least = fmin(least, rank->weight);
+    }
+    for (int i = 0; i < calibration->n_ranked; i++)
+        sum += exp(0.5 * (least - calibration->ranked[i].weight));
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        struct wb_cycle_rank *const rank = &calibration->ranked[i];
+        const double weight = exp(0.5 * (least - rank->weight)) / sum;
+        rank->weight = weight < least_weight ? 0.0 : weight;
+    }
+    calibration->n_independent = n;
+}
+
+/* Ranks the candidates and chooses one: that of the largest weight. */
 static void choose(struct wb_cycle_calibration *calibration)
 {
-    double degrees;
-    find_repeat_noise(calibration, &degrees);
+    find_repeat_noise(calibration);
     calibration->n_ranked = 0;
     for (int unfinished = 0; unfinished < 2 && calibration->n_ranked == 0; unfinished++) {
         for (int c = 0; c < WB_CANDIDATES; c++) {
@@ -523,34 +557,20 @@ static void choose(struct wb_cycle_calibration *calibration)
         }
     }
     qsort(calibration->ranked, WB_CANDIDATES, sizeof calibration->ranked[0], by_misfit);
-
-    calibration->largest_supported =
-        fmax(WB_CYCLE_LARGEST_SUPPORTED,
-             fmin(supported_noise * calibration->repeat_noise, most_supported));
+    if (calibration->n_ranked == 0)
+        return;
+    weigh(calibration);
     const struct wb_cycle_rank *const best = &calibration->ranked[0];
-    int simplest = -1, alike = -1;
+    const struct wb_cycle_rank *chosen = best;
     for (int i = 0; i < calibration->n_ranked; i++) {
         struct wb_cycle_rank *const rank = &calibration->ranked[i];
-        const double dof = freedom(calibration, rank), ratio = rank->misfit / best->misfit;
-        const double noise = rank->misfit / calibration->repeat_noise;
-        const double corrected = count_points(calibration) / dof;
-        rank->f_ratio = noise * noise * corrected;
-        rank->f_limit = wb_fit_fisher_limit(f_level, dof, fmax(1.0, degrees));
-        rank->is_rejected = !(rank->f_ratio <= rank->f_limit);
-        rank->counts = ratio <= counts_up_to;
-        const double best_dof = freedom(calibration, best);
-        const bool like_best =
-            ratio * ratio * best_dof / dof <= wb_fit_fisher_limit(f_level, dof, best_dof);
-        if (!rank->is_rejected &&
-            (simplest < 0 || rank->candidate < calibration->ranked[simplest].candidate))
-            simplest = i;
-        if (like_best && (alike < 0 || rank->candidate < calibration->ranked[alike].candidate))
-            alike = i;
+        rank->counts = rank->misfit <= counts_up_to * best->misfit;
+        if (rank->weight > chosen->weight)
+            chosen = rank;
     }
-    const int chosen = simplest >= 0 ? simplest : alike >= 0 ? alike : 0;
-    calibration->chosen = calibration->ranked[chosen].candidate;
-    calibration->is_supported = calibration->has_unloading && !calibration->is_stopped &&
-                                best->misfit <= calibration->largest_supported;
+    calibration->chosen = chosen->candidate;
+    calibration->is_followed = calibration->has_unloading && !calibration->is_stopped &&
+                               chosen->misfit <= WB_CYCLE_LARGEST_FOLLOWED;
 }
 
 /* Whether laws of more kinds are worth their time. */
@@ -559,75 +579,6 @@ static bool leaves_something(const struct wb_cycle_calibration *calibration)
     return calibration->n_ranked > 0 &&
            calibration->ranked[0].misfit >
                fmax(follows_up_to, follows_noise * calibration->repeat_noise);
-}
-
-/* A residual curvature is a part of the largest. */
-static double largest_value(enum wb_cycle_number number)
-{
-    return number == WB_CYCLE_SPRINGBACK ? 1.0 : (double)INFINITY;
-}
-
-/* Mean of logarithms and its interval. */
-static void average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
-                    enum wb_cycle_number number, const struct wb_cycle_calibrate_settings *settings,
-                    struct wb_estimate *estimate)
-{
-    const int n = calibration->n_members;
-    double sum = 0.0, squares = 0.0;
-    for (int i = 0; i < n; i++) {
-        const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
-        const double x = log(answer->value[number]);
-        sum += x;
-        squares += x * x;
-    }
-    const double mean = sum / n;
-    estimate->value = exp(mean);
-    estimate->low = estimate->high = estimate->deviation = (double)NAN;
-    double deviation = n > 1 ? sqrt(fmax(0.0, squares - n * mean * mean) / (n - 1)) : (double)NAN;
-    int degrees = n - 1;
-    if (settings->pooled_deviation > 0.0 && settings->pooled_degrees > 0) {
-        deviation = settings->pooled_deviation;
-        degrees = settings->pooled_degrees;
-    }
-    if (degrees < 1 || !isfinite(deviation))
-        return;
-    const double half = gsl_cdf_tdist_Qinv(0.5 * (1.0 - coverage), degrees) * deviation / sqrt(n);
-    estimate->deviation = deviation;
-    estimate->low = exp(mean - half);
-    estimate->high = fmin(exp(mean + half), largest_value(number));
-}
-
-/* Root mean square over the specimens. */
-static double fit_error(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
-                        enum wb_cycle_number number)
-{
-    double squares = 0.0;
-    for (int i = 0; i < calibration->n_members; i++) {
-        const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
-        squares += answer->error[number] * answer->error[number];
-    }
-    return sqrt(squares / calibration->n_members);
-}
-
-/* The chosen law's number with the range over the candidates that count. */
-static void estimate_number(struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
-                            const struct wb_cycle_calibrate_settings *settings,
-                            struct wb_estimate *estimate)
-{
-    average(calibration, calibration->chosen, number, settings, estimate);
-    estimate->candidates_low = estimate->candidates_high = estimate->value;
-    for (int i = 0; i < calibration->n_ranked; i++) {
-        const enum wb_candidate candidate = calibration->ranked[i].candidate;
-        struct wb_estimate other;
-        if (!calibration->ranked[i].counts)
-            continue;
-        average(calibration, candidate, number, settings, &other);
-        const double error =
-            fmin(range_errors * fit_error(calibration, candidate, number), largest_range);
-        estimate->candidates_low = fmin(estimate->candidates_low, other.value * exp(-error));
-        estimate->candidates_high = fmax(estimate->candidates_high, other.value * exp(error));
-    }
-    estimate->candidates_high = fmin(estimate->candidates_high, largest_value(number));
 }
 
 /* What a law says of bending: numbers by enum wb_cycle_number. */
@@ -664,6 +615,27 @@ static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double 
     }
     for (int k = 0; k < WB_CYCLE_NUMBERS; k++)
         answer->error[k] = sqrt(answer->error[k]);
+    return WB_OK;
+}
+
+/* How the logarithms hang on what all specimens share. The weight goes with the square of the
+ * diameter. */
+static enum wb_status find_answer_effects(struct wb_cycle_answer *answer, double diameter,
+                                          const struct wb_cycle_calibration *calibration)
+{
+    double altered[WB_CYCLE_NUMBERS] = {0.0};
+    for (int i = 0; i < WB_SHARED; i++) {
+        if (!answer->fit.has_altered[i])
+            continue;
+        WB_TRY(describe_law(calibration, &answer->fit.altered[i], diameter, altered));
+        for (int k = 0; k < WB_CYCLE_NUMBERS; k++) {
+            if (answer->value[k] > 0.0)
+                answer->effect[i][k] =
+                    (altered[k] / answer->value[k] - 1.0) / wb_cycle_shared_change(i);
+        }
+    }
+    for (int k = 0; k < WB_CYCLE_NUMBERS; k++)
+        answer->effect[WB_SHARED_DIAMETER][k] = 2.0 * answer->effect[WB_SHARED_DENSITY][k];
     return WB_OK;
 }
 
@@ -736,6 +708,8 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
             WB_TRY(describe_law(calibration, &answer->fit.law, diameter, answer->value));
             if (candidate_counts(calibration, c))
                 WB_TRY(find_answer_errors(answer, diameter, calibration));
+            if (c == (int)calibration->chosen)
+                WB_TRY(find_answer_effects(answer, diameter, calibration));
         }
     }
     return WB_OK;
@@ -883,29 +857,39 @@ static int specimens_needed(double deviation)
     return MOST_SPECIMENS_NEEDED;
 }
 
+static struct wb_estimate *estimate_of(struct wb_cycle_calibration *calibration,
+                                       enum wb_cycle_number number)
+{
+    if (number == WB_CYCLE_RIGIDITY)
+        return &calibration->rigidity;
+    if (number == WB_CYCLE_SPRINGBACK)
+        return &calibration->springback;
+    if (number == WB_CYCLE_LOOP_ENERGY)
+        return &calibration->loop_energy;
+    if (number < WB_CYCLE_FIRST_SECANT)
+        return &calibration->moment[number - WB_CYCLE_FIRST_MOMENT];
+    return number < WB_CYCLE_FIRST_UNLOADING
+               ? &calibration->secant.estimate[number - WB_CYCLE_FIRST_SECANT]
+               : &calibration->unloading.estimate[number - WB_CYCLE_FIRST_UNLOADING];
+}
+
 static enum wb_status conclude(struct wb_cycle_calibration *calibration,
                                const struct wb_cycle_calibrate_settings *settings)
 {
     WB_TRY(describe_answers(calibration));
-    estimate_number(calibration, WB_CYCLE_RIGIDITY, settings, &calibration->rigidity);
-    estimate_number(calibration, WB_CYCLE_SPRINGBACK, settings, &calibration->springback);
-    estimate_number(calibration, WB_CYCLE_LOOP_ENERGY, settings, &calibration->loop_energy);
-    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-        estimate_number(calibration, WB_CYCLE_FIRST_MOMENT + k, settings, &calibration->moment[k]);
-    for (int k = 0; k < calibration->secant.n; k++)
-        estimate_number(calibration, WB_CYCLE_FIRST_SECANT + k, settings,
-                        &calibration->secant.estimate[k]);
-    for (int k = 0; k < calibration->unloading.n; k++)
-        estimate_number(calibration, WB_CYCLE_FIRST_UNLOADING + k, settings,
-                        &calibration->unloading.estimate[k]);
+    for (int k = 0; k < WB_CYCLE_NUMBERS; k++)
+        wb_cycle_estimate(calibration, k, settings, estimate_of(calibration, k),
+                          &calibration->budget[k]);
     calibration->is_rigidity_resolved =
         is_near(resolved_value(&calibration->secant), calibration->rigidity.value) ||
         (calibration->has_unloading &&
          is_near(resolved_value(&calibration->unloading), calibration->rigidity.value));
     for (int i = 0; i < calibration->n_ranked; i++) {
         struct wb_cycle_rank *const rank = &calibration->ranked[i];
-        average(calibration, rank->candidate, WB_CYCLE_RIGIDITY, settings, &rank->rigidity);
-        average(calibration, rank->candidate, WB_CYCLE_SPRINGBACK, settings, &rank->springback);
+        wb_cycle_average(calibration, rank->candidate, WB_CYCLE_RIGIDITY, settings,
+                         &rank->rigidity);
+        wb_cycle_average(calibration, rank->candidate, WB_CYCLE_SPRINGBACK, settings,
+                         &rank->springback);
         average_law(calibration, rank->candidate, &rank->law);
     }
     average_law(calibration, calibration->chosen, &calibration->law);

@@ -3,15 +3,13 @@
  *
  * Each specimen is fitted by itself with each candidate (analysis/cycle_fit.h). A candidate's
  * misfit is the root mean square of the force residuals of both ways over F_max, pooled over the
- * specimens. Chosen is the simplest that an F-test against the repeat noise of the readings does
- * not reject; where all are rejected, the simplest that the same test does not tell from the best.
+ * specimens. The candidates have weights by Schwarz's criterion; that of the largest is chosen.
  *
- * A number's interval is that of the mean of its logarithms over the specimens (Student's t, 95 %).
- * It says nothing of the law: beside it stands the range of the number over all candidates whose
- * misfit is at most twice the best, each with two standard errors of its fits on either side. What
- * the law's form cannot follow makes those errors, and what its priors leave open, so that they do
- * not shrink with more specimens. What all specimens share (gain of the cell, lengths,
- * counterweight, diameter) leaves no trace in the data and is in neither.
+ * A number's interval holds it with 95 %: it combines the scatter between specimens, what the fits
+ * leave open, how far the other laws lie from the chosen one by their weights, and what the files
+ * state of gain, length, counterweight, density, marker offset and diameter, which all specimens
+ * share and which leave no trace in the data (cycle_budget.h). Beside it stands the range of the
+ * number over all candidates whose misfit is at most twice the best.
  */
 #ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CALIBRATE_H
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CALIBRATE_H
@@ -43,9 +41,27 @@ extern const double wb_cycle_moment_parts[WB_CYCLE_MOMENTS];
 /* A number with what is known of it. */
 struct wb_estimate {
     double value;                           /* exp of the mean of ln over specimens */
-    double low, high;                       /* interval of 95 %; NaN with one specimen */
+    double low, high;                       /* interval of 95 % */
     double candidates_low, candidates_high; /* over the candidates that cannot be excluded */
     double deviation;                       /* s of ln over specimens (or pooled); NaN: unknown */
+};
+
+/* What makes up an uncertainty. */
+enum wb_contribution {
+    WB_FROM_SPECIMENS, /* their scatter; unknown with one */
+    WB_FROM_FIT,       /* noise, priors, and what the law does not follow */
+    WB_FROM_LAW,       /* other laws that the data do not exclude */
+    WB_FROM_SHARED,    /* the first of enum wb_cycle_shared */
+    WB_CONTRIBUTIONS = WB_FROM_SHARED + WB_SHARED
+};
+
+/* Of a number's logarithm. */
+struct wb_budget {
+    double uncertainty[WB_CONTRIBUTIONS]; /* standard; NaN: not known, and not in the others */
+    double degrees[WB_CONTRIBUTIONS];     /* of freedom */
+    double effect[WB_SHARED];             /* per part of what is shared, of the markers per m */
+    double combined, effective_degrees;
+    double factor; /* of the combined one, for 95 % */
 };
 
 /* Stiffness at n curvatures, ascending: those that are stated, and the smallest that the data of
@@ -76,11 +92,13 @@ struct wb_cycle_answer {
     /* Standard errors of the logarithms by the residuals of the fit; 0 of candidates that do not
      * count. */
     double error[WB_CYCLE_NUMBERS];
+    /* Changes of the logarithms with what all specimens share; 0 of candidates that are not chosen.
+     */
+    double effect[WB_SHARED][WB_CYCLE_NUMBERS];
 };
 
-/* A hardening rule is supported by fits of loading and unloading up to this misfit; on noisy data
- * up to more. */
-#define WB_CYCLE_LARGEST_SUPPORTED 5e-3
+/* Largest misfit of a law that follows a wire. */
+#define WB_CYCLE_LARGEST_FOLLOWED 3e-2
 
 struct wb_cycle_member {
     int sample;
@@ -96,11 +114,9 @@ struct wb_cycle_rank {
     enum wb_candidate candidate;
     bool is_fitted; /* for all specimens */
     double misfit;
-    double f_ratio;   /* of the F-test against the repeat noise, */
-    double f_limit;   /* and what it may be, at 1 % */
-    bool is_rejected; /* by it */
-    bool counts;      /* misfit at most twice the best: its numbers are in the ranges */
-    int n_free;       /* of the law */
+    double weight;
+    bool counts; /* misfit at most twice the best: its numbers are in the ranges */
+    int n_free;  /* of the law */
     struct wb_estimate rigidity, springback; /* without the ranges */
     struct wb_law law; /* means of the specimens' numbers, as those of the chosen one */
 };
@@ -113,8 +129,8 @@ struct wb_cycle_calibration {
     struct wb_cycle_rank ranked[WB_CANDIDATES]; /* best first; those not fitted last */
     int n_ranked;
     enum wb_candidate chosen;
-    double largest_supported; /* misfit, over F_max: 0.5 %, or twice the repeat noise up to 2 % */
-    bool is_supported;        /* the best misfit is at most that, and unloading was fitted */
+    double n_independent; /* residuals of a specimen, of the best law */
+    bool is_followed;     /* the chosen law's misfit is at most 3 %, and unloading was fitted */
     /* `progress` said so before all candidates were fitted to all specimens: the members are those
      * that were, and nothing is decided of the rule. */
     bool is_stopped;
@@ -125,6 +141,7 @@ struct wb_cycle_calibration {
     /* Of the virgin wire from straight, and on the way back from the largest curvature over changes
      * of it; the second without entries where no way back was measured. */
     struct wb_cycle_stiffness secant, unloading;
+    struct wb_budget budget[WB_CYCLE_NUMBERS];
     /* EI, the slope at curvature zero, is no more than 2 % from a stiffness at the smallest
      * curvature that the data resolve; else it is the law's alone. */
     bool is_rigidity_resolved;
@@ -145,6 +162,7 @@ struct wb_cycle_calibrate_settings {
     unsigned left_out;       /* bit 1 << candidate: is not fitted */
     double pooled_deviation; /* s of ln(EI) pooled over other wires; 0: of these specimens */
     int pooled_degrees;      /* its degrees of freedom */
+    double at_most;          /* expanded uncertainty that is enough; 0: any */
     int threads;             /* 0: as many as there are processors */
     bool (*progress)(void *context, int done, int all); /* NULL; false stops */
     void *progress_context;

@@ -13,6 +13,7 @@
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
+#include "analysis/calibration/cycle/cycle_covariance.h"
 #include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/least_squares.h"
@@ -47,13 +48,20 @@ static const double foretold = 0.3;
 static const double near = 0.03;
 /* Huber's limit and where a point counts as an outlier, in standard deviations of the residuals. */
 static const double huber_limit = 2.5;
+/* Largest correlation of neighbouring residuals that is believed, as their number is finite;
+ * weights are settled where their scale changes by no more than this part. */
+static const double largest_correlation = 0.9, settled_scale = 0.3, largest_scale_of_misses = 10.0,
+                    first_scale_of_misses = 5.0;
+enum {
+    most_passes = 4
+};
 /* It has arrived when the next step changes no number by more than this, or the sum of squares by
  * less than this part. */
 static const double arrived = 2e-4;
 static const double settled_sum = 1e-4;
-/* Where a group of residuals is left out, a number that nothing else tells stays finite by a prior
- * of this weight; and a standard error is at least the root of this. Units of the free numbers. */
-static const double know_nothing = 1e-6, surest = 1e-12;
+/* A number that nothing tells stays finite by a prior of this weight, in units of the free numbers.
+ */
+static const double know_nothing = 1e-6;
 /* A law is moved by this many standard errors, and no number by more than that: a part that is
  * nearly nothing grows by powers over a whole one, which the errors to first order mean nothing of.
  */
@@ -235,6 +243,7 @@ const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS] = {
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings)
 {
     const struct wb_setting_table table = {.rows = wb_cycle_fit_rows, .n = WB_CYCLE_FIT_ROWS};
+    *settings = (struct wb_cycle_fit_settings){.zero_prior = 0.0};
     wb_setting_fill(&table, settings);
 }
 
@@ -242,7 +251,8 @@ void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings)
 enum {
     BOW,
     LEVEL,
-    UNEVEN, /* the last: without places it is not free */
+    UNEVEN, /* not free without places, unless the last is */
+    ZERO,   /* of force: free where it may be wrong */
     OF_SPECIMEN
 };
 
@@ -257,7 +267,7 @@ struct problem {
     double start[WB_FIT_MOST_FREE]; /* the free numbers are counted from here, in units of scale */
     double scale[WB_FIT_MOST_FREE];
     double start_modulus[WB_FIT_PARTS];  /* Pa */
-    double *tension, *distance, *weight; /* weight: (n_points), of Huber */
+    double *tension, *distance, *weight; /* weight: (n_points) */
     double last_x[WB_FIT_MOST_FREE];     /* where the residuals were asked for last, */
     double *last;                        /* and they; (n_residuals) */
     bool has_last;
@@ -268,6 +278,7 @@ struct problem {
     bool has_slopes, are_differences;       /* false: carried on from earlier ones */
     bool moved_by_differences;              /* those of the last step */
     double force_scale;                     /* N */
+    double scale_of_misses;                 /* larger than 1 where the law does not follow */
     struct wb_cycle_run run;
     int runs;
     enum wb_status status;
@@ -435,6 +446,8 @@ static void start_from(struct problem *p, const struct wb_law *law)
     scale[LEVEL] = 0.1 * WB_MM;
     start[UNEVEN] = 0.0;
     scale[UNEVEN] = 0.01;
+    start[ZERO] = 0.0;
+    scale[ZERO] = p->force_scale;
 }
 
 static void absolute(const struct problem *p, const double *x, double *free)
@@ -485,6 +498,8 @@ static int prior_residuals(const struct problem *p, const double *free, const st
 
     r[at++] = free[p->n_law + LEVEL] / p->settings->level_prior;
     r[at++] = free[p->n_law + UNEVEN] / p->settings->uneven_prior;
+    if (p->settings->zero_prior > 0.0)
+        r[at++] = free[p->n_law + ZERO] / p->settings->zero_prior;
     if (c->form == WB_LAW_PARALLEL) {
         at += wb_least_squares_smooth_parts(law->parts, WB_FIT_PARTS, p->settings->modulus_prior,
                                             r + at);
@@ -530,7 +545,8 @@ static int residuals(struct problem *p, const double *x, double *r)
         return GSL_SUCCESS;
     }
     for (int i = 0; i < data->n_points; i++)
-        r[i] = sqrt(p->weight[i]) * (p->tension[i] - data->points[i].tension) / p->force_scale;
+        r[i] = sqrt(p->weight[i]) *
+               (p->tension[i] + free[p->n_law + ZERO] - data->points[i].tension) / p->force_scale;
     int at = data->n_points;
     at += place_residuals(p, r + at);
     at += prior_residuals(p, free, &law, r + at);
@@ -639,24 +655,50 @@ static void weigh_again(struct problem *p, int i, double ratio)
     p->last[i] *= ratio;
 }
 
-static void set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
+/* Standard deviation of residuals of which each counts as one, in units of the force's: neighbours
+ * miss alike where the law cannot follow, with a correlation r of one and the next, and the sum of
+ * n of them varies by (1 + r) / (1 - r) times n variances. `counts` are Huber's weights. */
+static double find_discrepancy(const struct problem *p, const double *miss, const double *counts)
 {
-    const int n = p->data->n_points;
-    double *const sizes = wb_memory_new((size_t)n, sizeof *sizes);
-    *n_outliers = 0;
-    double *const raw = p->tension; /* free to use until the next run */
-    for (int i = 0; i < n; i++) {
-        raw[i] = fabs(gsl_vector_get(f, (size_t)i)) / sqrt(p->weight[i]);
-        sizes[i] = raw[i];
+    double squares = 0.0, products = 0.0, sum = 0.0;
+    for (int i = 0; i < p->data->n_points; i++) {
+        squares += counts[i] * miss[i] * miss[i];
+        sum += counts[i];
+        if (i > 0 && i != p->data->n_loading)
+            products += sqrt(counts[i] * counts[i - 1]) * miss[i] * miss[i - 1];
     }
-    const double limit = huber_limit * fmax(1.4826 * wb_fit_median(sizes, (size_t)n), 1.0);
+    const double r = squares > 0.0 ? fmin(fmax(products / squares, 0.0), largest_correlation) : 0.0;
+    return sqrt(squares / sum * (1.0 + r) / (1.0 - r));
+}
+
+/* Weights of the points for the next pass, by what this one left: Huber's, and smaller ones where
+ * the law does not follow, so that priors keep their weight. Returns whether they changed. */
+static bool set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
+{
+    const int n = p->data->n_points, outliers_before = *n_outliers;
+    const double scale_before = p->scale_of_misses;
+    double *const counts = wb_memory_new((size_t)n, sizeof *counts);
+    double *const miss = p->tension; /* free to use until the next run */
+    for (int i = 0; i < n; i++) {
+        miss[i] = gsl_vector_get(f, (size_t)i) / sqrt(p->weight[i]);
+        counts[i] = fabs(miss[i]);
+    }
+    const double limit = huber_limit * fmax(1.4826 * wb_fit_median(counts, (size_t)n), 1.0);
+    *n_outliers = 0;
+    for (int i = 0; i < n; i++) {
+        counts[i] = fabs(miss[i]) > limit ? limit / fabs(miss[i]) : 1.0;
+        *n_outliers += counts[i] < 0.5;
+    }
+    p->scale_of_misses =
+        fmin(fmax(find_discrepancy(p, miss, counts), 1.0), largest_scale_of_misses);
     for (int i = 0; i < n; i++) {
         const double before = p->weight[i];
-        p->weight[i] = raw[i] > limit ? limit / raw[i] : 1.0;
-        *n_outliers += p->weight[i] < 0.5;
+        p->weight[i] = counts[i] / (p->scale_of_misses * p->scale_of_misses);
         weigh_again(p, i, sqrt(p->weight[i] / before));
     }
-    free(sizes);
+    free(counts);
+    return *n_outliers != outliers_before ||
+           fabs(log(p->scale_of_misses / scale_before)) > settled_scale;
 }
 
 /* Begins again where it is, with differences for slopes. */
@@ -707,107 +749,6 @@ static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *i
         .context = &fitted,
     };
     return wb_least_squares_iterate(w, &search, iterations);
-}
-
-enum {
-    IS_PRIOR = -1 /* a residual of no group */
-};
-
-/* Begins a new group of residuals at each change of sign. Returns the index behind the last. */
-static int group_rows(const gsl_vector *f, int at, int n, int *group, int *n_groups)
-{
-    for (int i = at; i < at + n; i++) {
-        *n_groups += i == at || (gsl_vector_get(f, (size_t)i) < 0.0) !=
-                                    (gsl_vector_get(f, (size_t)i - 1) < 0.0);
-        group[i] = *n_groups - 1;
-    }
-    return at + n;
-}
-
-/* Groups residuals that tell the same: those of one sign in a row, of one branch or one marker.
- * Returns how many there are. */
-static int group_residuals(const struct problem *p, const gsl_vector *f, int *group)
-{
-    const struct wb_cycle_data *const data = p->data;
-    int n_groups = 0;
-    for (int i = 0; i < p->n_residuals; i++)
-        group[i] = IS_PRIOR;
-    int at = group_rows(f, 0, data->n_loading, group, &n_groups);
-    at = group_rows(f, at, data->n_points - data->n_loading, group, &n_groups);
-    for (int m = 0; m < data->n_markers; m++) {
-        int n = 0;
-        for (int i = 0; i < data->n_places; i++)
-            n += data->places[i].marker == m;
-        at = group_rows(f, at, n, group, &n_groups) + 1; /* behind its offset's prior */
-    }
-    return n_groups;
-}
-
-/* Adds to the covariance what the free numbers owe to one group of residuals: how they change, to
- * first order, when it is left out. `squares` are the sums of the slopes' products; `rest` is
- * workspace. */
-static bool add_group(const gsl_matrix *J, const gsl_vector *f, const int *group, int left_out,
-                      const gsl_matrix *squares, gsl_matrix *rest, gsl_matrix *covariance)
-{
-    double numbers[WB_FIT_MOST_FREE] = {0.0};
-    gsl_vector_view change = gsl_vector_view_array(numbers, J->size2);
-    gsl_matrix_memcpy(rest, squares);
-    for (size_t i = 0; i < J->size1; i++) {
-        if (group[i] != left_out)
-            continue;
-        const gsl_vector_const_view slopes = gsl_matrix_const_row(J, i);
-        gsl_blas_dsyr(CblasLower, -1.0, &slopes.vector, rest);
-        gsl_blas_daxpy(gsl_vector_get(f, i), &slopes.vector, &change.vector);
-    }
-    return gsl_linalg_cholesky_decomp1(rest) == GSL_SUCCESS &&
-           gsl_linalg_cholesky_svx(rest, &change.vector) == GSL_SUCCESS &&
-           gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
-}
-
-/* What they owe to the priors, which are as far off as their standard deviations say. */
-static bool add_priors(const gsl_matrix *J, const int *group, const gsl_matrix *squares,
-                       gsl_matrix *rest, gsl_matrix *covariance)
-{
-    gsl_matrix_memcpy(rest, squares);
-    bool good = gsl_linalg_cholesky_decomp1(rest) == GSL_SUCCESS;
-    for (size_t i = 0; i < J->size1 && good; i++) {
-        double numbers[WB_FIT_MOST_FREE];
-        gsl_vector_view change = gsl_vector_view_array(numbers, J->size2);
-        if (group[i] != IS_PRIOR)
-            continue;
-        gsl_matrix_get_row(&change.vector, J, i);
-        good = gsl_linalg_cholesky_svx(rest, &change.vector) == GSL_SUCCESS &&
-               gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
-    }
-    return good;
-}
-
-/* The covariance of the free numbers: of the readings by the jackknife (Tukey 1958), each group of
- * residuals left out once, and of the priors. Where the law's form cannot follow the test, large
- * residuals of one sign stand side by side, and the numbers that hang on them are uncertain; others
- * need not be. What the readings do not reach, as the virgin curve below the curvature that a wire
- * has at zero deflection, hangs on the priors. Of noise alone, groups by sign make a standard error
- * half as large again as it is. */
-static bool find_covariance(const struct problem *p, const gsl_vector *f, const gsl_matrix *J,
-                            gsl_matrix *covariance)
-{
-    const size_t n = (size_t)p->n_free;
-    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
-    gsl_matrix *const rest = wb_memory_need(gsl_matrix_alloc(n, n));
-    int *const group = wb_memory_new((size_t)p->n_residuals, sizeof *group);
-    const int n_groups = group_residuals(p, f, group);
-    bool good = true;
-    gsl_matrix_set_identity(squares);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);
-    gsl_matrix_set_identity(covariance);
-    gsl_matrix_scale(covariance, surest);
-    for (int g = 0; g < n_groups && good; g++)
-        good = add_group(J, f, group, g, squares, rest, covariance);
-    good = good && add_priors(J, group, squares, rest, covariance);
-    gsl_matrix_free(squares);
-    gsl_matrix_free(rest);
-    free(group);
-    return good;
 }
 
 /* The law moved along the columns of the covariance's triangular factor, which the covariance is
@@ -930,9 +871,62 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
         }
         find_correlations(p, covariance, fit);
     }
-    if (find_covariance(p, w->f, w->J, covariance))
+    if (wb_cycle_covariance_find(p->data, w->f, w->J, covariance))
         move_law(p, w->x, covariance, fit);
     gsl_matrix_free(covariance);
+}
+
+/* Gauss and Newton's step from the end of the search, with the residuals of altered data. `squares`
+ * are the sums of the slopes' products as Cholesky factors them. */
+static void find_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
+                         const gsl_matrix *squares, const double *r, enum wb_cycle_shared shared,
+                         struct wb_cycle_fit *fit)
+{
+    const struct wb_cycle_model_settings how = {p->settings->n_elements, p->settings->n_fibres};
+    struct wb_cycle_data altered;
+    struct problem q = *p;
+    double free_numbers[WB_FIT_MOST_FREE], numbers[WB_FIT_MOST_FREE];
+    struct wb_reason why;
+    if (!wb_cycle_shared_alter(&altered, p->data, shared, wb_cycle_shared_change(shared)))
+        return;
+    gsl_vector *const change = wb_memory_need(gsl_vector_alloc((size_t)p->n_residuals));
+    gsl_vector_view step = gsl_vector_view_array(numbers, (size_t)p->n_free);
+    q.data = &altered;
+    bool good = wb_cycle_model_create(&q.model, &altered, &fit->law, &how) == WB_OK &&
+                residuals(&q, w->x->data, change->data) == GSL_SUCCESS && q.run.reached;
+    for (int i = 0; i < p->n_residuals; i++)
+        change->data[i] = r[i] - change->data[i];
+    good = good &&
+           gsl_blas_dgemv(CblasTrans, 1.0, w->J, change, 0.0, &step.vector) == GSL_SUCCESS &&
+           gsl_linalg_cholesky_svx(squares, &step.vector) == GSL_SUCCESS;
+    if (good) {
+        gsl_vector_add(&step.vector, w->x);
+        absolute(p, numbers, free_numbers);
+        law_of(p, free_numbers, &fit->altered[shared]);
+        fit->has_altered[shared] = wb_law_check(&fit->altered[shared], &why) == WB_OK;
+    }
+    p->runs = q.runs;
+    wb_cycle_model_destroy(q.model);
+    gsl_vector_free(change);
+    wb_cycle_data_release(&altered);
+}
+
+/* How the law hangs on what all specimens share. */
+static void find_all_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
+                             struct wb_cycle_fit *fit)
+{
+    const size_t n = (size_t)p->n_free;
+    double *const r = wb_memory_new((size_t)p->n_residuals, sizeof *r);
+    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
+    gsl_matrix_set_identity(squares);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, w->J, know_nothing, squares);
+    if (gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS &&
+        residuals(p, w->x->data, r) == GSL_SUCCESS && p->run.reached) {
+        for (int i = 0; i < WB_SHARED; i++)
+            find_altered(p, w, squares, r, i, fit);
+    }
+    gsl_matrix_free(squares);
+    free(r);
 }
 
 static void find_misfits(struct wb_cycle_fit *fit, struct problem *p)
@@ -968,7 +962,8 @@ static int count_residuals(const struct problem *p)
     const int priors = c->form == WB_LAW_PARALLEL   ? WB_FIT_PARTS - 3
                        : c->form == WB_LAW_CHABOCHE ? 2 + 2 * c->n_backs
                                                     : 2;
-    return p->data->n_points + p->data->n_places + p->data->n_markers + 2 + priors + c->has_share;
+    return p->data->n_points + p->data->n_places + p->data->n_markers + 2 + priors + c->has_share +
+           (p->settings->zero_prior > 0.0);
 }
 
 /* The last run, with more elements. */
@@ -1013,13 +1008,11 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
                           "wire '%s', sample %d: %s: the beam does not come to the end of the "
                           "cycle from the first guess",
                           p->data->info.wire, p->data->info.sample, p->candidate->name);
-    for (int pass = 0; pass < 3; pass++) {
-        const int before = fit->n_outliers;
+    for (int pass = 0; pass < most_passes; pass++) {
         fit->is_converged = iterate(p, w, &fit->iterations);
         if (p->status != WB_OK)
             return p->status;
-        set_weights(p, w->f, &fit->n_outliers);
-        if (!fit->is_converged || (pass > 0 ? fit->n_outliers == before : fit->n_outliers == 0))
+        if (!set_weights(p, w->f, &fit->n_outliers) || !fit->is_converged)
             break;
         memcpy(at, w->x->data, (size_t)p->n_free * sizeof *at);
         if (gsl_multifit_nlinear_init(&x.vector, &fdf, w) != GSL_SUCCESS)
@@ -1031,13 +1024,17 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     fit->bow_angle = specimen.bow_angle;
     fit->level = specimen.level;
     fit->uneven_angle = specimen.uneven_angle;
+    fit->zero = free_numbers[p->n_law + ZERO];
     fit->is_at_bound = (p->candidate->form == WB_LAW_LUDWIK && fabs(free_numbers[3]) > at_bound) ||
                        (p->candidate->has_share && fabs(free_numbers[p->n_law - 1]) > at_bound);
     if (!finish_slopes(p, w))
         return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: %s: no slopes at the end",
                           p->data->info.wire, p->data->info.sample, p->candidate->name);
     find_errors(p, w, fit);
+    find_all_altered(p, w, fit);
     WB_TRY(run_finely(fit, p, why));
+    for (int i = 0; i < p->data->n_points; i++)
+        fit->tension[i] += fit->zero;
     fit->clamp_curvature = p->run.clamp_curvature;
     fit->first_curvature = p->run.first_curvature;
     fit->turn_change = p->run.turn_change;
@@ -1060,7 +1057,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
         .poissons_ratio = start->material.poissons_ratio,
         .n_law = wb_candidate_numbers(candidate),
     };
-    p.n_free = p.n_law + 2 + has_places(data);
+    p.n_free = p.n_law + (settings->zero_prior > 0.0 ? OF_SPECIMEN : UNEVEN + has_places(data));
     p.n_residuals = count_residuals(&p);
     p.force_scale = fmax(settings->force_noise, settings->force_share * data->max_force);
     *fit = (struct wb_cycle_fit){.candidate = candidate, .n_free = p.n_free, .n_law = p.n_law};
@@ -1082,8 +1079,9 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     p.slopes = wb_memory_need(gsl_matrix_calloc((size_t)p.n_residuals, (size_t)p.n_free));
     fit->tension = wb_memory_new(points, sizeof *fit->tension);
     gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
+    p.scale_of_misses = first_scale_of_misses;
     for (int i = 0; i < data->n_points; i++)
-        p.weight[i] = 1.0;
+        p.weight[i] = 1.0 / (first_scale_of_misses * first_scale_of_misses);
     enum wb_status status = wb_cycle_model_create(&p.model, data, &law, &how);
     if (status == WB_OK)
         status = search(fit, &p, w, why);

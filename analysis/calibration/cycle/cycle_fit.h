@@ -15,6 +15,7 @@
 #include <stdbool.h>
 
 #include "analysis/calibration/cycle/cycle_data.h"
+#include "analysis/calibration/cycle/cycle_shared.h"
 #include "base/reason.h"
 #include "base/setting.h"
 #include "base/status.h"
@@ -43,7 +44,7 @@ int wb_candidate_numbers(enum wb_candidate candidate);
 enum {
     WB_FIT_PARTS = 7,     /* parallel parts, the last elastic */
     WB_FIT_MOST_LAW = 8,  /* free numbers of a law */
-    WB_FIT_MOST_FREE = 11 /* and of the specimen */
+    WB_FIT_MOST_FREE = 12 /* and of the specimen */
 };
 
 struct wb_cycle_fit_settings {
@@ -53,6 +54,7 @@ struct wb_cycle_fit_settings {
     double offset_prior;  /* m: standard deviation of a marker's constant offset, */
     double level_prior;   /* m: of the level of zero deflection, */
     double uneven_prior;  /* rad: of how unevenly it is bent by nature; without places it is not */
+    double zero_prior;    /* N: of the zero of force; 0: it is right */
     double modulus_prior; /* 1: of the second difference of ln(modulus) of parts that yield */
     int n_elements;       /* while searching */
     int n_final_elements; /* of the last run */
@@ -78,6 +80,7 @@ struct wb_cycle_fit {
     struct wb_law law;
     double bow_angle, bow_angle_error; /* rad */
     double level;                      /* m */
+    double zero;                       /* N: what the cell shows too much; 0 where it is right */
     double uneven_angle;               /* rad; 0 without places */
     bool is_converged;                 /* else the iterations ran out */
     bool is_at_bound;                  /* an exponent or a share at the end of its range */
@@ -91,6 +94,10 @@ struct wb_cycle_fit {
     int n_moved;
     double moved_by[WB_FIT_MOST_FREE];
     struct wb_law moved[WB_FIT_MOST_FREE];
+    /* The law that the fit would come to if what all specimens share were larger by
+     * wb_cycle_shared_change(), to first order. */
+    bool has_altered[WB_SHARED];
+    struct wb_law altered[WB_SHARED];
     /* How the law's numbers hang together in this fit: of ln E, ln sigma_Y, ln K and n, of the
      * parts' moduli, or of the logarithms of Chaboche's; then of the isotropic share where that is
      * free. NaN unknown. */

@@ -2,17 +2,18 @@
 
 #include <math.h>
 
+#include "analysis/calibration/cycle/cycle_budget.h"
 #include "base/units.h"
 #include "fe/material/law_json.h"
 
 /* N mm2 in one N m2; N mm in one N m; mJ/m in one J/m. */
 static const double N_MM2 = 1e-6, N_MM = 1e-3, MILLI = 1e-3;
 
-/* Where the data refute the rule, only the range over the candidates is given. */
+/* Where no law follows the wire, only the range over the candidates is given. */
 static void put_estimate(struct wb_json *object, const struct wb_cycle_calibration *c,
                          const char *name, const struct wb_estimate *e, double unit)
 {
-    const bool only_range = c->has_unloading && !c->is_supported;
+    const bool only_range = c->has_unloading && !c->is_followed;
     const double unknown = (double)NAN;
     wb_json_set_number(object, name, only_range ? unknown : e->value / unit);
     wb_json_set_number(object, "low", only_range ? unknown : e->low / unit);
@@ -43,11 +44,12 @@ static void put_law(struct wb_json *object, const struct wb_law *law)
 static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *c)
 {
     wb_json_set_text(object, "chosen", wb_candidate_name(c->chosen));
-    wb_json_set_boolean(object, "supported", c->is_supported);
-    wb_json_set_number(object, "largest_supported_misfit", c->largest_supported);
+    wb_json_set_boolean(object, "supported", c->is_followed);
+    wb_json_set_number(object, "largest_supported_misfit", WB_CYCLE_LARGEST_FOLLOWED);
     wb_json_set_boolean(object, "unloading_measured", c->has_unloading);
     wb_json_set_boolean(object, "stopped", c->is_stopped);
     wb_json_set_number(object, "repeat_noise", c->repeat_noise);
+    wb_json_set_number(object, "independent_residuals", c->n_independent);
     struct wb_json *const ranked = wb_json_set_array(object, "ranked");
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &c->ranked[i];
@@ -55,14 +57,14 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
         wb_json_set_text(item, "law", wb_candidate_name(rank->candidate));
         wb_json_set_integer(item, "numbers", rank->n_free);
         wb_json_set_number(item, "misfit", rank->misfit);
-        wb_json_set_number(item, "f_ratio", rank->f_ratio);
-        wb_json_set_number(item, "f_limit", rank->f_limit);
-        wb_json_set_boolean(item, "rejected", rank->is_rejected);
+        wb_json_set_number(item, "weight", rank->weight);
         wb_json_set_boolean(item, "counts", rank->counts);
         wb_json_set_number(item, "flexural_rigidity_N_mm2", rank->rigidity.value / N_MM2);
         wb_json_set_number(item, "springback_ratio",
                            c->has_unloading ? rank->springback.value : (double)NAN);
-        put_law(wb_json_set_object(item, "parameters"), &rank->law);
+        /* Numbers of a law that does not follow hang on where its search ended. */
+        if (rank->counts)
+            put_law(wb_json_set_object(item, "parameters"), &rank->law);
     }
 }
 
@@ -157,4 +159,5 @@ void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration
     wb_json_set_number(identifiable, "travel_share", c->travel_share);
     wb_json_set_integer(object, "specimens_for_5_percent", c->specimens_for_5_percent);
     put_specimens(wb_json_set_array(object, "specimens"), c);
+    wb_cycle_budget_put(wb_json_set_array(object, "budget"), c);
 }

@@ -1,46 +1,40 @@
 /* What all specimens of a wire share leaves no trace in the data of a bending test: a cell that
- * shows 1 % too much makes every specimen 1 % stiffer. What such an error does to the results is
- * told apart, in percent per percent.
+ * shows 1 % too much makes every specimen 1 % stiffer.
  *
- * It is found by fitting the chosen law to one specimen again, with the reading or the length
- * changed by a small part; with parallel parts, whose first moduli are loosely known, to some
- * tenths. The diameter is exact: stress and strain are derived from moment and
- * curvature, so EI and M(kappa) stay, and E goes with the inverse fourth power of the diameter.
+ * A specimen's data as they would be with another size of it. The fit asks with them how its law
+ * changes (cycle_fit.h). The diameter is exact: stress and strain are derived from moment and
+ * curvature, so moments stay, and E goes with the inverse fourth power of the diameter; only the
+ * weight goes with its square.
  */
-#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_SENSITIVITY_H
-#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_SENSITIVITY_H
+#ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_SHARED_H
+#define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_SHARED_H
 
-#include "analysis/calibration/cycle/cycle_calibrate.h"
-#include "base/json.h"
-#include "base/status.h"
+#include "analysis/calibration/cycle/cycle_data.h"
 
 enum wb_cycle_shared {
-    WB_SHARED_GAIN, /* of the load cell */
-    WB_SHARED_LENGTH,
-    WB_SHARED_COUNTERWEIGHT,
-    WB_SHARED_DIAMETER,
+    WB_SHARED_GAIN,          /* of the load cell */
+    WB_SHARED_LENGTH,        /* from the clamp to the strand */
+    WB_SHARED_COUNTERWEIGHT, /* mass */
+    WB_SHARED_DENSITY,
+    WB_SHARED_MARKERS,  /* their distance from the axis, and with it all deflections */
+    WB_SHARED_DIAMETER, /* has no data of its own */
     WB_SHARED
 };
 
 /* "gain of the load cell", ... */
 const char *wb_cycle_shared_name(enum wb_cycle_shared shared);
+/* "cell_gain", ... */
+const char *wb_cycle_shared_key(enum wb_cycle_shared shared);
 
-/* Percent per percent of what is shared; NaN: unknown. */
-struct wb_cycle_sensitivity {
-    double rigidity, modulus; /* EI, E */
-    double moment;            /* M at the largest curvature */
-    double springback;        /* NaN without a way back */
-};
+/* A change of it over which a fit is linear: a part of it, of the markers m. */
+double wb_cycle_shared_change(enum wb_cycle_shared shared);
 
-/* Of the first specimen of a calibration that ended well; of one that was stopped nothing is
- * looked for. A fit that fails or does not converge leaves NaN. */
-WB_MUST_CHECK enum wb_status
-wb_cycle_sensitivity_find(const struct wb_cycle_calibration *calibration,
-                          const struct wb_cycle_calibrate_settings *settings,
-                          struct wb_cycle_sensitivity sensitivities[WB_SHARED]);
+/* Its standard uncertainty as the test's files state it, in the same unit; 0: not stated. */
+double wb_cycle_shared_uncertainty(const struct wb_test_info *info, enum wb_cycle_shared shared);
 
-/* Appends an object for each to an array. */
-void wb_cycle_sensitivity_put(struct wb_json *array,
-                              const struct wb_cycle_sensitivity sensitivities[WB_SHARED]);
+/* Data with it larger by a change in that unit, of the gain the readings; release with
+ * wb_cycle_data_release(). False, and nothing to release, where the test has no such thing. */
+bool wb_cycle_shared_alter(struct wb_cycle_data *altered, const struct wb_cycle_data *data,
+                           enum wb_cycle_shared shared, double change);
 
 #endif

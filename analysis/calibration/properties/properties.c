@@ -66,13 +66,13 @@ void wb_properties_from_wire(const struct wb_wire *wire, struct wb_properties *p
     properties->law = wire->law;
 }
 
-/* Where the data refute the rule, only the range over the candidates is known. */
+/* Where no law follows the wire, only the range over the candidates is known. */
 static struct wb_estimate known(const struct wb_cycle_calibration *calibration,
                                 const struct wb_estimate *estimate)
 {
     struct wb_estimate known = *estimate;
     known.deviation = (double)NAN;
-    if (calibration->has_unloading && !calibration->is_supported)
+    if (calibration->has_unloading && !calibration->is_followed)
         known.value = known.low = known.high = (double)NAN;
     return known;
 }
@@ -160,7 +160,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
         properties->loop_energy = known(calibration, &calibration->loop_energy);
     }
     properties->is_rule_tested = is_rule_tested(calibration);
-    properties->is_rule_supported = calibration->is_supported;
+    properties->is_rule_supported = calibration->is_followed;
     properties->n_moments = WB_CYCLE_MOMENTS;
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
         properties->curvature[k] = calibration->curvature[k];
@@ -198,7 +198,8 @@ void wb_properties_from_three_point(const struct wb_three_point_calibration *c,
     if (c->is_rigidity_identifiable)
         properties->rigidity = c->rigidity;
     properties->is_rule_tested = has_tested_rule(c);
-    properties->is_rule_supported = has_tested_rule(c) && c->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
+    properties->is_rule_supported =
+        has_tested_rule(c) && c->misfit <= WB_THREE_POINT_LARGEST_SUPPORTED;
     properties->n_moments = WB_THREE_POINT_MOMENTS;
     for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         properties->curvature[k] = c->curvature[k];

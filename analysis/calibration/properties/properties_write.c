@@ -233,19 +233,19 @@ static void put_rule(struct wb_text *text, const struct wb_cycle_calibration *ca
                      const struct wb_properties *p)
 {
     wb_text_append(text,
-                   "# the rule is supported where a candidate follows loading and unloading within "
-                   "%.2g %% of F_max\n"
+                   "# supported: the law follows loading and unloading within %g %% of F_max\n"
                    "hardening_rule:\n",
-                   100.0 * calibration->largest_supported);
+                   100.0 * WB_CYCLE_LARGEST_FOLLOWED);
     wb_text_append(text, "  chosen: \"%s\"\n", wb_candidate_name(calibration->chosen));
     wb_text_append(text, "  tested: %s\n", p->is_rule_tested ? "true" : "false");
-    wb_text_append(text, "  supported: %s\n", calibration->is_supported ? "true" : "false");
-    wb_text_append(text, "  # misfits of the candidates, over F_max\n"
+    wb_text_append(text, "  supported: %s\n", calibration->is_followed ? "true" : "false");
+    wb_text_append(text, "  # misfits of the candidates, over F_max, and their weights\n"
                          "  ranked:\n");
     for (int i = 0; i < calibration->n_ranked; i++) {
         wb_text_append(text, "    - law: \"%s\"\n",
                        wb_candidate_name(calibration->ranked[i].candidate));
         put_number(text, "      ", "misfit", calibration->ranked[i].misfit);
+        put_number(text, "      ", "weight", calibration->ranked[i].weight);
     }
 }
 
@@ -310,6 +310,26 @@ static void put_law(struct wb_text *text, const struct wb_cycle_calibration *cal
     wb_law_file_append(text, &p->law);
 }
 
+/* What the intervals know of what all specimens share. */
+static void put_what_is_in(struct wb_text *text, const struct wb_cycle_calibration *calibration)
+{
+    const double *const u = calibration->budget[WB_CYCLE_FIRST_MOMENT].uncertainty;
+    for (int known = 0; known < 2; known++) {
+        const char *between = known ? "# The intervals hold what the files state of "
+                                    : "# Not stated, and in no interval: ";
+        for (int i = 0; i < WB_SHARED; i++) {
+            if (isfinite(u[WB_FROM_SHARED + i]) != known)
+                continue;
+            wb_text_append(text, "%s%s", between, wb_cycle_shared_name((enum wb_cycle_shared)i));
+            between = ", ";
+        }
+        if (between[0] == ',')
+            wb_text_append(text, "\n");
+    }
+    if (calibration->n_members == 1)
+        wb_text_append(text, "# One specimen: how specimens scatter is not known, and in none.\n");
+}
+
 static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration *calibration,
                          const struct wb_properties *p,
                          const struct wb_cycle_calibrate_settings *settings)
@@ -322,8 +342,8 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
     wb_text_append(text, "method: cycle\n"
                          "# Means over the specimens with an interval of 95 %%, and their range "
                          "over the laws that the data\n"
-                         "# do not exclude. Gain of the cell, length, counterweight and diameter "
-                         "are in neither.\n");
+                         "# do not exclude.\n");
+    put_what_is_in(text, calibration);
     wb_text_append(text, "# Change of the moment over that of the curvature, from the largest one "
                          "back, and from straight up.\n"
                          "# Below the curvature that the data resolve the law speaks alone.\n");

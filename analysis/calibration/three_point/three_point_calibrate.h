@@ -17,6 +17,9 @@
 #include "analysis/calibration/three_point/three_point_data.h"
 #include "analysis/calibration/three_point/three_point_fit.h"
 
+/* Largest misfit, over F_max, of a law that both ways support. */
+#define WB_THREE_POINT_LARGEST_SUPPORTED 5e-3
+
 enum {
     WB_THREE_POINT_MOMENTS = 5
 };

@@ -145,8 +145,6 @@ enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle *cycle,
     if (status == WB_OK)
         status = predict_later(cycle, datasets);
     if (status == WB_OK)
-        status = wb_cycle_sensitivity_find(&cycle->calibration, &settings, cycle->sensitivities);
-    if (status == WB_OK)
         status = take_clouds(cycle, datasets);
     if (status != WB_OK) {
         wb_recordings_cycle_release(cycle);
@@ -169,7 +167,7 @@ void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle)
 
 bool wb_recordings_cycle_is_refuted(const struct wb_recordings_cycle *cycle)
 {
-    return cycle->calibration.has_unloading && !cycle->calibration.is_supported;
+    return cycle->calibration.has_unloading && !cycle->calibration.is_followed;
 }
 
 static void put_later(struct wb_json *object, const struct wb_cycle_later *later)
@@ -206,8 +204,6 @@ void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_
     if (cycle->later.n > 0)
         put_later(wb_json_set_object(object, "later_cycles"), &cycle->later);
     wb_cycle_check_put(wb_json_set_array(object, "remarks"), &cycle->remarks);
-    wb_cycle_sensitivity_put(wb_json_set_array(object, "shared_sensitivities"),
-                             cycle->sensitivities);
     if (cycle->has_valley)
         put_valley(wb_json_set_object(object, "ludwik_on_loading_alone"), &cycle->valley);
 }

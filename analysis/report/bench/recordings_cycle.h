@@ -12,7 +12,6 @@
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "analysis/calibration/cycle/cycle_check.h"
 #include "analysis/calibration/cycle/cycle_later.h"
-#include "analysis/calibration/cycle/cycle_sensitivity.h"
 #include "analysis/calibration/cycle/cycle_valley.h"
 #include "analysis/calibration/cycle/moment_curvature.h"
 #include "analysis/dataset/dataset.h"
@@ -37,7 +36,6 @@ struct wb_recordings_cycle {
     struct wb_recordings_cycle_curve curve;
     /* Of the specimen with the most cycles; n 0 where none has a second one. */
     struct wb_cycle_later later;
-    struct wb_cycle_sensitivity sensitivities[WB_SHARED];
     bool has_valley;
     struct wb_cycle_valley valley; /* of the first specimen */
     /* Of the members: moment over curvature as measured; empty where there are no shapes. */
@@ -53,7 +51,7 @@ WB_MUST_CHECK enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle 
                                                      int n, struct wb_reason *why);
 void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle);
 
-/* Whether no law follows loading and unloading, so that the hardening rule is not supported. */
+/* Whether no law follows loading and unloading. */
 bool wb_recordings_cycle_is_refuted(const struct wb_recordings_cycle *cycle);
 
 /* All numbers into an object of report.json. */

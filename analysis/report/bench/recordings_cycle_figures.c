@@ -576,7 +576,7 @@ static void add_rest(struct wb_panel *panel, const char *label,
     const double rest = c->springback.value * c->largest_curvature, zero = 0.0;
     const struct wb_figure_style at_rest = {
         .colour = colour, .marker = WB_MARKER_TRIANGLE, .marker_size = 6.0};
-    if (c->has_unloading && c->is_supported)
+    if (c->has_unloading && c->is_followed)
         wb_figure_add_line(panel, label, 1, &rest, &zero, &at_rest);
 }
 

@@ -2,8 +2,10 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 
+#include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/report/pages.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -46,8 +48,8 @@ static void put_verdict(struct wb_document_table *table, const struct wb_cycle_c
 {
     if (!c->has_unloading)
         wb_pages_cell(table, WB_TONE_WARNING, "rule untested: no unloading");
-    else if (!c->is_supported)
-        wb_pages_cell(table, WB_TONE_WARNING, "not supported by the data");
+    else if (!c->is_followed)
+        wb_pages_cell(table, WB_TONE_WARNING, "no law follows the data");
     else
         wb_pages_cell(table, WB_TONE_GOOD, "%s", wb_candidate_name(c->chosen));
 }
@@ -66,7 +68,7 @@ static void put_wire(struct wb_document_table *table, const struct wb_recordings
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const double none = (double)NAN;
     /* Where no law follows the data, the range over laws is all that is known. */
-    const bool is_known = c->is_supported || !c->has_unloading;
+    const bool is_known = c->is_followed || !c->has_unloading;
     put_number(table, is_known ? stiffness->value / N_MM2 : none);
     put_range(table, is_known ? stiffness->low / N_MM2 : none, stiffness->high / N_MM2);
     put_range(table, stiffness->candidates_low / N_MM2, stiffness->candidates_high / N_MM2);
@@ -85,7 +87,7 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
         {.heading = "over laws", .right = true},
         {.heading = "Spring- back", .right = true, .wraps = true},
         {.heading = "over laws", .right = true},
-        {"Supported law and rule"},
+        {"Law and hardening rule"},
         {.heading = "Misfit (%)", .right = true, .wraps = true},
     };
     struct wb_text caption = {0};
@@ -94,12 +96,10 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
         "From the first loading and unloading of each sample. Stiffness: change of the moment over "
         "that of the curvature, of the first 1 /m on the way back from the largest curvature; "
         "where there is no way back, from straight to 1 /m. Springback: curvature that stays over "
-        "the curvature it was bent to. 95 %%: interval of the mean of the samples (Student's "
-        "<i>t</i>), "
-        "what all samples share is not in it. Over laws: range over all laws whose "
+        "the curvature it was bent to. 95 %%: combined of "
+        "all that the budgets below state. Over laws: range over all laws whose "
         "misfit is at most twice the best. Misfit: RMS over both ways of the best law, "
-        "over <i>F</i><sub>max</sub>; above 0.5 %%, or twice the noise "
-        "of the readings where that is more, no law follows the data.");
+        "over <i>F</i><sub>max</sub>; above 3 %% only ranges are given.");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
     for (int i = 0; i < results->n_wires; i++)
         put_wire(table, &results->wires[i]);
@@ -392,9 +392,9 @@ static void put_failures(struct wb_document *document, const struct wb_recording
                           wb_text_string(&wire->cycle_problems[WB_RECORDINGS_CALIBRATION]));
         else if (wb_recordings_cycle_is_refuted(cycle))
             wb_pages_item(document, WB_TONE_WARNING, "<b>", wire->wanted->label,
-                          ": hardening rule not supported by the data</b>: ",
-                          "no law follows loading and unloading; only ranges over the laws are "
-                          "given. The residual deflections on the wire's page are measured.");
+                          ": no law follows the data</b>: ",
+                          "only ranges over the laws are given. The residual deflections on the "
+                          "wire's page are measured.");
     }
 }
 
@@ -440,10 +440,10 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
     if (!c->has_unloading) {
         wb_text_append(&text, "<b>Rule untested.</b> There is no unloading, so Ludwik's law is "
                               "fitted to the loading alone, and nothing is said of springback. ");
-    } else if (!c->is_supported) {
+    } else if (!c->is_followed) {
         wb_text_append(
             &text,
-            "<b>Hardening rule not supported by the data.</b> The best law misses both "
+            "<b>No law follows the data.</b> The best misses both "
             "ways by %.2f %% of <i>F</i><sub>max</sub>. The stiffness lies between %.*f and "
             "%.*f N mm\xc2\xb2, springback between %.3f and %.3f, over the laws that "
             "fit about as well. ",
@@ -456,13 +456,13 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
         const char *const name = wb_candidate_name(c->chosen);
         wb_text_append(&text, "<b>%c%s.</b> ", toupper((unsigned char)name[0]), name + 1);
     }
-    if (c->is_supported || !c->has_unloading) {
+    if (c->is_followed || !c->has_unloading) {
         append_estimate(&text, "Moment at the largest curvature", &c->moment[WB_CYCLE_MOMENTS - 1],
                         WB_NMM, " N mm");
         append_estimate(&text, "; stiffness", wb_recordings_cycle_stiffness(c), N_MM2,
                         " N mm\xc2\xb2");
     }
-    if (c->is_supported) {
+    if (c->is_followed) {
         append_estimate(&text, "; springback", &c->springback, 1.0, "");
         append_estimate(&text, "; loop energy", &c->loop_energy, MILLI, " mJ/m");
         wb_text_append(&text, ", bent to %.1f /m and back.", c->largest_curvature);
@@ -481,19 +481,20 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
         {"Law"},
         {.heading = "Misfit (%)", .right = true},
         {.heading = "Numbers", .right = true},
-        {.heading = "<i>F</i> of the readings", .right = true, .wraps = true},
+        {.heading = "Weight", .right = true},
         {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true},
         {.heading = "Springback", .right = true},
         {""},
     };
     struct wb_text caption = {0};
-    wb_text_append(&caption,
-                   "Laws by misfit: RMS over both ways over <i>F</i><sub>max</sub>. <i>F</i>: "
-                   "misfit over the repeat noise of the readings (%.3f %%), squared; above its "
-                   "limit of about %.2f the law is rejected. Chosen is the simplest that is not "
-                   "rejected or, where all are, the simplest that does as well as the best. In "
-                   "range: misfit at most twice the best.",
-                   100.0 * c->repeat_noise, c->ranked[0].f_limit);
+    wb_text_append(
+        &caption,
+        "Laws by misfit: RMS over both ways over <i>F</i><sub>max</sub>; repeat noise of "
+        "the readings %.3f %%. Weight: by the misfit and the free numbers of a law "
+        "(Schwarz's criterion); of a specimen's residuals %.0f count, as neighbours miss "
+        "alike. The law of the largest weight is chosen. In range: misfit at most twice "
+        "the best.",
+        100.0 * c->repeat_noise, c->n_independent);
     wb_document_heading(document, 2, "", "Laws and hardening rules");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 7, columns);
     for (int i = 0; i < c->n_ranked; i++) {
@@ -504,7 +505,7 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
         wb_pages_cell(table, WB_TONE_PLAIN, is_chosen ? "<b>%s</b>" : "%s", name);
         wb_pages_cell_number(table, 100.0 * rank->misfit, 3);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", rank->n_free);
-        wb_pages_cell_number(table, rank->f_ratio, rank->f_ratio < 100.0 ? 1 : 0);
+        wb_pages_cell_number(table, rank->weight, 3);
         put_number(table, rank->rigidity.value / N_MM2);
         put_number(table, c->has_unloading ? rank->springback.value : (double)NAN);
         wb_pages_cell(table, rank->counts ? WB_TONE_PLAIN : WB_TONE_QUIET,
@@ -519,11 +520,14 @@ static void put_ranked_numbers(struct wb_document *document, const struct wb_cyc
     static const struct wb_document_column columns[] = {{"Law"},
                                                         {.heading = "Numbers", .wraps = true}};
     struct wb_text caption = {0};
-    wb_text_append(&caption,
-                   "The laws' numbers: means over the samples, of Ludwik's of logarithms.");
+    wb_text_append(
+        &caption,
+        "Numbers of the laws in range: means over the samples, of Ludwik's of logarithms.");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 2, columns);
     for (int i = 0; i < c->n_ranked; i++) {
         struct wb_text numbers = {0};
+        if (!c->ranked[i].counts)
+            continue;
         wb_law_append_numbers(&numbers, &c->ranked[i].law);
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_candidate_name(c->ranked[i].candidate));
@@ -578,30 +582,57 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
     }
 }
 
-static void put_sensitivities(struct wb_document *document, const struct wb_recordings_cycle *cycle)
+static void put_budget_tail(struct wb_document_table *table, const char *name,
+                            const struct wb_cycle_calibration *c,
+                            const struct wb_budget_column *columns, int n, size_t offset,
+                            double unit, int decimals)
 {
-    static const struct wb_document_column columns[] = {
-        {"1 % more"},
-        {.heading = "<i>EI</i> (%)", .right = true},
-        {.heading = "<i>E</i> (%)", .right = true},
-        {.heading = "<i>M</i>(<i>\xce\xba</i><sub>max</sub>) (%)", .right = true},
-        {.heading = "Springback (%)", .right = true},
-    };
-    wb_document_heading(document, 2, "", "What all samples share");
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, name);
+    for (int k = 0; k < n; k++) {
+        const char *const budget = (const char *)&c->budget[columns[k].number];
+        wb_pages_cell_number(table, *(const double *)(const void *)(budget + offset) / unit,
+                             decimals);
+    }
+}
+
+static void put_budget(struct wb_document *document, const struct wb_cycle_calibration *c)
+{
+    struct wb_document_column columns[1 + WB_BUDGET_COLUMNS] = {{"Contribution"}};
+    struct wb_budget_column numbers[WB_BUDGET_COLUMNS];
+    char name[WB_BUDGET_TEXT];
+    const int n = wb_cycle_budget_columns(c, numbers);
+    for (int k = 0; k < n; k++)
+        columns[1 + k] =
+            (struct wb_document_column){.heading = numbers[k].name, .right = true, .wraps = true};
+    wb_document_heading(document, 2, "", "Uncertainty budget");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "An error that all samples share leaves no trace in the data and is in no interval. What "
-        "1 % more of it in the settings changes, by fits of the first sample.",
-        5, columns);
-    for (int i = 0; i < WB_SHARED; i++) {
-        const struct wb_cycle_sensitivity *const s = &cycle->sensitivities[i];
+        "Standard uncertainties (%) of moments, stiffnesses and springback, what they are made of, "
+        "and the factor that makes an interval of 95 % of the combined one. In brackets: what no "
+        "file states, and what is therefore in no interval; the change by 1 % of it, of the "
+        "marker offset by 0.1 mm. It goes into the rig, specimen and wire files (u_...).",
+        1 + n, columns);
+    for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
+        wb_cycle_budget_row(c, i, name);
         wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, wb_cycle_shared_name(i));
-        wb_pages_cell_number(table, s->rigidity, 1);
-        wb_pages_cell_number(table, s->modulus, 1);
-        wb_pages_cell_number(table, s->moment, 1);
-        wb_pages_cell_number(table, s->springback, 1);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, name);
+        for (int k = 0; k < n; k++) {
+            bool is_stated;
+            const double u = wb_cycle_budget_cell(&c->budget[numbers[k].number], i, &is_stated);
+            if (!isfinite(u))
+                wb_pages_cell(table, WB_TONE_QUIET, "unknown");
+            else
+                wb_pages_cell(table, is_stated ? WB_TONE_PLAIN : WB_TONE_QUIET,
+                              is_stated ? "%.2f" : "(%.2f)", 100.0 * u);
+        }
     }
+    put_budget_tail(table, "Combined", c, numbers, n, offsetof(struct wb_budget, combined), 0.01,
+                    2);
+    put_budget_tail(table, "Degrees of freedom", c, numbers, n,
+                    offsetof(struct wb_budget, effective_degrees), 1.0, 1);
+    put_budget_tail(table, "Factor for 95 %", c, numbers, n, offsetof(struct wb_budget, factor),
+                    1.0, 2);
 }
 
 /* A number of a Ludwik law that is only shown where the data know it. */
@@ -778,5 +809,5 @@ void wb_recordings_cycle_pages_wire(struct wb_document *document,
     put_apart(document, cycle);
     put_law(document, cycle);
     wb_figures_put(figures, document, "valley", index);
-    put_sensitivities(document, cycle);
+    put_budget(document, &cycle->calibration);
 }

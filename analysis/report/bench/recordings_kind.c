@@ -47,13 +47,13 @@ static void print_cycle(FILE *out, const struct wb_recordings_cycle *cycle)
         return;
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
-    if (c->has_unloading && !c->is_supported)
-        fprintf(out, "  stiffness %.0f to %.0f N mm2, hardening rule not supported",
+    if (c->has_unloading && !c->is_followed)
+        fprintf(out, "  stiffness %.0f to %.0f N mm2, no law follows the data",
                 stiffness->candidates_low / N_MM2, stiffness->candidates_high / N_MM2);
     else
         fprintf(out, "  stiffness %.0f N mm2%s", stiffness->value / N_MM2,
                 c->has_unloading ? "" : " by loading alone");
-    if (c->has_unloading && c->is_supported)
+    if (c->has_unloading && c->is_followed)
         fprintf(out, ", springback %.3f", c->springback.value);
 }
 

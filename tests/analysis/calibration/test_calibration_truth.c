@@ -40,7 +40,7 @@ enum {
 struct verdict {
     bool good;
     enum wb_candidate chosen;
-    bool is_supported;
+    bool is_followed;
     double best_misfit, misfit; /* of the best candidate, of the chosen one */
     double containing;          /* see tests/analysis/calibration/containing.h */
     double value[NUMBERS], truth[NUMBERS];
@@ -91,7 +91,7 @@ static void judge(struct verdict *verdict, const struct fast_rig *fast,
                    &residual);
     verdict->truth[1] = residual / c.largest_curvature;
     verdict->chosen = c.chosen;
-    verdict->is_supported = c.is_supported;
+    verdict->is_followed = c.is_followed;
     verdict->best_misfit = c.ranked[0].misfit;
     verdict->containing = worst_of_containing(&c);
     for (int i = 0; i < c.n_ranked; i++) {
@@ -232,7 +232,7 @@ static void print_laws(const struct job *jobs, int n)
     double cpu = 0.0;
     for (int i = 0; i < n; i++) {
         counts[jobs[i].verdict.chosen]++;
-        unsupported += !jobs[i].verdict.is_supported;
+        unsupported += !jobs[i].verdict.is_followed;
         cpu += jobs[i].verdict.cpu_s;
     }
     printf("    chosen:");
@@ -248,7 +248,7 @@ static void print_one(const struct job *job)
     const struct verdict *const v = &job->verdict;
     printf("      seed %d: %s, misfit %.3f (best %.3f) %%%s", (int)job->seed,
            wb_candidate_name(v->chosen), 100.0 * v->misfit, 100.0 * v->best_misfit,
-           v->is_supported ? "" : ", not supported");
+           v->is_followed ? "" : ", not supported");
     for (int k = 0; k < NUMBERS; k++)
         printf("  %s %+.1f [%+.1f %+.1f]", name_of(k), 100.0 * error_of(v, k),
                100.0 * (v->range_low[k] / v->truth[k] - 1.0),
@@ -300,7 +300,7 @@ static bool misleads(const struct verdict *v, int number, double most)
         fmin(v->range_low[number], isfinite(v->low[number]) ? v->low[number] : v->value[number]);
     const double high =
         fmax(v->range_high[number], isfinite(v->high[number]) ? v->high[number] : v->value[number]);
-    return v->is_supported && fabs(error_of(v, number)) > most &&
+    return v->is_followed && fabs(error_of(v, number)) > most &&
            !(low <= v->truth[number] && v->truth[number] <= high);
 }
 

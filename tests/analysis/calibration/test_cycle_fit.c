@@ -5,6 +5,7 @@
 
 #include "analysis/calibration/cycle/cycle_fit.h"
 #include "analysis/calibration/cycle/cycle_model.h"
+#include "analysis/calibration/law/bending.h"
 #include "base/units.h"
 #include "tests/check.h"
 
@@ -360,6 +361,56 @@ static void correlations_and_errors_are_those_of_repeated_tests(void **unused)
     assert_true(modulus_error <= 2.0 * scatter);
 }
 
+/* What all specimens share: the step to first order, and a search with the altered data. */
+static void the_law_moves_with_what_is_shared_as_a_search_does(void **unused)
+{
+    (void)unused;
+    enum {
+        CURVATURES = 3
+    };
+    static const double curvature[CURVATURES] = {2.0, 8.0, 25.0};
+    const double larger = 3.0; /* changes that the ends of searches tell */
+    struct wb_cycle_fit_settings settings;
+    const struct wb_law law = ludwik(0.0, 0.75);
+    const struct wb_law parts = parallel(0.0);
+    default_settings(&settings);
+    for (int k = 0; k < 2; k++) {
+        const enum wb_candidate candidate =
+            k == 0 ? WB_CANDIDATE_LUDWIK_KINEMATIC : WB_CANDIDATE_PARALLEL_KINEMATIC;
+        settings.modulus_prior = 50.0; /* the moduli given here are not smooth */
+        double M[CURVATURES], predicted[CURVATURES], found[CURVATURES];
+        struct wb_cycle_fit base, again;
+        struct specimen s, altered;
+        compute(&s, k == 0 ? &law : &parts, 0.03);
+        fit(&base, &s, candidate, 1.2, &settings);
+        assert_false(base.has_altered[WB_SHARED_DIAMETER]);
+        for (int i = 0; i < WB_SHARED_DIAMETER; i++) {
+            altered = s;
+            assert_true(base.has_altered[i]);
+            const double change = larger * wb_cycle_shared_change(i);
+            assert_true(wb_cycle_shared_alter(&altered.data, &s.data, i, change));
+            fit(&again, &altered, candidate, 1.2, &settings);
+            const double d = s.data.info.outer_diameter;
+            assert_int_equal(wb_bending_moments(&base.law, d, CURVATURES, curvature, M), WB_OK);
+            assert_int_equal(
+                wb_bending_moments(&base.altered[i], d, CURVATURES, curvature, predicted), WB_OK);
+            assert_int_equal(wb_bending_moments(&again.law, d, CURVATURES, curvature, found),
+                             WB_OK);
+            for (int j = 0; j < CURVATURES; j++) {
+                const double step = larger * (predicted[j] / M[j] - 1.0),
+                             search = found[j] / M[j] - 1.0;
+                print_message("    %s, %g /m: %+.3f %%, by a search %+.3f %%\n",
+                              wb_cycle_shared_name(i), curvature[j], 100.0 * step, 100.0 * search);
+                /* Moduli that are nearly nothing are no linear numbers. */
+                assert_close(step, search, 3e-4 + (k == 0 ? 0.02 : 0.15) * fabs(search));
+            }
+            wb_cycle_fit_release(&again);
+            wb_cycle_data_release(&altered.data);
+        }
+        wb_cycle_fit_release(&base);
+    }
+}
+
 int main(void)
 {
     gsl_set_error_handler_off();
@@ -371,6 +422,7 @@ int main(void)
         cmocka_unit_test(the_level_of_zero_deflection_is_found),
         cmocka_unit_test(the_wrong_rule_shows_in_the_misfit),
         cmocka_unit_test(correlations_and_errors_are_those_of_repeated_tests),
+        cmocka_unit_test(the_law_moves_with_what_is_shared_as_a_search_does),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

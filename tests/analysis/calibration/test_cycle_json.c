@@ -41,7 +41,7 @@ static void make(struct made *made)
                 .repeat_noise = 4e-4,
                 .n_ranked = 2,
                 .chosen = WB_CANDIDATE_PARALLEL_MIXED,
-                .is_supported = true,
+                .is_followed = true,
                 .largest_curvature = 29.0,
                 .rigidity = around(3e-4),
                 .springback = around(0.27),
@@ -229,7 +229,7 @@ static void a_refuted_rule_leaves_only_ranges(void **state)
     struct made made;
     struct wb_properties read;
     make(&made);
-    made.calibration.is_supported = false;
+    made.calibration.is_followed = false;
     read_back(&made, &read);
     assert_false(read.is_rule_supported);
     assert_true(read.is_rule_tested);
@@ -260,7 +260,7 @@ static void what_was_stopped_says_so_and_leaves_the_rule_untested(void **state)
     char *text;
     make(&made);
     made.calibration.is_stopped = true;
-    made.calibration.is_supported = false;
+    made.calibration.is_followed = false;
     read_back(&made, &read);
     assert_false(read.is_rule_tested || read.is_rule_supported);
     assert_true(isnan(read.rigidity.value));
@@ -280,7 +280,7 @@ static void without_a_way_back_there_is_no_springback(void **state)
     struct made made;
     struct wb_properties read;
     make(&made);
-    made.calibration.has_unloading = made.calibration.is_supported = false;
+    made.calibration.has_unloading = made.calibration.is_followed = false;
     read_back(&made, &read);
     assert_false(read.is_rule_tested);
     assert_close_relative(read.rigidity.value, 3e-4, 1e-12);
@@ -444,7 +444,7 @@ static void json_gives_only_what_is_known(void **state)
     (void)state;
     struct made made;
     make(&made);
-    made.calibration.is_supported = false;
+    made.calibration.is_followed = false;
     struct wb_json *root = put(&made);
     const struct wb_json *rigidity = wb_json_get(root, "flexural_rigidity_N_mm2");
     assert_true(isnan(number_at(rigidity, "value")) && isnan(number_at(rigidity, "high")));

@@ -87,8 +87,8 @@ static void the_law_predicts_both_ways_at_the_other_length(void **state)
     assert_true(wb_file_exists(in_folder("good/figures/type2-prediction.svg")));
     assert_true(wb_file_exists(in_folder("good/figures/all-moments.svg")));
     assert_true(says("good/report.html", "Prediction at 100 mm"));
-    assert_true(says("good/report.html", "Supported law and rule"));
-    assert_false(says("good/report.html", "not supported by the data"));
+    assert_true(says("good/report.html", "Law and hardening rule"));
+    assert_false(says("good/report.html", "no law follows the data"));
     assert_false(says("good/report.html", "Broken line"));
 }
 
@@ -99,11 +99,11 @@ static void a_rule_that_the_data_do_not_support_has_ranges_only(void **state)
     struct wb_cycle_calibration *const c = &bench->results.wires[0].cycle.calibration;
     char value[64];
     /* Which wires come to this is for tests/analysis/calibration. */
-    c->is_supported = false;
+    c->is_followed = false;
     c->ranked[0].misfit = 0.02;
     assert_int_equal(wb_kind_write(&wb_recordings_kind, &bench->results, in_folder("bad"), false),
                      WB_OK);
-    assert_true(says("bad/report.html", "hardening rule not supported by the data"));
+    assert_true(says("bad/report.html", "no law follows the data"));
     assert_true(says("bad/report.html", "No law follows the data"));
     assert_true(says("bad/report.html", "Broken line"));
     assert_true(says("bad/report.html", "over laws"));

@@ -1,0 +1,315 @@
+#include "analysis/calibration/cycle/cycle_budget.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+static const double coverage = 0.95;
+/* Standard errors of a fit on either side of a candidate's number. */
+static const double range_errors = 2.0;
+/* And at most this much of a logarithm, a factor of ten: beyond it nothing is known, and the slopes
+ * that errors are made of mean nothing. */
+static const double largest_range = 2.3;
+/* Degrees of freedom of an uncertainty that is itself known to a quarter (JCGM 100:2008, G.4.2). */
+static const double known_to_a_quarter = 8.0;
+
+static const struct own {
+    const char *name, *key;
+} own[WB_FROM_SHARED] = {
+    [WB_FROM_SPECIMENS] = {"scatter between specimens", "specimens"},
+    [WB_FROM_FIT] = {"what the fits leave open", "fits"},
+    [WB_FROM_LAW] = {"form of the law", "law"},
+};
+
+/* What one that is not stated is told for. */
+static const double unit_part = 0.01, unit_distance = 0.1 * WB_MM;
+
+/* A residual curvature is a part of the largest. */
+static double largest_value(enum wb_cycle_number number)
+{
+    return number == WB_CYCLE_SPRINGBACK ? 1.0 : (double)INFINITY;
+}
+
+void wb_cycle_average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                      enum wb_cycle_number number,
+                      const struct wb_cycle_calibrate_settings *settings,
+                      struct wb_estimate *estimate)
+{
+    const double unknown = (double)NAN;
+    const int n = calibration->n_members;
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < n; i++) {
+        const double x = log(calibration->members[i].answers[candidate].value[number]);
+        sum += x;
+        squares += x * x;
+    }
+    const double mean = sum / n;
+    *estimate = (struct wb_estimate){exp(mean), unknown, unknown, unknown, unknown, unknown};
+    if (n > 1)
+        estimate->deviation = sqrt(fmax(0.0, squares - n * mean * mean) / (n - 1));
+    if (settings->pooled_deviation > 0.0 && settings->pooled_degrees > 0)
+        estimate->deviation = settings->pooled_deviation;
+}
+
+/* Root mean square over the specimens. */
+static double fit_error(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                        enum wb_cycle_number number)
+{
+    double squares = 0.0;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
+        squares += answer->error[number] * answer->error[number];
+    }
+    return fmin(sqrt(squares / calibration->n_members), largest_range);
+}
+
+/* The mean's, no smaller than the fits' own errors let specimens scatter: three have agreed within
+ * 0.03 % by chance. */
+static void add_scatter(const struct wb_cycle_calibration *calibration,
+                        const struct wb_cycle_calibrate_settings *settings, double deviation,
+                        struct wb_budget *budget)
+{
+    const int n = calibration->n_members;
+    const double error = budget->uncertainty[WB_FROM_FIT];
+    const bool is_pooled = settings->pooled_deviation > 0.0 && settings->pooled_degrees > 0;
+    budget->uncertainty[WB_FROM_SPECIMENS] = fmax(deviation, error) / sqrt(n);
+    budget->degrees[WB_FROM_SPECIMENS] = deviation < error ? known_to_a_quarter
+                                         : is_pooled       ? settings->pooled_degrees
+                                                           : n - 1;
+    if (!isfinite(deviation))
+        budget->uncertainty[WB_FROM_SPECIMENS] = (double)NAN;
+}
+
+/* How far the other laws lie from the chosen one, each by its weight. */
+static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
+                     const struct wb_cycle_calibrate_settings *settings, double value,
+                     struct wb_budget *budget)
+{
+    double squares = 0.0;
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        const struct wb_cycle_rank *const rank = &calibration->ranked[i];
+        struct wb_estimate other;
+        wb_cycle_average(calibration, rank->candidate, number, settings, &other);
+        const double off = log(other.value / value);
+        if (rank->weight > 0.0 && isfinite(off))
+            squares += rank->weight * off * off;
+    }
+    budget->uncertainty[WB_FROM_LAW] = sqrt(squares);
+    budget->degrees[WB_FROM_LAW] = known_to_a_quarter;
+}
+
+/* Root mean square over the specimens, which may come from several benches; 0 where one does not
+ * state it. */
+static double stated(const struct wb_cycle_calibration *calibration, enum wb_cycle_shared shared)
+{
+    double squares = 0.0;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const double u = wb_cycle_shared_uncertainty(&calibration->members[i].data.info, shared);
+        if (!(u > 0.0))
+            return 0.0;
+        squares += u * u / calibration->n_members;
+    }
+    return sqrt(squares);
+}
+
+static void add_shared(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
+                       struct wb_budget *budget)
+{
+    const int n = calibration->n_members;
+    for (int s = 0; s < WB_SHARED; s++) {
+        const double u = stated(calibration, s);
+        double effect = 0.0;
+        for (int i = 0; i < n; i++)
+            effect += calibration->members[i].answers[calibration->chosen].effect[s][number] / n;
+        budget->effect[s] = effect;
+        budget->uncertainty[WB_FROM_SHARED + s] = u > 0.0 ? fabs(effect) * u : (double)NAN;
+        budget->degrees[WB_FROM_SHARED + s] = (double)INFINITY;
+    }
+}
+
+/* Welch and Satterthwaite's degrees of freedom (JCGM 100:2008, G.2b); what is not known is left
+ * out. */
+static void combine(struct wb_budget *budget)
+{
+    double squares = 0.0, fourths = 0.0;
+    for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
+        const double u = budget->uncertainty[i];
+        if (!isfinite(u))
+            continue;
+        squares += u * u;
+        fourths += u * u * u * u / budget->degrees[i];
+    }
+    budget->combined = sqrt(squares);
+    budget->effective_degrees = squares * squares / fourths;
+    const double tail = 0.5 * (1.0 - coverage);
+    budget->factor = isfinite(budget->effective_degrees)
+                         ? gsl_cdf_tdist_Qinv(tail, fmax(1.0, budget->effective_degrees))
+                         : gsl_cdf_ugaussian_Qinv(tail);
+}
+
+void wb_cycle_estimate(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
+                       const struct wb_cycle_calibrate_settings *settings,
+                       struct wb_estimate *estimate, struct wb_budget *budget)
+{
+    wb_cycle_average(calibration, calibration->chosen, number, settings, estimate);
+    budget->uncertainty[WB_FROM_FIT] = fit_error(calibration, calibration->chosen, number);
+    budget->degrees[WB_FROM_FIT] = known_to_a_quarter;
+    add_scatter(calibration, settings, estimate->deviation, budget);
+    add_form(calibration, number, settings, estimate->value, budget);
+    add_shared(calibration, number, budget);
+    combine(budget);
+    const double half = fmin(budget->factor * budget->combined, largest_range);
+    estimate->low = estimate->value * exp(-half);
+    estimate->high = fmin(estimate->value * exp(half), largest_value(number));
+
+    estimate->candidates_low = estimate->candidates_high = estimate->value;
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        const enum wb_candidate candidate = calibration->ranked[i].candidate;
+        struct wb_estimate other;
+        if (!calibration->ranked[i].counts)
+            continue;
+        wb_cycle_average(calibration, candidate, number, settings, &other);
+        const double error =
+            fmin(range_errors * fit_error(calibration, candidate, number), largest_range);
+        estimate->candidates_low = fmin(estimate->candidates_low, other.value * exp(-error));
+        estimate->candidates_high = fmax(estimate->candidates_high, other.value * exp(error));
+    }
+    estimate->candidates_high = fmin(estimate->candidates_high, largest_value(number));
+}
+
+/* --- what is printed of it --- */
+
+/* Of a stiffness at 1 /m, or at the largest curvature below. */
+static int near_one(const struct wb_cycle_stiffness *stiffness)
+{
+    int k = stiffness->n - 1;
+    while (k > 0 && stiffness->curvature[k] > 1.0)
+        k--;
+    return k;
+}
+
+int wb_cycle_budget_columns(const struct wb_cycle_calibration *c,
+                            struct wb_budget_column columns[WB_BUDGET_COLUMNS])
+{
+    const int moments[] = {1, WB_CYCLE_MOMENTS - 1};
+    int n = 0;
+    for (int i = 0; i < 2; i++) {
+        columns[n].number = WB_CYCLE_FIRST_MOMENT + moments[i];
+        snprintf(columns[n++].name, WB_BUDGET_TEXT, "M at %.3g /m", c->curvature[moments[i]]);
+    }
+    if (c->unloading.n > 0) {
+        const int k = near_one(&c->unloading);
+        columns[n].number = WB_CYCLE_FIRST_UNLOADING + k;
+        snprintf(columns[n++].name, WB_BUDGET_TEXT, "unloading over %.3g /m",
+                 c->unloading.curvature[k]);
+    }
+    const int k = near_one(&c->secant);
+    columns[n].number = WB_CYCLE_FIRST_SECANT + k;
+    snprintf(columns[n++].name, WB_BUDGET_TEXT, "secant to %.3g /m", c->secant.curvature[k]);
+    if (c->has_unloading) {
+        columns[n].number = WB_CYCLE_SPRINGBACK;
+        snprintf(columns[n++].name, WB_BUDGET_TEXT, "springback");
+    }
+    return n;
+}
+
+static void take_worse(const struct wb_budget *budget, const char *name, char worst[WB_BUDGET_TEXT],
+                       double *known)
+{
+    const double U = expm1(budget->factor * budget->combined);
+    if (U <= *known)
+        return;
+    *known = U;
+    snprintf(worst, WB_BUDGET_TEXT, "%s", name);
+}
+
+bool wb_cycle_budget_is_within(const struct wb_cycle_calibration *c, double part,
+                               char name[WB_BUDGET_TEXT], double *known)
+{
+    char text[WB_BUDGET_TEXT];
+    *known = 0.0;
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
+        snprintf(text, sizeof text, "M at %.3g /m", c->curvature[k]);
+        take_worse(&c->budget[WB_CYCLE_FIRST_MOMENT + k], text, name, known);
+    }
+    if (c->has_unloading) {
+        const int k = near_one(&c->unloading);
+        snprintf(text, sizeof text, "the unloading stiffness over %.3g /m",
+                 c->unloading.curvature[k]);
+        take_worse(&c->budget[WB_CYCLE_FIRST_UNLOADING + k], text, name, known);
+        take_worse(&c->budget[WB_CYCLE_SPRINGBACK], "springback", name, known);
+    }
+    return *known <= part;
+}
+
+void wb_cycle_budget_row(const struct wb_cycle_calibration *calibration, enum wb_contribution row,
+                         char name[WB_BUDGET_TEXT])
+{
+    if (row < WB_FROM_SHARED) {
+        snprintf(name, WB_BUDGET_TEXT, "%s", own[row].name);
+        return;
+    }
+    const enum wb_cycle_shared shared = row - WB_FROM_SHARED;
+    const bool is_distance = shared == WB_SHARED_MARKERS;
+    const double u = stated(calibration, shared), unit = is_distance ? WB_MM : 0.01;
+    const double by = is_distance ? unit_distance : unit_part;
+    snprintf(name, WB_BUDGET_TEXT, "%s, %s%.2g %s", wb_cycle_shared_name(shared),
+             u > 0.0 ? "" : "not stated: per ", (u > 0.0 ? u : by) / unit,
+             is_distance ? "mm" : "%");
+}
+
+double wb_cycle_budget_cell(const struct wb_budget *budget, enum wb_contribution row,
+                            bool *is_stated)
+{
+    *is_stated = row < WB_FROM_SHARED || isfinite(budget->uncertainty[row]);
+    if (*is_stated)
+        return budget->uncertainty[row];
+    const enum wb_cycle_shared shared = row - WB_FROM_SHARED;
+    return fabs(budget->effect[shared]) * (shared == WB_SHARED_MARKERS ? unit_distance : unit_part);
+}
+
+static void put_budget(struct wb_json *array, const char *quantity, double curvature,
+                       const struct wb_budget *budget)
+{
+    struct wb_json *const object = wb_json_append_object(array);
+    wb_json_set_text(object, "quantity", quantity);
+    wb_json_set_number(object, "curvature_1_m", curvature);
+    wb_json_set_number(object, "standard_uncertainty", budget->combined);
+    wb_json_set_number(object, "degrees_of_freedom", budget->effective_degrees);
+    wb_json_set_number(object, "coverage_factor", budget->factor);
+    struct wb_json *const items = wb_json_set_array(object, "contributions");
+    for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
+        struct wb_json *const item = wb_json_append_object(items);
+        const enum wb_cycle_shared shared = i - WB_FROM_SHARED;
+        wb_json_set_text(item, "of", i < WB_FROM_SHARED ? own[i].key : wb_cycle_shared_key(shared));
+        wb_json_set_number(item, "standard_uncertainty", budget->uncertainty[i]);
+        wb_json_set_number(item, "degrees_of_freedom", budget->degrees[i]);
+        if (shared == WB_SHARED_MARKERS)
+            wb_json_set_number(item, "sensitivity_1_mm", budget->effect[shared] * WB_MM);
+        else if (i >= WB_FROM_SHARED)
+            wb_json_set_number(item, "sensitivity", budget->effect[shared]);
+    }
+}
+
+void wb_cycle_budget_put(struct wb_json *array, const struct wb_cycle_calibration *c)
+{
+    const double none = (double)NAN;
+    put_budget(array, "flexural_rigidity", none, &c->budget[WB_CYCLE_RIGIDITY]);
+    if (c->has_unloading) {
+        put_budget(array, "springback_ratio", none, &c->budget[WB_CYCLE_SPRINGBACK]);
+        put_budget(array, "loop_energy", none, &c->budget[WB_CYCLE_LOOP_ENERGY]);
+    }
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        put_budget(array, "moment", c->curvature[k], &c->budget[WB_CYCLE_FIRST_MOMENT + k]);
+    for (int k = 0; k < c->secant.n; k++)
+        put_budget(array, "secant_stiffness", c->secant.curvature[k],
+                   &c->budget[WB_CYCLE_FIRST_SECANT + k]);
+    for (int k = 0; k < c->unloading.n; k++)
+        put_budget(array, "unloading_stiffness", c->unloading.curvature[k],
+                   &c->budget[WB_CYCLE_FIRST_UNLOADING + k]);
+}

@@ -1,0 +1,280 @@
+/* How often the stated intervals of a calibration hold the truth, over campaigns in which gain,
+ * length, counterweight and diameter are off by what the files state.
+ *
+ * Each campaign is of three specimens of tests/analysis/fast_rig.h, whose wires scatter around the
+ * one that is asked for. The wires' laws are of two groups: those that a candidate contains, and
+ * those that none does. docs/verification.md has what is printed. Two threads share the work.
+ */
+#include <pthread.h>
+#include <stdlib.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "analysis/calibration/cycle/cycle_check.h"
+#include "base/random.h"
+#include "base/units.h"
+#include "tests/analysis/fast_rig.h"
+#include "tests/check.h"
+
+enum {
+    SPECIMENS = 3,
+    CAMPAIGNS = 50, /* of a truth */
+    MOST_CAMPAIGNS = 200,
+    THREADS = 2,
+    UNLOADING = 1, /* behind the moments */
+    SECANT,
+    SPRINGBACK,
+    NUMBERS = WB_CYCLE_MOMENTS + SPRINGBACK
+};
+
+/* Standard uncertainties of a careful bench. */
+static const struct wb_test_uncertainty stated = {
+    .gain = 3e-3,
+    .length = 0.2 * WB_MM,
+    .counterweight = 0.02 * WB_G,
+    .diameter = 0.01 * WB_MM,
+};
+
+/* A wire's law: of the virtual rig's, without the candidates that would contain it. */
+static const struct truth {
+    const char *name;
+    enum wb_composite_variant variant;
+    unsigned left_out;
+    bool is_contained;
+} truths[] = {
+    {"parallel parts", WB_COMPOSITE_KINEMATIC, 0, true},
+    {"isotropic parts", WB_COMPOSITE_ISOTROPIC, 0, true},
+    {"Ludwik's", WB_COMPOSITE_SHARP, 0, true},
+    {"two back stresses", WB_COMPOSITE_BACKSTRESSES, 0, true},
+    {"mixed parts", WB_COMPOSITE_MIXED, 0, false},
+    {"relaxing jacket", WB_COMPOSITE_RELAXING, 0, false},
+    {"parallel parts, not tried", WB_COMPOSITE_KINEMATIC,
+     1U << WB_CANDIDATE_PARALLEL_KINEMATIC | 1U << WB_CANDIDATE_PARALLEL_MIXED, false},
+    {"two back stresses, not tried", WB_COMPOSITE_BACKSTRESSES,
+     1U << WB_CANDIDATE_CHABOCHE_ONE | 1U << WB_CANDIDATE_CHABOCHE_TWO, false},
+};
+
+struct campaign {
+    const struct truth *truth;
+    uint64_t seed;
+    bool has_answer, is_blamed; /* the bench is doubted */
+    double level;               /* m, largest of the specimens' */
+    enum wb_candidate chosen;
+    double misfit;
+    double value[NUMBERS], low[NUMBERS], high[NUMBERS], is[NUMBERS];
+    double budget[NUMBERS][WB_CONTRIBUTIONS], factor[NUMBERS];
+    double cpu_s;
+};
+
+static const char *const names[NUMBERS] = {"M(0.05)", "M(0.1)",    "M(0.3)", "M(0.6)",
+                                           "M(1)",    "unloading", "secant", "springback"};
+
+static void keep(struct campaign *campaign, int at, const struct wb_estimate *estimate,
+                 const struct wb_budget *budget)
+{
+    campaign->value[at] = estimate->value;
+    campaign->low[at] = estimate->low;
+    campaign->high[at] = estimate->high;
+    memcpy(campaign->budget[at], budget->uncertainty, sizeof campaign->budget[at]);
+    campaign->factor[at] = budget->factor;
+}
+
+static int at_one(const struct wb_cycle_stiffness *stiffness)
+{
+    int k = 0;
+    while (k < stiffness->n - 1 && stiffness->curvature[k] < 1.0)
+        k++;
+    return k;
+}
+
+static void judge(struct campaign *campaign, const struct fast_rig *wire,
+                  const struct wb_dataset *const *list)
+{
+    struct wb_cycle_calibrate_settings settings;
+    struct wb_cycle_calibration c;
+    struct wb_cycle_remarks remarks = {.n = 0};
+    struct wb_reason why = {.text = ""};
+    double residual, secant;
+    wb_cycle_calibrate_default_settings(&settings);
+    settings.threads = 1;
+    settings.left_out = campaign->truth->left_out;
+    if (wb_cycle_check_calibrate(&c, &remarks, list, SPECIMENS, &settings, &why) != WB_OK) {
+        printf("%s\n", why.text);
+        return;
+    }
+    const int u = at_one(&c.unloading), s = at_one(&c.secant);
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        keep(campaign, k, &c.moment[k], &c.budget[WB_CYCLE_FIRST_MOMENT + k]);
+    keep(campaign, WB_CYCLE_MOMENTS - 1 + UNLOADING, &c.unloading.estimate[u],
+         &c.budget[WB_CYCLE_FIRST_UNLOADING + u]);
+    keep(campaign, WB_CYCLE_MOMENTS - 1 + SECANT, &c.secant.estimate[s],
+         &c.budget[WB_CYCLE_FIRST_SECANT + s]);
+    keep(campaign, WB_CYCLE_MOMENTS - 1 + SPRINGBACK, &c.springback,
+         &c.budget[WB_CYCLE_SPRINGBACK]);
+    fast_rig_truth(wire, WB_CYCLE_MOMENTS, c.curvature, campaign->is, NULL, &residual);
+    fast_rig_truth(wire, 1, &c.secant.curvature[s], &secant, NULL, NULL);
+    fast_rig_unloading(wire, c.largest_curvature, 1, &c.unloading.curvature[u],
+                       &campaign->is[WB_CYCLE_MOMENTS - 1 + UNLOADING]);
+    campaign->is[WB_CYCLE_MOMENTS - 1 + SECANT] = secant / c.secant.curvature[s];
+    campaign->is[WB_CYCLE_MOMENTS - 1 + SPRINGBACK] = residual / c.largest_curvature;
+    campaign->has_answer = c.is_followed;
+    for (int i = 0; i < remarks.n; i++) {
+        campaign->is_blamed |= remarks.items[i].severity >= WB_CHECK_DOUBT;
+        if (remarks.items[i].severity >= WB_CHECK_DOUBT && getenv("SHOW_ALL"))
+            printf("    %s\n", remarks.items[i].text);
+    }
+    for (int i = 0; i < SPECIMENS; i++)
+        campaign->level = fmax(campaign->level, fabs(c.members[i].answers[c.chosen].fit.level));
+    campaign->chosen = c.chosen;
+    campaign->misfit = c.ranked[0].misfit;
+    campaign->cpu_s = c.cpu_s;
+    wb_cycle_calibrate_release(&c);
+}
+
+static void work_on(struct campaign *campaign)
+{
+    struct wb_dataset datasets[SPECIMENS] = {{.rows = NULL}};
+    const struct wb_dataset *list[SPECIMENS];
+    struct fast_rig wire;
+    bool good = true;
+    fast_rig_init(&wire, 1 + (int)(campaign->seed % 3), 85.0 * WB_MM, campaign->seed);
+    wire.every_frame = 1;
+    wire.variant = campaign->truth->variant;
+    wire.off = (struct wb_test_uncertainty){
+        .gain = stated.gain * wb_random_normal(campaign->seed, 7, 0),
+        .length = stated.length * wb_random_normal(campaign->seed, 7, 1),
+        .counterweight = stated.counterweight * wb_random_normal(campaign->seed, 7, 2),
+        .diameter = stated.diameter * wb_random_normal(campaign->seed, 7, 3),
+    };
+    wire.rig.load_cell.gain_uncertainty = stated.gain;
+    wire.specimen.length_uncertainty = stated.length;
+    wire.rig.strand.counterweight_uncertainty = stated.counterweight;
+    wire.wire.outer_diameter_uncertainty = stated.diameter;
+    for (int i = 0; i < SPECIMENS && good; i++) {
+        struct fast_rig fast = wire;
+        wb_truth_draw(&fast.truth, campaign->seed * SPECIMENS + (uint64_t)i, &fast.rig,
+                      &fast.specimen);
+        good = fast_rig_run(&fast, &datasets[i]) == WB_OK;
+        datasets[i].info.sample = i + 1;
+        list[i] = &datasets[i];
+    }
+    wire.truth.stiffness_factor = wire.truth.yield_factor = 1.0;
+    if (good)
+        judge(campaign, &wire, list);
+    for (int i = 0; i < SPECIMENS; i++)
+        wb_dataset_release(&datasets[i]);
+}
+
+struct queue {
+    struct campaign *campaigns;
+    int n, next;
+    pthread_mutex_t lock;
+};
+
+static void *work_from(void *context)
+{
+    struct queue *const queue = context;
+    for (;;) {
+        pthread_mutex_lock(&queue->lock);
+        const int i = queue->next++;
+        pthread_mutex_unlock(&queue->lock);
+        if (i >= queue->n)
+            return NULL;
+        work_on(&queue->campaigns[i]);
+    }
+}
+
+static void work_on_all(struct campaign *campaigns, int n, int n_threads)
+{
+    struct queue queue = {.campaigns = campaigns, .n = n, .lock = PTHREAD_MUTEX_INITIALIZER};
+    pthread_t threads[THREADS];
+    for (int i = 0; i < n_threads; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, work_from, &queue), 0);
+    for (int i = 0; i < n_threads; i++)
+        pthread_join(threads[i], NULL);
+}
+
+static bool holds(const struct campaign *c, int number)
+{
+    return c->low[number] <= c->is[number] && c->is[number] <= c->high[number];
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void print(const char *title, const struct campaign *campaigns, int n)
+{
+    int counts[WB_CANDIDATES] = {0}, unanswered = 0, blamed = 0;
+    double level = 0.0, misfit = 0.0;
+    double cpu = 0.0;
+    printf("%s, %d campaigns\n", title, n);
+    for (int k = 0; k < NUMBERS; k++) {
+        double halves[MOST_CAMPAIGNS], bias = 0.0, squares = 0.0, held = 0.0;
+        for (int i = 0; i < n; i++) {
+            const struct campaign *const c = &campaigns[i];
+            const double error = log(c->value[k] / c->is[k]);
+            halves[i] = 0.5 * log(c->high[k] / c->low[k]);
+            bias += error / n;
+            squares += error * error / n;
+            held += holds(c, k) / (double)n;
+        }
+        qsort(halves, (size_t)n, sizeof halves[0], by_size);
+        printf("  %-11s off %+5.1f (%4.1f) %%  U %5.1f %%  holds %3.0f %%", names[k], 100.0 * bias,
+               100.0 * sqrt(squares - bias * bias), 100.0 * halves[n / 2], 100.0 * held);
+        if (getenv("SHOW_ALL")) {
+            for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
+                double mean = 0.0;
+                for (int j = 0; j < n; j++)
+                    mean += campaigns[j].budget[k][i] / n;
+                printf(" %.2f", 100.0 * mean);
+            }
+        }
+        printf("\n");
+    }
+    for (int i = 0; i < n; i++) {
+        counts[campaigns[i].chosen]++;
+        unanswered += !campaigns[i].has_answer;
+        blamed += campaigns[i].is_blamed;
+        level = fmax(level, campaigns[i].level);
+        misfit += campaigns[i].misfit / n;
+        cpu += campaigns[i].cpu_s / n;
+    }
+    printf("  chosen:");
+    for (int c = 0; c < WB_CANDIDATES; c++) {
+        if (counts[c] > 0)
+            printf(" %s %d;", wb_candidate_name((enum wb_candidate)c), counts[c]);
+    }
+    printf(" without an answer %d, bench blamed %d; misfit %.3f %%, level up to %.2f mm; %.2f s of "
+           "CPU each\n",
+           unanswered, blamed, 100.0 * misfit, level / WB_MM, cpu);
+}
+
+static void intervals_hold_the_truth(void **unused)
+{
+    (void)unused;
+    static struct campaign campaigns[WB_COUNT(truths)][MOST_CAMPAIGNS];
+    const char *const number = getenv("WB_COVERAGE_CAMPAIGNS"), *const only = getenv("WB_TRUTH");
+    const int n = number ? atoi(number) : CAMPAIGNS;
+    for (size_t t = 0; t < WB_COUNT(truths); t++) {
+        if (only && atoi(only) != (int)t)
+            continue;
+        for (int i = 0; i < n; i++)
+            campaigns[t][i] =
+                (struct campaign){.truth = &truths[t], .seed = 5000 + (uint64_t)(t * 1000 + i)};
+        work_on_all(campaigns[t], n, number ? 1 : THREADS);
+        print(truths[t].name, campaigns[t], n);
+        fflush(stdout);
+    }
+}
+
+int main(void)
+{
+    gsl_set_error_handler_off();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(intervals_hold_the_truth),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
