@@ -70,6 +70,7 @@ struct syn {
     /* What the recording says wrongly. */
     double scale;         /* of readings in the rig; 0: none, which is right */
     const char *specimen; /* NULL: the right one */
+    const char *check;    /* of the load cell, a line of its log; NULL: none */
 
     /* Work. */
     uint64_t seed;
@@ -474,7 +475,8 @@ static inline void syn_write_meta(const struct syn *syn, struct wb_recording *re
         wb_recording_set_meta(recording, "wire", syn_wire) != WB_OK ||
         wb_recording_set_meta(recording, "g", "9.80665") != WB_OK ||
         wb_recording_set_meta(recording, "virtual", "true") != WB_OK ||
-        wb_recording_set_meta(recording, "start_utc", "2026-01-01T00:00:00Z") != WB_OK)
+        wb_recording_set_meta(recording, "start_utc", "2026-01-01T00:00:00Z") != WB_OK ||
+        (syn->check && wb_recording_set_meta(recording, "load_cell_check", syn->check) != WB_OK))
         abort();
 }
 

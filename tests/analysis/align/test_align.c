@@ -634,6 +634,28 @@ static void a_specimen_of_wrong_length_is_mended_afterwards(void **state)
     assert_false(warns("uncertainty"));
 }
 
+/* Within the tolerance that it was checked to, where the rig file states nothing. */
+static void a_checked_load_cell_has_the_uncertainty_of_its_check(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *check;
+        double gain;
+    } cases[] = {
+        {NULL, 0.0},
+        {"2026-01-01T09:00:00Z,10,10.004,4,0.04,0.6,yes,", 0.006},
+        {"2026-01-01T09:00:00Z,10,10.2,200,2,0.6,no,", 0.0},
+        {"2026-01-01T09:00:00Z,10,10.004,4,0.04,0.6,yes,another cell", 0.0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        syn.check = cases[i].check;
+        align();
+        assert_close(dataset.info.uncertainty.gain, cases[i].gain / sqrt(3.0), 1e-12);
+        assert_close(dataset.info.uncertainty.marker_offset, 0.05e-3, 1e-12);
+        assert_close(dataset.info.uncertainty.length, 0.0, 0.0);
+    }
+}
+
 static void a_wrong_scale_of_the_load_cell_is_mended_with_its_tare(void **state)
 {
     (void)state;
@@ -801,6 +823,7 @@ int main(void)
         TEST(a_busy_host_does_no_harm),
         TEST(polled_readings_keep_their_arrival),
         TEST(a_specimen_of_wrong_length_is_mended_afterwards),
+        TEST(a_checked_load_cell_has_the_uncertainty_of_its_check),
         TEST(a_wrong_scale_of_the_load_cell_is_mended_with_its_tare),
         TEST(a_virtual_recording_stays_one_whatever_corrects_it),
         TEST(files_that_correct_are_read_like_any),
