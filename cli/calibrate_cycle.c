@@ -276,6 +276,8 @@ static void print_budget(const struct wb_cycle_calibration *c)
         printf(" %9c", 'a' + k);
     printf("\n");
     for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
+        if (!wb_cycle_budget_has(c, i))
+            continue;
         wb_cycle_budget_row(c, i, name);
         printf("  %-40s", name);
         for (int k = 0; k < n; k++) {

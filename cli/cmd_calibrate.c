@@ -365,8 +365,8 @@ static int deliver_cycle(const struct options *o)
     const double at_most = o->cycle.settings.at_most;
     const bool is_enough = !(at_most > 0.0) || wb_cycle_budget_is_within(c, at_most, worst, &known);
     if (!is_enough)
-        wb_warn("wire '%s': %s is known within %.2g %% (95 %%), expected at most %g (--at-most): "
-                "the budget says what would help",
+        wb_warn("wire '%s': %s is known within %.3g %% in 95 of 100 cases, expected at most %g %% "
+                "(--at-most): the budget says what would help",
                 c->members[0].data.info.wire, worst, 100.0 * known, 100.0 * at_most);
     if (!is_converged)
         wb_warn("wire '%s': the iterations ran out for a specimen (--fit-iterations)",

@@ -137,13 +137,13 @@ static enum wb_status run_cycle(struct job *job, struct wb_text *text)
             lack(job, "stopped before all laws were fitted: the hardening rule is undecided");
         else if (!wb_cycle_calibrate_is_converged(&calibration))
             lack(job, "the iterations ran out for a specimen (option fit-iterations)");
-        else if (job->cycle.at_most > 0.0 &&
-                 !wb_cycle_budget_is_within(&calibration, job->cycle.at_most, worst, &known))
-            lack(job, "a number is not known as well as wanted (option at-most)");
         else if (calibration.has_unloading && !calibration.is_followed)
             lack(job,
                  "no law follows loading and unloading (hardening_rule in the properties has the "
                  "misfits)");
+        else if (job->cycle.at_most > 0.0 &&
+                 !wb_cycle_budget_is_within(&calibration, job->cycle.at_most, worst, &known))
+            lack(job, "a number is not known as well as wanted (option at-most)");
     }
     wb_cycle_calibrate_release(&calibration);
     return status;

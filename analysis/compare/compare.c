@@ -29,8 +29,8 @@ static int degrees_of(const struct wb_properties *p)
     return p->pooled_degrees > 0 ? p->pooled_degrees : wb_properties_units(p) - 1;
 }
 
-/* The group that an interval of 95 % (Student's t of a mean of logarithms) was made of, its value
- * times `factor`; false where the file has no interval. */
+/* The group that a number is the mean of, its value times `factor`; false where the file does not
+ * say how specimens scatter. */
 static bool find_group(const struct wb_properties *p, const struct wb_estimate *estimate,
                        double factor, struct wb_welch_group *group)
 {
@@ -38,12 +38,10 @@ static bool find_group(const struct wb_properties *p, const struct wb_estimate *
     if (n < 2 || degrees < 1 || !(estimate->value > 0.0) || !(estimate->low > 0.0) ||
         !(estimate->high >= estimate->low) || !(factor > 0.0))
         return false;
-    const double half = 0.5 * log(estimate->high / estimate->low);
-    *group =
-        (struct wb_welch_group){.mean = log(estimate->value * factor),
-                                .deviation = half * sqrt(n) / gsl_cdf_tdist_Qinv(0.025, degrees),
-                                .n = n,
-                                .degrees = degrees};
+    *group = (struct wb_welch_group){.mean = log(estimate->value * factor),
+                                     .deviation = wb_properties_scatter(estimate, n, degrees),
+                                     .n = n,
+                                     .degrees = degrees};
     return true;
 }
 
@@ -68,6 +66,7 @@ static enum wb_status find_moment(const struct wb_properties *p, double curvatur
     moment->value = exp(ratio) * law[2];
     moment->low = moment->value * exp(-0.5 * half);
     moment->high = moment->value * exp(0.5 * half);
+    moment->deviation = wb_interpolate(e[0]->deviation, e[1]->deviation, part);
     return WB_OK;
 }
 

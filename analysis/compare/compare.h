@@ -1,5 +1,5 @@
 /* Two calibrated batches side by side: EI, springback and moments, of two suppliers, lots or
- * temperatures, by the intervals that their properties files give.
+ * temperatures, by how specimens scatter, as their properties files say it.
  *
  * Compared are means of logarithms over specimens (welch.h), so that the difference is the
  * logarithm of the ratio B over A. Springback and moments are compared at the same curvatures, up

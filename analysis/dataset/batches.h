@@ -21,8 +21,8 @@ struct wb_batches {
     double ratio, limit;
 };
 
-/* Of n numbers; `level` is how often one population is called two. Fewer than WB_BATCHES_LEAST are
- * one batch. */
+/* Of n numbers; `level`, above 0, is how often one population is called two. Fewer than
+ * WB_BATCHES_LEAST are one batch. */
 struct wb_batches wb_batches_find(const double *numbers, int n, double level);
 
 #endif

@@ -163,8 +163,10 @@ sed 's/"length_mm": 85,/"length_mm": 85, "u_length_mm": 0.85, "u_gain_percent": 
 "$wirebench" calibrate stated >said || fail 'calibrate stated'
 grep -qE '^  free length, 1 %  *[123]\.' said || fail "no length in the budget: $(cat said)"
 grep -qE '^  gain of the load cell, 0.5 %  *0\.5' said || fail "no gain in the budget: $(cat said)"
-expect 0 'law: Ludwik' "$wirebench" calibrate stated --at-most 20
-expect 3 '(95 %), expected at most 2 (--at-most)' "$wirebench" calibrate stated --at-most 2
+expect 3 'the scatter between specimens is known within inf %' "$wirebench" calibrate stated --at-most 20
+expect 0 'law: Ludwik' "$wirebench" calibrate stated --at-most 20 --pooled-deviation 0.01 --pooled-degrees 12
+expect 3 'in 95 of 100 cases, expected at most 2 %' \
+    "$wirebench" calibrate stated --at-most 2 --pooled-deviation 0.01 --pooled-degrees 12
 sed 's/"u_length_mm": 0.85/"u_length_mm": -1/' table >stated/dataset.json
 expect 1 'test.u_length_mm: expected a positive number' "$wirebench" calibrate stated
 

@@ -244,7 +244,19 @@ bool wb_cycle_budget_is_within(const struct wb_cycle_calibration *c, double part
         take_worse(&c->budget[WB_CYCLE_FIRST_UNLOADING + k], text, name, known);
         take_worse(&c->budget[WB_CYCLE_SPRINGBACK], "springback", name, known);
     }
+    if (!isfinite(c->rigidity.deviation)) {
+        snprintf(name, WB_BUDGET_TEXT, "the scatter between specimens");
+        *known = (double)INFINITY;
+    }
     return *known <= part;
+}
+
+bool wb_cycle_budget_has(const struct wb_cycle_calibration *calibration, enum wb_contribution row)
+{
+    bool has = row != WB_FROM_SHARED + WB_SHARED_COUNTERWEIGHT;
+    for (int i = 0; i < calibration->n_members; i++)
+        has = has || calibration->members[i].data.info.counterweight > 0.0;
+    return has;
 }
 
 void wb_cycle_budget_row(const struct wb_cycle_calibration *calibration, enum wb_contribution row,

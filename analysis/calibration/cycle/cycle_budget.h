@@ -24,9 +24,13 @@ int wb_cycle_budget_columns(const struct wb_cycle_calibration *calibration,
                             struct wb_budget_column columns[WB_BUDGET_COLUMNS]);
 
 /* Whether the moments, the unloading stiffness over 1 /m and springback are known within a part of
- * them, with 95 %; `name` receives which is known worst, *known how well. */
+ * them, with 95 %; `name` receives which is known worst, *known how well. What no file states is
+ * not asked for. One specimen knows nothing of the product: infinite. */
 bool wb_cycle_budget_is_within(const struct wb_cycle_calibration *calibration, double part,
                                char name[WB_BUDGET_TEXT], double *known);
+
+/* Whether the tests have such a row: one without a counterweight has none of it. */
+bool wb_cycle_budget_has(const struct wb_cycle_calibration *calibration, enum wb_contribution row);
 
 /* "gain of the load cell, 0.5 %"; of one that no file states "free length, not stated: per 1 %". */
 void wb_cycle_budget_row(const struct wb_cycle_calibration *calibration, enum wb_contribution row,

@@ -569,8 +569,10 @@ static void choose(struct wb_cycle_calibration *calibration)
             chosen = rank;
     }
     calibration->chosen = chosen->candidate;
+    for (int i = 0; i < calibration->n_ranked; i++)
+        calibration->ranked[i].counts |= &calibration->ranked[i] == chosen;
     calibration->is_followed = calibration->has_unloading && !calibration->is_stopped &&
-                               chosen->misfit <= WB_CYCLE_LARGEST_FOLLOWED;
+                               best->misfit <= WB_CYCLE_LARGEST_FOLLOWED;
 }
 
 /* Whether laws of more kinds are worth their time. */
@@ -613,18 +615,24 @@ static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double 
                     pow((moved[k] / answer->value[k] - 1.0) / answer->fit.moved_by[i], 2.0);
         }
     }
+    const bool is_known = answer->fit.n_moved == answer->fit.n_law;
     for (int k = 0; k < WB_CYCLE_NUMBERS; k++)
-        answer->error[k] = sqrt(answer->error[k]);
+        answer->error[k] = is_known ? sqrt(answer->error[k]) : (double)NAN;
     return WB_OK;
 }
 
 /* How the logarithms hang on what all specimens share. The weight goes with the square of the
  * diameter. */
-static enum wb_status find_answer_effects(struct wb_cycle_answer *answer, double diameter,
+static enum wb_status find_answer_effects(struct wb_cycle_answer *answer,
+                                          const struct wb_test_info *info,
                                           const struct wb_cycle_calibration *calibration)
 {
+    const double diameter = info->outer_diameter;
     double altered[WB_CYCLE_NUMBERS] = {0.0};
     for (int i = 0; i < WB_SHARED; i++) {
+        const bool is_there = i != WB_SHARED_COUNTERWEIGHT || info->counterweight > 0.0;
+        for (int k = 0; k < WB_CYCLE_NUMBERS && is_there; k++)
+            answer->effect[i][k] = (double)NAN;
         if (!answer->fit.has_altered[i])
             continue;
         WB_TRY(describe_law(calibration, &answer->fit.altered[i], diameter, altered));
@@ -709,7 +717,8 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
             if (candidate_counts(calibration, c))
                 WB_TRY(find_answer_errors(answer, diameter, calibration));
             if (c == (int)calibration->chosen)
-                WB_TRY(find_answer_effects(answer, diameter, calibration));
+                WB_TRY(
+                    find_answer_effects(answer, &calibration->members[i].data.info, calibration));
         }
     }
     return WB_OK;

@@ -1,7 +1,7 @@
 /* Calibration of one wire on whole cycles: which law and which hardening rule the specimens
  * support, and what it says with which certainty.
  *
- * Each specimen is fitted by itself with each candidate (analysis/cycle_fit.h). A candidate's
+ * Each specimen is fitted by itself with each candidate (cycle_fit.h). A candidate's
  * misfit is the root mean square of the force residuals of both ways over F_max, pooled over the
  * specimens. The candidates have weights by Schwarz's criterion; that of the largest is chosen.
  *
@@ -92,8 +92,8 @@ struct wb_cycle_answer {
     /* Standard errors of the logarithms by the residuals of the fit; 0 of candidates that do not
      * count. */
     double error[WB_CYCLE_NUMBERS];
-    /* Changes of the logarithms with what all specimens share; 0 of candidates that are not chosen.
-     */
+    /* Changes of the logarithms with what all specimens share; NaN: not known; 0 of candidates that
+     * are not chosen. */
     double effect[WB_SHARED][WB_CYCLE_NUMBERS];
 };
 
@@ -115,7 +115,7 @@ struct wb_cycle_rank {
     bool is_fitted; /* for all specimens */
     double misfit;
     double weight;
-    bool counts; /* misfit at most twice the best: its numbers are in the ranges */
+    bool counts; /* misfit at most twice the best, or chosen: its numbers are in the ranges */
     int n_free;  /* of the law */
     struct wb_estimate rigidity, springback; /* without the ranges */
     struct wb_law law; /* means of the specimens' numbers, as those of the chosen one */
@@ -130,7 +130,7 @@ struct wb_cycle_calibration {
     int n_ranked;
     enum wb_candidate chosen;
     double n_independent; /* residuals of a specimen, of the best law */
-    bool is_followed;     /* the chosen law's misfit is at most 3 %, and unloading was fitted */
+    bool is_followed;     /* the best misfit is at most 3 %, and unloading was fitted */
     /* `progress` said so before all candidates were fitted to all specimens: the members are those
      * that were, and nothing is decided of the rule. */
     bool is_stopped;

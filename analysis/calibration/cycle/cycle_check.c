@@ -644,13 +644,15 @@ static void check_others(struct wb_cycle_remarks *remarks,
 {
     const int n = calibration->n_members;
     const char *const wire = calibration->members[0].data.info.wire;
-    if (n == 1) {
+    if (n == 1 && !isfinite(calibration->rigidity.deviation)) {
         say(remarks, WB_CHECK_NOTE, 0,
             "wire '%s': one sample (%d) says nothing of how specimens differ: the intervals are "
             "those of this specimen, not of the product; test at least three",
             wire, calibration->members[0].sample);
         return;
     }
+    if (n == 1)
+        return;
     if (n == 2) {
         const double apart = ln_rigidity(calibration, 0) - ln_rigidity(calibration, 1);
         if (fabs(apart) > rigidity_limit * M_SQRT2 * least_deviation)

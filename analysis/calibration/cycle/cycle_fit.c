@@ -876,7 +876,8 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
     gsl_matrix_free(covariance);
 }
 
-/* Gauss and Newton's step from the end of the search, with the residuals of altered data. `squares`
+/* Gauss and Newton's step from the end of the search, with the residuals of altered data. The
+ * slopes have the weights of the last pass, which the workspace's may lack. `squares`
  * are the sums of the slopes' products as Cholesky factors them. */
 static void find_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
                          const gsl_matrix *squares, const double *r, enum wb_cycle_shared shared,
@@ -894,10 +895,10 @@ static void find_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
     q.data = &altered;
     bool good = wb_cycle_model_create(&q.model, &altered, &fit->law, &how) == WB_OK &&
                 residuals(&q, w->x->data, change->data) == GSL_SUCCESS && q.run.reached;
-    for (int i = 0; i < p->n_residuals; i++)
+    for (int i = 0; i < p->n_residuals && good; i++)
         change->data[i] = r[i] - change->data[i];
     good = good &&
-           gsl_blas_dgemv(CblasTrans, 1.0, w->J, change, 0.0, &step.vector) == GSL_SUCCESS &&
+           gsl_blas_dgemv(CblasTrans, 1.0, p->slopes, change, 0.0, &step.vector) == GSL_SUCCESS &&
            gsl_linalg_cholesky_svx(squares, &step.vector) == GSL_SUCCESS;
     if (good) {
         gsl_vector_add(&step.vector, w->x);
@@ -919,7 +920,7 @@ static void find_all_altered(struct problem *p, gsl_multifit_nlinear_workspace *
     double *const r = wb_memory_new((size_t)p->n_residuals, sizeof *r);
     gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
     gsl_matrix_set_identity(squares);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, w->J, know_nothing, squares);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, p->slopes, know_nothing, squares);
     if (gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS &&
         residuals(p, w->x->data, r) == GSL_SUCCESS && p->run.reached) {
         for (int i = 0; i < WB_SHARED; i++)

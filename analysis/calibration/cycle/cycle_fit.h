@@ -21,8 +21,7 @@
 #include "base/status.h"
 #include "fe/material/law.h"
 
-/* Laws that may be fitted, in the order in which one is chosen among those that fit alike: the
- * simpler first of Ludwik's and of parallel parts, then those with combined hardening. */
+/* Laws that may be fitted: Ludwik's, parallel parts, then those with combined hardening. */
 enum wb_candidate {
     WB_CANDIDATE_LUDWIK_ISOTROPIC,
     WB_CANDIDATE_LUDWIK_KINEMATIC,

@@ -1,8 +1,5 @@
 #include "analysis/calibration/cycle/cycle_shared.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/memory.h"
 #include "base/units.h"
 

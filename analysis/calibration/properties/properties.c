@@ -71,7 +71,6 @@ static struct wb_estimate known(const struct wb_cycle_calibration *calibration,
                                 const struct wb_estimate *estimate)
 {
     struct wb_estimate known = *estimate;
-    known.deviation = (double)NAN;
     if (calibration->has_unloading && !calibration->is_followed)
         known.value = known.low = known.high = (double)NAN;
     return known;
@@ -126,14 +125,20 @@ int wb_properties_units(const struct wb_properties *properties)
     return properties->n_series > 1 ? properties->n_series : properties->n_samples;
 }
 
+double wb_properties_scatter(const struct wb_estimate *estimate, int n, int degrees)
+{
+    if (estimate->deviation > 0.0)
+        return estimate->deviation;
+    return 0.5 * log(estimate->high / estimate->low) * sqrt(n) / gsl_cdf_tdist_Qinv(0.025, degrees);
+}
+
 void wb_properties_find_deviation(struct wb_properties *properties)
 {
     const int n = wb_properties_units(properties), at = properties->n_moments / 2;
     if (n < 2 || properties->n_moments < 1)
         return;
     const struct wb_estimate *const moment = &properties->moment[at];
-    properties->stiffness_deviation =
-        0.5 * log(moment->high / moment->low) * sqrt(n) / gsl_cdf_tdist_Qinv(0.025, n - 1);
+    properties->stiffness_deviation = wb_properties_scatter(moment, n, n - 1);
 }
 
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,

@@ -104,6 +104,11 @@ struct wb_properties {
     struct wb_properties_specimen specimens[WB_PROPERTIES_MOST_SPECIMENS];
 };
 
+/* Standard deviation of the logarithm of a number between specimens: as the file gives it, or of
+ * older files, whose interval of 95 % was Student's of the mean of n, with its degrees of freedom.
+ */
+double wb_properties_scatter(const struct wb_estimate *estimate, int n, int degrees);
+
 /* How many means the calibration's intervals are made of: series where there are several, else
  * samples; 0 unknown. */
 int wb_properties_units(const struct wb_properties *properties);

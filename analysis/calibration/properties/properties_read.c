@@ -106,7 +106,8 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
         WB_CONFIG_OPTIONAL_NUMBER("high", &(e)->high, (unit), 0.0, (largest)),                     \
         WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &(e)->candidates_low, (unit), 0.0, (largest)), \
         WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &(e)->candidates_high, (unit), 0.0,           \
-                                  (largest))
+                                  (largest)),                                                      \
+        WB_CONFIG_OPTIONAL_NUMBER("scatter", &(e)->deviation, 1.0, 0.0, 100.0)
 
 static enum wb_status read_estimate(const struct wb_config_node *node, double unit, double largest,
                                     struct wb_estimate *e)
@@ -163,6 +164,7 @@ static enum wb_status read_moments(const struct wb_config_node *node,
             WB_CONFIG_OPTIONAL_NUMBER("high", &e->high, N_MM, 0.0, 1e9),
             WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &e->candidates_low, N_MM, 0.0, 1e9),
             WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &e->candidates_high, N_MM, 0.0, 1e9),
+            WB_CONFIG_OPTIONAL_NUMBER("scatter", &e->deviation, 1.0, 0.0, 100.0),
         };
         WB_TRY(wb_config_map(item, keys, WB_COUNT(keys)));
         if (k > 0 && !(*curvature > properties->curvature[k - 1]))

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/properties/properties_private.h"
 #include "base/config.h"
 #include "base/file.h"
@@ -177,6 +178,7 @@ static void append_estimate(struct wb_text *text, const char *name, double first
         {"high", estimate->high / unit},
         {"candidates_low", estimate->candidates_low / unit},
         {"candidates_high", estimate->candidates_high / unit},
+        {"scatter", estimate->deviation},
     };
     char number[WB_NUMBER_TEXT];
     int n = 0;
@@ -226,6 +228,7 @@ static void put_moments(struct wb_text *text, const struct wb_properties *p)
         put_number(text, "    ", "high", e->high / N_MM);
         put_number(text, "    ", "candidates_low", e->candidates_low / N_MM);
         put_number(text, "    ", "candidates_high", e->candidates_high / N_MM);
+        put_number(text, "    ", "scatter", e->deviation);
     }
 }
 
@@ -318,7 +321,8 @@ static void put_what_is_in(struct wb_text *text, const struct wb_cycle_calibrati
         const char *between = known ? "# The intervals hold what the files state of "
                                     : "# Not stated, and in no interval: ";
         for (int i = 0; i < WB_SHARED; i++) {
-            if (isfinite(u[WB_FROM_SHARED + i]) != known)
+            if (isfinite(u[WB_FROM_SHARED + i]) != known ||
+                !wb_cycle_budget_has(calibration, WB_FROM_SHARED + i))
                 continue;
             wb_text_append(text, "%s%s", between, wb_cycle_shared_name((enum wb_cycle_shared)i));
             between = ", ";
@@ -326,7 +330,7 @@ static void put_what_is_in(struct wb_text *text, const struct wb_cycle_calibrati
         if (between[0] == ',')
             wb_text_append(text, "\n");
     }
-    if (calibration->n_members == 1)
+    if (!isfinite(calibration->rigidity.deviation))
         wb_text_append(text, "# One specimen: how specimens scatter is not known, and in none.\n");
 }
 

@@ -614,6 +614,8 @@ static void put_budget(struct wb_document *document, const struct wb_cycle_calib
         "marker offset by 0.1 mm. It goes into the rig, specimen and wire files (u_...).",
         1 + n, columns);
     for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
+        if (!wb_cycle_budget_has(c, i))
+            continue;
         wb_cycle_budget_row(c, i, name);
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, name);

@@ -19,7 +19,6 @@
 enum {
     SPECIMENS = 3,
     CAMPAIGNS = 50, /* of a truth */
-    MOST_CAMPAIGNS = 200,
     THREADS = 2,
     UNLOADING = 1, /* behind the moments */
     SECANT,
@@ -35,23 +34,26 @@ static const struct wb_test_uncertainty stated = {
     .diameter = 0.01 * WB_MM,
 };
 
-/* A wire's law: of the virtual rig's, without the candidates that would contain it. */
+/* A wire's law, of the virtual rig's, and candidates that are not tried. Of a knee from the start
+ * that Ludwik's kinematic law follows to 0.2 % of F_max, unloading stiffness and springback are not
+ * held: the force hardly knows them, and no other law is near. */
 static const struct truth {
     const char *name;
     enum wb_composite_variant variant;
     unsigned left_out;
     bool is_contained;
+    double least; /* part of the intervals that hold */
 } truths[] = {
-    {"parallel parts", WB_COMPOSITE_KINEMATIC, 0, true},
-    {"isotropic parts", WB_COMPOSITE_ISOTROPIC, 0, true},
-    {"Ludwik's", WB_COMPOSITE_SHARP, 0, true},
-    {"two back stresses", WB_COMPOSITE_BACKSTRESSES, 0, true},
-    {"mixed parts", WB_COMPOSITE_MIXED, 0, false},
-    {"relaxing jacket", WB_COMPOSITE_RELAXING, 0, false},
+    {"parallel parts", WB_COMPOSITE_KINEMATIC, 0, true, 0.85},
+    {"isotropic parts", WB_COMPOSITE_ISOTROPIC, 0, true, 0.85},
+    {"Ludwik's", WB_COMPOSITE_SHARP, 0, true, 0.85},
+    {"two back stresses", WB_COMPOSITE_BACKSTRESSES, 0, true, 0.85},
+    {"mixed parts", WB_COMPOSITE_MIXED, 0, false, 0.85},
+    {"relaxing jacket", WB_COMPOSITE_RELAXING, 0, false, 0.85},
     {"parallel parts, not tried", WB_COMPOSITE_KINEMATIC,
-     1U << WB_CANDIDATE_PARALLEL_KINEMATIC | 1U << WB_CANDIDATE_PARALLEL_MIXED, false},
+     1U << WB_CANDIDATE_PARALLEL_KINEMATIC | 1U << WB_CANDIDATE_PARALLEL_MIXED, false, 0.7},
     {"two back stresses, not tried", WB_COMPOSITE_BACKSTRESSES,
-     1U << WB_CANDIDATE_CHABOCHE_ONE | 1U << WB_CANDIDATE_CHABOCHE_TWO, false},
+     1U << WB_CANDIDATE_CHABOCHE_ONE | 1U << WB_CANDIDATE_CHABOCHE_TWO, false, 0.85},
 };
 
 struct campaign {
@@ -184,13 +186,13 @@ static void *work_from(void *context)
     }
 }
 
-static void work_on_all(struct campaign *campaigns, int n, int n_threads)
+static void work_on_all(struct campaign *campaigns, int n)
 {
     struct queue queue = {.campaigns = campaigns, .n = n, .lock = PTHREAD_MUTEX_INITIALIZER};
     pthread_t threads[THREADS];
-    for (int i = 0; i < n_threads; i++)
+    for (int i = 0; i < THREADS; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, work_from, &queue), 0);
-    for (int i = 0; i < n_threads; i++)
+    for (int i = 0; i < THREADS; i++)
         pthread_join(threads[i], NULL);
 }
 
@@ -212,7 +214,7 @@ static void print(const char *title, const struct campaign *campaigns, int n)
     double cpu = 0.0;
     printf("%s, %d campaigns\n", title, n);
     for (int k = 0; k < NUMBERS; k++) {
-        double halves[MOST_CAMPAIGNS], bias = 0.0, squares = 0.0, held = 0.0;
+        double halves[CAMPAIGNS], bias = 0.0, squares = 0.0, held = 0.0;
         for (int i = 0; i < n; i++) {
             const struct campaign *const c = &campaigns[i];
             const double error = log(c->value[k] / c->is[k]);
@@ -252,22 +254,52 @@ static void print(const char *title, const struct campaign *campaigns, int n)
            unanswered, blamed, 100.0 * misfit, level / WB_MM, cpu);
 }
 
+/* Part of the intervals that hold, of campaigns without an answer, and of doubted benches. */
+struct tally {
+    double holds, unanswered, blamed;
+};
+
+static struct tally count_all(const struct campaign *campaigns, int n)
+{
+    struct tally tally = {0.0, 0.0, 0.0};
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < NUMBERS; k++)
+            tally.holds += holds(&campaigns[i], k) / (double)(n * NUMBERS);
+        tally.unanswered += !campaigns[i].has_answer / (double)n;
+        tally.blamed += campaigns[i].is_blamed / (double)n;
+    }
+    return tally;
+}
+
 static void intervals_hold_the_truth(void **unused)
 {
     (void)unused;
-    static struct campaign campaigns[WB_COUNT(truths)][MOST_CAMPAIGNS];
-    const char *const number = getenv("WB_COVERAGE_CAMPAIGNS"), *const only = getenv("WB_TRUTH");
-    const int n = number ? atoi(number) : CAMPAIGNS;
+    static struct campaign campaigns[WB_COUNT(truths)][CAMPAIGNS];
+    struct tally groups[2] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    double counts[2] = {0.0, 0.0};
     for (size_t t = 0; t < WB_COUNT(truths); t++) {
-        if (only && atoi(only) != (int)t)
-            continue;
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < CAMPAIGNS; i++)
             campaigns[t][i] =
                 (struct campaign){.truth = &truths[t], .seed = 5000 + (uint64_t)(t * 1000 + i)};
-        work_on_all(campaigns[t], n, number ? 1 : THREADS);
-        print(truths[t].name, campaigns[t], n);
+        work_on_all(campaigns[t], CAMPAIGNS);
+        print(truths[t].name, campaigns[t], CAMPAIGNS);
         fflush(stdout);
+        const struct tally tally = count_all(campaigns[t], CAMPAIGNS);
+        struct tally *const group = &groups[truths[t].is_contained];
+        counts[truths[t].is_contained]++;
+        group->holds += tally.holds;
+        group->unanswered += tally.unanswered;
+        group->blamed += tally.blamed;
+        assert_true(tally.holds >= truths[t].least);
+        assert_close(tally.unanswered, 0.0, 0.0);
     }
+    for (int g = 1; g >= 0; g--) {
+        printf("laws that %s: %.1f %% hold, %.1f %% of the benches blamed\n",
+               g ? "a candidate contains" : "no candidate contains",
+               100.0 * groups[g].holds / counts[g], 100.0 * groups[g].blamed / counts[g]);
+        assert_true(groups[g].blamed / counts[g] <= 0.04);
+    }
+    assert_true(groups[1].holds / counts[1] >= 0.90 && groups[1].holds / counts[1] <= 0.98);
 }
 
 int main(void)

@@ -176,6 +176,28 @@ static void pooled_intervals_have_the_pools_degrees(void **state)
     assert_close(c.quantities[RIGIDITY].groups[0].deviation, 0.03, 1e-12);
 }
 
+/* What both benches share is in the intervals, and not in how specimens differ. */
+static void a_stated_scatter_is_taken_and_not_the_interval(void **state)
+{
+    (void)state;
+    static struct wb_properties a, b;
+    struct wb_compare c;
+    make(&a, 30.0, 1.0, 0.03, 5);
+    make(&b, 30.0, 1.0, 0.03, 5);
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
+        a.moment[k].deviation = 0.02;
+        a.moment[k].low *= 0.5;
+        a.moment[k].high *= 2.0;
+    }
+    assert_int_equal(run(&c, &a, &b, 0.1), WB_OK);
+    const struct wb_compare_quantity *const last = &c.quantities[WB_COMPARE_QUANTITIES - 1];
+    int found = 0;
+    for (int k = 0; k < WB_COMPARE_QUANTITIES; k++)
+        found += fabs(c.quantities[k].groups[0].deviation - 0.02) < 1e-12;
+    assert_true(found >= 1);
+    assert_close(last->groups[1].deviation, 0.03, 1e-12);
+}
+
 static void files_without_intervals_are_refused(void **state)
 {
     (void)state;
@@ -199,6 +221,7 @@ int main(void)
         cmocka_unit_test(one_quantity_that_differs_makes_batches_different),
         cmocka_unit_test(what_a_file_does_not_say_is_not_compared),
         cmocka_unit_test(pooled_intervals_have_the_pools_degrees),
+        cmocka_unit_test(a_stated_scatter_is_taken_and_not_the_interval),
         cmocka_unit_test(files_without_intervals_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
