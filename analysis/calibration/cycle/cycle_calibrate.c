@@ -615,7 +615,7 @@ static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double 
                     pow((moved[k] / answer->value[k] - 1.0) / answer->fit.moved_by[i], 2.0);
         }
     }
-    const bool is_known = answer->fit.n_moved == answer->fit.n_law;
+    const bool is_known = answer->fit.n_moved > 0;
     for (int k = 0; k < WB_CYCLE_NUMBERS; k++)
         answer->error[k] = is_known ? sqrt(answer->error[k]) : (double)NAN;
     return WB_OK;

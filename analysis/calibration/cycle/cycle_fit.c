@@ -771,10 +771,12 @@ static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *c
             step[i] = gsl_vector_get(x, (size_t)i) +
                       (i < k ? 0.0 : by * gsl_vector_get(&side.vector, (size_t)i));
         absolute(p, step, free);
-        law_of(p, free, &fit->moved[fit->n_moved]);
-        fit->moved_by[fit->n_moved] = by;
-        fit->n_moved += wb_law_check(&fit->moved[fit->n_moved], &why) == WB_OK;
+        law_of(p, free, &fit->moved[k]);
+        fit->moved_by[k] = by;
+        if (wb_law_check(&fit->moved[k], &why) != WB_OK)
+            return;
     }
+    fit->n_moved = p->n_law;
 }
 
 /* Correlations of the law's numbers. Ludwik's are turned into those of K and n, which fits do not

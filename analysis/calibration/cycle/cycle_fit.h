@@ -89,7 +89,8 @@ struct wb_cycle_fit {
     double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
                                                  specimen's own residuals; NaN of parallel parts */
     /* The law moved a little in each of independent directions, by this many standard errors. What
-     * is computed with it has a variance: the sum of the squares of its differences over these. */
+     * is computed with it has a variance: the sum of the squares of its differences over these.
+     * None where that could not be found. */
     int n_moved;
     double moved_by[WB_FIT_MOST_FREE];
     struct wb_law moved[WB_FIT_MOST_FREE];
