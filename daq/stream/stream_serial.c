@@ -107,10 +107,13 @@ static void tune(int descriptor, const struct wb_stream_line *line)
             wb_debug("low latency of '%s' cannot be set: %s", line->path, strerror(errno));
     }
     struct termios settings;
-    if ((line->dtr < 0 || line->keeps_dtr) && tcgetattr(descriptor, &settings) == 0) {
+    const bool stays = line->dtr < 0 || line->keeps_dtr;
+    if (tcgetattr(descriptor, &settings) == 0) {
         settings.c_cflag &= ~(tcflag_t)HUPCL;
+        settings.c_cflag |= stays ? 0 : HUPCL; /* libserialport 0.1.2 switches it off */
         if (tcsetattr(descriptor, TCSANOW, &settings) != 0)
-            wb_debug("hang-up at closing of '%s' cannot be switched off", line->path);
+            wb_debug("hang-up at closing of '%s' cannot be switched %s", line->path,
+                     stays ? "off" : "on");
     }
 }
 

@@ -1,5 +1,5 @@
 /* Preloaded into test_stream_serial: lends a pseudo-terminal what libserialport wants of a serial
- * port, so that the real libserialport code runs without hardware. libserialport 0.1.1 looks up
+ * port, so that the real libserialport code runs without hardware. libserialport 0.1 looks up
  * /sys/class/tty/NAME (lstat, readlink, opendir), opens /dev/NAME and uses the modem
  * lines (TIOCMGET, TIOCMSET), which pseudo-terminals lack; they also know 8 bits without parity
  * only.
@@ -33,7 +33,7 @@
 
 static int modem_lines = TIOCM_CTS | TIOCM_DSR | TIOCM_CAR;
 static int serial_flags;
-static int exclusive;        /* ports with TIOCEXCL */
+static int exclusive;        /* whether TIOCEXCL holds */
 static tcflag_t frame = CS8; /* bits and parity as set */
 
 int wb_shim_modem_lines(void);
@@ -133,6 +133,33 @@ int lstat(const char *path, struct stat *there)
     return __lxstat(0, path, there);
 }
 
+/* libserialport 0.1.2 asks where a port's name leads: to itself, where it is. */
+static char *find_real(const char *path, char *resolved)
+{
+    char space[PATH_MAX];
+    char *(*real)(const char *, char *);
+    find_next("realpath", &real, sizeof real);
+    const char *const port = getenv("WB_SHIM_PORT");
+    if (!port || strcmp(path, port) != 0)
+        return real(path, resolved);
+    if (!lead(path, space) && errno == ENOENT)
+        return NULL;
+    return resolved ? strcpy(resolved, path) : strdup(path);
+}
+
+char *realpath(const char *path, char *resolved)
+{
+    return find_real(path, resolved);
+}
+
+/* What it becomes in a library built with fortification. */
+char *__realpath_chk(const char *path, char *resolved, size_t size);
+char *__realpath_chk(const char *path, char *resolved, size_t size)
+{
+    (void)size;
+    return find_real(path, resolved);
+}
+
 ssize_t readlink(const char *path, char *target, size_t size)
 {
     char space[PATH_MAX];
@@ -222,7 +249,7 @@ int ioctl(int descriptor, unsigned long request, ...)
     find_next("ioctl", &real, sizeof real);
     int result = real(descriptor, request, argument);
     if (result == 0 && (request == TIOCEXCL || request == TIOCNXCL))
-        exclusive += request == TIOCEXCL ? 1 : -1;
+        exclusive = request == TIOCEXCL; /* libserialport 0.1.2 asks for it, too */
     if (result >= 0 || !getenv("WB_SHIM_DEVICE"))
         return result;
     int error = errno;

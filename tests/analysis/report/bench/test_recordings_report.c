@@ -538,12 +538,15 @@ static void the_pdf_text_can_be_searched(void **state)
     size_t size;
     char *const pdf = read_text("once/report.pdf", &size);
     assert_memory_equal(pdf, "%PDF-1.", 7);
-    /* The date of the latest recording, not of the run. */
-    assert_non_null(memmem(pdf, size, "(20261111101112Z)", 17));
     free(pdf);
     if (system("command -v pdftotext >/dev/null 2>&1") != 0)
         skip();
     char command[3 * WB_PATH];
+    /* The date of the latest recording, not of the run; newer Cairos compress it. */
+    snprintf(command, sizeof command, "pdfinfo -rawdates '%s' >'%s'", in_folder("once/report.pdf"),
+             in_folder("report.info"));
+    assert_int_equal(system(command), 0);
+    assert_true(says("report.info", "20261111101112Z"));
     snprintf(command, sizeof command, "pdftotext -layout '%s' '%s'", in_folder("once/report.pdf"),
              in_folder("report.txt"));
     assert_int_equal(system(command), 0);
