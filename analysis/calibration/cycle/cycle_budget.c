@@ -15,7 +15,7 @@ static const double range_errors = 2.0;
 /* And at most this much of a logarithm, a factor of ten: beyond it nothing is known, and the slopes
  * that errors are made of mean nothing. */
 static const double largest_range = 2.3;
-/* Degrees of freedom of an uncertainty that is itself known to a quarter (JCGM 100:2008, G.4.2). */
+/* Degrees of freedom of an uncertainty that is itself uncertain by 25 % (JCGM 100:2008, G.4.2). */
 static const double known_to_a_quarter = 8.0;
 
 static const struct own {

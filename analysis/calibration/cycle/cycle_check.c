@@ -644,15 +644,14 @@ static void check_others(struct wb_cycle_remarks *remarks,
 {
     const int n = calibration->n_members;
     const char *const wire = calibration->members[0].data.info.wire;
-    if (n == 1 && !isfinite(calibration->rigidity.deviation)) {
-        say(remarks, WB_CHECK_NOTE, 0,
-            "wire '%s': one sample (%d) says nothing of how specimens differ: the intervals are "
-            "those of this specimen, not of the product; test at least three",
-            wire, calibration->members[0].sample);
+    if (n == 1) {
+        if (!isfinite(calibration->rigidity.deviation))
+            say(remarks, WB_CHECK_NOTE, 0,
+                "wire '%s': one sample (%d) says nothing of how specimens differ: the intervals "
+                "are those of this specimen, not of the product; test at least three",
+                wire, calibration->members[0].sample);
         return;
     }
-    if (n == 1)
-        return;
     if (n == 2) {
         const double apart = ln_rigidity(calibration, 0) - ln_rigidity(calibration, 1);
         if (fabs(apart) > rigidity_limit * M_SQRT2 * least_deviation)
@@ -711,10 +710,9 @@ static void check_batches(struct wb_cycle_remarks *remarks,
     }
     if (found.are_two)
         say(remarks, WB_CHECK_DOUBT, 0,
-            "wire '%s': samples %s and samples %s are two groups, %.0f %% apart in the moment at "
-            "the "
-            "largest curvature, as 1 in %.0f products of one kind is: are they of two batches? "
-            "Calibrate each by itself",
+            "wire '%s': samples %s and samples %s are two groups, whose moments at the largest "
+            "curvature are %.0f %% apart; of products of one kind, 1 in %.0f looks like this. Are "
+            "they of two batches? Calibrate each by itself",
             calibration->members[0].data.info.wire, wb_text_string(&groups[0]),
             wb_text_string(&groups[1]), 100.0 * expm1(found.apart), 1.0 / batches_level);
     wb_text_release(&groups[0]);

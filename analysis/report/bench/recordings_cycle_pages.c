@@ -2,7 +2,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 
 #include "analysis/calibration/cycle/cycle_budget.h"
@@ -582,20 +581,6 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
     }
 }
 
-static void put_budget_tail(struct wb_document_table *table, const char *name,
-                            const struct wb_cycle_calibration *c,
-                            const struct wb_budget_column *columns, int n, size_t offset,
-                            double unit, int decimals)
-{
-    wb_document_row(table, false);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, name);
-    for (int k = 0; k < n; k++) {
-        const char *const budget = (const char *)&c->budget[columns[k].number];
-        wb_pages_cell_number(table, *(const double *)(const void *)(budget + offset) / unit,
-                             decimals);
-    }
-}
-
 static void put_budget(struct wb_document *document, const struct wb_cycle_calibration *c)
 {
     struct wb_document_column columns[1 + WB_BUDGET_COLUMNS] = {{"Contribution"}};
@@ -629,12 +614,19 @@ static void put_budget(struct wb_document *document, const struct wb_cycle_calib
                               is_stated ? "%.2f" : "(%.2f)", 100.0 * u);
         }
     }
-    put_budget_tail(table, "Combined", c, numbers, n, offsetof(struct wb_budget, combined), 0.01,
-                    2);
-    put_budget_tail(table, "Degrees of freedom", c, numbers, n,
-                    offsetof(struct wb_budget, effective_degrees), 1.0, 1);
-    put_budget_tail(table, "Factor for 95 %", c, numbers, n, offsetof(struct wb_budget, factor),
-                    1.0, 2);
+    static const char *const last[] = {"Combined", "Degrees of freedom", "Factor for 95 %"};
+    for (int i = 0; i < 3; i++) {
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, last[i]);
+        for (int k = 0; k < n; k++) {
+            const struct wb_budget *const budget = &c->budget[numbers[k].number];
+            wb_pages_cell_number(table,
+                                 i == 0   ? 100.0 * budget->combined
+                                 : i == 1 ? budget->effective_degrees
+                                          : budget->factor,
+                                 i == 1 ? 1 : 2);
+        }
+    }
 }
 
 /* A number of a Ludwik law that is only shown where the data know it. */

@@ -3,9 +3,8 @@
  *
  * Each campaign is of three specimens of tests/analysis/fast_rig.h, whose wires scatter around the
  * one that is asked for. The wires' laws are of two groups: those that a candidate contains, and
- * those that none does. docs/verification.md has what is printed. Two threads share the work.
+ * those that none does. docs/verification.md has what is printed. Threads share the work.
  */
-#include <pthread.h>
 #include <stdlib.h>
 
 #include <gsl/gsl_errno.h>
@@ -13,14 +12,14 @@
 #include "analysis/calibration/cycle/cycle_check.h"
 #include "base/random.h"
 #include "base/units.h"
+#include "base/workers.h"
 #include "tests/analysis/fast_rig.h"
 #include "tests/check.h"
 
 enum {
     SPECIMENS = 3,
     CAMPAIGNS = 50, /* of a truth */
-    THREADS = 2,
-    UNLOADING = 1, /* behind the moments */
+    UNLOADING = 1,  /* behind the moments */
     SECANT,
     SPRINGBACK,
     NUMBERS = WB_CYCLE_MOMENTS + SPRINGBACK
@@ -167,33 +166,16 @@ static void work_on(struct campaign *campaign)
         wb_dataset_release(&datasets[i]);
 }
 
-struct queue {
-    struct campaign *campaigns;
-    int n, next;
-    pthread_mutex_t lock;
-};
-
-static void *work_from(void *context)
+static enum wb_status work_on_one(void *campaigns, int i)
 {
-    struct queue *const queue = context;
-    for (;;) {
-        pthread_mutex_lock(&queue->lock);
-        const int i = queue->next++;
-        pthread_mutex_unlock(&queue->lock);
-        if (i >= queue->n)
-            return NULL;
-        work_on(&queue->campaigns[i]);
-    }
+    work_on((struct campaign *)campaigns + i);
+    return WB_OK;
 }
 
 static void work_on_all(struct campaign *campaigns, int n)
 {
-    struct queue queue = {.campaigns = campaigns, .n = n, .lock = PTHREAD_MUTEX_INITIALIZER};
-    pthread_t threads[THREADS];
-    for (int i = 0; i < THREADS; i++)
-        assert_int_equal(pthread_create(&threads[i], NULL, work_from, &queue), 0);
-    for (int i = 0; i < THREADS; i++)
-        pthread_join(threads[i], NULL);
+    const struct wb_workers workers = {.n = n, .job = work_on_one, .context = campaigns};
+    assert_int_equal(wb_workers_run(&workers), n);
 }
 
 static bool holds(const struct campaign *c, int number)

@@ -1,9 +1,8 @@
 /* What a calibration on whole cycles says, against the truth of the virtual wires that were bent.
  *
  * Each specimen is one of tests/analysis/fast_rig.h: the rig's instruments, noise and alignment.
- * The numbers are printed; docs/verification.md has them. Two threads share the work.
+ * The numbers are printed; docs/verification.md has them. Threads share the work.
  */
-#include <pthread.h>
 #include <stdlib.h>
 
 #include <gsl/gsl_errno.h>
@@ -16,6 +15,7 @@
 #include "analysis/calibration/paper/calibrate.h"
 #include "base/file.h"
 #include "base/units.h"
+#include "base/workers.h"
 #include "fe/trial/cantilever.h"
 #include "tests/analysis/calibration/containing.h"
 #include "tests/analysis/fast_rig.h"
@@ -29,8 +29,7 @@ enum {
     CAMPAIGNS = 200,
     CAMPAIGN_TYPE = 2,
     CAMPAIGN_SPECIMENS = 3,
-    PREDICTED = 4, /* specimens of a type that are predicted at other lengths */
-    THREADS = 2,
+    PREDICTED = 4,                 /* specimens of a type that are predicted at other lengths */
     NUMBERS = WB_CYCLE_MOMENTS + 2 /* EI, springback, moments */
 };
 
@@ -152,33 +151,16 @@ static void work_on(struct job *job)
         wb_dataset_release(&datasets[i]);
 }
 
-struct queue {
-    struct job *jobs;
-    int n, next;
-    pthread_mutex_t lock;
-};
-
-static void *work_from(void *context)
+static enum wb_status work_on_one(void *jobs, int i)
 {
-    struct queue *const queue = context;
-    for (;;) {
-        pthread_mutex_lock(&queue->lock);
-        const int i = queue->next++;
-        pthread_mutex_unlock(&queue->lock);
-        if (i >= queue->n)
-            return NULL;
-        work_on(&queue->jobs[i]);
-    }
+    work_on((struct job *)jobs + i);
+    return WB_OK;
 }
 
 static void work_on_all(struct job *jobs, int n)
 {
-    struct queue queue = {.jobs = jobs, .n = n, .lock = PTHREAD_MUTEX_INITIALIZER};
-    pthread_t threads[THREADS];
-    for (int i = 0; i < THREADS; i++)
-        assert_int_equal(pthread_create(&threads[i], NULL, work_from, &queue), 0);
-    for (int i = 0; i < THREADS; i++)
-        pthread_join(threads[i], NULL);
+    const struct wb_workers workers = {.n = n, .job = work_on_one, .context = jobs};
+    assert_int_equal(wb_workers_run(&workers), n);
 }
 
 /* --- what comes of many --- */
