@@ -137,8 +137,29 @@ static enum wb_status check_chaboche(const struct wb_law *law, struct wb_reason 
     return WB_OK;
 }
 
+static enum wb_status check_maxwell(const struct wb_law *law, struct wb_reason *why)
+{
+    if (law->n_maxwell < 0 || law->n_maxwell > WB_LAW_MOST_MAXWELL)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%d Maxwell elements: expected 0 to %d",
+                          law->n_maxwell, WB_LAW_MOST_MAXWELL);
+    if (!(isfinite(law->strain_rate) && law->strain_rate >= 0.0))
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "strain rate %g 1/s: expected 0 or more",
+                          law->strain_rate);
+    for (int i = 0; i < law->n_maxwell; i++) {
+        const struct wb_law_maxwell *const element = &law->maxwell[i];
+        if (!(isfinite(element->modulus) && element->modulus >= 0.0 && isfinite(element->time) &&
+              element->time > 0.0))
+            return wb_fail_to(why, WB_ERR_ARGUMENT,
+                              "Maxwell element %d: modulus %g Pa, time %g s: expected 0 or more, "
+                              "and above 0",
+                              i + 1, element->modulus, element->time);
+    }
+    return WB_OK;
+}
+
 enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why)
 {
+    WB_TRY(check_maxwell(law, why));
     if (law->form == WB_LAW_CHABOCHE)
         return check_chaboche(law, why);
     if (!(law->isotropic_share >= 0.0 && law->isotropic_share <= 1.0))
@@ -333,6 +354,16 @@ double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tan
     return m->yield_stress + (1.0 - r) * overstress;
 }
 
+struct wb_law_maxwell_step wb_law_maxwell_step(const struct wb_law_maxwell *element,
+                                               double duration)
+{
+    const double x = duration / element->time;
+    return (struct wb_law_maxwell_step){
+        .decay = exp(-x),
+        .tangent = isinf(x) ? 0.0 : element->modulus * (x > 0.0 ? -expm1(-x) / x : 1.0),
+    };
+}
+
 const char *wb_law_form_name(enum wb_law_form form)
 {
     static const char *const names[] = {"ludwik", "parallel", "chaboche"};
@@ -383,4 +414,18 @@ void wb_law_append_numbers(struct wb_text *text, const struct wb_law *law)
     }
     if (wb_law_has_share(law))
         wb_text_append(text, "; isotropic share %.2f", law->isotropic_share);
+    if (law->n_maxwell > 0) {
+        wb_text_append(text, "; ");
+        wb_law_append_relaxation(text, law);
+    }
+}
+
+void wb_law_append_relaxation(struct wb_text *text, const struct wb_law *law)
+{
+    for (int i = 0; i < law->n_maxwell; i++)
+        wb_text_append(text, "%s%.4g MPa that relax over %.3g s", i > 0 ? ", " : "",
+                       law->maxwell[i].modulus / WB_MPA, law->maxwell[i].time);
+    if (law->n_maxwell > 0)
+        wb_text_append(text, " (Maxwell); moments at %.2e 1/s of the outer fibre",
+                       law->strain_rate);
 }

@@ -20,6 +20,10 @@
  *
  *     |stress - sum X_i| = sigma_Y + R,  dR = b (Q - R) dp,  dX_i = C_i dep - gamma_i X_i dp.
  *
+ * A law of any form may have Maxwell elements in parallel: a part of the wire that relaxes, whose
+ * stress depends on time. The moduli above, and the curve F, are of the relaxed law, which an
+ * infinitely slow test measures.
+ *
  * An overlay is what a section computes with in kinematic and mixed hardening. Ludwik's curve
  * becomes an overlay of WB_LAW_LUDWIK_PARTS parts, a chain of chords that follows the curve in the
  * mean. The other rules need none: a step of them is computed exactly.
@@ -44,6 +48,7 @@ enum wb_law_form {
 enum {
     WB_LAW_MOST_PARTS = 12,   /* of a wire's file */
     WB_LAW_MOST_BACKS = 3,    /* back stresses */
+    WB_LAW_MOST_MAXWELL = 2,  /* Maxwell elements */
     WB_LAW_LUDWIK_PARTS = 27, /* of Ludwik's curve; the last is elastic */
     WB_OVERLAY_MOST_PARTS = 28
 };
@@ -58,6 +63,12 @@ struct wb_law_back {
     double recovery; /* gamma_i, 1, at least 0; 0: Prager's, which does not saturate */
 };
 
+/* A Maxwell element: stress' = modulus strain' - stress / time. */
+struct wb_law_maxwell {
+    double modulus; /* Pa, at least 0 */
+    double time;    /* s, above 0 */
+};
+
 struct wb_law {
     enum wb_law_form form;
     double isotropic_share;      /* beta, 0 (kinematic) to 1 (isotropic); of Chaboche's Q over all
@@ -70,6 +81,10 @@ struct wb_law {
     double saturation, rate; /* Q, Pa, and b, 1, at least 0: of Chaboche's yield stress */
     int n_backs;
     struct wb_law_back backs[WB_LAW_MOST_BACKS];
+    int n_maxwell;
+    struct wb_law_maxwell maxwell[WB_LAW_MOST_MAXWELL];
+    double strain_rate; /* 1/s, of the outer fibre in the tests that the Maxwell elements are from:
+                           bending moments are stated at it; 0: of the relaxed law */
 };
 
 /* Parallel parts as a section computes with them. */
@@ -113,6 +128,15 @@ void wb_law_overlay(const struct wb_law *law, struct wb_overlay *overlay);
 /* F(e) of the law, Pa, at a strain e >= 0; *tangent (Pa, may be NULL) is its slope. Exact. */
 double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tangent);
 
+/* Tangent and decay of a Maxwell element over a step of `duration` s (0: sudden; infinite: slow) at
+ * a constant strain rate: stress = decay * stress before + tangent * change of the strain. */
+struct wb_law_maxwell_step {
+    double decay;   /* 1 */
+    double tangent; /* Pa */
+};
+struct wb_law_maxwell_step wb_law_maxwell_step(const struct wb_law_maxwell *element,
+                                               double duration);
+
 /* "ludwik", "parallel" or "chaboche", as in files; "Ludwik's law", "law of parallel parts" or
  * "Chaboche's law"; "isotropic", "kinematic", "mixed" or "combined". */
 const char *wb_law_form_name(enum wb_law_form form);
@@ -123,8 +147,11 @@ const char *wb_law_rule_name(const struct wb_law *law);
 bool wb_law_has_share(const struct wb_law *law);
 
 /* Appends the law's numbers in one line of words: "E 4527 MPa, sigma_Y 4.52 MPa, K 1325 MPa, n
- * 0.9", or the parts' moduli and yield strains, or Chaboche's; and the isotropic share of a mixed
- * or combined rule. */
+ * 0.9", or the parts' moduli and yield strains, or Chaboche's; the isotropic share of a mixed or
+ * combined rule; and the Maxwell elements. */
 void wb_law_append_numbers(struct wb_text *text, const struct wb_law *law);
+/* The Maxwell elements alone, nothing without: "120 MPa that relax over 15 s (Maxwell); moments at
+ * 3.00e-04 1/s of the outer fibre". */
+void wb_law_append_relaxation(struct wb_text *text, const struct wb_law *law);
 
 #endif

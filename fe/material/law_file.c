@@ -64,6 +64,29 @@ static enum wb_status read_backs(const struct wb_config_node *node, struct wb_la
     return WB_OK;
 }
 
+static enum wb_status read_maxwell(const struct wb_config_node *node, struct wb_law *law)
+{
+    const struct wb_config_node *list;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_NUMBER("strain_rate_1_s", &law->strain_rate, 1.0, 0.0, 1e6),
+        WB_CONFIG_NODE("elements", &list),
+    };
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    const int n = wb_config_length(list);
+    if (n < 1 || n > WB_LAW_MOST_MAXWELL)
+        return wb_config_refuse(list, "elements", "expected a list of 1 to %d Maxwell elements",
+                                WB_LAW_MOST_MAXWELL);
+    for (int i = 0; i < n; i++) {
+        const struct wb_config_key numbers[] = {
+            WB_CONFIG_NUMBER("modulus_MPa", &law->maxwell[i].modulus, WB_MPA, 0.0, 1e7),
+            WB_CONFIG_NUMBER("time_s", &law->maxwell[i].time, 1.0, 1e-6, 1e9),
+        };
+        WB_TRY(wb_config_map(wb_config_item(list, i), numbers, WB_COUNT(numbers)));
+    }
+    law->n_maxwell = n;
+    return WB_OK;
+}
+
 /* Of Chaboche's law: its numbers stand in a block of their own, as those beside are Ludwik's. */
 static enum wb_status read_chaboche(const struct wb_config_node *node, double poissons_ratio,
                                     struct wb_law *law)
@@ -98,22 +121,21 @@ static enum wb_status check_share(const struct wb_config_node *node, int rule, b
     return WB_OK;
 }
 
-enum wb_status wb_law_file_read(const struct wb_config_node *node, const struct wb_material *ludwik,
-                                struct wb_law *law)
+static enum wb_status read_relaxed(const struct wb_config_node *node,
+                                   const struct wb_material *ludwik,
+                                   const struct wb_config_node **relaxation, struct wb_law *law)
 {
     const struct wb_config_node *list = NULL, *chaboche = NULL;
     struct wb_law_part parts[WB_LAW_MOST_PARTS];
     int form = WB_LAW_LUDWIK, rule = ISOTROPIC, n = 0;
     double share = -1.0;
-    wb_law_init_ludwik(law, ludwik);
-    if (!node)
-        return WB_OK;
     const struct wb_config_key keys[] = {
         WB_CONFIG_CHOICE("form", &form, forms),
         WB_CONFIG_CHOICE("hardening", &rule, rules),
         WB_CONFIG_OPTIONAL_NUMBER("isotropic_share", &share, 1.0, 0.0, 1.0),
         WB_CONFIG_OPTIONAL_NODE("parts", &list),
         WB_CONFIG_OPTIONAL_NODE("chaboche", &chaboche),
+        WB_CONFIG_OPTIONAL_NODE("relaxation", relaxation),
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     if (list && form != WB_LAW_PARALLEL)
@@ -153,6 +175,17 @@ enum wb_status wb_law_file_read(const struct wb_config_node *node, const struct 
     return wb_law_check(law, NULL);
 }
 
+enum wb_status wb_law_file_read(const struct wb_config_node *node, const struct wb_material *ludwik,
+                                struct wb_law *law)
+{
+    const struct wb_config_node *relaxation = NULL;
+    wb_law_init_ludwik(law, ludwik);
+    if (!node)
+        return WB_OK;
+    WB_TRY(read_relaxed(node, ludwik, &relaxation, law));
+    return relaxation ? read_maxwell(relaxation, law) : WB_OK;
+}
+
 static void append_stress(struct wb_text *text, const char *key, double stress)
 {
     char number[WB_NUMBER_TEXT];
@@ -177,8 +210,8 @@ static void append_chaboche(struct wb_text *text, const struct wb_law *law)
 
 void wb_law_file_append(struct wb_text *text, const struct wb_law *law)
 {
-    char number[WB_NUMBER_TEXT];
-    if (wb_law_is_plain(law))
+    char number[WB_NUMBER_TEXT], other[WB_NUMBER_TEXT];
+    if (wb_law_is_plain(law) && law->n_maxwell == 0)
         return;
     wb_text_append(text, "law:\n  form: %s\n  hardening: %s\n", wb_law_form_name(law->form),
                    wb_law_rule_name(law));
@@ -198,4 +231,11 @@ void wb_law_file_append(struct wb_text *text, const struct wb_law *law)
                            wb_number_format(part->yield_strain, number));
         wb_text_append(text, "}\n");
     }
+    if (law->n_maxwell > 0)
+        wb_text_append(text, "  relaxation:\n    strain_rate_1_s: %s\n    elements:\n",
+                       wb_number_format(law->strain_rate, number));
+    for (int i = 0; i < law->n_maxwell; i++)
+        wb_text_append(text, "      - {modulus_MPa: %s, time_s: %s}\n",
+                       wb_number_format(law->maxwell[i].modulus / WB_MPA, number),
+                       wb_number_format(law->maxwell[i].time, other));
 }

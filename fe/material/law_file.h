@@ -14,6 +14,10 @@
  *         rate: 300            # b, of that
  *         back_stresses:       # up to three, C and gamma
  *           - {modulus_MPa: 2600, recovery: 900}
+ *       relaxation:            # Maxwell elements beside a law of any form, one or two
+ *         strain_rate_1_s: 0.0003  # of the tests; without it 0: moments are the relaxed law's
+ *         elements:
+ *           - {modulus_MPa: 120, time_s: 15}
  *
  * Without the block the law is Ludwik's with isotropic hardening. The four numbers beside a block
  * of another form are their equivalent for solvers that know Ludwik's law alone.
@@ -31,7 +35,8 @@
 WB_MUST_CHECK enum wb_status wb_law_file_read(const struct wb_config_node *node,
                                               const struct wb_material *ludwik, struct wb_law *law);
 
-/* Appends the block, nothing for Ludwik's with isotropic hardening. It reads back the same. */
+/* Appends the block, nothing for Ludwik's with isotropic hardening alone. It reads back the same.
+ */
 void wb_law_file_append(struct wb_text *text, const struct wb_law *law);
 
 #endif

@@ -41,10 +41,23 @@ static void put_chaboche(const struct writer *w, struct wb_json *object, const s
     }
 }
 
+static void put_maxwell(const struct writer *w, struct wb_json *object, const struct wb_law *law)
+{
+    wb_json_set_number(object, "strain_rate_1_s", law->strain_rate);
+    struct wb_json *const elements = wb_json_set_array(object, "elements");
+    for (int i = 0; i < law->n_maxwell; i++) {
+        struct wb_json *const element = wb_json_append_object(elements);
+        put_stress(w, element, "modulus", law->maxwell[i].modulus);
+        wb_json_set_number(element, "time_s", law->maxwell[i].time);
+    }
+}
+
 void wb_law_json_numbers(struct wb_json *object, const struct wb_law *law, const char *unit,
                          double per_unit)
 {
     const struct writer w = {unit, per_unit};
+    if (law->n_maxwell > 0)
+        put_maxwell(&w, wb_json_set_object(object, "relaxation"), law);
     switch (law->form) {
     case WB_LAW_LUDWIK:
         put_stress(&w, object, "yield_stress", law->material.yield_stress);

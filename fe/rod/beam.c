@@ -251,6 +251,11 @@ enum wb_status wb_beam_set_law(struct wb_beam *beam, const struct wb_law *law)
     return WB_OK;
 }
 
+void wb_beam_set_duration(struct wb_beam *beam, double duration)
+{
+    wb_fibres_set_duration(beam->fibres, duration);
+}
+
 static void subtract_load(struct wb_beam *beam, double factor)
 {
     /* Consistent with quadratic shape functions: 1/6, 4/6, 1/6 of an element's load. */

@@ -49,6 +49,9 @@ void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *mater
 /* The same with the law of a section of one law: wb_fibres_set_law(). */
 WB_MUST_CHECK enum wb_status wb_beam_set_law(struct wb_beam *beam, const struct wb_law *law);
 
+/* wb_fibres_set_duration(). */
+void wb_beam_set_duration(struct wb_beam *beam, double duration);
+
 /* Exchanges the natural curvature (1/m over arc length; NULL: straight) and resets the beam.
  * WB_ERR_ARGUMENT where it is not finite. */
 WB_MUST_CHECK enum wb_status

@@ -14,11 +14,18 @@
 
 enum {
     /* The first double says whether the point ever yielded, the second how many parts of an overlay
-     * may have; the rest is padding. */
+     * may have. */
     HISTORY_HEAD = 8,
+    /* Within the head, for Maxwell elements: strains at the end of the last step, then N and M of
+     * each element. */
+    HISTORY_EPS = 2,
+    HISTORY_KAPPA,
+    HISTORY_MAXWELL,
     HISTORY_ROWS = 3, /* plastic strain, accumulated plastic strain, yield or back stress */
     MOST_PASSES = 50
 };
+
+_Static_assert(HISTORY_MAXWELL + 2 * WB_LAW_MOST_MAXWELL <= HISTORY_HEAD, "head of the history");
 
 /* See fe/material/material.c. */
 static const double on_surface = 1e-12;
@@ -63,8 +70,10 @@ struct wb_fibres {
     double tail[WB_OVERLAY_MOST_PARTS + 1]; /* Pa: sum of the moduli from a part on, */
     double full[WB_OVERLAY_MOST_PARTS + 1]; /* and stress of all parts before it once they yield */
     double compliance;                      /* 1/Pa: of all parts while they are elastic */
-    const struct wb_point_law *point_laws;  /* (n_materials) of a section that has them; borrowed */
-    int point_history;                      /* rows of the history that the largest needs */
+    double duration;                        /* s, of a step */
+    struct wb_law_maxwell_step maxwell[WB_LAW_MOST_MAXWELL];
+    const struct wb_point_law *point_laws; /* (n_materials) of a section that has them; borrowed */
+    int point_history;                     /* rows of the history that the largest needs */
     void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *before,
                     double *after, struct wb_fibres_response *response);
     struct wb_memory memory; /* of all arrays */
@@ -157,6 +166,7 @@ enum wb_status wb_fibres_set_law(struct wb_fibres *f, const struct wb_law *law)
         return wb_fail(WB_ERR_ARGUMENT,
                        "a section of another law, or of fewer parts or back stresses");
     f->law = *law;
+    wb_fibres_set_duration(f, f->duration);
     if (f->kind == AS_OVERLAY) {
         set_overlay(f, law);
         return WB_OK;
@@ -166,6 +176,13 @@ enum wb_status wb_fibres_set_law(struct wb_fibres *f, const struct wb_law *law)
     for (int i = 0; i < f->n && f->kind != BY_MATERIAL; i++)
         f->virgin[HISTORY_HEAD + 2 * f->n + i] = 0.0;
     return WB_OK;
+}
+
+void wb_fibres_set_duration(struct wb_fibres *f, double duration)
+{
+    f->duration = duration;
+    for (int i = 0; i < f->law.n_maxwell; i++)
+        f->maxwell[i] = wb_law_maxwell_step(&f->law.maxwell[i], duration);
 }
 
 void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *materials)
@@ -813,6 +830,7 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
 
     sort_fibres(f, section);
     choose_fastest(f);
+    f->duration = (double)INFINITY;
     f->shear_ratio = 1.0;
     if (section->law) {
         f->materials[0] = section->materials[0];
@@ -846,6 +864,26 @@ static void respond_virgin(const struct wb_fibres *f, double eps, double kappa,
     response->D22 = f->EI;
 }
 
+static void add_maxwell(const struct wb_fibres *f, double eps, double kappa, const double *before,
+                        double *after, struct wb_fibres_response *response)
+{
+    const double d_eps = eps - before[HISTORY_EPS], d_kappa = kappa - before[HISTORY_KAPPA];
+    after[HISTORY_EPS] = eps;
+    after[HISTORY_KAPPA] = kappa;
+    for (int i = 0; i < f->law.n_maxwell; i++) {
+        const struct wb_law_maxwell_step *const step = &f->maxwell[i];
+        const double ratio = step->tangent / f->materials[0].youngs_modulus;
+        const int at = HISTORY_MAXWELL + 2 * i;
+        after[at] = step->decay * before[at] + ratio * (f->EA * d_eps + f->ES * d_kappa);
+        after[at + 1] = step->decay * before[at + 1] + ratio * (f->ES * d_eps + f->EI * d_kappa);
+        response->N += after[at];
+        response->M += after[at + 1];
+        response->D11 += ratio * f->EA;
+        response->D12 += ratio * f->ES;
+        response->D22 += ratio * f->EI;
+    }
+}
+
 void wb_fibres_respond(const struct wb_fibres *f, double eps, double kappa,
                        const double *restrict before, double *restrict after,
                        struct wb_fibres_response *restrict response)
@@ -855,10 +893,12 @@ void wb_fibres_respond(const struct wb_fibres *f, double eps, double kappa,
     if (!yielded && fabs(eps) + f->outermost * fabs(kappa) <= f->yield_strain) {
         after[0] = 0.0;
         respond_virgin(f, eps, kappa, response);
-        return;
+    } else {
+        after[0] = 1.0;
+        f->respond(f, eps, kappa, yielded ? before : f->virgin, after, response);
     }
-    after[0] = 1.0;
-    f->respond(f, eps, kappa, yielded ? before : f->virgin, after, response);
+    if (f->law.n_maxwell > 0)
+        add_maxwell(f, eps, kappa, before, after, response);
 }
 
 double wb_fibres_largest_plastic_strain(const struct wb_fibres *f, const double *history)

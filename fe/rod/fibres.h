@@ -35,6 +35,10 @@ void wb_fibres_set_materials(struct wb_fibres *fibres, const struct wb_material 
  * most as many parts or back stresses: else WB_ERR_ARGUMENT. */
 WB_MUST_CHECK enum wb_status wb_fibres_set_law(struct wb_fibres *fibres, const struct wb_law *law);
 
+/* Duration (s, 0 to infinite) of the steps that follow, over which the law's Maxwell elements
+ * relax; infinite after creation. */
+void wb_fibres_set_duration(struct wb_fibres *fibres, double duration);
+
 /* Doubles in the history of one section point. All zero is the virgin state. */
 size_t wb_fibres_history_size(const struct wb_fibres *fibres);
 

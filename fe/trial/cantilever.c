@@ -58,6 +58,7 @@ struct wb_cantilever {
     struct loads loads;
     struct wb_beam_balance balance;
     double residual;  /* relative, last */
+    double duration;  /* s, of a move */
     double tolerance; /* absolute force tolerance of the last check, N */
     int iterations;
 };
@@ -141,6 +142,7 @@ enum wb_status wb_cantilever_create(struct wb_cantilever **out,
     c->settings = complete;
     c->beam = created;
     c->model.section = NULL;
+    c->duration = (double)INFINITY;
     wb_cantilever_reset(c);
     *out = c;
     return WB_OK;
@@ -164,6 +166,11 @@ void wb_cantilever_reset(struct wb_cantilever *cantilever)
 enum wb_status wb_cantilever_set_law(struct wb_cantilever *cantilever, const struct wb_law *law)
 {
     return wb_beam_set_law(cantilever->beam, law);
+}
+
+void wb_cantilever_set_duration(struct wb_cantilever *cantilever, double duration)
+{
+    cantilever->duration = duration;
 }
 
 enum wb_status wb_cantilever_set_curvature(struct wb_cantilever *cantilever,
@@ -597,6 +604,7 @@ enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_co
             .value = next == 1.0 ? target : start + next * (target - start),
             .weight = next == 1.0 ? 1.0 : weight + next * (1.0 - weight),
         };
+        wb_beam_set_duration(c->beam, (next - done) * c->duration);
         if (settle(c, step)) {
             accept(c, &step, from);
             c->state.fraction = fraction;
@@ -619,6 +627,7 @@ enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_co
         double r[3];
         const struct step last = {.control = control, .mode = c->state.mode};
         wb_beam_revert(c->beam);
+        wb_beam_set_duration(c->beam, 0.0);
         c->loads = c->state.loads;
         check_balance(c, &last, &strand, r);
     }

@@ -111,6 +111,10 @@ void wb_cantilever_set_materials(struct wb_cantilever *cantilever,
 WB_MUST_CHECK enum wb_status wb_cantilever_set_law(struct wb_cantilever *cantilever,
                                                    const struct wb_law *law);
 
+/* Duration (s, 0 to infinite) of each move that follows, for a law with Maxwell elements; infinite
+ * after creation: the moves are then of the relaxed law. */
+void wb_cantilever_set_duration(struct wb_cantilever *cantilever, double duration);
+
 /* Exchanges the natural curvature and resets; see wb_cantilever_model. */
 WB_MUST_CHECK enum wb_status
 wb_cantilever_set_curvature(struct wb_cantilever *cantilever,

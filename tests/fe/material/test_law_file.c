@@ -140,6 +140,17 @@ static void what_is_no_law_is_refused_with_its_line(void **unused)
         {"law: {form: chaboche, hardening: combined, chaboche: {youngs_modulus_MPa: 1, "
          "yield_stress_MPa: 1, back_stresses: []}}",
          "back_stresses"},
+        {"law: {form: ludwik, hardening: isotropic, relaxation: {strain_rate_1_s: 1}}", "elements"},
+        {"law: {form: ludwik, hardening: isotropic, relaxation: {elements: []}}", "elements"},
+        {"law: {form: ludwik, hardening: isotropic, relaxation: {elements: [{modulus_MPa: 1, "
+         "time_s: 0}]}}",
+         "time_s"},
+        {"law: {form: ludwik, hardening: isotropic, relaxation: {elements: [{modulus_MPa: 1, "
+         "time_s: 1}, {modulus_MPa: 1, time_s: 1}, {modulus_MPa: 1, time_s: 1}]}}",
+         "elements"},
+        {"law: {form: ludwik, hardening: isotropic, relaxation: {strain_rate_1_s: -1, elements: "
+         "[{modulus_MPa: 1, time_s: 1}]}}",
+         "strain_rate_1_s"},
     };
     struct wb_law law;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -157,12 +168,39 @@ static void what_is_no_law_is_refused_with_its_line(void **unused)
     assert_non_null(strstr(kept.last, "at most 1"));
 }
 
+static void maxwell_elements_of_any_form_read_back_the_same(void **unused)
+{
+    (void)unused;
+    const struct wb_law_part parts[] = {{2.6e9, 1.2e-4}, {0.35e9, (double)INFINITY}};
+    struct wb_law laws[2], back;
+    wb_law_init_ludwik(&laws[0], &ludwik);
+    wb_law_init_parallel(&laws[1], parts, 2, 0.0, 0.39);
+    for (int i = 0; i < 2; i++) {
+        struct wb_text text = {0};
+        laws[i].n_maxwell = 2;
+        laws[i].maxwell[0] = (struct wb_law_maxwell){1.23456789e8, 1.5};
+        laws[i].maxwell[1] = (struct wb_law_maxwell){0.0, 1e3 / 3.0};
+        laws[i].strain_rate = 2e-4 / 3.0;
+        wb_law_file_append(&text, &laws[i]);
+        assert_int_equal(read_text(wb_text_string(&text), &ludwik, &back), WB_OK);
+        assert_int_equal(back.n_maxwell, 2);
+        assert_true(back.strain_rate == laws[i].strain_rate);
+        for (int k = 0; k < 2; k++) {
+            assert_close(back.maxwell[k].modulus, laws[i].maxwell[k].modulus, 1e-6);
+            assert_true(back.maxwell[k].time == laws[i].maxwell[k].time);
+        }
+        assert_int_equal(wb_law_is_plain(&back), i == 0);
+        wb_text_release(&text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_a_block_the_law_is_the_papers),
         cmocka_unit_test(what_is_written_reads_back_the_same),
         cmocka_unit_test(combined_hardening_reads_back_the_same),
+        cmocka_unit_test(maxwell_elements_of_any_form_read_back_the_same),
         cmocka_unit_test(what_is_no_law_is_refused_with_its_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

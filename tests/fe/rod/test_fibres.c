@@ -178,6 +178,100 @@ static void exchanged_materials_act_like_new_ones(void **unused)
     wb_section_release(&b);
 }
 
+/* A section whose law has Maxwell elements, and the moment of the law without them. */
+struct relaxing {
+    struct wb_section section, relaxed;
+    struct fibre_point point, without;
+    struct wb_law law;
+};
+
+static void make_relaxing(struct relaxing *r, int n)
+{
+    const struct test_wire wire = test_wire_type(2);
+    const struct wb_law_part parts[] = {{1e9, 1e-3}, {2e9, (double)INFINITY}};
+    wb_law_init_parallel(&r->law, parts, 2, 0.0, 0.39);
+    assert_int_equal(wb_section_init_law(&r->relaxed, wire.diameter, &r->law, 0), WB_OK);
+    r->law.n_maxwell = n;
+    r->law.maxwell[0] = (struct wb_law_maxwell){0.5e9, 3.0};
+    r->law.maxwell[1] = (struct wb_law_maxwell){0.2e9, 40.0};
+    assert_int_equal(wb_section_init_law(&r->section, wire.diameter, &r->law, 0), WB_OK);
+    r->point = fibre_point_make(&r->section);
+    r->without = fibre_point_make(&r->relaxed);
+}
+
+static void release_relaxing(struct relaxing *r)
+{
+    fibre_point_release(&r->point);
+    fibre_point_release(&r->without);
+    wb_section_release(&r->section);
+    wb_section_release(&r->relaxed);
+}
+
+/* Goes to a curvature in a time, in n steps; returns the moment beyond the relaxed law's, over that
+ * of an elastic section of modulus 1. */
+static double go(struct relaxing *r, double *kappa, double to, double time, int n)
+{
+    struct wb_fibres_response with = {0}, without = {0};
+    const double from = *kappa;
+    wb_fibres_set_duration(r->point.fibres, time / n);
+    for (int i = 1; i <= n; i++) {
+        *kappa = from + (to - from) * i / n;
+        with = fibre_point_respond(&r->point, 0.0, *kappa);
+        without = fibre_point_respond(&r->without, 0.0, *kappa);
+        fibre_point_accept(&r->point);
+        fibre_point_accept(&r->without);
+    }
+    const double I = wb_fibres_bending_stiffness(r->without.fibres) / 3e9;
+    return (with.M - without.M) / I;
+}
+
+/* q' = E kappa' - q / tau over a ramp, a rest and a ramp back, in closed form; in one step or many
+ * alike. */
+static void maxwell_elements_follow_their_rate_form(void **unused)
+{
+    (void)unused;
+    for (int n = 1; n <= 7; n += 3) {
+        struct relaxing r;
+        double kappa = 0.0, q[2] = {0.0, 0.0}, sum = 0.0;
+        make_relaxing(&r, 2);
+        const double ways[][2] = {{30.0, 50.0}, {30.0, 5.0}, {-4.0, 2.0}, {10.0, 1e6}};
+        for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
+            const double time = ways[k][1], rate = (ways[k][0] - kappa) / time;
+            sum = 0.0;
+            for (int i = 0; i < 2; i++) {
+                const double E = r.law.maxwell[i].modulus, tau = r.law.maxwell[i].time;
+                q[i] = E * rate * tau + (q[i] - E * rate * tau) * exp(-time / tau);
+                sum += q[i];
+            }
+            assert_close(go(&r, &kappa, ways[k][0], time, n), sum, 1e-9 * 0.7e9 * 30.0);
+        }
+        assert_close(sum, 0.0, 1e-3 * 0.7e9); /* all relaxed */
+        /* A sudden change is elastic. */
+        assert_close(go(&r, &kappa, 11.0, 0.0, 1), 0.7e9 + sum, 1e-9 * 0.7e9 * 30.0);
+        /* A slow one has nothing of it. */
+        assert_close(go(&r, &kappa, 13.0, (double)INFINITY, 1), 0.0, 1e-9 * 0.7e9);
+        release_relaxing(&r);
+    }
+}
+
+static void tangent_of_a_relaxing_section_is_the_derivative(void **unused)
+{
+    (void)unused;
+    struct relaxing r;
+    double kappa = 0.0;
+    make_relaxing(&r, 1);
+    (void)go(&r, &kappa, 20.0, 4.0, 3);
+    wb_fibres_set_duration(r.point.fibres, 2.0);
+    const double at = 21.0, d = 1e-5, de = 1e-9;
+    const struct wb_fibres_response low = fibre_point_respond(&r.point, 0.0, at - d);
+    const struct wb_fibres_response high = fibre_point_respond(&r.point, 0.0, at + d);
+    const struct wb_fibres_response out = fibre_point_respond(&r.point, de, at);
+    const struct wb_fibres_response here = fibre_point_respond(&r.point, 0.0, at);
+    assert_close_relative(here.D22, (high.M - low.M) / (2.0 * d), 1e-6);
+    assert_close_relative(here.D11, (out.N - here.N) / de, 1e-4);
+    release_relaxing(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -188,6 +282,8 @@ int main(void)
         cmocka_unit_test(pure_power_law_moment_is_its_integral),
         cmocka_unit_test(springback_is_elastic),
         cmocka_unit_test(exchanged_materials_act_like_new_ones),
+        cmocka_unit_test(maxwell_elements_follow_their_rate_form),
+        cmocka_unit_test(tangent_of_a_relaxing_section_is_the_derivative),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

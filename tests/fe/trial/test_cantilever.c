@@ -360,6 +360,50 @@ static void models_and_moves_that_make_no_sense_are_refused(void **unused)
     release_rig(&rig);
 }
 
+/* A Zener wire held at a small deflection: the force decays to the relaxed wire's, in one step as
+ * in the sub-steps that a strong bend needs. */
+static void a_held_tip_relaxes_exponentially(void **unused)
+{
+    (void)unused;
+    const double relaxing = 0.4 * youngs_modulus, tau = 7.0, delta = 1e-4 * length;
+    const struct wb_law_part part = {youngs_modulus, (double)INFINITY};
+    const double stiffness = 3.0 * bending_stiffness() / pow(length, 3);
+    struct wb_cantilever_model model;
+    struct wb_section section;
+    struct wb_law law;
+    wb_law_init_parallel(&law, &part, 1, 0.0, 0.3);
+    law.n_maxwell = 1;
+    law.maxwell[0] = (struct wb_law_maxwell){relaxing, tau};
+    assert_int_equal(wb_section_init_law(&section, diameter, &law, 0), WB_OK);
+    wb_cantilever_default_model(&model);
+    model.section = &section;
+    model.length = length;
+    struct wb_cantilever *const c = test_cantilever(&model);
+
+    wb_cantilever_set_duration(c, 0.0);
+    double force = test_move(c, WB_CONTROL_DEFLECTION, delta).tension;
+    assert_close_relative(force, stiffness * delta * 1.4, 1e-5);
+    wb_cantilever_set_duration(c, 5.0);
+    force = test_move(c, WB_CONTROL_DEFLECTION, delta).tension;
+    assert_close_relative(force, stiffness * delta * (1.0 + 0.4 * exp(-5.0 / tau)), 1e-5);
+    wb_cantilever_set_duration(c, (double)INFINITY);
+    force = test_move(c, WB_CONTROL_DEFLECTION, delta).tension;
+    assert_close_relative(force, stiffness * delta, 1e-5);
+
+    /* The time of a long move is that of its parts. */
+    double forces[2];
+    for (int i = 0; i < 2; i++) {
+        const int n = i == 0 ? 1 : 40;
+        wb_cantilever_reset(c);
+        wb_cantilever_set_duration(c, 20.0 / n);
+        for (int k = 1; k <= n; k++)
+            forces[i] = test_move(c, WB_CONTROL_DEFLECTION, 0.6 * length * k / n).tension;
+    }
+    assert_close_relative(forces[0], forces[1], 0.02);
+    wb_cantilever_destroy(c);
+    wb_section_release(&section);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -373,6 +417,7 @@ int main(void)
         cmocka_unit_test(closed_cycle_costs_work_only_when_plastic),
         cmocka_unit_test(same_moves_give_the_same_bits),
         cmocka_unit_test(trial_move_can_be_taken_back),
+        cmocka_unit_test(a_held_tip_relaxes_exponentially),
         cmocka_unit_test(exchanged_material_acts_like_a_new_wire),
         cmocka_unit_test(models_and_moves_that_make_no_sense_are_refused),
     };
