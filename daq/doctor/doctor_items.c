@@ -43,8 +43,10 @@ struct wb_doctor_item *wb_doctor_add(struct wb_doctor_report *report, const char
 
 double wb_doctor_test_duration(const struct wb_bend_test_request *test, const struct wb_rig *rig)
 {
-    const double cycle = 2.0 * test->travel / rig->stage.speed + test->rest_time;
-    return (test->check_time + test->tare_time + test->cycles * cycle) / rig->time_scale;
+    double time = test->check_time + test->tare_time;
+    for (int cycle = 1; cycle <= test->cycles; cycle++)
+        time += wb_bend_test_cycle_time(test, rig, cycle);
+    return time / rig->time_scale;
 }
 
 /* What a finding is made of. */

@@ -142,6 +142,8 @@ static enum wb_status set_meta(struct wb_recording *recording,
     if (d->imported)
         return WB_OK;
     WB_TRY(set_number(recording, "travel_mm", d->travel / WB_MM));
+    WB_TRY(set_number(recording, "dwell_s", d->dwell));
+    WB_TRY(wb_recording_set_meta(recording, "speeds_mm_s", d->speeds));
     snprintf(text, sizeof text, "%d", d->cycles);
     return wb_recording_set_meta(recording, "cycles", text);
 }

@@ -18,10 +18,12 @@ struct wb_bend_recording {
     const struct wb_specimen *specimen;
     const char *operator_name, *notes; /* may be NULL */
     int cycles;
-    double travel; /* m */
+    double travel;      /* m */
+    double dwell;       /* s, at the turn of each cycle */
+    const char *speeds; /* mm/s, of the cycles in turn; "": the rig's */
     int64_t monotonic_start_ns;
     bool imported; /* from files: made elsewhere at another time, and the caller adds the streams;
-                      cycles and travel are not known */
+                      cycles, travel, dwell and speeds are not known */
 };
 
 /* Creates the file with streams load, mocap and stage (numbers 0 to 2) and the meta values of

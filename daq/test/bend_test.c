@@ -16,6 +16,7 @@
 #include "daq/acquire/stage_check.h"
 #include "daq/test/bend_hold.h"
 #include "daq/test/bend_recording.h"
+#include "daq/test/bend_test_private.h"
 #include "daq/test/check_due.h"
 #include "daq/test/clamp_watch.h"
 #include "daq/test/first_force.h"
@@ -35,12 +36,14 @@ enum phase {
     PHASE_CHECK,
     PHASE_TARE,
     PHASE_DOWN,
+    PHASE_DWELL,
     PHASE_UP,
     PHASE_REST,
     PHASE_HELD
 };
 
 struct wb_bend_test {
+    struct wb_rig rig;                   /* as its file has it; the run's has the cycle's speed */
     struct wb_bend_test_request request; /* its paths and sink are not kept beyond open */
     char output_path[WB_PATH], rig_path[WB_PATH];
     struct wb_sequence run;
@@ -65,15 +68,13 @@ struct wb_bend_test {
     struct wb_bend_test_result result;
 };
 
+/* Speeds of a stage, m/s. */
+static const double slowest = 1e-3 * WB_MM, fastest = 100.0 * WB_MM;
+
 static const char *const phase_names[] = {
-    [PHASE_CONNECT] = "connecting",
-    [PHASE_CHECK] = "check",
-    [PHASE_TARE] = "tare",
-    [PHASE_DOWN] = "down",
-    [PHASE_UP] = "up",
-    [PHASE_REST] = "rest",
-    [PHASE_HELD] = "held",
-    [WB_SEQUENCE_STOP] = "stopping",
+    [PHASE_CONNECT] = "connecting", [PHASE_CHECK] = "check", [PHASE_TARE] = "tare",
+    [PHASE_DOWN] = "down",          [PHASE_DWELL] = "dwell", [PHASE_UP] = "up",
+    [PHASE_REST] = "rest",          [PHASE_HELD] = "held",   [WB_SEQUENCE_STOP] = "stopping",
     [WB_SEQUENCE_OVER] = "end",
 };
 
@@ -98,6 +99,26 @@ static const struct wb_setting rows[] = {
      .option = "travel-mm",
      .argument = "D",
      .help = "How far down from the start position"},
+    {.name = "dwell_s",
+     .unit = "s",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bend_test_request, dwell_time),
+     .least = 0.0,
+     .largest = 36000.0,
+     .fallback = 2.0,
+     .option = "dwell-s",
+     .argument = "S",
+     .help = "Stay at the turn: calibrate fits relaxation from how the force falls there; 60 for a "
+             "wire whose jacket carries much"},
+    {.name = "speeds_mm_s",
+     .unit = "mm/s",
+     .type = WB_SETTING_TEXT,
+     .offset = offsetof(struct wb_bend_test_request, speeds),
+     .size = WB_BEND_TEST_SPEEDS,
+     .otherwise = "the rig file's",
+     .option = "speeds",
+     .argument = "V[,V...]",
+     .help = "Speeds of the cycles in turn"},
     {.name = "hold_most_s",
      .unit = "s",
      .type = WB_SETTING_NUMBER,
@@ -370,6 +391,7 @@ static void watch_drop_anew(struct wb_bend_test *test)
 static void begin_cycle(struct wb_bend_test *test)
 {
     test->cycle++;
+    test->run.rig.stage.speed = wb_bend_test_speed(&test->request, &test->rig, test->cycle);
     test->result.started = true;
     watch_drop_anew(test);
     wb_acquisition_event(test->run.acquisition, "cycle_start", "%d", test->cycle);
@@ -460,6 +482,15 @@ static void step_down(struct wb_bend_test *test)
     if (test->run.phase == PHASE_DOWN)
         check_clamp(test);
     if (test->run.phase == PHASE_DOWN && arrived(test))
+        wb_sequence_enter(&test->run, PHASE_DWELL);
+}
+
+/* A cell that went away may come back, as in the rest. */
+static void step_dwell(struct wb_bend_test *test)
+{
+    if (gone(test, WB_ROLE_LOAD))
+        wb_sequence_enter(&test->run, PHASE_DWELL);
+    if (wb_sequence_lasts_ns(&test->run) >= host_ns(test, test->request.dwell_time))
         turn(test);
 }
 
@@ -496,7 +527,7 @@ static void step_rest(struct wb_bend_test *test)
 bool wb_bend_test_hold(struct wb_bend_test *test)
 {
     const int phase = test->run.phase;
-    if (phase != PHASE_DOWN && phase != PHASE_UP && phase != PHASE_REST)
+    if (phase != PHASE_DOWN && phase != PHASE_DWELL && phase != PHASE_UP && phase != PHASE_REST)
         return false;
     wb_bend_hold_begin(&test->hold, &test->run, PHASE_HELD, phase_names[phase], test->cycle,
                        tension_now(test));
@@ -525,7 +556,7 @@ bool wb_bend_test_resume(struct wb_bend_test *test)
     if (phase == PHASE_REST || (phase == PHASE_UP && is_there))
         wb_sequence_enter(&test->run, PHASE_REST);
     else if (is_there)
-        turn(test);
+        wb_sequence_enter(&test->run, PHASE_DWELL);
     else
         wb_sequence_jog_to(&test->run, test->run.target, test->run.rig.stage.speed, phase);
     return true;
@@ -571,6 +602,41 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
         wb_tip_watch_follow(&test->tip, frame);
 }
 
+/* --- its speeds --- */
+
+/* Reads the speeds, m/s; false where one is not a number of a stage. */
+static bool read_speeds(const char *text, double speeds[WB_BEND_TEST_MOST_SPEEDS], int *n)
+{
+    *n = 0;
+    for (bool is_more = *text != '\0'; is_more;) {
+        char *end;
+        const double speed = strtod(text, &end) * WB_MM;
+        if (end == text || !(speed >= slowest && speed <= fastest) ||
+            *n == WB_BEND_TEST_MOST_SPEEDS || (*end != ',' && *end != '\0'))
+            return false;
+        speeds[(*n)++] = speed;
+        is_more = *end == ',';
+        text = end + 1;
+    }
+    return true;
+}
+
+double wb_bend_test_speed(const struct wb_bend_test_request *request, const struct wb_rig *rig,
+                          int cycle)
+{
+    double speeds[WB_BEND_TEST_MOST_SPEEDS];
+    int n;
+    return read_speeds(request->speeds, speeds, &n) && n > 0 ? speeds[(cycle - 1) % n]
+                                                             : rig->stage.speed;
+}
+
+double wb_bend_test_cycle_time(const struct wb_bend_test_request *request, const struct wb_rig *rig,
+                               int cycle)
+{
+    return 2.0 * request->travel / wb_bend_test_speed(request, rig, cycle) + request->dwell_time +
+           request->rest_time;
+}
+
 /* --- opening --- */
 
 enum wb_status wb_bend_test_check_request(const struct wb_bend_test_request *request,
@@ -581,6 +647,14 @@ enum wb_status wb_bend_test_check_request(const struct wb_bend_test_request *req
     if (request->cycles < 1)
         return wb_fail_to(why, WB_ERR_ARGUMENT, "expected at least one cycle, not %d: see --cycles",
                           request->cycles);
+    double speeds[WB_BEND_TEST_MOST_SPEEDS];
+    int n;
+    if (!read_speeds(request->speeds, speeds, &n))
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "speeds '%s': expected up to %d numbers from %g to %g mm/s, separated by "
+                          "commas: see --speeds",
+                          request->speeds, WB_BEND_TEST_MOST_SPEEDS, slowest / WB_MM,
+                          fastest / WB_MM);
     if (!(travel > 0.0) || !(travel <= limit))
         return wb_fail_to(why, WB_ERR_ARGUMENT,
                           "a travel of %g mm is not free: the rig file allows up to %g mm "
@@ -622,6 +696,7 @@ static enum wb_status check_cell(const struct wb_rig *rig, const char *rig_path)
 static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test_request *request)
 {
     WB_TRY(wb_bend_test_rig(request, &test->run.rig));
+    test->rig = test->run.rig;
     WB_TRY(wb_bend_test_specimen(request, &test->specimen));
     WB_TRY(wb_bend_test_check_request(&test->request, &test->run.rig, NULL));
     if (!request->rig_text)
@@ -646,6 +721,8 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
         .notes = request->notes,
         .cycles = request->cycles,
         .travel = request->travel,
+        .dwell = request->dwell_time,
+        .speeds = request->speeds,
         .monotonic_start_ns = test->started_ns,
     };
     struct wb_recording *recording;
@@ -710,6 +787,9 @@ enum wb_sequence_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeou
     case PHASE_DOWN:
         step_down(test);
         break;
+    case PHASE_DWELL:
+        step_dwell(test);
+        break;
     case PHASE_UP:
         step_up(test);
         break;
@@ -744,22 +824,26 @@ static double time_left(const struct wb_bend_test *test, double travel)
 {
     const struct wb_bend_test_request *const request = &test->request;
     const double way = request->travel / test->run.rig.stage.speed;
+    const double dwell = request->dwell_time;
     const double here = travel / test->run.rig.stage.speed;
     const bool is_held = test->run.phase == PHASE_HELD;
     const int phase = is_held ? test->hold.phase : test->run.phase;
     const double spent = is_held ? 0.0
                                  : wb_seconds_from_ns(wb_sequence_lasts_ns(&test->run)) *
                                        test->run.rig.time_scale; /* in this phase */
-    const int cycles = request->cycles - (test->cycle > 0 ? test->cycle : 1);
-    double left = cycles * (2.0 * way + request->rest_time);
+    double left = 0.0;
+    for (int cycle = test->cycle > 0 ? test->cycle + 1 : 2; cycle <= request->cycles; cycle++)
+        left += wb_bend_test_cycle_time(request, &test->rig, cycle);
     if (test->run.end != WB_SEQUENCE_RUNNING || test->run.phase == WB_SEQUENCE_OVER)
         return 0.0;
     if (phase == PHASE_UP)
         left += fmax(here, 0.0) + request->rest_time;
     else if (phase == PHASE_REST)
         left += fmax(request->rest_time - spent, 0.0);
+    else if (phase == PHASE_DWELL)
+        left += fmax(dwell - spent, 0.0) + way + request->rest_time;
     else
-        left += fmax(way - here, 0.0) + way + request->rest_time;
+        left += fmax(way - here, 0.0) + dwell + way + request->rest_time;
     if (phase == PHASE_TARE)
         left += fmax(request->tare_time - spent, 0.0);
     return left / test->run.rig.time_scale;

@@ -23,6 +23,11 @@
 
 struct wb_bend_test; /* opaque */
 
+enum {
+    WB_BEND_TEST_SPEEDS = 64, /* bytes of the speeds' text */
+    WB_BEND_TEST_MOST_SPEEDS = 8
+};
+
 struct wb_bend_test_request {
     const char *rig_path, *specimen_path; /* YAML files */
     const char *rig_text;                 /* of a bench that is not the rig file's own (a virtual
@@ -35,6 +40,9 @@ struct wb_bend_test_request {
     const char *operator_name, *notes;    /* may be NULL */
     int cycles;
     double travel;                           /* m down from the start position */
+    double dwell_time;                       /* s of rig time at the turn of each cycle */
+    char speeds[WB_BEND_TEST_SPEEDS];        /* mm/s, of the cycles in turn, separated by commas;
+                                                "": the rig file's */
     const struct wb_writer_settings *writer; /* NULL: the defaults */
     struct wb_sink sink;                     /* sees every live sample; members may be NULL */
     double connect_timeout;                  /* s of host time for all instruments to answer */
@@ -45,11 +53,16 @@ struct wb_bend_test_request {
     struct wb_first_force_bounds stiffness;  /* of this wire at this length; all 0: not known */
 };
 
-/* Rows of its cycles, travel and longest hold. */
+/* Rows of its cycles, travel, dwell, speeds and longest hold. */
 extern const struct wb_setting_table wb_bend_test_table;
 
-/* 1 cycle, 53 mm, 6 s, 1 s, 2 s, 2 s, 600 s; paths NULL. */
+/* 1 cycle, 53 mm, 2 s of dwell, the rig's speed, 6 s, 1 s, 2 s, 2 s, 600 s; paths NULL. */
 void wb_bend_test_default_request(struct wb_bend_test_request *request);
+
+/* How long a cycle, from 1, of a request that passed wb_bend_test_check_request() takes with dwell
+ * and rest, s of rig time. */
+double wb_bend_test_cycle_time(const struct wb_bend_test_request *request, const struct wb_rig *rig,
+                               int cycle);
 
 /* Reads the rig that the request names, and the specimen. */
 WB_MUST_CHECK enum wb_status wb_bend_test_rig(const struct wb_bend_test_request *request,
@@ -57,8 +70,8 @@ WB_MUST_CHECK enum wb_status wb_bend_test_rig(const struct wb_bend_test_request 
 WB_MUST_CHECK enum wb_status wb_bend_test_specimen(const struct wb_bend_test_request *request,
                                                    struct wb_specimen *specimen);
 
-/* Whether the rig file allows the request's travel and cycles. Needs no port. `why` holds the
- * message; NULL: it is logged. */
+/* Whether the rig file allows the request's travel and cycles, and its speeds are numbers. Needs no
+ * port. `why` holds the message; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_bend_test_check_request(const struct wb_bend_test_request *request,
                                                         const struct wb_rig *rig,
                                                         struct wb_reason *why);

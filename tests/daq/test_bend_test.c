@@ -8,7 +8,9 @@
 #include "base/timing.h"
 #include "daq/recording/writer_private.h"
 #include "daq/test/bend_recording_private.h"
+#include "daq/test/bend_test_private.h"
 #include "tests/daq/bend_fixture.h"
+#include "tests/messages.h"
 
 static bool well_down(const struct wb_bend_test_status *status)
 {
@@ -71,7 +73,8 @@ static bool is_coming_up(const struct wb_bend_test_status *status)
     return strcmp(status->phase, "up") == 0 && status->travel < 10.0 * WB_MM;
 }
 
-/* The stage of the fixture's rig moves at 1 mm/s; 2 s of rest end a cycle. */
+/* The stage of the fixture's rig moves at 1 mm/s; it stays at the turn for 2 s, and 2 s of rest end
+ * a cycle. */
 static void time_left_is_the_way_left_and_ends_at_zero(void **state)
 {
     struct fixture *const fixture = *state;
@@ -87,10 +90,10 @@ static void time_left_is_the_way_left_and_ends_at_zero(void **state)
     assert_true(run(test, well_down));
     wb_bend_test_status(test, &status);
     assert_true(status.is_connected);
-    assert_close(status.time_left, 48.0 - status.travel / WB_MM + 4.0, 1e-9);
+    assert_close(status.time_left, 48.0 - status.travel / WB_MM + 8.0, 1e-9);
     assert_true(run(test, is_coming_up));
     wb_bend_test_status(test, &status);
-    assert_close(status.time_left, 24.0 + status.travel / WB_MM + 4.0, 1e-9);
+    assert_close(status.time_left, 24.0 + status.travel / WB_MM + 6.0, 1e-9);
     const double peak = status.peak_tension;
     assert_true(peak > 0.0);
     wb_bend_test_stop(test);
@@ -103,6 +106,93 @@ static void time_left_is_the_way_left_and_ends_at_zero(void **state)
     assert_true(status.is_standing);
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_true(result.peak_tension >= peak);
+}
+
+static bool dwells(const struct wb_bend_test_status *status)
+{
+    return strcmp(status->phase, "dwell") == 0;
+}
+
+static bool comes_up(const struct wb_bend_test_status *status)
+{
+    return strcmp(status->phase, "up") == 0;
+}
+
+static bool rests(const struct wb_bend_test_status *status)
+{
+    return strcmp(status->phase, "rest") == 0;
+}
+
+static double seconds(void)
+{
+    return wb_seconds_from_ns(wb_time_now_ns());
+}
+
+/* Both cycles stay at the turn for the dwell; the second moves at a quarter of the speed. */
+static void cycles_have_their_dwell_and_their_speeds_in_turn(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_status status;
+    static const double speeds[] = {2.0, 0.5};
+    fixture->request.cycles = 2;
+    fixture->request.travel = 12.0 * WB_MM;
+    fixture->request.dwell_time = 5.0;
+    snprintf(fixture->request.speeds, sizeof fixture->request.speeds, "2,0.5");
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    for (int cycle = 1; cycle <= 2; cycle++) {
+        const double way = 12.0 / speeds[cycle - 1];
+        assert_close(
+            wb_bend_test_speed(&fixture->request, &(struct wb_rig){.time_scale = 1.0}, cycle),
+            speeds[cycle - 1] * WB_MM, 1e-12);
+        assert_true(run(test, dwells));
+        wb_bend_test_status(test, &status);
+        assert_close(status.travel, 12.0 * WB_MM, 0.02 * WB_MM);
+        const double arrived = seconds();
+        assert_close(status.time_left, 5.0 + way + 2.0 + (cycle == 1 ? 2.0 * 24.0 + 7.0 : 0.0),
+                     0.05);
+        assert_true(run(test, comes_up));
+        assert_close(seconds() - arrived, 5.0, 0.05);
+        assert_true(run(test, rests));
+        assert_close(seconds() - arrived, 5.0 + way, 0.5);
+    }
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, NULL), WB_OK);
+}
+
+/* A hold at the turn is followed by the whole dwell. */
+static void a_hold_in_the_dwell_is_followed_by_the_dwell(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    fixture->request.travel = 8.0 * WB_MM;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_true(run(test, dwells));
+    assert_true(wb_bend_test_hold(test));
+    while (!wb_bend_test_resume(test))
+        assert_int_equal(wb_bend_test_step(test, 20 * MS), WB_SEQUENCE_RUNNING);
+    const double resumed = seconds();
+    assert_true(run(test, comes_up));
+    assert_close(seconds() - resumed, 2.0, 0.05);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
+    assert_int_equal(result.holds, 1);
+}
+
+static void speeds_that_are_no_list_are_rejected(void **state)
+{
+    struct fixture *const fixture = *state;
+    static const char *const wrong[] = {"fast", "1,", "1;2", "0", "-1", "200", "1,1,1,1,1,1,1,1,1"};
+    struct wb_bend_test *test;
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        snprintf(fixture->request.speeds, sizeof fixture->request.speeds, "%s", wrong[i]);
+        keep_messages();
+        assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_ERR_ARGUMENT);
+        assert_non_null(strstr(kept.last, "--speeds"));
+        assert_non_null(strstr(kept.last, wrong[i]));
+    }
 }
 
 static void meta_tells_who_what_and_how(void **state)
@@ -130,6 +220,8 @@ static void meta_tells_who_what_and_how(void **state)
                  {"g", "9.80665"},
                  {"cycles", "1"},
                  {"travel_mm", "2"},
+                 {"dwell_s", "2"},
+                 {"speeds_mm_s", ""},
                  {"monotonic_start_ns", ""},
                  {"virtual", "true"},
                  {"stage_settings", "$110=6000.000\n$120="},
@@ -591,6 +683,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(complete_test_goes_down_and_back_and_records_it),
         TEST(time_left_is_the_way_left_and_ends_at_zero),
+        TEST(cycles_have_their_dwell_and_their_speeds_in_turn),
+        TEST(a_hold_in_the_dwell_is_followed_by_the_dwell),
+        TEST(speeds_that_are_no_list_are_rejected),
         TEST(meta_tells_who_what_and_how),
         TEST(a_part_of_a_yaml_text_ends_at_the_next_key),
         TEST(force_limit_holds_at_the_reading_beyond_it_and_the_specimen_stays),
