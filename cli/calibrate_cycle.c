@@ -219,6 +219,11 @@ static void print_law(const struct wb_cycle_calibration *c)
         else
             printf(", elastic\n");
     }
+    struct wb_text relaxation = {0};
+    wb_law_append_relaxation(&relaxation, law);
+    if (law->n_maxwell > 0)
+        printf("  relaxation: %s\n", wb_text_string(&relaxation));
+    wb_text_release(&relaxation);
     print_correlation(c);
     if (wb_law_is_plain(law))
         return;

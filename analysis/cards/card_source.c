@@ -284,6 +284,10 @@ void wb_card_source_append(const struct wb_card_source *source, const char *kind
     put(text, prefix, "Law: %s, %s; %s; Poisson's ratio %.6g.", forms[p->law.form],
         wb_law_rule_name(&p->law), wb_text_string(&numbers), p->law.material.poissons_ratio);
     wb_text_release(&numbers);
+    if (p->law.n_maxwell > 0)
+        put(text, prefix,
+            "The wire relaxes: moments below are at the tests' strain rate, a "
+            "material's stresses those after a long rest.");
     put_interval(text, prefix, source);
     put_range(text, prefix, source);
     put_rule(text, prefix, source);

@@ -21,11 +21,20 @@ static double last_strain(const struct wb_law *law)
     return before > 0.0 ? last * last / before : last;
 }
 
+static void tell_relaxed(const struct wb_wire *wire)
+{
+    if (wire->law.n_maxwell > 0)
+        wb_info("wire %s relaxes: computed without its Maxwell elements, as after a long rest",
+                wire->name);
+}
+
 enum wb_status wb_solve_law_tell(const struct wb_wire *wire)
 {
     const struct wb_law *const law = &wire->law;
     const double strain = last_strain(law);
     double difference;
+    if (wire->has_properties)
+        tell_relaxed(wire);
     if (!wire->has_properties || wb_law_is_plain(law))
         return WB_OK;
     if (law->form == WB_LAW_CHABOCHE) {
@@ -57,6 +66,7 @@ enum wb_status wb_solve_law_prepare(const char *name, bool is_elastic, struct wb
     if (!wire->has_properties)
         return wb_fail(WB_ERR_DATA, "%s: the wire has no `properties` to compute with", path);
     *law = wire->law;
+    tell_relaxed(wire);
     if (!is_elastic)
         return wb_section_init_law(section, wire->outer_diameter, law, 0);
     struct wb_material elastic = law->material;

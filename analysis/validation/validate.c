@@ -230,7 +230,28 @@ static enum wb_status check_reached(const struct wb_validate_result *result, str
 /* What is left of a plain law is its material, which runs are given. */
 static const struct wb_law *overlay_of(const struct wb_properties *properties)
 {
-    return wb_law_is_plain(&properties->law) ? NULL : &properties->law;
+    const bool is_plain = wb_law_is_plain(&properties->law) && properties->law.n_maxwell == 0;
+    return is_plain ? NULL : &properties->law;
+}
+
+/* Mean speed of the deflection on the first loadings, m/s; 0 where no time is known. */
+static double loading_speed(const struct wb_dataset *const *datasets, int n)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; i++) {
+        const struct wb_row *first = NULL, *last = NULL;
+        for (size_t k = 0; k < datasets[i]->n_rows; k++) {
+            const struct wb_row *const row = &datasets[i]->rows[k];
+            if (row->cycle != 1 || row->phase != WB_PHASE_LOAD || !(row->deflection > 0.0))
+                continue;
+            first = first ? first : row;
+            last = !last || row->deflection > last->deflection ? row : last;
+        }
+        if (!first || !(last->t > first->t))
+            return 0.0;
+        sum += (last->deflection - first->deflection) / (last->t - first->t) / n;
+    }
+    return sum;
 }
 
 /* The elastic prediction beside it. */
@@ -256,8 +277,9 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
                                      struct wb_reason *why)
 {
     const struct wb_material *const material = &properties->law.material;
-    const struct wb_computed_settings how = {settings->straight, settings->n_elements,
-                                             settings->n_fibres, why, overlay_of(properties)};
+    const struct wb_computed_settings how = {settings->straight,     settings->n_elements,
+                                             settings->n_fibres,     why,
+                                             overlay_of(properties), loading_speed(datasets, n)};
     struct wb_computed *computed;
     struct wb_marker_distance distance;
     double G;

@@ -41,9 +41,16 @@ static void release_sample(struct sample *sample)
     free(sample->tension);
 }
 
-static void add_point(struct wb_cycle_data *path, double deflection)
+static void add_point(struct wb_cycle_data *path, double deflection, double t)
 {
-    path->points[path->n_points++].deflection = deflection;
+    path->points[path->n_points++] = (struct wb_cycle_point){.deflection = deflection, .t = t};
+}
+
+/* When the line through two points reaches a deflection. */
+static double time_at(const struct wb_cycle_point *a, const struct wb_cycle_point *b,
+                      double deflection)
+{
+    return a->t + (b->t - a->t) * (deflection - a->deflection) / (b->deflection - a->deflection);
 }
 
 static struct way add_way(struct wb_cycle_data *path, const struct wb_cycle_data *data, int begin,
@@ -51,7 +58,7 @@ static struct way add_way(struct wb_cycle_data *path, const struct wb_cycle_data
 {
     const struct way way = {.n = end - begin, .first = path->n_points, .n_before = begin};
     for (int i = begin; i < end; i++)
-        add_point(path, data->points[i].deflection);
+        add_point(path, data->points[i].deflection, data->points[i].t);
     return way;
 }
 
@@ -61,9 +68,12 @@ static struct way add_way(struct wb_cycle_data *path, const struct wb_cycle_data
 static void add_descent(struct wb_cycle_data *path)
 {
     const double lowest = wb_cycle_model_rest(&path->info);
-    while (path->points[path->n_points - 1].deflection > lowest + step)
-        add_point(path, path->points[path->n_points - 1].deflection - step);
-    add_point(path, lowest);
+    const struct wb_cycle_point *const last = &path->points[path->n_points - 1];
+    while (path->points[path->n_points - 1].deflection > lowest + step) {
+        const double next = path->points[path->n_points - 1].deflection - step;
+        add_point(path, next, time_at(last - 1, last, next));
+    }
+    add_point(path, lowest, time_at(last - 1, last, lowest));
 }
 
 static void make_path(struct sample *sample)
@@ -76,16 +86,20 @@ static void make_path(struct sample *sample)
         most += (size_t)sample->data[k].n_points + (size_t)(descent / step) + 4;
     }
     path->top = sample->data[0].top;
+    path->arrival = sample->data[0].arrival;
+    path->departure = sample->data[0].departure;
+    path->n_held = sample->data[0].n_held;
+    memcpy(path->held, sample->data[0].held, sizeof path->held);
     path->points = wb_memory_new(most, sizeof *path->points);
     sample->tension = wb_memory_new(most, sizeof *sample->tension);
-    add_point(path, 0.0);
+    add_point(path, 0.0, time_at(sample->data[0].points, sample->data[0].points + 1, 0.0));
     for (int k = 0; k < sample->n_cycles; k++) {
         const struct wb_cycle_data *const data = &sample->data[k];
         sample->up[k] = add_way(path, data, 0, data->n_loading);
         if (k == 0)
             path->n_loading = path->n_points; /* the model goes on to the turn by itself */
         else
-            add_point(path, data->top);
+            add_point(path, data->top, data->arrival);
         sample->back[k] = add_way(path, data, data->n_loading, data->n_points);
         if (sample->back[k].n > 0)
             add_descent(path);

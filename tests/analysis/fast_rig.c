@@ -16,11 +16,12 @@
 
 #define WB_LOG_DOMAIN "test"
 
-static const double tare_time = 2.5, speed = 1.0 * WB_MM, turn_pause = 0.2, end_pause = 2.0;
+static const double tare_time = 2.5, speed = 1.0 * WB_MM, end_pause = 2.0;
 static const int strips = 12;
 /* Steps from one curvature of the truth to the next: a part that relaxes needs small ones. */
 enum {
-    TRUTH_STEPS = 40
+    TRUTH_STEPS = 40,
+    RELEASE_STEPS = 100
 };
 
 void fast_rig_init(struct fast_rig *fast, int type, double length, uint64_t seed)
@@ -46,6 +47,7 @@ void fast_rig_init(struct fast_rig *fast, int type, double length, uint64_t seed
     fast->rig.is_virtual = true;
     fast->rig.stage.speed = speed;
     fast->cycles = 1;
+    fast->dwell = 0.2;
     fast->travel = 53.0 * WB_MM;
     fast->every_frame = 6;
     fast->noise = 1.0;
@@ -56,16 +58,16 @@ void fast_rig_init(struct fast_rig *fast, int type, double length, uint64_t seed
 static double travel_at(const struct fast_rig *fast, double t)
 {
     const double way = fast->travel / speed;
-    const double period = 2.0 * way + turn_pause + end_pause;
+    const double period = 2.0 * way + fast->dwell + end_pause;
     const double since = t - tare_time;
     if (since < 0.0 || since >= fast->cycles * period)
         return 0.0;
     const double phase = fmod(since, period);
     if (phase < way)
         return phase * speed;
-    if (phase < way + turn_pause)
+    if (phase < way + fast->dwell)
         return fast->travel;
-    return fmax(0.0, fast->travel - (phase - way - turn_pause) * speed);
+    return fmax(0.0, fast->travel - (phase - way - fast->dwell) * speed);
 }
 
 struct bench {
@@ -88,6 +90,7 @@ static int64_t stamp(double t)
 
 static void read_cell(struct bench *bench, struct wb_align *align, uint64_t k, double t)
 {
+    wb_live_wire_set_time(bench->wire, t);
     wb_live_wire_move(bench->wire, travel_at(bench->fast, t), &bench->view);
     wb_sim_cell_read(&bench->cell, k, t, bench->view.tension);
     bench->cell.out.n = 0; /* nobody listens */
@@ -102,6 +105,7 @@ static void read_cell(struct bench *bench, struct wb_align *align, uint64_t k, d
 
 static void take_frame(struct bench *bench, struct wb_align *align, uint64_t k, double t)
 {
+    wb_live_wire_set_time(bench->wire, t);
     wb_live_wire_move(bench->wire, travel_at(bench->fast, t), &bench->view);
     wb_sim_mocap_frame(&bench->mocap, k, &bench->view, &bench->frame);
     bench->frame.mocap.t_ns = stamp(t);
@@ -114,7 +118,7 @@ static enum wb_status run_bench(struct bench *bench, struct wb_align *align)
 {
     const struct fast_rig *const fast = bench->fast;
     const double way = fast->travel / speed;
-    const double end = tare_time + fast->cycles * (2.0 * way + turn_pause + end_pause) + 0.5;
+    const double end = tare_time + fast->cycles * (2.0 * way + fast->dwell + end_pause) + 0.5;
     const uint64_t every = (uint64_t)fast->every_frame;
     uint64_t frame = every - 1, reading = 0, report = 0;
     for (;;) {
@@ -268,18 +272,13 @@ void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature,
             moment[i] = M;
     }
     if (residual_curvature) {
-        double low = 0.0, high = truth.curvature;
-        struct wb_fibres_response response;
-        truth.laws.time_step = 0.0;
-        for (int i = 0; i < 60; i++) {
-            const double middle = 0.5 * (low + high);
-            wb_fibres_respond(truth.fibres, 0.0, middle, truth.before, truth.after, &response);
-            if (response.M > 0.0)
-                high = middle;
-            else
-                low = middle;
+        const double top = truth.curvature, step = top / RELEASE_STEPS;
+        double before = 0.0, M = 1.0;
+        while (M > 0.0 && truth.curvature > 0.0) {
+            before = M;
+            M = bend_truth(&truth, truth.curvature - step, time_of(fast, step, top));
         }
-        *residual_curvature = 0.5 * (low + high);
+        *residual_curvature = truth.curvature + step * -M / (before - M);
     }
     close_truth(&truth);
 }

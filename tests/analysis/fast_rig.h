@@ -24,6 +24,7 @@ struct fast_rig {
     struct wb_truth truth;
     int cycles;
     double travel;   /* m */
+    double dwell;    /* s, at the turn; 0.2 */
     int every_frame; /* of the cameras' is taken; 6: as many frames as the dataset has rows */
     double noise;    /* factor on the noise of the cell and of the markers; 1 */
     /* How far the bench's files, and the cell, are off what is bent. */
@@ -38,7 +39,7 @@ WB_MUST_CHECK enum wb_status fast_rig_run(const struct fast_rig *fast, struct wb
 
 /* The true section of the specimen: bending moment of a first loading (N m) at n ascending
  * curvatures (1/m), reached at the speed of the test; the elastic flexural rigidity (N m2); what
- * curvature is left when the moment is let go from the last. Any may be NULL. */
+ * curvature is left when the moment is taken off from the last, at that speed. Any may be NULL. */
 void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature, double *moment,
                     double *rigidity, double *residual_curvature);
 

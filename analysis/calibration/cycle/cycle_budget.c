@@ -109,7 +109,12 @@ static double stated(const struct wb_cycle_calibration *calibration, enum wb_cyc
 {
     double squares = 0.0;
     for (int i = 0; i < calibration->n_members; i++) {
-        const double u = wb_cycle_shared_uncertainty(&calibration->members[i].data.info, shared);
+        const struct wb_cycle_data *const data = &calibration->members[i].data;
+        const double u = shared == WB_SHARED_RELAXATION
+                             ? calibration->relaxation_prior
+                             : wb_cycle_shared_uncertainty(&data->info, shared);
+        if (!wb_cycle_shared_applies(data, shared))
+            continue;
         if (!(u > 0.0))
             return 0.0;
         squares += u * u / calibration->n_members;
@@ -253,9 +258,9 @@ bool wb_cycle_budget_is_within(const struct wb_cycle_calibration *c, double part
 
 bool wb_cycle_budget_has(const struct wb_cycle_calibration *calibration, enum wb_contribution row)
 {
-    bool has = row != WB_FROM_SHARED + WB_SHARED_COUNTERWEIGHT;
-    for (int i = 0; i < calibration->n_members; i++)
-        has = has || calibration->members[i].data.info.counterweight > 0.0;
+    bool has = row < WB_FROM_SHARED;
+    for (int i = 0; i < calibration->n_members && !has; i++)
+        has = wb_cycle_shared_applies(&calibration->members[i].data, row - WB_FROM_SHARED);
     return has;
 }
 

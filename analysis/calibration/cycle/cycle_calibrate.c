@@ -9,6 +9,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "analysis/calibration/cycle/cycle_budget.h"
+#include "analysis/calibration/cycle/cycle_hold.h"
 #include "analysis/calibration/paper/first_guess.h"
 #include "analysis/calibration/paper/first_guess_private.h"
 #include "base/memory.h"
@@ -268,7 +269,7 @@ static void take_contained(struct wb_cycle_member *member, enum wb_candidate can
     wb_cycle_fit_release(&answer->fit);
     answer->fit = *contained;
     answer->fit.candidate = candidate;
-    answer->fit.n_law = wb_candidate_numbers(candidate);
+    answer->fit.n_law = wb_candidate_numbers(candidate) + 2 * contained->law.n_maxwell;
     answer->fit.n_free += answer->fit.n_law - contained->n_law;
     answer->fit.is_at_bound = true;
     contain(candidate, &answer->fit.law);
@@ -306,12 +307,11 @@ static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *memb
 }
 
 /* Ludwik's candidates. */
-static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct wb_dataset *dataset,
+static enum wb_status fit_ludwiks(struct wb_cycle_member *member,
                                   const struct wb_cycle_calibrate_settings *settings)
 {
     const struct wb_cycle_grid none = {0.0, 0.0};
     struct wb_law start;
-    WB_TRY(wb_cycle_data_take(&member->data, dataset, &settings->data, &member->why));
     first_law(&member->data, &start);
     WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, settings));
     if (member->data.n_loading == member->data.n_points)
@@ -362,7 +362,8 @@ static enum wb_status fit_chaboches(struct wb_cycle_member *member,
 /* --- specimens side by side --- */
 
 enum stage {
-    LUDWIKS,
+    DATA,
+    LUDWIKS,   /* from here on with the Maxwell elements that all specimens ask for */
     PARALLELS, /* from here on with the scale of all specimens' strains */
     CHABOCHES, /* where the others leave something */
     STAGES
@@ -372,6 +373,7 @@ struct work {
     struct wb_cycle_calibration *calibration;
     const struct wb_dataset *const *datasets;
     const struct wb_cycle_calibrate_settings *settings;
+    struct wb_cycle_calibrate_settings with_elements;
     enum stage stage;
     struct wb_cycle_grid grid;
     int done, all;
@@ -385,7 +387,9 @@ static enum wb_status fit_member(void *context, int index)
     struct wb_cycle_member *const member = &work->calibration->members[index];
     const double begin = wb_progress_thread_cpu();
     const enum wb_status status =
-        work->stage == LUDWIKS     ? fit_ludwiks(member, work->datasets[index], work->settings)
+        work->stage == DATA        ? wb_cycle_data_take(&member->data, work->datasets[index],
+                                                        &work->settings->data, &member->why)
+        : work->stage == LUDWIKS   ? fit_ludwiks(member, work->settings)
         : work->stage == PARALLELS ? fit_parallels(member, &work->grid, work->settings)
                                    : fit_chaboches(member, &work->grid, work->settings);
     member->cpu_s += wb_progress_thread_cpu() - begin;
@@ -397,9 +401,11 @@ static bool finish_member(void *context, int index, enum wb_status status)
     struct work *const work = context;
     (void)index;
     const struct wb_cycle_calibrate_settings *const s = work->settings;
-    work->done++;
     if (work->status == WB_OK)
         work->status = status;
+    if (work->stage == DATA)
+        return true;
+    work->done++;
     work->stopped = s->progress && !s->progress(s->progress_context, work->done, work->all);
     return !work->stopped;
 }
@@ -416,6 +422,21 @@ static enum wb_status work_side_by_side(struct work *work, enum stage stage)
     };
     (void)wb_workers_run(&workers);
     return work->status;
+}
+
+/* Maxwell elements that the specimens ask for; none where unloading was not measured. */
+static int count_elements(const struct wb_cycle_calibration *calibration)
+{
+    const int n = calibration->n_members;
+    const struct wb_cycle_data **const data = wb_memory_new((size_t)n, sizeof *data);
+    bool has_unloading = true;
+    for (int i = 0; i < n; i++) {
+        data[i] = &calibration->members[i].data;
+        has_unloading = has_unloading && data[i]->n_loading < data[i]->n_points;
+    }
+    const int elements = has_unloading ? wb_cycle_hold_elements(data, n) : 0;
+    free(data);
+    return elements;
 }
 
 /* The first specimen that failed tells why. */
@@ -583,10 +604,21 @@ static bool leaves_something(const struct wb_cycle_calibration *calibration)
                fmax(follows_up_to, follows_noise * calibration->repeat_noise);
 }
 
-/* What a law says of bending: numbers by enum wb_cycle_number. */
-static enum wb_status describe_law(const struct wb_cycle_calibration *calibration,
-                                   const struct wb_law *law, double diameter, double *value)
+static struct wb_law with_rate(const struct wb_law *law, double strain_rate)
 {
+    struct wb_law same = *law;
+    if (strain_rate > 0.0)
+        same.strain_rate = strain_rate;
+    return same;
+}
+
+/* What a law says of bending at the mean strain rate of the specimens: numbers by enum
+ * wb_cycle_number. */
+static enum wb_status describe_law(const struct wb_cycle_calibration *calibration,
+                                   const struct wb_law *fitted, double diameter, double *value)
+{
+    const struct wb_law at_rate = with_rate(fitted, calibration->strain_rate), *const law =
+                                                                                   &at_rate;
     const struct wb_cycle_stiffness *const s = &calibration->secant;
     const struct wb_cycle_stiffness *const u = &calibration->unloading;
     const double largest = calibration->largest_curvature;
@@ -624,13 +656,13 @@ static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double 
 /* How the logarithms hang on what all specimens share. The weight goes with the square of the
  * diameter. */
 static enum wb_status find_answer_effects(struct wb_cycle_answer *answer,
-                                          const struct wb_test_info *info,
+                                          const struct wb_cycle_data *data,
                                           const struct wb_cycle_calibration *calibration)
 {
-    const double diameter = info->outer_diameter;
+    const double diameter = data->info.outer_diameter;
     double altered[WB_CYCLE_NUMBERS] = {0.0};
     for (int i = 0; i < WB_SHARED; i++) {
-        const bool is_there = i != WB_SHARED_COUNTERWEIGHT || info->counterweight > 0.0;
+        const bool is_there = wb_cycle_shared_applies(data, i);
         for (int k = 0; k < WB_CYCLE_NUMBERS && is_there; k++)
             answer->effect[i][k] = (double)NAN;
         if (!answer->fit.has_altered[i])
@@ -695,11 +727,13 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
     double first = least_curvature, change = least_curvature;
 
     calibration->largest_curvature = (double)INFINITY;
+    calibration->strain_rate = 0.0;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_answer *const answer =
             &calibration->members[i].answers[calibration->chosen];
         calibration->largest_curvature =
             fmin(calibration->largest_curvature, answer->fit.clamp_curvature);
+        calibration->strain_rate += answer->fit.law.strain_rate / calibration->n_members;
         first = fmax(first, answer->fit.first_curvature);
         change = fmax(change, answer->fit.turn_change);
     }
@@ -717,8 +751,7 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
             if (candidate_counts(calibration, c))
                 WB_TRY(find_answer_errors(answer, diameter, calibration));
             if (c == (int)calibration->chosen)
-                WB_TRY(
-                    find_answer_effects(answer, &calibration->members[i].data.info, calibration));
+                WB_TRY(find_answer_effects(answer, &calibration->members[i].data, calibration));
         }
     }
     return WB_OK;
@@ -760,11 +793,29 @@ static void average_chaboche(const struct wb_cycle_calibration *calibration,
                          first->n_backs);
 }
 
+/* Means of the moduli, and of the logarithms of the times, each as its modulus counts. */
+static void average_maxwell(const struct wb_cycle_calibration *calibration,
+                            enum wb_candidate candidate, struct wb_law *average)
+{
+    const int n = calibration->n_members;
+    average->n_maxwell = calibration->members[0].answers[candidate].fit.law.n_maxwell;
+    average->strain_rate = average->n_maxwell > 0 ? calibration->strain_rate : 0.0;
+    for (int k = 0; k < average->n_maxwell; k++) {
+        double modulus = 0.0, time = 0.0;
+        for (int i = 0; i < n; i++) {
+            const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
+            modulus += law->maxwell[k].modulus / n;
+            time += law->maxwell[k].modulus * log(law->maxwell[k].time) / n;
+        }
+        average->maxwell[k] = (struct wb_law_maxwell){modulus, exp(time / modulus)};
+    }
+}
+
 /* The law of the product. Of parallel parts the means: together they carry the mean of what the
  * specimens carry. A part that one specimen has and another nearly not would be gone in the mean of
  * the logarithms. Of Ludwik's law the means of the logarithms of what it is made of. */
-static void average_law(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
-                        struct wb_law *average)
+static void average_relaxed(const struct wb_cycle_calibration *calibration,
+                            enum wb_candidate candidate, struct wb_law *average)
 {
     const int n = calibration->n_members;
     const struct wb_law *const first = &calibration->members[0].answers[candidate].fit.law;
@@ -805,6 +856,13 @@ static void average_law(const struct wb_cycle_calibration *calibration, enum wb_
     wb_law_init_ludwik(average, &material);
     average->isotropic_share = share;
     average->is_combined = first->is_combined;
+}
+
+static void average_law(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                        struct wb_law *average)
+{
+    average_relaxed(calibration, candidate, average);
+    average_maxwell(calibration, candidate, average);
 }
 
 static enum wb_status find_equivalents(struct wb_cycle_calibration *calibration)
@@ -885,6 +943,7 @@ static struct wb_estimate *estimate_of(struct wb_cycle_calibration *calibration,
 static enum wb_status conclude(struct wb_cycle_calibration *calibration,
                                const struct wb_cycle_calibrate_settings *settings)
 {
+    calibration->relaxation_prior = settings->fit.relaxation_prior;
     WB_TRY(describe_answers(calibration));
     for (int k = 0; k < WB_CYCLE_NUMBERS; k++)
         wb_cycle_estimate(calibration, k, settings, estimate_of(calibration, k),
@@ -955,10 +1014,16 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
         .calibration = calibration,
         .datasets = datasets,
         .settings = settings,
-        .all = STAGES * calibration->n_members,
+        .all = (STAGES - LUDWIKS) * calibration->n_members,
         .status = WB_OK,
     };
-    enum wb_status status = work_side_by_side(&work, LUDWIKS);
+    enum wb_status status = work_side_by_side(&work, DATA);
+    if (status == WB_OK) {
+        work.with_elements = *settings;
+        work.with_elements.fit.n_maxwell = count_elements(calibration);
+        work.settings = &work.with_elements;
+        status = work_side_by_side(&work, LUDWIKS);
+    }
     if (status != WB_OK)
         return tell_failure(calibration, status, why);
     /* Specimens are taken in order, and what was begun was ended. */
@@ -970,18 +1035,18 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
             calibration->has_unloading = false;
     }
     work.grid = find_grid(calibration);
-    int n_stages = calibration->has_unloading ? PARALLELS + 1 : LUDWIKS + 1;
+    int n_stages = calibration->has_unloading ? 2 : 1;
     if (calibration->has_unloading && !work.stopped)
         status = work_side_by_side(&work, PARALLELS);
     choose(calibration);
     if (status == WB_OK && calibration->has_unloading && leaves_something(calibration)) {
-        n_stages = CHABOCHES + 1;
+        n_stages = 3;
         if (!work.stopped)
             status = work_side_by_side(&work, CHABOCHES);
     }
     if (status != WB_OK)
         return tell_failure(calibration, status, why);
-    calibration->is_stopped = work.done < n_stages * (work.all / STAGES);
+    calibration->is_stopped = work.done < n_stages * (work.all / (STAGES - LUDWIKS));
     choose(calibration);
     if (calibration->n_ranked == 0)
         return tell_failure(calibration, WB_ERR_DATA, why);

@@ -135,6 +135,9 @@ struct wb_cycle_calibration {
      * that were, and nothing is decided of the rule. */
     bool is_stopped;
     double largest_curvature; /* 1/m: smallest of the specimens' largest */
+    double relaxation_prior;  /* 1, see struct wb_cycle_fit_settings */
+    double strain_rate;       /* 1/s, of the outer fibre, mean over the specimens, at which numbers
+                                 of laws with Maxwell elements are stated; 0: without */
     struct wb_estimate rigidity, springback, loop_energy; /* N m2, 1, J/m */
     double curvature[WB_CYCLE_MOMENTS];
     struct wb_estimate moment[WB_CYCLE_MOMENTS];

@@ -7,6 +7,7 @@
 
 #include "analysis/calibration/cycle/cycle_check_private.h"
 #include "analysis/calibration/cycle/cycle_fit.h"
+#include "analysis/calibration/cycle/cycle_hold.h"
 #include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/dataset/batches.h"
 #include "analysis/dataset/fit.h"
@@ -17,6 +18,10 @@
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "check"
+
+enum {
+    MOST_STOPS = 64
+};
 
 /* --- of rows --- */
 
@@ -61,9 +66,8 @@ static const double slack = 2.5e-3;
 /* Standard deviations between two estimates of the bow; and how well an alignment knows it that
  * does not say. */
 static const double bow_limit = 3.0, bow_doubt = 5.0, bow_deviation = 0.3 * WB_MM;
-/* Nothing moves where it stays within this, m, for this time, s, beyond what the test's own speed
- * takes to come in and to leave. The wire is bent from this part of the largest force on. */
-static const double stop_reach = 0.15 * WB_MM, stop_time = 0.8, bent_share = 0.2;
+/* A wire is bent from this part of the largest force on. */
+static const double bent_share = 0.2;
 /* A fall of the force there counts beyond so many standard errors, from this part of the largest
  * force on; from the second on it is a doubt. */
 static const double fall_noise = 4.0, least_fall = 2e-3, doubted_fall = 5e-3;
@@ -732,68 +736,6 @@ static void check_holds(struct wb_cycle_remarks *remarks, const struct specimen 
             s->wire, s->sample, n, n == 1 ? "" : "s", seconds);
 }
 
-/* Rows `first` to `end` - 1 between which nothing moves. */
-struct stop {
-    size_t first, end;
-};
-
-/* A test's rows, and what moves: the stage where all rows know it, else the deflection. */
-struct motion {
-    const struct wb_row *rows;
-    size_t n;
-    bool has_stage;
-    double speed; /* m/s; NaN unknown */
-};
-
-static double place_of(const struct motion *m, size_t i)
-{
-    return m->has_stage ? m->rows[i].stage : m->rows[i].deflection;
-}
-
-/* The median of the speed over times that are long beside the noise of a place. */
-static double find_speed(const struct motion *m)
-{
-    double *const speeds = wb_memory_new(m->n, sizeof *speeds);
-    size_t from = 0, n = 0;
-    for (size_t i = 0; i < m->n; i++) {
-        const double past = m->rows[i].t - m->rows[from].t;
-        if (past < stop_time)
-            continue;
-        const double speed = fabs(place_of(m, i) - place_of(m, from)) / past;
-        if (isfinite(speed))
-            speeds[n++] = speed;
-        from = i;
-    }
-    const double median = n > 0 ? wb_fit_median(speeds, n) : (double)NAN;
-    free(speeds);
-    return median;
-}
-
-/* The first stop from row `from` on, of a wire that carries some of the largest force, without the
- * rows in which it may come in and leave; false: there is none. */
-static bool find_stop(const struct specimen *s, const struct motion *m, size_t from,
-                      struct stop *stop)
-{
-    const double passing = 2.0 * stop_reach / m->speed; /* s, within reach without a stop */
-    for (size_t i = from; i < m->n; i++) {
-        if (!(m->rows[i].tension > bent_share * s->data->max_force) || !isfinite(place_of(m, i)))
-            continue;
-        size_t end = i + 1;
-        while (end < m->n && fabs(place_of(m, end) - place_of(m, i)) <= stop_reach)
-            end++;
-        const double begin = m->rows[i].t + passing, last = m->rows[end - 1].t - passing;
-        if (last - begin < stop_time)
-            continue;
-        *stop = (struct stop){i, end};
-        while (m->rows[stop->first].t < begin)
-            stop->first++;
-        while (m->rows[stop->end - 1].t > last)
-            stop->end--;
-        return true;
-    }
-    return false;
-}
-
 /* Mean of the tension of some rows, and the squared standard error of that; NaN of fewer than two
  * that have one. */
 static double mean_tension(const struct wb_row *rows, size_t n, double *variance)
@@ -816,31 +758,40 @@ static double mean_tension(const struct wb_row *rows, size_t n, double *variance
 /* A force that falls while nothing moves: by the largest of all stops. */
 static void check_relaxation(struct wb_cycle_remarks *remarks, const struct specimen *s)
 {
-    struct motion m = {.rows = s->dataset->rows, .n = s->dataset->n_rows, .has_stage = true};
-    for (size_t i = 0; i < m.n; i++)
-        m.has_stage = m.has_stage && isfinite(m.rows[i].stage);
-    m.speed = find_speed(&m);
-    double most = 0.0, at = 0.0, seconds = 0.0;
-    struct stop stop = {0, 0};
-    while (m.speed > 0.0 && find_stop(s, &m, stop.end, &stop)) {
-        const size_t fifth = (stop.end - stop.first) / 5;
+    struct wb_cycle_stop stops[MOST_STOPS];
+    const struct wb_row *const rows = s->dataset->rows;
+    const int n =
+        wb_cycle_hold_stops(s->dataset, bent_share * s->data->max_force, stops, MOST_STOPS);
+    const struct wb_cycle_stop *worst = NULL;
+    double most = 0.0;
+    for (int i = 0; i < n; i++) {
+        const size_t fifth = (stops[i].end - stops[i].first) / 5;
         double before, after;
-        const double fall = mean_tension(&m.rows[stop.first], fifth, &before) -
-                            mean_tension(&m.rows[stop.end - fifth], fifth, &after);
+        const double fall = mean_tension(&rows[stops[i].first], fifth, &before) -
+                            mean_tension(&rows[stops[i].end - fifth], fifth, &after);
         if (!(fall > fall_noise * sqrt(before + after) && fall > most))
             continue;
         most = fall;
-        at = m.rows[stop.first].deflection;
-        seconds = m.rows[stop.end - 1].t - m.rows[stop.first].t;
+        worst = &stops[i];
     }
     const double share = most / s->data->max_force;
-    if (share >= least_fall)
+    if (!worst || share < least_fall)
+        return;
+    const double seconds = rows[worst->end - 1].t - rows[worst->first].t;
+    const double at = rows[worst->first].deflection / WB_MM;
+    if (s->fit->law.n_maxwell > 0)
+        say(remarks, WB_CHECK_NOTE, s->sample,
+            "wire '%s', sample %d: the force falls by %.1f %% of the largest in %.1f s while "
+            "nothing moves, at a deflection of %.1f mm: the wire relaxes, and Maxwell elements "
+            "beside the law follow it; moments are those at the test's speed",
+            s->wire, s->sample, 100.0 * share, seconds, at);
+    else
         say(remarks, share >= doubted_fall ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
             "wire '%s', sample %d: the force falls by %.1f %% of the largest in %.1f s while "
-            "nothing moves, at a deflection of %.1f mm: the wire relaxes, and no law here knows of "
-            "time. The stiffness on the way back and EI come out too high, moments too low; test "
-            "again without a stop",
-            s->wire, s->sample, 100.0 * share, seconds, at / WB_MM);
+            "nothing moves, at a deflection of %.1f mm: the wire relaxes, and the law does not. "
+            "The stiffness on the way back and EI come out too high, moments too low; record with "
+            "a dwell at the turn (--dwell-s), from which relaxation is fitted",
+            s->wire, s->sample, 100.0 * share, seconds, at);
 }
 
 enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,

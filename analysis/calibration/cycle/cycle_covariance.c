@@ -30,7 +30,8 @@ static int group_rows(const gsl_vector *f, int at, int n, int *group, int *n_gro
     return at + n;
 }
 
-/* Groups residuals that tell the same: those of one sign in a row, of one branch or one marker.
+/* Groups residuals that tell the same: those of one sign in a row, of one branch, one marker or
+ * the dwell.
  * Returns how many there are. */
 static int group_residuals(const struct wb_cycle_data *data, const gsl_vector *f, int *group)
 {
@@ -45,6 +46,7 @@ static int group_residuals(const struct wb_cycle_data *data, const gsl_vector *f
             n += data->places[i].marker == m;
         at = group_rows(f, at, n, group, &n_groups) + 1; /* behind its offset's prior */
     }
+    group_rows(f, at, data->n_held, group, &n_groups);
     return n_groups;
 }
 

@@ -5,11 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/calibration/cycle/cycle_hold.h"
 #include "analysis/dataset/fit.h"
 #include "base/memory.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "cycle"
+
+/* How far from the turn deflection and travel are taken to be on a line. */
+static const double turn_reach = 2.0 * WB_MM;
 
 enum {
     FEWEST_ROWS = 4,   /* in a bin */
@@ -98,6 +102,7 @@ const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS] = {
 struct rows {
     size_t n;
     double *x, *y;  /* deflection and tension; or what else is drawn over the deflection */
+    double *t;      /* s; of a way only */
     double *smooth; /* deflection with less noise, by which rows are put into bins */
     double *sorted; /* workspace */
     size_t n_line;
@@ -106,13 +111,14 @@ struct rows {
 
 static void take_memory(struct rows *rows, size_t most)
 {
-    double *const memory = wb_memory_new(6 * most, sizeof *memory);
+    double *const memory = wb_memory_new(7 * most, sizeof *memory);
     *rows = (struct rows){.x = memory,
                           .y = memory + most,
                           .smooth = memory + 2 * most,
                           .sorted = memory + 3 * most,
                           .line_x = memory + 4 * most,
-                          .line_y = memory + 5 * most};
+                          .line_y = memory + 5 * most,
+                          .t = memory + 6 * most};
 }
 
 /* A line by medians: the slope of rows half the stretch apart, then the height. Returns the median
@@ -205,17 +211,24 @@ static double slope_of(const struct rows *rows)
     return xx > 0.0 ? xy / xx : 0.0;
 }
 
+/* The tension falls in a dwell, at one deflection. */
+static bool is_in_dwell(const struct wb_cycle_data *data, const struct wb_row *row)
+{
+    return data->n_held > 0 && row->t > data->arrival && row->t < data->departure;
+}
+
 /* Takes the rows of a way and smooths their deflection over half a fine step. */
-static void gather(struct rows *rows, const struct wb_dataset *dataset, int cycle, bool unloading,
-                   double fine_step)
+static void gather(struct rows *rows, const struct wb_cycle_data *data,
+                   const struct wb_dataset *dataset, int cycle, bool unloading, double fine_step)
 {
     double low = (double)INFINITY, high = -(double)INFINITY;
     rows->n = 0;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        if (!is_on_way(row, cycle, unloading))
+        if (!is_on_way(row, cycle, unloading) || is_in_dwell(data, row))
             continue;
         rows->x[rows->n] = row->deflection;
+        rows->t[rows->n] = row->t;
         rows->y[rows->n++] = row->tension;
         low = fmin(low, row->deflection);
         high = fmax(high, row->deflection);
@@ -239,13 +252,16 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
 {
     const bool unloading = last < first;
     const double sense = unloading ? -1.0 : 1.0;
-    double done = 0.0, step = s->fine_step;
+    double done = 0.0, step;
     size_t begin = 0;
 
-    gather(rows, dataset, s->cycle, unloading, s->fine_step);
+    gather(rows, data, dataset, s->cycle, unloading, s->fine_step);
     while (data->n_points < MOST_POINTS) {
+        const double left = fabs(last - first) - done;
         step = done < s->fine_reach - 1e-9 ? s->fine_step : s->step;
-        if (done + step > fabs(last - first) + 1e-9)
+        if (unloading)
+            step = fmin(step, left); /* the force may come down to that at zero in the last one */
+        if (step > left + 1e-9 || step < s->fine_step - 1e-9)
             return;
         while (begin < rows->n && sense * (rows->smooth[begin] - first) < done)
             begin++;
@@ -261,6 +277,8 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
         if (unloading && point.tension < s->smallest_tension)
             return;
         point.n_rows = (int)kept;
+        for (size_t i = begin; i < end; i++)
+            point.t += rows->t[i] / (double)(end - begin);
         data->n_outliers += (int)(end - begin - kept);
         data->points[data->n_points++] = point;
         begin = end;
@@ -280,20 +298,54 @@ static void take_rows(struct wb_cycle_data *data, const struct wb_dataset *datas
         if (is_on_way(row, s->cycle, unloading) && row->deflection >= least - 1e-9 &&
             row->deflection <= fmax(first, last) + 1e-9)
             data->points[data->n_points++] = (struct wb_cycle_point){.deflection = row->deflection,
+                                                                     .t = row->t,
                                                                      .tension = row->tension,
                                                                      .is_unloading = unloading,
                                                                      .n_rows = 1};
     }
 }
 
-static double turn_of(const struct wb_dataset *dataset, int cycle)
+/* Largest deflection of a loading: by a line of the deflection over the stage's travel next to the
+ * turn, where that is known, as the largest of many rows is too large by their noise. */
+static double turn_of(const struct wb_dataset *dataset, int cycle, struct rows *rows)
 {
-    double top = -HUGE_VAL;
+    double top = -HUGE_VAL, end = -HUGE_VAL, x, y, error;
+    bool has_stage = !dataset->info.is_simulation;
     for (size_t i = 0; i < dataset->n_rows; i++) {
-        if (is_on_way(&dataset->rows[i], cycle, false))
-            top = fmax(top, dataset->rows[i].deflection);
+        const struct wb_row *const row = &dataset->rows[i];
+        if (!is_on_way(row, cycle, false))
+            continue;
+        top = fmax(top, row->deflection);
+        end = fmax(end, row->stage);
+        has_stage = has_stage && isfinite(row->stage);
     }
-    return top;
+    rows->n = 0;
+    for (size_t i = 0; has_stage && i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (!is_on_way(row, cycle, false) || row->stage < end - turn_reach)
+            continue;
+        rows->x[rows->n] = row->stage;
+        rows->y[rows->n++] = row->deflection;
+    }
+    if (mean_of(rows, 0, rows->n, &x, &y, &error) == 0)
+        return top;
+    const double turn = y + slope_of(rows) * (end - x);
+    return fabs(turn - top) < turn_reach ? turn : top;
+}
+
+static double mean_in_dwell(const struct wb_cycle_data *data, const struct wb_dataset *dataset,
+                            int cycle)
+{
+    double sum = 0.0;
+    long n = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (row->cycle != cycle || !is_in_dwell(data, row) || !isfinite(row->deflection))
+            continue;
+        sum += row->deflection;
+        n++;
+    }
+    return sum / (double)n;
 }
 
 /* Tension where the deflection crosses zero, on the first loading. */
@@ -425,11 +477,14 @@ static enum wb_status take(struct wb_cycle_data *data, const struct wb_dataset *
     s.cycle = given->cycle > 0 ? given->cycle : 1;
     const char *const wire = data->info.wire;
 
-    data->top = turn_of(dataset, s.cycle);
+    data->top = turn_of(dataset, s.cycle, rows);
     if (!(data->top > 0.0))
         return wb_fail_to(why, WB_ERR_DATA, "wire '%s', sample %d: cycle %d has no loading", wire,
                           data->info.sample, s.cycle);
     data->zero_tension = tension_at_zero(dataset);
+    wb_cycle_hold_find(data, dataset, s.cycle);
+    if (data->n_held > 0)
+        data->top = mean_in_dwell(data, dataset, s.cycle);
     void (*const way)(struct wb_cycle_data *, const struct wb_dataset *, struct rows *,
                       const struct wb_cycle_data_settings *, double, double) =
         data->info.is_simulation ? take_rows : take_points;

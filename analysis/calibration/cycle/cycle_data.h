@@ -19,11 +19,22 @@
 #include "base/setting.h"
 #include "base/status.h"
 
+enum {
+    WB_CYCLE_MOST_HELD = 10
+};
+
 struct wb_cycle_point {
     double deflection, tension; /* m, N */
+    double t;                   /* s, mean of the rows */
     double deviation;           /* N: standard error of the tension by the scatter of the rows */
     bool is_unloading;
     int n_rows;
+};
+
+/* Tension while the tip was held at the turn. */
+struct wb_cycle_held {
+    double t, tension; /* s, N: means */
+    double deviation;  /* N: standard error */
 };
 
 /* A marker's place at the deflection of a point. */
@@ -41,11 +52,14 @@ struct wb_cycle_data {
     int n_places, n_markers;
     struct wb_cycle_place *places; /* owned; of the first cycle only */
     double top;                    /* m: deflection of the turn */
-    double max_force;              /* N: largest tension less that at zero deflection */
-    double zero_tension;           /* N: that at zero deflection on the first loading */
-    double residual_deflection;    /* m: where the tension of the way back has come down to that at
-                                      zero deflection; NaN: not reached */
-    int n_outliers;                /* rows left out */
+    double arrival, departure;     /* s: when the tip came there and left */
+    int n_held;                    /* 0: there was no dwell */
+    struct wb_cycle_held held[WB_CYCLE_MOST_HELD];
+    double max_force;           /* N: largest tension less that at zero deflection */
+    double zero_tension;        /* N: that at zero deflection on the first loading */
+    double residual_deflection; /* m: where the tension of the way back has come down to that at
+                                   zero deflection; NaN: not reached */
+    int n_outliers;             /* rows left out */
 };
 
 struct wb_cycle_data_settings {

@@ -14,6 +14,7 @@
 #include <gsl/gsl_multifit_nlinear.h>
 
 #include "analysis/calibration/cycle/cycle_covariance.h"
+#include "analysis/calibration/cycle/cycle_hold.h"
 #include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/least_squares.h"
@@ -74,6 +75,17 @@ static const double stress_prior = 4.0, rate_prior = 2.0;
 static const double one_rate = 4.0, fast_rate = 20.0, slow_rate = 2.0;
 /* And the least share of either kind of hardening. */
 static const double least_share = 0.1;
+/* Weak priors of a Maxwell element: logarithms of its modulus about where it starts, and of its
+ * time between those of the dwell and of the loading. */
+static const double maxwell_modulus_prior = 4.0, maxwell_time_prior = 1.5;
+/* Least fall of the tension, over the largest, that a search starts from; the times of two elements
+ * start this many times below and above that of one. */
+static const double least_fall = 1e-4, apart = 4.0;
+/* Time of the element that stands for relaxation that was not recorded, over that of the loading.
+ */
+static const double unseen_time = 0.25;
+/* What Maxwell elements may miss of a fall. */
+static const double fall_share = 0.02;
 /* Residual of a run that does not reach its end: far above any other. */
 static const double lost_residual = 1e4;
 
@@ -125,128 +137,6 @@ int wb_candidate_numbers(enum wb_candidate candidate)
     return numbers + c->has_share;
 }
 
-#define AT(field) offsetof(struct wb_cycle_fit_settings, field)
-
-const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS] = {
-    {.name = "force_noise_mN",
-     .unit = "mN",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(force_noise),
-     .scale = 1e-3,
-     .least = 1e-6,
-     .largest = 1e6,
-     .fallback = 0.03,
-     .option = "force-noise-mn",
-     .argument = "F",
-     .help = "Noise of a force: a point weighs one over the larger of this and of --force-share"},
-    {.name = "force_share",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(force_share),
-     .least = 1e-6,
-     .largest = 1.0,
-     .fallback = 2e-3,
-     .option = "force-share",
-     .argument = "R",
-     .help = "The same as a part of the largest force"},
-    {.name = "marker_noise_mm",
-     .unit = "mm",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(place_noise),
-     .scale = WB_MM,
-     .least = 1e-4,
-     .largest = 1e6,
-     .fallback = 0.1,
-     .option = "marker-noise-mm",
-     .argument = "D",
-     .help = "Noise of a marker's place"},
-    {.name = "marker_offset_mm",
-     .unit = "mm",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(offset_prior),
-     .scale = WB_MM,
-     .least = 1e-4,
-     .largest = 100.0,
-     .fallback = 0.07,
-     .option = "marker-offset-mm",
-     .argument = "D",
-     .help = "Prior of a marker's constant distance from the axis"},
-    {.name = "level_prior_mm",
-     .unit = "mm",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(level_prior),
-     .scale = WB_MM,
-     .least = 1e-4,
-     .largest = 100.0,
-     .fallback = 0.1,
-     .option = "level-prior-mm",
-     .argument = "D",
-     .help = "Prior of the level of zero deflection"},
-    {.name = "uneven_prior_rad",
-     .unit = "rad",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(uneven_prior),
-     .least = 1e-6,
-     .largest = 10.0,
-     .fallback = 0.05,
-     .option = "uneven-prior-rad",
-     .argument = "A",
-     .help = "Prior of the angle by which a specimen is bent unevenly by nature"},
-    {.name = "modulus_prior",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(modulus_prior),
-     .least = 1e-2,
-     .largest = 1e3,
-     .fallback = 4.0,
-     .option = "modulus-prior",
-     .argument = "X",
-     .help = "Prior of the second differences of the logarithms of the moduli of parts that yield"},
-    {.name = "search_elements",
-     .type = WB_SETTING_INTEGER,
-     .offset = AT(n_elements),
-     .least = 4,
-     .largest = 500,
-     .fallback = 12,
-     .option = "search-elements",
-     .argument = "N",
-     .help = "Beam elements of the search"},
-    {.name = "final_elements",
-     .type = WB_SETTING_INTEGER,
-     .offset = AT(n_final_elements),
-     .least = 4,
-     .largest = 500,
-     .fallback = 50,
-     .option = "final-elements",
-     .argument = "N",
-     .help = "Beam elements of the last run"},
-    {.name = "section_fibres",
-     .type = WB_SETTING_INTEGER,
-     .offset = AT(n_fibres),
-     .least = 4,
-     .largest = 1000,
-     .fallback = 20,
-     .option = "section-fibres",
-     .argument = "N",
-     .help = "Fibres over the diameter"},
-    {.name = "fit_iterations",
-     .type = WB_SETTING_INTEGER,
-     .offset = AT(max_iterations),
-     .least = 1,
-     .largest = 10000,
-     .fallback = 100,
-     .option = "fit-iterations",
-     .argument = "N",
-     .help = "Most iterations of a fit"},
-};
-
-#undef AT
-
-void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings)
-{
-    const struct wb_setting_table table = {.rows = wb_cycle_fit_rows, .n = WB_CYCLE_FIT_ROWS};
-    *settings = (struct wb_cycle_fit_settings){.zero_prior = 0.0};
-    wb_setting_fill(&table, settings);
-}
-
 /* Free numbers of the specimen, behind those of the law. */
 enum {
     BOW,
@@ -263,7 +153,12 @@ struct problem {
     const struct wb_cycle_grid *grid;
     struct wb_cycle_model *model;
     double poissons_ratio;
+    int n_form;    /* free numbers of the law's form, */
+    int n_maxwell; /* then two of each Maxwell element: logarithms of modulus and time */
     int n_law, n_free, n_residuals;
+    struct wb_law_maxwell beside;   /* an element that is not free; modulus 0: none */
+    double strain_rate;             /* 1/s, see struct wb_law */
+    double maxwell_time;            /* s, prior of an element's */
     double start[WB_FIT_MOST_FREE]; /* the free numbers are counted from here, in units of scale */
     double scale[WB_FIT_MOST_FREE];
     double start_modulus[WB_FIT_PARTS];  /* Pa */
@@ -303,12 +198,12 @@ static double largest_exponent_of(const struct candidate *c)
 
 /* ln E, ln sigma_Y, ln(hardening stress at the middle), logistic exponent; or moduli over those of
  * the start, see wb_least_squares_positive(); and the logistic share of mixed hardening. */
-static void law_of(const struct problem *p, const double *free, struct wb_law *law)
+static void relaxed_law_of(const struct problem *p, const double *free, struct wb_law *law)
 {
     const struct candidate *const c = p->candidate;
     /* At its end a mixed law would be of another kind. */
     const double share =
-        c->has_share ? fmin(logistic(free[p->n_law - 1]), 1.0 - 1e-9) : c->isotropic_share;
+        c->has_share ? fmin(logistic(free[p->n_form - 1]), 1.0 - 1e-9) : c->isotropic_share;
 
     if (c->form == WB_LAW_LUDWIK) {
         const double n = largest_exponent_of(c) * logistic(free[3]);
@@ -349,6 +244,55 @@ static void law_of(const struct problem *p, const double *free, struct wb_law *l
                 : p->grid->first_strain * pow(ratio, (double)i / (WB_FIT_PARTS - 1));
     }
     wb_law_init_parallel(law, parts, WB_FIT_PARTS, share, p->poissons_ratio);
+}
+
+static void law_of(const struct problem *p, const double *free, struct wb_law *law)
+{
+    relaxed_law_of(p, free, law);
+    law->n_maxwell = p->n_maxwell;
+    for (int i = 0; i < p->n_maxwell; i++)
+        law->maxwell[i] =
+            (struct wb_law_maxwell){exp(free[p->n_form + 2 * i]), exp(free[p->n_form + 2 * i + 1])};
+    if (p->beside.modulus > 0.0)
+        law->maxwell[law->n_maxwell++] = p->beside;
+    law->strain_rate = law->n_maxwell > 0 ? p->strain_rate : 0.0;
+}
+
+/* Of the outer fibre of a wire that bends as an elastic one, 1/s. */
+static double elastic_strain_rate(const struct wb_cycle_data *data, double curvature)
+{
+    const double t = data->arrival - data->points[0].t;
+    return t > 0.0 ? 0.5 * data->info.outer_diameter * curvature / t : 0.0;
+}
+
+static double elastic_curvature(const struct wb_cycle_data *data)
+{
+    return 3.0 * data->top / (data->info.length * data->info.length);
+}
+
+/* From the elements of a law near by, or from the fall of the tension in the dwell. */
+static void start_maxwell(struct problem *p, const struct wb_law *law)
+{
+    double *const start = p->start + p->n_form;
+    for (int i = 0; i < p->n_maxwell && law->n_maxwell == p->n_maxwell; i++) {
+        start[2 * i] = log(law->maxwell[i].modulus);
+        start[2 * i + 1] = log(law->maxwell[i].time);
+    }
+    if (law->n_maxwell == p->n_maxwell)
+        return;
+    struct wb_cycle_relaxation seen;
+    wb_cycle_hold_describe(p->data, &seen);
+    const double strain = 0.5 * p->data->info.outer_diameter * elastic_curvature(p->data);
+    const double secant = wb_law_virgin_stress(law, strain, NULL) / strain;
+    const double loading = p->data->arrival - p->data->points[0].t, time = seen.time;
+    const double share = fmax(seen.fall / p->data->max_force, least_fall);
+    /* What is left of the stress at the turn, and what of that goes in the dwell. */
+    const double left = time / loading * -expm1(-loading / time);
+    const double gone = -expm1(-seen.duration / time);
+    for (int i = 0; i < p->n_maxwell; i++) {
+        start[2 * i] = log(share * secant / (left * gone * p->n_maxwell));
+        start[2 * i + 1] = log(time * (p->n_maxwell == 1 ? 1.0 : i == 0 ? 1.0 / apart : apart));
+    }
 }
 
 /* From another of its kind; the second of two back stresses comes of the first. */
@@ -434,9 +378,10 @@ static void start_from(struct problem *p, const struct wb_law *law)
     }
     /* From the side of the pure rule that was nearer. */
     if (c->has_share)
-        p->start[p->n_law - 1] = law->isotropic_share == 1.0   ? isotropic_start
-                                 : law->isotropic_share == 0.0 ? kinematic_start
-                                                               : 0.0;
+        p->start[p->n_form - 1] = law->isotropic_share == 1.0   ? isotropic_start
+                                  : law->isotropic_share == 0.0 ? kinematic_start
+                                                                : 0.0;
+    start_maxwell(p, law);
     for (int i = 0; i < p->n_law; i++)
         p->scale[i] = 1.0;
     double *const start = p->start + p->n_law, *const scale = p->scale + p->n_law;
@@ -507,7 +452,7 @@ static int prior_residuals(const struct problem *p, const double *free, const st
         const double slow = log(p->grid->last_strain);
         r[at++] = (free[SATURATION] - free[YIELD]) / stress_prior;
         r[at++] = (free[RATE] + slow) / rate_prior;
-        for (int i = FIRST_BACK; i < p->n_law; i += 2) {
+        for (int i = FIRST_BACK; i < p->n_form; i += 2) {
             r[at++] = (free[i] - free[YIELD]) / stress_prior;
             r[at++] = (free[i + 1] + slow) / rate_prior;
         }
@@ -516,8 +461,31 @@ static int prior_residuals(const struct problem *p, const double *free, const st
         r[at++] = free[3] / logistic_prior;
     }
     if (c->has_share)
-        r[at++] = free[p->n_law - 1] / logistic_prior;
+        r[at++] = free[p->n_form - 1] / logistic_prior;
+    for (int i = p->n_form; i < p->n_law; i += 2) {
+        r[at++] = (free[i] - p->start[i]) / maxwell_modulus_prior;
+        r[at++] = (free[i + 1] - log(p->maxwell_time)) / maxwell_time_prior;
+    }
     return at;
+}
+
+/* How the tension falls in the dwell: beyond the mean, which the law may miss. Returns the index
+ * behind the residuals. */
+static int held_residuals(const struct problem *p, double *r)
+{
+    const struct wb_cycle_data *const data = p->data;
+    const double *const held = wb_cycle_model_held(p->model);
+    const int n = data->n_held;
+    double mean = 0.0;
+    if (n == 0)
+        return 0;
+    for (int i = 0; i < n; i++)
+        mean += (held[i] - data->held[i].tension) / n;
+    const double fall = fabs(data->held[0].tension - data->held[n - 1].tension);
+    const double noise = fmax(p->settings->force_noise, fall_share * fall);
+    for (int i = 0; i < n; i++)
+        r[i] = (held[i] - data->held[i].tension - mean) / noise;
+    return n;
 }
 
 /* Residuals at the free numbers x. */
@@ -549,6 +517,7 @@ static int residuals(struct problem *p, const double *x, double *r)
                (p->tension[i] + free[p->n_law + ZERO] - data->points[i].tension) / p->force_scale;
     int at = data->n_points;
     at += place_residuals(p, r + at);
+    at += held_residuals(p, r + at);
     at += prior_residuals(p, free, &law, r + at);
     return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
 }
@@ -794,7 +763,7 @@ static void find_correlations(const struct problem *p, const gsl_matrix *covaria
         turn[2][3] = -turn[3][3] * log(middle_plastic_strain);
     }
     /* C of where it saturates and gamma. */
-    for (int i = FIRST_BACK; p->candidate->form == WB_LAW_CHABOCHE && i < n; i += 2)
+    for (int i = FIRST_BACK; p->candidate->form == WB_LAW_CHABOCHE && i < p->n_form; i += 2)
         turn[i][i + 1] = 1.0;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
@@ -818,8 +787,13 @@ const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text
     static const char *const ludwik[] = {"E", "sigma_Y", "K", "n"};
     static const char *const chaboche[] = {"E",      "sigma_Y", "Q",      "b",  "C1",
                                            "gamma1", "C2",      "gamma2", "C3", "gamma3"};
+    static const char *const elements[] = {"Maxwell modulus 1", "Maxwell time 1",
+                                           "Maxwell modulus 2", "Maxwell time 2"};
     const bool is_ludwik = fit->law.form == WB_LAW_LUDWIK;
-    if (fit->law.form == WB_LAW_CHABOCHE)
+    const int maxwell = i - (fit->n_numbers - 2 * fit->law.n_maxwell);
+    if (maxwell >= 0)
+        snprintf(text, 24, "%s", elements[maxwell]);
+    else if (fit->law.form == WB_LAW_CHABOCHE)
         snprintf(text, 24, "%s", chaboche[i]);
     else if (i >= (is_ludwik ? 4 : fit->law.n_parts))
         snprintf(text, 24, "isotropic share");
@@ -878,6 +852,16 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
     gsl_matrix_free(covariance);
 }
 
+/* A Maxwell element that carries a part of the outer fibre's stress at the turn. */
+static struct wb_law_maxwell unseen_element(const struct problem *p, const struct wb_law *law,
+                                            double part)
+{
+    const double loading = p->data->arrival - p->data->points[0].t, x = 1.0 / unseen_time;
+    const double strain = 0.5 * p->data->info.outer_diameter * p->run.clamp_curvature;
+    const double secant = wb_law_virgin_stress(law, strain, NULL) / strain;
+    return (struct wb_law_maxwell){part * secant * x / -expm1(-x), unseen_time * loading};
+}
+
 /* Gauss and Newton's step from the end of the search, with the residuals of altered data. The
  * slopes have the weights of the last pass, which the workspace's may lack. `squares`
  * are the sums of the slopes' products as Cholesky factors them. */
@@ -890,6 +874,8 @@ static void find_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
     struct problem q = *p;
     double free_numbers[WB_FIT_MOST_FREE], numbers[WB_FIT_MOST_FREE];
     struct wb_reason why;
+    if (shared == WB_SHARED_RELAXATION)
+        q.beside = unseen_element(p, &fit->law, wb_cycle_shared_change(shared));
     if (!wb_cycle_shared_alter(&altered, p->data, shared, wb_cycle_shared_change(shared)))
         return;
     gsl_vector *const change = wb_memory_need(gsl_vector_alloc((size_t)p->n_residuals));
@@ -904,8 +890,8 @@ static void find_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
            gsl_linalg_cholesky_svx(squares, &step.vector) == GSL_SUCCESS;
     if (good) {
         gsl_vector_add(&step.vector, w->x);
-        absolute(p, numbers, free_numbers);
-        law_of(p, free_numbers, &fit->altered[shared]);
+        absolute(&q, numbers, free_numbers);
+        law_of(&q, free_numbers, &fit->altered[shared]);
         fit->has_altered[shared] = wb_law_check(&fit->altered[shared], &why) == WB_OK;
     }
     p->runs = q.runs;
@@ -965,8 +951,8 @@ static int count_residuals(const struct problem *p)
     const int priors = c->form == WB_LAW_PARALLEL   ? WB_FIT_PARTS - 3
                        : c->form == WB_LAW_CHABOCHE ? 2 + 2 * c->n_backs
                                                     : 2;
-    return p->data->n_points + p->data->n_places + p->data->n_markers + 2 + priors + c->has_share +
-           (p->settings->zero_prior > 0.0);
+    return p->data->n_points + p->data->n_places + p->data->n_markers + p->data->n_held + 2 +
+           priors + c->has_share + 2 * p->n_maxwell + (p->settings->zero_prior > 0.0);
 }
 
 /* The last run, with more elements. */
@@ -1022,6 +1008,7 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
             break;
     }
     absolute(p, w->x->data, free_numbers);
+    p->strain_rate = elastic_strain_rate(p->data, p->run.clamp_curvature);
     law_of(p, free_numbers, &fit->law);
     const struct wb_cycle_specimen specimen = specimen_of(p, free_numbers);
     fit->bow_angle = specimen.bow_angle;
@@ -1029,7 +1016,7 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     fit->uneven_angle = specimen.uneven_angle;
     fit->zero = free_numbers[p->n_law + ZERO];
     fit->is_at_bound = (p->candidate->form == WB_LAW_LUDWIK && fabs(free_numbers[3]) > at_bound) ||
-                       (p->candidate->has_share && fabs(free_numbers[p->n_law - 1]) > at_bound);
+                       (p->candidate->has_share && fabs(free_numbers[p->n_form - 1]) > at_bound);
     if (!finish_slopes(p, w))
         return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: %s: no slopes at the end",
                           p->data->info.wire, p->data->info.sample, p->candidate->name);
@@ -1058,8 +1045,12 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
         .candidate = c,
         .grid = grid,
         .poissons_ratio = start->material.poissons_ratio,
-        .n_law = wb_candidate_numbers(candidate),
+        .n_form = wb_candidate_numbers(candidate),
+        .n_maxwell = settings->n_maxwell,
+        .strain_rate = elastic_strain_rate(data, elastic_curvature(data)),
     };
+    p.n_law = p.n_form + 2 * p.n_maxwell;
+    p.maxwell_time = sqrt((data->departure - data->arrival) * (data->arrival - data->points[0].t));
     p.n_free = p.n_law + (settings->zero_prior > 0.0 ? OF_SPECIMEN : UNEVEN + has_places(data));
     p.n_residuals = count_residuals(&p);
     p.force_scale = fmax(settings->force_noise, settings->force_share * data->max_force);

@@ -37,32 +37,35 @@ enum wb_candidate {
 /* "Ludwik, isotropic", ... */
 const char *wb_candidate_name(enum wb_candidate candidate);
 
-/* Free numbers of its law. */
+/* Free numbers of its law, without Maxwell elements. */
 int wb_candidate_numbers(enum wb_candidate candidate);
 
 enum {
     WB_FIT_PARTS = 7,     /* parallel parts, the last elastic */
-    WB_FIT_MOST_LAW = 8,  /* free numbers of a law */
-    WB_FIT_MOST_FREE = 12 /* and of the specimen */
+    WB_FIT_MOST_LAW = 12, /* free numbers of a law */
+    WB_FIT_MOST_FREE = 16 /* and of the specimen */
 };
 
 struct wb_cycle_fit_settings {
-    double force_noise;   /* N: weight of a point is one over the larger of this, */
-    double force_share;   /* and of this part of the largest force */
-    double place_noise;   /* m, of a marker's place */
-    double offset_prior;  /* m: standard deviation of a marker's constant offset, */
-    double level_prior;   /* m: of the level of zero deflection, */
-    double uneven_prior;  /* rad: of how unevenly it is bent by nature; without places it is not */
-    double zero_prior;    /* N: of the zero of force; 0: it is right */
-    double modulus_prior; /* 1: of the second difference of ln(modulus) of parts that yield */
-    int n_elements;       /* while searching */
-    int n_final_elements; /* of the last run */
-    int n_fibres;         /* over the diameter */
+    double force_noise;  /* N: weight of a point is one over the larger of this, */
+    double force_share;  /* and of this part of the largest force */
+    double place_noise;  /* m, of a marker's place */
+    double offset_prior; /* m: standard deviation of a marker's constant offset, */
+    double level_prior;  /* m: of the level of zero deflection, */
+    double uneven_prior; /* rad: of how unevenly it is bent by nature; without places it is not */
+    double zero_prior;   /* N: of the zero of force; 0: it is right */
+    double relaxation_prior; /* 1: of the part of the force that goes in a long dwell, of tests
+                                without one */
+    double modulus_prior;    /* 1: of the second difference of ln(modulus) of parts that yield */
+    int n_elements;          /* while searching */
+    int n_final_elements;    /* of the last run */
+    int n_fibres;            /* over the diameter */
     int max_iterations;
+    int n_maxwell; /* Maxwell elements beside the law, 0 to 2; more than 0 needs a dwell */
 };
 /* Their rows, with range and default. */
 enum {
-    WB_CYCLE_FIT_ROWS = 11
+    WB_CYCLE_FIT_ROWS = 12
 };
 extern const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS];
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);

@@ -15,7 +15,7 @@ static const double step = 1.0 * WB_MM, smallest_tension = 2.5e-3;
 
 /* Means of the rows of a bin. */
 struct bin {
-    double deflection, tension;
+    double deflection, tension, t;
     int n;
 };
 
@@ -29,27 +29,33 @@ int wb_cycle_later_count(const struct wb_dataset *dataset)
     return n;
 }
 
-static double largest_deflection(const struct wb_dataset *dataset, int cycle)
+/* Also its time. */
+static double largest_deflection(const struct wb_dataset *dataset, int cycle, double *t)
 {
     double largest = 0.0;
+    *t = (double)NAN;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        if (row->cycle == cycle && row->phase != WB_PHASE_SLACK && row->deflection > largest)
+        if (row->cycle == cycle && row->phase != WB_PHASE_SLACK && row->deflection > largest) {
             largest = row->deflection;
+            *t = row->t;
+        }
     }
     return largest;
 }
 
 /* Where the way back of a cycle ends or the strand becomes slack, by its lowest row; what is read
  * below the rest is noise. */
-static double lowest_deflection(const struct wb_dataset *dataset, int cycle)
+static double lowest_deflection(const struct wb_dataset *dataset, int cycle, double *t)
 {
-    double lowest = largest_deflection(dataset, cycle);
+    double lowest = largest_deflection(dataset, cycle, t);
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
         if (row->cycle == cycle && row->phase == WB_PHASE_UNLOAD && row->tension > 0.0 &&
-            row->deflection < lowest)
+            row->deflection < lowest) {
             lowest = row->deflection;
+            *t = row->t;
+        }
     }
     return isfinite(dataset->info.rest_level) ? fmax(lowest, dataset->info.rest_level) : lowest;
 }
@@ -68,6 +74,7 @@ static void add_way(struct wb_cycle_later *later, const struct wb_dataset *datas
             continue;
         bins[k].deflection += row->deflection;
         bins[k].tension += row->tension;
+        bins[k].t += row->t;
         bins[k].n++;
     }
     for (int i = 0; i < n_bins; i++) {
@@ -78,14 +85,15 @@ static void add_way(struct wb_cycle_later *later, const struct wb_dataset *datas
                 .is_unloading = is_unloading,
                 .deflection = bin->deflection / bin->n,
                 .measured = bin->tension / bin->n,
+                .t = bin->t / bin->n,
                 .computed = (double)NAN,
             };
     }
 }
 
-static void push(struct wb_cycle_data *path, double deflection)
+static void push(struct wb_cycle_data *path, double deflection, double t)
 {
-    path->points[path->n_points++].deflection = deflection;
+    path->points[path->n_points++] = (struct wb_cycle_point){.deflection = deflection, .t = t};
 }
 
 /* All deflections of the test in order; which of them are points of later cycles. */
@@ -94,19 +102,26 @@ static void make_path(struct wb_cycle_data *path, int *index, const struct wb_cy
 {
     path->n_points = 0;
     for (int i = 0; i < data->n_points; i++) {
-        push(path, data->points[i].deflection);
+        push(path, data->points[i].deflection, data->points[i].t);
         if (i == data->n_loading - 1)
-            push(path, data->top);
+            push(path, data->top, data->arrival);
+        if (i == data->n_loading - 1 && data->n_held > 0)
+            push(path, data->top, data->departure);
     }
+    double t, deflection;
     for (int i = 0; i < later->n; i++) {
         const struct wb_cycle_later_point *const p = &later->points[i];
         /* Both turns, which no bin's mean reaches: a loop that is turned too early is too small. */
         if (i == 0 || p->cycle != later->points[i - 1].cycle)
-            push(path, lowest_deflection(dataset, p->cycle - 1));
+            deflection = lowest_deflection(dataset, p->cycle - 1, &t);
         else if (p->is_unloading && !later->points[i - 1].is_unloading)
-            push(path, largest_deflection(dataset, p->cycle));
+            deflection = largest_deflection(dataset, p->cycle, &t);
+        else
+            deflection = (double)NAN;
+        if (isfinite(deflection))
+            push(path, deflection, t);
         index[i] = path->n_points;
-        push(path, p->deflection);
+        push(path, p->deflection, p->t);
     }
     path->n_loading = path->n_points;
     path->n_places = 0;
@@ -143,7 +158,7 @@ static enum wb_status predict(struct wb_cycle_later *later, const struct wb_data
         add_way(later, dataset, cycle, true, bins, n_bins);
     }
     struct wb_cycle_data path = *data;
-    const size_t most = (size_t)(data->n_points + later->n + 2 * later->n_cycles + 2);
+    const size_t most = (size_t)(data->n_points + later->n + 2 * later->n_cycles + 3);
     path.points = wb_memory_new(most, sizeof *path.points);
     double *const tension = wb_memory_new(most, sizeof *tension);
     int *const index = wb_memory_new(most, sizeof *index);

@@ -14,7 +14,7 @@
 struct wb_cycle_later_point {
     int cycle; /* from 2 */
     bool is_unloading;
-    double deflection;         /* m */
+    double deflection, t;      /* m, s */
     double measured, computed; /* N, tension; computed is NaN beyond where the beam came to */
 };
 

@@ -14,6 +14,9 @@ struct wb_cycle_model {
     struct wb_test_info info; /* the natural curvature's context */
     struct wb_section section;
     struct wb_cantilever *cantilever;
+    bool relaxes;                    /* the law has Maxwell elements */
+    double t;                        /* s: where the cycle is */
+    double held[WB_CYCLE_MOST_HELD]; /* N */
 };
 
 enum wb_status wb_cycle_model_create(struct wb_cycle_model **out, const struct wb_cycle_data *data,
@@ -55,11 +58,22 @@ void wb_cycle_model_destroy(struct wb_cycle_model *model)
     free(model);
 }
 
-static enum wb_status move(struct wb_cycle_model *model, double deflection,
+static bool is_reached(const struct wb_cantilever_point *point)
+{
+    return point->end == WB_CANTILEVER_CONVERGED && isfinite(point->tension);
+}
+
+/* Until a time, s; NaN: sudden. */
+static enum wb_status move(struct wb_cycle_model *model, double deflection, double t,
                            struct wb_cantilever_point *point, bool *reached)
 {
+    if (model->relaxes) {
+        const double duration = t - model->t;
+        wb_cantilever_set_duration(model->cantilever, duration > 0.0 ? duration : 0.0);
+        model->t = t;
+    }
     WB_TRY(wb_cantilever_move(model->cantilever, WB_CONTROL_DEFLECTION, deflection, point));
-    *reached = point->end == WB_CANTILEVER_CONVERGED && isfinite(point->tension);
+    *reached = is_reached(point);
     return WB_OK;
 }
 
@@ -93,6 +107,38 @@ double wb_cycle_model_rest(const struct wb_test_info *info)
     return isfinite(info->rest_level) ? fmin(info->rest_level, 0.0) : 0.0;
 }
 
+const double *wb_cycle_model_held(const struct wb_cycle_model *model)
+{
+    return model->held;
+}
+
+/* Moves to the turn and stays there for the dwell. */
+static enum wb_status turn(struct wb_cycle_model *model, double deflection, double *curvature,
+                           bool *reached)
+{
+    const struct wb_cycle_data *const data = model->data;
+    struct wb_cantilever_point point;
+    WB_TRY(move(model, deflection, data->arrival, &point, reached));
+    *curvature = clamp_curvature(model);
+    for (int i = 0; i < data->n_held && *reached; i++) {
+        if (model->relaxes)
+            WB_TRY(move(model, deflection, data->held[i].t, &point, reached));
+        model->held[i] = point.tension;
+    }
+    return model->relaxes && *reached ? move(model, deflection, data->departure, &point, reached)
+                                      : WB_OK;
+}
+
+/* When the tip was on its rest, at the pace of the first points: it had hung there for long. */
+static double time_at_rest(const struct wb_cycle_data *data, double rest)
+{
+    const struct wb_cycle_point *const p = data->points;
+    if (data->n_points < 2)
+        return (double)NAN;
+    const double speed = (p[1].deflection - p[0].deflection) / (p[1].t - p[0].t);
+    return p[0].t - (p[0].deflection - rest) / speed;
+}
+
 enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_law *law,
                                   const struct wb_cycle_specimen *specimen, double *tension,
                                   double *distance, struct wb_cycle_run *run)
@@ -103,7 +149,7 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
     bool reached;
 
     *run = (struct wb_cycle_run){.turn_change = (double)NAN};
-    double turn = 0.0;
+    double top = 0.0;
     wb_cycle_model_bend(specimen, &model->info);
     WB_TRY(
         wb_cantilever_set_curvature(model->cantilever, wb_dataset_natural_curvature, &model->info));
@@ -115,9 +161,15 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
 
     /* The rest carries the tip before the strand does; to the wire it is the same. */
     const double rest = wb_cycle_model_rest(&data->info);
-    WB_TRY(move(model, rest - specimen->level, &point, &reached));
+    model->relaxes = law->n_maxwell > 0;
+    wb_cantilever_set_duration(model->cantilever, (double)INFINITY);
+    model->t = time_at_rest(data, rest);
+    WB_TRY(wb_cantilever_move(model->cantilever, WB_CONTROL_DEFLECTION, rest - specimen->level,
+                              &point));
+    reached = is_reached(&point);
     for (int i = 0; i < data->n_points && reached; i++) {
-        WB_TRY(move(model, data->points[i].deflection - specimen->level, &point, &reached));
+        WB_TRY(move(model, data->points[i].deflection - specimen->level, data->points[i].t, &point,
+                    &reached));
         if (!reached)
             break;
         tension[i] = point.tension;
@@ -126,13 +178,12 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
             run->first_curvature = curvature;
         run->clamp_curvature = fmax(run->clamp_curvature, curvature);
         if (i == data->n_loading)
-            run->turn_change = turn - curvature;
+            run->turn_change = top - curvature;
         for (; distance && place < data->n_places && data->places[place].point == i; place++)
             distance[place] = distance_of(model, &data->places[place]);
         if (i == data->n_loading - 1 && data->n_points > data->n_loading) {
-            WB_TRY(move(model, data->top - specimen->level, &point, &reached));
-            turn = clamp_curvature(model);
-            run->clamp_curvature = fmax(run->clamp_curvature, turn);
+            WB_TRY(turn(model, data->top - specimen->level, &top, &reached));
+            run->clamp_curvature = fmax(run->clamp_curvature, top);
         }
     }
     run->reached = reached;

@@ -2,6 +2,8 @@
  * weights, from the virgin wire on its rest up to the turn and back, at the deflections of struct
  * wb_cycle_data.
  *
+ * A law with Maxwell elements relaxes over the times of the points, and of the dwell.
+ *
  * The tension is the strand's, weights included. Two things of a specimen are the caller's: its
  * shape by nature, and the level, by which measured deflections are too large.
  */
@@ -52,6 +54,10 @@ void wb_cycle_model_destroy(struct wb_cycle_model *model); /* accepts NULL */
 /* Deflection at which the tip lies before a cycle and comes back to after it, m: on its rest, or at
  * zero without one. */
 double wb_cycle_model_rest(const struct wb_test_info *info);
+
+/* Tension in the dwell of the last run, N, (data->n_held); of a law without Maxwell elements that
+ * of the turn. */
+const double *wb_cycle_model_held(const struct wb_cycle_model *model);
 
 /* Computes the whole cycle: tension (data->n_points, N), and how far each measured place lies above
  * the axis at its arc length (data->n_places, m; NULL: not wanted). Not to reach all points is a

@@ -14,6 +14,7 @@ static const struct shared {
     [WB_SHARED_COUNTERWEIGHT] = {"counterweight", "counterweight", 1e-3},
     [WB_SHARED_DENSITY] = {"density", "density", 2e-3},
     [WB_SHARED_MARKERS] = {"marker offset", "marker_offset", 0.01 * WB_MM},
+    [WB_SHARED_RELAXATION] = {"relaxation, no dwell recorded", "relaxation", 1e-2},
     [WB_SHARED_DIAMETER] = {"diameter", "diameter", 1e-3},
 };
 
@@ -32,6 +33,16 @@ double wb_cycle_shared_change(enum wb_cycle_shared of)
     return shared[of].change;
 }
 
+bool wb_cycle_shared_applies(const struct wb_cycle_data *data, enum wb_cycle_shared of)
+{
+    if (of == WB_SHARED_COUNTERWEIGHT)
+        return data->info.counterweight > 0.0;
+    if (of == WB_SHARED_RELAXATION)
+        return !data->info.is_simulation && data->n_held == 0 && data->n_points > 0 &&
+               data->arrival > data->points[0].t;
+    return true;
+}
+
 double wb_cycle_shared_uncertainty(const struct wb_test_info *info, enum wb_cycle_shared of)
 {
     const struct wb_test_uncertainty *const u = &info->uncertainty;
@@ -46,6 +57,8 @@ double wb_cycle_shared_uncertainty(const struct wb_test_info *info, enum wb_cycl
         return u->density;
     case WB_SHARED_MARKERS:
         return u->marker_offset;
+    case WB_SHARED_RELAXATION:
+        return 0.0;
     default:
         return u->diameter / info->outer_diameter;
     }
@@ -56,8 +69,7 @@ bool wb_cycle_shared_alter(struct wb_cycle_data *altered, const struct wb_cycle_
 {
     const double longer = of == WB_SHARED_LENGTH ? change * data->info.length : 0.0;
     const double lower = of == WB_SHARED_MARKERS ? change : 0.0;
-    const struct wb_test_info *const info = &data->info;
-    if (of == WB_SHARED_DIAMETER || (of == WB_SHARED_COUNTERWEIGHT && !(info->counterweight > 0.0)))
+    if (of == WB_SHARED_DIAMETER || !wb_cycle_shared_applies(data, of))
         return false;
     *altered = *data;
     altered->points = wb_memory_new((size_t)data->n_points, sizeof *data->points);
@@ -68,6 +80,8 @@ bool wb_cycle_shared_alter(struct wb_cycle_data *altered, const struct wb_cycle_
         if (of == WB_SHARED_GAIN)
             altered->points[i].tension *= 1.0 + change;
     }
+    for (int i = 0; i < data->n_held && of == WB_SHARED_GAIN; i++)
+        altered->held[i].tension *= 1.0 + change;
     altered->top -= lower;
     /* What is hidden in the clamp: its edge is where places are counted from. */
     for (int i = 0; i < data->n_places; i++) {

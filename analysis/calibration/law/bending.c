@@ -38,6 +38,8 @@ struct point {
     struct wb_fibres *fibres;
     double *before, *after;
     size_t size;
+    double rate;      /* 1/(m s), of the curvature */
+    double curvature; /* 1/m, that was kept last */
 };
 
 static enum wb_status make_point(struct point *p, const struct wb_law *law, double diameter)
@@ -49,6 +51,7 @@ static enum wb_status make_point(struct point *p, const struct wb_law *law, doub
         p->size = wb_fibres_history_size(p->fibres);
         p->before = wb_memory_new(p->size, sizeof *p->before);
         p->after = wb_memory_new(p->size, sizeof *p->after);
+        p->rate = law->strain_rate / (0.5 * diameter);
     }
     return status;
 }
@@ -65,6 +68,8 @@ static void release_point(struct point *p)
 static double moment_at(struct point *p, double curvature)
 {
     struct wb_fibres_response r;
+    const double change = fabs(curvature - p->curvature);
+    wb_fibres_set_duration(p->fibres, change > 0.0 ? change / p->rate : 0.0);
     wb_fibres_respond(p->fibres, 0.0, curvature, p->before, p->after, &r);
     return r.M;
 }
@@ -75,6 +80,7 @@ static double keep_moment(struct point *p, double curvature)
     double *const old = p->before;
     p->before = p->after;
     p->after = old;
+    p->curvature = curvature;
     return M;
 }
 
@@ -110,7 +116,11 @@ enum wb_status wb_bending_describe(const struct wb_law *law, double diameter, do
     struct point p;
     const enum wb_status status = make_point(&p, law, diameter);
     if (status == WB_OK) {
-        bending->flexural_rigidity = wb_fibres_bending_stiffness(p.fibres);
+        double modulus = law->material.youngs_modulus;
+        for (int i = 0; i < law->n_maxwell && law->strain_rate > 0.0; i++)
+            modulus += law->maxwell[i].modulus;
+        bending->flexural_rigidity =
+            wb_fibres_bending_stiffness(p.fibres) * modulus / law->material.youngs_modulus;
         double M = keep_moment(&p, largest);
         bending->springback = residual_curvature(&p, largest) / largest;
         bending->loop_energy = work_of(&p, largest, 0.0, &M);

@@ -11,8 +11,9 @@ struct wb_bending {
     double loop_energy; /* J/m lost each time: from the largest curvature straight and back */
 };
 
-/* Of a solid circle, up to `largest` (1/m, above 0). Moments (N m) of a first loading at n
- * curvatures (1/m, at least 0). Fails only for an invalid law. */
+/* Of a solid circle. A law with Maxwell elements is bent and unloaded at its strain rate; the
+ * virgin section's EI includes them. Up to `largest` (1/m, above 0). Moments (N m) of a first
+ * loading at n curvatures (1/m, at least 0). Fails only for an invalid law. */
 WB_MUST_CHECK enum wb_status wb_bending_describe(const struct wb_law *law, double diameter,
                                                  double largest, struct wb_bending *bending);
 WB_MUST_CHECK enum wb_status wb_bending_moments(const struct wb_law *law, double diameter, int n,

@@ -15,6 +15,8 @@ struct wb_computed {
     struct wb_section section;
     struct wb_cantilever *cantilever;
     double zero;  /* N, vertical force at zero deflection; 0 of a follower test */
+    double speed; /* m/s; 0: infinitely slow */
+    double at;    /* m: deflection of the last move */
     double begin; /* what a curve begins with: no force, or a follower test's deflection, m */
     struct wb_reason *why;
     const struct wb_law *law; /* NULL: the runs' materials */
@@ -36,6 +38,7 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
             info->wire);
     }
     computed->law = settings->law;
+    computed->speed = settings->speed;
     enum wb_status status = settings->law
                                 ? wb_section_init_law(&computed->section, info->outer_diameter,
                                                       settings->law, settings->n_fibres)
@@ -103,8 +106,10 @@ enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_m
         WB_TRY(wb_cantilever_set_law(computed->cantilever, computed->law));
     else
         wb_cantilever_set_materials(computed->cantilever, material);
+    wb_cantilever_set_duration(computed->cantilever, (double)INFINITY);
     WB_TRY(move(computed, follows ? WB_CONTROL_FOLLOWER_FORCE : WB_CONTROL_DEFLECTION, 0.0, &point,
                 &force, reached));
+    computed->at = 0.0;
     if (*reached && point.slack)
         return wb_fail_to(computed->why, WB_ERR_DATA,
                           "wire '%s', sample %d: with its bow of %.2f mm the computed wire carries "
@@ -122,6 +127,10 @@ enum wb_status wb_computed_move(struct wb_computed *computed, double deflection,
 {
     struct wb_cantilever_point point;
     double found;
+    if (computed->speed > 0.0)
+        wb_cantilever_set_duration(computed->cantilever,
+                                   fabs(deflection - computed->at) / computed->speed);
+    computed->at = deflection;
     WB_TRY(move(computed,
                 computed->info.is_follower ? WB_CONTROL_FOLLOWER_DEFLECTION : WB_CONTROL_DEFLECTION,
                 deflection, &point, &found, reached));

@@ -28,6 +28,8 @@ struct wb_computed_settings {
     /* Borrowed while the beam lives; NULL: runs compute with their materials. Otherwise with this
      * law, whose material they are then given. */
     const struct wb_law *law;
+    double speed; /* m/s, of the deflection, at which the law's Maxwell elements relax; 0: of the
+                     relaxed law, as a follower test always is */
 };
 
 /* For one test; `material` gives the shear stiffness (E and nu) and may be exchanged by each run.

@@ -291,6 +291,7 @@ static void put_law(struct wb_text *text, const struct wb_cycle_calibration *cal
     if (wb_law_is_plain(&p->law)) {
         put_material(text, "", &p->material);
         put_number(text, "", "poissons_ratio", p->law.material.poissons_ratio);
+        wb_law_file_append(text, &p->law);
         return;
     }
     if (p->law.form == WB_LAW_LUDWIK)

@@ -738,6 +738,11 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
                                ? "A travel of at least 0.35 of the length would mend it."
                                : "More samples, or an unloading, would mend it.");
     }
+    if (c->law.n_maxwell > 0) {
+        wb_text_append(&text, " Beside it ");
+        wb_law_append_relaxation(&text, &c->law);
+        wb_text_append(&text, "; the law itself is the relaxed wire's.");
+    }
     char a[24], b[24];
     int one, other;
     const struct wb_cycle_fit *const fit = &c->members[0].answers[c->chosen].fit;

@@ -52,6 +52,43 @@ static void a_perfectly_plastic_circle_springs_back_as_the_closed_form_says(void
     assert_close(bending.springback, expected, 2e-4);
 }
 
+/* An elastic circle with a Maxwell element, bent and unloaded at one rate: in closed form. */
+static void a_relaxing_circle_follows_its_strain_rate(void **unused)
+{
+    (void)unused;
+    const double E = 2e9, relaxing = 0.5e9, tau = 12.0, rate = 0.6; /* 1/(m s) */
+    struct wb_law law = bilinear(E, 0.5, 0.0);
+    law.n_maxwell = 1;
+    law.maxwell[0] = (struct wb_law_maxwell){relaxing, tau};
+    law.strain_rate = rate * 0.5 * DIAMETER;
+    const double kappa[] = {3.0, 30.0}, I = second_moment();
+    double M[2], secant, unloading;
+    struct wb_bending bending;
+    assert_int_equal(wb_bending_moments(&law, DIAMETER, 2, kappa, M), WB_OK);
+    double q = 0.0;
+    for (int i = 0; i < 2; i++) {
+        q = relaxing * rate * tau * -expm1(-kappa[i] / rate / tau);
+        assert_close_relative(M[i], I * (E * kappa[i] + q), 1e-6);
+    }
+    const double change = 2.0, decay = exp(-change / rate / tau);
+    const double back = q * decay - relaxing * rate * tau * (1.0 - decay);
+    assert_int_equal(
+        wb_bending_stiffness(&law, DIAMETER, largest, 1, kappa, &secant, 1, &change, &unloading),
+        WB_OK);
+    assert_close_relative(secant, M[0] / kappa[0], 1e-12);
+    assert_close_relative(unloading, I * (E + (q - back) / change), 1e-6);
+    /* Where the moment has gone, at the same rate. */
+    assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
+    assert_close_relative(bending.flexural_rigidity, I * (E + relaxing), 1e-6);
+    const double left = bending.springback * largest;
+    const double then = exp(-(largest - left) / rate / tau);
+    assert_close(E * left + q * then - relaxing * rate * tau * (1.0 - then), 0.0, 1e-6 * E);
+    /* Without a rate it is the relaxed law. */
+    law.strain_rate = 0.0;
+    assert_int_equal(wb_bending_moments(&law, DIAMETER, 1, kappa, M), WB_OK);
+    assert_close_relative(M[0], I * E * kappa[0], 1e-6);
+}
+
 static void an_elastic_circle_keeps_nothing(void **unused)
 {
     (void)unused;
@@ -214,6 +251,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_perfectly_plastic_circle_springs_back_as_the_closed_form_says),
         cmocka_unit_test(an_elastic_circle_keeps_nothing),
+        cmocka_unit_test(a_relaxing_circle_follows_its_strain_rate),
         cmocka_unit_test(a_hardening_circle_springs_back_by_masings_rule),
         cmocka_unit_test(stiffness_on_the_way_back_is_that_of_half_the_curvature_up),
         cmocka_unit_test(the_loops_energy_is_the_integral_between_its_branches),
