@@ -90,6 +90,47 @@ static void a_maxwell_part_relaxes(void **unused)
         assert_close_relative(strain_to(&p, 1e-3), 1e6 + 2e6 * exp(-3.0 * i / 15.0), 1e-12);
 }
 
+/* Eyring's: at the stress q0 e times as fast, in small steps. */
+static void a_maxwell_part_relaxes_faster_at_a_larger_stress(void **unused)
+{
+    (void)unused;
+    const double step = 1e-3, tau = 10.0, modulus = 1e9;
+    double left[2];
+    for (int i = 0; i < 2; i++) {
+        double strain = i == 0 ? 1e-6 : 1e-3;
+        const struct wb_truth_law law = {.modulus = 1e3,
+                                         .relaxing_modulus = modulus,
+                                         .relaxation_time = tau,
+                                         .relaxation_stress = modulus * 1e-3,
+                                         .time_step = &step};
+        struct point p = make_point(&law);
+        const double start = strain_to(&p, strain);
+        for (int k = 0; k < 100; k++)
+            (void)strain_to(&p, strain);
+        left[i] = p.stress / start;
+    }
+    assert_close_relative(1.0 - left[0], 0.1 / tau, 0.01);
+    assert_close_relative(1.0 - left[1], 0.1 / tau * exp(1.0), 0.03);
+}
+
+/* A negative Q: the stress falls once the part slips, and stays there on the way back. */
+static void strands_carry_less_once_they_slip(void **unused)
+{
+    (void)unused;
+    const double E = 10e9, yield = 1e6;
+    const struct wb_truth_law law = {.modulus = E,
+                                     .yield_stress = yield,
+                                     .saturation = -0.4 * yield,
+                                     .rate = 2000.0,
+                                     .time_step = &no_time};
+    struct point p = make_point(&law);
+    assert_close_relative(strain_to(&p, 0.999 * yield / E), 0.999 * yield, 1e-9);
+    for (int k = 1; k <= 100; k++)
+        (void)strain_to(&p, yield / E + 1e-4 * k);
+    assert_close_relative(p.stress, 0.6 * yield, 1e-3);
+    assert_close_relative(strain_to(&p, yield / E + 5e-3), -0.6 * yield, 1e-3);
+}
+
 static void tangents_are_slopes(void **unused)
 {
     (void)unused;
@@ -163,6 +204,8 @@ int main(void)
         cmocka_unit_test(linear_hardening_grows_or_moves),
         cmocka_unit_test(saturating_parts_follow_their_exponentials),
         cmocka_unit_test(a_maxwell_part_relaxes),
+        cmocka_unit_test(a_maxwell_part_relaxes_faster_at_a_larger_stress),
+        cmocka_unit_test(strands_carry_less_once_they_slip),
         cmocka_unit_test(tangents_are_slopes),
         cmocka_unit_test(the_variants_differ_on_the_way_back_only_where_they_should),
     };

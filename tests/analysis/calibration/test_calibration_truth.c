@@ -289,10 +289,10 @@ static bool misleads(const struct verdict *v, int number, double most)
 static void no_wire_of_another_law_is_wrong_without_a_warning(void **unused)
 {
     (void)unused;
-    static struct job jobs[WB_COMPOSITE_VARIANTS][PER_TRUTH + 1];
+    static struct job jobs[WB_COMPOSITE_SLIPPING][PER_TRUTH + 1];
     int wrong = 0;
     double worst_containing = 0.0;
-    for (int v = WB_COMPOSITE_ISOTROPIC; v < WB_COMPOSITE_VARIANTS; v++) {
+    for (int v = WB_COMPOSITE_ISOTROPIC; v < WB_COMPOSITE_SLIPPING; v++) {
         for (int i = 0; i <= PER_TRUTH; i++) {
             struct job *const job = &jobs[v][i];
             start_job(job, OTHER_TYPE, 2000 + (uint64_t)i);
@@ -322,11 +322,11 @@ static void no_wire_of_another_law_is_wrong_without_a_warning(void **unused)
         }
     }
     printf("    wrong without a warning: %d of %d\n", wrong,
-           PER_TRUTH * (WB_COMPOSITE_VARIANTS - 1));
+           PER_TRUTH * (WB_COMPOSITE_SLIPPING - 1));
     assert_int_equal(wrong, 0);
     printf("    misfit above that of a contained law: %.2f %% at most\n", 100.0 * worst_containing);
     assert_true(worst_containing <= 0.0);
-    for (int v = WB_COMPOSITE_ISOTROPIC; v < WB_COMPOSITE_VARIANTS; v++) {
+    for (int v = WB_COMPOSITE_ISOTROPIC; v < WB_COMPOSITE_SLIPPING; v++) {
         if (jobs[v][PER_TRUTH].verdict.best_misfit <= 1e-3)
             assert_close(summarise(jobs[v], PER_TRUTH).bias[0], 0.0, 0.05);
     }
