@@ -287,8 +287,12 @@ static void step_connect(struct wb_bend_test *test)
 static bool check_settings(const struct wb_bend_test *test, char text[WB_START_CHECK_TEXT])
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
+    struct wb_rig fastest_cycle = test->rig;
+    for (int cycle = 1; cycle <= test->request.cycles && cycle <= WB_BEND_TEST_MOST_SPEEDS; cycle++)
+        fastest_cycle.stage.speed = fmax(cycle == 1 ? 0.0 : fastest_cycle.stage.speed,
+                                         wb_bend_test_speed(&test->request, &test->rig, cycle));
     return !latest->has_settings ||
-           wb_stage_check_test(&latest->settings, &test->run.rig, latest->stage.position,
+           wb_stage_check_test(&latest->settings, &fastest_cycle, latest->stage.position,
                                test->request.travel, text);
 }
 
@@ -409,6 +413,7 @@ static void step_tare(struct wb_bend_test *test)
     wb_acquisition_event(test->run.acquisition, "tare",
                          "{\"force_N\": %.17g, \"samples\": %" PRId64 ", \"sd_N\": %.17g}",
                          test->result.tare, test->zero.n, wb_average_deviation(&test->zero));
+    test->run.rig.stage.speed = wb_bend_test_speed(&test->request, &test->rig, 1);
     arm(test);
     wb_first_force_begin(&test->first_force, wb_average_deviation(&test->zero), &test->run.rig);
     begin_cycle(test);
