@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/dataset/fit.h"
+#include "analysis/dataset/stops.h"
 #include "base/memory.h"
 #include "base/units.h"
 
@@ -49,13 +50,17 @@ static bool is_first_loading(const struct wb_row *row)
 size_t wb_curve_end_of_loading(const struct wb_dataset *dataset, double largest_deflection)
 {
     const double limit = largest_deflection > 0.0 ? largest_deflection * (1.0 + 1e-9) : HUGE_VAL;
-    double force = -HUGE_VAL;
+    double force = -HUGE_VAL, arrival = HUGE_VAL;
+    struct wb_stop stop;
     size_t end = 0;
+    /* The force falls in a dwell at the turn. */
+    if (!dataset->info.is_follower && wb_stops_at_turn(dataset, 1, &stop))
+        arrival = stop.arrival;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
         if (!is_first_loading(row))
             continue;
-        if (row->deflection > limit)
+        if (row->deflection > limit || row->t > arrival)
             break;
         if (dataset->info.is_follower && !(row->force >= force))
             continue;

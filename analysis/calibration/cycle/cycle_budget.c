@@ -108,6 +108,7 @@ static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cyc
 static double stated(const struct wb_cycle_calibration *calibration, enum wb_cycle_shared shared)
 {
     double squares = 0.0;
+    int n = 0;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_data *const data = &calibration->members[i].data;
         const double u = shared == WB_SHARED_RELAXATION
@@ -117,9 +118,10 @@ static double stated(const struct wb_cycle_calibration *calibration, enum wb_cyc
             continue;
         if (!(u > 0.0))
             return 0.0;
-        squares += u * u / calibration->n_members;
+        squares += u * u;
+        n++;
     }
-    return sqrt(squares);
+    return n > 0 ? sqrt(squares / n) : 0.0;
 }
 
 static void add_shared(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,

@@ -7,11 +7,11 @@
 
 #include "analysis/calibration/cycle/cycle_check_private.h"
 #include "analysis/calibration/cycle/cycle_fit.h"
-#include "analysis/calibration/cycle/cycle_hold.h"
 #include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/dataset/batches.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/holds.h"
+#include "analysis/dataset/stops.h"
 #include "base/circle.h"
 #include "base/memory.h"
 #include "base/text.h"
@@ -758,11 +758,10 @@ static double mean_tension(const struct wb_row *rows, size_t n, double *variance
 /* A force that falls while nothing moves: by the largest of all stops. */
 static void check_relaxation(struct wb_cycle_remarks *remarks, const struct specimen *s)
 {
-    struct wb_cycle_stop stops[MOST_STOPS];
+    struct wb_stop stops[MOST_STOPS];
     const struct wb_row *const rows = s->dataset->rows;
-    const int n =
-        wb_cycle_hold_stops(s->dataset, bent_share * s->data->max_force, stops, MOST_STOPS);
-    const struct wb_cycle_stop *worst = NULL;
+    const int n = wb_stops_find(s->dataset, 0, bent_share * s->data->max_force, stops, MOST_STOPS);
+    const struct wb_stop *worst = NULL;
     double most = 0.0;
     for (int i = 0; i < n; i++) {
         const size_t fifth = (stops[i].end - stops[i].first) / 5;

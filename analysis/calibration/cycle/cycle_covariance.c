@@ -33,7 +33,8 @@ static int group_rows(const gsl_vector *f, int at, int n, int *group, int *n_gro
 /* Groups residuals that tell the same: those of one sign in a row, of one branch, one marker or
  * the dwell.
  * Returns how many there are. */
-static int group_residuals(const struct wb_cycle_data *data, const gsl_vector *f, int *group)
+static int group_residuals(const struct wb_cycle_data *data, bool has_held, const gsl_vector *f,
+                           int *group)
 {
     int n_groups = 0;
     for (size_t i = 0; i < f->size; i++)
@@ -46,7 +47,8 @@ static int group_residuals(const struct wb_cycle_data *data, const gsl_vector *f
             n += data->places[i].marker == m;
         at = group_rows(f, at, n, group, &n_groups) + 1; /* behind its offset's prior */
     }
-    group_rows(f, at, data->n_held, group, &n_groups);
+    if (has_held)
+        group_rows(f, at, data->n_held, group, &n_groups);
     return n_groups;
 }
 
@@ -89,14 +91,14 @@ static bool add_priors(const gsl_matrix *J, const int *group, const gsl_matrix *
     return good;
 }
 
-bool wb_cycle_covariance_find(const struct wb_cycle_data *data, const gsl_vector *f,
+bool wb_cycle_covariance_find(const struct wb_cycle_data *data, bool has_held, const gsl_vector *f,
                               const gsl_matrix *J, gsl_matrix *covariance)
 {
     const size_t n = J->size2;
     gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
     gsl_matrix *const rest = wb_memory_need(gsl_matrix_alloc(n, n));
     int *const group = wb_memory_new(f->size, sizeof *group);
-    const int n_groups = group_residuals(data, f, group);
+    const int n_groups = group_residuals(data, has_held, f, group);
     bool good = true;
     gsl_matrix_set_identity(squares);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);

@@ -18,10 +18,10 @@
 #include "analysis/calibration/cycle/cycle_data.h"
 
 /* Of n free numbers, at most WB_FIT_MOST_FREE: `f` are the residuals at the end of the search, of
- * the points, then of each marker's places with the prior of its offset behind them, then of the
- * other priors; `J` (residuals, n) their slopes. Fills the lower half of `covariance` (n, n). False
- * where it cannot be computed. */
-bool wb_cycle_covariance_find(const struct wb_cycle_data *data, const gsl_vector *f,
+ * the points, then of each marker's places with the prior of its offset behind them, then, if
+ * `has_held`, of the dwell's periods, then of the other priors; `J` (residuals, n) their slopes.
+ * Fills the lower half of `covariance` (n, n). False where it cannot be computed. */
+bool wb_cycle_covariance_find(const struct wb_cycle_data *data, bool has_held, const gsl_vector *f,
                               const gsl_matrix *J, gsl_matrix *covariance);
 
 #endif

@@ -345,7 +345,7 @@ static double mean_in_dwell(const struct wb_cycle_data *data, const struct wb_da
         sum += row->deflection;
         n++;
     }
-    return sum / (double)n;
+    return n > 0 ? sum / (double)n : data->top;
 }
 
 /* Tension where the deflection crosses zero, on the first loading. */

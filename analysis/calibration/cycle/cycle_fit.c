@@ -253,13 +253,18 @@ static void law_of(const struct problem *p, const double *free, struct wb_law *l
     for (int i = 0; i < p->n_maxwell; i++)
         law->maxwell[i] =
             (struct wb_law_maxwell){exp(free[p->n_form + 2 * i]), exp(free[p->n_form + 2 * i + 1])};
-    if (p->beside.modulus > 0.0)
+    if (p->n_maxwell == 2 && law->maxwell[0].time > law->maxwell[1].time) {
+        const struct wb_law_maxwell slow = law->maxwell[0]; /* the fast one comes first */
+        law->maxwell[0] = law->maxwell[1];
+        law->maxwell[1] = slow;
+    }
+    if (p->beside.modulus > 0.0 && law->n_maxwell < WB_LAW_MOST_MAXWELL)
         law->maxwell[law->n_maxwell++] = p->beside;
     law->strain_rate = law->n_maxwell > 0 ? p->strain_rate : 0.0;
 }
 
-/* Of the outer fibre of a wire that bends as an elastic one, 1/s. */
-static double elastic_strain_rate(const struct wb_cycle_data *data, double curvature)
+/* Of the outer fibre up to the clamp's curvature at the turn, 1/s. */
+static double strain_rate_of(const struct wb_cycle_data *data, double curvature)
 {
     const double t = data->arrival - data->points[0].t;
     return t > 0.0 ? 0.5 * data->info.outer_diameter * curvature / t : 0.0;
@@ -469,13 +474,19 @@ static int prior_residuals(const struct problem *p, const double *free, const st
     return at;
 }
 
+/* Periods of the dwell that count: without Maxwell elements they tell nothing. */
+static int held_of(const struct problem *p)
+{
+    return p->n_maxwell > 0 ? p->data->n_held : 0;
+}
+
 /* How the tension falls in the dwell: beyond the mean, which the law may miss. Returns the index
  * behind the residuals. */
 static int held_residuals(const struct problem *p, double *r)
 {
     const struct wb_cycle_data *const data = p->data;
     const double *const held = wb_cycle_model_held(p->model);
-    const int n = data->n_held;
+    const int n = held_of(p);
     double mean = 0.0;
     if (n == 0)
         return 0;
@@ -847,7 +858,7 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
         }
         find_correlations(p, covariance, fit);
     }
-    if (wb_cycle_covariance_find(p->data, w->f, w->J, covariance))
+    if (wb_cycle_covariance_find(p->data, held_of(p) > 0, w->f, w->J, covariance))
         move_law(p, w->x, covariance, fit);
     gsl_matrix_free(covariance);
 }
@@ -951,8 +962,8 @@ static int count_residuals(const struct problem *p)
     const int priors = c->form == WB_LAW_PARALLEL   ? WB_FIT_PARTS - 3
                        : c->form == WB_LAW_CHABOCHE ? 2 + 2 * c->n_backs
                                                     : 2;
-    return p->data->n_points + p->data->n_places + p->data->n_markers + p->data->n_held + 2 +
-           priors + c->has_share + 2 * p->n_maxwell + (p->settings->zero_prior > 0.0);
+    return p->data->n_points + p->data->n_places + p->data->n_markers + held_of(p) + 2 + priors +
+           c->has_share + 2 * p->n_maxwell + (p->settings->zero_prior > 0.0);
 }
 
 /* The last run, with more elements. */
@@ -1008,7 +1019,7 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
             break;
     }
     absolute(p, w->x->data, free_numbers);
-    p->strain_rate = elastic_strain_rate(p->data, p->run.clamp_curvature);
+    p->strain_rate = strain_rate_of(p->data, p->run.clamp_curvature);
     law_of(p, free_numbers, &fit->law);
     const struct wb_cycle_specimen specimen = specimen_of(p, free_numbers);
     fit->bow_angle = specimen.bow_angle;
@@ -1026,6 +1037,8 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     for (int i = 0; i < p->data->n_points; i++)
         fit->tension[i] += fit->zero;
     fit->clamp_curvature = p->run.clamp_curvature;
+    if (fit->law.n_maxwell > 0)
+        fit->law.strain_rate = strain_rate_of(p->data, fit->clamp_curvature);
     fit->first_curvature = p->run.first_curvature;
     fit->turn_change = p->run.turn_change;
     find_misfits(fit, p);
@@ -1047,7 +1060,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
         .poissons_ratio = start->material.poissons_ratio,
         .n_form = wb_candidate_numbers(candidate),
         .n_maxwell = settings->n_maxwell,
-        .strain_rate = elastic_strain_rate(data, elastic_curvature(data)),
+        .strain_rate = strain_rate_of(data, elastic_curvature(data)),
     };
     p.n_law = p.n_form + 2 * p.n_maxwell;
     p.maxwell_time = sqrt((data->departure - data->arrival) * (data->arrival - data->points[0].t));

@@ -6,18 +6,6 @@
 
 #include "analysis/calibration/cycle/cycle_data.h"
 
-/* Rows `first` to `end` - 1 of a dataset, between which nothing moves, without those in which it
- * may come in and leave. */
-struct wb_cycle_stop {
-    size_t first, end;
-    double arrival, departure; /* s */
-};
-
-/* The first `most` stops of a wire that carries more than a tension, N, in their order: by the
- * stage's travel where all rows know it, else by the deflection. Returns how many there are. */
-int wb_cycle_hold_stops(const struct wb_dataset *dataset, double least_tension,
-                        struct wb_cycle_stop *stops, int most);
-
 /* Finds arrival and departure at the turn of a cycle, and means of the tension over the dwell in
  * periods of growing length. */
 void wb_cycle_hold_find(struct wb_cycle_data *data, const struct wb_dataset *dataset, int cycle);
@@ -34,7 +22,7 @@ struct wb_cycle_relaxation {
 void wb_cycle_hold_describe(const struct wb_cycle_data *data,
                             struct wb_cycle_relaxation *relaxation);
 
-/* Maxwell elements that the dwells of n specimens ask for, 0 to 2. */
+/* Maxwell elements that the dwells of n specimens ask for, 0 to 2; 0 where one has no dwell. */
 int wb_cycle_hold_elements(const struct wb_cycle_data *const *data, int n);
 
 #endif

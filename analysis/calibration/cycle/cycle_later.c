@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/calibration/cycle/cycle_model.h"
+#include "analysis/dataset/stops.h"
 #include "base/memory.h"
 #include "base/units.h"
 
@@ -64,13 +65,16 @@ static double lowest_deflection(const struct wb_dataset *dataset, int cycle, dou
 static void add_way(struct wb_cycle_later *later, const struct wb_dataset *dataset, int cycle,
                     bool is_unloading, struct bin *bins, int n_bins)
 {
+    struct wb_stop stop;
+    const bool has_dwell = wb_stops_at_turn(dataset, cycle, &stop);
     memset(bins, 0, (size_t)n_bins * sizeof *bins);
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
         const enum wb_phase phase = is_unloading ? WB_PHASE_UNLOAD : WB_PHASE_LOAD;
         const int k = (int)(row->deflection / step);
         if (row->cycle != cycle || row->phase != phase || !(row->tension > smallest_tension) ||
-            !(row->deflection > 0.0) || k >= n_bins)
+            !(row->deflection > 0.0) || k >= n_bins ||
+            (has_dwell && row->t > stop.arrival && row->t < stop.departure))
             continue;
         bins[k].deflection += row->deflection;
         bins[k].tension += row->tension;
@@ -118,8 +122,13 @@ static void make_path(struct wb_cycle_data *path, int *index, const struct wb_cy
             deflection = largest_deflection(dataset, p->cycle, &t);
         else
             deflection = (double)NAN;
+        struct wb_stop stop;
+        const bool is_top = i > 0 && p->is_unloading && !later->points[i - 1].is_unloading;
+        const bool has_dwell = is_top && wb_stops_at_turn(dataset, p->cycle, &stop);
+        if (has_dwell)
+            push(path, deflection, stop.arrival);
         if (isfinite(deflection))
-            push(path, deflection, t);
+            push(path, deflection, has_dwell ? stop.departure : t);
         index[i] = path->n_points;
         push(path, p->deflection, p->t);
     }
@@ -158,7 +167,7 @@ static enum wb_status predict(struct wb_cycle_later *later, const struct wb_data
         add_way(later, dataset, cycle, true, bins, n_bins);
     }
     struct wb_cycle_data path = *data;
-    const size_t most = (size_t)(data->n_points + later->n + 2 * later->n_cycles + 3);
+    const size_t most = (size_t)(data->n_points + later->n + 3 * later->n_cycles + 3);
     path.points = wb_memory_new(most, sizeof *path.points);
     double *const tension = wb_memory_new(most, sizeof *tension);
     int *const index = wb_memory_new(most, sizeof *index);

@@ -70,7 +70,7 @@ static enum wb_status move(struct wb_cycle_model *model, double deflection, doub
     if (model->relaxes) {
         const double duration = t - model->t;
         wb_cantilever_set_duration(model->cantilever, duration > 0.0 ? duration : 0.0);
-        model->t = t;
+        model->t = t < model->t ? model->t : t;
     }
     WB_TRY(wb_cantilever_move(model->cantilever, WB_CONTROL_DEFLECTION, deflection, point));
     *reached = is_reached(point);
