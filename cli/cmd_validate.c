@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "analysis/calibration/properties/properties.h"
-#include "analysis/validation/validate.h"
+#include "analysis/validation/validate_bounds.h"
 #include "analysis/validation/validate_json.h"
 #include "analysis/validation/validate_tables.h"
 #include "analysis/validation/validate_three_point.h"
@@ -254,20 +254,46 @@ static void print_cycles(const struct wb_validate_result *r)
     }
 }
 
+/* The unloading and the residual deflection are those with the law as stiff as each specimen. */
+static void print_bound(const struct wb_validate_result *r, enum wb_validate_part part)
+{
+    static const char *const what[WB_VALIDATE_PARTS] = {
+        [WB_VALIDATE_LOADING] = "RMS",
+        [WB_VALIDATE_UNLOADING] = "RMS, each specimen as stiff as its loading",
+        [WB_VALIDATE_RESIDUAL] = "mm off, each specimen as stiff as its loading",
+        [WB_VALIDATE_SHAPES] = "mm, RMS of the mean over the specimens",
+    };
+    const struct wb_validate_bound *const bound = &r->bounds[part];
+    const double unit = wb_validate_part_unit(part);
+    if (isfinite(bound->bound) && isfinite(bound->found))
+        printf("    %-19s found %-8.3g bound %-8.3g %s%s\n", wb_validate_part_name(part),
+               bound->found / unit, bound->bound / unit, what[part],
+               bound->is_exceeded ? ": exceeded" : "");
+}
+
 static void print_scatter(const struct wb_validate_result *r)
 {
     if (r->curve.n_samples > 1)
         printf("  scatter        between samples %.3g, with each one's own natural shape %.3g\n",
                r->scatter_rms, r->residual_scatter_rms);
-    if (isfinite(r->expected_rms_95))
-        printf("  perfect model  with specimens that differ by %.1f %% in stiffness: RMS about "
-               "%.2g on loading, above %.2g in one of twenty validations\n"
-               "                 found %.2g: %s\n",
-               100.0 * r->stiffness_deviation, r->expected_rms, r->expected_rms_95,
-               r->elastoplastic.rms,
-               r->elastoplastic.rms > r->expected_rms_95
-                   ? "more than the scatter of specimens explains"
-                   : "no more than the scatter of specimens explains");
+    if (!wb_validate_bounds_known(r))
+        return;
+    if (isfinite(r->stiffness_deviation))
+        printf("  bounds         for specimens that differ by %.1f %% in stiffness; a right law "
+               "exceeds one of them in one of twenty validations\n",
+               100.0 * r->stiffness_deviation);
+    else
+        printf("  bounds         a right law exceeds one of them in one of twenty validations\n");
+    for (int i = 0; i < WB_VALIDATE_PARTS; i++)
+        print_bound(r, i);
+    struct wb_text exceeded = {0};
+    wb_validate_bounds_append(&exceeded, r);
+    if (wb_validate_bounds_exceeded(r))
+        printf("  verdict        the law does not predict these tests: %s\n",
+               wb_text_string(&exceeded));
+    else
+        printf("  verdict        no more than the scatter of specimens explains\n");
+    wb_text_release(&exceeded);
 }
 
 static void print_group(const struct wb_validate_result *r)

@@ -12,6 +12,8 @@
 
 /* Most different arc lengths at which markers sit. */
 #define MOST_POSITIONS 256
+/* Parts of the range over which a marker's displacements are averaged. */
+#define PARTS 10
 
 /* Shapes of the model at equal steps of deflection or follower force, at every arc length that has
  * a marker. */
@@ -108,9 +110,9 @@ static enum wb_status fill(struct gallery *gallery, struct wb_computed *computed
     return WB_OK;
 }
 
-/* Distance of one marker; false when the model did not get there. */
-static bool marker_distance(const struct gallery *gallery, const struct wb_dataset *dataset,
-                            const struct wb_shape_row *row, double *distance)
+/* Displacement of one marker from the model; false when the model did not get there. */
+static bool displacement(const struct gallery *gallery, const struct wb_dataset *dataset,
+                         const struct wb_shape_row *row, double *dx, double *dy)
 {
     const double place = place_of(dataset, row) / gallery->step;
     int frame = (int)place;
@@ -123,23 +125,81 @@ static bool marker_distance(const struct gallery *gallery, const struct wb_datas
     const int next = at + gallery->n_positions;
     const double x = (1.0 - part) * gallery->x[at] + part * gallery->x[next];
     const double y = (1.0 - part) * gallery->y[at] + part * gallery->y[next];
-    *distance = hypot(row->x - x, row->y - y);
+    *dx = row->x - x;
+    *dy = row->y - y;
     return true;
+}
+
+/* Displacements of a sample at a position within a part of the range. */
+struct cell {
+    double dx, dy;
+    int n;
+};
+
+/* Adds one marker's displacement to its cell. */
+static void add_to_cell(struct cell *cells, const struct gallery *gallery,
+                        const struct wb_dataset *dataset, const struct wb_shape_row *row,
+                        double last, double dx, double dy)
+{
+    const int part = (int)fmin(PARTS * place_of(dataset, row) / last, PARTS - 1.0);
+    struct cell *const cell = &cells[find_position(gallery, row->s) * PARTS + part];
+    cell->dx += dx;
+    cell->dy += dy;
+    cell->n++;
+}
+
+/* Over the samples; `cells` has n_positions x PARTS of each. */
+static void average(struct wb_marker_mean *mean, const struct cell *cells, int n_positions, int n)
+{
+    const int n_cells = n_positions * PARTS;
+    double squares = 0.0, variance = 0.0;
+    int used = 0;
+    mean->n_samples = n;
+    mean->n_positions = 0;
+    int counted = -1; /* the last position that counts */
+    for (int c = 0; c < n_cells; c++) {
+        double sum[2] = {0.0, 0.0}, square = 0.0;
+        int count = 0;
+        for (int i = 0; i < n; i++) {
+            const struct cell *const cell = &cells[i * n_cells + c];
+            if (cell->n == 0)
+                continue;
+            const double x = cell->dx / cell->n, y = cell->dy / cell->n;
+            sum[0] += x;
+            sum[1] += y;
+            square += x * x + y * y;
+            count++;
+        }
+        if (count < n || n < 2)
+            continue;
+        const double of_mean = (sum[0] * sum[0] + sum[1] * sum[1]) / n;
+        squares += of_mean / n;
+        variance += fmax(square - of_mean, 0.0) / (n - 1);
+        used++;
+        mean->n_positions += c / PARTS != counted;
+        counted = c / PARTS;
+    }
+    mean->rms = used > 0 ? sqrt(squares / used) : (double)NAN;
+    mean->scatter = used > 0 ? sqrt(variance / used) : (double)NAN;
 }
 
 static void compare(struct wb_marker_distance *distance, const struct gallery *gallery,
                     const struct wb_dataset *const *datasets, int n, double last)
 {
+    const size_t n_cells = (size_t)gallery->n_positions * PARTS;
+    struct cell *const cells = wb_memory_new(n_cells * (size_t)n, sizeof *cells);
     double squares = 0.0;
     distance->largest = 0.0;
     for (int i = 0; i < n; i++) {
         const double end = end_of_loading(datasets[i]);
         for (size_t k = 0; k < datasets[i]->n_shape_rows; k++) {
             const struct wb_shape_row *const row = &datasets[i]->shape_rows[k];
-            double d;
+            double dx, dy;
             if (!counts(datasets[i], row, end, last) ||
-                !marker_distance(gallery, datasets[i], row, &d))
+                !displacement(gallery, datasets[i], row, &dx, &dy))
                 continue;
+            const double d = hypot(dx, dy);
+            add_to_cell(cells + (size_t)i * n_cells, gallery, datasets[i], row, last, dx, dy);
             squares += d * d;
             distance->largest = fmax(distance->largest, d);
             distance->n_points++;
@@ -149,6 +209,8 @@ static void compare(struct wb_marker_distance *distance, const struct gallery *g
         distance->rms = sqrt(squares / distance->n_points);
     else
         distance->rms = distance->largest = (double)NAN;
+    average(&distance->mean, cells, gallery->n_positions, n);
+    free(cells);
 }
 
 enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
@@ -158,7 +220,9 @@ enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
                                        const struct wb_marker_distance_range *range)
 {
     const double step = range->step, last = range->last;
-    struct wb_marker_distance result = {(double)NAN, (double)NAN, 0};
+    struct wb_marker_distance result = {.rms = (double)NAN,
+                                        .largest = (double)NAN,
+                                        .mean = {.rms = (double)NAN, .scatter = (double)NAN}};
     struct gallery gallery = {.step = step, .is_follower = datasets[0]->info.is_follower};
     WB_TRY(collect_positions(&gallery, datasets, n, last, wb_computed_reason(computed)));
     if (gallery.n_positions == 0) {

@@ -6,9 +6,18 @@
 #include "analysis/dataset/dataset.h"
 #include "base/status.h"
 
+/* Displacements of the markers from the computed wire, averaged over the samples at equal places of
+ * wire and range. */
+struct wb_marker_mean {
+    double rms;                 /* m: of the means; NaN without places that all samples have */
+    double scatter;             /* m: of the standard deviations between samples */
+    int n_samples, n_positions; /* positions along the wire at which there are such places */
+};
+
 struct wb_marker_distance {
     double rms, largest; /* m; NaN without points */
     int n_points;
+    struct wb_marker_mean mean;
 };
 
 /* Over which deflections (in a follower test: forces) the frames are compared. */

@@ -12,6 +12,7 @@
 #include "analysis/dataset/errors.h"
 #include "analysis/validation/expected.h"
 #include "analysis/validation/marker_distance.h"
+#include "analysis/validation/validate_bounds.h"
 #include "analysis/validation/validate_private.h"
 #include "analysis/validation/validate_tables.h"
 #include "base/file.h"
@@ -32,8 +33,6 @@
 /* Frames of a follower test's model to a step of the grid, whose ends may be far from each other.
  */
 #define FRAMES 4
-/* Part of ln k by which stiffness is changed to find what it changes. */
-#define SMALL 0.01
 /* Curvatures larger than the known ones by this factor are beyond. A test like the calibration's
  * own, which is known as far as its least bent specimen, is not. */
 #define BEYOND 1.1
@@ -129,23 +128,6 @@ static enum wb_status predict_mean(struct wb_prediction *prediction,
 
 /* --- what scatter lets expect --- */
 
-/* The same law of a wire that is stiffer by a factor: so much larger is its moment at any
- * curvature.
- */
-static struct wb_law stiffer(const struct wb_law *law, double factor)
-{
-    struct wb_law scaled = *law;
-    scaled.material.youngs_modulus *= factor;
-    scaled.material.yield_stress *= factor;
-    scaled.material.strength_coefficient *= factor;
-    for (int i = 0; i < law->n_parts; i++)
-        scaled.parts[i].modulus *= factor;
-    scaled.saturation *= factor;
-    for (int i = 0; i < law->n_backs; i++)
-        scaled.backs[i].modulus *= factor;
-    return scaled;
-}
-
 /* G of validate.h: root mean square of dF/d ln k over F_max; NaN where the beam does not reach the
  * end of the curve. */
 static enum wb_status find_sensitivity(double *G, const struct wb_validate_result *result,
@@ -153,11 +135,12 @@ static enum wb_status find_sensitivity(double *G, const struct wb_validate_resul
                                        const struct wb_computed_settings *how)
 {
     const struct wb_curve *const curve = &result->curve;
+    const double by = wb_validate_stiffer_by;
     double *const value = wb_memory_new(2 * (size_t)curve->n, sizeof *value);
     enum wb_status status = WB_OK;
     bool complete = true;
     for (int side = 0; status == WB_OK && side < 2; side++) {
-        const struct wb_law scaled = stiffer(law, side == 0 ? exp(-SMALL) : exp(SMALL));
+        const struct wb_law scaled = wb_validate_stiffer(law, side == 0 ? -by : by);
         struct wb_computed_settings with = *how;
         struct wb_computed *computed;
         int reached = 0;
@@ -171,7 +154,7 @@ static enum wb_status find_sensitivity(double *G, const struct wb_validate_resul
         complete = complete && reached == curve->n;
     }
     for (int i = 0; status == WB_OK && complete && i < curve->n; i++)
-        value[i] = (value[curve->n + i] - value[i]) / (2.0 * SMALL * wb_curve_scale(curve));
+        value[i] = (value[curve->n + i] - value[i]) / (2.0 * by * wb_curve_scale(curve));
     *G = status == WB_OK && complete ? wb_errors_rms(curve->n, value) : (double)NAN;
     free(value);
     return status;
@@ -234,22 +217,24 @@ static const struct wb_law *overlay_of(const struct wb_properties *properties)
     return is_plain ? NULL : &properties->law;
 }
 
-/* Mean speed of the deflection on the first loadings, m/s; 0 where no time is known. */
+/* Mean speed of the deflection on the first loadings, m/s; 0 where no time is known, and of a
+ * follower test. */
 static double loading_speed(const struct wb_dataset *const *datasets, int n)
 {
     double sum = 0.0;
     for (int i = 0; i < n; i++) {
-        const struct wb_row *first = NULL, *last = NULL;
-        for (size_t k = 0; k < datasets[i]->n_rows; k++) {
-            const struct wb_row *const row = &datasets[i]->rows[k];
-            if (row->cycle != 1 || row->phase != WB_PHASE_LOAD || !(row->deflection > 0.0))
-                continue;
-            first = first ? first : row;
-            last = !last || row->deflection > last->deflection ? row : last;
-        }
-        if (!first || !(last->t > first->t))
+        const struct wb_dataset *const dataset = datasets[i];
+        const size_t end = wb_curve_end_of_loading(dataset, 0.0);
+        size_t first = 0;
+        while (first < end && !(dataset->rows[first].deflection > 0.0))
+            first++;
+        if (dataset->info.is_follower || first >= end)
             return 0.0;
-        sum += (last->deflection - first->deflection) / (last->t - first->t) / n;
+        const struct wb_row *const from = &dataset->rows[first], *const to =
+                                                                     &dataset->rows[end - 1];
+        if (!(to->t > from->t))
+            return 0.0;
+        sum += (to->deflection - from->deflection) / (to->t - from->t) / n;
     }
     return sum;
 }
@@ -305,6 +290,7 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
     result->shape_rms = distance.rms;
     result->shape_max = distance.largest;
     result->n_shape_points = distance.n_points;
+    result->shapes = distance.mean;
     return check_reached(result, why);
 }
 
@@ -394,6 +380,8 @@ enum wb_status wb_validate_run(struct wb_validate_result *result,
     }
     if (status == WB_OK)
         status = validate_cycles(&made, properties, list, n, settings);
+    if (status == WB_OK)
+        wb_validate_bounds_find(&made, properties);
     free(bent);
     free(list);
     if (status != WB_OK) {
@@ -470,6 +458,17 @@ void wb_validate_put_scores(struct wb_text *text, const struct wb_validate_resul
                                  (double[]){none, none, result->expected_rms_95}, "1");
     wb_validate_tables_put_score(text, &result->info, "shapes",
                                  (double[]){none, none, result->shape_rms / WB_MM}, "mm");
+    for (int i = 0; i < WB_VALIDATE_PARTS; i++) {
+        const struct wb_validate_bound *const bound = &result->bounds[i];
+        const double unit = wb_validate_part_unit(i);
+        char name[40];
+        snprintf(name, sizeof name, "bound_%s", wb_validate_part_key(i));
+        if (isfinite(bound->bound))
+            wb_validate_tables_put_score(
+                text, &result->info, name,
+                (double[]){bound->found / unit, bound->bound / unit, (double)bound->is_exceeded},
+                unit == WB_MM ? "mm" : "1");
+    }
     if (cycles->n_samples == 0)
         return;
     wb_validate_tables_put_score(text, &result->info, "unloading",

@@ -17,17 +17,35 @@
  *
  *     RMS95 = t_0.975(v) s (1/n + 1/m)^(1/2) G
  *
- * in one of twenty validations, whatever s is. */
+ * in one of twenty validations, whatever s is.
+ *
+ * The parts of a test have bounds (analysis/validation/validate_bounds.h) of which a right law
+ * exceeds any in one of twenty validations. */
 #ifndef WB_ANALYSIS_VALIDATION_VALIDATE_H
 #define WB_ANALYSIS_VALIDATION_VALIDATE_H
 
 #include "analysis/calibration/properties/properties.h"
 #include "analysis/dataset/curve.h"
 #include "analysis/dataset/dataset.h"
+#include "analysis/validation/marker_distance.h"
 #include "analysis/validation/validate_cycle.h"
 #include "base/reason.h"
 #include "base/status.h"
 #include "base/text.h"
+
+/* Parts of a test that have a bound. */
+enum wb_validate_part {
+    WB_VALIDATE_LOADING,   /* RMS over F_max */
+    WB_VALIDATE_UNLOADING, /* RMS over F_max, with the law as stiff as each sample's loading */
+    WB_VALIDATE_RESIDUAL,  /* m, of the mean residual deflection, likewise */
+    WB_VALIDATE_SHAPES,    /* m, RMS of the markers' mean displacement over the samples */
+    WB_VALIDATE_PARTS
+};
+
+struct wb_validate_bound {
+    double found, bound; /* NaN unknown: one sample does not show how samples scatter */
+    bool is_exceeded;
+};
 
 /* A computed loading curve on the grid of a measured one. */
 struct wb_prediction {
@@ -55,6 +73,8 @@ struct wb_validate_result {
                          out; NaN without shapes */
     double shape_max; /* m */
     int n_shape_points;
+    struct wb_marker_mean shapes;
+    struct wb_validate_bound bounds[WB_VALIDATE_PARTS];
     double scatter_rms, residual_scatter_rms; /* as in calibrate */
     double stiffness_deviation; /* s of ln k above, pooled; NaN unknown: one sample and no other, */
     int stiffness_degrees;      /* and v */

@@ -14,6 +14,25 @@
 /* Between the points of the mean way back, and of the model where nothing was measured. */
 static const double step = 1.0 * WB_MM;
 
+const double wb_validate_stiffer_by = 0.01;
+
+struct wb_law wb_validate_stiffer(const struct wb_law *law, double ln_factor)
+{
+    const double factor = exp(ln_factor);
+    struct wb_law scaled = *law;
+    scaled.material.youngs_modulus *= factor;
+    scaled.material.yield_stress *= factor;
+    scaled.material.strength_coefficient *= factor;
+    for (int i = 0; i < law->n_parts; i++)
+        scaled.parts[i].modulus *= factor;
+    scaled.saturation *= factor;
+    for (int i = 0; i < law->n_backs; i++)
+        scaled.backs[i].modulus *= factor;
+    for (int i = 0; i < law->n_maxwell; i++)
+        scaled.maxwell[i].modulus *= factor;
+    return scaled;
+}
+
 /* One way of a test, measured and computed. */
 struct way {
     int n, first; /* points, and where they begin in the path */
@@ -29,6 +48,9 @@ struct sample {
     struct wb_cycle_data path;
     double *tension; /* (path.n_points) N; beyond what was reached NaN */
     double zero;     /* N: computed tension at zero deflection */
+    double *adapted; /* (end_of_first) N: the same of a law as stiff as this specimen, */
+    double adapted_zero;
+    double ln_stiffness; /* by its own loading: NaN where that was not found */
     double curvature;
     bool is_good; /* its first way back is computed */
 };
@@ -39,6 +61,7 @@ static void release_sample(struct sample *sample)
         wb_cycle_data_release(&sample->data[k]);
     free(sample->path.points);
     free(sample->tension);
+    free(sample->adapted);
 }
 
 static void add_point(struct wb_cycle_data *path, double deflection, double t)
@@ -83,7 +106,7 @@ static void make_path(struct sample *sample)
     path->info = sample->data[0].info;
     for (int k = 0; k < sample->n_cycles; k++) {
         const double descent = sample->data[k].top - wb_cycle_model_rest(&path->info);
-        most += (size_t)sample->data[k].n_points + (size_t)(descent / step) + 4;
+        most += (size_t)sample->data[k].n_points + (size_t)(descent / step) + 5;
     }
     path->top = sample->data[0].top;
     path->arrival = sample->data[0].arrival;
@@ -100,6 +123,8 @@ static void make_path(struct sample *sample)
             path->n_loading = path->n_points; /* the model goes on to the turn by itself */
         else
             add_point(path, data->top, data->arrival);
+        if (k > 0 && data->n_held > 0)
+            add_point(path, data->top, data->departure);
         sample->back[k] = add_way(path, data, data->n_loading, data->n_points);
         if (sample->back[k].n > 0)
             add_descent(path);
@@ -130,6 +155,53 @@ static void take_later(struct sample *sample, const struct wb_dataset *dataset)
         if (data->n_points == data->n_loading)
             return;
     }
+}
+
+/* The law as stiff as the specimen: by least squares over the points of its first loading, to first
+ * order. What remains of the way back is then the law's, and not the specimen's stiffness. */
+static void find_stiffness(struct sample *sample, const double *stiffer)
+{
+    const struct wb_cycle_data *const data = &sample->data[0];
+    const struct way *const up = &sample->up[0];
+    double squares = 0.0, products = 0.0;
+    for (int i = 0; i < up->n; i++) {
+        const int at = up->first + i;
+        const double slope = (stiffer[at] - stiffer[0] - sample->tension[at] + sample->zero) /
+                             wb_validate_stiffer_by;
+        const double difference =
+            data->points[i].tension - data->zero_tension - sample->tension[at] + sample->zero;
+        squares += slope * slope;
+        products += slope * difference;
+    }
+    sample->ln_stiffness = products / squares;
+    for (int i = 0; i < sample->end_of_first; i++)
+        sample->adapted[i] = sample->tension[i] + sample->ln_stiffness *
+                                                      (stiffer[i] - sample->tension[i]) /
+                                                      wb_validate_stiffer_by;
+    sample->adapted_zero = sample->adapted[0];
+}
+
+static enum wb_status adapt(struct sample *sample, const struct wb_law *law,
+                            const struct wb_cycle_specimen *specimen,
+                            const struct wb_cycle_model_settings *how)
+{
+    const struct wb_law stiffer = wb_validate_stiffer(law, wb_validate_stiffer_by);
+    const size_t n = (size_t)sample->end_of_first;
+    struct wb_cycle_data first = sample->path;
+    struct wb_cycle_model *model;
+    struct wb_cycle_run run;
+    first.n_points = sample->end_of_first;
+    WB_TRY(wb_cycle_model_create(&model, &first, &stiffer, how));
+    double *const tension = wb_memory_new(n, sizeof *tension);
+    const enum wb_status status =
+        wb_cycle_model_run(model, &stiffer, specimen, tension, NULL, &run);
+    wb_cycle_model_destroy(model);
+    if (status == WB_OK && run.reached && sample->up[0].n > 0) {
+        sample->adapted = wb_memory_new(n, sizeof *sample->adapted);
+        find_stiffness(sample, tension);
+    }
+    free(tension);
+    return status;
 }
 
 /* WB_OK with sample->is_good false: `why` says why. */
@@ -166,14 +238,14 @@ static enum wb_status compute(struct sample *sample, const struct wb_law *law,
         (void)wb_fail_to(why, WB_ERR_CONVERGENCE,
                          "wire '%s', sample %d: the beam does not converge over the first cycle",
                          info->wire, info->sample);
-    return WB_OK;
+    return sample->is_good ? adapt(sample, law, &specimen, &how) : WB_OK;
 }
 
 /* --- the way back --- */
 
 /* Measured and computed tension at a deflection of the first way back, between its points. */
 static void at_deflection(const struct sample *sample, double deflection, double *measured,
-                          double *computed)
+                          double *computed, double *adapted)
 {
     const struct way *const back = &sample->back[0];
     const struct wb_cycle_data *const data = &sample->data[0];
@@ -187,6 +259,30 @@ static void at_deflection(const struct sample *sample, double deflection, double
     *measured +=
         (1.0 - part) * points[i - 1].tension + part * points[i].tension - data->zero_tension;
     *computed += (1.0 - part) * tension[i - 1] + part * tension[i] - sample->zero;
+    if (!sample->adapted)
+        return;
+    const double *const own = sample->adapted + back->first;
+    *adapted += (1.0 - part) * own[i - 1] + part * own[i] - sample->adapted_zero;
+}
+
+/* What is left of the specimens' way back at a deflection once the law is as stiff as each of them:
+ * mean over the specimens, and variance between them. */
+static void find_left(const struct sample *samples, int n, double deflection, double *mean,
+                      double *variance)
+{
+    double sum = 0.0, squares = 0.0;
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        double measured = 0.0, computed = 0.0, adapted = 0.0;
+        if (!samples[i].adapted)
+            continue;
+        at_deflection(&samples[i], deflection, &measured, &computed, &adapted);
+        sum += measured - adapted;
+        squares += (measured - adapted) * (measured - adapted);
+        count++;
+    }
+    *mean = sum / count;
+    *variance = count > 1 ? fmax(squares - sum * sum / count, 0.0) / (count - 1) : (double)NAN;
 }
 
 /* Sum of the squared differences of a sample's points. */
@@ -225,51 +321,72 @@ static void find_mean(struct wb_validate_cycles *cycles, const struct sample *sa
     cycles->deflection = wb_memory_new(3 * size, sizeof *cycles->deflection);
     cycles->measured = cycles->deflection + size;
     cycles->computed = cycles->measured + size;
+    double left = 0.0, scatter = 0.0;
     squares = 0.0;
     cycles->largest_error = 0.0;
     for (int k = 0; k < cycles->n; k++) {
         double *const measured = &cycles->measured[k], *const computed = &cycles->computed[k];
+        double unused = 0.0, mean, variance;
         cycles->deflection[k] = high - k * step;
         for (int i = 0; i < n; i++) {
             if (samples[i].is_good)
-                at_deflection(&samples[i], cycles->deflection[k], measured, computed);
+                at_deflection(&samples[i], cycles->deflection[k], measured, computed, &unused);
         }
+        find_left(samples, n, cycles->deflection[k], &mean, &variance);
+        left += mean * mean;
+        scatter += variance;
         *measured /= cycles->n_samples;
         *computed /= cycles->n_samples;
         const double error = fabs(*measured - *computed) / max_force;
         squares += error * error;
         cycles->largest_error = fmax(cycles->largest_error, error);
     }
-    if (cycles->n > 0)
-        cycles->rms = sqrt(squares / cycles->n);
+    if (cycles->n == 0)
+        return;
+    cycles->rms = sqrt(squares / cycles->n);
+    for (int i = 0; i < n; i++)
+        cycles->n_adapted += samples[i].adapted != NULL;
+    cycles->adapted_rms = sqrt(left / cycles->n) / max_force;
+    cycles->adapted_scatter = sqrt(scatter / cycles->n) / max_force;
 }
 
 /* --- the residual deflection --- */
 
-static double residual_of(const struct sample *sample)
+static double residual_of(const struct sample *sample, const double *tension, double zero)
 {
     const struct wb_cycle_point *const points = sample->path.points;
-    const double *const tension = sample->tension;
     for (int i = sample->back[0].first; i + 1 < sample->end_of_first; i++) {
-        if (tension[i] > sample->zero && tension[i + 1] <= sample->zero)
+        if (tension[i] > zero && tension[i + 1] <= zero)
             return points[i].deflection - (points[i].deflection - points[i + 1].deflection) *
-                                              (tension[i] - sample->zero) /
-                                              (tension[i] - tension[i + 1]);
+                                              (tension[i] - zero) / (tension[i] - tension[i + 1]);
     }
     return (double)NAN;
 }
 
 static void find_residual(struct wb_validate_cycles *cycles, const struct sample *samples, int n)
 {
-    double measured = 0.0, computed = 0.0;
-    int found = 0;
+    double measured = 0.0, computed = 0.0, sum = 0.0, squares = 0.0;
+    int found = 0, compared = 0;
     for (int i = 0; i < n; i++) {
-        const double one = samples[i].is_good ? residual_of(&samples[i]) : (double)NAN;
-        if (!isfinite(one) || !isfinite(samples[i].data[0].residual_deflection))
+        const struct sample *const s = &samples[i];
+        const double is = s->data[0].residual_deflection;
+        const double one = s->is_good ? residual_of(s, s->tension, s->zero) : (double)NAN;
+        if (!isfinite(one) || !isfinite(is))
             continue;
-        measured += samples[i].data[0].residual_deflection;
+        measured += is;
         computed += one;
         found++;
+        const double own = s->adapted ? residual_of(s, s->adapted, s->adapted_zero) : (double)NAN;
+        if (!isfinite(own))
+            continue;
+        sum += own - is;
+        squares += (own - is) * (own - is);
+        compared++;
+    }
+    if (compared > 1) {
+        cycles->adapted_residual = sum / compared;
+        cycles->residual_scatter = sqrt(fmax(squares - sum * sum / compared, 0.0) / (compared - 1));
+        cycles->n_residuals = compared;
     }
     if (found > 0) {
         cycles->residual_measured = measured / found;
@@ -339,7 +456,11 @@ enum wb_status wb_validate_cycles_run(struct wb_validate_cycles *cycles, const s
                                           .largest_error = none,
                                           .sample_rms = none,
                                           .residual_measured = none,
-                                          .residual_computed = none};
+                                          .residual_computed = none,
+                                          .adapted_rms = none,
+                                          .adapted_scatter = none,
+                                          .adapted_residual = none,
+                                          .residual_scatter = none};
     struct sample *const samples = wb_memory_new((size_t)n, sizeof *samples);
     enum wb_status status = WB_OK;
     for (int i = 0; status == WB_OK && i < n; i++) {

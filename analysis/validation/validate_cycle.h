@@ -40,14 +40,30 @@ struct wb_validate_cycles {
     double *computed;          /* (n) N, both less the tension at zero deflection */
     double rms, largest_error; /* of their differences over F_max */
     double sample_rms;         /* of all samples each by itself, over F_max */
+    /* With the law as stiff as each sample's own first loading, of n_adapted samples: root mean
+     * square over the way of the mean difference over the samples, and of the standard deviation
+     * between them, over F_max; NaN unknown. */
+    double adapted_rms, adapted_scatter;
+    int n_adapted;
 
     /* Where the tension on the way back has come down to that at zero deflection, m: means over the
      * samples that reach it; NaN: none does. */
     double residual_measured, residual_computed;
+    /* As above, of n_residuals samples, at least two: mean of computed less measured, and standard
+     * deviation between them, m; NaN unknown. */
+    double adapted_residual, residual_scatter;
+    int n_residuals;
 
     int n_loops;
     struct wb_validate_loop loops[WB_VALIDATE_MOST_LOOPS];
 };
+
+/* A change of ln(stiffness) over which forces are linear. */
+extern const double wb_validate_stiffer_by;
+
+/* The same law of a wire that is stiffer: its moment at any curvature is exp(ln_factor) times as
+ * large. */
+struct wb_law wb_validate_stiffer(const struct wb_law *law, double ln_factor);
 
 struct wb_validate_cycle_settings {
     bool straight;            /* ignore the bows */

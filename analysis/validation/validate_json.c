@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "analysis/validation/validate_bounds.h"
 #include "base/units.h"
 
 void wb_validate_json_put_cycles(struct wb_json *item, const struct wb_validate_result *r)
@@ -9,6 +10,15 @@ void wb_validate_json_put_cycles(struct wb_json *item, const struct wb_validate_
     const struct wb_validate_cycles *const cycles = &r->cycles;
     wb_json_set_number(item, "clamp_curvature_1_m", cycles->clamp_curvature);
     wb_json_set_boolean(item, "beyond_known_curvature", r->is_beyond);
+    struct wb_json *const bounds = wb_json_set_object(item, "bounds");
+    for (int i = 0; i < WB_VALIDATE_PARTS; i++) {
+        const struct wb_validate_bound *const bound = &r->bounds[i];
+        const double unit = wb_validate_part_unit(i);
+        struct wb_json *const part = wb_json_set_object(bounds, wb_validate_part_key(i));
+        wb_json_set_number(part, "found", bound->found / unit);
+        wb_json_set_number(part, "bound", bound->bound / unit);
+        wb_json_set_boolean(part, "exceeded", bound->is_exceeded);
+    }
     if (cycles->n_samples == 0) {
         wb_json_set_number(item, "unloading", (double)NAN);
         return;

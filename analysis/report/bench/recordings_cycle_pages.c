@@ -6,6 +6,7 @@
 
 #include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/report/pages.h"
+#include "analysis/validation/validate_bounds.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -246,7 +247,7 @@ static void put_prediction_of(struct wb_document_table *table,
     }
     const bool has_back = p->cycles.n_samples > 0;
     wb_pages_cell_number(table, 100.0 * p->elastoplastic.rms, 2);
-    wb_pages_cell_number(table, 100.0 * p->expected_rms_95, 2);
+    wb_pages_cell_number(table, 100.0 * p->bounds[WB_VALIDATE_LOADING].bound, 2);
     wb_pages_cell_number(table, has_back ? 100.0 * p->cycles.rms : (double)NAN, 2);
     wb_pages_cell_number(table, has_back ? p->cycles.residual_measured / WB_MM : (double)NAN, 1);
     wb_pages_cell_number(table, has_back ? p->cycles.residual_computed / WB_MM : (double)NAN, 1);
@@ -260,7 +261,7 @@ static void put_predictions(struct wb_document *document,
     static const struct wb_document_column columns[] = {
         {"Wire"},
         {.heading = "Loading, RMS (%)", .right = true, .wraps = true},
-        {.heading = "perfect model (%)", .right = true, .wraps = true},
+        {.heading = "bound (%)", .right = true, .wraps = true},
         {.heading = "Unloading, RMS (%)", .right = true, .wraps = true},
         {.heading = "Left, measured (mm)", .right = true, .wraps = true},
         {.heading = "Left, predicted (mm)", .right = true, .wraps = true},
@@ -271,9 +272,9 @@ static void put_predictions(struct wb_document *document,
     struct wb_text caption = {0};
     wb_text_append(&caption,
                    "Mean of the samples of %g mm against what the laws of the %g mm samples "
-                   "predict; RMS over <i>F</i><sub>max</sub>. Perfect model: what the mean of "
-                   "specimens that differ like these exceeds on loading in one of twenty "
-                   "validations, though the model be right. Left: deflection where the force on "
+                   "predict; RMS over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in "
+                   "another part in one of twenty validations of a right law, because specimens "
+                   "differ. Left: deflection where the force on "
                    "the way back has come down to that at zero deflection.",
                    length[WB_RECORDINGS_VALIDATION] / WB_MM,
                    length[WB_RECORDINGS_CALIBRATION] / WB_MM);
@@ -313,6 +314,25 @@ static void put_loop(struct wb_document_table *table, const struct wb_validate_c
     put_score(table, &(struct score){names[1], "mJ", loop->computed / MILLI, other / MILLI, 3});
 }
 
+static void put_bounds(struct wb_document *document, const struct wb_validate_result *p)
+{
+    struct wb_text text = {0};
+    if (!wb_validate_bounds_known(p))
+        return;
+    if (wb_validate_bounds_exceeded(p)) {
+        wb_text_append(&text, "<b>The law does not predict these tests:</b> ");
+        wb_validate_bounds_append(&text, p);
+        wb_text_append(&text, " beyond the bound. A right law exceeds one of the bounds in one of "
+                              "twenty validations.");
+        wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
+        return;
+    }
+    wb_text_append(&text,
+                   "Nothing is beyond the bounds, of which a right law exceeds one in one of "
+                   "twenty validations: the scatter of specimens explains what was found.");
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
+}
+
 static void put_scores(struct wb_document *document, const struct wb_recordings_results_wire *wire)
 {
     static const struct wb_document_column columns[] = {
@@ -335,15 +355,30 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
          q ? 100.0 * q->elastoplastic.rms : none, 2},
         {"Loading, largest error", part, 100.0 * p->elastoplastic.max_error,
          q ? 100.0 * q->elastoplastic.max_error : none, 2},
-        {"Loading, RMS of a perfect model, exceeded by one of twenty", part,
-         100.0 * p->expected_rms_95, q ? 100.0 * q->expected_rms_95 : none, 2},
+        {"Loading, bound of the RMS", part, 100.0 * p->bounds[WB_VALIDATE_LOADING].bound,
+         q ? 100.0 * q->bounds[WB_VALIDATE_LOADING].bound : none, 2},
         {"Unloading, RMS", part, p_back ? 100.0 * a->rms : none, q_back ? 100.0 * b->rms : none, 2},
         {"Unloading, largest error", part, p_back ? 100.0 * a->largest_error : none,
          q_back ? 100.0 * b->largest_error : none, 2},
+        {"Unloading with each sample as stiff as its loading, RMS", part,
+         100.0 * p->bounds[WB_VALIDATE_UNLOADING].found,
+         q ? 100.0 * q->bounds[WB_VALIDATE_UNLOADING].found : none, 2},
+        {"bound", part, 100.0 * p->bounds[WB_VALIDATE_UNLOADING].bound,
+         q ? 100.0 * q->bounds[WB_VALIDATE_UNLOADING].bound : none, 2},
         {"Left deflected, measured", "mm", p_back ? a->residual_measured / WB_MM : none,
          q_back ? b->residual_measured / WB_MM : none, 2},
         {"Left deflected, predicted", "mm", p_back ? a->residual_computed / WB_MM : none,
          q_back ? b->residual_computed / WB_MM : none, 2},
+        {"with each sample as stiff as its loading, off by", "mm",
+         p->bounds[WB_VALIDATE_RESIDUAL].found / WB_MM,
+         q ? q->bounds[WB_VALIDATE_RESIDUAL].found / WB_MM : none, 2},
+        {"bound", "mm", p->bounds[WB_VALIDATE_RESIDUAL].bound / WB_MM,
+         q ? q->bounds[WB_VALIDATE_RESIDUAL].bound / WB_MM : none, 2},
+        {"Shapes, RMS of the mean displacement over the samples", "mm",
+         p->bounds[WB_VALIDATE_SHAPES].found / WB_MM,
+         q ? q->bounds[WB_VALIDATE_SHAPES].found / WB_MM : none, 2},
+        {"bound", "mm", p->bounds[WB_VALIDATE_SHAPES].bound / WB_MM,
+         q ? q->bounds[WB_VALIDATE_SHAPES].bound / WB_MM : none, 2},
         {"Shapes, RMS distance", "mm", p->shape_rms / WB_MM, q ? q->shape_rms / WB_MM : none, 2},
     };
     struct wb_document_table *const table = wb_document_table(
@@ -355,6 +390,7 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
         put_score(table, &scores[i]);
     for (int i = 0; i < a->n_loops; i++)
         put_loop(table, a, b, i);
+    put_bounds(document, p);
     if (p->is_beyond)
         wb_document_notice(document, WB_TONE_WARNING,
                            "<b>Beyond the data.</b> These tests bend the wire further at the clamp "

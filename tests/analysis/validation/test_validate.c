@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
-#include "analysis/validation/validate.h"
+#include <gsl/gsl_cdf.h>
+
+#include "analysis/validation/validate_bounds.h"
 #include "base/file.h"
 
 static const double mm = WB_MM;
@@ -248,6 +250,56 @@ static void way_back_and_later_cycles_are_those_of_the_rule(void **state)
     wb_dataset_release(&dataset);
 }
 
+/* Three samples that differ by 5 % in stiffness and in their bows: what is left of the way back
+ * once the law is as stiff as each is the rule's alone. */
+static void bounds_tell_a_wrong_rule_from_specimens_that_differ(void **state)
+{
+    (void)state;
+    static const double ln_stiffness[] = {-0.05, 0.01, 0.04}, bow[] = {1.0, -1.5, 0.5};
+    struct wb_properties right = true_properties(2), wrong = right;
+    struct wb_dataset dataset[3];
+    const struct wb_dataset *datasets[3];
+    struct wb_validate_result result;
+    right.law.isotropic_share = 0.0;
+    wrong.law.isotropic_share = 0.5;
+    right.is_rule_tested = wrong.is_rule_tested = true;
+    right.largest_curvature = wrong.largest_curvature = 100.0;
+    for (int i = 0; i < 3; i++) {
+        const struct wb_law law = wb_validate_stiffer(&right.law, ln_stiffness[i]);
+        cycle_dataset(&dataset[i], &law, bow[i] * mm);
+        dataset[i].info.sample = i + 1;
+        datasets[i] = &dataset[i];
+    }
+    assert_int_equal(wb_validate_run(&result, &right, datasets, 3, NULL, NULL), WB_OK);
+    const struct wb_validate_bound *const bounds = result.bounds;
+    assert_false(wb_validate_bounds_exceeded(&result));
+    assert_true(wb_validate_bounds_known(&result));
+    assert_true(bounds[WB_VALIDATE_UNLOADING].found < 2e-3);
+    assert_true(result.cycles.rms > 2.0 * bounds[WB_VALIDATE_UNLOADING].found);
+    /* Three samples that agree: the least deviation counts. */
+    assert_close_relative(bounds[WB_VALIDATE_UNLOADING].bound,
+                          gsl_cdf_tdist_Qinv(0.014, 2) * 2e-3 / sqrt(3.0), 0.05);
+    assert_true(isnan(bounds[WB_VALIDATE_SHAPES].bound)); /* no markers */
+    wb_validate_result_release(&result);
+
+    assert_int_equal(wb_validate_run(&result, &wrong, datasets, 3, NULL, NULL), WB_OK);
+    assert_false(bounds[WB_VALIDATE_LOADING].is_exceeded);
+    assert_true(bounds[WB_VALIDATE_UNLOADING].is_exceeded);
+    struct wb_text text = {0};
+    wb_validate_bounds_append(&text, &result);
+    assert_non_null(strstr(wb_text_string(&text), "unloading"));
+    wb_text_release(&text);
+    wb_validate_result_release(&result);
+
+    /* One sample does not show how samples differ. */
+    assert_int_equal(wb_validate_run(&result, &wrong, datasets, 1, NULL, NULL), WB_OK);
+    assert_true(isnan(bounds[WB_VALIDATE_UNLOADING].bound));
+    assert_false(wb_validate_bounds_exceeded(&result));
+    wb_validate_result_release(&result);
+    for (int i = 0; i < 3; i++)
+        wb_dataset_release(&dataset[i]);
+}
+
 static void loading_alone_leaves_the_way_back_unscored(void **state)
 {
     (void)state;
@@ -398,6 +450,7 @@ int main(void)
         cmocka_unit_test(scatter_explains_what_the_average_of_few_cannot),
         cmocka_unit_test(an_error_with_the_bow_is_not_taken_for_scatter),
         cmocka_unit_test(way_back_and_later_cycles_are_those_of_the_rule),
+        cmocka_unit_test(bounds_tell_a_wrong_rule_from_specimens_that_differ),
         cmocka_unit_test(loading_alone_leaves_the_way_back_unscored),
         cmocka_unit_test(another_wire_is_refused_and_another_name_warned_about),
         cmocka_unit_test(a_prediction_that_does_not_converge_is_an_error),
