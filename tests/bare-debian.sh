@@ -32,6 +32,7 @@ inside "$system" sh -c 'cd / && /home/newcomer/wirebench/bootstrap test'
 inside "$system" sh -c 'cd /home/newcomer/wirebench && meson install -C build >/dev/null &&
     mv /home/newcomer/wirebench /home/newcomer/away && cd / && wirebench --version &&
     wirebench solve cantilever --wire type3 --length-mm 85 --deflection-mm 53 --points 2 &&
+    rm -rf /tmp/report &&
     (wirebench report fixtures/campaigns/single-wires.yaml -o /tmp/report || [ $? -eq 4 ]) &&
     test -s /tmp/report/report.pdf && test -s /usr/local/share/man/man1/wirebench-record.1'
 echo "bare Debian $release: demo and test both work, twice"
