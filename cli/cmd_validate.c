@@ -289,8 +289,10 @@ static void print_scatter(const struct wb_validate_result *r)
     struct wb_text exceeded = {0};
     wb_validate_bounds_append(&exceeded, r);
     if (wb_validate_bounds_exceeded(r))
-        printf("  verdict        the law does not predict these tests: %s\n",
-               wb_text_string(&exceeded));
+        printf(
+            "  verdict        beyond the bound: %s; the law is wrong, the specimens are of another "
+            "wire, or this is the one of twenty\n",
+            wb_text_string(&exceeded));
     else
         printf("  verdict        no more than the scatter of specimens explains\n");
     wb_text_release(&exceeded);

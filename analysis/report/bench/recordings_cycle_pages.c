@@ -320,10 +320,12 @@ static void put_bounds(struct wb_document *document, const struct wb_validate_re
     if (!wb_validate_bounds_known(p))
         return;
     if (wb_validate_bounds_exceeded(p)) {
-        wb_text_append(&text, "<b>The law does not predict these tests:</b> ");
+        wb_text_append(&text, "<b>Beyond the bound:</b> ");
         wb_validate_bounds_append(&text, p);
-        wb_text_append(&text, " beyond the bound. A right law exceeds one of the bounds in one of "
-                              "twenty validations.");
+        wb_text_append(&text,
+                       ". A right law exceeds one of the bounds in one of twenty validations, "
+                       "because specimens differ; else the law is wrong, or the specimens are "
+                       "of another wire.");
         wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
         return;
     }
@@ -363,21 +365,21 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
         {"Unloading with each sample as stiff as its loading, RMS", part,
          100.0 * p->bounds[WB_VALIDATE_UNLOADING].found,
          q ? 100.0 * q->bounds[WB_VALIDATE_UNLOADING].found : none, 2},
-        {"bound", part, 100.0 * p->bounds[WB_VALIDATE_UNLOADING].bound,
+        {"Unloading, bound", part, 100.0 * p->bounds[WB_VALIDATE_UNLOADING].bound,
          q ? 100.0 * q->bounds[WB_VALIDATE_UNLOADING].bound : none, 2},
         {"Left deflected, measured", "mm", p_back ? a->residual_measured / WB_MM : none,
          q_back ? b->residual_measured / WB_MM : none, 2},
         {"Left deflected, predicted", "mm", p_back ? a->residual_computed / WB_MM : none,
          q_back ? b->residual_computed / WB_MM : none, 2},
-        {"with each sample as stiff as its loading, off by", "mm",
+        {"Residual deflection with each sample as stiff, off by", "mm",
          p->bounds[WB_VALIDATE_RESIDUAL].found / WB_MM,
          q ? q->bounds[WB_VALIDATE_RESIDUAL].found / WB_MM : none, 2},
-        {"bound", "mm", p->bounds[WB_VALIDATE_RESIDUAL].bound / WB_MM,
+        {"Residual deflection, bound", "mm", p->bounds[WB_VALIDATE_RESIDUAL].bound / WB_MM,
          q ? q->bounds[WB_VALIDATE_RESIDUAL].bound / WB_MM : none, 2},
         {"Shapes, RMS of the mean displacement over the samples", "mm",
          p->bounds[WB_VALIDATE_SHAPES].found / WB_MM,
          q ? q->bounds[WB_VALIDATE_SHAPES].found / WB_MM : none, 2},
-        {"bound", "mm", p->bounds[WB_VALIDATE_SHAPES].bound / WB_MM,
+        {"Shapes, bound", "mm", p->bounds[WB_VALIDATE_SHAPES].bound / WB_MM,
          q ? q->bounds[WB_VALIDATE_SHAPES].bound / WB_MM : none, 2},
         {"Shapes, RMS distance", "mm", p->shape_rms / WB_MM, q ? q->shape_rms / WB_MM : none, 2},
     };
