@@ -115,7 +115,7 @@ refused 2 'name a rig file' --specimen "$specimen" --run "$folder/refused"
 refused 2 'no --specimen' "$rig" --run "$folder/refused"
 refused 2 'no folder' "$rig" --specimen "$specimen"
 refused 2 'one rig file at a time' "$rig" "$rig" --specimen "$specimen" --run "$folder/refused"
-refused 2 "expected kinematic, isotropic, mixed, sharp, backstresses or relaxing" "$rig" \
+refused 2 "--wire-law: expected kinematic, isotropic, mixed" "$rig" \
     --specimen "$specimen" --run "$folder/refused" --wire-law rubber
 refused 2 'seed' "$rig" --specimen "$specimen" --run "$folder/refused" --seed x
 refused 2 'expected M.N, not' "$rig" --specimen "$specimen" --run "$folder/refused" \
