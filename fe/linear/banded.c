@@ -17,39 +17,55 @@ void wb_banded_invert(const double *restrict A, double *restrict inverse)
     inverse[8] = scale * (A[0] * A[4] - A[1] * A[1]);
 }
 
-void wb_banded_condense(struct wb_banded *banded)
+void wb_banded_factor(struct wb_banded *banded)
 {
     for (int i = 0; i + 1 < banded->n; i++) {
-        double inverse[9], W[9], w[3];
+        double inverse[9], W[9];
+        double *restrict D = banded->diagonal[i];
         double *restrict U = banded->upper[i];
-        double *restrict g = banded->right[i];
         double *restrict S = banded->diagonal[i + 1];
-        double *restrict next = banded->right[i + 1];
 
-        /* W = S_i^-1 U_i, w = S_i^-1 g_i */
-        wb_banded_invert(banded->diagonal[i], inverse);
+        /* W = S_i^-1 U_i */
+        wb_banded_invert(D, inverse);
         for (int r = 0; r < 3; r++) {
             const double *row = inverse + 3 * r;
             for (int c = 0; c < 3; c++)
                 W[3 * r + c] = row[0] * U[c] + row[1] * U[3 + c] + row[2] * U[6 + c];
-            w[r] = row[0] * g[0] + row[1] * g[1] + row[2] * g[2];
         }
-        /* S_i+1 -= U_i^T W, g_i+1 -= U_i^T w */
+        /* S_i+1 -= U_i^T W */
         for (int r = 0; r < 3; r++) {
             for (int c = r; c < 3; c++) {
                 S[3 * r + c] -= U[r] * W[c] + U[3 + r] * W[3 + c] + U[6 + r] * W[6 + c];
                 S[3 * c + r] = S[3 * r + c];
             }
-            next[r] -= U[r] * w[0] + U[3 + r] * w[1] + U[6 + r] * w[2];
         }
-        for (int k = 0; k < 9; k++)
+        for (int k = 0; k < 9; k++) {
+            D[k] = inverse[k];
             U[k] = W[k];
-        for (int k = 0; k < 3; k++)
-            g[k] = w[k];
+        }
     }
 }
 
-void wb_banded_expand(struct wb_banded *banded)
+void wb_banded_reduce(const struct wb_banded *banded)
+{
+    for (int i = 0; i + 1 < banded->n; i++) {
+        const double *restrict inverse = banded->diagonal[i];
+        const double *restrict W = banded->upper[i];
+        double *restrict g = banded->right[i];
+        double *restrict next = banded->right[i + 1];
+        double w[3];
+
+        /* U_i^T S_i^-1 = W^T */
+        for (int r = 0; r < 3; r++) {
+            next[r] -= W[r] * g[0] + W[3 + r] * g[1] + W[6 + r] * g[2];
+            w[r] = inverse[3 * r] * g[0] + inverse[3 * r + 1] * g[1] + inverse[3 * r + 2] * g[2];
+        }
+        for (int r = 0; r < 3; r++)
+            g[r] = w[r];
+    }
+}
+
+void wb_banded_expand(const struct wb_banded *banded)
 {
     for (int i = banded->n - 2; i >= 0; i--) {
         const double *W = banded->upper[i];

@@ -10,19 +10,23 @@
 #ifndef WB_FE_LINEAR_BANDED_H
 #define WB_FE_LINEAR_BANDED_H
 
-/* Blocks are 3 x 3, row-major. */
+/* Blocks are 3 x 3, row-major. One factored matrix may serve several right-hand sides. */
 struct wb_banded {
     int n;                 /* blocks */
-    double (*diagonal)[9]; /* (n); symmetric; destroyed, the last becomes the condensed one */
-    double (*upper)[9];    /* (n - 1) block (i, i + 1); destroyed: becomes S_i^-1 U_i */
-    double (*right)[3]; /* (n); right-hand sides; destroyed: becomes S_i^-1 g_i, last condensed */
+    double (*diagonal)[9]; /* (n); symmetric; becomes S_i^-1, the last the condensed block */
+    double (*upper)[9];    /* (n - 1) block (i, i + 1); becomes S_i^-1 U_i */
+    double (*right)[3];    /* (n); right-hand sides */
 };
 
-/* Eliminates blocks 0 .. n - 2. A singular block gives non-finite numbers. */
-void wb_banded_condense(struct wb_banded *banded);
+/* Eliminates blocks 0 .. n - 2 of the matrix. A singular block gives non-finite numbers. */
+void wb_banded_factor(struct wb_banded *banded);
+
+/* Eliminates them of the right-hand side, with the factored matrix: `right` becomes S_i^-1 g_i, the
+ * last the condensed one. */
+void wb_banded_reduce(const struct wb_banded *banded);
 
 /* With the solution of the last block in right[n - 1], replaces `right` by the whole solution. */
-void wb_banded_expand(struct wb_banded *banded);
+void wb_banded_expand(const struct wb_banded *banded);
 
 /* Inverse of a symmetric 3 x 3 matrix; non-finite when singular. */
 void wb_banded_invert(const double *restrict A, double *restrict inverse);

@@ -17,9 +17,10 @@ enum {
     POINTS = WB_BEAM_ELEMENT_POINTS
 };
 
-/* How an element's middle node follows its ends: d2 = -w - W1 d1 - W3 d3. */
+/* How an element's middle node follows its ends: d2 = -w - W1 d1 - W3 d3, with w = inverse times
+ * what is unbalanced there. */
 struct middle {
-    double w[3], W1[9], W3[9];
+    double inverse[9], W1[9], W3[9];
 };
 
 /* Strains of a Gauss point. They are unknowns of their own, beside the positions that follow from
@@ -54,6 +55,7 @@ struct wb_beam {
     bool has_turns;               /* cosines and sines of the points are the trial state's */
     double (*residual)[3];        /* (n_nodes) */
     struct middle *middles;       /* (n_elements) */
+    double (*right_middles)[3];   /* (n_elements): w of struct middle */
     struct wb_banded banded;      /* end nodes of the elements without the clamp */
     struct wb_memory memory;      /* of all arrays */
 };
@@ -155,6 +157,7 @@ static void take_memory(struct wb_beam *beam)
     beam->points = wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->points);
     beam->residual = wb_memory_take(&beam->memory, nodes, sizeof *beam->residual);
     beam->middles = wb_memory_take(&beam->memory, elements, sizeof *beam->middles);
+    beam->right_middles = wb_memory_take(&beam->memory, elements, sizeof *beam->right_middles);
     beam->banded.n = beam->n_elements;
     beam->banded.diagonal = wb_memory_take(&beam->memory, elements, sizeof *beam->banded.diagonal);
     beam->banded.upper = wb_memory_take(&beam->memory, elements, sizeof *beam->banded.upper);
@@ -352,19 +355,19 @@ static void condense_element(struct wb_beam *beam, int e)
 {
     struct wb_beam_element_stiffness K;
     struct middle *m = &beam->middles[e];
-    double inverse[9], K21[9];
+    double K21[9];
 
     wb_beam_element_stiffness(&beam->shape, &beam->points[e * POINTS], &K);
-    wb_banded_invert(K.K22, inverse);
+    wb_banded_invert(K.K22, m->inverse);
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++)
             K21[3 * r + c] = K.K12[3 * c + r];
     }
     /* The inverse is symmetric, so its transposed products are its products. */
-    *m = (struct middle){0};
-    add_transposed_product(m->W1, 1.0, inverse, K21);
-    add_transposed_product(m->W3, 1.0, inverse, K.K23);
-    add_transposed_vector(m->w, inverse, beam->residual[2 * e + 1]);
+    memset(m->W1, 0, sizeof m->W1);
+    memset(m->W3, 0, sizeof m->W3);
+    add_transposed_product(m->W1, 1.0, m->inverse, K21);
+    add_transposed_product(m->W3, 1.0, m->inverse, K.K23);
 
     if (e > 0) {
         add_transposed_product(K.K11, -1.0, K21, m->W1);
@@ -375,22 +378,49 @@ static void condense_element(struct wb_beam *beam, int e)
             diagonal[k] += K.K11[k];
             upper[k] = K.K13[k];
         }
-        add_transposed_vector(beam->banded.right[e - 1], K21, m->w);
     }
     add_transposed_product(K.K33, -1.0, K.K23, m->W3);
     memcpy(beam->banded.diagonal[e], K.K33, sizeof K.K33);
-    for (int k = 0; k < 3; k++)
-        beam->banded.right[e][k] = -beam->residual[2 * e + 2][k];
-    add_transposed_vector(beam->banded.right[e], K.K23, m->w);
 }
 
-void wb_beam_condense(struct wb_beam *beam, double *stiffness, double *right)
+/* The same of what is unbalanced, with a condensed tangent. */
+static void reduce_element(struct wb_beam *beam, const struct wb_beam *tangent, int e)
+{
+    const struct middle *m = &tangent->middles[e];
+    const double *at_middle = beam->residual[2 * e + 1];
+
+    memset(beam->right_middles[e], 0, sizeof beam->right_middles[e]);
+    add_transposed_vector(beam->right_middles[e], m->inverse, at_middle);
+    if (e > 0)
+        add_transposed_vector(beam->banded.right[e - 1], m->W1, at_middle);
+    for (int k = 0; k < 3; k++)
+        beam->banded.right[e][k] = -beam->residual[2 * e + 2][k];
+    add_transposed_vector(beam->banded.right[e], m->W3, at_middle);
+}
+
+/* A condensed tangent with the right-hand side of a beam. */
+static struct wb_banded chain_of(const struct wb_beam *beam, const struct wb_beam *tangent)
+{
+    struct wb_banded chain = tangent->banded;
+    chain.right = beam->banded.right;
+    return chain;
+}
+
+void wb_beam_condense(struct wb_beam *beam, double *stiffness)
 {
     for (int e = 0; e < beam->n_elements; e++)
         condense_element(beam, e);
-    wb_banded_condense(&beam->banded);
+    wb_banded_factor(&beam->banded);
     memcpy(stiffness, beam->banded.diagonal[beam->n_elements - 1], 9 * sizeof *stiffness);
-    memcpy(right, beam->banded.right[beam->n_elements - 1], 3 * sizeof *right);
+}
+
+void wb_beam_reduce(struct wb_beam *beam, const struct wb_beam *tangent, double *right)
+{
+    const struct wb_banded chain = chain_of(beam, tangent);
+    for (int e = 0; e < beam->n_elements; e++)
+        reduce_element(beam, tangent, e);
+    wb_banded_reduce(&chain);
+    memcpy(right, chain.right[beam->n_elements - 1], 3 * sizeof *right);
 }
 
 static inline void add_product(double *restrict v, double sign, const double *A, const double *b)
@@ -450,13 +480,15 @@ static void advance_element(struct wb_beam *beam, int e, double scale,
     place_nodes(beam, e);
 }
 
-double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rotation)
+double wb_beam_advance(struct wb_beam *beam, const struct wb_beam *tangent, const double *tip,
+                       double most_rotation)
 {
     static const double clamp[3] = {0.0, 0.0, 0.0};
-    double(*d)[3] = beam->banded.right;
+    const struct wb_banded chain = chain_of(beam, tangent);
+    double(*d)[3] = chain.right;
 
     memcpy(d[beam->n_elements - 1], tip, 3 * sizeof *tip);
-    wb_banded_expand(&beam->banded);
+    wb_banded_expand(&chain);
 
     double turn = 0.0;
     for (int e = 0; e < beam->n_elements; e++)
@@ -464,10 +496,11 @@ double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rota
     const double scale = turn > most_rotation ? most_rotation / turn : 1.0;
 
     for (int e = 0; e < beam->n_elements; e++) {
-        const struct middle *m = &beam->middles[e];
+        const struct middle *m = &tangent->middles[e];
+        const double *w = beam->right_middles[e];
         const double *first = e > 0 ? d[e - 1] : clamp;
         const double *last = d[e];
-        double middle[3] = {-m->w[0], -m->w[1], -m->w[2]};
+        double middle[3] = {-w[0], -w[1], -w[2]};
         add_product(middle, -1.0, m->W1, first);
         add_product(middle, -1.0, m->W3, last);
         advance_element(beam, e, scale, (const double *[]){first, middle, last});
@@ -514,6 +547,29 @@ void wb_beam_extrapolate(struct wb_beam *beam, double ratio)
     for (int i = 0; i < beam->n_nodes; i++)
         beam->trial[i].t =
             beam->committed[i].t + ratio * (beam->committed[i].t - beam->earlier[i].t);
+    for (int e = 0; e < beam->n_elements; e++)
+        place_nodes(beam, e);
+    beam->has_turns = true;
+}
+
+void wb_beam_follow(struct wb_beam *beam, const struct wb_beam *leader, double ratio)
+{
+    for (int i = 0; i < beam->n_elements * POINTS; i++) {
+        const struct strain now = beam->committed_strain[i], was = beam->earlier_strain[i];
+        const struct strain then = leader->committed_strain[i], before = leader->earlier_strain[i];
+        const struct strain there = leader->trial_strain[i];
+        beam->trial_strain[i].eps = now.eps + (there.eps - then.eps) +
+                                    ratio * ((now.eps - was.eps) - (then.eps - before.eps));
+        beam->trial_strain[i].gamma =
+            now.gamma + (there.gamma - then.gamma) +
+            ratio * ((now.gamma - was.gamma) - (then.gamma - before.gamma));
+    }
+    for (int i = 0; i < beam->n_nodes; i++) {
+        const double now = beam->committed[i].t, was = beam->earlier[i].t;
+        const double then = leader->committed[i].t, before = leader->earlier[i].t;
+        beam->trial[i].t =
+            now + (leader->trial[i].t - then) + ratio * ((now - was) - (then - before));
+    }
     for (int e = 0; e < beam->n_elements; e++)
         place_nodes(beam, e);
     beam->has_turns = true;

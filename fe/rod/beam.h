@@ -62,13 +62,24 @@ wb_beam_set_curvature(struct wb_beam *beam,
  * load. */
 void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_balance *balance);
 
-/* Tangent stiffness of the trial state last evaluated, condensed to the tip: at the tip,
- * stiffness (3 x 3, row-major) times increment = right (3) less what the caller's loads add. */
-void wb_beam_condense(struct wb_beam *beam, double *stiffness, double *right);
+/* Tangent stiffness of the trial state last evaluated, condensed to the tip (3 x 3, row-major). */
+void wb_beam_condense(struct wb_beam *beam, double *stiffness);
 
-/* Moves the trial state by the increment that belongs to `tip` (3). Where a node would turn by more
- * than `most_rotation` (rad), all of the increment is scaled down; returns the scale. */
-double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rotation);
+/* What is unbalanced in the trial state last evaluated, condensed to the tip by the tangent last
+ * condensed: its own, or that of a beam of as many elements near by. At the tip, stiffness times
+ * increment = right (3) less what the caller's loads add. */
+void wb_beam_reduce(struct wb_beam *beam, const struct wb_beam *tangent, double *right);
+
+/* Moves the trial state by the increment that belongs to `tip` (3), after wb_beam_reduce() with the
+ * same tangent. Where a node would turn by more than `most_rotation` (rad), all of the increment is
+ * scaled down; returns the scale. */
+double wb_beam_advance(struct wb_beam *beam, const struct wb_beam *tangent, const double *tip,
+                       double most_rotation);
+
+/* Trial = where the beam stands if it has moved as another of as many elements, from its last
+ * committed state to its trial state, and what they differ by goes on by `ratio` times its last
+ * change. */
+void wb_beam_follow(struct wb_beam *beam, const struct wb_beam *leader, double ratio);
 
 /* Trial = committed, or the line through the last two committed states at `ratio` times their
  * distance beyond the last. */

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/units.h"
@@ -18,7 +19,7 @@ enum {
 };
 
 enum {
-    MOST_UNKNOWNS = 5 /* tip x, y, t, tension, reaction of the rest */
+    MOST_UNKNOWNS = 5, /* tip x, y, t, tension, reaction of the rest */
 };
 
 /* A Newton iteration turns no node by more than this, rad. */
@@ -54,12 +55,18 @@ struct wb_cantilever {
     struct state state, saved;
     int n_materials;
 
+    struct wb_cantilever *const *followers; /* (n_followers), borrowed */
+    const double *offsets;                  /* of their controls, (n_followers), borrowed */
+    int n_followers;
+
     /* The trial step. */
     struct loads loads;
     struct wb_beam_balance balance;
-    double residual;  /* relative, last */
-    double duration;  /* s, of a move */
-    double tolerance; /* absolute force tolerance of the last check, N */
+    double ratio;         /* of the extrapolation that it began from */
+    double residual;      /* relative, last */
+    double duration;      /* s, of a move, */
+    double step_duration; /* and of its step */
+    double tolerance;     /* absolute force tolerance of the last check, N */
     int iterations;
 };
 
@@ -166,6 +173,19 @@ void wb_cantilever_reset(struct wb_cantilever *cantilever)
 enum wb_status wb_cantilever_set_law(struct wb_cantilever *cantilever, const struct wb_law *law)
 {
     return wb_beam_set_law(cantilever->beam, law);
+}
+
+void wb_cantilever_lead(struct wb_cantilever *leader, int n, struct wb_cantilever *const *followers,
+                        const double *offsets)
+{
+    leader->n_followers = n;
+    leader->followers = followers;
+    leader->offsets = offsets;
+}
+
+double wb_cantilever_tension(const struct wb_cantilever *cantilever)
+{
+    return cantilever->state.loads.tension;
 }
 
 void wb_cantilever_set_duration(struct wb_cantilever *cantilever, double duration)
@@ -315,27 +335,23 @@ static bool check_balance(struct wb_cantilever *c, const struct step *step, stru
     return unbalanced <= c->tolerance && fabs(miss.control) <= reach && fabs(miss.rest) <= reach;
 }
 
-/* The tip's system: condensed beam, stiffness of the loads, and rows and columns of the unknown
- * driving force and reaction. Returns the number of unknowns. */
-static int tip_system(struct wb_cantilever *c, const struct step *step, const struct strand *strand,
-                      double A[MOST_UNKNOWNS * MOST_UNKNOWNS], double b[MOST_UNKNOWNS])
+/* Matrix of the tip: the condensed beam, stiffness of the loads, and rows and columns of the
+ * unknown driving force and reaction. Returns the number of unknowns. */
+static int tip_matrix(struct wb_cantilever *c, const struct step *step, const struct strand *strand,
+                      double A[MOST_UNKNOWNS * MOST_UNKNOWNS])
 {
     enum {
         W = MOST_UNKNOWNS
     };
     const double T = c->loads.tension, F = c->loads.follower;
     const double t = wb_beam_tip(c->beam)->t;
-    const struct misses miss = constraint_misses(c, step);
-    double K[9], right[3], r[3];
+    double K[9];
     int n = 3;
 
-    wb_beam_condense(c->beam, K, right);
-    /* `right` holds the beam's own share; the tip's applied loads come on top. */
-    tip_balance(c, strand, r);
+    wb_beam_condense(c->beam, K);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             A[i * W + j] = K[3 * i + j];
-        b[i] = right[i] - (r[i] - c->balance.tip[i]);
     }
     A[0] -= T * strand->dx;
     A[W] -= T * strand->dy;
@@ -350,16 +366,45 @@ static int tip_system(struct wb_cantilever *c, const struct step *step, const st
         A[W + n] = follows ? -cos(t) : -strand->y;
         A[n * W] = step->control == WB_CONTROL_STAGE ? strand->x / strand->y : 0.0;
         A[n * W + 1] = 1.0;
-        b[n++] = miss.control;
+        n++;
     }
     if (step->mode & RESTING) {
         for (int j = 0; j < W; j++)
             A[n * W + j] = A[j * W + n] = 0.0;
         A[W + n] = -1.0;
         A[n * W + 1] = 1.0;
-        b[n++] = miss.rest;
+        n++;
     }
     return n;
+}
+
+/* Its right-hand side, by the tangent of a beam. `r` is the tip's imbalance. */
+static void tip_right(struct wb_cantilever *c, const struct step *step,
+                      const struct wb_beam *tangent, const double *r, double b[MOST_UNKNOWNS])
+{
+    const struct misses miss = constraint_misses(c, step);
+    int n = 3;
+    /* The beam's own share, and the tip's applied loads on top. */
+    wb_beam_reduce(c->beam, tangent, b);
+    for (int i = 0; i < 3; i++)
+        b[i] -= r[i] - c->balance.tip[i];
+    if (drives_tip(step->control) && (step->mode & TAUT))
+        b[n++] = miss.control;
+    if (step->mode & RESTING)
+        b[n++] = miss.rest;
+}
+
+/* Moves the trial state by the solution `b` of the tip's system; returns the scale of the move. */
+static double advance(struct wb_cantilever *c, const struct step *step,
+                      const struct wb_beam *tangent, const double *b)
+{
+    const double scale = wb_beam_advance(c->beam, tangent, b, most_rotation);
+    int next = 3;
+    if (drives_tip(step->control) && (step->mode & TAUT))
+        *driving_force(&c->loads, step->control) += scale * b[next++];
+    if (step->mode & RESTING)
+        c->loads.reaction += scale * b[next++];
+    return scale;
 }
 
 /* Whether follower force and deflection of the converged trial state have grown together, and would
@@ -377,7 +422,7 @@ static bool follower_rises(struct wb_cantilever *c, const struct step *step,
     /* The weight that comes with the first step moves the tip too. */
     if (step->weight == c->state.loads.weight && more * raised < -flat * raised * raised)
         return false;
-    const int n = tip_system(c, step, strand, A, b);
+    const int n = tip_matrix(c, step, strand, A);
     for (int i = 0; i < n; i++)
         b[i] = i == n - 1 ? 1.0 : 0.0;
     wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
@@ -401,16 +446,10 @@ static bool solve(struct wb_cantilever *c, const struct step *step)
             return false;
 
         double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
-        const int n = tip_system(c, step, &strand, A, b);
+        const int n = tip_matrix(c, step, &strand, A);
+        tip_right(c, step, c->beam, r, b);
         wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
-        const double scale = wb_beam_advance(c->beam, b, most_rotation);
-        held_back += scale < 1.0;
-
-        int next = 3;
-        if (drives_tip(step->control) && (step->mode & TAUT))
-            *driving_force(&c->loads, step->control) += scale * b[next++];
-        if (step->mode & RESTING)
-            c->loads.reaction += scale * b[next++];
+        held_back += advance(c, step, c->beam, b) < 1.0;
         c->iterations++;
     }
 }
@@ -458,7 +497,7 @@ static double extrapolation(const struct wb_cantilever *c, const struct step *st
  * last one. */
 static bool solve_mode(struct wb_cantilever *c, const struct step *step)
 {
-    const double ratio = extrapolation(c, step);
+    const double ratio = c->ratio = extrapolation(c, step);
 
     if (ratio > 0.0) {
         start_loads(c, step);
@@ -545,6 +584,60 @@ static void accept(struct wb_cantilever *c, const struct step *step, double from
     wb_beam_commit(c->beam);
 }
 
+/* A follower's load: it changes as the leader's does, and what they differ by goes on. */
+static double follow_load(const double *state, const double *earlier, double leader,
+                          const double *leader_state, const double *leader_earlier, double ratio)
+{
+    return *state + (leader - *leader_state) +
+           ratio * ((*state - *earlier) - (*leader_state - *leader_earlier));
+}
+
+/* One follower's step beside the leader's converged one, with the leader's tangent: `A` of `n`
+ * unknowns. */
+static void follow(struct wb_cantilever *f, struct wb_cantilever *leader, struct step step,
+                   const double *A, int n, double offset, double from)
+{
+    struct state *const now = &leader->state;
+    struct strand strand;
+    double r[3], matrix[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+    step.value += offset;
+    start_loads(f, &step);
+    if (step.mode & TAUT && drives_tip(step.control))
+        *driving_force(&f->loads, step.control) = follow_load(
+            driving_force(&f->state.loads, step.control),
+            driving_force(&f->state.earlier, step.control),
+            *driving_force(&leader->loads, step.control), driving_force(&now->loads, step.control),
+            driving_force(&now->earlier, step.control), leader->ratio);
+    if (step.mode & RESTING)
+        f->loads.reaction = follow_load(&f->state.loads.reaction, &f->state.earlier.reaction,
+                                        leader->loads.reaction, &now->loads.reaction,
+                                        &now->earlier.reaction, leader->ratio);
+    wb_beam_set_duration(f->beam, leader->step_duration);
+    wb_beam_follow(f->beam, leader->beam, leader->ratio);
+    check_balance(f, &step, &strand, r);
+    memcpy(matrix, A, sizeof matrix);
+    tip_right(f, &step, leader->beam, r, b);
+    wb_banded_solve_small(n, MOST_UNKNOWNS, matrix, b);
+    advance(f, &step, leader->beam, b);
+    if (leader->ratio == 0.0)
+        check_balance(f, &step, &strand, r);
+    f->state.mode = step.mode;
+    accept(f, &step, from + offset);
+}
+
+/* Takes all followers along to the trial state. */
+static void lead(struct wb_cantilever *c, struct step step, double from)
+{
+    double A[MOST_UNKNOWNS * MOST_UNKNOWNS];
+    if (c->n_followers == 0)
+        return;
+    step.mode = c->state.mode;
+    const struct strand strand = strand_direction(c, wb_beam_tip(c->beam)->x);
+    const int n = tip_matrix(c, &step, &strand, A);
+    for (int i = 0; i < c->n_followers; i++)
+        follow(c->followers[i], c, step, A, n, c->offsets[i], from);
+}
+
 static enum wb_status check_move(const struct wb_cantilever *c, enum wb_cantilever_control control,
                                  double target)
 {
@@ -604,8 +697,10 @@ enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_co
             .value = next == 1.0 ? target : start + next * (target - start),
             .weight = next == 1.0 ? 1.0 : weight + next * (1.0 - weight),
         };
-        wb_beam_set_duration(c->beam, (next - done) * c->duration);
+        c->step_duration = (next - done) * c->duration;
+        wb_beam_set_duration(c->beam, c->step_duration);
         if (settle(c, step)) {
+            lead(c, step, from);
             accept(c, &step, from);
             c->state.fraction = fraction;
             done = next;

@@ -131,6 +131,19 @@ WB_MUST_CHECK enum wb_status wb_cantilever_move(struct wb_cantilever *cantilever
                                                 enum wb_cantilever_control control, double target,
                                                 struct wb_cantilever_point *point);
 
+/* Lets others go along with every move of the leader that follows: cantilevers of as many elements
+ * and the same strand, of nearly the same numbers (the slopes of a fit are differences of such).
+ * Where the leader's control has a value a follower's has that plus its offset. A follower finds
+ * its equilibrium with the leader's tangent, to second order in what they differ by, at a third of
+ * the cost of a move of its own. Both arrays (n) are borrowed until n is set to 0. Reset all
+ * before.
+ */
+void wb_cantilever_lead(struct wb_cantilever *leader, int n, struct wb_cantilever *const *followers,
+                        const double *offsets);
+
+/* Strand tension or vertical tip force of the last equilibrium, N: that of a follower. */
+double wb_cantilever_tension(const struct wb_cantilever *cantilever);
+
 /* Saves the state into, or restores it from, the cantilever's own second slot; together they allow
  * a trial move to be taken back. */
 void wb_cantilever_save(struct wb_cantilever *cantilever);

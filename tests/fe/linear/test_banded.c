@@ -66,10 +66,27 @@ static void condensed_solution_agrees_with_lapack(void **unused)
                                        ROWS, pivots, chain->solution, UNKNOWNS),
                          0);
 
+        double first[BLOCKS][3];
+        memcpy(first, chain->right, sizeof first);
         struct wb_banded banded = {BLOCKS, chain->diagonal, chain->upper, chain->right};
-        wb_banded_condense(&banded);
+        wb_banded_factor(&banded);
+        wb_banded_reduce(&banded);
         wb_banded_solve_small(3, 3, chain->diagonal[BLOCKS - 1], chain->right[BLOCKS - 1]);
         wb_banded_expand(&banded);
+        /* The factored matrix serves another right-hand side: half the first. */
+        double second[BLOCKS][3];
+        for (int i = 0; i < UNKNOWNS; i++)
+            second[i / 3][i % 3] = 0.5 * first[i / 3][i % 3];
+        const struct wb_banded again = {BLOCKS, chain->diagonal, chain->upper, second};
+        wb_banded_reduce(&again);
+        memcpy(second[BLOCKS - 1], chain->right[BLOCKS - 1], sizeof second[0]);
+        for (int k = 0; k < 3; k++)
+            second[BLOCKS - 1][k] *= 0.5;
+        wb_banded_expand(&again);
+        for (int i = 0; i < UNKNOWNS; i++) {
+            const double whole = chain->right[i / 3][i % 3];
+            assert_close(second[i / 3][i % 3], 0.5 * whole, 1e-12 * fabs(whole));
+        }
         for (int i = 0; i < UNKNOWNS; i++)
             assert_close(chain->right[i / 3][i % 3] * scale[i % 3], chain->solution[i],
                          1e-12 * (1.0 + fabs(chain->solution[i])));

@@ -24,16 +24,17 @@ static void load_tip(struct wb_beam *beam, const double *force, double *place, d
     for (int i = 1; i <= 30; i++) {
         const double part = fmin(1.0, i / 20.0);
         wb_beam_evaluate(beam, 1.0, &balance);
-        wb_beam_condense(beam, K, right);
+        wb_beam_condense(beam, K);
+        wb_beam_reduce(beam, beam, right);
         for (int k = 0; k < 3; k++)
             right[k] += part * force[k];
         double matrix[9];
         memcpy(matrix, K, sizeof matrix);
         wb_banded_solve_small(3, 3, matrix, right);
-        wb_beam_advance(beam, right, 0.5);
+        wb_beam_advance(beam, beam, right, 0.5);
     }
     wb_beam_evaluate(beam, 1.0, &balance);
-    wb_beam_condense(beam, K, right);
+    wb_beam_condense(beam, K);
     assert_true(balance.largest_residual < 1e-8);
     place[0] = wb_beam_tip(beam)->x;
     place[1] = wb_beam_tip(beam)->y;
@@ -104,10 +105,11 @@ static void a_state_that_is_given_up_leaves_nothing_behind(void **unused)
     for (int way = 0; way < 2; way++) {
         wb_beam_revert(beam);
         wb_beam_evaluate(beam, 1.0, &before);
-        wb_beam_condense(beam, K, right);
+        wb_beam_condense(beam, K);
+        wb_beam_reduce(beam, beam, right);
         if (way == 1)
             wb_beam_save(beam);
-        wb_beam_advance(beam, far, 0.5);
+        wb_beam_advance(beam, beam, far, 0.5);
         wb_beam_evaluate(beam, 1.0, &after);
         assert_true(after.largest_residual > 10.0 * before.largest_residual);
         if (way == 1)
@@ -180,10 +182,11 @@ static void advance_keeps_a_turning_beam_from_stretching(void **unused)
     struct wb_beam_balance balance;
     double K[9], right[3];
     wb_beam_evaluate(beam, 1.0, &balance);
-    wb_beam_condense(beam, K, right);
+    wb_beam_condense(beam, K);
+    wb_beam_reduce(beam, beam, right);
     /* Sideways by a third of its length in one linear step. */
     const double tip[3] = {0.0, 0.03, 0.5};
-    wb_beam_advance(beam, tip, 1.0);
+    wb_beam_advance(beam, beam, tip, 1.0);
     wb_beam_evaluate(beam, 1.0, &balance);
     for (int g = 0; g < 100; g++)
         assert_close(wb_beam_point(beam, g)->a, 1.0, 1e-9);
