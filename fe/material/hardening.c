@@ -44,7 +44,8 @@ static double power_log_ratio(const struct wb_material *m, double c, double q)
         const double b = k * exp(n * q);
         const double step = log(a + b) * (a + b) / (a + n * b);
         q -= step;
-        if (!(fabs(step) > 1e-15 * (1.0 + fabs(q))))
+        /* What is left is less than the step's square. */
+        if (!(fabs(step) > 1e-8))
             break;
     }
     return q;
@@ -174,7 +175,7 @@ void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_mat
     double node[WB_HARDENING_TERMS];
     find_nodes(WB_HARDENING_TERMS, node);
 
-    double q = (double)NAN;
+    double q = (double)NAN, slope = 0.0, last = 0.0;
     for (long long piece = 0; piece < table->pieces; piece++) {
         const uint64_t low_bits = (uint64_t)(table->first + piece) << table->shift;
         const uint64_t high_bits = (uint64_t)(table->first + piece + 1) << table->shift;
@@ -184,8 +185,11 @@ void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_mat
         double value[WB_HARDENING_TERMS];
         for (int i = WB_HARDENING_TERMS - 1; i >= 0; i--) {
             const double c = (low + (node[i] + 0.5) * width) * material->yield_stress;
-            /* The neighbouring node is a good start. */
-            q = law->log_ratio(material, c, q);
+            /* The line through the neighbouring nodes is a good start. */
+            const double before = q;
+            q = law->log_ratio(material, c, q + slope * (c - last));
+            slope = isfinite(before) ? (q - before) / (c - last) : 0.0;
+            last = c;
             value[i] = exp(q);
         }
         interpolate(WB_HARDENING_TERMS, node, value, table->coefficients[piece]);
