@@ -46,13 +46,8 @@ bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *w,
         }
         const double gain = now > 0.0 ? (before - now) / now : (double)INFINITY;
         settled = gain < search->smallest_gain ? settled + 1 : 0;
-        if (!moved || largest < search->smallest_step || settled > search->patience || now == 0.0) {
-            if (!search->goes_on || !search->goes_on(search->context, moved))
-                return true;
-            settled = 0;
-            before = now;
-            continue;
-        }
+        if (!moved || largest < search->smallest_step || settled > search->patience || now == 0.0)
+            return true;
         before = now;
     }
     return false;

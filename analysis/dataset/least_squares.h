@@ -22,10 +22,6 @@ struct wb_least_squares_search {
     int patience;         /* more than so often in a row: a step may overshoot to an equal height */
     /* Set by the residuals where they cannot be computed: ends the search. */
     const enum wb_status *status;
-    /* Asked where it would end, `moved` by its last iteration or not: whether the slopes were poor
-     * and are better now, so that it goes on. NULL: they were good. */
-    bool (*goes_on)(void *context, bool moved);
-    void *context;
 };
 
 /* Iterates an initialized workspace to its end; false when the iterations ran out, or the

@@ -199,6 +199,13 @@ static double best_misfit(const struct wb_cycle_member *member)
     return best;
 }
 
+static const struct wb_cycle_fit *fit_of(const struct wb_cycle_member *member,
+                                         enum wb_candidate candidate)
+{
+    const struct wb_cycle_answer *const answer = &member->answers[candidate];
+    return answer->is_fitted ? &answer->fit : NULL;
+}
+
 /* The better of two fits (NULL: none): one that ended, and then the smaller misfit. */
 static const struct wb_cycle_fit *better(const struct wb_cycle_fit *one,
                                          const struct wb_cycle_fit *other)
@@ -208,38 +215,6 @@ static const struct wb_cycle_fit *better(const struct wb_cycle_fit *one,
     if (one->is_converged != other->is_converged)
         return one->is_converged ? one : other;
     return one->misfit <= other->misfit ? one : other;
-}
-
-/* Fits a candidate from a law near by, and keeps it where it is better than what there is. That the
- * beam cannot follow it is a result. */
-static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
-                              const struct wb_law *start, const struct wb_cycle_grid *grid,
-                              const struct wb_cycle_calibrate_settings *settings)
-{
-    struct wb_cycle_answer *const answer = &member->answers[candidate];
-    struct wb_cycle_fit fit;
-    if (settings->left_out >> candidate & 1U)
-        return WB_OK;
-    const enum wb_status status =
-        wb_cycle_fit_run(&fit, &member->data, candidate, start, grid, &settings->fit, &member->why);
-    if (status == WB_ERR_CONVERGENCE)
-        return WB_OK;
-    WB_TRY(status);
-    if (better(answer->is_fitted ? &answer->fit : NULL, &fit) == &fit) {
-        wb_cycle_fit_release(&answer->fit);
-        answer->fit = fit;
-        answer->is_fitted = true;
-    } else {
-        wb_cycle_fit_release(&fit);
-    }
-    return WB_OK;
-}
-
-static const struct wb_cycle_fit *fit_of(const struct wb_cycle_member *member,
-                                         enum wb_candidate candidate)
-{
-    const struct wb_cycle_answer *const answer = &member->answers[candidate];
-    return answer->is_fitted ? &answer->fit : NULL;
 }
 
 /* The same law in the form of a candidate that contains it: one yield surface that does not move,
@@ -258,44 +233,92 @@ static void contain(enum wb_candidate candidate, struct wb_law *law)
  * back stresses alike: priors, or a search that stopped early, may have kept that from it. A mixed
  * law has no exponent above 1. */
 static void take_contained(struct wb_cycle_member *member, enum wb_candidate candidate,
-                           const struct wb_cycle_fit *contained)
+                           const struct wb_cycle_fit *contained,
+                           const struct wb_cycle_calibrate_settings *settings)
 {
     struct wb_cycle_answer *const answer = &member->answers[candidate];
     const size_t n = (size_t)member->data.n_points;
-    if (!answer->is_fitted || !contained || better(&answer->fit, contained) == &answer->fit)
+    if (!contained || settings->left_out >> candidate & 1U ||
+        (answer->is_fitted && better(&answer->fit, contained) == &answer->fit))
         return;
     if (candidate == WB_CANDIDATE_LUDWIK_MIXED && contained->law.material.hardening_exponent > 1.0)
         return;
     wb_cycle_fit_release(&answer->fit);
+    answer->is_fitted = true;
+    answer->origin = contained->candidate;
     answer->fit = *contained;
     answer->fit.candidate = candidate;
+    answer->fit.search = NULL;
     answer->fit.n_law = wb_candidate_numbers(candidate) + 2 * contained->law.n_maxwell;
     answer->fit.n_free += answer->fit.n_law - contained->n_law;
     answer->fit.is_at_bound = true;
     contain(candidate, &answer->fit.law);
     for (int i = 0; i < answer->fit.n_moved; i++)
         contain(candidate, &answer->fit.moved[i]);
-    for (int i = 0; i < WB_SHARED; i++) {
-        if (answer->fit.has_altered[i])
-            contain(candidate, &answer->fit.altered[i]);
-    }
     answer->fit.tension = wb_memory_new(n, sizeof(double));
     memcpy(answer->fit.tension, contained->tension, n * sizeof(double));
 }
 
-/* Fits a candidate from the better of two fits (NULL: none); where it comes out worse than the
- * other, also from that. */
-static enum wb_status fit_from(struct wb_cycle_member *member, enum wb_candidate candidate,
-                               const struct wb_cycle_fit *one, const struct wb_cycle_fit *other,
-                               const struct wb_cycle_grid *grid,
+/* Fits a candidate from a law near by, and keeps it where it is better than what there is. `near`
+ * is the fit of that law to the same data (NULL: none). That the beam cannot follow it is a result.
+ */
+static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
+                              const struct wb_law *start, const struct wb_cycle_fit *near,
+                              const struct wb_cycle_grid *grid,
+                              const struct wb_cycle_calibrate_settings *settings)
+{
+    struct wb_cycle_answer *const answer = &member->answers[candidate];
+    struct wb_cycle_fit fit;
+    if (settings->left_out >> candidate & 1U)
+        return WB_OK;
+    const enum wb_status status = wb_cycle_fit_run(&fit, &member->data, candidate, start, near,
+                                                   grid, &settings->fit, &member->why);
+    if (status == WB_ERR_CONVERGENCE)
+        return WB_OK;
+    WB_TRY(status);
+    if (fit.is_contained) {
+        wb_cycle_fit_release(&fit);
+        take_contained(member, candidate, near, settings);
+    } else if (better(answer->is_fitted ? &answer->fit : NULL, &fit) == &fit) {
+        wb_cycle_fit_release(&answer->fit);
+        answer->fit = fit;
+        answer->origin = candidate;
+        answer->is_fitted = true;
+    } else {
+        wb_cycle_fit_release(&fit);
+    }
+    return WB_OK;
+}
+
+/* The same from the law of another specimen (itself: there is none), which is nearer than the other
+ * start. */
+static enum wb_status fit_warmly(struct wb_cycle_member *member,
+                                 const struct wb_cycle_member *first, enum wb_candidate candidate,
+                                 const struct wb_law *start, const struct wb_cycle_fit *near,
+                                 const struct wb_cycle_grid *grid,
+                                 const struct wb_cycle_calibrate_settings *settings)
+{
+    const struct wb_cycle_fit *const known = first != member ? fit_of(first, candidate) : NULL;
+    if (known)
+        WB_TRY(fit_one(member, candidate, &known->law, near, grid, settings));
+    const struct wb_cycle_fit *const found = fit_of(member, candidate);
+    return found && found->is_converged ? WB_OK
+                                        : fit_one(member, candidate, start, near, grid, settings);
+}
+
+/* The same from the better of two fits (NULL: none); where it comes out worse than the other, also
+ * from that. */
+static enum wb_status fit_from(struct wb_cycle_member *member, const struct wb_cycle_member *first,
+                               enum wb_candidate candidate, const struct wb_cycle_fit *one,
+                               const struct wb_cycle_fit *other, const struct wb_cycle_grid *grid,
                                const struct wb_cycle_calibrate_settings *settings)
 {
-    const struct wb_cycle_fit *const first = better(one, other);
-    const struct wb_cycle_fit *const second = first == one ? other : one;
-    if (first)
-        WB_TRY(fit_one(member, candidate, &first->law, grid, settings));
+    const struct wb_cycle_fit *const near = better(one, other);
+    const struct wb_cycle_fit *const second = near == one ? other : one;
+    if (near)
+        WB_TRY(fit_warmly(member, first, candidate, &near->law, near, grid, settings));
     const bool is_worse = second && better(second, fit_of(member, candidate)) == second;
-    return is_worse ? fit_one(member, candidate, &second->law, grid, settings) : WB_OK;
+    return is_worse ? fit_one(member, candidate, &second->law, second, grid, settings) : WB_OK;
 }
 
 static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *member)
@@ -306,57 +329,81 @@ static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *memb
     return better(best, fit_of(member, WB_CANDIDATE_LUDWIK_COMBINED));
 }
 
-/* Ludwik's candidates. */
+/* Ludwik's candidates. Most wires are nearer to the kinematic one, from which the other is found
+ * sooner than from the closed forms. */
 static enum wb_status fit_ludwiks(struct wb_cycle_member *member,
                                   const struct wb_cycle_calibrate_settings *settings)
 {
     const struct wb_cycle_grid none = {0.0, 0.0};
     struct wb_law start;
     first_law(&member->data, &start);
-    WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, settings));
     if (member->data.n_loading == member->data.n_points)
-        return WB_OK;
-    WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, &none, settings));
-    const struct wb_cycle_fit *const isotropic = fit_of(member, WB_CANDIDATE_LUDWIK_ISOTROPIC);
+        return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, NULL, &none, settings);
+    WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, NULL, &none, settings));
     const struct wb_cycle_fit *const kinematic = fit_of(member, WB_CANDIDATE_LUDWIK_KINEMATIC);
+    WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, kinematic ? &kinematic->law : &start,
+                   kinematic, &none, settings));
+    const struct wb_cycle_fit *const isotropic = fit_of(member, WB_CANDIDATE_LUDWIK_ISOTROPIC);
     if (!isotropic && !kinematic) {
-        WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_MIXED, &start, &none, settings));
-        return fit_one(member, WB_CANDIDATE_LUDWIK_COMBINED, &start, &none, settings);
+        WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_MIXED, &start, NULL, &none, settings));
+        return fit_one(member, WB_CANDIDATE_LUDWIK_COMBINED, &start, NULL, &none, settings);
     }
-    WB_TRY(fit_from(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic, kinematic, &none, settings));
-    take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic);
-    take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, kinematic);
-    WB_TRY(fit_from(member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, kinematic, &none, settings));
-    take_contained(member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic);
+    WB_TRY(
+        fit_from(member, member, WB_CANDIDATE_LUDWIK_MIXED, isotropic, kinematic, &none, settings));
+    take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic, settings);
+    take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, kinematic, settings);
+    WB_TRY(fit_from(member, member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, kinematic, &none,
+                    settings));
+    take_contained(member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, settings);
     return WB_OK;
 }
 
 static enum wb_status fit_parallels(struct wb_cycle_member *member,
+                                    const struct wb_cycle_member *first,
                                     const struct wb_cycle_grid *grid,
                                     const struct wb_cycle_calibrate_settings *settings)
 {
     const struct wb_cycle_fit *const near = best_ludwik(member);
     if (!near || member->data.n_loading == member->data.n_points)
         return WB_OK;
-    WB_TRY(fit_one(member, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, grid, settings));
+    WB_TRY(fit_warmly(member, first, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, near, grid,
+                      settings));
     const struct wb_cycle_fit *const pure = fit_of(member, WB_CANDIDATE_PARALLEL_KINEMATIC);
-    WB_TRY(fit_from(member, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
-    take_contained(member, WB_CANDIDATE_PARALLEL_MIXED, pure);
+    WB_TRY(fit_from(member, member, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
+    take_contained(member, WB_CANDIDATE_PARALLEL_MIXED, pure, settings);
     return WB_OK;
 }
 
 static enum wb_status fit_chaboches(struct wb_cycle_member *member,
+                                    const struct wb_cycle_member *first,
                                     const struct wb_cycle_grid *grid,
                                     const struct wb_cycle_calibrate_settings *settings)
 {
     const struct wb_cycle_fit *const near = best_ludwik(member);
     if (!near)
         return WB_OK;
-    WB_TRY(fit_one(member, WB_CANDIDATE_CHABOCHE_ONE, &near->law, grid, settings));
+    WB_TRY(fit_warmly(member, first, WB_CANDIDATE_CHABOCHE_ONE, &near->law, near, grid, settings));
     const struct wb_cycle_fit *const one = fit_of(member, WB_CANDIDATE_CHABOCHE_ONE);
-    WB_TRY(fit_from(member, WB_CANDIDATE_CHABOCHE_TWO, one, near, grid, settings));
-    take_contained(member, WB_CANDIDATE_CHABOCHE_TWO, one);
+    WB_TRY(fit_from(member, first, WB_CANDIDATE_CHABOCHE_TWO, one, near, grid, settings));
+    take_contained(member, WB_CANDIDATE_CHABOCHE_TWO, one, settings);
     return WB_OK;
+}
+
+/* How a law hangs on what all specimens share. */
+static void find_altered(struct wb_cycle_member *member, enum wb_candidate candidate)
+{
+    struct wb_cycle_answer *const answer = &member->answers[candidate];
+    const enum wb_candidate origin = answer->origin;
+    struct wb_cycle_fit *const fit = &member->answers[origin].fit;
+    wb_cycle_fit_find_altered(fit);
+    if (origin == candidate)
+        return;
+    memcpy(answer->fit.altered, fit->altered, sizeof fit->altered);
+    memcpy(answer->fit.has_altered, fit->has_altered, sizeof fit->has_altered);
+    for (int i = 0; i < WB_SHARED; i++) {
+        if (fit->has_altered[i])
+            contain(candidate, &answer->fit.altered[i]);
+    }
 }
 
 /* --- specimens side by side --- */
@@ -366,7 +413,7 @@ enum stage {
     LUDWIKS,   /* from here on with the Maxwell elements that all specimens ask for */
     PARALLELS, /* from here on with the scale of all specimens' strains */
     CHABOCHES, /* where the others leave something */
-    STAGES
+    SHARED     /* how the chosen law hangs on what all specimens share */
 };
 
 struct work {
@@ -375,6 +422,7 @@ struct work {
     const struct wb_cycle_calibrate_settings *settings;
     struct wb_cycle_calibrate_settings with_elements;
     enum stage stage;
+    int begin; /* the first specimen of those at work */
     struct wb_cycle_grid grid;
     int done, all;
     bool stopped;
@@ -384,14 +432,28 @@ struct work {
 static enum wb_status fit_member(void *context, int index)
 {
     struct work *const work = context;
-    struct wb_cycle_member *const member = &work->calibration->members[index];
+    const struct wb_cycle_member *const first = work->calibration->members;
+    struct wb_cycle_member *const member = &work->calibration->members[work->begin + index];
     const double begin = wb_progress_thread_cpu();
-    const enum wb_status status =
-        work->stage == DATA        ? wb_cycle_data_take(&member->data, work->datasets[index],
-                                                        &work->settings->data, &member->why)
-        : work->stage == LUDWIKS   ? fit_ludwiks(member, work->settings)
-        : work->stage == PARALLELS ? fit_parallels(member, &work->grid, work->settings)
-                                   : fit_chaboches(member, &work->grid, work->settings);
+    enum wb_status status = WB_OK;
+    switch (work->stage) {
+    case DATA:
+        status = wb_cycle_data_take(&member->data, work->datasets[work->begin + index],
+                                    &work->settings->data, &member->why);
+        break;
+    case LUDWIKS:
+        status = fit_ludwiks(member, work->settings);
+        break;
+    case PARALLELS:
+        status = fit_parallels(member, first, &work->grid, work->settings);
+        break;
+    case CHABOCHES:
+        status = fit_chaboches(member, first, &work->grid, work->settings);
+        break;
+    case SHARED:
+        find_altered(member, work->calibration->chosen);
+        break;
+    }
     member->cpu_s += wb_progress_thread_cpu() - begin;
     return status;
 }
@@ -403,24 +465,36 @@ static bool finish_member(void *context, int index, enum wb_status status)
     const struct wb_cycle_calibrate_settings *const s = work->settings;
     if (work->status == WB_OK)
         work->status = status;
-    if (work->stage == DATA)
+    if (work->stage == DATA || work->stage == SHARED)
         return true;
     work->done++;
     work->stopped = s->progress && !s->progress(s->progress_context, work->done, work->all);
     return !work->stopped;
 }
 
-static enum wb_status work_side_by_side(struct work *work, enum stage stage)
+/* Specimens from one on, up to another. */
+static void work_on(struct work *work, int begin, int end)
 {
-    work->stage = stage;
     const struct wb_workers workers = {
-        .n = work->stopped ? 0 : work->calibration->n_members,
+        .n = work->stopped && work->stage != SHARED ? 0 : end - begin,
         .n_threads = work->settings->threads,
         .job = fit_member,
         .done = finish_member,
         .context = work,
     };
+    work->begin = begin;
     (void)wb_workers_run(&workers);
+}
+
+/* A stage of all specimens: the first goes ahead where the others begin from its laws, those of
+ * many numbers. */
+static enum wb_status work_side_by_side(struct work *work, enum stage stage)
+{
+    const int ahead = stage == PARALLELS || stage == CHABOCHES ? 1 : 0;
+    work->stage = stage;
+    work_on(work, 0, ahead);
+    if (work->status == WB_OK)
+        work_on(work, ahead, work->calibration->n_members);
     return work->status;
 }
 
@@ -1014,7 +1088,7 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
         .calibration = calibration,
         .datasets = datasets,
         .settings = settings,
-        .all = (STAGES - LUDWIKS) * calibration->n_members,
+        .all = (SHARED - LUDWIKS) * calibration->n_members,
         .status = WB_OK,
     };
     enum wb_status status = work_side_by_side(&work, DATA);
@@ -1046,10 +1120,11 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
     }
     if (status != WB_OK)
         return tell_failure(calibration, status, why);
-    calibration->is_stopped = work.done < n_stages * (work.all / (STAGES - LUDWIKS));
+    calibration->is_stopped = work.done < n_stages * (work.all / (SHARED - LUDWIKS));
     choose(calibration);
     if (calibration->n_ranked == 0)
         return tell_failure(calibration, WB_ERR_DATA, why);
+    WB_TRY(work_side_by_side(&work, SHARED));
     return conclude(calibration, settings);
 }
 

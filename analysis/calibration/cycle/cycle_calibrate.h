@@ -87,6 +87,7 @@ enum wb_cycle_number {
 /* What a candidate gives for one specimen. */
 struct wb_cycle_answer {
     bool is_fitted;
+    enum wb_candidate origin; /* whose fit it is: its own, or one that it contains */
     struct wb_cycle_fit fit;
     double value[WB_CYCLE_NUMBERS]; /* 0 where there is no such curvature */
     /* Standard errors of the logarithms by the residuals of the fit; 0 of candidates that do not

@@ -461,7 +461,7 @@ static enum wb_status fit_freely(const struct specimen *s, bool frees_force,
         grid.last_strain = grid.first_strain * pow(ratio, law->n_parts - 1);
     }
     const enum wb_status status =
-        wb_cycle_fit_run(freed, s->data, s->fit->candidate, law, &grid, &settings, &why);
+        wb_cycle_fit_run(freed, s->data, s->fit->candidate, law, NULL, &grid, &settings, &why);
     *is_fitted = status == WB_OK;
     return status == WB_ERR_CONVERGENCE ? WB_OK : status;
 }
@@ -492,7 +492,7 @@ static double find_length(const struct specimen *s, double level)
         /* The same stiffness and yield force of the longer wire. */
         start.material.youngs_modulus *= pow(ratio, 3);
         start.material.yield_stress *= ratio;
-        if (wb_cycle_fit_run(&fit, &data, candidate, &start, &none, &settings, &why) != WB_OK)
+        if (wb_cycle_fit_run(&fit, &data, candidate, &start, NULL, &none, &settings, &why) != WB_OK)
             continue;
         if (fit.misfit < least && fabs(fit.level) < better_level * fabs(level)) {
             least = fit.misfit;

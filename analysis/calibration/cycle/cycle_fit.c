@@ -42,11 +42,6 @@ static const double logistic_prior = 4.0;
 static const double yield_prior = 4.0;
 /* Steps of the differences that give the slopes, in units of the free numbers' scales. */
 static const double difference = 1e-3;
-/* Slopes are carried on over a step (Broyden 1965) where they foretold the change of the residuals
- * up to this part of it. */
-static const double foretold = 0.3;
-/* Over a step that changes no number by more than this they stay as they are. */
-static const double near = 0.03;
 /* Huber's limit and where a point counts as an outlier, in standard deviations of the residuals. */
 static const double huber_limit = 2.5;
 /* Largest correlation of neighbouring residuals that is believed, as their number is finite;
@@ -146,11 +141,11 @@ enum {
     OF_SPECIMEN
 };
 
-struct problem {
+struct wb_cycle_search {
     const struct wb_cycle_data *data;
-    const struct wb_cycle_fit_settings *settings;
+    struct wb_cycle_fit_settings settings;
     const struct candidate *candidate;
-    const struct wb_cycle_grid *grid;
+    struct wb_cycle_grid grid;
     struct wb_cycle_model *model;
     double poissons_ratio;
     int n_form;    /* free numbers of the law's form, */
@@ -161,19 +156,17 @@ struct problem {
     double maxwell_time;            /* s, prior of an element's */
     double start[WB_FIT_MOST_FREE]; /* the free numbers are counted from here, in units of scale */
     double scale[WB_FIT_MOST_FREE];
-    double start_modulus[WB_FIT_PARTS];  /* Pa */
-    double *tension, *distance, *weight; /* weight: (n_points) */
-    double last_x[WB_FIT_MOST_FREE];     /* where the residuals were asked for last, */
-    double *last;                        /* and they; (n_residuals) */
+    double start_modulus[WB_FIT_PARTS];                     /* Pa */
+    double *tension, *distance, *weight;                    /* weight: (n_points) */
+    struct wb_cycle_neighbour neighbours[WB_FIT_MOST_FREE]; /* (n_free), for the slopes */
+    double last_x[WB_FIT_MOST_FREE]; /* where the residuals were asked for last, */
+    double *last;                    /* and they; (n_residuals) */
     bool has_last;
-    gsl_matrix *slopes;                     /* (n_residuals, n_free), */
-    double slopes_x[WB_FIT_MOST_FREE];      /* there, */
-    double *slopes_f;                       /* beside these residuals; (n_residuals) */
-    double differences_x[WB_FIT_MOST_FREE]; /* where differences were taken last */
-    bool has_slopes, are_differences;       /* false: carried on from earlier ones */
-    bool moved_by_differences;              /* those of the last step */
-    double force_scale;                     /* N */
-    double scale_of_misses;                 /* larger than 1 where the law does not follow */
+    gsl_matrix *slopes;                /* (n_residuals, n_free), */
+    double slopes_x[WB_FIT_MOST_FREE]; /* there: in the end that of the fit */
+    bool has_slopes;
+    double force_scale;     /* N */
+    double scale_of_misses; /* larger than 1 where the law does not follow */
     struct wb_cycle_run run;
     int runs;
     enum wb_status status;
@@ -198,7 +191,7 @@ static double largest_exponent_of(const struct candidate *c)
 
 /* ln E, ln sigma_Y, ln(hardening stress at the middle), logistic exponent; or moduli over those of
  * the start, see wb_least_squares_positive(); and the logistic share of mixed hardening. */
-static void relaxed_law_of(const struct problem *p, const double *free, struct wb_law *law)
+static void relaxed_law_of(const struct wb_cycle_search *p, const double *free, struct wb_law *law)
 {
     const struct candidate *const c = p->candidate;
     /* At its end a mixed law would be of another kind. */
@@ -235,18 +228,18 @@ static void relaxed_law_of(const struct problem *p, const double *free, struct w
         return;
     }
     struct wb_law_part parts[WB_FIT_PARTS];
-    const double ratio = p->grid->last_strain / p->grid->first_strain;
+    const double ratio = p->grid.last_strain / p->grid.first_strain;
     for (int i = 0; i < WB_FIT_PARTS; i++) {
         parts[i].modulus = p->start_modulus[i] * wb_least_squares_positive(free[i]);
         parts[i].yield_strain =
             i == WB_FIT_PARTS - 1
                 ? (double)INFINITY
-                : p->grid->first_strain * pow(ratio, (double)i / (WB_FIT_PARTS - 1));
+                : p->grid.first_strain * pow(ratio, (double)i / (WB_FIT_PARTS - 1));
     }
     wb_law_init_parallel(law, parts, WB_FIT_PARTS, share, p->poissons_ratio);
 }
 
-static void law_of(const struct problem *p, const double *free, struct wb_law *law)
+static void law_of(const struct wb_cycle_search *p, const double *free, struct wb_law *law)
 {
     relaxed_law_of(p, free, law);
     law->n_maxwell = p->n_maxwell;
@@ -276,7 +269,7 @@ static double elastic_curvature(const struct wb_cycle_data *data)
 }
 
 /* From the elements of a law near by, or from the fall of the tension in the dwell. */
-static void start_maxwell(struct problem *p, const struct wb_law *law)
+static void start_maxwell(struct wb_cycle_search *p, const struct wb_law *law)
 {
     double *const start = p->start + p->n_form;
     for (int i = 0; i < p->n_maxwell && law->n_maxwell == p->n_maxwell; i++) {
@@ -301,7 +294,7 @@ static void start_maxwell(struct problem *p, const struct wb_law *law)
 }
 
 /* From another of its kind; the second of two back stresses comes of the first. */
-static void start_from_chaboche(struct problem *p, const struct wb_law *law)
+static void start_from_chaboche(struct wb_cycle_search *p, const struct wb_law *law)
 {
     const int n = p->candidate->n_backs;
     p->start[MODULUS] = log(law->material.youngs_modulus);
@@ -319,9 +312,9 @@ static void start_from_chaboche(struct problem *p, const struct wb_law *law)
 
 /* From the virgin curve of another law, which hardens by as much at the test's largest strain and,
  * of two back stresses, at a tenth of it. */
-static void start_from_curve(struct problem *p, const struct wb_law *law)
+static void start_from_curve(struct wb_cycle_search *p, const struct wb_law *law)
 {
-    const double E = law->material.youngs_modulus, top = p->grid->last_strain;
+    const double E = law->material.youngs_modulus, top = p->grid.last_strain;
     const double stress = wb_law_virgin_stress(law, top, NULL);
     const double yield = fmin(
         law->form == WB_LAW_PARALLEL ? 0.1 * stress : law->material.yield_stress, 0.5 * stress);
@@ -345,7 +338,7 @@ static void start_from_curve(struct problem *p, const struct wb_law *law)
 }
 
 /* Free numbers of the law nearest to the given one. */
-static void start_from(struct problem *p, const struct wb_law *law)
+static void start_law(struct wb_cycle_search *p, const struct wb_law *law)
 {
     const struct candidate *const c = p->candidate;
 
@@ -366,8 +359,8 @@ static void start_from(struct problem *p, const struct wb_law *law)
     } else {
         /* Slopes of the given curve's chords between the yield strains. */
         const double ratio =
-            pow(p->grid->last_strain / p->grid->first_strain, 1.0 / (WB_FIT_PARTS - 1));
-        double strain = p->grid->first_strain, stress = wb_law_virgin_stress(law, strain, NULL);
+            pow(p->grid.last_strain / p->grid.first_strain, 1.0 / (WB_FIT_PARTS - 1));
+        double strain = p->grid.first_strain, stress = wb_law_virgin_stress(law, strain, NULL);
         double slope = stress / strain;
         for (int i = 0; i < WB_FIT_PARTS; i++) {
             const double next_strain = strain * ratio;
@@ -389,24 +382,29 @@ static void start_from(struct problem *p, const struct wb_law *law)
     start_maxwell(p, law);
     for (int i = 0; i < p->n_law; i++)
         p->scale[i] = 1.0;
+}
+
+static void start_specimen(struct wb_cycle_search *p, const struct wb_cycle_fit *near)
+{
+    const struct wb_test_info *const info = &p->data->info;
     double *const start = p->start + p->n_law, *const scale = p->scale + p->n_law;
-    start[BOW] = p->data->info.n_natural_shape > 0 ? p->data->info.natural_shape[0] : 0.0;
+    start[BOW] = near ? near->bow_angle : info->n_natural_shape > 0 ? info->natural_shape[0] : 0.0;
     scale[BOW] = 0.01;
-    start[LEVEL] = 0.0;
+    start[LEVEL] = near ? near->level : 0.0;
     scale[LEVEL] = 0.1 * WB_MM;
-    start[UNEVEN] = 0.0;
+    start[UNEVEN] = near ? near->uneven_angle : 0.0;
     scale[UNEVEN] = 0.01;
-    start[ZERO] = 0.0;
+    start[ZERO] = near ? near->zero : 0.0;
     scale[ZERO] = p->force_scale;
 }
 
-static void absolute(const struct problem *p, const double *x, double *free)
+static void absolute(const struct wb_cycle_search *p, const double *x, double *free)
 {
     for (int i = 0; i < p->n_law + OF_SPECIMEN; i++)
         free[i] = p->start[i] + (i < p->n_free ? p->scale[i] * x[i] : 0.0);
 }
 
-static struct wb_cycle_specimen specimen_of(const struct problem *p, const double *free)
+static struct wb_cycle_specimen specimen_of(const struct wb_cycle_search *p, const double *free)
 {
     const double *const own = free + p->n_law;
     return (struct wb_cycle_specimen){
@@ -415,10 +413,10 @@ static struct wb_cycle_specimen specimen_of(const struct problem *p, const doubl
 
 /* Distances of places less each marker's own offset; the offset that makes the sum of squares
  * smallest, its prior included, is known in closed form. Returns the index behind the residuals. */
-static int place_residuals(struct problem *p, double *r)
+static int place_residuals(const struct wb_cycle_search *p, const double *distance, double *r)
 {
     const struct wb_cycle_data *const data = p->data;
-    const double noise = p->settings->place_noise, prior = p->settings->offset_prior;
+    const double noise = p->settings.place_noise, prior = p->settings.offset_prior;
     int at = 0;
 
     for (int m = 0; m < data->n_markers; m++) {
@@ -426,35 +424,35 @@ static int place_residuals(struct problem *p, double *r)
         int n = 0;
         for (int i = 0; i < data->n_places; i++) {
             if (data->places[i].marker == m) {
-                sum += p->distance[i];
+                sum += distance[i];
                 n++;
             }
         }
         const double offset = sum / (noise * noise) / (n / (noise * noise) + 1.0 / (prior * prior));
         for (int i = 0; i < data->n_places; i++) {
             if (data->places[i].marker == m)
-                r[at++] = (p->distance[i] - offset) / noise;
+                r[at++] = (distance[i] - offset) / noise;
         }
         r[at++] = offset / prior;
     }
     return at;
 }
 
-static int prior_residuals(const struct problem *p, const double *free, const struct wb_law *law,
-                           double *r)
+static int prior_residuals(const struct wb_cycle_search *p, const double *free,
+                           const struct wb_law *law, double *r)
 {
     const struct candidate *const c = p->candidate;
     int at = 0;
 
-    r[at++] = free[p->n_law + LEVEL] / p->settings->level_prior;
-    r[at++] = free[p->n_law + UNEVEN] / p->settings->uneven_prior;
-    if (p->settings->zero_prior > 0.0)
-        r[at++] = free[p->n_law + ZERO] / p->settings->zero_prior;
+    r[at++] = free[p->n_law + LEVEL] / p->settings.level_prior;
+    r[at++] = free[p->n_law + UNEVEN] / p->settings.uneven_prior;
+    if (p->settings.zero_prior > 0.0)
+        r[at++] = free[p->n_law + ZERO] / p->settings.zero_prior;
     if (c->form == WB_LAW_PARALLEL) {
-        at += wb_least_squares_smooth_parts(law->parts, WB_FIT_PARTS, p->settings->modulus_prior,
+        at += wb_least_squares_smooth_parts(law->parts, WB_FIT_PARTS, p->settings.modulus_prior,
                                             r + at);
     } else if (c->form == WB_LAW_CHABOCHE) {
-        const double slow = log(p->grid->last_strain);
+        const double slow = log(p->grid.last_strain);
         r[at++] = (free[SATURATION] - free[YIELD]) / stress_prior;
         r[at++] = (free[RATE] + slow) / rate_prior;
         for (int i = FIRST_BACK; i < p->n_form; i += 2) {
@@ -475,17 +473,16 @@ static int prior_residuals(const struct problem *p, const double *free, const st
 }
 
 /* Periods of the dwell that count: without Maxwell elements they tell nothing. */
-static int held_of(const struct problem *p)
+static int held_of(const struct wb_cycle_search *p)
 {
     return p->n_maxwell > 0 ? p->data->n_held : 0;
 }
 
 /* How the tension falls in the dwell: beyond the mean, which the law may miss. Returns the index
  * behind the residuals. */
-static int held_residuals(const struct problem *p, double *r)
+static int held_residuals(const struct wb_cycle_search *p, const double *held, double *r)
 {
     const struct wb_cycle_data *const data = p->data;
-    const double *const held = wb_cycle_model_held(p->model);
     const int n = held_of(p);
     double mean = 0.0;
     if (n == 0)
@@ -493,24 +490,45 @@ static int held_residuals(const struct problem *p, double *r)
     for (int i = 0; i < n; i++)
         mean += (held[i] - data->held[i].tension) / n;
     const double fall = fabs(data->held[0].tension - data->held[n - 1].tension);
-    const double noise = fmax(p->settings->force_noise, fall_share * fall);
+    const double noise = fmax(p->settings.force_noise, fall_share * fall);
     for (int i = 0; i < n; i++)
         r[i] = (held[i] - data->held[i].tension - mean) / noise;
     return n;
 }
 
-/* Residuals at the free numbers x. */
-static int residuals(struct problem *p, const double *x, double *r)
+/* Law and specimen of the free numbers x. False where the law is not possible. */
+static bool take_numbers(const struct wb_cycle_search *p, const double *x, double *free,
+                         struct wb_law *law, struct wb_cycle_specimen *specimen)
+{
+    struct wb_reason why;
+    absolute(p, x, free);
+    law_of(p, free, law);
+    *specimen = specimen_of(p, free);
+    return wb_law_check(law, &why) == WB_OK;
+}
+
+/* Residuals of a computed cycle. */
+static int compare(const struct wb_cycle_search *p, const double *free, const struct wb_law *law,
+                   const double *tension, const double *distance, const double *held, double *r)
 {
     const struct wb_cycle_data *const data = p->data;
+    for (int i = 0; i < data->n_points; i++)
+        r[i] = sqrt(p->weight[i]) * (tension[i] + free[p->n_law + ZERO] - data->points[i].tension) /
+               p->force_scale;
+    int at = data->n_points;
+    at += place_residuals(p, distance, r + at);
+    at += held_residuals(p, held, r + at);
+    at += prior_residuals(p, free, law, r + at);
+    return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
+}
+
+/* Residuals at the free numbers x. */
+static int residuals(struct wb_cycle_search *p, const double *x, double *r)
+{
     double free[WB_FIT_MOST_FREE];
     struct wb_law law;
-
-    absolute(p, x, free);
-    law_of(p, free, &law);
-    const struct wb_cycle_specimen specimen = specimen_of(p, free);
-    struct wb_reason why;
-    bool reached = wb_law_check(&law, &why) == WB_OK;
+    struct wb_cycle_specimen specimen;
+    bool reached = take_numbers(p, x, free, &law, &specimen);
     if (reached) {
         p->runs++;
         p->status = wb_cycle_model_run(p->model, &law, &specimen, p->tension, p->distance, &p->run);
@@ -523,29 +541,22 @@ static int residuals(struct problem *p, const double *x, double *r)
             r[i] = lost_residual;
         return GSL_SUCCESS;
     }
-    for (int i = 0; i < data->n_points; i++)
-        r[i] = sqrt(p->weight[i]) *
-               (p->tension[i] + free[p->n_law + ZERO] - data->points[i].tension) / p->force_scale;
-    int at = data->n_points;
-    at += place_residuals(p, r + at);
-    at += held_residuals(p, r + at);
-    at += prior_residuals(p, free, &law, r + at);
-    return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
+    return compare(p, free, &law, p->tension, p->distance, wb_cycle_model_held(p->model), r);
 }
 
-static size_t bytes_of(const struct problem *p)
+static size_t bytes_of(const struct wb_cycle_search *p)
 {
     return (size_t)p->n_residuals * sizeof *p->last;
 }
 
-static bool is_at(const struct problem *p, const double *x, const gsl_vector *there)
+static bool is_at(const struct wb_cycle_search *p, const double *x, const gsl_vector *there)
 {
     return memcmp(x, there->data, (size_t)p->n_free * sizeof *x) == 0;
 }
 
 static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
 {
-    struct problem *const p = context;
+    struct wb_cycle_search *const p = context;
     if (p->has_last && is_at(p, p->last_x, x)) {
         memcpy(f->data, p->last, bytes_of(p));
         return GSL_SUCCESS;
@@ -557,88 +568,71 @@ static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
     return status;
 }
 
-/* Differences from the residuals at x. */
-static int find_slopes(struct problem *p, const double *x)
+/* Differences from the residuals at x, of cycles computed beside that of x. */
+static int find_slopes(struct wb_cycle_search *p, const double *x)
 {
-    double moved[WB_FIT_MOST_FREE];
-    double *const other = wb_memory_new((size_t)p->n_residuals, sizeof *other);
-    int status = GSL_SUCCESS;
+    double numbers[WB_FIT_MOST_FREE], moved[WB_FIT_MOST_FREE];
+    struct wb_law law;
+    struct wb_cycle_specimen specimen;
+    double *const there = wb_memory_new((size_t)p->n_residuals, sizeof *there);
+    int status = take_numbers(p, x, numbers, &law, &specimen) ? GSL_SUCCESS : GSL_EFAILED;
     for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
+        struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
         memcpy(moved, x, (size_t)p->n_free * sizeof *moved);
         moved[k] += difference;
-        status = residuals(p, moved, other);
-        for (int i = 0; i < p->n_residuals; i++)
-            gsl_matrix_set(p->slopes, (size_t)i, (size_t)k, (other[i] - p->last[i]) / difference);
+        if (!take_numbers(p, moved, numbers, &neighbour->law, &neighbour->specimen))
+            status = GSL_EFAILED;
     }
-    free(other);
+    if (status == GSL_SUCCESS) {
+        p->status = wb_cycle_model_run_beside(p->model, &law, &specimen, p->tension, p->distance,
+                                              p->n_free, p->neighbours, &p->run);
+        p->runs++;
+        if (p->status != WB_OK || !p->run.reached)
+            status = GSL_EFAILED;
+    }
+    for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
+        const struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
+        memcpy(moved, x, (size_t)p->n_free * sizeof *moved);
+        moved[k] += difference;
+        absolute(p, moved, numbers);
+        status = compare(p, numbers, &neighbour->law, neighbour->tension, neighbour->distance,
+                         neighbour->held, there);
+        for (int i = 0; i < p->n_residuals; i++)
+            gsl_matrix_set(p->slopes, (size_t)i, (size_t)k, (there[i] - p->last[i]) / difference);
+    }
+    free(there);
     return status;
 }
 
-/* The slopes that are known, changed by as little as makes them foretell the step from there to x.
- * False, and they are as they were, where they foretell it badly. */
-static bool carry_slopes(struct problem *p, const double *x)
-{
-    double step[WB_FIT_MOST_FREE];
-    double length = 0.0, largest = 0.0, missed = 0.0, changed = 0.0;
-    for (int k = 0; k < p->n_free; k++) {
-        step[k] = x[k] - p->slopes_x[k];
-        length += step[k] * step[k];
-        largest = fmax(largest, fabs(step[k]));
-    }
-    if (largest < near)
-        return true;
-    double *const miss = p->slopes_f; /* replaced by those at x anyway */
-    for (int i = 0; i < p->n_residuals; i++) {
-        const double change = p->last[i] - p->slopes_f[i];
-        miss[i] = change;
-        for (int k = 0; k < p->n_free; k++)
-            miss[i] -= gsl_matrix_get(p->slopes, (size_t)i, (size_t)k) * step[k];
-        missed += miss[i] * miss[i];
-        changed += change * change;
-    }
-    if (missed > foretold * foretold * changed)
-        return false;
-    for (int i = 0; i < p->n_residuals; i++) {
-        for (int k = 0; k < p->n_free; k++)
-            *gsl_matrix_ptr(p->slopes, (size_t)i, (size_t)k) += miss[i] * step[k] / length;
-    }
-    p->are_differences = false;
-    return true;
-}
-
-/* Most steps are short, and the slopes change little over them: a run of the beam for each free
- * number is saved where they are carried on. */
 static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
 {
-    struct problem *const p = context;
-    int status = GSL_SUCCESS;
+    struct wb_cycle_search *const p = context;
     if (!p->has_last || !is_at(p, p->last_x, x))
         return GSL_ESANITY;
-    p->moved_by_differences = p->are_differences;
-    if (!p->has_slopes || (!is_at(p, p->slopes_x, x) && !carry_slopes(p, x->data))) {
-        status = find_slopes(p, x->data);
-        p->has_slopes = p->are_differences = status == GSL_SUCCESS;
-        memcpy(p->differences_x, x->data, (size_t)p->n_free * sizeof *p->differences_x);
+    if (!p->has_slopes || !is_at(p, p->slopes_x, x)) {
+        const int status = find_slopes(p, x->data);
+        p->has_slopes = status == GSL_SUCCESS;
+        if (status != GSL_SUCCESS)
+            return status;
+        memcpy(p->slopes_x, x->data, (size_t)p->n_free * sizeof *p->slopes_x);
     }
-    memcpy(p->slopes_x, x->data, (size_t)p->n_free * sizeof *p->slopes_x);
-    memcpy(p->slopes_f, p->last, bytes_of(p));
     gsl_matrix_memcpy(J, p->slopes);
-    return status;
+    return GSL_SUCCESS;
 }
 
 /* What is known of a point's residual is that of another weight. */
-static void weigh_again(struct problem *p, int i, double ratio)
+static void weigh_again(struct wb_cycle_search *p, int i, double ratio)
 {
     gsl_vector_view slopes = gsl_matrix_row(p->slopes, (size_t)i);
     gsl_vector_scale(&slopes.vector, ratio);
-    p->slopes_f[i] *= ratio;
     p->last[i] *= ratio;
 }
 
 /* Standard deviation of residuals of which each counts as one, in units of the force's: neighbours
  * miss alike where the law cannot follow, with a correlation r of one and the next, and the sum of
  * n of them varies by (1 + r) / (1 - r) times n variances. `counts` are Huber's weights. */
-static double find_discrepancy(const struct problem *p, const double *miss, const double *counts)
+static double find_discrepancy(const struct wb_cycle_search *p, const double *miss,
+                               const double *counts)
 {
     double squares = 0.0, products = 0.0, sum = 0.0;
     for (int i = 0; i < p->data->n_points; i++) {
@@ -653,7 +647,7 @@ static double find_discrepancy(const struct problem *p, const double *miss, cons
 
 /* Weights of the points for the next pass, by what this one left: Huber's, and smaller ones where
  * the law does not follow, so that priors keep their weight. Returns whether they changed. */
-static bool set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
+static bool set_weights(struct wb_cycle_search *p, const gsl_vector *f, int *n_outliers)
 {
     const int n = p->data->n_points, outliers_before = *n_outliers;
     const double scale_before = p->scale_of_misses;
@@ -681,59 +675,21 @@ static bool set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
            fabs(log(p->scale_of_misses / scale_before)) > settled_scale;
 }
 
-/* Begins again where it is, with differences for slopes. */
-static bool renew_slopes(struct problem *p, gsl_multifit_nlinear_workspace *w)
-{
-    double at[WB_FIT_MOST_FREE];
-    const gsl_vector_view x = gsl_vector_view_array(at, (size_t)p->n_free);
-    memcpy(at, w->x->data, (size_t)p->n_free * sizeof *at);
-    p->has_slopes = false;
-    return gsl_multifit_nlinear_init(&x.vector, w->fdf, w) == GSL_SUCCESS;
-}
-
-/* The errors hang on the slopes at the end: differences, taken there or near. */
-static bool finish_slopes(struct problem *p, gsl_multifit_nlinear_workspace *w)
-{
-    double farthest_off = 0.0;
-    for (int k = 0; k < p->n_free; k++)
-        farthest_off =
-            fmax(farthest_off, fabs(gsl_vector_get(w->x, (size_t)k) - p->differences_x[k]));
-    return (p->are_differences && farthest_off < near) || renew_slopes(p, w);
-}
-
-struct fitted {
-    struct problem *problem;
-    gsl_multifit_nlinear_workspace *workspace;
-};
-
-/* Slopes that were carried on may be too poor for a better step: the end is where differences find
- * none. */
-static bool takes_differences(void *context, bool moved)
-{
-    const struct fitted *const f = context;
-    const struct problem *const p = f->problem;
-    const bool were_differences = moved ? p->moved_by_differences : p->are_differences;
-    return !were_differences && renew_slopes(f->problem, f->workspace);
-}
-
 /* Iterates to the end; false when the iterations ran out. */
-static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *iterations)
+static bool iterate(struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w, int *iterations)
 {
-    struct fitted fitted = {p, w};
     const struct wb_least_squares_search search = {
-        .max_iterations = p->settings->max_iterations,
+        .max_iterations = p->settings.max_iterations,
         .smallest_step = arrived,
         .smallest_gain = settled_sum,
         .status = &p->status,
-        .goes_on = takes_differences,
-        .context = &fitted,
     };
     return wb_least_squares_iterate(w, &search, iterations);
 }
 
 /* The law moved along the columns of the covariance's triangular factor, which the covariance is
  * destroyed for. */
-static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *covariance,
+static void move_law(const struct wb_cycle_search *p, const gsl_vector *x, gsl_matrix *covariance,
                      struct wb_cycle_fit *fit)
 {
     double free[WB_FIT_MOST_FREE], step[WB_FIT_MOST_FREE];
@@ -761,7 +717,7 @@ static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *c
 
 /* Correlations of the law's numbers. Ludwik's are turned into those of K and n, which fits do not
  * count in; a part's own scale does not matter. */
-static void find_correlations(const struct problem *p, const gsl_matrix *covariance,
+static void find_correlations(const struct wb_cycle_search *p, const gsl_matrix *covariance,
                               struct wb_cycle_fit *fit)
 {
     double turn[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW] = {{0.0}}, c[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
@@ -831,7 +787,7 @@ bool wb_cycle_fit_strongest(const struct wb_cycle_fit *fit, int *one, int *other
 }
 
 /* Standard errors from the curvature of the sum of squares, scaled by what is left of it. */
-static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace *w,
+static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_cycle_fit *fit)
 {
     gsl_matrix *const covariance =
@@ -863,9 +819,35 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
     gsl_matrix_free(covariance);
 }
 
+/* What runs of the beam need. */
+static void take_buffers(struct wb_cycle_search *p)
+{
+    p->tension = wb_memory_new((size_t)p->data->n_points, sizeof *p->tension);
+    p->distance = wb_memory_new((size_t)p->data->n_places, sizeof *p->distance);
+    p->last = wb_memory_new((size_t)p->n_residuals, sizeof *p->last);
+    for (int k = 0; k < p->n_free; k++) {
+        struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
+        neighbour->tension = wb_memory_new((size_t)p->data->n_points, sizeof(double));
+        neighbour->distance = wb_memory_new((size_t)p->data->n_places, sizeof(double));
+    }
+}
+
+static void free_buffers(struct wb_cycle_search *p)
+{
+    wb_cycle_model_destroy(p->model);
+    p->model = NULL;
+    free(p->tension);
+    free(p->distance);
+    free(p->last);
+    for (int k = 0; k < p->n_free; k++) {
+        free(p->neighbours[k].tension);
+        free(p->neighbours[k].distance);
+    }
+}
+
 /* A Maxwell element that carries a part of the outer fibre's stress at the turn. */
-static struct wb_law_maxwell unseen_element(const struct problem *p, const struct wb_law *law,
-                                            double part)
+static struct wb_law_maxwell unseen_element(const struct wb_cycle_search *p,
+                                            const struct wb_law *law, double part)
 {
     const double loading = p->data->arrival - p->data->points[0].t, x = 1.0 / unseen_time;
     const double strain = 0.5 * p->data->info.outer_diameter * p->run.clamp_curvature;
@@ -873,16 +855,14 @@ static struct wb_law_maxwell unseen_element(const struct problem *p, const struc
     return (struct wb_law_maxwell){part * secant * x / -expm1(-x), unseen_time * loading};
 }
 
-/* Gauss and Newton's step from the end of the search, with the residuals of altered data. The
- * slopes have the weights of the last pass, which the workspace's may lack. `squares`
- * are the sums of the slopes' products as Cholesky factors them. */
-static void find_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
-                         const gsl_matrix *squares, const double *r, enum wb_cycle_shared shared,
-                         struct wb_cycle_fit *fit)
+/* Gauss and Newton's step from the end of the search, with the residuals of altered data. `squares`
+ * are the sums of the slopes' products as Cholesky factors them, `r` the residuals of the data. */
+static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, const double *r,
+                         enum wb_cycle_shared shared, struct wb_cycle_fit *fit)
 {
-    const struct wb_cycle_model_settings how = {p->settings->n_elements, p->settings->n_fibres};
+    const struct wb_cycle_model_settings how = {p->settings.n_elements, p->settings.n_fibres, 0};
     struct wb_cycle_data altered;
-    struct problem q = *p;
+    struct wb_cycle_search q = *p;
     double free_numbers[WB_FIT_MOST_FREE], numbers[WB_FIT_MOST_FREE];
     struct wb_reason why;
     if (shared == WB_SHARED_RELAXATION)
@@ -893,43 +873,46 @@ static void find_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
     gsl_vector_view step = gsl_vector_view_array(numbers, (size_t)p->n_free);
     q.data = &altered;
     bool good = wb_cycle_model_create(&q.model, &altered, &fit->law, &how) == WB_OK &&
-                residuals(&q, w->x->data, change->data) == GSL_SUCCESS && q.run.reached;
+                residuals(&q, p->slopes_x, change->data) == GSL_SUCCESS && q.run.reached;
     for (int i = 0; i < p->n_residuals && good; i++)
         change->data[i] = r[i] - change->data[i];
     good = good &&
            gsl_blas_dgemv(CblasTrans, 1.0, p->slopes, change, 0.0, &step.vector) == GSL_SUCCESS &&
            gsl_linalg_cholesky_svx(squares, &step.vector) == GSL_SUCCESS;
     if (good) {
-        gsl_vector_add(&step.vector, w->x);
+        for (int i = 0; i < p->n_free; i++)
+            numbers[i] += p->slopes_x[i];
         absolute(&q, numbers, free_numbers);
         law_of(&q, free_numbers, &fit->altered[shared]);
         fit->has_altered[shared] = wb_law_check(&fit->altered[shared], &why) == WB_OK;
     }
-    p->runs = q.runs;
     wb_cycle_model_destroy(q.model);
     gsl_vector_free(change);
     wb_cycle_data_release(&altered);
 }
 
-/* How the law hangs on what all specimens share. */
-static void find_all_altered(struct problem *p, gsl_multifit_nlinear_workspace *w,
-                             struct wb_cycle_fit *fit)
+void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit)
 {
+    struct wb_cycle_search *const p = fit->search;
+    const struct wb_cycle_model_settings how = {p->settings.n_elements, p->settings.n_fibres, 0};
     const size_t n = (size_t)p->n_free;
     double *const r = wb_memory_new((size_t)p->n_residuals, sizeof *r);
     gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
+    take_buffers(p);
     gsl_matrix_set_identity(squares);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, p->slopes, know_nothing, squares);
     if (gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS &&
-        residuals(p, w->x->data, r) == GSL_SUCCESS && p->run.reached) {
+        wb_cycle_model_create(&p->model, p->data, &fit->law, &how) == WB_OK &&
+        residuals(p, p->slopes_x, r) == GSL_SUCCESS && p->run.reached) {
         for (int i = 0; i < WB_SHARED; i++)
-            find_altered(p, w, squares, r, i, fit);
+            find_altered(p, squares, r, i, fit);
     }
+    free_buffers(p);
     gsl_matrix_free(squares);
     free(r);
 }
 
-static void find_misfits(struct wb_cycle_fit *fit, struct problem *p)
+static void find_misfits(struct wb_cycle_fit *fit, struct wb_cycle_search *p)
 {
     const struct wb_cycle_data *const data = p->data;
     double sums[2] = {0.0, 0.0};
@@ -948,29 +931,30 @@ static void find_misfits(struct wb_cycle_fit *fit, struct problem *p)
 
     double *const r = wb_memory_new((size_t)(data->n_places + data->n_markers), sizeof *r);
     double sum = 0.0;
-    const int n = place_residuals(p, r);
+    const int n = place_residuals(p, p->distance, r);
     for (int i = 0; i < n; i++)
         sum += r[i] * r[i];
     fit->place_rms =
-        data->n_places > 0 ? p->settings->place_noise * sqrt(sum / data->n_places) : (double)NAN;
+        data->n_places > 0 ? p->settings.place_noise * sqrt(sum / data->n_places) : (double)NAN;
     free(r);
 }
 
-static int count_residuals(const struct problem *p)
+static int count_residuals(const struct wb_cycle_search *p)
 {
     const struct candidate *const c = p->candidate;
     const int priors = c->form == WB_LAW_PARALLEL   ? WB_FIT_PARTS - 3
                        : c->form == WB_LAW_CHABOCHE ? 2 + 2 * c->n_backs
                                                     : 2;
     return p->data->n_points + p->data->n_places + p->data->n_markers + held_of(p) + 2 + priors +
-           c->has_share + 2 * p->n_maxwell + (p->settings->zero_prior > 0.0);
+           c->has_share + 2 * p->n_maxwell + (p->settings.zero_prior > 0.0);
 }
 
 /* The last run, with more elements. */
-static enum wb_status run_finely(struct wb_cycle_fit *fit, struct problem *p, struct wb_reason *why)
+static enum wb_status run_finely(struct wb_cycle_fit *fit, struct wb_cycle_search *p,
+                                 struct wb_reason *why)
 {
-    const struct wb_cycle_model_settings how = {p->settings->n_final_elements,
-                                                p->settings->n_fibres};
+    const struct wb_cycle_model_settings how = {p->settings.n_final_elements, p->settings.n_fibres,
+                                                0};
     const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
     struct wb_cycle_model *fine;
     WB_TRY(wb_cycle_model_create(&fine, p->data, &fit->law, &how));
@@ -983,12 +967,62 @@ static enum wb_status run_finely(struct wb_cycle_fit *fit, struct problem *p, st
                           "wire '%s', sample %d: %s: the beam of %d elements does not come to the "
                           "end of the cycle",
                           p->data->info.wire, p->data->info.sample, p->candidate->name,
-                          p->settings->n_final_elements);
+                          p->settings.n_final_elements);
     return status;
 }
 
-static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
-                             gsl_multifit_nlinear_workspace *w, struct wb_reason *why)
+/* Whether the fit is one of a law that the candidate is with a share at its end. */
+static bool contains(const struct candidate *c, const struct wb_cycle_fit *near)
+{
+    const struct candidate *const other = &candidates[near->candidate];
+    if (!c->has_share || c->form != other->form || other->has_share || !near->is_converged)
+        return false;
+    if (c->form == WB_LAW_LUDWIK && near->law.material.hardening_exponent > largest_exponent_of(c))
+        return false;
+    return !c->is_combined || other->isotropic_share == 1.0;
+}
+
+/* Where the search's weights begin. Beside a law that follows one of another hardening rule will
+ * not, and nothing is asked of how it fails. */
+static double first_scale(const struct candidate *c, const struct wb_cycle_fit *near)
+{
+    if (!near || c->form == WB_LAW_CHABOCHE)
+        return first_scale_of_misses;
+    const struct candidate *const other = &candidates[near->candidate];
+    const bool is_alike =
+        c->isotropic_share == other->isotropic_share && c->is_combined == other->is_combined;
+    if (is_alike || contains(c, near))
+        return near->scale_of_misses;
+    return near->scale_of_misses < first_scale_of_misses ? largest_scale_of_misses
+                                                         : first_scale_of_misses;
+}
+
+/* Whether the isotropic share, from the optimum of the law without it, would not leave its end:
+ * Gauss and Newton's step, with all numbers free, goes there. */
+static bool is_best_at_end(const struct wb_cycle_search *p, const gsl_multifit_nlinear_workspace *w,
+                           const struct wb_law *law)
+{
+    const size_t n = (size_t)p->n_free, at = (size_t)p->n_form - 1;
+    const double share = logistic(p->start[at]);
+    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
+    gsl_vector *const step = wb_memory_need(gsl_vector_alloc(n));
+    gsl_matrix_set_identity(squares);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, w->J, know_nothing, squares);
+    bool is_best = gsl_blas_dgemv(CblasTrans, -1.0, w->J, w->f, 0.0, step) == GSL_SUCCESS &&
+                   gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS &&
+                   gsl_linalg_cholesky_svx(squares, step) == GSL_SUCCESS;
+    if (is_best) {
+        const double to = share + share * (1.0 - share) * gsl_vector_get(step, at);
+        is_best = law->isotropic_share == 0.0 ? to < logistic(-at_bound) : to > logistic(at_bound);
+    }
+    gsl_vector_free(step);
+    gsl_matrix_free(squares);
+    return is_best;
+}
+
+static enum wb_status search(struct wb_cycle_fit *fit, struct wb_cycle_search *p,
+                             gsl_multifit_nlinear_workspace *w, const struct wb_cycle_fit *near,
+                             struct wb_reason *why)
 {
     gsl_multifit_nlinear_fdf fdf = {
         .f = gsl_residuals,
@@ -1008,7 +1042,8 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
                           "wire '%s', sample %d: %s: the beam does not come to the end of the "
                           "cycle from the first guess",
                           p->data->info.wire, p->data->info.sample, p->candidate->name);
-    for (int pass = 0; pass < most_passes; pass++) {
+    fit->is_contained = near && contains(p->candidate, near) && is_best_at_end(p, w, &near->law);
+    for (int pass = 0; pass < most_passes && !fit->is_contained; pass++) {
         fit->is_converged = iterate(p, w, &fit->iterations);
         if (p->status != WB_OK)
             return p->status;
@@ -1018,6 +1053,8 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
         if (gsl_multifit_nlinear_init(&x.vector, &fdf, w) != GSL_SUCCESS)
             break;
     }
+    if (fit->is_contained)
+        return WB_OK;
     absolute(p, w->x->data, free_numbers);
     p->strain_rate = strain_rate_of(p->data, p->run.clamp_curvature);
     law_of(p, free_numbers, &fit->law);
@@ -1028,11 +1065,7 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     fit->zero = free_numbers[p->n_law + ZERO];
     fit->is_at_bound = (p->candidate->form == WB_LAW_LUDWIK && fabs(free_numbers[3]) > at_bound) ||
                        (p->candidate->has_share && fabs(free_numbers[p->n_form - 1]) > at_bound);
-    if (!finish_slopes(p, w))
-        return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: %s: no slopes at the end",
-                          p->data->info.wire, p->data->info.sample, p->candidate->name);
     find_errors(p, w, fit);
-    find_all_altered(p, w, fit);
     WB_TRY(run_finely(fit, p, why));
     for (int i = 0; i < p->data->n_points; i++)
         fit->tension[i] += fit->zero;
@@ -1045,62 +1078,67 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     return WB_OK;
 }
 
+static void release_search(struct wb_cycle_search *p)
+{
+    if (!p)
+        return;
+    free(p->weight);
+    gsl_matrix_free(p->slopes);
+    free(p);
+}
+
 enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
                                 enum wb_candidate candidate, const struct wb_law *start,
-                                const struct wb_cycle_grid *grid,
+                                const struct wb_cycle_fit *near, const struct wb_cycle_grid *grid,
                                 const struct wb_cycle_fit_settings *settings, struct wb_reason *why)
 {
     const clock_t begin = clock();
     const struct candidate *const c = &candidates[candidate];
-    struct problem p = {
+    struct wb_cycle_search *const p = wb_memory_new(1, sizeof *p);
+    *p = (struct wb_cycle_search){
         .data = data,
-        .settings = settings,
+        .settings = *settings,
         .candidate = c,
-        .grid = grid,
+        .grid = grid ? *grid : (struct wb_cycle_grid){0.0, 0.0},
         .poissons_ratio = start->material.poissons_ratio,
         .n_form = wb_candidate_numbers(candidate),
         .n_maxwell = settings->n_maxwell,
         .strain_rate = strain_rate_of(data, elastic_curvature(data)),
+        .scale_of_misses = first_scale(c, near),
     };
-    p.n_law = p.n_form + 2 * p.n_maxwell;
-    p.maxwell_time = sqrt((data->departure - data->arrival) * (data->arrival - data->points[0].t));
-    p.n_free = p.n_law + (settings->zero_prior > 0.0 ? OF_SPECIMEN : UNEVEN + has_places(data));
-    p.n_residuals = count_residuals(&p);
-    p.force_scale = fmax(settings->force_noise, settings->force_share * data->max_force);
-    *fit = (struct wb_cycle_fit){.candidate = candidate, .n_free = p.n_free, .n_law = p.n_law};
-    start_from(&p, start);
+    p->n_law = p->n_form + 2 * p->n_maxwell;
+    p->maxwell_time = sqrt((data->departure - data->arrival) * (data->arrival - data->points[0].t));
+    p->n_free = p->n_law + (settings->zero_prior > 0.0 ? OF_SPECIMEN : UNEVEN + has_places(data));
+    p->n_residuals = count_residuals(p);
+    p->force_scale = fmax(settings->force_noise, settings->force_share * data->max_force);
+    *fit = (struct wb_cycle_fit){
+        .candidate = candidate, .n_free = p->n_free, .n_law = p->n_law, .search = p};
+    start_law(p, start);
+    start_specimen(p, near);
 
     const double no_step[WB_FIT_MOST_FREE] = {0.0};
     double free_numbers[WB_FIT_MOST_FREE];
     struct wb_law law;
-    absolute(&p, no_step, free_numbers);
-    law_of(&p, free_numbers, &law);
+    absolute(p, no_step, free_numbers);
+    law_of(p, free_numbers, &law);
 
+    const struct wb_cycle_model_settings how = {settings->n_elements, settings->n_fibres,
+                                                p->n_free};
     const size_t points = (size_t)data->n_points;
-    const struct wb_cycle_model_settings how = {settings->n_elements, settings->n_fibres};
-    p.tension = wb_memory_new(points, sizeof *p.tension);
-    p.weight = wb_memory_new(points, sizeof *p.weight);
-    p.distance = wb_memory_new((size_t)data->n_places, sizeof *p.distance);
-    p.last = wb_memory_new((size_t)p.n_residuals, sizeof *p.last);
-    p.slopes_f = wb_memory_new((size_t)p.n_residuals, sizeof *p.slopes_f);
-    p.slopes = wb_memory_need(gsl_matrix_calloc((size_t)p.n_residuals, (size_t)p.n_free));
+    take_buffers(p);
+    p->weight = wb_memory_new(points, sizeof *p->weight);
+    for (size_t i = 0; i < points; i++)
+        p->weight[i] = 1.0 / (p->scale_of_misses * p->scale_of_misses);
+    p->slopes = wb_memory_need(gsl_matrix_calloc((size_t)p->n_residuals, (size_t)p->n_free));
     fit->tension = wb_memory_new(points, sizeof *fit->tension);
-    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
-    p.scale_of_misses = first_scale_of_misses;
-    for (int i = 0; i < data->n_points; i++)
-        p.weight[i] = 1.0 / (first_scale_of_misses * first_scale_of_misses);
-    enum wb_status status = wb_cycle_model_create(&p.model, data, &law, &how);
+    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p->n_residuals, p->n_free);
+    enum wb_status status = wb_cycle_model_create(&p->model, data, &law, &how);
     if (status == WB_OK)
-        status = search(fit, &p, w, why);
-    fit->runs = p.runs;
+        status = search(fit, p, w, near, why);
+    fit->runs = p->runs;
+    fit->scale_of_misses = p->scale_of_misses;
     gsl_multifit_nlinear_free(w);
-    wb_cycle_model_destroy(p.model);
-    free(p.tension);
-    free(p.weight);
-    free(p.distance);
-    free(p.last);
-    free(p.slopes_f);
-    gsl_matrix_free(p.slopes);
+    free_buffers(p);
     fit->cpu_s = (double)(clock() - begin) / CLOCKS_PER_SEC;
     if (status != WB_OK)
         wb_cycle_fit_release(fit);
@@ -1117,5 +1155,7 @@ struct wb_cycle_bow wb_cycle_fit_bow(const struct wb_cycle_fit *fit, double leng
 void wb_cycle_fit_release(struct wb_cycle_fit *fit)
 {
     free(fit->tension);
+    release_search(fit->search);
     fit->tension = NULL;
+    fit->search = NULL;
 }

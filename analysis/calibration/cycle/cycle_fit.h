@@ -86,7 +86,9 @@ struct wb_cycle_fit {
     double uneven_angle;               /* rad; 0 without places */
     bool is_converged;                 /* else the iterations ran out */
     bool is_at_bound;                  /* an exponent or a share at the end of its range */
-    double misfit;                     /* RMS of the force residuals over the largest force, */
+    bool is_contained; /* the fit near by has the law at its best: nothing was searched, and the law
+                          and all that follows is not set */
+    double misfit;     /* RMS of the force residuals over the largest force, */
     double loading_misfit, unloading_misfit; /* of either branch; NaN: none */
     double place_rms;                        /* m, after the markers' offsets; NaN without places */
     double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
@@ -98,7 +100,7 @@ struct wb_cycle_fit {
     double moved_by[WB_FIT_MOST_FREE];
     struct wb_law moved[WB_FIT_MOST_FREE];
     /* The law that the fit would come to if what all specimens share were larger by
-     * wb_cycle_shared_change(), to first order. */
+     * wb_cycle_shared_change(), to first order: wb_cycle_fit_find_altered(). */
     bool has_altered[WB_SHARED];
     struct wb_law altered[WB_SHARED];
     /* How the law's numbers hang together in this fit: of ln E, ln sigma_Y, ln K and n, of the
@@ -111,20 +113,28 @@ struct wb_cycle_fit {
     double turn_change;     /* 1/m, of it from the turn to the first point of the way back */
     int n_free, n_law;      /* numbers fitted; of them the law's */
     int n_outliers;         /* points weighted by less than half */
+    double scale_of_misses; /* larger than 1 where the law does not follow: weights of forces */
     int runs, iterations;
     double cpu_s;
     /* (data->n_points) computed tension of the last run, N; owned; NULL where it failed */
     double *tension;
+    struct wb_cycle_search *search; /* its end; owned */
 };
 
-/* Fits one candidate. `start` gives a law near by, from which all start; `grid` is used by parallel
- * parts and Chaboche's laws. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted.
- * WB_ERR_CONVERGENCE where the beam cannot compute the start; `why` receives it, NULL: logged. */
+/* Fits one candidate. `start` gives a law near by; `near` a fit of another law to the same data,
+ * whose specimen and weights are near by (NULL: none). Where that law is the candidate's with a
+ * share at its end, and no other share is better, the fit ends at once as is_contained. `grid` is
+ * used by parallel parts and Chaboche's laws. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC
+ * can be fitted. `data` is borrowed as long as the fit is. WB_ERR_CONVERGENCE where the beam cannot
+ * compute the start; `why` receives it, NULL: logged. */
 WB_MUST_CHECK enum wb_status
 wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
                  enum wb_candidate candidate, const struct wb_law *start,
-                 const struct wb_cycle_grid *grid, const struct wb_cycle_fit_settings *settings,
-                 struct wb_reason *why);
+                 const struct wb_cycle_fit *near, const struct wb_cycle_grid *grid,
+                 const struct wb_cycle_fit_settings *settings, struct wb_reason *why);
+
+/* Finds fit->altered. */
+void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit);
 
 /* "E", "part 3", "isotropic share": number `i` of the correlations. */
 const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text[24]);

@@ -14,9 +14,12 @@ struct wb_cycle_model {
     struct wb_test_info info; /* the natural curvature's context */
     struct wb_section section;
     struct wb_cantilever *cantilever;
-    bool relaxes;                    /* the law has Maxwell elements */
-    double t;                        /* s: where the cycle is */
-    double held[WB_CYCLE_MOST_HELD]; /* N */
+    int n_followers;
+    struct wb_cantilever **followers; /* (n_followers), of neighbours, */
+    double *offsets;                  /* and of their deflections, m */
+    bool relaxes;                     /* the law has Maxwell elements */
+    double t;                         /* s: where the cycle is */
+    double held[WB_CYCLE_MOST_HELD];  /* N */
 };
 
 enum wb_status wb_cycle_model_create(struct wb_cycle_model **out, const struct wb_cycle_data *data,
@@ -40,6 +43,11 @@ enum wb_status wb_cycle_model_create(struct wb_cycle_model **out, const struct w
         beam.mass_per_length = data->info.mass_per_length;
         beam.gravity_y = -data->info.gravity;
         status = wb_cantilever_create(&model->cantilever, &beam, NULL);
+        const size_t n = (size_t)settings->n_neighbours;
+        model->followers = wb_memory_new(n, sizeof *model->followers);
+        model->offsets = wb_memory_new(n, sizeof *model->offsets);
+        for (int i = 0; i < settings->n_neighbours && status == WB_OK; i++, model->n_followers++)
+            status = wb_cantilever_create(&model->followers[i], &beam, NULL);
     }
     if (status != WB_OK) {
         wb_cycle_model_destroy(model);
@@ -54,6 +62,10 @@ void wb_cycle_model_destroy(struct wb_cycle_model *model)
     if (!model)
         return;
     wb_cantilever_destroy(model->cantilever);
+    for (int i = 0; i < model->n_followers; i++)
+        wb_cantilever_destroy(model->followers[i]);
+    free(model->followers);
+    free(model->offsets);
     wb_section_release(&model->section);
     free(model);
 }
@@ -95,10 +107,11 @@ static double clamp_curvature(const struct wb_cycle_model *model)
 }
 
 /* How far a place lies above the axis, along its normal. */
-static double distance_of(const struct wb_cycle_model *model, const struct wb_cycle_place *place)
+static double distance_of(const struct wb_cantilever *cantilever,
+                          const struct wb_cycle_place *place)
 {
     double x, y, angle;
-    wb_cantilever_shape(model->cantilever, 1, &place->s, &x, &y, &angle);
+    wb_cantilever_shape(cantilever, 1, &place->s, &x, &y, &angle);
     return (place->y - y) * cos(angle) - (place->x - x) * sin(angle);
 }
 
@@ -114,7 +127,7 @@ const double *wb_cycle_model_held(const struct wb_cycle_model *model)
 
 /* Moves to the turn and stays there for the dwell. */
 static enum wb_status turn(struct wb_cycle_model *model, double deflection, double *curvature,
-                           bool *reached)
+                           int n, struct wb_cycle_neighbour *neighbours, bool *reached)
 {
     const struct wb_cycle_data *const data = model->data;
     struct wb_cantilever_point point;
@@ -124,6 +137,8 @@ static enum wb_status turn(struct wb_cycle_model *model, double deflection, doub
         if (model->relaxes)
             WB_TRY(move(model, deflection, data->held[i].t, &point, reached));
         model->held[i] = point.tension;
+        for (int k = 0; k < n; k++)
+            neighbours[k].held[i] = wb_cantilever_tension(model->followers[k]);
     }
     return model->relaxes && *reached ? move(model, deflection, data->departure, &point, reached)
                                       : WB_OK;
@@ -139,9 +154,29 @@ static double time_at_rest(const struct wb_cycle_data *data, double rest)
     return p[0].t - (p[0].deflection - rest) / speed;
 }
 
-enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_law *law,
-                                  const struct wb_cycle_specimen *specimen, double *tension,
-                                  double *distance, struct wb_cycle_run *run)
+/* A law and a specimen, virgin. Leaves the specimen's natural shape in model->info. */
+static enum wb_status begin(struct wb_cycle_model *model, struct wb_cantilever *cantilever,
+                            const struct wb_law *law, const struct wb_cycle_specimen *specimen)
+{
+    wb_cycle_model_bend(specimen, &model->info);
+    WB_TRY(wb_cantilever_set_curvature(cantilever, wb_dataset_natural_curvature, &model->info));
+    wb_cantilever_set_duration(cantilever, (double)INFINITY);
+    return wb_cantilever_set_law(cantilever, law);
+}
+
+static void forget(const struct wb_cycle_data *data, double *tension, double *distance)
+{
+    for (int i = 0; i < data->n_points; i++)
+        tension[i] = (double)NAN;
+    for (int i = 0; distance && i < data->n_places; i++)
+        distance[i] = (double)NAN;
+}
+
+enum wb_status wb_cycle_model_run_beside(struct wb_cycle_model *model, const struct wb_law *law,
+                                         const struct wb_cycle_specimen *specimen, double *tension,
+                                         double *distance, int n,
+                                         struct wb_cycle_neighbour *neighbours,
+                                         struct wb_cycle_run *run)
 {
     const struct wb_cycle_data *const data = model->data;
     struct wb_cantilever_point point;
@@ -150,19 +185,22 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
 
     *run = (struct wb_cycle_run){.turn_change = (double)NAN};
     double top = 0.0;
-    wb_cycle_model_bend(specimen, &model->info);
-    WB_TRY(
-        wb_cantilever_set_curvature(model->cantilever, wb_dataset_natural_curvature, &model->info));
-    WB_TRY(wb_cantilever_set_law(model->cantilever, law));
-    for (int i = 0; i < data->n_points; i++)
-        tension[i] = (double)NAN;
-    for (int i = 0; distance && i < data->n_places; i++)
-        distance[i] = (double)NAN;
+    if (n > model->n_followers)
+        return wb_fail(WB_ERR_ARGUMENT, "%d neighbours: expected at most %d", n,
+                       model->n_followers);
+    for (int k = 0; k < n; k++) {
+        struct wb_cycle_neighbour *const neighbour = &neighbours[k];
+        WB_TRY(begin(model, model->followers[k], &neighbour->law, &neighbour->specimen));
+        forget(data, neighbour->tension, neighbour->distance);
+        model->offsets[k] = specimen->level - neighbour->specimen.level;
+    }
+    WB_TRY(begin(model, model->cantilever, law, specimen));
+    forget(data, tension, distance);
+    wb_cantilever_lead(model->cantilever, n, model->followers, model->offsets);
 
     /* The rest carries the tip before the strand does; to the wire it is the same. */
     const double rest = wb_cycle_model_rest(&data->info);
     model->relaxes = law->n_maxwell > 0;
-    wb_cantilever_set_duration(model->cantilever, (double)INFINITY);
     model->t = time_at_rest(data, rest);
     WB_TRY(wb_cantilever_move(model->cantilever, WB_CONTROL_DEFLECTION, rest - specimen->level,
                               &point));
@@ -173,19 +211,32 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
         if (!reached)
             break;
         tension[i] = point.tension;
+        for (int k = 0; k < n; k++)
+            neighbours[k].tension[i] = wb_cantilever_tension(model->followers[k]);
         const double curvature = clamp_curvature(model);
         if (i == 0)
             run->first_curvature = curvature;
         run->clamp_curvature = fmax(run->clamp_curvature, curvature);
         if (i == data->n_loading)
             run->turn_change = top - curvature;
-        for (; distance && place < data->n_places && data->places[place].point == i; place++)
-            distance[place] = distance_of(model, &data->places[place]);
+        for (; distance && place < data->n_places && data->places[place].point == i; place++) {
+            distance[place] = distance_of(model->cantilever, &data->places[place]);
+            for (int k = 0; k < n; k++)
+                neighbours[k].distance[place] =
+                    distance_of(model->followers[k], &data->places[place]);
+        }
         if (i == data->n_loading - 1 && data->n_points > data->n_loading) {
-            WB_TRY(turn(model, data->top - specimen->level, &top, &reached));
+            WB_TRY(turn(model, data->top - specimen->level, &top, n, neighbours, &reached));
             run->clamp_curvature = fmax(run->clamp_curvature, top);
         }
     }
     run->reached = reached;
     return WB_OK;
+}
+
+enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_law *law,
+                                  const struct wb_cycle_specimen *specimen, double *tension,
+                                  double *distance, struct wb_cycle_run *run)
+{
+    return wb_cycle_model_run_beside(model, law, specimen, tension, distance, 0, NULL, run);
 }

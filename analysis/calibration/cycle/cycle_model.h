@@ -41,6 +41,16 @@ struct wb_cycle_run {
 
 struct wb_cycle_model_settings {
     int n_elements, n_fibres; /* 0: 50, 20 */
+    int n_neighbours;         /* most of a run */
+};
+
+/* A law and a specimen near those of a run, and what the same cycle makes of them; all as those of
+ * wb_cycle_model_run(). */
+struct wb_cycle_neighbour {
+    struct wb_law law;
+    struct wb_cycle_specimen specimen;
+    double *tension, *distance;
+    double held[WB_CYCLE_MOST_HELD]; /* N, see wb_cycle_model_held() */
 };
 
 /* For one test and laws of one kind: plain, or overlays of at most as many parts as `law` has.
@@ -67,5 +77,14 @@ WB_MUST_CHECK enum wb_status wb_cycle_model_run(struct wb_cycle_model *model,
                                                 const struct wb_cycle_specimen *specimen,
                                                 double *tension, double *distance,
                                                 struct wb_cycle_run *run);
+
+/* The same, and beside it the cycles of `n` neighbours, to second order in what they differ by:
+ * wb_cantilever_lead(). */
+WB_MUST_CHECK enum wb_status wb_cycle_model_run_beside(struct wb_cycle_model *model,
+                                                       const struct wb_law *law,
+                                                       const struct wb_cycle_specimen *specimen,
+                                                       double *tension, double *distance, int n,
+                                                       struct wb_cycle_neighbour *neighbours,
+                                                       struct wb_cycle_run *run);
 
 #endif

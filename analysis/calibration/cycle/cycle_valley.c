@@ -267,7 +267,7 @@ static enum wb_status find_best(struct problem *p, const struct wb_law *start,
 {
     const struct wb_cycle_grid none = {0.0, 0.0};
     struct wb_cycle_fit fit;
-    WB_TRY(wb_cycle_fit_run(&fit, &p->loading, WB_CANDIDATE_LUDWIK_ISOTROPIC, start, &none,
+    WB_TRY(wb_cycle_fit_run(&fit, &p->loading, WB_CANDIDATE_LUDWIK_ISOTROPIC, start, NULL, &none,
                             &p->settings, why));
     wb_cycle_fit_release(&fit);
     *best = fit.law.material;

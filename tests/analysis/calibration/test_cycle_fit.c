@@ -153,8 +153,8 @@ static void fit(struct wb_cycle_fit *found, const struct specimen *s, enum wb_ca
 {
     const struct wb_cycle_grid grid = test_grid();
     const struct wb_law start = start_off(factor);
-    assert_int_equal(wb_cycle_fit_run(found, &s->data, candidate, &start, &grid, settings, NULL),
-                     WB_OK);
+    assert_int_equal(
+        wb_cycle_fit_run(found, &s->data, candidate, &start, NULL, &grid, settings, NULL), WB_OK);
     assert_true(found->is_converged);
 }
 
@@ -282,6 +282,96 @@ static void the_level_of_zero_deflection_is_found(void **unused)
     wb_cycle_fit_release(&found);
 }
 
+/* A law's derivatives of the whole cycle, from cycles computed beside it, against the slow twin: a
+ * run of its own for each. */
+static void neighbours_of_a_run_are_runs_of_their_own(void **unused)
+{
+    (void)unused;
+    enum {
+        NEIGHBOURS = 3
+    };
+    const double step = 1e-3;
+    const struct wb_cycle_model_settings mesh = {ELEMENTS, FIBRES, NEIGHBOURS};
+    struct wb_law laws[4] = {ludwik(1.0, 0.78), ludwik(0.0, 0.75), parallel(0.4), ludwik(0.0, 0.7)};
+    laws[3].n_maxwell = 1;
+    laws[3].maxwell[0] = (struct wb_law_maxwell){0.4e9, 15.0};
+    laws[3].strain_rate = 1e-4;
+    for (int k = 0; k < 4; k++) {
+        const struct wb_cycle_specimen specimen = {0.03, 0.05 * WB_MM, 0.01};
+        double alone[MOST_POINTS], beside[MOST_POINTS], tension[NEIGHBOURS][MOST_POINTS];
+        double held[WB_CYCLE_MOST_HELD], largest = 0.0;
+        struct wb_cycle_model *model;
+        struct wb_cycle_neighbour neighbours[NEIGHBOURS];
+        struct wb_cycle_run run;
+        struct specimen s;
+        compute_with(&s, &laws[k], 0.03, 60.0);
+        for (int i = 0; i < NEIGHBOURS; i++)
+            neighbours[i] = (struct wb_cycle_neighbour){laws[k], specimen, tension[i], NULL};
+        if (laws[k].form == WB_LAW_LUDWIK)
+            neighbours[0].law.material.yield_stress *= 1.0 + step;
+        else
+            neighbours[0].law.isotropic_share += step;
+        neighbours[1].specimen.bow_angle += 0.1 * step;
+        neighbours[2].specimen.level += step * WB_MM;
+        assert_int_equal(wb_cycle_model_create(&model, &s.data, &laws[k], &mesh), WB_OK);
+        assert_int_equal(wb_cycle_model_run_beside(model, &laws[k], &specimen, beside, NULL,
+                                                   NEIGHBOURS, neighbours, &run),
+                         WB_OK);
+        assert_int_equal(wb_cycle_model_run(model, &laws[k], &specimen, alone, NULL, &run), WB_OK);
+        memcpy(held, wb_cycle_model_held(model), (size_t)s.data.n_held * sizeof *held);
+        for (int i = 0; i < s.data.n_points; i++)
+            assert_true(beside[i] == alone[i]);
+        for (int i = 0; i < NEIGHBOURS; i++) {
+            double squares = 0.0, missed = 0.0;
+            assert_int_equal(wb_cycle_model_run(model, &neighbours[i].law, &neighbours[i].specimen,
+                                                beside, NULL, &run),
+                             WB_OK);
+            for (int j = 0; j < s.data.n_points; j++) {
+                squares += pow(beside[j] - alone[j], 2.0);
+                missed += pow(tension[i][j] - beside[j], 2.0);
+            }
+            for (int j = 0; j < s.data.n_held; j++)
+                assert_close(neighbours[i].held[j], wb_cycle_model_held(model)[j],
+                             0.01 * fabs(neighbours[i].held[j] - held[j]) + 1e-9);
+            assert_true(squares > 0.0);
+            largest = fmax(largest, sqrt(missed / squares));
+        }
+        print_message("    law %d: differences missed by at most %.2e\n", k, largest);
+        assert_true(largest < 5e-3);
+        wb_cycle_model_destroy(model);
+    }
+}
+
+/* A share that would not leave its end is not searched, and one that would is. */
+static void a_share_at_its_end_is_known_at_once(void **unused)
+{
+    (void)unused;
+    const struct wb_cycle_grid grid = test_grid();
+    struct wb_cycle_fit_settings settings;
+    default_settings(&settings);
+    for (int k = 0; k < 3; k++) {
+        const struct wb_law law = ludwik(0.5 * k, 0.75);
+        const enum wb_candidate pure =
+            k == 2 ? WB_CANDIDATE_LUDWIK_ISOTROPIC : WB_CANDIDATE_LUDWIK_KINEMATIC;
+        struct wb_cycle_fit contained, mixed;
+        struct specimen s;
+        compute(&s, &law, 0.02);
+        fit(&contained, &s, pure, 1.1, &settings);
+        assert_int_equal(wb_cycle_fit_run(&mixed, &s.data, WB_CANDIDATE_LUDWIK_MIXED,
+                                          &contained.law, &contained, &grid, &settings, NULL),
+                         WB_OK);
+        print_message("    share %g: %d runs\n", 0.5 * k, mixed.runs);
+        assert_int_equal(mixed.is_contained, k != 1);
+        if (k == 1) {
+            assert_true(mixed.is_converged);
+            assert_close(mixed.law.isotropic_share, 0.5, 0.01);
+            assert_true(mixed.misfit < 1e-4);
+        }
+        wb_cycle_fit_release(&mixed);
+        wb_cycle_fit_release(&contained);
+    }
+}
+
 /* What the rule is worth: the other one misses the way back by far. */
 static void the_wrong_rule_shows_in_the_misfit(void **unused)
 {
@@ -294,7 +384,7 @@ static void the_wrong_rule_shows_in_the_misfit(void **unused)
     default_settings(&settings);
     compute(&s, &law, 0.0);
     assert_int_equal(wb_cycle_fit_run(&found, &s.data, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, NULL,
-                                      &settings, NULL),
+                                      NULL, &settings, NULL),
                      WB_OK);
     assert_true(found.misfit > 0.01);
     wb_cycle_fit_release(&found);
@@ -349,7 +439,7 @@ static void correlations_and_errors_are_those_of_repeated_tests(void **unused)
         for (int i = 0; i < noisy.data.n_points; i++)
             noisy.points[i].tension += 1e-4 * normal(&state);
         assert_int_equal(wb_cycle_fit_run(&fit, &noisy.data, WB_CANDIDATE_LUDWIK_KINEMATIC, &law,
-                                          &grid, &settings, NULL),
+                                          NULL, &grid, &settings, NULL),
                          WB_OK);
         assert_int_equal(fit.n_numbers, 4);
         assert_string_equal(wb_cycle_fit_number(&fit, 2, text), "K");
@@ -408,6 +498,7 @@ static void the_law_moves_with_what_is_shared_as_a_search_does(void **unused)
         struct specimen s, altered;
         compute(&s, k == 0 ? &law : &parts, 0.03);
         fit(&base, &s, candidate, 1.2, &settings);
+        wb_cycle_fit_find_altered(&base);
         assert_false(base.has_altered[WB_SHARED_DIAMETER]);
         for (int i = 0; i < WB_SHARED_DIAMETER; i++) {
             altered = s;
@@ -505,6 +596,8 @@ int main(void)
         cmocka_unit_test(starts_on_either_side_find_the_same_minimum),
         cmocka_unit_test(points_far_off_count_little_and_are_counted),
         cmocka_unit_test(the_level_of_zero_deflection_is_found),
+        cmocka_unit_test(neighbours_of_a_run_are_runs_of_their_own),
+        cmocka_unit_test(a_share_at_its_end_is_known_at_once),
         cmocka_unit_test(the_wrong_rule_shows_in_the_misfit),
         cmocka_unit_test(correlations_and_errors_are_those_of_repeated_tests),
         cmocka_unit_test(the_law_moves_with_what_is_shared_as_a_search_does),

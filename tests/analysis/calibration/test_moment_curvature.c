@@ -381,7 +381,7 @@ static void fitted_law_does_not_warn_and_a_wrong_one_does(void **state)
             wb_cycle_fit_default_settings(&settings);
             wb_law_init_ludwik(&start, &near);
             assert_int_equal(wb_cycle_fit_run(&fit, &data, WB_CANDIDATE_PARALLEL_KINEMATIC, &start,
-                                              &grid, &settings, NULL),
+                                              NULL, &grid, &settings, NULL),
                              WB_OK);
             const struct wb_cycle_specimen specimen = {fit.bow_angle, fit.level};
             assert_int_equal(wb_moment_curvature_take(&clouds[k], &dataset, &specimen, NULL, NULL),

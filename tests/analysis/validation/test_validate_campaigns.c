@@ -60,14 +60,14 @@ static void fit_nominal(struct wb_properties *properties)
     struct wb_cycle_grid grid = {.first_strain =
                                      radius * 1.5 * WB_MM / (calibrated_at * calibrated_at),
                                  .last_strain = radius * 30.0};
-    assert_int_equal(
-        wb_cycle_fit_run(&fit, &data, WB_CANDIDATE_LUDWIK_KINEMATIC, &law, &grid, &settings, NULL),
-        WB_OK);
+    assert_int_equal(wb_cycle_fit_run(&fit, &data, WB_CANDIDATE_LUDWIK_KINEMATIC, &law, NULL, &grid,
+                                      &settings, NULL),
+                     WB_OK);
     law = fit.law;
     grid.last_strain = radius * fit.clamp_curvature;
     wb_cycle_fit_release(&fit);
-    assert_int_equal(wb_cycle_fit_run(&fit, &data, WB_CANDIDATE_PARALLEL_KINEMATIC, &law, &grid,
-                                      &settings, NULL),
+    assert_int_equal(wb_cycle_fit_run(&fit, &data, WB_CANDIDATE_PARALLEL_KINEMATIC, &law, NULL,
+                                      &grid, &settings, NULL),
                      WB_OK);
     assert_true(fit.misfit < 1e-3);
     *properties = (struct wb_properties){
