@@ -14,6 +14,7 @@
 #include "base/json.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "base/workers.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -53,6 +54,45 @@ static enum wb_status draw_json(struct outputs *outputs, struct wb_json *numbers
     return WB_OK;
 }
 
+/* Figures take most of the time, and each is drawn by itself. */
+struct drawing {
+    const struct wb_figures *figures;
+    struct output *outputs; /* of figure i two, from 2 i on */
+    enum wb_status status;  /* the first failure */
+};
+
+static enum wb_status draw_figure(void *context, int index)
+{
+    const struct drawing *const drawing = context;
+    const struct wb_figure *const figure = drawing->figures->items[index].figure;
+    struct output *const output = &drawing->outputs[2 * index];
+    WB_TRY(wb_figure_svg(figure, &output[0].bytes));
+    return wb_figure_png(figure, png_scale, &output[1].bytes);
+}
+
+static bool finish_figure(void *context, int index, enum wb_status status)
+{
+    struct drawing *const drawing = context;
+    (void)index;
+    if (drawing->status == WB_OK)
+        drawing->status = status;
+    return status == WB_OK;
+}
+
+static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figures *figures)
+{
+    struct drawing drawing = {figures, &outputs->items[outputs->n], WB_OK};
+    for (int i = 0; i < figures->n; i++) {
+        const char *const name = wb_figure_name(figures->items[i].figure);
+        (void)add_output(outputs, "figures/", name, "svg");
+        (void)add_output(outputs, "figures/", name, "png");
+    }
+    const struct wb_workers workers = {
+        .n = figures->n, .job = draw_figure, .done = finish_figure, .context = &drawing};
+    (void)wb_workers_run(&workers);
+    return drawing.status;
+}
+
 static enum wb_status draw(struct outputs *outputs, const struct wb_document *document,
                            const struct wb_figures *figures, const struct wb_cards *cards,
                            struct wb_json *numbers)
@@ -61,12 +101,7 @@ static enum wb_status draw(struct outputs *outputs, const struct wb_document *do
         wb_memory_new(2 * (size_t)figures->n + (size_t)cards->n + 3, sizeof *outputs->items);
     WB_TRY(wb_pdf_render(document, add_output(outputs, "", "report", "pdf")));
     WB_TRY(wb_html_render(document, add_output(outputs, "", "report", "html")));
-    for (int i = 0; i < figures->n; i++) {
-        const struct wb_figure *const figure = figures->items[i].figure;
-        const char *const name = wb_figure_name(figure);
-        WB_TRY(wb_figure_svg(figure, add_output(outputs, "figures/", name, "svg")));
-        WB_TRY(wb_figure_png(figure, png_scale, add_output(outputs, "figures/", name, "png")));
-    }
+    WB_TRY(draw_figures(outputs, figures));
     for (int i = 0; i < cards->n; i++) {
         struct output *const output = &outputs->items[outputs->n++];
         snprintf(output->name, sizeof output->name, "%s", cards->files[i].name);
