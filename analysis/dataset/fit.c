@@ -65,6 +65,11 @@ double wb_fit_median(double *values, size_t n)
     return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
+double wb_fit_usual_size(double *sizes, size_t n)
+{
+    return 1.4826 * wb_fit_median(sizes, n);
+}
+
 size_t wb_fit_first_at(const double *values, size_t stride, size_t n, double at)
 {
     size_t low = 0, high = n;

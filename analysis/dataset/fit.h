@@ -25,6 +25,10 @@ void wb_fit_sort(double *values, size_t n);
 /* Sorts the values; NaN when n is 0. */
 double wb_fit_median(double *values, size_t n);
 
+/* Standard deviation of what these are the sizes of, by their median, so that a few far off do not
+ * count (of a normal distribution). Sorts the sizes; NaN when n is 0. */
+double wb_fit_usual_size(double *sizes, size_t n);
+
 /* What Fisher's F with these degrees of freedom (1 or more) exceeds with the probability `level`,
  * within (0, 1). */
 double wb_fit_fisher_limit(double level, double numerator, double denominator);

@@ -401,7 +401,7 @@ static enum wb_status find_tare(struct import *import)
     const double middle = wb_fit_median(values, n);
     for (size_t i = 0; i < n; i++)
         off[i] = fabs(force->force[i] - middle);
-    const double deviation = 1.4826 * wb_fit_median(off, n);
+    const double deviation = wb_fit_usual_size(off, n);
     double sum = 0.0, squares = 0.0;
     long used = 0;
     for (size_t i = 0; i < n; i++) {

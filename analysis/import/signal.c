@@ -34,9 +34,9 @@ double wb_signal_noise(const struct wb_signal *s)
     double *const second = wb_memory_new(s->n, sizeof *second);
     for (size_t i = 1; i + 1 < s->n; i++)
         second[i - 1] = fabs(s->x[i - 1] - 2.0 * s->x[i] + s->x[i + 1]);
-    const double median = wb_fit_median(second, s->n - 2);
+    const double size = wb_fit_usual_size(second, s->n - 2);
     free(second);
-    return 1.4826 * median / sqrt(6.0);
+    return size / sqrt(6.0);
 }
 
 void wb_signal_shake(const struct wb_signal *s, double *out)

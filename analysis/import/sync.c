@@ -90,7 +90,7 @@ static void find_taps(const struct wb_signal *shake, struct events *taps)
         sizes[i] = fabs(shake->x[i]);
         largest = fmax(largest, sizes[i]);
     }
-    const double noise = 1.4826 * wb_fit_median(sizes, shake->n);
+    const double noise = wb_fit_usual_size(sizes, shake->n);
     free(sizes);
     const double threshold = fmax(TAP_NOISE * noise, TAP_PART * largest);
     for (size_t i = 0; i < shake->n && largest > 0.0;) {

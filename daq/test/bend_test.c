@@ -50,7 +50,8 @@ struct wb_bend_test {
     struct wb_specimen specimen;
     struct wb_writer *writer;
     int64_t started_ns;
-    int cycle; /* from 1 */
+    int cycle;         /* from 1 */
+    double later_time; /* s: of the cycles after this one */
     struct wb_start_check check;
     int n_checks;
     struct wb_average zero; /* N, of the tare */
@@ -392,9 +393,19 @@ static void watch_drop_anew(struct wb_bend_test *test)
                                               .share = test->run.rig.limits.force_drop};
 }
 
+static double later_time(const struct wb_bend_test *test)
+{
+    double time = 0.0;
+    for (int cycle = (test->cycle > 0 ? test->cycle : 1) + 1; cycle <= test->request.cycles;
+         cycle++)
+        time += wb_bend_test_cycle_time(&test->request, &test->rig, cycle);
+    return time;
+}
+
 static void begin_cycle(struct wb_bend_test *test)
 {
     test->cycle++;
+    test->later_time = later_time(test);
     test->run.rig.stage.speed = wb_bend_test_speed(&test->request, &test->rig, test->cycle);
     test->result.started = true;
     watch_drop_anew(test);
@@ -765,6 +776,7 @@ enum wb_status wb_bend_test_open(struct wb_bend_test **out,
         free(test);
         return status;
     }
+    test->later_time = later_time(test);
     wb_sequence_enter(&test->run, PHASE_CONNECT);
     test->result.is_virtual = test->run.rig.is_virtual;
     *out = test;
@@ -836,9 +848,7 @@ static double time_left(const struct wb_bend_test *test, double travel)
     const double spent = is_held ? 0.0
                                  : wb_seconds_from_ns(wb_sequence_lasts_ns(&test->run)) *
                                        test->run.rig.time_scale; /* in this phase */
-    double left = 0.0;
-    for (int cycle = test->cycle > 0 ? test->cycle + 1 : 2; cycle <= request->cycles; cycle++)
-        left += wb_bend_test_cycle_time(request, &test->rig, cycle);
+    double left = test->later_time;
     if (test->run.end != WB_SEQUENCE_RUNNING || test->run.phase == WB_SEQUENCE_OVER)
         return 0.0;
     if (phase == PHASE_UP)

@@ -111,9 +111,7 @@ static double stated(const struct wb_cycle_calibration *calibration, enum wb_cyc
     int n = 0;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_data *const data = &calibration->members[i].data;
-        const double u = shared == WB_SHARED_RELAXATION
-                             ? calibration->relaxation_prior
-                             : wb_cycle_shared_uncertainty(&data->info, shared);
+        const double u = wb_cycle_shared_uncertainty(data, calibration->relaxation_prior, shared);
         if (!wb_cycle_shared_applies(data, shared))
             continue;
         if (!(u > 0.0))

@@ -581,9 +581,9 @@ static double usual_miss(const struct specimen *s)
     double *const sizes = wb_memory_new((size_t)data->n_points, sizeof *sizes);
     for (int i = 0; i < data->n_points; i++)
         sizes[i] = fabs(s->fit->tension[i] - data->points[i].tension);
-    const double median = wb_fit_median(sizes, (size_t)data->n_points);
+    const double miss = wb_fit_usual_size(sizes, (size_t)data->n_points);
     free(sizes);
-    return 1.4826 * median / data->max_force;
+    return miss / data->max_force;
 }
 
 /* A law that does not follow may be that of another wire, or a zero is wrong: then it follows with

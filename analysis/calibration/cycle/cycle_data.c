@@ -138,7 +138,7 @@ static double rough_line(struct rows *rows, size_t begin, size_t end, struct wb_
     line->value = wb_fit_median(rows->sorted, n);
     for (size_t i = begin; i < end; i++)
         rows->sorted[i - begin] = fabs(rows->y[i] - line->slope * rows->x[i] - line->value);
-    return 1.4826 * wb_fit_median(rows->sorted, n);
+    return wb_fit_usual_size(rows->sorted, n);
 }
 
 /* Rows from `begin` to `end` without those far off a straight line of y over x. Their means belong
@@ -161,7 +161,7 @@ static size_t mean_of(struct rows *rows, size_t begin, size_t end, double *x, do
             for (size_t i = begin; i < end; i++)
                 rows->sorted[i - begin] =
                     fabs(rows->y[i] - mean_y - line.slope * (rows->x[i] - mean_x) - line.value);
-            limit = far_off * 1.4826 * wb_fit_median(rows->sorted, end - begin);
+            limit = far_off * wb_fit_usual_size(rows->sorted, end - begin);
         }
         double sum_x = 0.0, sum_y = 0.0;
         const double center_x = mean_x, center_y = mean_y;

@@ -62,6 +62,12 @@ struct wb_cycle_data {
     int n_outliers;             /* rows left out */
 };
 
+/* Time of the loading, from its first point, s. */
+static inline double wb_cycle_data_loading_time(const struct wb_cycle_data *data)
+{
+    return data->arrival - data->points[0].t;
+}
+
 struct wb_cycle_data_settings {
     int cycle;               /* from 1; 0: 1 */
     double step;             /* m between points; 0: 1 mm */

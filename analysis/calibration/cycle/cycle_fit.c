@@ -259,7 +259,7 @@ static void law_of(const struct wb_cycle_search *p, const double *free, struct w
 /* Of the outer fibre up to the clamp's curvature at the turn, 1/s. */
 static double strain_rate_of(const struct wb_cycle_data *data, double curvature)
 {
-    const double t = data->arrival - data->points[0].t;
+    const double t = wb_cycle_data_loading_time(data);
     return t > 0.0 ? 0.5 * data->info.outer_diameter * curvature / t : 0.0;
 }
 
@@ -282,7 +282,7 @@ static void start_maxwell(struct wb_cycle_search *p, const struct wb_law *law)
     wb_cycle_hold_describe(p->data, &seen);
     const double strain = 0.5 * p->data->info.outer_diameter * elastic_curvature(p->data);
     const double secant = wb_law_virgin_stress(law, strain, NULL) / strain;
-    const double loading = p->data->arrival - p->data->points[0].t, time = seen.time;
+    const double loading = wb_cycle_data_loading_time(p->data), time = seen.time;
     const double share = fmax(seen.fall / p->data->max_force, least_fall);
     /* What is left of the stress at the turn, and what of that goes in the dwell. */
     const double left = time / loading * -expm1(-loading / time);
@@ -657,7 +657,7 @@ static bool set_weights(struct wb_cycle_search *p, const gsl_vector *f, int *n_o
         miss[i] = gsl_vector_get(f, (size_t)i) / sqrt(p->weight[i]);
         counts[i] = fabs(miss[i]);
     }
-    const double limit = huber_limit * fmax(1.4826 * wb_fit_median(counts, (size_t)n), 1.0);
+    const double limit = huber_limit * fmax(wb_fit_usual_size(counts, (size_t)n), 1.0);
     *n_outliers = 0;
     for (int i = 0; i < n; i++) {
         counts[i] = fabs(miss[i]) > limit ? limit / fabs(miss[i]) : 1.0;
@@ -849,7 +849,7 @@ static void free_buffers(struct wb_cycle_search *p)
 static struct wb_law_maxwell unseen_element(const struct wb_cycle_search *p,
                                             const struct wb_law *law, double part)
 {
-    const double loading = p->data->arrival - p->data->points[0].t, x = 1.0 / unseen_time;
+    const double loading = wb_cycle_data_loading_time(p->data), x = 1.0 / unseen_time;
     const double strain = 0.5 * p->data->info.outer_diameter * p->run.clamp_curvature;
     const double secant = wb_law_virgin_stress(law, strain, NULL) / strain;
     return (struct wb_law_maxwell){part * secant * x / -expm1(-x), unseen_time * loading};
@@ -1107,7 +1107,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
         .scale_of_misses = first_scale(c, near),
     };
     p->n_law = p->n_form + 2 * p->n_maxwell;
-    p->maxwell_time = sqrt((data->departure - data->arrival) * (data->arrival - data->points[0].t));
+    p->maxwell_time = sqrt((data->departure - data->arrival) * wb_cycle_data_loading_time(data));
     p->n_free = p->n_law + (settings->zero_prior > 0.0 ? OF_SPECIMEN : UNEVEN + has_places(data));
     p->n_residuals = count_residuals(p);
     p->force_scale = fmax(settings->force_noise, settings->force_share * data->max_force);

@@ -39,12 +39,14 @@ bool wb_cycle_shared_applies(const struct wb_cycle_data *data, enum wb_cycle_sha
         return data->info.counterweight > 0.0;
     if (of == WB_SHARED_RELAXATION)
         return !data->info.is_simulation && data->n_held == 0 && data->n_points > 0 &&
-               data->arrival > data->points[0].t;
+               wb_cycle_data_loading_time(data) > 0.0;
     return true;
 }
 
-double wb_cycle_shared_uncertainty(const struct wb_test_info *info, enum wb_cycle_shared of)
+double wb_cycle_shared_uncertainty(const struct wb_cycle_data *data, double relaxation_prior,
+                                   enum wb_cycle_shared of)
 {
+    const struct wb_test_info *const info = &data->info;
     const struct wb_test_uncertainty *const u = &info->uncertainty;
     switch (of) {
     case WB_SHARED_GAIN:
@@ -58,7 +60,7 @@ double wb_cycle_shared_uncertainty(const struct wb_test_info *info, enum wb_cycl
     case WB_SHARED_MARKERS:
         return u->marker_offset;
     case WB_SHARED_RELAXATION:
-        return 0.0;
+        return relaxation_prior;
     default:
         return u->diameter / info->outer_diameter;
     }

@@ -37,8 +37,9 @@ double wb_cycle_shared_change(enum wb_cycle_shared shared);
 bool wb_cycle_shared_applies(const struct wb_cycle_data *data, enum wb_cycle_shared shared);
 
 /* Its standard uncertainty as the test's files state it, in the same unit; 0: not stated. Of
- * relaxation a prior, which no file states: 0. */
-double wb_cycle_shared_uncertainty(const struct wb_test_info *info, enum wb_cycle_shared shared);
+ * relaxation, which no file states, the prior. */
+double wb_cycle_shared_uncertainty(const struct wb_cycle_data *data, double relaxation_prior,
+                                   enum wb_cycle_shared shared);
 
 /* Data with it larger by a change in that unit, of the gain the readings; release with
  * wb_cycle_data_release(). False, and nothing to release, where the test has no such thing. */

@@ -179,7 +179,7 @@ static double find_noise(const struct readings *r, size_t last)
     double *const values = wb_memory_new(last, sizeof *values);
     for (size_t i = 1; i < last; i++)
         values[i - 1] = fabs(r->force[i] - 0.5 * (r->force[i - 1] + r->force[i + 1]));
-    const double noise = 1.4826 * wb_fit_median(values, last - 1) / sqrt(1.5);
+    const double noise = wb_fit_usual_size(values, last - 1) / sqrt(1.5);
     free(values);
     return noise;
 }
