@@ -399,6 +399,7 @@ static void find_altered(struct wb_cycle_member *member, enum wb_candidate candi
     if (origin == candidate)
         return;
     memcpy(answer->fit.altered, fit->altered, sizeof fit->altered);
+    memcpy(answer->fit.altered_specimen, fit->altered_specimen, sizeof fit->altered_specimen);
     memcpy(answer->fit.has_altered, fit->has_altered, sizeof fit->has_altered);
     for (int i = 0; i < WB_SHARED; i++) {
         if (fit->has_altered[i])

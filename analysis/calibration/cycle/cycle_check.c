@@ -49,10 +49,11 @@ static const double near_zero = 0.03;
 
 /* K and n need 0.35 of the length; the law below 0.2 is little more than EI. */
 static const double full_travel = 0.35, short_travel = 0.20;
-/* The level of zero deflection is known to 0.1 mm (two markers): beyond four times that it was
- * wrong, or made up for something else. Less with a bow that disagrees. (Three times blame one
+/* The level of zero deflection is known to 0.1 mm (two markers), and to what the files state of
+ * gain, counterweight and the like: beyond four times that it was wrong, or made up for something
+ * else. Less with a bow that disagrees. (Three times blame one
  * healthy bench of ten whose wire no law follows to its noise.) */
-static const double level_deviation = 0.1 * WB_MM;
+static const double bench_level = 0.1 * WB_MM;
 static const double level_limit = 4.0, level_limit_with_bow = 2.5;
 /* A law with a larger misfit may move level and bow by what it does not follow. */
 static const double largest_followed = 5e-3;
@@ -340,9 +341,29 @@ struct specimen {
     const struct wb_cycle_data *data;
     const struct wb_dataset *dataset;
     const struct wb_cycle_fit *fit; /* of the chosen law */
+    /* What the files state of gain, counterweight and the like makes of the level and of the bow
+     * (m): standard uncertainties. */
+    double level_of_shared, bow_of_shared;
     const char *wire;
     int sample;
 };
+
+/* The fit's changes are to first order. */
+static void find_shared(struct specimen *s, double relaxation_prior)
+{
+    const struct wb_cycle_fit *const fit = s->fit;
+    const double length = s->data->info.length;
+    for (int i = 0; i < WB_SHARED; i++) {
+        if (!fit->has_altered[i])
+            continue;
+        const double changes =
+            wb_cycle_shared_uncertainty(s->data, relaxation_prior, i) / wb_cycle_shared_change(i);
+        const struct wb_cycle_specimen *const altered = &fit->altered_specimen[i];
+        s->level_of_shared = hypot(s->level_of_shared, changes * (altered->level - fit->level));
+        s->bow_of_shared =
+            hypot(s->bow_of_shared, 0.5 * length * changes * (altered->bow_angle - fit->bow_angle));
+    }
+}
 
 /* The bow of the alignment and its standard deviation, m; false where it gave none. */
 static bool aligned_bow(const struct wb_dataset *dataset, double *bow, double *deviation)
@@ -529,11 +550,13 @@ static enum wb_status check_zeros_of(struct wb_cycle_remarks *remarks, const str
     /* Behind the first points, where the strand still takes the load over from the rest. */
     const struct wb_cycle_point *const low = &data->points[3], *const high = &data->points[7];
     const double stiffness = (high->tension - low->tension) / (high->deflection - low->deflection);
+    const double level_deviation = hypot(bench_level, s->level_of_shared);
     /* Nothing is wrong that the level may explain. */
     const double limit =
         fmax(zero_share * data->max_force, level_limit * level_deviation * fmax(stiffness, 0.0));
     const bool has_bow = aligned_bow(s->dataset, &bow_before, &deviation);
-    const double apart = fabs(bow.tip - bow_before) / hypot(deviation, bow.deviation);
+    const double apart =
+        fabs(bow.tip - bow_before) / hypot(hypot(deviation, bow.deviation), s->bow_of_shared);
     const bool bow_off = has_bow && apart > bow_limit;
     const bool zero_off =
         zero > slack && data->zero_tension > slack && fabs(data->zero_tension - zero) > limit;
@@ -559,7 +582,7 @@ static enum wb_status check_zeros_of(struct wb_cycle_remarks *remarks, const str
     say(remarks, WB_CHECK_DOUBT, s->sample,
         "wire '%s', sample %d: %s is wrong: at zero deflection the tension is %.2f mN, the law's "
         "%.2f mN (expected within %.2f mN), and zero deflection lies %.2f mm off (expected within "
-        "%.1f mm)%s; %s%s",
+        "%.2f mm)%s; %s%s",
         s->wire, s->sample,
         bow_off ? "the zero of force or the counterweight" : "the zero of deflection, or of force,",
         data->zero_tension / WB_MN, zero / WB_MN, limit / WB_MN, level / WB_MM,
@@ -805,7 +828,7 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
             wire);
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_member *const member = &calibration->members[i];
-        const struct specimen specimen = {
+        struct specimen specimen = {
             .member = member,
             .data = &member->data,
             .dataset = datasets[i],
@@ -813,6 +836,7 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
             .wire = wire,
             .sample = member->sample,
         };
+        find_shared(&specimen, calibration->relaxation_prior);
         check_travel(remarks, &specimen);
         check_holds(remarks, &specimen);
         check_relaxation(remarks, &specimen);

@@ -884,6 +884,7 @@ static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, c
             numbers[i] += p->slopes_x[i];
         absolute(&q, numbers, free_numbers);
         law_of(&q, free_numbers, &fit->altered[shared]);
+        fit->altered_specimen[shared] = specimen_of(&q, free_numbers);
         fit->has_altered[shared] = wb_law_check(&fit->altered[shared], &why) == WB_OK;
     }
     wb_cycle_model_destroy(q.model);

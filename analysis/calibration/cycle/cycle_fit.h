@@ -15,6 +15,7 @@
 #include <stdbool.h>
 
 #include "analysis/calibration/cycle/cycle_data.h"
+#include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/calibration/cycle/cycle_shared.h"
 #include "base/reason.h"
 #include "base/setting.h"
@@ -99,10 +100,11 @@ struct wb_cycle_fit {
     int n_moved;
     double moved_by[WB_FIT_MOST_FREE];
     struct wb_law moved[WB_FIT_MOST_FREE];
-    /* The law that the fit would come to if what all specimens share were larger by
-     * wb_cycle_shared_change(), to first order: wb_cycle_fit_find_altered(). */
+    /* The law and the specimen that the fit would come to if what all specimens share were larger
+     * by wb_cycle_shared_change(), to first order: wb_cycle_fit_find_altered(). */
     bool has_altered[WB_SHARED];
     struct wb_law altered[WB_SHARED];
+    struct wb_cycle_specimen altered_specimen[WB_SHARED];
     /* How the law's numbers hang together in this fit: of ln E, ln sigma_Y, ln K and n, of the
      * parts' moduli, or of the logarithms of Chaboche's; then of the isotropic share where that is
      * free. NaN unknown. */
@@ -133,7 +135,7 @@ wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
                  const struct wb_cycle_fit *near, const struct wb_cycle_grid *grid,
                  const struct wb_cycle_fit_settings *settings, struct wb_reason *why);
 
-/* Finds fit->altered. */
+/* Finds what is altered. */
 void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit);
 
 /* "E", "part 3", "isotropic share": number `i` of the correlations. */

@@ -303,6 +303,24 @@ static void a_wrong_counterweight_is_told(void **state)
     release(bench);
 }
 
+/* A bench that says how well it knows its weights is not wrong where they are off by that. */
+static void a_counterweight_within_what_is_stated_is_not_doubted(void **state)
+{
+    (void)state;
+    for (int is_stated = 0; is_stated < 2; is_stated++) {
+        struct bench *const bench = one(1);
+        struct wb_test_info *const info = &bench->datasets[0].info;
+        info->counterweight += 0.14e-3;
+        info->uncertainty.counterweight = is_stated ? 0.1e-3 : 0.0;
+        check(bench);
+        if (is_stated)
+            assert_no_doubt(bench);
+        else
+            assert_non_null(wb_cycle_check_find(&bench->remarks, WB_CHECK_DOUBT));
+        release(bench);
+    }
+}
+
 static void a_zero_of_deflection_off_is_told(void **state)
 {
     static const double offsets[] = {0.5 * WB_MM, -0.5 * WB_MM};
@@ -536,6 +554,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_short_travel_gives_a_stiffness_alone),
         cmocka_unit_test(a_zero_of_force_off_is_told),
         cmocka_unit_test(a_wrong_counterweight_is_told),
+        cmocka_unit_test(a_counterweight_within_what_is_stated_is_not_doubted),
         cmocka_unit_test(a_zero_of_deflection_off_is_told),
         cmocka_unit_test(a_lost_natural_shape_is_found_by_the_fit),
         cmocka_unit_test(outliers_are_survived_and_counted),
