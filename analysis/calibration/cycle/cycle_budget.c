@@ -29,6 +29,9 @@ static const struct own {
 /* What one that is not stated is told for. */
 static const double unit_part = 0.01, unit_distance = 0.1 * WB_MM;
 
+/* Standard uncertainty of what a law adds to a stiffness below the data, over that. */
+static const double unknown_part = 0.5;
+
 /* A residual curvature is a part of the largest. */
 static double largest_value(enum wb_cycle_number number)
 {
@@ -85,7 +88,57 @@ static void add_scatter(const struct wb_cycle_calibration *calibration,
         budget->uncertainty[WB_FROM_SPECIMENS] = (double)NAN;
 }
 
-/* How far the other laws lie from the chosen one, each by its weight. */
+/* Mean of a stiffness at the smallest curvature that the data resolve, N m2. */
+static double resolved_mean(const struct wb_cycle_calibration *calibration,
+                            const struct wb_cycle_stiffness *stiffness, enum wb_cycle_number first,
+                            const struct wb_cycle_calibrate_settings *settings)
+{
+    struct wb_estimate mean;
+    int k = 0;
+    while (k < stiffness->n - 1 && stiffness->curvature[k] < stiffness->resolved)
+        k++;
+    wb_cycle_average(calibration, calibration->chosen, (enum wb_cycle_number)((int)first + k),
+                     settings, &mean);
+    return mean.value;
+}
+
+/* What a law says below the curvatures that the data resolve, where it speaks alone: how far the
+ * logarithm of a stiffness lies from that at the smallest of them. 0 of what the data hold. */
+static double beyond_data(const struct wb_cycle_calibration *calibration,
+                          enum wb_cycle_number number,
+                          const struct wb_cycle_calibrate_settings *settings, double value)
+{
+    const struct wb_cycle_stiffness *const s = &calibration->secant, *const u =
+                                                                         &calibration->unloading;
+    const double secant = resolved_mean(calibration, s, WB_CYCLE_FIRST_SECANT, settings);
+    const double unloading =
+        u->n > 0 ? resolved_mean(calibration, u, WB_CYCLE_FIRST_UNLOADING, settings) : (double)NAN;
+    const int moment = (int)number - WB_CYCLE_FIRST_MOMENT;
+    const int k = (int)number - WB_CYCLE_FIRST_SECANT, way_back = k - WB_CYCLE_STIFFNESSES;
+    if (number == WB_CYCLE_RIGIDITY)
+        return fmin(fabs(log(value / secant)), fabs(log(value / unloading)));
+    if (way_back >= 0)
+        return u->curvature[way_back] < u->resolved ? fabs(log(value / unloading)) : 0.0;
+    if (k >= 0)
+        return s->curvature[k] < s->resolved ? fabs(log(value / secant)) : 0.0;
+    if (moment >= 0 && calibration->curvature[moment] < s->resolved)
+        return fabs(log(value / calibration->curvature[moment] / secant));
+    return 0.0;
+}
+
+/* What a law misses of the force's change just behind the turn it misses of the stiffness there. */
+static double miss_at_turn(const struct wb_cycle_calibration *calibration,
+                           enum wb_cycle_number number)
+{
+    double mean = 0.0;
+    for (int i = 0; i < calibration->n_members; i++)
+        mean += calibration->members[i].answers[calibration->chosen].fit.turn_miss /
+                calibration->n_members;
+    return number >= WB_CYCLE_FIRST_UNLOADING && isfinite(mean) ? fabs(mean) : 0.0;
+}
+
+/* How far the other laws lie from the chosen one, each by its weight, what the chosen one misses
+ * just behind the turn, and what is not known of what it says beyond the data. */
 static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
                      const struct wb_cycle_calibrate_settings *settings, double value,
                      struct wb_budget *budget)
@@ -99,7 +152,9 @@ static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cyc
         if (rank->weight > 0.0 && isfinite(off))
             squares += rank->weight * off * off;
     }
-    budget->uncertainty[WB_FROM_LAW] = sqrt(squares);
+    const double alone = unknown_part * beyond_data(calibration, number, settings, value);
+    const double missed = miss_at_turn(calibration, number);
+    budget->uncertainty[WB_FROM_LAW] = sqrt(squares + alone * alone + missed * missed);
     budget->degrees[WB_FROM_LAW] = known_to_a_quarter;
 }
 

@@ -49,7 +49,8 @@ static const double huber_limit = 2.5;
 static const double largest_correlation = 0.9, settled_scale = 0.3, largest_scale_of_misses = 10.0,
                     first_scale_of_misses = 5.0;
 enum {
-    most_passes = 4
+    most_passes = 4,
+    points_of_turn = 3 /* on either side of it: some 1.5 mm of deflection behind it */
 };
 /* It has arrived when the next step changes no number by more than this, or the sum of squares by
  * less than this part. */
@@ -913,6 +914,24 @@ void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit)
     free(r);
 }
 
+/* From the mean residual of the last points of the loading to that of the first of the way back. */
+static double turn_miss(const struct wb_cycle_fit *fit, const struct wb_cycle_data *data)
+{
+    const struct wb_cycle_point *const turn = data->points + data->n_loading;
+    const double *const tension = fit->tension + data->n_loading;
+    double change = 0.0, way = 0.0;
+    if (data->n_loading < points_of_turn || data->n_points < data->n_loading + points_of_turn)
+        return (double)NAN;
+    for (int i = 0; i < points_of_turn; i++) {
+        change += tension[i] - turn[i].tension - (tension[-1 - i] - turn[-1 - i].tension);
+        way += data->top - turn[i].deflection;
+    }
+    const int last = points_of_turn - 1;
+    const double slope =
+        (tension[0] - tension[last]) / (turn[0].deflection - turn[last].deflection);
+    return change / (slope * way);
+}
+
 static void find_misfits(struct wb_cycle_fit *fit, struct wb_cycle_search *p)
 {
     const struct wb_cycle_data *const data = p->data;
@@ -927,6 +946,7 @@ static void find_misfits(struct wb_cycle_fit *fit, struct wb_cycle_search *p)
     }
     fit->misfit = sqrt((sums[0] + sums[1]) / data->n_points) / data->max_force;
     fit->loading_misfit = sqrt(sums[0] / counts[0]) / data->max_force;
+    fit->turn_miss = turn_miss(fit, data);
     fit->unloading_misfit =
         counts[1] > 0 ? sqrt(sums[1] / counts[1]) / data->max_force : (double)NAN;
 

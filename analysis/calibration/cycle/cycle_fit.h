@@ -113,6 +113,8 @@ struct wb_cycle_fit {
     double clamp_curvature; /* 1/m, largest */
     double first_curvature; /* 1/m, at the first point */
     double turn_change;     /* 1/m, of it from the turn to the first point of the way back */
+    double turn_miss;       /* part of the force's change just behind the turn that the law misses,
+                               more than 0 where it is too soft; NaN: not known */
     int n_free, n_law;      /* numbers fitted; of them the law's */
     int n_outliers;         /* points weighted by less than half */
     double scale_of_misses; /* larger than 1 where the law does not follow: weights of forces */

@@ -282,6 +282,52 @@ static void stiffness_is_told_where_it_is_stated(void **unused)
     }
 }
 
+static double form_of(const struct wb_cycle_calibration *c, int first, int k)
+{
+    return c->budget[first + k].uncertainty[WB_FROM_LAW];
+}
+
+static void a_stiffness_beyond_the_data_is_less_known(void **unused)
+{
+    (void)unused;
+    const struct wb_cycle_stiffness *const s = &all.secant;
+    const double resolved = wb_cycle_stiffness_at(s, s->resolved)->value;
+    int n_beyond = 0;
+    for (int k = 0; k < s->n; k++) {
+        const double alone = 0.5 * fabs(log(s->estimate[k].value / resolved));
+        const double form = form_of(&all, WB_CYCLE_FIRST_SECANT, k);
+        if (s->curvature[k] >= s->resolved) {
+            assert_true(form < 0.005); /* other laws alone */
+            continue;
+        }
+        assert_close(form, alone, 0.005);
+        assert_true(form > 0.01);
+        n_beyond++;
+    }
+    assert_true(n_beyond > 0);
+}
+
+/* Where no law of parallel parts is tried, the best starts its way back elastically and too soft,
+ * though its misfit is small: the stated uncertainty says so. */
+static void a_law_that_misses_the_turn_knows_less_of_unloading(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibrate_settings settings;
+    struct wb_cycle_calibration c;
+    double missed = 0.0;
+    wb_cycle_calibrate_default_settings(&settings);
+    settings.left_out = 1U << WB_CANDIDATE_PARALLEL_KINEMATIC | 1U << WB_CANDIDATE_PARALLEL_MIXED;
+    assert_int_equal(wb_cycle_calibrate_run(&c, list, SPECIMENS, &settings, NULL), WB_OK);
+    for (int i = 0; i < SPECIMENS; i++)
+        missed += c.members[i].answers[c.chosen].fit.turn_miss / SPECIMENS;
+    print_message("    misfit %.2f %%, %.1f %% missed at the turn\n", 100.0 * c.ranked[0].misfit,
+                  100.0 * missed);
+    assert_true(missed > 0.03);
+    assert_true(form_of(&c, WB_CYCLE_FIRST_UNLOADING, 0) >= missed);
+    assert_true(form_of(&all, WB_CYCLE_FIRST_UNLOADING, 1) < 0.02);
+    wb_cycle_calibrate_release(&c);
+}
+
 /* Without the way back there is no rule to tell. */
 static void a_wire_without_a_way_back_is_ludwiks_and_its_rule_untested(void **unused)
 {
@@ -526,6 +572,8 @@ int main(void)
         cmocka_unit_test(a_law_fits_no_worse_than_one_that_it_contains),
         cmocka_unit_test(the_range_holds_the_candidates_that_count),
         cmocka_unit_test(stiffness_is_told_where_it_is_stated),
+        cmocka_unit_test(a_stiffness_beyond_the_data_is_less_known),
+        cmocka_unit_test(a_law_that_misses_the_turn_knows_less_of_unloading),
         cmocka_unit_test(a_wire_without_a_way_back_is_ludwiks_and_its_rule_untested),
         cmocka_unit_test(what_is_stopped_gives_the_specimens_that_were_fitted),
         cmocka_unit_test(what_is_stopped_later_has_the_laws_that_all_specimens_have),
