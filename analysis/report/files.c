@@ -1,6 +1,7 @@
 #include "analysis/report/files.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,7 +59,7 @@ static enum wb_status draw_json(struct outputs *outputs, struct wb_json *numbers
 struct drawing {
     const struct wb_figures *figures;
     struct output *outputs; /* of figure i two, from 2 i on */
-    enum wb_status status;  /* the first failure */
+    enum wb_status status;  /* a failure */
 };
 
 static enum wb_status draw_figure(void *context, int index)
@@ -79,7 +80,8 @@ static bool finish_figure(void *context, int index, enum wb_status status)
     return status == WB_OK;
 }
 
-static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figures *figures)
+static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figures *figures,
+                                   int n_threads)
 {
     struct drawing drawing = {figures, &outputs->items[outputs->n], WB_OK};
     for (int i = 0; i < figures->n; i++) {
@@ -87,21 +89,25 @@ static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figu
         (void)add_output(outputs, "figures/", name, "svg");
         (void)add_output(outputs, "figures/", name, "png");
     }
-    const struct wb_workers workers = {
-        .n = figures->n, .job = draw_figure, .done = finish_figure, .context = &drawing};
+    const int cores = (int)fmin((double)sysconf(_SC_NPROCESSORS_ONLN), 4.0);
+    const struct wb_workers workers = {.n = figures->n,
+                                       .n_threads = n_threads > 0 ? n_threads : cores,
+                                       .job = draw_figure,
+                                       .done = finish_figure,
+                                       .context = &drawing};
     (void)wb_workers_run(&workers);
     return drawing.status;
 }
 
 static enum wb_status draw(struct outputs *outputs, const struct wb_document *document,
                            const struct wb_figures *figures, const struct wb_cards *cards,
-                           struct wb_json *numbers)
+                           struct wb_json *numbers, int n_threads)
 {
     outputs->items =
         wb_memory_new(2 * (size_t)figures->n + (size_t)cards->n + 3, sizeof *outputs->items);
     WB_TRY(wb_pdf_render(document, add_output(outputs, "", "report", "pdf")));
     WB_TRY(wb_html_render(document, add_output(outputs, "", "report", "html")));
-    WB_TRY(draw_figures(outputs, figures));
+    WB_TRY(draw_figures(outputs, figures, n_threads));
     for (int i = 0; i < cards->n; i++) {
         struct output *const output = &outputs->items[outputs->n++];
         snprintf(output->name, sizeof output->name, "%s", cards->files[i].name);
@@ -259,10 +265,10 @@ static enum wb_status write_folder(const struct outputs *outputs, const char *fo
 
 enum wb_status wb_files_write(const struct wb_document *document, const struct wb_figures *figures,
                               const struct wb_cards *cards, struct wb_json *numbers,
-                              const char *folder, bool force)
+                              const char *folder, bool force, int n_threads)
 {
     struct outputs outputs = {0};
-    enum wb_status status = draw(&outputs, document, figures, cards, numbers);
+    enum wb_status status = draw(&outputs, document, figures, cards, numbers, n_threads);
     if (status == WB_OK)
         status = write_folder(&outputs, folder, force);
     release(&outputs);
