@@ -619,6 +619,7 @@ static void follow(struct wb_cantilever *f, struct wb_cantilever *leader, struct
     tip_right(f, &step, leader->beam, r, b);
     wb_banded_solve_small(n, MOST_UNKNOWNS, matrix, b);
     advance(f, &step, leader->beam, b);
+    /* Carried on, it was so near that plastic strains lag by next to nothing. */
     if (leader->ratio == 0.0)
         check_balance(f, &step, &strand, r);
     f->state.mode = step.mode;

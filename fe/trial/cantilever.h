@@ -132,12 +132,13 @@ WB_MUST_CHECK enum wb_status wb_cantilever_move(struct wb_cantilever *cantilever
                                                 struct wb_cantilever_point *point);
 
 /* Lets others go along with every move of the leader that follows: cantilevers of as many elements
- * and the same strand, of nearly the same numbers (the slopes of a fit are differences of such).
- * Where the leader's control has a value a follower's has that plus its offset. A follower finds
- * its equilibrium with the leader's tangent, to second order in what they differ by, at a third of
- * the cost of a move of its own. Both arrays (n) are borrowed until n is set to 0. Reset all
- * before.
- */
+ * and the same strand, of nearly the same numbers (the slopes of a fit are differences of such). A
+ * follower's control is the leader's plus its offset; it takes the leader's steps, their duration,
+ * and whether the strand is taut or the tip rests, and finds its equilibrium by one step with the
+ * leader's tangent. In equilibrium it is to second order in what it differs by from the leader; its
+ * plastic strains lag by the correction of one step: differences are right to some thousandths, at
+ * a quarter of the cost of a move of its own. That it converges is not checked. Reset all before.
+ * Both arrays (n) are borrowed until n is set to 0. */
 void wb_cantilever_lead(struct wb_cantilever *leader, int n, struct wb_cantilever *const *followers,
                         const double *offsets);
 

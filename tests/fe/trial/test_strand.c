@@ -368,6 +368,59 @@ static void drop_message(void *context, enum wb_log_level level, const char *dom
     (void)message;
 }
 
+/* A leader on the stage, with a rest, past where the strand goes slack and the tip lies down: a
+ * follower that is a little stiffer goes as it goes alone, to second order in what they differ by.
+ */
+static void a_follower_goes_as_it_goes_alone(void **unused)
+{
+    (void)unused;
+    const double stiffer = 1e-3, offset = 1e-5;
+    struct rig rigs[3]; /* leader, follower, and the follower by itself */
+    double squares = 0.0, missed = 0.0;
+    int slack = 0, resting = 0;
+    for (int i = 0; i < 3; i++) {
+        begin(&rigs[i], 1);
+        weigh(&rigs[i], 0.0027);
+        rigs[i].model.has_rest = true;
+        rigs[i].model.rest_level = 1.0 * WB_MM;
+        struct wb_material *const m = &rigs[i].wire.material;
+        if (i > 0) {
+            m->youngs_modulus *= 1.0 + stiffer;
+            m->strength_coefficient *= 1.0 + stiffer;
+        }
+        wb_section_release(&rigs[i].section);
+        rigs[i].section = test_section(&rigs[i].wire);
+        rigs[i].cantilever = test_cantilever(&rigs[i].model);
+    }
+    struct wb_cantilever *const followers[] = {rigs[1].cantilever};
+    wb_cantilever_lead(rigs[0].cantilever, 1, followers, &offset);
+    for (int i = 0; i <= 110; i++) {
+        const double travel = (i <= 53 ? i : 106 - i) * WB_MM;
+        const struct wb_cantilever_point p =
+            test_move(rigs[0].cantilever, WB_CONTROL_STAGE, travel);
+        const struct wb_cantilever_point q =
+            test_move(rigs[2].cantilever, WB_CONTROL_STAGE, travel + offset);
+        const double s = wire_length;
+        double x, led[3], alone[3];
+        wb_cantilever_shape(rigs[0].cantilever, 1, &s, &x, &led[0], &led[1]);
+        wb_cantilever_shape(rigs[1].cantilever, 1, &s, &x, &led[0], &led[2]);
+        wb_cantilever_shape(rigs[2].cantilever, 1, &s, &x, &alone[0], &alone[2]);
+        slack += p.slack;
+        resting += p.resting;
+        if (p.slack != q.slack || p.resting != q.resting)
+            continue; /* for a step, where they differ */
+        squares += pow(alone[2] - led[1], 2.0) + pow((q.tension - p.tension) / 0.1, 2.0);
+        missed += pow(led[2] - alone[2], 2.0) +
+                  pow((wb_cantilever_tension(rigs[1].cantilever) - q.tension) / 0.1, 2.0);
+    }
+    print_message("follower: %.1e of the difference missed, %d points slack, %d at rest\n",
+                  sqrt(missed / squares), slack, resting);
+    assert_true(slack > 5 && resting > 0);
+    assert_true(missed < 1e-4 * squares);
+    for (int i = 0; i < 3; i++)
+        end(&rigs[i]);
+}
+
 static void force_control_and_a_strand_exclude_each_other(void **unused)
 {
     (void)unused;
@@ -396,6 +449,7 @@ int main(void)
         cmocka_unit_test(lowered_tip_lies_on_the_rest),
         cmocka_unit_test(rest_wins_over_a_deflection_below_it),
         cmocka_unit_test(random_tests_obey_the_inequalities),
+        cmocka_unit_test(a_follower_goes_as_it_goes_alone),
         cmocka_unit_test(force_control_and_a_strand_exclude_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
