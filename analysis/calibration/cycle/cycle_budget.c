@@ -126,15 +126,19 @@ static double beyond_data(const struct wb_cycle_calibration *calibration,
     return 0.0;
 }
 
-/* What a law misses of the force's change just behind the turn it misses of the stiffness there. */
+/* What a law misses of the force's change just behind the turn it misses of the stiffness there:
+ * root mean square of the specimens. */
 static double miss_at_turn(const struct wb_cycle_calibration *calibration,
                            enum wb_cycle_number number)
 {
-    double mean = 0.0;
-    for (int i = 0; i < calibration->n_members; i++)
-        mean += calibration->members[i].answers[calibration->chosen].fit.turn_miss /
-                calibration->n_members;
-    return number >= WB_CYCLE_FIRST_UNLOADING && isfinite(mean) ? fabs(mean) : 0.0;
+    double squares = 0.0;
+    int n = 0;
+    for (int i = 0; i < calibration->n_members && number >= WB_CYCLE_FIRST_UNLOADING; i++) {
+        const double miss = calibration->members[i].answers[calibration->chosen].fit.turn_miss;
+        squares += isfinite(miss) ? miss * miss : 0.0;
+        n += isfinite(miss);
+    }
+    return n > 0 ? sqrt(squares / n) : 0.0;
 }
 
 /* How far the other laws lie from the chosen one, each by its weight, what the chosen one misses

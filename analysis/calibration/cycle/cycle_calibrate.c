@@ -231,7 +231,7 @@ static void contain(enum wb_candidate candidate, struct wb_law *law)
 
 /* The fit of a contained law is one of the law that contains it, with a share at its end or two
  * back stresses alike: priors, or a search that stopped early, may have kept that from it. A mixed
- * law has no exponent above 1. */
+ * law has no exponent above 1. The contained fit is final: the answer refers to it. */
 static void take_contained(struct wb_cycle_member *member, enum wb_candidate candidate,
                            const struct wb_cycle_fit *contained,
                            const struct wb_cycle_calibrate_settings *settings)
@@ -1102,6 +1102,8 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
     if (status != WB_OK)
         return tell_failure(calibration, status, why);
     /* Specimens are taken in order, and what was begun was ended. */
+    for (int i = work.done; i < calibration->n_members; i++)
+        wb_cycle_data_release(&calibration->members[i].data);
     calibration->n_members = work.done;
     calibration->has_unloading = true;
     for (int i = 0; i < calibration->n_members; i++) {

@@ -49,7 +49,7 @@ static const double near_zero = 0.03;
 
 /* K and n need 0.35 of the length; the law below 0.2 is little more than EI. */
 static const double full_travel = 0.35, short_travel = 0.20;
-/* The level of zero deflection is known to 0.1 mm (two markers), and to what the files state of
+/* The level of zero deflection is known to 0.1 mm (two markers), and to what is stated of
  * gain, counterweight and the like: beyond four times that it was wrong, or made up for something
  * else. Less with a bow that disagrees. (Three times blame one
  * healthy bench of ten whose wire no law follows to its noise.) */
@@ -344,20 +344,22 @@ struct specimen {
     /* What the files state of gain, counterweight and the like makes of the level and of the bow
      * (m): standard uncertainties. */
     double level_of_shared, bow_of_shared;
+    double relaxation_prior;
     const char *wire;
     int sample;
 };
 
-/* The fit's changes are to first order. */
-static void find_shared(struct specimen *s, double relaxation_prior)
+/* Finds them, by what the fit would come to with altered data. */
+static void find_shared(struct specimen *s)
 {
     const struct wb_cycle_fit *const fit = s->fit;
     const double length = s->data->info.length;
+    s->level_of_shared = s->bow_of_shared = 0.0;
     for (int i = 0; i < WB_SHARED; i++) {
         if (!fit->has_altered[i])
             continue;
-        const double changes =
-            wb_cycle_shared_uncertainty(s->data, relaxation_prior, i) / wb_cycle_shared_change(i);
+        const double changes = wb_cycle_shared_uncertainty(s->data, s->relaxation_prior, i) /
+                               wb_cycle_shared_change(i);
         const struct wb_cycle_specimen *const altered = &fit->altered_specimen[i];
         s->level_of_shared = hypot(s->level_of_shared, changes * (altered->level - fit->level));
         s->bow_of_shared =
@@ -630,6 +632,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
     const double missed = explained_part * s->fit->misfit;
     const bool is_level = has_level && level.misfit <= missed;
     const bool is_force = has_force && force.misfit <= missed;
+    /* Within the limits of the chosen fit: where nothing holds the level, it would go anywhere. */
     looked_at.fit = &level;
     if (status == WB_OK && !is_level && !is_force) {
         check_misfit(remarks, s);
@@ -833,10 +836,11 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
             .data = &member->data,
             .dataset = datasets[i],
             .fit = &member->answers[calibration->chosen].fit,
+            .relaxation_prior = calibration->relaxation_prior,
             .wire = wire,
             .sample = member->sample,
         };
-        find_shared(&specimen, calibration->relaxation_prior);
+        find_shared(&specimen);
         check_travel(remarks, &specimen);
         check_holds(remarks, &specimen);
         check_relaxation(remarks, &specimen);

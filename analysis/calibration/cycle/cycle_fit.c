@@ -29,6 +29,8 @@ static const double middle_plastic_strain = 3e-3;
 /* Largest exponents. */
 static const double largest_exponent = 1.5;           /* isotropic */
 static const double largest_kinematic_exponent = 1.0; /* beyond, work would come from nowhere */
+/* A search begins with an exponent within this part of the largest. */
+static const double largest_part = 0.95;
 /* A logistic number beyond this is at its bound. */
 static const double at_bound = 4.6; /* 1 % of the range */
 /* Where the logistic share of mixed hardening starts from a law with a pure rule. Parts that
@@ -165,9 +167,9 @@ struct wb_cycle_search {
     bool has_last;
     gsl_matrix *slopes;                /* (n_residuals, n_free), */
     double slopes_x[WB_FIT_MOST_FREE]; /* there: in the end that of the fit */
-    bool has_slopes;
-    double force_scale;     /* N */
-    double scale_of_misses; /* larger than 1 where the law does not follow */
+    bool has_slopes, lacks_slopes;     /* they could not be found */
+    double force_scale;                /* N */
+    double scale_of_misses;            /* larger than 1 where the law does not follow */
     struct wb_cycle_run run;
     int runs;
     enum wb_status status;
@@ -347,7 +349,7 @@ static void start_law(struct wb_cycle_search *p, const struct wb_law *law)
         const struct wb_material *const m = &law->material;
         const double n = m->hardening_exponent;
         const double most = largest_exponent_of(c);
-        const double part = fmin(fmax(n / most, 0.05), 0.95);
+        const double part = fmin(fmax(n / most, 1.0 - largest_part), largest_part);
         p->start[0] = log(m->youngs_modulus);
         p->start[1] = log(m->yield_stress);
         p->start[2] = log(m->strength_coefficient * pow(middle_plastic_strain, n));
@@ -598,9 +600,13 @@ static int find_slopes(struct wb_cycle_search *p, const double *x)
         absolute(p, moved, numbers);
         status = compare(p, numbers, &neighbour->law, neighbour->tension, neighbour->distance,
                          neighbour->held, there);
-        for (int i = 0; i < p->n_residuals; i++)
+        for (int i = 0; i < p->n_residuals; i++) {
             gsl_matrix_set(p->slopes, (size_t)i, (size_t)k, (there[i] - p->last[i]) / difference);
+            if (!isfinite(there[i]))
+                status = GSL_EFAILED;
+        }
     }
+    p->lacks_slopes = status != GSL_SUCCESS;
     free(there);
     return status;
 }
@@ -685,7 +691,7 @@ static bool iterate(struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w
         .smallest_gain = settled_sum,
         .status = &p->status,
     };
-    return wb_least_squares_iterate(w, &search, iterations);
+    return wb_least_squares_iterate(w, &search, iterations) && !p->lacks_slopes;
 }
 
 /* The law moved along the columns of the covariance's triangular factor, which the covariance is
@@ -840,9 +846,12 @@ static void free_buffers(struct wb_cycle_search *p)
     free(p->tension);
     free(p->distance);
     free(p->last);
+    p->tension = p->distance = p->last = NULL;
+    p->has_last = false;
     for (int k = 0; k < p->n_free; k++) {
         free(p->neighbours[k].tension);
         free(p->neighbours[k].distance);
+        p->neighbours[k].tension = p->neighbours[k].distance = NULL;
     }
 }
 
@@ -998,7 +1007,9 @@ static bool contains(const struct candidate *c, const struct wb_cycle_fit *near)
     const struct candidate *const other = &candidates[near->candidate];
     if (!c->has_share || c->form != other->form || other->has_share || !near->is_converged)
         return false;
-    if (c->form == WB_LAW_LUDWIK && near->law.material.hardening_exponent > largest_exponent_of(c))
+    /* Nearer to the ends of its range an exponent is not where a search begins. */
+    if (c->form == WB_LAW_LUDWIK &&
+        near->law.material.hardening_exponent > largest_part * largest_exponent_of(c))
         return false;
     return !c->is_combined || other->isotropic_share == 1.0;
 }

@@ -87,8 +87,8 @@ struct wb_cycle_fit {
     double uneven_angle;               /* rad; 0 without places */
     bool is_converged;                 /* else the iterations ran out */
     bool is_at_bound;                  /* an exponent or a share at the end of its range */
-    bool is_contained; /* the fit near by has the law at its best: nothing was searched, and the law
-                          and all that follows is not set */
+    bool is_contained; /* the fit near by is the best: nothing was searched; only the candidate,
+                          counts and cost are set */
     double misfit;     /* RMS of the force residuals over the largest force, */
     double loading_misfit, unloading_misfit; /* of either branch; NaN: none */
     double place_rms;                        /* m, after the markers' offsets; NaN without places */
@@ -122,22 +122,25 @@ struct wb_cycle_fit {
     double cpu_s;
     /* (data->n_points) computed tension of the last run, N; owned; NULL where it failed */
     double *tension;
-    struct wb_cycle_search *search; /* its end; owned */
+    /* What wb_cycle_fit_find_altered() goes on from; owned; NULL of a copy and of no fit. */
+    struct wb_cycle_search *search;
 };
 
 /* Fits one candidate. `start` gives a law near by; `near` a fit of another law to the same data,
- * whose specimen and weights are near by (NULL: none). Where that law is the candidate's with a
- * share at its end, and no other share is better, the fit ends at once as is_contained. `grid` is
- * used by parallel parts and Chaboche's laws. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC
- * can be fitted. `data` is borrowed as long as the fit is. WB_ERR_CONVERGENCE where the beam cannot
- * compute the start; `why` receives it, NULL: logged. */
+ * whose specimen and weights are near by (NULL: none). Where the candidate is near's law with an
+ * isotropic share, and `start` is near's law, the fit ends at once as is_contained if Gauss and
+ * Newton's step keeps the share at its end. `grid` is used by parallel parts and Chaboche's laws
+ * (NULL: none of them). Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted. `data`
+ * is borrowed as long as the fit is. WB_ERR_CONVERGENCE where the beam cannot compute the start;
+ * `why` receives it, NULL: logged. */
 WB_MUST_CHECK enum wb_status
 wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
                  enum wb_candidate candidate, const struct wb_law *start,
                  const struct wb_cycle_fit *near, const struct wb_cycle_grid *grid,
                  const struct wb_cycle_fit_settings *settings, struct wb_reason *why);
 
-/* Finds what is altered. */
+/* Finds what is altered, by a run of the beam for each thing that specimens share. Of a fit with
+ * its search: one of wb_cycle_fit_run() that is not is_contained. */
 void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit);
 
 /* "E", "part 3", "isotropic share": number `i` of the correlations. */
