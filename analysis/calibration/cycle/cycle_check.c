@@ -62,6 +62,8 @@ static const double zero_share = 0.01;
 /* Where a law misses more than this part of the largest force, a zero is to blame only if a fit
  * with another, which nothing else holds, brings that down to this part of it. */
 static const double least_missed = 2e-3, explained_part = 0.6, free_place = 10.0 * WB_MM;
+/* And below this part of the force: what no law follows with any zero, no zero explains. */
+static const double largest_explained = 2e-3;
 /* Below this tension (N) the strand may hang slack and says nothing. */
 static const double slack = 2.5e-3;
 /* Standard deviations between two estimates of the bow; and how well an alignment knows it that
@@ -463,14 +465,14 @@ static void check_misfit(struct wb_cycle_remarks *remarks, const struct specimen
         100.0 * s->fit->unloading_misfit, 100.0 * fmax(misfit_share, misfit_noise * noise));
 }
 
-/* The chosen law with one zero that nothing holds: of force, or of deflection and all places.
- * *is_fitted is false where that does not end. */
-static enum wb_status fit_freely(const struct specimen *s, bool frees_force,
-                                 struct wb_cycle_fit *freed, bool *is_fitted)
+/* A law with one zero that nothing holds: of force, or of deflection and all places. *is_fitted is
+ * false where that does not end. */
+static enum wb_status fit_law_freely(const struct specimen *s, const struct wb_cycle_fit *fit,
+                                     bool frees_force, struct wb_cycle_fit *freed, bool *is_fitted)
 {
-    const struct wb_law *const law = &s->fit->law;
+    const struct wb_law *const law = &fit->law;
     struct wb_cycle_grid grid = {.last_strain =
-                                     0.5 * s->data->info.outer_diameter * s->fit->clamp_curvature};
+                                     0.5 * s->data->info.outer_diameter * fit->clamp_curvature};
     struct wb_cycle_fit_settings settings;
     struct wb_reason why;
     wb_cycle_fit_default_settings(&settings);
@@ -484,9 +486,32 @@ static enum wb_status fit_freely(const struct specimen *s, bool frees_force,
         grid.last_strain = grid.first_strain * pow(ratio, law->n_parts - 1);
     }
     const enum wb_status status =
-        wb_cycle_fit_run(freed, s->data, s->fit->candidate, law, NULL, &grid, &settings, &why);
+        wb_cycle_fit_run(freed, s->data, fit->candidate, law, NULL, &grid, &settings, &why);
     *is_fitted = status == WB_OK;
     return status == WB_ERR_CONVERGENCE ? WB_OK : status;
+}
+
+/* The chosen law; where it does not follow with that either, parallel parts, which may be the right
+ * law that the wrong zero hid. */
+static enum wb_status fit_freely(const struct specimen *s, bool frees_force,
+                                 struct wb_cycle_fit *freed, bool *is_fitted)
+{
+    const struct wb_cycle_answer *const parts =
+        &s->member->answers[WB_CANDIDATE_PARALLEL_KINEMATIC];
+    struct wb_cycle_fit other = {.tension = NULL};
+    bool has_other = false;
+    WB_TRY(fit_law_freely(s, s->fit, frees_force, freed, is_fitted));
+    if (!parts->is_fitted || (*is_fitted && freed->misfit <= largest_explained))
+        return WB_OK;
+    WB_TRY(fit_law_freely(s, &parts->fit, frees_force, &other, &has_other));
+    if (has_other && !(*is_fitted && freed->misfit <= other.misfit)) {
+        wb_cycle_fit_release(freed);
+        *freed = other;
+        *is_fitted = true;
+        return WB_OK;
+    }
+    wb_cycle_fit_release(&other);
+    return WB_OK;
 }
 
 /* Refits with other lengths, longer where the level is too high. Returns the length that fits
@@ -629,13 +654,14 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
     enum wb_status status = fit_freely(s, false, &level, &has_level);
     if (status == WB_OK)
         status = fit_freely(s, true, &force, &has_force);
-    const double missed = explained_part * s->fit->misfit;
+    const double missed = fmin(explained_part * s->fit->misfit, largest_explained);
     const bool is_level = has_level && level.misfit <= missed;
     const bool is_force = has_force && force.misfit <= missed;
     /* Within the limits of the chosen fit: where nothing holds the level, it would go anywhere. */
     looked_at.fit = &level;
     if (status == WB_OK && !is_level && !is_force) {
-        check_misfit(remarks, s);
+        if (length_is_seen || !has_level || !check_other_length(remarks, s, level.level))
+            check_misfit(remarks, s);
     } else if (status == WB_OK && is_level && (!is_force || level.misfit <= force.misfit)) {
         status = check_zeros_of(remarks, &looked_at, length_is_seen);
     } else if (status == WB_OK &&
