@@ -1,7 +1,6 @@
 #include "analysis/report/files.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +14,6 @@
 #include "base/json.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "base/workers.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -55,59 +53,20 @@ static enum wb_status draw_json(struct outputs *outputs, struct wb_json *numbers
     return WB_OK;
 }
 
-/* Figures take most of the time, and each is drawn by itself. */
-struct drawing {
-    const struct wb_figures *figures;
-    struct output *outputs; /* of figure i two, from 2 i on */
-    enum wb_status status;  /* a failure */
-};
-
-static enum wb_status draw_figure(void *context, int index)
-{
-    const struct drawing *const drawing = context;
-    const struct wb_figure *const figure = drawing->figures->items[index].figure;
-    struct output *const output = &drawing->outputs[2 * index];
-    WB_TRY(wb_figure_svg(figure, &output[0].bytes));
-    return wb_figure_png(figure, png_scale, &output[1].bytes);
-}
-
-static bool finish_figure(void *context, int index, enum wb_status status)
-{
-    struct drawing *const drawing = context;
-    (void)index;
-    if (drawing->status == WB_OK)
-        drawing->status = status;
-    return status == WB_OK;
-}
-
-static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figures *figures,
-                                   int n_threads)
-{
-    struct drawing drawing = {figures, &outputs->items[outputs->n], WB_OK};
-    for (int i = 0; i < figures->n; i++) {
-        const char *const name = wb_figure_name(figures->items[i].figure);
-        (void)add_output(outputs, "figures/", name, "svg");
-        (void)add_output(outputs, "figures/", name, "png");
-    }
-    const int cores = (int)fmin((double)sysconf(_SC_NPROCESSORS_ONLN), 4.0);
-    const struct wb_workers workers = {.n = figures->n,
-                                       .n_threads = n_threads > 0 ? n_threads : cores,
-                                       .job = draw_figure,
-                                       .done = finish_figure,
-                                       .context = &drawing};
-    (void)wb_workers_run(&workers);
-    return drawing.status;
-}
-
 static enum wb_status draw(struct outputs *outputs, const struct wb_document *document,
                            const struct wb_figures *figures, const struct wb_cards *cards,
-                           struct wb_json *numbers, int n_threads)
+                           struct wb_json *numbers)
 {
     outputs->items =
         wb_memory_new(2 * (size_t)figures->n + (size_t)cards->n + 3, sizeof *outputs->items);
     WB_TRY(wb_pdf_render(document, add_output(outputs, "", "report", "pdf")));
     WB_TRY(wb_html_render(document, add_output(outputs, "", "report", "html")));
-    WB_TRY(draw_figures(outputs, figures, n_threads));
+    for (int i = 0; i < figures->n; i++) {
+        const struct wb_figure *const figure = figures->items[i].figure;
+        const char *const name = wb_figure_name(figure);
+        WB_TRY(wb_figure_svg(figure, add_output(outputs, "figures/", name, "svg")));
+        WB_TRY(wb_figure_png(figure, png_scale, add_output(outputs, "figures/", name, "png")));
+    }
     for (int i = 0; i < cards->n; i++) {
         struct output *const output = &outputs->items[outputs->n++];
         snprintf(output->name, sizeof output->name, "%s", cards->files[i].name);
@@ -265,10 +224,10 @@ static enum wb_status write_folder(const struct outputs *outputs, const char *fo
 
 enum wb_status wb_files_write(const struct wb_document *document, const struct wb_figures *figures,
                               const struct wb_cards *cards, struct wb_json *numbers,
-                              const char *folder, bool force, int n_threads)
+                              const char *folder, bool force)
 {
     struct outputs outputs = {0};
-    enum wb_status status = draw(&outputs, document, figures, cards, numbers, n_threads);
+    enum wb_status status = draw(&outputs, document, figures, cards, numbers);
     if (status == WB_OK)
         status = write_folder(&outputs, folder, force);
     release(&outputs);
