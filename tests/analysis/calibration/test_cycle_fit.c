@@ -1,7 +1,11 @@
 /* A law fitted to a cycle that a beam of a known law computed: no noise, the same mesh. */
 #include <stdlib.h>
+#include <string.h>
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_matrix.h>
 
 #include "analysis/calibration/cycle/cycle_fit.h"
 #include "analysis/calibration/cycle/cycle_model.h"
@@ -468,12 +472,187 @@ static void correlations_and_errors_are_those_of_repeated_tests(void **unused)
     assert_close(xy / sqrt(xx * yy), stated, 0.002);
     assert_close_relative(found, error, 0.3);
     const double scatter = sqrt(modulus_squares - modulus * modulus);
-    print_message("    ln E: standard deviation %.5f found, %.5f by the jackknife\n", scatter,
-                  modulus_error);
+    print_message("    ln E: standard deviation %.5f found, %.5f stated\n", scatter, modulus_error);
     /* Of white noise residuals of one sign in a row make it half as large again: a row has two on
      * average, its sum a mean square of 2 + 4 (2/pi) variances. Too small it must not be. */
     assert_true(modulus_error >= 0.9 * scatter);
     assert_true(modulus_error <= 2.0 * scatter);
+}
+
+/* What a normal density around the best fit leaves out: the posterior of Ludwik's law and the
+ * specimen's bow and level, sampled by Metropolis and Hastings with runs of the beam alone. */
+enum {
+    LN_E,
+    LN_YIELD,
+    LN_HARDENING, /* of the stress at a plastic strain of 3e-3 */
+    EXPONENT,
+    BOW,
+    LEVEL,
+    SAMPLED,
+    MOMENTS = 4 /* and stiffnesses */
+};
+
+struct posterior {
+    const struct specimen *s;
+    struct wb_cycle_model *model;
+    double noise, level_prior;
+};
+
+static struct wb_law sampled_law(const double *x)
+{
+    struct wb_law law = ludwik(0.0, x[EXPONENT]);
+    law.material.youngs_modulus = exp(x[LN_E]);
+    law.material.yield_stress = exp(x[LN_YIELD]);
+    law.material.strength_coefficient = exp(x[LN_HARDENING]) / pow(3e-3, x[EXPONENT]);
+    return law;
+}
+
+/* Residuals over their standard deviations; false where there is no such wire. */
+static bool sampled_residuals(const struct posterior *p, const double *x, double *r)
+{
+    const struct wb_law law = sampled_law(x);
+    const struct wb_cycle_specimen specimen = {x[BOW], x[LEVEL], 0.0};
+    struct wb_reason why;
+    struct wb_cycle_run run;
+    if (wb_law_check(&law, &why) != WB_OK)
+        return false;
+    assert_int_equal(wb_cycle_model_run(p->model, &law, &specimen, r, NULL, &run), WB_OK);
+    for (int i = 0; i < p->s->data.n_points; i++)
+        r[i] = (r[i] - p->s->points[i].tension) / p->noise;
+    r[p->s->data.n_points] = x[LEVEL] / p->level_prior;
+    return run.reached;
+}
+
+/* Lower triangular L of the inverse of J'J, by differences: L L' is the covariance. */
+static void proposal(const struct posterior *p, const double *x, gsl_matrix *L)
+{
+    const int n = p->s->data.n_points + 1;
+    double low[MOST_POINTS + 1], high[MOST_POINTS + 1], at[SAMPLED];
+    gsl_matrix *const J = gsl_matrix_alloc((size_t)n, SAMPLED);
+    for (int k = 0; k < SAMPLED; k++) {
+        const double step = k == LEVEL ? 1e-6 : k == BOW ? 1e-4 : 1e-3;
+        memcpy(at, x, sizeof at);
+        at[k] = x[k] - step;
+        assert_true(sampled_residuals(p, at, low));
+        at[k] = x[k] + step;
+        assert_true(sampled_residuals(p, at, high));
+        for (int i = 0; i < n; i++)
+            gsl_matrix_set(J, (size_t)i, (size_t)k, (high[i] - low[i]) / (2.0 * step));
+    }
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, 0.0, L);
+    assert_int_equal(gsl_linalg_cholesky_decomp1(L), GSL_SUCCESS);
+    assert_int_equal(gsl_linalg_cholesky_invert(L), GSL_SUCCESS);
+    assert_int_equal(gsl_linalg_cholesky_decomp1(L), GSL_SUCCESS);
+    gsl_matrix_free(J);
+}
+
+/* Logarithms of two moments, of the unloading stiffness over 1 /m and of E. */
+static void stated_numbers(const struct wb_law *law, double diameter, double *number)
+{
+    static const double curvature[2] = {4.0, 25.0};
+    const double change = 1.0;
+    double secant;
+    assert_int_equal(wb_bending_moments(law, diameter, 2, curvature, number), WB_OK);
+    assert_int_equal(
+        wb_bending_stiffness(law, diameter, 25.0, 1, curvature, &secant, 1, &change, &number[2]),
+        WB_OK);
+    number[3] = law->material.youngs_modulus;
+    for (int i = 0; i < MOMENTS; i++)
+        number[i] = log(number[i]);
+}
+
+static void errors_are_those_of_the_sampled_posterior(void **unused)
+{
+    (void)unused;
+    enum {
+        SAMPLES = 2500
+    };
+    static const char *const names[MOMENTS] = {"M(4 /m)", "M(25 /m)", "unloading", "E"};
+    const double wider = 1.3; /* proposals than the density, so that its tails are met */
+    const struct wb_cycle_model_settings mesh = {ELEMENTS, FIBRES, 0};
+    const struct wb_law law = ludwik(0.0, 0.75);
+    struct wb_cycle_fit_settings settings;
+    struct wb_cycle_fit found;
+    struct specimen s;
+    struct posterior p = {.s = &s};
+    double r[MOST_POINTS + 1], at[SAMPLED], now[SAMPLED], z[SAMPLED], number[MOMENTS];
+    double sum = 0.0, square_z = 0.0, mean[MOMENTS] = {0.0}, squares[MOMENTS] = {0.0};
+    uint64_t state = 11;
+    int accepted = 0;
+    default_settings(&settings);
+    compute(&s, &law, 0.05);
+    p.noise = fmax(settings.force_noise, settings.force_share * s.data.max_force);
+    p.level_prior = settings.level_prior;
+    for (int i = 0; i < s.data.n_points; i++)
+        s.points[i].tension += p.noise * normal(&state);
+    assert_int_equal(wb_cycle_fit_run(&found, &s.data, WB_CANDIDATE_LUDWIK_KINEMATIC, &law, NULL,
+                                      NULL, &settings, NULL),
+                     WB_OK);
+    assert_int_equal(wb_cycle_model_create(&p.model, &s.data, &law, &mesh), WB_OK);
+    const struct wb_material *const m = &found.law.material;
+    const double best[SAMPLED] = {
+        log(m->youngs_modulus),
+        log(m->yield_stress),
+        log(m->strength_coefficient * pow(3e-3, m->hardening_exponent)),
+        m->hardening_exponent,
+        found.bow_angle,
+        found.level,
+    };
+    gsl_matrix *const L = gsl_matrix_alloc(SAMPLED, SAMPLED);
+    proposal(&p, best, L);
+    memcpy(now, best, sizeof now);
+    assert_true(sampled_residuals(&p, now, r));
+    for (int i = 0; i <= s.data.n_points; i++)
+        sum += r[i] * r[i];
+    for (int k = 0; k < SAMPLES; k++) {
+        double sum_there = 0.0, square_there = 0.0;
+        for (int i = 0; i < SAMPLED; i++) {
+            z[i] = wider * normal(&state);
+            square_there += z[i] * z[i] / (wider * wider);
+        }
+        for (int i = 0; i < SAMPLED; i++) {
+            at[i] = best[i];
+            for (int j = 0; j <= i; j++)
+                at[i] += gsl_matrix_get(L, (size_t)i, (size_t)j) * z[j];
+        }
+        const bool is_wire = sampled_residuals(&p, at, r);
+        for (int i = 0; i <= s.data.n_points; i++)
+            sum_there += r[i] * r[i];
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        const double uniform = (double)(state >> 11) / 9007199254740992.0;
+        if (is_wire && log(uniform) < 0.5 * (sum - sum_there + square_there - square_z)) {
+            memcpy(now, at, sizeof now);
+            sum = sum_there;
+            square_z = square_there;
+            accepted++;
+        }
+        const struct wb_law drawn = sampled_law(now);
+        stated_numbers(&drawn, s.data.info.outer_diameter, number);
+        for (int i = 0; i < MOMENTS; i++) {
+            mean[i] += number[i] / SAMPLES;
+            squares[i] += number[i] * number[i] / SAMPLES;
+        }
+    }
+    double own[MOMENTS], stated[MOMENTS] = {0.0};
+    stated_numbers(&found.law, s.data.info.outer_diameter, own);
+    for (int k = 0; k < found.n_moved; k++) {
+        stated_numbers(&found.moved[k], s.data.info.outer_diameter, number);
+        for (int i = 0; i < MOMENTS; i++)
+            stated[i] += pow((number[i] - own[i]) / found.moved_by[k], 2.0);
+    }
+    print_message("    %d of %d samples accepted\n", accepted, SAMPLES);
+    for (int i = 0; i < MOMENTS; i++) {
+        const double sampled = sqrt(squares[i] - mean[i] * mean[i]);
+        print_message("    %s: %.3f %% sampled, %.3f %% stated\n", names[i], 100.0 * sampled,
+                      100.0 * sqrt(stated[i]));
+        assert_true(sqrt(stated[i]) >= 0.9 * sampled);
+        assert_true(sqrt(stated[i]) <= 2.0 * sampled);
+        assert_close(mean[i], own[i], 0.3 * sampled);
+    }
+    assert_true(accepted > SAMPLES / 5);
+    gsl_matrix_free(L);
+    wb_cycle_model_destroy(p.model);
+    wb_cycle_fit_release(&found);
 }
 
 /* What all specimens share: the step to first order, and a search with the altered data. */
@@ -600,6 +779,7 @@ int main(void)
         cmocka_unit_test(a_share_at_its_end_is_known_at_once),
         cmocka_unit_test(the_wrong_rule_shows_in_the_misfit),
         cmocka_unit_test(correlations_and_errors_are_those_of_repeated_tests),
+        cmocka_unit_test(errors_are_those_of_the_sampled_posterior),
         cmocka_unit_test(the_law_moves_with_what_is_shared_as_a_search_does),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
