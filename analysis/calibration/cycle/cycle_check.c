@@ -61,7 +61,7 @@ static const double largest_followed = 5e-3;
 static const double zero_share = 0.01;
 /* Where a law misses more than this part of the largest force, a zero is to blame only if a fit
  * with another, which nothing else holds, brings that down to this part of it. */
-static const double least_missed = 2e-3, explained_part = 0.6, free_place = 10.0 * WB_MM;
+static const double least_missed = 2.3e-3, explained_part = 0.6, free_place = 10.0 * WB_MM;
 /* And below this part of the force: what no law follows with any zero, no zero explains. */
 static const double largest_explained = 2e-3;
 /* Below this tension (N) the strand may hang slack and says nothing. */
@@ -636,6 +636,12 @@ static double usual_miss(const struct specimen *s)
     return miss / data->max_force;
 }
 
+/* How far the force's zero may be off by what is stated of the counterweight, N. */
+static double stated_zero(const struct wb_cycle_data *data)
+{
+    return 2.0 * data->info.uncertainty.counterweight * data->info.gravity;
+}
+
 /* A law that does not follow may be that of another wire, or a zero is wrong: then it follows with
  * another. */
 static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct specimen *s,
@@ -657,9 +663,12 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
     const double missed = fmin(explained_part * s->fit->misfit, largest_explained);
     const bool is_level = has_level && level.misfit <= missed;
     const bool is_force = has_force && force.misfit <= missed;
+    const bool is_stated = is_force && fabs(force.zero) <= stated_zero(s->data);
     /* Within the limits of the chosen fit: where nothing holds the level, it would go anywhere. */
     looked_at.fit = &level;
-    if (status == WB_OK && !is_level && !is_force) {
+    if (status == WB_OK && is_stated) {
+        check_misfit(remarks, s);
+    } else if (status == WB_OK && !is_level && !is_force) {
         if (length_is_seen || !has_level || !check_other_length(remarks, s, level.level))
             check_misfit(remarks, s);
     } else if (status == WB_OK && is_level && (!is_force || level.misfit <= force.misfit)) {

@@ -307,12 +307,15 @@ static void a_wrong_counterweight_is_told(void **state)
 static void a_counterweight_within_what_is_stated_is_not_doubted(void **state)
 {
     (void)state;
-    for (int is_stated = 0; is_stated < 2; is_stated++) {
+    static const double off[] = {0.14e-3, 0.17e-3, 0.2e-3}, stated[] = {0.1e-3, 0.12e-3, 0.15e-3};
+    for (int i = 0; i < 6; i++) {
         struct bench *const bench = one(1);
         struct wb_test_info *const info = &bench->datasets[0].info;
-        info->counterweight += 0.14e-3;
-        info->uncertainty.counterweight = is_stated ? 0.1e-3 : 0.0;
+        const bool is_stated = i % 2;
+        info->counterweight += off[i / 2];
+        info->uncertainty.counterweight = is_stated ? stated[i / 2] : 0.0;
         check(bench);
+        print_message("    %g g, %s\n", off[i / 2] / WB_G, is_stated ? "stated" : "not stated");
         if (is_stated)
             assert_no_doubt(bench);
         else
