@@ -94,9 +94,7 @@ static double resolved_mean(const struct wb_cycle_calibration *calibration,
                             const struct wb_cycle_calibrate_settings *settings)
 {
     struct wb_estimate mean;
-    int k = 0;
-    while (k < stiffness->n - 1 && stiffness->curvature[k] < stiffness->resolved)
-        k++;
+    const int k = wb_cycle_stiffness_resolved(stiffness);
     wb_cycle_average(calibration, calibration->chosen, (enum wb_cycle_number)((int)first + k),
                      settings, &mean);
     return mean.value;

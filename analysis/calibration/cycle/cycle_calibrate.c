@@ -290,15 +290,14 @@ static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate 
     return WB_OK;
 }
 
-/* The same from the law of another specimen (itself: there is none), which is nearer than the other
- * start. */
+/* The same from the law of another specimen (NULL: none), which is nearer than the other start. */
 static enum wb_status fit_warmly(struct wb_cycle_member *member,
                                  const struct wb_cycle_member *first, enum wb_candidate candidate,
                                  const struct wb_law *start, const struct wb_cycle_fit *near,
                                  const struct wb_cycle_grid *grid,
                                  const struct wb_cycle_calibrate_settings *settings)
 {
-    const struct wb_cycle_fit *const known = first != member ? fit_of(first, candidate) : NULL;
+    const struct wb_cycle_fit *const known = first ? fit_of(first, candidate) : NULL;
     if (known)
         WB_TRY(fit_one(member, candidate, &known->law, near, grid, settings));
     const struct wb_cycle_fit *const found = fit_of(member, candidate);
@@ -349,10 +348,10 @@ static enum wb_status fit_ludwiks(struct wb_cycle_member *member,
         return fit_one(member, WB_CANDIDATE_LUDWIK_COMBINED, &start, NULL, &none, settings);
     }
     WB_TRY(
-        fit_from(member, member, WB_CANDIDATE_LUDWIK_MIXED, isotropic, kinematic, &none, settings));
+        fit_from(member, NULL, WB_CANDIDATE_LUDWIK_MIXED, isotropic, kinematic, &none, settings));
     take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic, settings);
     take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, kinematic, settings);
-    WB_TRY(fit_from(member, member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, kinematic, &none,
+    WB_TRY(fit_from(member, NULL, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, kinematic, &none,
                     settings));
     take_contained(member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, settings);
     return WB_OK;
@@ -369,7 +368,7 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     WB_TRY(fit_warmly(member, first, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, near, grid,
                       settings));
     const struct wb_cycle_fit *const pure = fit_of(member, WB_CANDIDATE_PARALLEL_KINEMATIC);
-    WB_TRY(fit_from(member, member, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
+    WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
     take_contained(member, WB_CANDIDATE_PARALLEL_MIXED, pure, settings);
     return WB_OK;
 }
@@ -433,14 +432,15 @@ struct work {
 static enum wb_status fit_member(void *context, int index)
 {
     struct work *const work = context;
-    const struct wb_cycle_member *const first = work->calibration->members;
-    struct wb_cycle_member *const member = &work->calibration->members[work->begin + index];
+    const int i = work->begin + index;
+    struct wb_cycle_member *const member = &work->calibration->members[i];
+    const struct wb_cycle_member *const first = i > 0 ? work->calibration->members : NULL;
     const double begin = wb_progress_thread_cpu();
     enum wb_status status = WB_OK;
     switch (work->stage) {
     case DATA:
-        status = wb_cycle_data_take(&member->data, work->datasets[work->begin + index],
-                                    &work->settings->data, &member->why);
+        status = wb_cycle_data_take(&member->data, work->datasets[i], &work->settings->data,
+                                    &member->why);
         break;
     case LUDWIKS:
         status = fit_ludwiks(member, work->settings);
@@ -782,18 +782,10 @@ static void choose_curvatures(struct wb_cycle_stiffness *stiffness, double resol
         stiffness->curvature[stiffness->n++] = stiffness->resolved;
 }
 
-static bool is_near(double stiffness, double rigidity)
+static bool is_near_resolved(const struct wb_cycle_stiffness *stiffness, double rigidity)
 {
-    return fabs(stiffness / rigidity - 1.0) <= resolved_within;
-}
-
-/* Of those the smallest that the data resolve. */
-static double resolved_value(const struct wb_cycle_stiffness *stiffness)
-{
-    int k = 0;
-    while (k < stiffness->n - 1 && stiffness->curvature[k] < stiffness->resolved)
-        k++;
-    return stiffness->estimate[k].value;
+    const int k = wb_cycle_stiffness_resolved(stiffness);
+    return fabs(stiffness->estimate[k].value / rigidity - 1.0) <= resolved_within;
 }
 
 static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
@@ -1024,9 +1016,9 @@ static enum wb_status conclude(struct wb_cycle_calibration *calibration,
         wb_cycle_estimate(calibration, k, settings, estimate_of(calibration, k),
                           &calibration->budget[k]);
     calibration->is_rigidity_resolved =
-        is_near(resolved_value(&calibration->secant), calibration->rigidity.value) ||
+        is_near_resolved(&calibration->secant, calibration->rigidity.value) ||
         (calibration->has_unloading &&
-         is_near(resolved_value(&calibration->unloading), calibration->rigidity.value));
+         is_near_resolved(&calibration->unloading, calibration->rigidity.value));
     for (int i = 0; i < calibration->n_ranked; i++) {
         struct wb_cycle_rank *const rank = &calibration->ranked[i];
         wb_cycle_average(calibration, rank->candidate, WB_CYCLE_RIGIDITY, settings,
@@ -1161,6 +1153,14 @@ void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration)
     }
     free(calibration->members);
     *calibration = (struct wb_cycle_calibration){.members = NULL};
+}
+
+int wb_cycle_stiffness_resolved(const struct wb_cycle_stiffness *stiffness)
+{
+    int k = 0;
+    while (k < stiffness->n - 1 && stiffness->curvature[k] < stiffness->resolved)
+        k++;
+    return k;
 }
 
 const struct wb_estimate *wb_cycle_stiffness_at(const struct wb_cycle_stiffness *stiffness,

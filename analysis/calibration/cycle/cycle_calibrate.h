@@ -190,6 +190,9 @@ wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
                        const struct wb_cycle_calibrate_settings *settings, struct wb_reason *why);
 void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration);
 
+/* Index of the smallest curvature that the data resolve. */
+int wb_cycle_stiffness_resolved(const struct wb_cycle_stiffness *stiffness);
+
 /* The stiffness at a curvature that is stated; NULL: there is none. */
 const struct wb_estimate *wb_cycle_stiffness_at(const struct wb_cycle_stiffness *stiffness,
                                                 double curvature);

@@ -574,16 +574,17 @@ static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
 /* Differences from the residuals at x, of cycles computed beside that of x. */
 static int find_slopes(struct wb_cycle_search *p, const double *x)
 {
-    double numbers[WB_FIT_MOST_FREE], moved[WB_FIT_MOST_FREE];
+    double numbers[WB_FIT_MOST_FREE], moved[WB_FIT_MOST_FREE][WB_FIT_MOST_FREE];
     struct wb_law law;
     struct wb_cycle_specimen specimen;
     double *const there = wb_memory_new((size_t)p->n_residuals, sizeof *there);
     int status = take_numbers(p, x, numbers, &law, &specimen) ? GSL_SUCCESS : GSL_EFAILED;
     for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
         struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
-        memcpy(moved, x, (size_t)p->n_free * sizeof *moved);
-        moved[k] += difference;
-        if (!take_numbers(p, moved, numbers, &neighbour->law, &neighbour->specimen))
+        double step[WB_FIT_MOST_FREE];
+        memcpy(step, x, (size_t)p->n_free * sizeof *step);
+        step[k] += difference;
+        if (!take_numbers(p, step, moved[k], &neighbour->law, &neighbour->specimen))
             status = GSL_EFAILED;
     }
     if (status == GSL_SUCCESS) {
@@ -595,10 +596,7 @@ static int find_slopes(struct wb_cycle_search *p, const double *x)
     }
     for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
         const struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
-        memcpy(moved, x, (size_t)p->n_free * sizeof *moved);
-        moved[k] += difference;
-        absolute(p, moved, numbers);
-        status = compare(p, numbers, &neighbour->law, neighbour->tension, neighbour->distance,
+        status = compare(p, moved[k], &neighbour->law, neighbour->tension, neighbour->distance,
                          neighbour->held, there);
         for (int i = 0; i < p->n_residuals; i++) {
             gsl_matrix_set(p->slopes, (size_t)i, (size_t)k, (there[i] - p->last[i]) / difference);
@@ -826,13 +824,13 @@ static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_wo
     gsl_matrix_free(covariance);
 }
 
-/* What runs of the beam need. */
-static void take_buffers(struct wb_cycle_search *p)
+/* What runs of the beam need, and those of neighbours beside it. */
+static void take_buffers(struct wb_cycle_search *p, int n_neighbours)
 {
     p->tension = wb_memory_new((size_t)p->data->n_points, sizeof *p->tension);
     p->distance = wb_memory_new((size_t)p->data->n_places, sizeof *p->distance);
     p->last = wb_memory_new((size_t)p->n_residuals, sizeof *p->last);
-    for (int k = 0; k < p->n_free; k++) {
+    for (int k = 0; k < n_neighbours; k++) {
         struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
         neighbour->tension = wb_memory_new((size_t)p->data->n_points, sizeof(double));
         neighbour->distance = wb_memory_new((size_t)p->data->n_places, sizeof(double));
@@ -863,6 +861,18 @@ static struct wb_law_maxwell unseen_element(const struct wb_cycle_search *p,
     const double strain = 0.5 * p->data->info.outer_diameter * p->run.clamp_curvature;
     const double secant = wb_law_virgin_stress(law, strain, NULL) / strain;
     return (struct wb_law_maxwell){part * secant * x / -expm1(-x), unseen_time * loading};
+}
+
+/* Cholesky's factor of J'J; NULL: it has none. */
+static gsl_matrix *factor_squares(const gsl_matrix *J)
+{
+    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(J->size2, J->size2));
+    gsl_matrix_set_identity(squares);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);
+    if (gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS)
+        return squares;
+    gsl_matrix_free(squares);
+    return NULL;
 }
 
 /* Gauss and Newton's step from the end of the search, with the residuals of altered data. `squares`
@@ -906,14 +916,10 @@ void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit)
 {
     struct wb_cycle_search *const p = fit->search;
     const struct wb_cycle_model_settings how = {p->settings.n_elements, p->settings.n_fibres, 0};
-    const size_t n = (size_t)p->n_free;
     double *const r = wb_memory_new((size_t)p->n_residuals, sizeof *r);
-    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
-    take_buffers(p);
-    gsl_matrix_set_identity(squares);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, p->slopes, know_nothing, squares);
-    if (gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS &&
-        wb_cycle_model_create(&p->model, p->data, &fit->law, &how) == WB_OK &&
+    gsl_matrix *const squares = factor_squares(p->slopes);
+    take_buffers(p, 0);
+    if (squares && wb_cycle_model_create(&p->model, p->data, &fit->law, &how) == WB_OK &&
         residuals(p, p->slopes_x, r) == GSL_SUCCESS && p->run.reached) {
         for (int i = 0; i < WB_SHARED; i++)
             find_altered(p, squares, r, i, fit);
@@ -1034,14 +1040,12 @@ static double first_scale(const struct candidate *c, const struct wb_cycle_fit *
 static bool is_best_at_end(const struct wb_cycle_search *p, const gsl_multifit_nlinear_workspace *w,
                            const struct wb_law *law)
 {
-    const size_t n = (size_t)p->n_free, at = (size_t)p->n_form - 1;
+    const size_t at = (size_t)p->n_form - 1;
     const double share = logistic(p->start[at]);
-    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(n, n));
-    gsl_vector *const step = wb_memory_need(gsl_vector_alloc(n));
-    gsl_matrix_set_identity(squares);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, w->J, know_nothing, squares);
-    bool is_best = gsl_blas_dgemv(CblasTrans, -1.0, w->J, w->f, 0.0, step) == GSL_SUCCESS &&
-                   gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS &&
+    gsl_matrix *const squares = factor_squares(w->J);
+    gsl_vector *const step = wb_memory_need(gsl_vector_alloc((size_t)p->n_free));
+    bool is_best = squares &&
+                   gsl_blas_dgemv(CblasTrans, -1.0, w->J, w->f, 0.0, step) == GSL_SUCCESS &&
                    gsl_linalg_cholesky_svx(squares, step) == GSL_SUCCESS;
     if (is_best) {
         const double to = share + share * (1.0 - share) * gsl_vector_get(step, at);
@@ -1157,7 +1161,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     const struct wb_cycle_model_settings how = {settings->n_elements, settings->n_fibres,
                                                 p->n_free};
     const size_t points = (size_t)data->n_points;
-    take_buffers(p);
+    take_buffers(p, p->n_free);
     p->weight = wb_memory_new(points, sizeof *p->weight);
     for (size_t i = 0; i < points; i++)
         p->weight[i] = 1.0 / (p->scale_of_misses * p->scale_of_misses);
