@@ -1155,14 +1155,6 @@ void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration)
     *calibration = (struct wb_cycle_calibration){.members = NULL};
 }
 
-int wb_cycle_stiffness_resolved(const struct wb_cycle_stiffness *stiffness)
-{
-    int k = 0;
-    while (k < stiffness->n - 1 && stiffness->curvature[k] < stiffness->resolved)
-        k++;
-    return k;
-}
-
 const struct wb_estimate *wb_cycle_stiffness_at(const struct wb_cycle_stiffness *stiffness,
                                                 double curvature)
 {

@@ -191,7 +191,13 @@ wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
 void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration);
 
 /* Index of the smallest curvature that the data resolve. */
-int wb_cycle_stiffness_resolved(const struct wb_cycle_stiffness *stiffness);
+static inline int wb_cycle_stiffness_resolved(const struct wb_cycle_stiffness *stiffness)
+{
+    int k = 0;
+    while (k < stiffness->n - 1 && stiffness->curvature[k] < stiffness->resolved)
+        k++;
+    return k;
+}
 
 /* The stiffness at a curvature that is stated; NULL: there is none. */
 const struct wb_estimate *wb_cycle_stiffness_at(const struct wb_cycle_stiffness *stiffness,
