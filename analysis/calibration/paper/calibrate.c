@@ -465,6 +465,29 @@ static int rising_points(const struct wb_curve *curve)
     return n;
 }
 
+/* Gauss and Newton's steps from (K/K0, n/n0) = `at`, a tenth of a simplex' runs; `at` stays where
+ * they do not settle. */
+static enum wb_status refine(struct wb_calibrate_result *result, struct objective *objective,
+                             double at[2], bool *settled)
+{
+    struct wb_material material = objective->material;
+    material.strength_coefficient = at[0] * objective->first_strength;
+    material.hardening_exponent = at[1] * objective->first_exponent;
+    WB_TRY(wb_refit_run(&material, settled, objective->computed, objective->curve,
+                        &objective->evaluations));
+    const double to[2] = {material.strength_coefficient / objective->first_strength,
+                          material.hardening_exponent / objective->first_exponent};
+    *settled = *settled && violation(to[0], material.hardening_exponent) == 0.0;
+    if (!*settled)
+        return WB_OK;
+    const gsl_vector_const_view there = gsl_vector_const_view_array(to, 2);
+    at[0] = to[0];
+    at[1] = to[1];
+    add_step(result, objective, &there.vector, evaluate(&there.vector, objective),
+             result->path[result->n_path - 1].size);
+    return WB_OK;
+}
+
 /* Nelder-Mead, then once more from the optimum. Where a follower test goes beyond its largest
  * deflection, it is first sought up to there: a curled wire's tip comes down again to where a far
  * stiffer one's still goes up, and between them the error has a ridge. */
@@ -482,7 +505,10 @@ static enum wb_status optimise(struct wb_calibrate_result *result, struct object
     if (settings->restart && result->end != WB_CALIBRATE_STOPPED &&
         result->end != WB_CALIBRATE_ERROR) {
         const double before[2] = {at[0], at[1]};
-        WB_TRY(minimise(result, objective, at, settings));
+        bool settled;
+        WB_TRY(refine(result, objective, at, &settled));
+        if (!settled)
+            WB_TRY(minimise(result, objective, at, settings));
         result->restarted = true;
         result->restart_moved = fmax(fabs(at[0] / before[0] - 1.0), fabs(at[1] / before[1] - 1.0));
     }
@@ -518,7 +544,10 @@ static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
         scale_closed_forms(&objective->material, measured, &computed, settings);
         objective->first_strength = result->material.strength_coefficient;
         objective->first_exponent = result->material.hardening_exponent;
-        WB_TRY(minimise(result, objective, at, settings));
+        bool settled;
+        WB_TRY(refine(result, objective, at, &settled));
+        if (!settled)
+            WB_TRY(minimise(result, objective, at, settings));
         take_optimum(result, objective, at);
     }
     result->bow_corrected = true;

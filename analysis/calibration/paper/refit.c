@@ -11,8 +11,10 @@
 
 /* Steps of ln K and n for the slopes. */
 #define SLOPE_STEP 0.01
-/* A refit is settled when ln K and n move less than this. */
+/* A refit is settled when ln K and n move less than this, or when Gauss and Newton's step promises
+ * to lower the sum of squares by less than this part. */
 #define SETTLED 1e-3
+#define SETTLED_SQUARES 1e-5
 #define MOST_STEPS 12
 /* So much of Levenberg's damping leaves the step as good as Gauss and Newton's. */
 #define FIRST_DAMPING 1e-3
@@ -59,11 +61,11 @@ static enum wb_status find_slopes(struct refit *refit, bool *complete)
     return WB_OK;
 }
 
-/* Gauss-Newton step of (ln K, n) with Levenberg's `damping`; false when a change of one has
- * the effect of a change of the other. */
-static bool newton_step(const struct refit *refit, double damping, double step[2])
+/* Gauss-Newton step of (ln K, n) with Levenberg's `damping`, and the part of the sum of squares
+ * that it promises; false when a change of one has the effect of a change of the other. */
+static bool newton_step(const struct refit *refit, double damping, double step[2], double *promised)
 {
-    double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0;
+    double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0, rr = 0.0;
     for (int i = 0; i < refit->curve->n; i++) {
         const double a = refit->by_strength[i], b = refit->by_exponent[i];
         const double residual = refit->curve->value[i] - refit->value[i];
@@ -72,6 +74,7 @@ static bool newton_step(const struct refit *refit, double damping, double step[2
         bb += b * b;
         ar += a * residual;
         br += b * residual;
+        rr += residual * residual;
     }
     aa *= 1.0 + damping;
     bb *= 1.0 + damping;
@@ -83,6 +86,7 @@ static bool newton_step(const struct refit *refit, double damping, double step[2
     const double largest = fmax(fabs(step[0]), fabs(step[1]));
     if (!isfinite(largest))
         return false;
+    *promised = rr > 0.0 ? (ar * step[0] + br * step[1]) / rr : 0.0;
     if (largest > LARGEST_STEP) {
         step[0] *= LARGEST_STEP / largest;
         step[1] *= LARGEST_STEP / largest;
@@ -102,7 +106,7 @@ static double curve_error(const struct refit *refit, bool complete)
 /* Refits K and n of refit->material; *settled: they were found. */
 static enum wb_status refit_hardening(struct refit *refit, bool *settled)
 {
-    double damping = FIRST_DAMPING, step[2];
+    double damping = FIRST_DAMPING, step[2], promised;
     bool complete;
     *settled = false;
     WB_TRY(run(refit, 0.0, 0.0, refit->value, &complete));
@@ -113,7 +117,10 @@ static enum wb_status refit_hardening(struct refit *refit, bool *settled)
         return WB_OK;
     for (int i = 0; i < MOST_STEPS && !*settled; i++) {
         double *const previous = refit->previous;
-        if (!newton_step(refit, damping, step))
+        if (!newton_step(refit, damping, step, &promised))
+            return WB_OK;
+        *settled = damping <= FIRST_DAMPING && promised < SETTLED_SQUARES;
+        if (*settled)
             return WB_OK;
         /* The curve of the last accepted point is kept until the trial proves better. */
         memcpy(previous, refit->value, (size_t)refit->curve->n * sizeof *previous);
