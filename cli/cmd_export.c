@@ -50,7 +50,7 @@ static enum wb_status write_samples(struct wb_recording *recording,
     struct wb_rig rig;
     char sha256[65], source[WB_PATH + 160];
     WB_TRY(wb_replay_rig(recording, &rig));
-    if (wb_recording_sha256(options->input, sha256, NULL) != WB_OK)
+    if (wb_recording_hash(recording, sha256) != WB_OK)
         snprintf(sha256, sizeof sha256, "unknown");
     WB_TRY(wb_file_prepare_output(options->output, options->force));
     snprintf(source, sizeof source, "%s (sha256 %s), wirebench %s (%s)",

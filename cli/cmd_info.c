@@ -94,7 +94,7 @@ static enum wb_status gather(struct facts *facts, const char *path)
 {
     WB_TRY(wb_recording_open(&facts->recording, path));
     WB_TRY(wb_survey_run(facts->recording, true, &facts->survey));
-    if (wb_recording_sha256(path, facts->sha256, NULL) != WB_OK)
+    if (wb_recording_hash(facts->recording, facts->sha256) != WB_OK)
         strcpy(facts->sha256, "");
     struct wb_reason why = {.text = ""};
     if (!wb_index_look_up(&facts->entry, path, facts->sha256, &why) && why.text[0])

@@ -94,9 +94,9 @@ static enum wb_status look(const char *path, struct wb_survey *survey, char sha2
     struct wb_recording *recording = NULL;
     WB_TRY(wb_recording_open(&recording, path));
     enum wb_status status = wb_survey_run(recording, true, survey);
-    enum wb_status closed = wb_recording_close(recording);
-    if (status == WB_OK && wb_recording_sha256(path, sha256, NULL) != WB_OK)
+    if (status == WB_OK && wb_recording_hash(recording, sha256) != WB_OK)
         sha256[0] = '\0';
+    enum wb_status closed = wb_recording_close(recording);
     return status != WB_OK ? status : closed;
 }
 

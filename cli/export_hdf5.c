@@ -70,9 +70,9 @@ static enum wb_status take_recording(struct job *job)
     struct wb_recording *recording = NULL;
     WB_TRY(wb_recording_open(&recording, job->options->input));
     const enum wb_status status = read_recording(job, recording);
-    const enum wb_status closed = wb_recording_close(recording);
-    if (wb_recording_sha256(job->options->input, job->sha256, NULL) != WB_OK)
+    if (wb_recording_hash(recording, job->sha256) != WB_OK)
         snprintf(job->sha256, sizeof job->sha256, "unknown");
+    const enum wb_status closed = wb_recording_close(recording);
     return status == WB_OK ? closed : status;
 }
 

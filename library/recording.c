@@ -106,7 +106,7 @@ static enum wb_status survey(struct wirebench_recording *recording)
         return WB_OK;
     recording->n_problems = 0;
     WB_TRY(wb_survey_run(recording->recording, true, &recording->survey));
-    if (wb_recording_sha256(recording->path, recording->sha256, NULL) != WB_OK)
+    if (wb_recording_hash(recording->recording, recording->sha256) != WB_OK)
         recording->sha256[0] = '\0';
     keep_problems(recording);
     recording->is_surveyed = true;

@@ -470,10 +470,11 @@ enum wb_status wb_align_load(struct wb_align *align, const char *path)
 {
     struct wb_recording *recording;
     snprintf(align->name, sizeof align->name, "%.120s", wb_file_name(path));
-    WB_TRY(wb_recording_sha256(path, align->sha256, align->why));
     WB_TRY(wb_recording_open_with_reason(&recording, path, align->lost));
     wb_recording_warn_cut_short(recording);
-    const enum wb_status status = load_all(align, recording, path);
+    enum wb_status status = wb_recording_hash(recording, align->sha256);
+    if (status == WB_OK)
+        status = load_all(align, recording, path);
     const enum wb_status closed = wb_recording_close(recording);
     return status != WB_OK ? status : closed;
 }

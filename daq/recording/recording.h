@@ -177,6 +177,9 @@ wb_recording_each_meta(struct wb_recording *recording,
                        enum wb_status (*visit)(void *context, const char *key, const char *value),
                        void *context);
 
+/* wb_recording_sha256() of one that is open for reading, which is not decompressed again. */
+WB_MUST_CHECK enum wb_status wb_recording_hash(const struct wb_recording *recording, char hex[65]);
+
 /* SHA-256 of the uncompressed database as lower-case hex, 64 characters and a NUL. Of a recording
  * that was not closed: of the file followed by its write-ahead log (`-wal`); of a compressed one
  * that is cut short: of what can be decompressed. `why` receives why it failed. NULL: that is

@@ -136,9 +136,10 @@ struct wb_recording {
     size_t n_unflushed, capacity;
     struct wb_hash *digest;
     /* Reading. */
-    bool compressed; /* .zst */
-    bool complete;   /* closed properly */
-    bool shortened;  /* the file is shorter than its own header says, or not all decompressed */
+    bool compressed;  /* .zst: */
+    int uncompressed; /* a descriptor of what was decompressed; else -1 */
+    bool complete;    /* closed properly */
+    bool shortened;   /* the file is shorter than its own header says, or not all decompressed */
     int64_t bytes_there, bytes_expected; /* decompressed; as the file's own header counts them */
     bool is_log_missing;                 /* it was not closed, and there is no log beside it */
     struct wb_recording_log log;         /* beside it */

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/hash.h"
 #include "daq/recording/recording_private.h"
 
 #define WB_LOG_DOMAIN "recording"
@@ -205,7 +206,7 @@ static enum wb_status open_compressed(struct wb_recording *recording, int descri
             status = wb_recording_fail(recording, code, "open the recording");
     }
     unlink(temporary);
-    close(to);
+    recording->uncompressed = to;
     return status;
 }
 
@@ -354,6 +355,7 @@ enum wb_status wb_recording_open_with_reason(struct wb_recording **out, const ch
     struct wb_recording *recording = calloc(1, sizeof *recording);
     if (recording) {
         recording->why = why;
+        recording->uncompressed = -1;
         recording->path = strdup(path);
     }
     enum wb_status status = WB_OK;
@@ -378,6 +380,13 @@ enum wb_status wb_recording_open_with_reason(struct wb_recording **out, const ch
     free(closed);
     *out = recording;
     return WB_OK;
+}
+
+enum wb_status wb_recording_hash(const struct wb_recording *recording, char hex[65])
+{
+    return recording->uncompressed >= 0
+               ? wb_hash_descriptor(recording->uncompressed, recording->path, hex, recording->why)
+               : wb_recording_sha256(recording->path, hex, recording->why);
 }
 
 bool wb_recording_log_problem(const struct wb_recording *recording, char *text, size_t size)

@@ -99,6 +99,8 @@ void wb_recording_release(struct wb_recording *recording)
         sqlite3_finalize(recording->insert[i]);
     wb_hash_destroy(recording->digest);
     sqlite3_close(recording->db);
+    if (recording->uncompressed >= 0)
+        close(recording->uncompressed);
     for (int i = 0; i < recording->n_streams; i++)
         free(recording->settings[i]);
     free(recording->settings);
@@ -186,8 +188,10 @@ enum wb_status wb_recording_create(struct wb_recording **out, const char *path)
     *out = NULL;
     WB_TRY(make_file(path));
     struct wb_recording *recording = calloc(1, sizeof *recording);
-    if (recording)
+    if (recording) {
+        recording->uncompressed = -1;
         recording->path = strdup(path);
+    }
     if (!recording || !recording->path) {
         free(recording);
         unlink(path);

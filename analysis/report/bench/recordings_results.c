@@ -13,6 +13,7 @@
 #include "analysis/report/bench/recordings_results_private.h"
 #include "analysis/report/reasons.h"
 #include "base/interrupt.h"
+#include "base/json.h"
 #include "base/memory.h"
 #include "daq/recording/recording.h"
 
@@ -125,13 +126,17 @@ static enum wb_status align(struct wb_recordings_results_test *test,
 {
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
-    WB_TRY(wb_recording_sha256(test->wanted->path, test->sha256, why));
     WB_TRY(read_bench(test, why));
     if (test->wanted->corrected_rig[0])
         settings.rig_path = test->wanted->corrected_rig;
     if (test->wanted->corrected_specimen[0])
         settings.specimen_path = test->wanted->corrected_specimen;
     WB_TRY(wb_align_run(&test->dataset, test->wanted->path, &settings, why));
+    const char *sha256;
+    if (wb_json_text(wb_json_get(wb_json_item(wb_json_get(test->dataset.document, "recordings"), 0),
+                                 "sha256"),
+                     &sha256))
+        snprintf(test->sha256, sizeof test->sha256, "%s", sha256);
     const enum wb_status status = check_identity(test, wire, length, why);
     if (status != WB_OK)
         wb_dataset_release(&test->dataset);
