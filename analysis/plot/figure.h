@@ -142,11 +142,18 @@ void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, co
 
 /* Draws into memory. SVG: texts are outlines, but the footer is also the file's <desc>; ids are
  * made of the figure's name, so several may stand in one HTML page. PNG: `scale` pixels for a
- * point. PDF: one page of the figure's size; `date_utc` (ISO 8601) becomes the file's date, NULL a
- * fixed one. */
+ * point; only one thread at a time may draw, any may then make the file's bytes. PDF: one page of
+ * the figure's size; `date_utc` (ISO 8601) becomes the file's date, NULL a fixed one. */
 WB_MUST_CHECK enum wb_status wb_figure_svg(const struct wb_figure *figure, struct wb_text *svg);
-WB_MUST_CHECK enum wb_status wb_figure_png(const struct wb_figure *figure, double scale,
-                                           struct wb_text *png);
+struct wb_figure_pixels {
+    struct _cairo_surface *surface; /* owned */
+    const char *name;               /* the figure's, borrowed */
+};
+WB_MUST_CHECK enum wb_status wb_figure_draw(const struct wb_figure *figure, double scale,
+                                            struct wb_figure_pixels *pixels);
+WB_MUST_CHECK enum wb_status wb_figure_pixels_png(const struct wb_figure_pixels *pixels,
+                                                  struct wb_text *png);
+void wb_figure_pixels_release(struct wb_figure_pixels *pixels); /* accepts a zeroed one */
 
 /* The same into files, atomically. */
 WB_MUST_CHECK enum wb_status wb_figure_write_svg(const struct wb_figure *figure, const char *path);

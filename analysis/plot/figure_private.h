@@ -11,6 +11,10 @@
 
 #define WB_FIGURE_PANELS 6
 
+/* wb_figure_draw() and wb_figure_pixels_png(). */
+WB_MUST_CHECK enum wb_status wb_figure_png(const struct wb_figure *figure, double scale,
+                                           struct wb_text *png);
+
 enum wb_series_kind {
     WB_SERIES_IMAGE,
     WB_SERIES_FIELD,

@@ -131,21 +131,43 @@ enum wb_status wb_figure_svg(const struct wb_figure *figure, struct wb_text *svg
     return status;
 }
 
-enum wb_status wb_figure_png(const struct wb_figure *figure, double scale, struct wb_text *png)
+enum wb_status wb_figure_draw(const struct wb_figure *figure, double scale,
+                              struct wb_figure_pixels *pixels)
 {
     const int width = (int)ceil(scale * wb_figure_width(figure));
     const int height = (int)ceil(scale * wb_figure_height(figure));
-    cairo_surface_t *const surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
-    cairo_t *const cairo = cairo_create(surface);
+    *pixels = (struct wb_figure_pixels){
+        .surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height),
+        .name = wb_figure_name(figure)};
+    cairo_t *const cairo = cairo_create(pixels->surface);
     cairo_set_source_rgb(cairo, 1.0, 1.0, 1.0);
     cairo_paint(cairo);
     cairo_scale(cairo, scale, scale);
-    enum wb_status status = wb_canvas_draw_figure(cairo, figure, 0.0, 0.0);
+    const enum wb_status status = wb_canvas_draw_figure(cairo, figure, 0.0, 0.0);
     cairo_destroy(cairo);
-    if (status == WB_OK)
-        status = wb_canvas_status(cairo_surface_write_to_png_stream(surface, wb_canvas_append, png),
-                                  wb_figure_name(figure));
-    cairo_surface_destroy(surface);
+    if (status != WB_OK)
+        wb_figure_pixels_release(pixels);
+    return status;
+}
+
+enum wb_status wb_figure_pixels_png(const struct wb_figure_pixels *pixels, struct wb_text *png)
+{
+    return wb_canvas_status(
+        cairo_surface_write_to_png_stream(pixels->surface, wb_canvas_append, png), pixels->name);
+}
+
+void wb_figure_pixels_release(struct wb_figure_pixels *pixels)
+{
+    cairo_surface_destroy(pixels->surface);
+    pixels->surface = NULL;
+}
+
+enum wb_status wb_figure_png(const struct wb_figure *figure, double scale, struct wb_text *png)
+{
+    struct wb_figure_pixels pixels;
+    WB_TRY(wb_figure_draw(figure, scale, &pixels));
+    const enum wb_status status = wb_figure_pixels_png(&pixels, png);
+    wb_figure_pixels_release(&pixels);
     return status;
 }
 

@@ -14,11 +14,17 @@
 #include "base/json.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "base/workers.h"
 
 #define WB_LOG_DOMAIN "report"
 
 /* Pixels of a PNG for a point: 216 dots an inch. */
 static const double png_scale = 3.0;
+
+/* Figures that are drawn, a few megabytes each, before their files are compressed side by side. */
+enum {
+    DRAWN = 8
+};
 
 struct output {
     char name[128]; /* relative to the report's folder */
@@ -53,6 +59,51 @@ static enum wb_status draw_json(struct outputs *outputs, struct wb_json *numbers
     return WB_OK;
 }
 
+/* Figures drawn one after the other, as Pango does not shape texts on several threads. */
+struct drawn {
+    int n;
+    struct wb_figure_pixels pixels[DRAWN];
+    struct wb_text *png[DRAWN];
+    enum wb_status status[DRAWN];
+};
+
+static enum wb_status compress(void *context, int index)
+{
+    struct drawn *const drawn = context;
+    drawn->status[index] = wb_figure_pixels_png(&drawn->pixels[index], drawn->png[index]);
+    return drawn->status[index];
+}
+
+static enum wb_status draw_some(struct outputs *outputs, const struct wb_figures *figures,
+                                int begin, struct drawn *drawn)
+{
+    for (int i = begin; i < figures->n && drawn->n < DRAWN; i++) {
+        const struct wb_figure *const figure = figures->items[i].figure;
+        const char *const name = wb_figure_name(figure);
+        WB_TRY(wb_figure_svg(figure, add_output(outputs, "figures/", name, "svg")));
+        WB_TRY(wb_figure_draw(figure, png_scale, &drawn->pixels[drawn->n]));
+        drawn->png[drawn->n++] = add_output(outputs, "figures/", name, "png");
+    }
+    const struct wb_workers workers = {.n = drawn->n, .job = compress, .context = drawn};
+    if (wb_workers_run(&workers) < drawn->n)
+        return WB_ERR_MEMORY;
+    for (int i = 0; i < drawn->n; i++)
+        WB_TRY(drawn->status[i]);
+    return WB_OK;
+}
+
+static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figures *figures)
+{
+    enum wb_status status = WB_OK;
+    for (int begin = 0; begin < figures->n && status == WB_OK; begin += DRAWN) {
+        struct drawn drawn = {.n = 0};
+        status = draw_some(outputs, figures, begin, &drawn);
+        for (int i = 0; i < drawn.n; i++)
+            wb_figure_pixels_release(&drawn.pixels[i]);
+    }
+    return status;
+}
+
 static enum wb_status draw(struct outputs *outputs, const struct wb_document *document,
                            const struct wb_figures *figures, const struct wb_cards *cards,
                            struct wb_json *numbers)
@@ -61,12 +112,7 @@ static enum wb_status draw(struct outputs *outputs, const struct wb_document *do
         wb_memory_new(2 * (size_t)figures->n + (size_t)cards->n + 3, sizeof *outputs->items);
     WB_TRY(wb_pdf_render(document, add_output(outputs, "", "report", "pdf")));
     WB_TRY(wb_html_render(document, add_output(outputs, "", "report", "html")));
-    for (int i = 0; i < figures->n; i++) {
-        const struct wb_figure *const figure = figures->items[i].figure;
-        const char *const name = wb_figure_name(figure);
-        WB_TRY(wb_figure_svg(figure, add_output(outputs, "figures/", name, "svg")));
-        WB_TRY(wb_figure_png(figure, png_scale, add_output(outputs, "figures/", name, "png")));
-    }
+    WB_TRY(draw_figures(outputs, figures));
     for (int i = 0; i < cards->n; i++) {
         struct output *const output = &outputs->items[outputs->n++];
         snprintf(output->name, sizeof output->name, "%s", cards->files[i].name);

@@ -5,7 +5,7 @@
 
 #include <cairo.h>
 
-#include "analysis/plot/figure.h"
+#include "analysis/plot/figure_private.h"
 
 enum {
     SCALE = 2,
