@@ -22,33 +22,27 @@ static double power_mean_growth(const struct wb_material *m, double p)
     return power_growth(m, p) / (m->hardening_exponent + 1.0);
 }
 
-/* The weight of the power term when all of c were elastic strain: K (c / E)^n / c. */
-static double power_weight(const struct wb_material *m, double c)
-{
-    return m->strength_coefficient * pow(c / m->youngs_modulus, m->hardening_exponent) / c;
-}
-
 /* q = ln r is found by Newton's method on h(q) = ln(e^q + k e^(n q)), which is increasing, nearly
- * straight and convex, so it converges from any start. */
-static double power_log_ratio(const struct wb_material *m, double c, double q)
+ * straight and convex, so it converges from any start. k is the weight of the power term when all
+ * of c were elastic strain e^x: K e^(n x) / c. */
+static double power_ratio(const struct wb_material *m, double x, double q)
 {
-    const double n = m->hardening_exponent, k = power_weight(m, c);
-    if (k == 0.0)
-        return 0.0;
+    const double n = m->hardening_exponent;
+    const double log_k = log(m->strength_coefficient / m->youngs_modulus) + (n - 1.0) * x;
 
     /* At this start one of the two terms is 1 and the sum at least 1. */
     if (!isfinite(q))
-        q = fmin(0.0, -log(k) / n);
+        q = fmin(0.0, -log_k / n);
     for (int iteration = 0; iteration < 60; iteration++) {
         const double a = exp(q);
-        const double b = k * exp(n * q);
+        const double b = exp(log_k + n * q);
         const double step = log(a + b) * (a + b) / (a + n * b);
-        q -= step;
         /* What is left is less than the step's square. */
         if (!(fabs(step) > 1e-8))
-            break;
+            return a - a * step;
+        q -= step;
     }
-    return q;
+    return exp(q);
 }
 
 /* --- linear kinematic hardening (Prager): the back stress moves by K d(ep) --- */
@@ -78,7 +72,7 @@ const struct wb_hardening_law wb_hardening_laws[WB_HARDENING_LAWS] = {
          .may_be_perfect = true,
          .growth = power_growth,
          .mean_growth = power_mean_growth,
-         .log_ratio = power_log_ratio},
+         .ratio = power_ratio},
     [WB_HARDENING_KINEMATIC_LINEAR] = {.name = "kinematic",
                                        .yields = true,
                                        .moves = true,
@@ -117,17 +111,12 @@ double wb_hardening_mean_stress(const struct wb_material *material, double p)
 double wb_hardening_ratio(const struct wb_material *material, double overstress)
 {
     const struct wb_hardening_law *law = wb_hardening_law(material);
-    return law->log_ratio ? exp(law->log_ratio(material, overstress, (double)NAN)) : 1.0;
+    return law->ratio
+               ? law->ratio(material, log(overstress / material->youngs_modulus), (double)NAN)
+               : 1.0;
 }
 
 /* --- tables --- */
-
-static double bits_to_double(uint64_t bits)
-{
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
 
 static uint64_t double_to_bits(double value)
 {
@@ -136,27 +125,49 @@ static uint64_t double_to_bits(double value)
     return bits;
 }
 
-/* The Chebyshev nodes of [-1/2, 1/2]. */
-static void find_nodes(int n, double *node)
+/* The Chebyshev nodes of [-1/2, 1/2], and one over what lies between node i and node i - j. */
+struct nodes {
+    int n;
+    double at[WB_HARDENING_TABLE_MOST_TERMS];
+    double over[WB_HARDENING_TABLE_MOST_TERMS][WB_HARDENING_TABLE_MOST_TERMS]; /* [j][i] */
+};
+
+static void find_nodes(struct nodes *nodes, int n)
 {
+    nodes->n = n;
     for (int i = 0; i < n; i++)
-        node[i] = 0.5 * cos(M_PI * (i + 0.5) / n);
+        nodes->at[i] = 0.5 * cos(M_PI * (i + 0.5) / n);
+    for (int j = 1; j < n; j++) {
+        for (int i = j; i < n; i++)
+            nodes->over[j][i] = 1.0 / (nodes->at[i] - nodes->at[i - j]);
+    }
 }
 
 /* Newton's divided differences at the nodes, in place of the values, expanded to powers. */
-static void interpolate(int n, const double *node, double *value, double *coefficient)
+static void interpolate(const struct nodes *nodes, double *value, double *coefficient)
 {
+    const int n = nodes->n;
     for (int j = 1; j < n; j++) {
         for (int i = n - 1; i >= j; i--)
-            value[i] = (value[i] - value[i - 1]) / (node[i] - node[i - j]);
+            value[i] = (value[i] - value[i - 1]) * nodes->over[j][i];
     }
     for (int i = 0; i < n; i++)
         coefficient[i] = 0.0;
     for (int i = n - 1; i >= 0; i--) {
         for (int j = n - 1; j >= 1; j--)
-            coefficient[j] = coefficient[j - 1] - node[i] * coefficient[j];
-        coefficient[0] = value[i] - node[i] * coefficient[0];
+            coefficient[j] = coefficient[j - 1] - nodes->at[i] * coefficient[j];
+        coefficient[0] = value[i] - nodes->at[i] * coefficient[0];
     }
+}
+
+/* ln r at x + h from r at x, to third order: of a power law dp/dc = 1 / (E (r + n (1 - r))). */
+static double follow_ratio(double n, double r, double h)
+{
+    const double s = 1.0 / (n + (1.0 - n) * r);
+    const double slope = s - 1.0, ds = (1.0 - n) * r * slope;
+    const double second = -ds * s * s;
+    const double third = (2.0 * ds * ds * s - (1.0 - n) * r * (slope * slope + second)) * s * s;
+    return log(r) + h * (slope + 0.5 * h * (second + h * (1.0 / 3.0) * third));
 }
 
 void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_material *material)
@@ -165,34 +176,33 @@ void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_mat
     const double n = wb_hardening_exponent(material, 1.0);
     /* The nearest singularity of a power law's r lies at an angle of about pi n / (1 - n) from the
      * real axis, so small exponents need finer pieces. */
-    const int log2_pieces = n < 0.25 ? 6 : n < 0.4 ? 5 : 4;
-    const double begin = ldexp(1.0, WB_HARDENING_LOWEST_OCTAVE);
+    const int log2_pieces = n < 0.25 ? 6 : n < 0.4 ? 5 : 4, in_octave = 1 << log2_pieces;
+    const double begin =
+        log(material->yield_stress / material->youngs_modulus) + WB_HARDENING_LOWEST_OCTAVE * M_LN2;
+    double log_mantissa[WB_HARDENING_MAX_PIECES][WB_HARDENING_TERMS];
+    struct nodes nodes;
 
     table->shift = 52 - log2_pieces;
-    table->first = (long long)(double_to_bits(begin) >> table->shift);
+    table->first =
+        (long long)(double_to_bits(ldexp(1.0, WB_HARDENING_LOWEST_OCTAVE)) >> table->shift);
     table->pieces = (long long)WB_HARDENING_OCTAVES << log2_pieces;
+    find_nodes(&nodes, WB_HARDENING_TERMS);
+    for (int piece = 0; piece < in_octave; piece++) {
+        for (int i = 0; i < WB_HARDENING_TERMS; i++)
+            log_mantissa[piece][i] = log1p((piece + 0.5 + nodes.at[i]) / in_octave);
+    }
 
-    double node[WB_HARDENING_TERMS];
-    find_nodes(WB_HARDENING_TERMS, node);
-
-    double q = (double)NAN, slope = 0.0, last = 0.0;
+    double r = (double)NAN, last = 0.0;
     for (long long piece = 0; piece < table->pieces; piece++) {
-        const uint64_t low_bits = (uint64_t)(table->first + piece) << table->shift;
-        const uint64_t high_bits = (uint64_t)(table->first + piece + 1) << table->shift;
-        const double low = bits_to_double(low_bits);
-        const double width = bits_to_double(high_bits) - low;
-
         double value[WB_HARDENING_TERMS];
         for (int i = WB_HARDENING_TERMS - 1; i >= 0; i--) {
-            const double c = (low + (node[i] + 0.5) * width) * material->yield_stress;
-            /* The line through the neighbouring nodes is a good start. */
-            const double before = q;
-            q = law->log_ratio(material, c, q + slope * (c - last));
-            slope = isfinite(before) ? (q - before) / (c - last) : 0.0;
-            last = c;
-            value[i] = exp(q);
+            const double x = begin + (double)(piece >> log2_pieces) * M_LN2 +
+                             log_mantissa[piece & (in_octave - 1)][i];
+            r = law->ratio(material, x, follow_ratio(n, r, x - last));
+            last = x;
+            value[i] = r;
         }
-        interpolate(WB_HARDENING_TERMS, node, value, table->coefficients[piece]);
+        interpolate(&nodes, value, table->coefficients[piece]);
     }
 }
 
@@ -220,19 +230,21 @@ enum wb_status wb_hardening_tabulate_octaves(const struct wb_material *radial, i
                                              double *table)
 {
     static const double tolerance = 1e-5;
-    double node[WB_HARDENING_TABLE_MOST_TERMS], value[WB_HARDENING_TABLE_MOST_TERMS];
+    double value[WB_HARDENING_TABLE_MOST_TERMS];
     double coefficient[WB_HARDENING_TABLE_MOST_TERMS], worst = 0.0;
+    struct nodes nodes;
     bool is_good = true;
 
     memset(table, 0, (size_t)terms * WB_HARDENING_TABLE_OCTAVES * sizeof *table);
     if (!wb_hardening_law(radial)->growth)
         return WB_OK;
-    find_nodes(terms, node);
+    find_nodes(&nodes, terms);
     for (int octave = 0; octave < WB_HARDENING_TABLE_OCTAVES; octave++) {
         const double begin = ldexp(1.0, WB_HARDENING_TABLE_LOWEST + octave);
         for (int i = 0; i < terms; i++)
-            value[i] = wb_hardening_ratio(radial, begin * (node[i] + 1.5) * radial->youngs_modulus);
-        interpolate(terms, node, value, coefficient);
+            value[i] =
+                wb_hardening_ratio(radial, begin * (nodes.at[i] + 1.5) * radial->youngs_modulus);
+        interpolate(&nodes, value, coefficient);
         const double error = octave_error(radial, begin, terms, coefficient);
         is_good = is_good && error <= tolerance;
         worst = fmax(worst, error);

@@ -58,12 +58,13 @@ struct wb_hardening_law {
     bool may_be_perfect;               /* without any of them it is perfectly plastic */
 
     /* Of a surface that grows: H(p), Pa, at p >= 0; the mean of H from 0 to p; the exponent at p,
-     * NULL where it is the material's own at any p; ln r at the overstress c > 0, to round-off,
-     * with a guess to start from or NaN. */
+     * NULL where it is the material's own at any p; r, to round-off, at the logarithm of the strain
+     * c / E that an overstress c > 0 has while it is elastic, with a guess of ln r to start from or
+     * NaN. */
     double (*growth)(const struct wb_material *material, double p);
     double (*mean_growth)(const struct wb_material *material, double p);
     double (*exponent)(const struct wb_material *material, double p);
-    double (*log_ratio)(const struct wb_material *material, double overstress, double guess);
+    double (*ratio)(const struct wb_material *material, double log_strain, double guess);
     /* Of one that moves: the modulus d(back stress) / dp, Pa. */
     double (*back_modulus)(const struct wb_material *material);
 };
@@ -113,7 +114,7 @@ double wb_hardening_ratio(const struct wb_material *material, double overstress)
 enum {
     WB_HARDENING_TERMS = 8,          /* coefficients of a piece; one cache line */
     WB_HARDENING_LOWEST_OCTAVE = -6, /* the table begins at c / sigma_Y = 2^-6 */
-    WB_HARDENING_OCTAVES = 18,
+    WB_HARDENING_OCTAVES = 14,
     WB_HARDENING_MAX_PIECES = 64 /* in an octave, as a power of two */
 };
 
