@@ -223,7 +223,7 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
     int info = 0;
     int code = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
     if (code == GSL_SUCCESS)
-        code = gsl_multifit_nlinear_driver(200, 1e-12, 1e-15, 0.0, NULL, NULL, &info, w);
+        code = gsl_multifit_nlinear_driver(200, 1e-7, 1e-15, 0.0, NULL, NULL, &info, w);
     if (e->status == WB_OK) {
         /* The last evaluation need not have been the best. */
         (void)equivalent_residuals(w->x, e, w->f);
