@@ -54,12 +54,12 @@ static enum wb_status make_law(const struct wirebench_law *given, struct wb_law 
     const double isotropic_share = 1.0 - given->kinematic_share;
     if (given->n_backs != 0 || given->saturation != 0.0)
         return make_chaboche(given, &material, law);
-    if (given->is_combined && (given->n_parts > 0 || given->yield_stress == 0.0))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "is_combined: expected 0 beside n_parts, and of a wire that never yields");
+    if (given->is_combined && given->n_parts == 0 && given->yield_stress == 0.0)
+        return wb_fail(WB_ERR_ARGUMENT, "is_combined: expected 0 of a wire that never yields");
     if (given->n_parts > 0 || given->yield_stress == 0.0) {
         wb_law_init_parallel(law, parts, given->n_parts > 0 ? given->n_parts : 1, isotropic_share,
                              given->poissons_ratio);
+        law->is_combined = given->is_combined;
     } else {
         wb_law_init_ludwik(law, &material);
         law->isotropic_share = isotropic_share;

@@ -174,6 +174,11 @@ static void put_overlay(struct wb_text *text, const struct dialect *dialect,
     for (int i = 0; i < overlay.n && kinematic > 0.0; i++) {
         const double E = kinematic * overlay.modulus[i], e = overlay.yield_strain[i];
         table = (struct table){.n = isfinite(e), .stress = {E * e}};
+        if (isfinite(e) && overlay.kept > 0.0) {
+            table.n = 2;
+            table.strain[1] = last_strain;
+            table.stress[1] = E * (e + overlay.kept / (1.0 - overlay.kept) * last_strain);
+        }
         m.modulus = E;
         snprintf(m.name, sizeof m.name, "%s_PART%d", name, i + 1);
         put_material(text, dialect, &m);

@@ -76,7 +76,7 @@ bool wb_law_is_plain(const struct wb_law *law)
 
 bool wb_law_is_overlay(const struct wb_law *law)
 {
-    return !law->is_combined && !wb_law_is_plain(law);
+    return law->form == WB_LAW_PARALLEL || (!law->is_combined && !wb_law_is_plain(law));
 }
 
 static enum wb_status check_parts(const struct wb_law *law, struct wb_reason *why)
@@ -166,8 +166,10 @@ enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why)
         return wb_fail_to(why, WB_ERR_ARGUMENT, "isotropic share %g: expected 0 to 1",
                           law->isotropic_share);
     if (law->form == WB_LAW_PARALLEL)
-        return law->is_combined
-                   ? wb_fail_to(why, WB_ERR_ARGUMENT, "parallel parts have no combined hardening")
+        return law->is_combined && law->isotropic_share == 1.0
+                   ? wb_fail_to(why, WB_ERR_ARGUMENT,
+                                "isotropic share 1: expected less of parallel parts with combined "
+                                "hardening, which would never yield")
                    : check_parts(law, why);
     if (!wb_hardening_law(&law->material)->growth)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
@@ -277,6 +279,10 @@ void wb_law_overlay(const struct wb_law *law, struct wb_overlay *overlay)
         ludwik_overlay(law, overlay);
         return;
     }
+    if (law->is_combined) {
+        overlay->isotropic_share = 0.0;
+        overlay->kept = law->isotropic_share;
+    }
     overlay->n = law->n_parts;
     for (int i = 0; i < law->n_parts; i++) {
         overlay->modulus[i] = law->parts[i].modulus;
@@ -288,8 +294,10 @@ double wb_law_overlay_stress(const struct wb_overlay *overlay, double strain, do
 {
     double stress = 0.0, slope = 0.0;
     for (int i = 0; i < overlay->n; i++) {
-        stress += overlay->modulus[i] * fmin(strain, overlay->yield_strain[i]);
-        slope += strain < overlay->yield_strain[i] ? overlay->modulus[i] : 0.0;
+        const double E = overlay->modulus[i], beyond = strain - overlay->yield_strain[i];
+        const bool yields = beyond >= 0.0;
+        stress += yields ? E * (overlay->yield_strain[i] + overlay->kept * beyond) : E * strain;
+        slope += yields ? overlay->kept * E : E;
     }
     if (tangent)
         *tangent = slope;

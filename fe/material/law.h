@@ -4,6 +4,7 @@
  *   - Ludwik's, the paper's eqs. 1 to 6: F = E e up to sigma_Y, then sigma_Y + K ep^n;
  *   - parallel parts (Prandtl-Ishlinskii; Besseling's overlay): elastic-plastic parts that share
  *     the strain, F = sum_i E_i min(e, e_i), of which the last may stay elastic (e_i infinite);
+ * with combined hardening F = sum_i E_i (min(e, e_i) + beta max(e - e_i, 0));
  *   - Chaboche's, with saturating back stresses and Voce's growth of the yield stress: F = E e up
  *     to sigma_Y, then sigma_Y + Q (1 - exp(-b ep)) + sum_i C_i / gamma_i (1 - exp(-gamma_i ep)).
  *
@@ -15,7 +16,9 @@
  *   - mixed: a share beta of the area hardens isotropically, the rest kinematically;
  *   - combined (Hodge 1957; Simo and Hughes, Computational Inelasticity, box 3.2): one yield
  *     surface grows by beta H(p) and moves by (1 - beta) dH, with H = K p^n of the accumulated
- *     plastic strain p. Ludwik's form only; 1 is isotropic hardening, 0 not Masing's rule.
+ *     plastic strain p. Of Ludwik's form 1 is isotropic hardening, and 0 not Masing's rule. Of
+ *     parallel parts each has a surface of its own, whose limit grows: a part that yields keeps the
+ *     share beta of its modulus; 0 is kinematic hardening.
  * Chaboche's form (Lemaitre and Chaboche, Mechanics of Solid Materials, 5.4) has its own:
  *
  *     |stress - sum X_i| = sigma_Y + R,  dR = b (Q - R) dp,  dX_i = C_i dep - gamma_i X_i dp.
@@ -26,7 +29,8 @@
  *
  * An overlay is what a section computes with in kinematic and mixed hardening. Ludwik's curve
  * becomes an overlay of WB_LAW_LUDWIK_PARTS parts, a chain of chords that follows the curve in the
- * mean. The other rules need none: a step of them is computed exactly.
+ * mean; so are parallel parts whose limits grow. The other rules need none: a step of them is
+ * computed exactly.
  */
 #ifndef WB_FE_MATERIAL_LAW_H
 #define WB_FE_MATERIAL_LAW_H
@@ -73,7 +77,8 @@ struct wb_law {
     enum wb_law_form form;
     double isotropic_share;      /* beta, 0 (kinematic) to 1 (isotropic); of Chaboche's Q over all
                                     that it may harden by */
-    bool is_combined;            /* beta is of the hardening stress; else of the area */
+    bool is_combined;            /* beta is of the hardening stress, or of the modulus of a parallel
+                                    part that yields; else of the area */
     struct wb_material material; /* Ludwik: isotropic power law; parallel parts: elastic, with E the
                                     sum of their moduli; Chaboche: elastic, with sigma_Y */
     int n_parts;                 /* of parallel parts */
@@ -91,6 +96,8 @@ struct wb_law {
 struct wb_overlay {
     int n;
     double isotropic_share;
+    double kept;                                /* share of its modulus that a part keeps which
+                                                   yields, and by which its limit grows; below 1 */
     double modulus[WB_OVERLAY_MOST_PARTS];      /* Pa */
     double yield_strain[WB_OVERLAY_MOST_PARTS]; /* 1, ascending */
 };
@@ -113,7 +120,8 @@ void wb_law_init_chaboche(struct wb_law *law, const struct wb_material *material
 /* Whether it is Ludwik's with isotropic hardening alone, which its material says by itself. */
 bool wb_law_is_plain(const struct wb_law *law);
 
-/* Whether an overlay computes it: kinematic and mixed hardening. */
+/* Whether an overlay computes it: parallel parts, and Ludwik's with kinematic and mixed hardening.
+ */
 bool wb_law_is_overlay(const struct wb_law *law);
 
 /* WB_ERR_ARGUMENT for what makes no law: also for Ludwik's with n above 1 and a kinematic share,

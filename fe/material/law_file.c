@@ -162,16 +162,17 @@ static enum wb_status read_relaxed(const struct wb_config_node *node,
                                     rules[rule], ludwik->hardening_exponent);
         return WB_OK;
     }
-    if (rule == COMBINED)
-        return wb_config_refuse(node, "hardening",
-                                "combined: expected isotropic, kinematic or mixed of parallel "
-                                "parts");
+    if (rule == COMBINED && beta == 1.0)
+        return wb_config_refuse(node, "isotropic_share",
+                                "1: expected less of parallel parts with combined hardening, which "
+                                "would never yield");
     if (!list)
         return wb_config_refuse(node, "parts",
                                 "this key is missing: a law of parallel parts needs "
                                 "them");
     WB_TRY(read_parts(list, parts, &n));
     wb_law_init_parallel(law, parts, n, beta, ludwik->poissons_ratio);
+    law->is_combined = rule == COMBINED;
     return wb_law_check(law, NULL);
 }
 

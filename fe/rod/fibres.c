@@ -113,8 +113,9 @@ static double shear_sum(const struct wb_fibres *f)
     return sum;
 }
 
-/* Rows of the history: of an overlay the plastic strain of each part, and three of the share with
- * isotropic hardening; of combined hardening one for each back stress. */
+/* Rows of the history: of an overlay the plastic strain of each part, with the accumulated one
+ * behind it where limits grow, and three of the share with isotropic hardening; of combined
+ * hardening one for each back stress. */
 static int history_rows(const struct wb_fibres *f)
 {
     return f->kind == BY_POINT_LAW ? f->point_history : HISTORY_ROWS + f->capacity;
@@ -132,8 +133,10 @@ static enum wb_fibres_kind kind_of(const struct wb_law *law)
 /* Rows of the history beyond HISTORY_ROWS that the law needs. */
 static int rows_of(const struct wb_law *law)
 {
+    if (law->form == WB_LAW_PARALLEL)
+        return law->is_combined ? 2 * law->n_parts : law->n_parts;
     if (wb_law_is_overlay(law))
-        return law->form == WB_LAW_LUDWIK ? WB_LAW_LUDWIK_PARTS : law->n_parts;
+        return WB_LAW_LUDWIK_PARTS;
     return law->form == WB_LAW_CHABOCHE ? law->n_backs : law->is_combined;
 }
 
@@ -519,6 +522,34 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_moving(const struct wb_fib
     return answer;
 }
 
+/* The same of parts whose limits grow with their accumulated plastic strains, behind their rows. */
+static WB_ALWAYS_INLINE struct answer respond_overlay_combined(const struct wb_fibres *f,
+                                                               struct active_parts active,
+                                                               lanes strain, const double *rows,
+                                                               double *rows_after)
+{
+    const struct wb_overlay *const o = f->overlay;
+    const double kept = o->kept, growth = kept / (1.0 - kept);
+    const lanes tail = f->tail[active.now] - (lanes){0}, none = {0};
+    const ptrdiff_t n = f->n;
+    struct answer answer = {tail * strain, tail};
+    for (int part = 0; part < active.now; part++, rows += 2 * n, rows_after += 2 * n) {
+        const lanes plastic = part < active.before ? load(rows) : none;
+        const lanes accumulated = part < active.before ? load(rows + n) : none;
+        const lanes trial = strain - plastic;
+        const lanes over = absolute(trial) - o->yield_strain[part] - growth * accumulated;
+        const masks yields = over >= 0.0;
+        const lanes step = select_lanes(yields, (1.0 - kept) * over, none);
+        const lanes signed_step = with_sign(step, trial);
+        const double E = o->modulus[part];
+        answer.stress += E * (trial - signed_step);
+        answer.tangent += select_lanes(yields, all_lanes(kept * E), all_lanes(E));
+        store(rows_after, plastic + signed_step);
+        store(rows_after + n, accumulated + step);
+    }
+    return answer;
+}
+
 static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct strains strains,
                                              const double *before, double *after,
                                              struct wb_fibres_response *response)
@@ -543,7 +574,9 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
         lanes force = {0}, stiffness = {0};
         if (beta < 1.0) {
             const struct answer moving =
-                respond_overlay_moving(f, active, strain, rows + i, rows_after + i);
+                f->law.is_combined
+                    ? respond_overlay_combined(f, active, strain, rows + i, rows_after + i)
+                    : respond_overlay_moving(f, active, strain, rows + i, rows_after + i);
             force += (1.0 - beta) * moving.stress * area;
             stiffness += (1.0 - beta) * moving.tangent * area;
         }

@@ -114,6 +114,7 @@ static void materials_together_are_the_law(void **state)
         {PROPERTIES ISOTROPIC, 1, 1e-6},
         {PROPERTIES KINEMATIC, 4, 1e-6},
         {PROPERTIES MIXED, 5, 1e-6},
+        {PROPERTIES GROWING, 4, 1e-6},
     };
     for (size_t k = 0; k < WB_COUNT(kinds); k++) {
         for (size_t i = 0; i < WB_COUNT(cases); i++) {

@@ -23,6 +23,7 @@
 #define KINEMATIC "law:\n  form: parallel\n  hardening: kinematic\n" PARTS
 #define ISOTROPIC "law:\n  form: parallel\n  hardening: isotropic\n" PARTS
 #define MIXED "law:\n  form: parallel\n  hardening: mixed\n  isotropic_share: 0.3\n" PARTS
+#define GROWING "law:\n  form: parallel\n  hardening: combined\n  isotropic_share: 0.2\n" PARTS
 #define COMBINED "law: {form: ludwik, hardening: combined, isotropic_share: 0.3}\n"
 #define CHABOCHE                                                                                   \
     "law:\n  form: chaboche\n  hardening: combined\n  chaboche: {youngs_modulus_MPa: 5500, "       \

@@ -174,6 +174,8 @@ static void what_makes_no_combined_law_is_refused(void **unused)
     const struct wb_law_part part = {3e9, 1e-3};
     wb_law_init_parallel(&law, &part, 1, 0.5, 0.39);
     law.is_combined = true;
+    assert_int_equal(wb_law_check(&law, NULL), WB_OK);
+    law.isotropic_share = 1.0;
     assert_int_equal(wb_law_check(&law, NULL), WB_ERR_ARGUMENT);
     /* One surface gives no work back, however its growth steepens. */
     const struct wb_material steepens = ludwik(5000, 4, 3000, 1.2);

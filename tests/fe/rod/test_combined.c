@@ -1,6 +1,6 @@
-/* Sections of laws with combined hardening: Chaboche's, and Ludwik's with one surface that grows
- * and moves. Against their closed forms and their rates, integrated in small steps by a code of its
- * own. */
+/* Sections of laws with combined hardening: Chaboche's, Ludwik's with one surface that grows and
+ * moves, and parallel parts whose limits grow. Against their closed forms and their rates,
+ * integrated in small steps by a code of its own. */
 #include "fe/material/hardening.h"
 #include "fe/material/law.h"
 #include "fe/rod/lanes.h"
@@ -26,8 +26,21 @@ static struct wb_law combined(double share)
     return law;
 }
 
+static struct wb_law growing_parts(double share)
+{
+    static const struct wb_law_part parts[] = {{1800.0 * WB_MPA, 6e-4},
+                                               {1500.0 * WB_MPA, 1.5e-3},
+                                               {900.0 * WB_MPA, 5e-3},
+                                               {250.0 * WB_MPA, INFINITY}};
+    struct wb_law law;
+    wb_law_init_parallel(&law, parts, sizeof parts / sizeof parts[0], share, 0.39);
+    law.is_combined = true;
+    return law;
+}
+
 enum {
-    LAWS = 7
+    RATED = 7, /* laws of one surface */
+    LAWS = 8
 };
 
 static struct wb_law law_of(int i)
@@ -47,8 +60,10 @@ static struct wb_law law_of(int i)
         return combined(0.0);
     case 5:
         return combined(0.3);
-    default:
+    case 6:
         return combined(1.0);
+    default:
+        return growing_parts(0.2);
     }
 }
 
@@ -195,7 +210,7 @@ static void a_path_that_turns_follows_the_rates(void **unused)
 {
     (void)unused;
     static const double turns[] = {4e-3, -1e-3, 2e-3, -6e-3, 8e-3, 0.0};
-    for (int i = 0; i < LAWS; i++) {
+    for (int i = 0; i < RATED; i++) {
         const struct wb_law law = law_of(i);
         double difference[2] = {0.0, 0.0};
         for (int fine = 0; fine < 2; fine++) {
@@ -268,6 +283,73 @@ static void shares_of_ludwiks_hardening_have_their_ends(void **unused)
     (void)stretch(&q, 6e-3 - 1.001 * elastic_range, &tangent);
     assert_true(tangent < 0.5 * E);
     fibre_point_release(&q);
+}
+
+/* One part between two strains: its limit a grows by h dp, h = share / (1 - share), so that from a
+ * limit a a range of w makes a + h (w - 2 a) / (1 + h), the next stress; all goes to w / 2, where
+ * it yields no more. */
+static void a_part_whose_limit_grows_shakes_down(void **unused)
+{
+    (void)unused;
+    const double E = 3000.0 * WB_MPA, yields_at = 1e-3, strain = 4e-3, share = 0.2;
+    const double h = share / (1.0 - share);
+    const struct wb_law_part part = {E, yields_at};
+    struct wb_law law;
+    wb_law_init_parallel(&law, &part, 1, share, 0.39);
+    law.is_combined = true;
+    struct fibre_point p = make_point(&law, 4);
+    double limit = yields_at + h * (strain - yields_at) / (1.0 + h), tangent;
+    assert_close_relative(stretch(&p, strain, &tangent), E * limit, 1e-12);
+    assert_close_relative(tangent, share * E, 1e-12);
+    for (int turn = 1; turn < 60; turn++) {
+        limit += h * fmax(2.0 * strain - 2.0 * limit, 0.0) / (1.0 + h);
+        const double sign = turn % 2 ? -1.0 : 1.0;
+        assert_close_relative(stretch(&p, sign * strain, NULL), sign * E * limit, 1e-12);
+    }
+    assert_close_relative(limit, strain, 1e-6);
+    fibre_point_release(&p);
+}
+
+/* Each part by itself, over any way. */
+static void parts_whose_limits_grow_add_up(void **unused)
+{
+    (void)unused;
+    const struct wb_law all = growing_parts(0.2);
+    struct fibre_point p = make_point(&all, 20), parts[4];
+    uint64_t random = 17;
+    for (int i = 0; i < 4; i++) {
+        struct wb_law one = all;
+        wb_law_init_parallel(&one, &all.parts[i], 1, 0.2, 0.39);
+        one.is_combined = true;
+        parts[i] = make_point(&one, 20);
+    }
+    for (int step = 0; step < 200; step++) {
+        const double kappa = 60.0 * (test_random(&random) - 0.5);
+        double sum = 0.0;
+        for (int i = 0; i < 4; i++)
+            sum += bend(&parts[i], kappa);
+        assert_close(bend(&p, kappa), sum, 1e-12 * fabs(sum) + 1e-16);
+    }
+    for (int i = 0; i < 4; i++)
+        fibre_point_release(&parts[i]);
+    fibre_point_release(&p);
+}
+
+static void parts_whose_limits_do_not_grow_are_kinematic(void **unused)
+{
+    (void)unused;
+    const struct wb_law growing = growing_parts(0.0);
+    struct wb_law kinematic = growing;
+    uint64_t random = 5;
+    kinematic.is_combined = false;
+    struct fibre_point p = make_point(&growing, 20), same = make_point(&kinematic, 20);
+    for (int step = 0; step < 200; step++) {
+        const double kappa = 60.0 * (test_random(&random) - 0.5);
+        const double M = bend(&same, kappa);
+        assert_close(bend(&p, kappa), M, 1e-12 * fabs(M) + 1e-16);
+    }
+    fibre_point_release(&p);
+    fibre_point_release(&same);
 }
 
 /* Stress between two limits with one saturating back stress and no growth: the plastic strain of a
@@ -354,6 +436,12 @@ static void a_law_is_exchanged_for_one_of_its_kind(void **unused)
     assert_exchanged(&two, &one);
     assert_not_exchanged(&one, &two);
     assert_not_exchanged(&two, &other);
+    const struct wb_law growing = growing_parts(0.2), more = growing_parts(0.4);
+    struct wb_law kinematic = growing_parts(0.2);
+    kinematic.is_combined = false;
+    assert_exchanged(&growing, &more);
+    assert_exchanged(&growing, &kinematic);
+    assert_not_exchanged(&kinematic, &growing);
 }
 
 int main(void)
@@ -365,6 +453,9 @@ int main(void)
         cmocka_unit_test(a_path_that_turns_follows_the_rates),
         cmocka_unit_test(tangents_are_slopes),
         cmocka_unit_test(shares_of_ludwiks_hardening_have_their_ends),
+        cmocka_unit_test(a_part_whose_limit_grows_shakes_down),
+        cmocka_unit_test(parts_whose_limits_grow_add_up),
+        cmocka_unit_test(parts_whose_limits_do_not_grow_are_kinematic),
         cmocka_unit_test(ratchetting_is_that_of_the_closed_form),
         cmocka_unit_test(loops_close_and_take_work),
         cmocka_unit_test(vector_instructions_do_not_change_a_bit),
