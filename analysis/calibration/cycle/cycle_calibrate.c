@@ -218,10 +218,10 @@ static const struct wb_cycle_fit *better(const struct wb_cycle_fit *one,
 }
 
 /* The same law in the form of a candidate that contains it: one yield surface that does not move,
- * or two back stresses, alike, in place of one. */
+ * parts whose limits do not grow, or two back stresses, alike, in place of one. */
 static void contain(enum wb_candidate candidate, struct wb_law *law)
 {
-    if (candidate == WB_CANDIDATE_LUDWIK_COMBINED)
+    if (candidate == WB_CANDIDATE_LUDWIK_COMBINED || candidate == WB_CANDIDATE_PARALLEL_COMBINED)
         law->is_combined = true;
     if (candidate != WB_CANDIDATE_CHABOCHE_TWO)
         return;
@@ -370,6 +370,8 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     const struct wb_cycle_fit *const pure = fit_of(member, WB_CANDIDATE_PARALLEL_KINEMATIC);
     WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
     take_contained(member, WB_CANDIDATE_PARALLEL_MIXED, pure, settings);
+    WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_COMBINED, pure, NULL, grid, settings));
+    take_contained(member, WB_CANDIDATE_PARALLEL_COMBINED, pure, settings);
     return WB_OK;
 }
 
@@ -913,6 +915,7 @@ static void average_relaxed(const struct wb_cycle_calibration *calibration,
         for (int k = 0; k < first->n_parts; k++)
             parts[k] = (struct wb_law_part){moduli[k], first->parts[k].yield_strain};
         wb_law_init_parallel(average, parts, first->n_parts, share, first->material.poissons_ratio);
+        average->is_combined = first->is_combined;
         return;
     }
     struct wb_material material = first->material;

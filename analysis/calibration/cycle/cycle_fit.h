@@ -22,7 +22,7 @@
 #include "base/status.h"
 #include "fe/material/law.h"
 
-/* Laws that may be fitted: Ludwik's, parallel parts, then those with combined hardening. */
+/* Laws that may be fitted: Ludwik's, parallel parts, then most of those with combined hardening. */
 enum wb_candidate {
     WB_CANDIDATE_LUDWIK_ISOTROPIC,
     WB_CANDIDATE_LUDWIK_KINEMATIC,
@@ -32,6 +32,7 @@ enum wb_candidate {
     WB_CANDIDATE_LUDWIK_COMBINED,
     WB_CANDIDATE_CHABOCHE_ONE, /* one back stress, and a yield stress that grows */
     WB_CANDIDATE_CHABOCHE_TWO,
+    WB_CANDIDATE_PARALLEL_COMBINED, /* the parts' limits grow */
     WB_CANDIDATES
 };
 

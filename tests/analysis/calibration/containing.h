@@ -15,6 +15,7 @@ static inline double worst_of_containing(const struct wb_cycle_calibration *c)
         {WB_CANDIDATE_LUDWIK_MIXED, WB_CANDIDATE_LUDWIK_ISOTROPIC},
         {WB_CANDIDATE_LUDWIK_MIXED, WB_CANDIDATE_LUDWIK_KINEMATIC},
         {WB_CANDIDATE_PARALLEL_MIXED, WB_CANDIDATE_PARALLEL_KINEMATIC},
+        {WB_CANDIDATE_PARALLEL_COMBINED, WB_CANDIDATE_PARALLEL_KINEMATIC},
         {WB_CANDIDATE_LUDWIK_COMBINED, WB_CANDIDATE_LUDWIK_ISOTROPIC},
         {WB_CANDIDATE_CHABOCHE_TWO, WB_CANDIDATE_CHABOCHE_ONE},
     };
@@ -24,6 +25,8 @@ static inline double worst_of_containing(const struct wb_cycle_calibration *c)
         const struct wb_cycle_answer *const all = c->members[i].answers;
         if (all[WB_CANDIDATE_LUDWIK_COMBINED].is_fitted)
             assert_true(all[WB_CANDIDATE_LUDWIK_COMBINED].fit.law.is_combined);
+        if (all[WB_CANDIDATE_PARALLEL_COMBINED].is_fitted)
+            assert_true(all[WB_CANDIDATE_PARALLEL_COMBINED].fit.law.is_combined);
         if (all[WB_CANDIDATE_CHABOCHE_TWO].is_fitted)
             assert_int_equal(all[WB_CANDIDATE_CHABOCHE_TWO].fit.law.n_backs, 2);
         for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {

@@ -2,8 +2,10 @@
  * length, counterweight and diameter are off by what the files state.
  *
  * Each campaign is of three specimens of tests/analysis/fast_rig.h, whose wires scatter around the
- * one that is asked for. The wires' laws are of two groups: those that a candidate contains, and
- * those that none does. docs/verification.md has what is printed. Threads share the work.
+ * one that is asked for. The wires' laws are of three groups: those that a candidate contains,
+ * those that none does, and some whose candidates are left out, so that the best law misses the
+ * force by 0.3 or 0.4 %; a zero that is wrong explains that as well as a law that is.
+ * docs/verification.md has what is printed. Threads share the work.
  */
 #include <stdlib.h>
 
@@ -36,27 +38,45 @@ static const struct wb_test_uncertainty stated = {
 /* A wire's law, of the virtual rig's, and candidates that are not tried. Of a knee from the start
  * that Ludwik's kinematic law follows to 0.2 % of F_max, unloading stiffness and springback are not
  * held: the force hardly knows them, and no other law is near. */
+enum group {
+    CONTAINED,
+    NOT_CONTAINED,
+    LEFT_OUT,
+    GROUPS
+};
+
+static const struct {
+    const char *name;
+    double most_blamed; /* part of the benches, which are all healthy */
+} groups_of_laws[GROUPS] = {
+    {"that a candidate contains", 0.02},
+    {"that no candidate contains", 0.02},
+    {"whose candidates are left out", 1.0},
+};
+
 static const struct truth {
     const char *name;
     enum wb_composite_variant variant;
     unsigned left_out;
-    bool is_contained;
+    enum group group;
     double least; /* part of the intervals that hold */
 } truths[] = {
-    {"parallel parts", WB_COMPOSITE_KINEMATIC, 0, true, 0.85},
-    {"isotropic parts", WB_COMPOSITE_ISOTROPIC, 0, true, 0.85},
-    {"Ludwik's", WB_COMPOSITE_SHARP, 0, true, 0.85},
-    {"two back stresses", WB_COMPOSITE_BACKSTRESSES, 0, true, 0.85},
-    {"mixed parts", WB_COMPOSITE_MIXED, 0, false, 0.85},
-    {"relaxing jacket", WB_COMPOSITE_RELAXING, 0, false, 0.85},
-    {"strands that slip", WB_COMPOSITE_SLIPPING, 0, false, 0.85},
-    {"creeping jacket", WB_COMPOSITE_CREEPING, 0, false, 0.85},
-    {"core and jacket of two laws", WB_COMPOSITE_LAYERED, 0, false, 0.85},
-    {"smeared knee", WB_COMPOSITE_SMEARED, 0, false, 0.85},
+    {"parallel parts", WB_COMPOSITE_KINEMATIC, 0, CONTAINED, 0.85},
+    {"isotropic parts", WB_COMPOSITE_ISOTROPIC, 0, CONTAINED, 0.85},
+    {"Ludwik's", WB_COMPOSITE_SHARP, 0, CONTAINED, 0.85},
+    {"two back stresses", WB_COMPOSITE_BACKSTRESSES, 0, CONTAINED, 0.85},
+    {"mixed parts", WB_COMPOSITE_MIXED, 0, NOT_CONTAINED, 0.85},
+    {"relaxing jacket", WB_COMPOSITE_RELAXING, 0, NOT_CONTAINED, 0.85},
+    {"strands that slip", WB_COMPOSITE_SLIPPING, 0, NOT_CONTAINED, 0.85},
+    {"creeping jacket", WB_COMPOSITE_CREEPING, 0, NOT_CONTAINED, 0.85},
+    {"core and jacket of two laws", WB_COMPOSITE_LAYERED, 0, NOT_CONTAINED, 0.85},
+    {"smeared knee", WB_COMPOSITE_SMEARED, 0, NOT_CONTAINED, 0.85},
     {"parallel parts, not tried", WB_COMPOSITE_KINEMATIC,
-     1U << WB_CANDIDATE_PARALLEL_KINEMATIC | 1U << WB_CANDIDATE_PARALLEL_MIXED, false, 0.7},
+     1U << WB_CANDIDATE_PARALLEL_KINEMATIC | 1U << WB_CANDIDATE_PARALLEL_MIXED |
+         1U << WB_CANDIDATE_PARALLEL_COMBINED,
+     LEFT_OUT, 0.7},
     {"two back stresses, not tried", WB_COMPOSITE_BACKSTRESSES,
-     1U << WB_CANDIDATE_CHABOCHE_ONE | 1U << WB_CANDIDATE_CHABOCHE_TWO, false, 0.85},
+     1U << WB_CANDIDATE_CHABOCHE_ONE | 1U << WB_CANDIDATE_CHABOCHE_TWO, LEFT_OUT, 0.85},
 };
 
 struct campaign {
@@ -262,8 +282,8 @@ static void intervals_hold_the_truth(void **unused)
 {
     (void)unused;
     static struct campaign campaigns[WB_COUNT(truths)][CAMPAIGNS];
-    struct tally groups[2] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-    double counts[2] = {0.0, 0.0};
+    struct tally groups[GROUPS] = {{0.0, 0.0, 0.0}};
+    double counts[GROUPS] = {0.0};
     for (size_t t = 0; t < WB_COUNT(truths); t++) {
         for (int i = 0; i < CAMPAIGNS; i++)
             campaigns[t][i] =
@@ -272,21 +292,21 @@ static void intervals_hold_the_truth(void **unused)
         print(truths[t].name, campaigns[t], CAMPAIGNS);
         fflush(stdout);
         const struct tally tally = count_all(campaigns[t], CAMPAIGNS);
-        struct tally *const group = &groups[truths[t].is_contained];
-        counts[truths[t].is_contained]++;
+        struct tally *const group = &groups[truths[t].group];
+        counts[truths[t].group]++;
         group->holds += tally.holds;
         group->unanswered += tally.unanswered;
         group->blamed += tally.blamed;
         assert_true(tally.holds >= truths[t].least);
         assert_close(tally.unanswered, 0.0, 0.0);
     }
-    for (int g = 1; g >= 0; g--) {
-        printf("laws that %s: %.1f %% hold, %.1f %% of the benches blamed\n",
-               g ? "a candidate contains" : "no candidate contains",
-               100.0 * groups[g].holds / counts[g], 100.0 * groups[g].blamed / counts[g]);
-        assert_true(groups[g].blamed / counts[g] <= 0.04);
+    for (int g = 0; g < GROUPS; g++) {
+        const double held = groups[g].holds / counts[g], blamed = groups[g].blamed / counts[g];
+        printf("laws %s: %.1f %% hold, %.1f %% of the benches blamed\n", groups_of_laws[g].name,
+               100.0 * held, 100.0 * blamed);
+        assert_true(blamed <= groups_of_laws[g].most_blamed);
+        assert_true(held >= 0.90 && held <= 0.98);
     }
-    assert_true(groups[1].holds / counts[1] >= 0.90 && groups[1].holds / counts[1] <= 0.98);
 }
 
 int main(void)

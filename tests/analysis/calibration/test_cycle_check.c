@@ -303,11 +303,12 @@ static void a_wrong_counterweight_is_told(void **state)
     release(bench);
 }
 
-/* A bench that says how well it knows its weights is not wrong where they are off by that. */
+/* A bench that says how well it knows its weights is not wrong where they are off by that. (Smaller
+ * errors than these are within what the force of parts whose limits grow can be.) */
 static void a_counterweight_within_what_is_stated_is_not_doubted(void **state)
 {
     (void)state;
-    static const double off[] = {0.14e-3, 0.17e-3, 0.2e-3}, stated[] = {0.1e-3, 0.12e-3, 0.15e-3};
+    static const double off[] = {0.25e-3, 0.3e-3, 0.35e-3}, stated[] = {0.2e-3, 0.25e-3, 0.3e-3};
     for (int i = 0; i < 6; i++) {
         struct bench *const bench = one(1);
         struct wb_test_info *const info = &bench->datasets[0].info;

@@ -200,16 +200,18 @@ static void ludwiks_law_is_found_again(void **unused)
 static void parallel_parts_are_found_again(void **unused)
 {
     (void)unused;
-    static const double shares[] = {0.0, 0.3, 0.7};
+    static const double shares[] = {0.0, 0.3, 0.7, 0.05, 0.15};
     struct wb_cycle_fit_settings settings;
     default_settings(&settings);
     settings.modulus_prior = 50.0; /* the moduli given here are not smooth */
-    for (int i = 0; i < 3; i++) {
-        const enum wb_candidate candidate =
-            shares[i] > 0.0 ? WB_CANDIDATE_PARALLEL_MIXED : WB_CANDIDATE_PARALLEL_KINEMATIC;
+    for (int i = 0; i < 5; i++) {
+        const enum wb_candidate candidate = i >= 3            ? WB_CANDIDATE_PARALLEL_COMBINED
+                                            : shares[i] > 0.0 ? WB_CANDIDATE_PARALLEL_MIXED
+                                                              : WB_CANDIDATE_PARALLEL_KINEMATIC;
         struct specimen s;
         struct wb_cycle_fit found;
-        const struct wb_law law = parallel(shares[i]);
+        struct wb_law law = parallel(shares[i]);
+        law.is_combined = i >= 3;
         compute(&s, &law, -0.02);
         fit(&found, &s, candidate, 1.0, &settings);
         assert_true(found.misfit < 1e-4);
