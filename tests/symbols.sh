@@ -14,7 +14,7 @@ for archive in "$@"; do
     foreign=$(echo "$names" | awk '
         BEGIN {
             # Files that own another noun as well: its symbols are the noun or begin with it.
-            others["cycle_numbers"] = "candidate"
+            others["cycle_parameters"] = "candidate"
             others["driver"] = "outbox role"
             others["grbl_decode"] = "grbl"
             others["interlock"] = "stop"

@@ -522,7 +522,8 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_moving(const struct wb_fib
     return answer;
 }
 
-/* The same of parts whose limits grow with their accumulated plastic strains, behind their rows. */
+/* Combined hardening: the limit of a part grows with its accumulated plastic strain, whose row
+ * follows the row of its plastic strain. */
 static WB_ALWAYS_INLINE struct answer respond_overlay_combined(const struct wb_fibres *f,
                                                                struct active_parts active,
                                                                lanes strain, const double *rows,

@@ -13,7 +13,7 @@
 
 #include "analysis/calibration/cycle/cycle_covariance.h"
 #include "analysis/calibration/cycle/cycle_model.h"
-#include "analysis/calibration/cycle/cycle_numbers.h"
+#include "analysis/calibration/cycle/cycle_parameters.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/least_squares.h"
 #include "base/memory.h"
@@ -53,7 +53,7 @@ static const double fall_share = 0.02;
 static const double lost_residual = 1e4;
 
 struct wb_cycle_search {
-    struct wb_cycle_numbers numbers;
+    struct wb_cycle_parameters parameters;
     struct wb_cycle_model *model;
     int n_residuals;
     double *tension, *distance, *weight;                    /* weight: (n_points) */
@@ -74,8 +74,9 @@ struct wb_cycle_search {
  * smallest, its prior included, is known in closed form. Returns the index behind the residuals. */
 static int place_residuals(const struct wb_cycle_search *p, const double *distance, double *r)
 {
-    const struct wb_cycle_data *const data = p->numbers.data;
-    const double noise = p->numbers.settings.place_noise, prior = p->numbers.settings.offset_prior;
+    const struct wb_cycle_data *const data = p->parameters.data;
+    const double noise = p->parameters.settings.place_noise,
+                 prior = p->parameters.settings.offset_prior;
     int at = 0;
 
     for (int m = 0; m < data->n_markers; m++) {
@@ -100,14 +101,14 @@ static int place_residuals(const struct wb_cycle_search *p, const double *distan
 /* Periods of the dwell that count: without Maxwell elements they tell nothing. */
 static int held_of(const struct wb_cycle_search *p)
 {
-    return p->numbers.n_maxwell > 0 ? p->numbers.data->n_held : 0;
+    return p->parameters.n_maxwell > 0 ? p->parameters.data->n_held : 0;
 }
 
 /* How the tension falls in the dwell: beyond the mean, which the law may miss. Returns the index
  * behind the residuals. */
 static int held_residuals(const struct wb_cycle_search *p, const double *held, double *r)
 {
-    const struct wb_cycle_data *const data = p->numbers.data;
+    const struct wb_cycle_data *const data = p->parameters.data;
     const int n = held_of(p);
     double mean = 0.0;
     if (n == 0)
@@ -115,7 +116,7 @@ static int held_residuals(const struct wb_cycle_search *p, const double *held, d
     for (int i = 0; i < n; i++)
         mean += (held[i] - data->held[i].tension) / n;
     const double fall = fabs(data->held[0].tension - data->held[n - 1].tension);
-    const double noise = fmax(p->numbers.settings.force_noise, fall_share * fall);
+    const double noise = fmax(p->parameters.settings.force_noise, fall_share * fall);
     for (int i = 0; i < n; i++)
         r[i] = (held[i] - data->held[i].tension - mean) / noise;
     return n;
@@ -126,9 +127,9 @@ static bool take_numbers(const struct wb_cycle_search *p, const double *x, doubl
                          struct wb_law *law, struct wb_cycle_specimen *specimen)
 {
     struct wb_reason why;
-    wb_cycle_numbers_at(&p->numbers, x, free);
-    wb_cycle_numbers_law(&p->numbers, free, law);
-    *specimen = wb_cycle_numbers_specimen(&p->numbers, free);
+    wb_cycle_parameters_at(&p->parameters, x, free);
+    wb_cycle_parameters_law(&p->parameters, free, law);
+    *specimen = wb_cycle_parameters_specimen(&p->parameters, free);
     return wb_law_check(law, &why) == WB_OK;
 }
 
@@ -136,15 +137,15 @@ static bool take_numbers(const struct wb_cycle_search *p, const double *x, doubl
 static int compare(const struct wb_cycle_search *p, const double *free, const struct wb_law *law,
                    const double *tension, const double *distance, const double *held, double *r)
 {
-    const struct wb_cycle_data *const data = p->numbers.data;
+    const struct wb_cycle_data *const data = p->parameters.data;
     for (int i = 0; i < data->n_points; i++)
         r[i] = sqrt(p->weight[i]) *
-               (tension[i] + free[p->numbers.n_law + WB_CYCLE_ZERO] - data->points[i].tension) /
-               p->numbers.force_scale;
+               (tension[i] + free[p->parameters.n_law + WB_CYCLE_ZERO] - data->points[i].tension) /
+               p->parameters.force_scale;
     int at = data->n_points;
     at += place_residuals(p, distance, r + at);
     at += held_residuals(p, held, r + at);
-    at += wb_cycle_numbers_priors(&p->numbers, free, law, r + at);
+    at += wb_cycle_parameters_priors(&p->parameters, free, law, r + at);
     return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
 }
 
@@ -177,7 +178,7 @@ static size_t bytes_of(const struct wb_cycle_search *p)
 
 static bool is_at(const struct wb_cycle_search *p, const double *x, const gsl_vector *there)
 {
-    return memcmp(x, there->data, (size_t)p->numbers.n_free * sizeof *x) == 0;
+    return memcmp(x, there->data, (size_t)p->parameters.n_free * sizeof *x) == 0;
 }
 
 static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
@@ -188,7 +189,7 @@ static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
         return GSL_SUCCESS;
     }
     const int status = residuals(p, x->data, f->data);
-    memcpy(p->last_x, x->data, (size_t)p->numbers.n_free * sizeof *p->last_x);
+    memcpy(p->last_x, x->data, (size_t)p->parameters.n_free * sizeof *p->last_x);
     memcpy(p->last, f->data, bytes_of(p));
     p->has_last = status == GSL_SUCCESS;
     return status;
@@ -202,22 +203,22 @@ static int find_slopes(struct wb_cycle_search *p, const double *x)
     struct wb_cycle_specimen specimen;
     double *const there = wb_memory_new((size_t)p->n_residuals, sizeof *there);
     int status = take_numbers(p, x, numbers, &law, &specimen) ? GSL_SUCCESS : GSL_EFAILED;
-    for (int k = 0; k < p->numbers.n_free && status == GSL_SUCCESS; k++) {
+    for (int k = 0; k < p->parameters.n_free && status == GSL_SUCCESS; k++) {
         struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
         double step[WB_FIT_MOST_FREE];
-        memcpy(step, x, (size_t)p->numbers.n_free * sizeof *step);
+        memcpy(step, x, (size_t)p->parameters.n_free * sizeof *step);
         step[k] += difference;
         if (!take_numbers(p, step, moved[k], &neighbour->law, &neighbour->specimen))
             status = GSL_EFAILED;
     }
     if (status == GSL_SUCCESS) {
         p->status = wb_cycle_model_run_beside(p->model, &law, &specimen, p->tension, p->distance,
-                                              p->numbers.n_free, p->neighbours, &p->run);
+                                              p->parameters.n_free, p->neighbours, &p->run);
         p->runs++;
         if (p->status != WB_OK || !p->run.reached)
             status = GSL_EFAILED;
     }
-    for (int k = 0; k < p->numbers.n_free && status == GSL_SUCCESS; k++) {
+    for (int k = 0; k < p->parameters.n_free && status == GSL_SUCCESS; k++) {
         const struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
         status = compare(p, moved[k], &neighbour->law, neighbour->tension, neighbour->distance,
                          neighbour->held, there);
@@ -242,7 +243,7 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
         p->has_slopes = status == GSL_SUCCESS;
         if (status != GSL_SUCCESS)
             return status;
-        memcpy(p->slopes_x, x->data, (size_t)p->numbers.n_free * sizeof *p->slopes_x);
+        memcpy(p->slopes_x, x->data, (size_t)p->parameters.n_free * sizeof *p->slopes_x);
     }
     gsl_matrix_memcpy(J, p->slopes);
     return GSL_SUCCESS;
@@ -263,10 +264,10 @@ static double find_discrepancy(const struct wb_cycle_search *p, const double *mi
                                const double *counts)
 {
     double squares = 0.0, products = 0.0, sum = 0.0;
-    for (int i = 0; i < p->numbers.data->n_points; i++) {
+    for (int i = 0; i < p->parameters.data->n_points; i++) {
         squares += counts[i] * miss[i] * miss[i];
         sum += counts[i];
-        if (i > 0 && i != p->numbers.data->n_loading)
+        if (i > 0 && i != p->parameters.data->n_loading)
             products += sqrt(counts[i] * counts[i - 1]) * miss[i] * miss[i - 1];
     }
     const double r = squares > 0.0 ? fmin(fmax(products / squares, 0.0), largest_correlation) : 0.0;
@@ -277,7 +278,7 @@ static double find_discrepancy(const struct wb_cycle_search *p, const double *mi
  * the law does not follow, so that priors keep their weight. Returns whether they changed. */
 static bool set_weights(struct wb_cycle_search *p, const gsl_vector *f, int *n_outliers)
 {
-    const int n = p->numbers.data->n_points, outliers_before = *n_outliers;
+    const int n = p->parameters.data->n_points, outliers_before = *n_outliers;
     const double scale_before = p->scale_of_misses;
     double *const counts = wb_memory_new((size_t)n, sizeof *counts);
     double *const miss = p->tension; /* free to use until the next run */
@@ -307,7 +308,7 @@ static bool set_weights(struct wb_cycle_search *p, const gsl_vector *f, int *n_o
 static bool iterate(struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w, int *iterations)
 {
     const struct wb_least_squares_search search = {
-        .max_iterations = p->numbers.settings.max_iterations,
+        .max_iterations = p->parameters.settings.max_iterations,
         .smallest_step = arrived,
         .smallest_gain = settled_sum,
         .status = &p->status,
@@ -325,41 +326,41 @@ static void move_law(const struct wb_cycle_search *p, const gsl_vector *x, gsl_m
     fit->n_moved = 0;
     if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
         return;
-    for (int k = 0; k < p->numbers.n_law; k++) {
+    for (int k = 0; k < p->parameters.n_law; k++) {
         const gsl_vector_view side = gsl_matrix_column(covariance, (size_t)k);
         double largest = 0.0;
-        for (int i = k; i < p->numbers.n_free; i++)
+        for (int i = k; i < p->parameters.n_free; i++)
             largest = fmax(largest, fabs(gsl_vector_get(&side.vector, (size_t)i)));
         const double by = fmin(moved_by, farthest / largest);
-        for (int i = 0; i < p->numbers.n_free; i++)
+        for (int i = 0; i < p->parameters.n_free; i++)
             step[i] = gsl_vector_get(x, (size_t)i) +
                       (i < k ? 0.0 : by * gsl_vector_get(&side.vector, (size_t)i));
-        wb_cycle_numbers_at(&p->numbers, step, free);
-        wb_cycle_numbers_law(&p->numbers, free, &fit->moved[k]);
+        wb_cycle_parameters_at(&p->parameters, step, free);
+        wb_cycle_parameters_law(&p->parameters, free, &fit->moved[k]);
         fit->moved_by[k] = by;
         if (wb_law_check(&fit->moved[k], &why) != WB_OK)
             return;
     }
-    fit->n_moved = p->numbers.n_law;
+    fit->n_moved = p->parameters.n_law;
 }
 
 /* Standard errors from the curvature of the sum of squares, scaled by what is left of it. */
 static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_cycle_fit *fit)
 {
-    gsl_matrix *const covariance =
-        wb_memory_need(gsl_matrix_alloc((size_t)p->numbers.n_free, (size_t)p->numbers.n_free));
+    gsl_matrix *const covariance = wb_memory_need(
+        gsl_matrix_alloc((size_t)p->parameters.n_free, (size_t)p->parameters.n_free));
     double sum;
     fit->ln_strength_error = fit->exponent_error = fit->bow_angle_error = (double)NAN;
     gsl_blas_ddot(w->f, w->f, &sum);
     if (gsl_multifit_nlinear_covar(w->J, 0.0, covariance) == GSL_SUCCESS) {
-        const double variance = sum / fmax(1.0, p->n_residuals - p->numbers.n_free);
-        const size_t bow = (size_t)p->numbers.n_law;
+        const double variance = sum / fmax(1.0, p->n_residuals - p->parameters.n_free);
+        const size_t bow = (size_t)p->parameters.n_law;
         fit->bow_angle_error =
-            p->numbers.scale[bow] * sqrt(variance * gsl_matrix_get(covariance, bow, bow));
-        wb_cycle_numbers_correlate(&p->numbers, covariance, variance, fit);
+            p->parameters.scale[bow] * sqrt(variance * gsl_matrix_get(covariance, bow, bow));
+        wb_cycle_parameters_correlate(&p->parameters, covariance, variance, fit);
     }
-    if (wb_cycle_covariance_find(p->numbers.data, held_of(p) > 0, w->f, w->J, covariance))
+    if (wb_cycle_covariance_find(p->parameters.data, held_of(p) > 0, w->f, w->J, covariance))
         move_law(p, w->x, covariance, fit);
     gsl_matrix_free(covariance);
 }
@@ -367,13 +368,13 @@ static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_wo
 /* What runs of the beam need, and those of neighbours beside it. */
 static void take_buffers(struct wb_cycle_search *p, int n_neighbours)
 {
-    p->tension = wb_memory_new((size_t)p->numbers.data->n_points, sizeof *p->tension);
-    p->distance = wb_memory_new((size_t)p->numbers.data->n_places, sizeof *p->distance);
+    p->tension = wb_memory_new((size_t)p->parameters.data->n_points, sizeof *p->tension);
+    p->distance = wb_memory_new((size_t)p->parameters.data->n_places, sizeof *p->distance);
     p->last = wb_memory_new((size_t)p->n_residuals, sizeof *p->last);
     for (int k = 0; k < n_neighbours; k++) {
         struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
-        neighbour->tension = wb_memory_new((size_t)p->numbers.data->n_points, sizeof(double));
-        neighbour->distance = wb_memory_new((size_t)p->numbers.data->n_places, sizeof(double));
+        neighbour->tension = wb_memory_new((size_t)p->parameters.data->n_points, sizeof(double));
+        neighbour->distance = wb_memory_new((size_t)p->parameters.data->n_places, sizeof(double));
     }
 }
 
@@ -386,7 +387,7 @@ static void free_buffers(struct wb_cycle_search *p)
     free(p->last);
     p->tension = p->distance = p->last = NULL;
     p->has_last = false;
-    for (int k = 0; k < p->numbers.n_free; k++) {
+    for (int k = 0; k < p->parameters.n_free; k++) {
         free(p->neighbours[k].tension);
         free(p->neighbours[k].distance);
         p->neighbours[k].tension = p->neighbours[k].distance = NULL;
@@ -397,8 +398,8 @@ static void free_buffers(struct wb_cycle_search *p)
 static struct wb_law_maxwell unseen_element(const struct wb_cycle_search *p,
                                             const struct wb_law *law, double part)
 {
-    const double loading = wb_cycle_data_loading_time(p->numbers.data), x = 1.0 / unseen_time;
-    const double strain = 0.5 * p->numbers.data->info.outer_diameter * p->run.clamp_curvature;
+    const double loading = wb_cycle_data_loading_time(p->parameters.data), x = 1.0 / unseen_time;
+    const double strain = 0.5 * p->parameters.data->info.outer_diameter * p->run.clamp_curvature;
     const double secant = wb_law_virgin_stress(law, strain, NULL) / strain;
     return (struct wb_law_maxwell){part * secant * x / -expm1(-x), unseen_time * loading};
 }
@@ -420,19 +421,20 @@ static gsl_matrix *factor_squares(const gsl_matrix *J)
 static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, const double *r,
                          enum wb_cycle_shared shared, struct wb_cycle_fit *fit)
 {
-    const struct wb_cycle_model_settings how = {p->numbers.settings.n_elements,
-                                                p->numbers.settings.n_fibres, 0};
+    const struct wb_cycle_model_settings how = {p->parameters.settings.n_elements,
+                                                p->parameters.settings.n_fibres, 0};
     struct wb_cycle_data altered;
     struct wb_cycle_search q = *p;
     double free_numbers[WB_FIT_MOST_FREE], numbers[WB_FIT_MOST_FREE];
     struct wb_reason why;
     if (shared == WB_SHARED_RELAXATION)
-        q.numbers.beside = unseen_element(p, &fit->law, wb_cycle_shared_change(shared));
-    if (!wb_cycle_shared_alter(&altered, p->numbers.data, shared, wb_cycle_shared_change(shared)))
+        q.parameters.beside = unseen_element(p, &fit->law, wb_cycle_shared_change(shared));
+    if (!wb_cycle_shared_alter(&altered, p->parameters.data, shared,
+                               wb_cycle_shared_change(shared)))
         return;
     gsl_vector *const change = wb_memory_need(gsl_vector_alloc((size_t)p->n_residuals));
-    gsl_vector_view step = gsl_vector_view_array(numbers, (size_t)p->numbers.n_free);
-    q.numbers.data = &altered;
+    gsl_vector_view step = gsl_vector_view_array(numbers, (size_t)p->parameters.n_free);
+    q.parameters.data = &altered;
     bool good = wb_cycle_model_create(&q.model, &altered, &fit->law, &how) == WB_OK &&
                 residuals(&q, p->slopes_x, change->data) == GSL_SUCCESS && q.run.reached;
     for (int i = 0; i < p->n_residuals && good; i++)
@@ -441,11 +443,11 @@ static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, c
            gsl_blas_dgemv(CblasTrans, 1.0, p->slopes, change, 0.0, &step.vector) == GSL_SUCCESS &&
            gsl_linalg_cholesky_svx(squares, &step.vector) == GSL_SUCCESS;
     if (good) {
-        for (int i = 0; i < p->numbers.n_free; i++)
+        for (int i = 0; i < p->parameters.n_free; i++)
             numbers[i] += p->slopes_x[i];
-        wb_cycle_numbers_at(&q.numbers, numbers, free_numbers);
-        wb_cycle_numbers_law(&q.numbers, free_numbers, &fit->altered[shared]);
-        fit->altered_specimen[shared] = wb_cycle_numbers_specimen(&q.numbers, free_numbers);
+        wb_cycle_parameters_at(&q.parameters, numbers, free_numbers);
+        wb_cycle_parameters_law(&q.parameters, free_numbers, &fit->altered[shared]);
+        fit->altered_specimen[shared] = wb_cycle_parameters_specimen(&q.parameters, free_numbers);
         fit->has_altered[shared] = wb_law_check(&fit->altered[shared], &why) == WB_OK;
     }
     wb_cycle_model_destroy(q.model);
@@ -456,12 +458,12 @@ static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, c
 void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit)
 {
     struct wb_cycle_search *const p = fit->search;
-    const struct wb_cycle_model_settings how = {p->numbers.settings.n_elements,
-                                                p->numbers.settings.n_fibres, 0};
+    const struct wb_cycle_model_settings how = {p->parameters.settings.n_elements,
+                                                p->parameters.settings.n_fibres, 0};
     double *const r = wb_memory_new((size_t)p->n_residuals, sizeof *r);
     gsl_matrix *const squares = factor_squares(p->slopes);
     take_buffers(p, 0);
-    if (squares && wb_cycle_model_create(&p->model, p->numbers.data, &fit->law, &how) == WB_OK &&
+    if (squares && wb_cycle_model_create(&p->model, p->parameters.data, &fit->law, &how) == WB_OK &&
         residuals(p, p->slopes_x, r) == GSL_SUCCESS && p->run.reached) {
         for (int i = 0; i < WB_SHARED; i++)
             find_altered(p, squares, r, i, fit);
@@ -491,7 +493,7 @@ static double turn_miss(const struct wb_cycle_fit *fit, const struct wb_cycle_da
 
 static void find_misfits(struct wb_cycle_fit *fit, struct wb_cycle_search *p)
 {
-    const struct wb_cycle_data *const data = p->numbers.data;
+    const struct wb_cycle_data *const data = p->parameters.data;
     double sums[2] = {0.0, 0.0};
     int counts[2] = {0, 0};
 
@@ -513,7 +515,7 @@ static void find_misfits(struct wb_cycle_fit *fit, struct wb_cycle_search *p)
     for (int i = 0; i < n; i++)
         sum += r[i] * r[i];
     fit->place_rms = data->n_places > 0
-                         ? p->numbers.settings.place_noise * sqrt(sum / data->n_places)
+                         ? p->parameters.settings.place_noise * sqrt(sum / data->n_places)
                          : (double)NAN;
     free(r);
 }
@@ -522,11 +524,11 @@ static void find_misfits(struct wb_cycle_fit *fit, struct wb_cycle_search *p)
 static enum wb_status run_finely(struct wb_cycle_fit *fit, struct wb_cycle_search *p,
                                  struct wb_reason *why)
 {
-    const struct wb_cycle_model_settings how = {p->numbers.settings.n_final_elements,
-                                                p->numbers.settings.n_fibres, 0};
+    const struct wb_cycle_model_settings how = {p->parameters.settings.n_final_elements,
+                                                p->parameters.settings.n_fibres, 0};
     const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
     struct wb_cycle_model *fine;
-    WB_TRY(wb_cycle_model_create(&fine, p->numbers.data, &fit->law, &how));
+    WB_TRY(wb_cycle_model_create(&fine, p->parameters.data, &fit->law, &how));
     const enum wb_status status =
         wb_cycle_model_run(fine, &fit->law, &specimen, fit->tension, p->distance, &p->run);
     wb_cycle_model_destroy(fine);
@@ -535,23 +537,23 @@ static enum wb_status run_finely(struct wb_cycle_fit *fit, struct wb_cycle_searc
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
                           "wire '%s', sample %d: %s: the beam of %d elements does not come to the "
                           "end of the cycle",
-                          p->numbers.data->info.wire, p->numbers.data->info.sample,
-                          p->numbers.candidate->name, p->numbers.settings.n_final_elements);
+                          p->parameters.data->info.wire, p->parameters.data->info.sample,
+                          p->parameters.candidate->name, p->parameters.settings.n_final_elements);
     return status;
 }
 
 /* Where the search's weights begin. Beside a law that follows one of another hardening rule will
  * not, and nothing is asked of how it fails. */
-static double first_scale(const struct wb_cycle_numbers_candidate *c,
+static double first_scale(const struct wb_cycle_parameters_candidate *c,
                           const struct wb_cycle_fit *near)
 {
     if (!near || c->form == WB_LAW_CHABOCHE)
         return first_scale_of_misses;
-    const struct wb_cycle_numbers_candidate *const other =
-        wb_cycle_numbers_candidate(near->candidate);
+    const struct wb_cycle_parameters_candidate *const other =
+        wb_cycle_parameters_candidate(near->candidate);
     const bool is_alike =
         c->isotropic_share == other->isotropic_share && c->is_combined == other->is_combined;
-    if (is_alike || wb_cycle_numbers_contains(c, near))
+    if (is_alike || wb_cycle_parameters_contains(c, near))
         return near->scale_of_misses;
     return near->scale_of_misses < first_scale_of_misses ? largest_scale_of_misses
                                                          : first_scale_of_misses;
@@ -562,13 +564,14 @@ static double first_scale(const struct wb_cycle_numbers_candidate *c,
 static bool is_best_at_end(const struct wb_cycle_search *p, const gsl_multifit_nlinear_workspace *w,
                            const struct wb_law *law)
 {
-    const size_t at = (size_t)p->numbers.n_form - 1;
+    const size_t at = (size_t)p->parameters.n_form - 1;
     gsl_matrix *const squares = factor_squares(w->J);
-    gsl_vector *const step = wb_memory_need(gsl_vector_alloc((size_t)p->numbers.n_free));
+    gsl_vector *const step = wb_memory_need(gsl_vector_alloc((size_t)p->parameters.n_free));
     bool is_best = squares &&
                    gsl_blas_dgemv(CblasTrans, -1.0, w->J, w->f, 0.0, step) == GSL_SUCCESS &&
                    gsl_linalg_cholesky_svx(squares, step) == GSL_SUCCESS;
-    is_best = is_best && wb_cycle_numbers_share_ends(&p->numbers, law, gsl_vector_get(step, at));
+    is_best =
+        is_best && wb_cycle_parameters_share_ends(&p->parameters, law, gsl_vector_get(step, at));
     gsl_vector_free(step);
     gsl_matrix_free(squares);
     return is_best;
@@ -582,12 +585,12 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct wb_cycle_search *p
         .f = gsl_residuals,
         .df = gsl_slopes,
         .n = (size_t)p->n_residuals,
-        .p = (size_t)p->numbers.n_free,
+        .p = (size_t)p->parameters.n_free,
         .params = p,
     };
     double at[WB_FIT_MOST_FREE] = {0.0};
     double free_numbers[WB_FIT_MOST_FREE];
-    gsl_vector_view x = gsl_vector_view_array(at, (size_t)p->numbers.n_free);
+    gsl_vector_view x = gsl_vector_view_array(at, (size_t)p->parameters.n_free);
     const int started = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
     if (p->status != WB_OK)
         return p->status;
@@ -595,9 +598,9 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct wb_cycle_search *p
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
                           "wire '%s', sample %d: %s: the beam does not come to the end of the "
                           "cycle from the first guess",
-                          p->numbers.data->info.wire, p->numbers.data->info.sample,
-                          p->numbers.candidate->name);
-    fit->is_contained = near && wb_cycle_numbers_contains(p->numbers.candidate, near) &&
+                          p->parameters.data->info.wire, p->parameters.data->info.sample,
+                          p->parameters.candidate->name);
+    fit->is_contained = near && wb_cycle_parameters_contains(p->parameters.candidate, near) &&
                         is_best_at_end(p, w, &near->law);
     for (int pass = 0; pass < most_passes && !fit->is_contained; pass++) {
         fit->is_converged = iterate(p, w, &fit->iterations);
@@ -605,28 +608,31 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct wb_cycle_search *p
             return p->status;
         if (!set_weights(p, w->f, &fit->n_outliers) || !fit->is_converged)
             break;
-        memcpy(at, w->x->data, (size_t)p->numbers.n_free * sizeof *at);
+        memcpy(at, w->x->data, (size_t)p->parameters.n_free * sizeof *at);
         if (gsl_multifit_nlinear_init(&x.vector, &fdf, w) != GSL_SUCCESS)
             break;
     }
     if (fit->is_contained)
         return WB_OK;
-    wb_cycle_numbers_at(&p->numbers, w->x->data, free_numbers);
-    p->numbers.strain_rate = wb_cycle_numbers_strain_rate(p->numbers.data, p->run.clamp_curvature);
-    wb_cycle_numbers_law(&p->numbers, free_numbers, &fit->law);
-    const struct wb_cycle_specimen specimen = wb_cycle_numbers_specimen(&p->numbers, free_numbers);
+    wb_cycle_parameters_at(&p->parameters, w->x->data, free_numbers);
+    p->parameters.strain_rate =
+        wb_cycle_parameters_strain_rate(p->parameters.data, p->run.clamp_curvature);
+    wb_cycle_parameters_law(&p->parameters, free_numbers, &fit->law);
+    const struct wb_cycle_specimen specimen =
+        wb_cycle_parameters_specimen(&p->parameters, free_numbers);
     fit->bow_angle = specimen.bow_angle;
     fit->level = specimen.level;
     fit->uneven_angle = specimen.uneven_angle;
-    fit->zero = free_numbers[p->numbers.n_law + WB_CYCLE_ZERO];
-    fit->is_at_bound = wb_cycle_numbers_at_bound(&p->numbers, free_numbers);
+    fit->zero = free_numbers[p->parameters.n_law + WB_CYCLE_ZERO];
+    fit->is_at_bound = wb_cycle_parameters_at_bound(&p->parameters, free_numbers);
     find_errors(p, w, fit);
     WB_TRY(run_finely(fit, p, why));
-    for (int i = 0; i < p->numbers.data->n_points; i++)
+    for (int i = 0; i < p->parameters.data->n_points; i++)
         fit->tension[i] += fit->zero;
     fit->clamp_curvature = p->run.clamp_curvature;
     if (fit->law.n_maxwell > 0)
-        fit->law.strain_rate = wb_cycle_numbers_strain_rate(p->numbers.data, fit->clamp_curvature);
+        fit->law.strain_rate =
+            wb_cycle_parameters_strain_rate(p->parameters.data, fit->clamp_curvature);
     fit->first_curvature = p->run.first_curvature;
     fit->turn_change = p->run.turn_change;
     find_misfits(fit, p);
@@ -649,33 +655,33 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
 {
     const clock_t begin = clock();
     struct wb_cycle_search *const p = wb_memory_new(1, sizeof *p);
-    wb_cycle_numbers_init(&p->numbers, data, candidate, start, near, grid, settings);
-    p->scale_of_misses = first_scale(p->numbers.candidate, near);
+    wb_cycle_parameters_init(&p->parameters, data, candidate, start, near, grid, settings);
+    p->scale_of_misses = first_scale(p->parameters.candidate, near);
     p->n_residuals =
-        data->n_points + data->n_places + data->n_markers + held_of(p) + p->numbers.n_priors;
+        data->n_points + data->n_places + data->n_markers + held_of(p) + p->parameters.n_priors;
     *fit = (struct wb_cycle_fit){.candidate = candidate,
-                                 .n_free = p->numbers.n_free,
-                                 .n_law = p->numbers.n_law,
+                                 .n_free = p->parameters.n_free,
+                                 .n_law = p->parameters.n_law,
                                  .search = p};
 
     const double no_step[WB_FIT_MOST_FREE] = {0.0};
     double free_numbers[WB_FIT_MOST_FREE];
     struct wb_law law;
-    wb_cycle_numbers_at(&p->numbers, no_step, free_numbers);
-    wb_cycle_numbers_law(&p->numbers, free_numbers, &law);
+    wb_cycle_parameters_at(&p->parameters, no_step, free_numbers);
+    wb_cycle_parameters_law(&p->parameters, free_numbers, &law);
 
     const struct wb_cycle_model_settings how = {settings->n_elements, settings->n_fibres,
-                                                p->numbers.n_free};
+                                                p->parameters.n_free};
     const size_t points = (size_t)data->n_points;
-    take_buffers(p, p->numbers.n_free);
+    take_buffers(p, p->parameters.n_free);
     p->weight = wb_memory_new(points, sizeof *p->weight);
     for (size_t i = 0; i < points; i++)
         p->weight[i] = 1.0 / (p->scale_of_misses * p->scale_of_misses);
     p->slopes =
-        wb_memory_need(gsl_matrix_calloc((size_t)p->n_residuals, (size_t)p->numbers.n_free));
+        wb_memory_need(gsl_matrix_calloc((size_t)p->n_residuals, (size_t)p->parameters.n_free));
     fit->tension = wb_memory_new(points, sizeof *fit->tension);
     gsl_multifit_nlinear_workspace *const w =
-        wb_least_squares_create(p->n_residuals, p->numbers.n_free);
+        wb_least_squares_create(p->n_residuals, p->parameters.n_free);
     enum wb_status status = wb_cycle_model_create(&p->model, data, &law, &how);
     if (status == WB_OK)
         status = search(fit, p, w, near, why);

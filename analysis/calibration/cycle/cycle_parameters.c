@@ -1,4 +1,4 @@
-#include "analysis/calibration/cycle/cycle_numbers.h"
+#include "analysis/calibration/cycle/cycle_parameters.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -43,7 +43,7 @@ static const double maxwell_modulus_prior = 4.0, maxwell_time_prior = 1.5;
  * start this many times below and above that of one. */
 static const double least_fall = 1e-4, apart = 4.0;
 
-static const struct wb_cycle_numbers_candidate candidates[WB_CANDIDATES] = {
+static const struct wb_cycle_parameters_candidate candidates[WB_CANDIDATES] = {
     [WB_CANDIDATE_LUDWIK_ISOTROPIC] = {"Ludwik, isotropic", WB_LAW_LUDWIK, false, 1.0},
     [WB_CANDIDATE_LUDWIK_KINEMATIC] = {"Ludwik, kinematic", WB_LAW_LUDWIK, false, 0.0},
     [WB_CANDIDATE_LUDWIK_MIXED] = {"Ludwik, mixed", WB_LAW_LUDWIK, true, 0.5},
@@ -79,12 +79,13 @@ const char *wb_candidate_name(enum wb_candidate candidate)
 
 int wb_candidate_numbers(enum wb_candidate candidate)
 {
-    const struct wb_cycle_numbers_candidate *const c = &candidates[candidate];
+    const struct wb_cycle_parameters_candidate *const c = &candidates[candidate];
     const int numbers = c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS : FIRST_BACK + 2 * c->n_backs;
     return numbers + c->has_share;
 }
 
-const struct wb_cycle_numbers_candidate *wb_cycle_numbers_candidate(enum wb_candidate candidate)
+const struct wb_cycle_parameters_candidate *
+wb_cycle_parameters_candidate(enum wb_candidate candidate)
 {
     return &candidates[candidate];
 }
@@ -94,16 +95,16 @@ static double logistic(double x)
     return 1.0 / (1.0 + exp(-x));
 }
 
-static double largest_exponent_of(const struct wb_cycle_numbers_candidate *c)
+static double largest_exponent_of(const struct wb_cycle_parameters_candidate *c)
 {
     const bool is_overlay = !c->is_combined && (c->has_share || c->isotropic_share < 1.0);
     return is_overlay ? largest_kinematic_exponent : largest_exponent;
 }
 
-/* Parts whose limits grow from parts whose limits do not, and that bend alike on a first loading:
- * what they keep of their moduli comes from a share of the elastic part's, so that the share has a
- * say on the way back alone. Returns the isotropic share of the law. */
-static double let_limits_grow(struct wb_law_part *parts, double share)
+/* Turns parts with kinematic hardening into parts whose limits grow, with the same virgin curve:
+ * the share of the elastic part's modulus becomes hardening of the others. So the share affects
+ * unloading only. Returns the isotropic share of the law. */
+static double harden_parts(struct wb_law_part *parts, double share)
 {
     double sum = 0.0;
     for (int i = 0; i < WB_FIT_PARTS - 1; i++)
@@ -117,9 +118,10 @@ static double let_limits_grow(struct wb_law_part *parts, double share)
 
 /* ln E, ln sigma_Y, ln(hardening stress at the middle), logistic exponent; or moduli over those of
  * the start, see wb_least_squares_positive(); and the logistic share of mixed hardening. */
-static void relaxed_law_of(const struct wb_cycle_numbers *p, const double *free, struct wb_law *law)
+static void relaxed_law_of(const struct wb_cycle_parameters *p, const double *free,
+                           struct wb_law *law)
 {
-    const struct wb_cycle_numbers_candidate *const c = p->candidate;
+    const struct wb_cycle_parameters_candidate *const c = p->candidate;
     /* At its end a mixed law would be of another kind. */
     const double share =
         c->has_share ? fmin(logistic(free[p->n_form - 1]), 1.0 - 1e-9) : c->isotropic_share;
@@ -162,12 +164,13 @@ static void relaxed_law_of(const struct wb_cycle_numbers *p, const double *free,
                 ? (double)INFINITY
                 : p->grid.first_strain * pow(ratio, (double)i / (WB_FIT_PARTS - 1));
     }
-    const double kept = c->is_combined ? let_limits_grow(parts, share) : share;
+    const double kept = c->is_combined ? harden_parts(parts, share) : share;
     wb_law_init_parallel(law, parts, WB_FIT_PARTS, kept, p->poissons_ratio);
     law->is_combined = c->is_combined;
 }
 
-void wb_cycle_numbers_law(const struct wb_cycle_numbers *p, const double *free, struct wb_law *law)
+void wb_cycle_parameters_law(const struct wb_cycle_parameters *p, const double *free,
+                             struct wb_law *law)
 {
     relaxed_law_of(p, free, law);
     law->n_maxwell = p->n_maxwell;
@@ -185,7 +188,7 @@ void wb_cycle_numbers_law(const struct wb_cycle_numbers *p, const double *free, 
 }
 
 /* Of the outer fibre up to the clamp's curvature at the turn, 1/s. */
-double wb_cycle_numbers_strain_rate(const struct wb_cycle_data *data, double curvature)
+double wb_cycle_parameters_strain_rate(const struct wb_cycle_data *data, double curvature)
 {
     const double t = wb_cycle_data_loading_time(data);
     return t > 0.0 ? 0.5 * data->info.outer_diameter * curvature / t : 0.0;
@@ -197,7 +200,7 @@ static double elastic_curvature(const struct wb_cycle_data *data)
 }
 
 /* From the elements of a law near by, or from the fall of the tension in the dwell. */
-static void start_maxwell(struct wb_cycle_numbers *p, const struct wb_law *law)
+static void start_maxwell(struct wb_cycle_parameters *p, const struct wb_law *law)
 {
     double *const start = p->start + p->n_form;
     for (int i = 0; i < p->n_maxwell && law->n_maxwell == p->n_maxwell; i++) {
@@ -222,7 +225,7 @@ static void start_maxwell(struct wb_cycle_numbers *p, const struct wb_law *law)
 }
 
 /* From another of its kind; the second of two back stresses comes of the first. */
-static void start_from_chaboche(struct wb_cycle_numbers *p, const struct wb_law *law)
+static void start_from_chaboche(struct wb_cycle_parameters *p, const struct wb_law *law)
 {
     const int n = p->candidate->n_backs;
     p->start[MODULUS] = log(law->material.youngs_modulus);
@@ -240,7 +243,7 @@ static void start_from_chaboche(struct wb_cycle_numbers *p, const struct wb_law 
 
 /* From the virgin curve of another law, which hardens by as much at the test's largest strain and,
  * of two back stresses, at a tenth of it. */
-static void start_from_curve(struct wb_cycle_numbers *p, const struct wb_law *law)
+static void start_from_curve(struct wb_cycle_parameters *p, const struct wb_law *law)
 {
     const double E = law->material.youngs_modulus, top = p->grid.last_strain;
     const double stress = wb_law_virgin_stress(law, top, NULL);
@@ -266,9 +269,9 @@ static void start_from_curve(struct wb_cycle_numbers *p, const struct wb_law *la
 }
 
 /* Free numbers of the law nearest to the given one. */
-static void start_law(struct wb_cycle_numbers *p, const struct wb_law *law)
+static void start_law(struct wb_cycle_parameters *p, const struct wb_law *law)
 {
-    const struct wb_cycle_numbers_candidate *const c = p->candidate;
+    const struct wb_cycle_parameters_candidate *const c = p->candidate;
 
     if (c->form == WB_LAW_LUDWIK) {
         const struct wb_material *const m = &law->material;
@@ -302,7 +305,7 @@ static void start_law(struct wb_cycle_numbers *p, const struct wb_law *law)
             stress = next_stress;
         }
     }
-    /* From the side of the pure rule that was nearer; the limits of parts grow little. */
+    /* On the side of the nearest pure rule; parts harden little. */
     const bool grows = c->form == WB_LAW_PARALLEL && c->is_combined;
     if (c->has_share)
         p->start[p->n_form - 1] = law->isotropic_share == 0.0 || grows ? kinematic_start
@@ -313,7 +316,7 @@ static void start_law(struct wb_cycle_numbers *p, const struct wb_law *law)
         p->scale[i] = 1.0;
 }
 
-static void start_specimen(struct wb_cycle_numbers *p, const struct wb_cycle_fit *near)
+static void start_specimen(struct wb_cycle_parameters *p, const struct wb_cycle_fit *near)
 {
     const struct wb_test_info *const info = &p->data->info;
     double *const start = p->start + p->n_law, *const scale = p->scale + p->n_law;
@@ -329,14 +332,14 @@ static void start_specimen(struct wb_cycle_numbers *p, const struct wb_cycle_fit
     scale[WB_CYCLE_ZERO] = p->force_scale;
 }
 
-void wb_cycle_numbers_at(const struct wb_cycle_numbers *p, const double *x, double *free)
+void wb_cycle_parameters_at(const struct wb_cycle_parameters *p, const double *x, double *free)
 {
-    for (int i = 0; i < p->n_law + WB_CYCLE_OWN_NUMBERS; i++)
+    for (int i = 0; i < p->n_law + WB_CYCLE_SPECIMEN_PARAMETERS; i++)
         free[i] = p->start[i] + (i < p->n_free ? p->scale[i] * x[i] : 0.0);
 }
 
-struct wb_cycle_specimen wb_cycle_numbers_specimen(const struct wb_cycle_numbers *p,
-                                                   const double *free)
+struct wb_cycle_specimen wb_cycle_parameters_specimen(const struct wb_cycle_parameters *p,
+                                                      const double *free)
 {
     const double *const own = free + p->n_law;
     return (struct wb_cycle_specimen){.bow_angle = own[WB_CYCLE_BOW],
@@ -344,10 +347,10 @@ struct wb_cycle_specimen wb_cycle_numbers_specimen(const struct wb_cycle_numbers
                                       .uneven_angle = own[WB_CYCLE_UNEVEN]};
 }
 
-bool wb_cycle_numbers_contains(const struct wb_cycle_numbers_candidate *c,
-                               const struct wb_cycle_fit *near)
+bool wb_cycle_parameters_contains(const struct wb_cycle_parameters_candidate *c,
+                                  const struct wb_cycle_fit *near)
 {
-    const struct wb_cycle_numbers_candidate *const other = &candidates[near->candidate];
+    const struct wb_cycle_parameters_candidate *const other = &candidates[near->candidate];
     if (!c->has_share || c->form != other->form || other->has_share || !near->is_converged)
         return false;
     /* Nearer to the ends of its range an exponent is not where a search begins. */
@@ -357,10 +360,10 @@ bool wb_cycle_numbers_contains(const struct wb_cycle_numbers_candidate *c,
     return !c->is_combined || other->isotropic_share == (c->form == WB_LAW_LUDWIK ? 1.0 : 0.0);
 }
 
-int wb_cycle_numbers_priors(const struct wb_cycle_numbers *p, const double *free,
-                            const struct wb_law *law, double *r)
+int wb_cycle_parameters_priors(const struct wb_cycle_parameters *p, const double *free,
+                               const struct wb_law *law, double *r)
 {
-    const struct wb_cycle_numbers_candidate *const c = p->candidate;
+    const struct wb_cycle_parameters_candidate *const c = p->candidate;
     int at = 0;
 
     r[at++] = free[p->n_law + WB_CYCLE_LEVEL] / p->settings.level_prior;
@@ -391,21 +394,21 @@ int wb_cycle_numbers_priors(const struct wb_cycle_numbers *p, const double *free
     return at;
 }
 
-static int count_priors(const struct wb_cycle_numbers *p)
+static int count_priors(const struct wb_cycle_parameters *p)
 {
-    const struct wb_cycle_numbers_candidate *const c = p->candidate;
+    const struct wb_cycle_parameters_candidate *const c = p->candidate;
     const int priors = c->form == WB_LAW_PARALLEL   ? WB_FIT_PARTS - 3
                        : c->form == WB_LAW_CHABOCHE ? 2 + 2 * c->n_backs
                                                     : 2;
     return 2 + priors + c->has_share + 2 * p->n_maxwell + (p->settings.zero_prior > 0.0);
 }
 
-void wb_cycle_numbers_init(struct wb_cycle_numbers *p, const struct wb_cycle_data *data,
-                           enum wb_candidate candidate, const struct wb_law *start,
-                           const struct wb_cycle_fit *near, const struct wb_cycle_grid *grid,
-                           const struct wb_cycle_fit_settings *settings)
+void wb_cycle_parameters_init(struct wb_cycle_parameters *p, const struct wb_cycle_data *data,
+                              enum wb_candidate candidate, const struct wb_law *start,
+                              const struct wb_cycle_fit *near, const struct wb_cycle_grid *grid,
+                              const struct wb_cycle_fit_settings *settings)
 {
-    *p = (struct wb_cycle_numbers){
+    *p = (struct wb_cycle_parameters){
         .data = data,
         .settings = *settings,
         .candidate = &candidates[candidate],
@@ -414,36 +417,36 @@ void wb_cycle_numbers_init(struct wb_cycle_numbers *p, const struct wb_cycle_dat
         .n_form = wb_candidate_numbers(candidate),
         .n_maxwell = settings->n_maxwell,
         .force_scale = fmax(settings->force_noise, settings->force_share * data->max_force),
-        .strain_rate = wb_cycle_numbers_strain_rate(data, elastic_curvature(data)),
+        .strain_rate = wb_cycle_parameters_strain_rate(data, elastic_curvature(data)),
         .maxwell_time = sqrt((data->departure - data->arrival) * wb_cycle_data_loading_time(data)),
     };
     /* Forces alone do not tell an unevenly bent wire from one with another law. */
     const int own = WB_CYCLE_UNEVEN + (data->n_places > 0);
     p->n_law = p->n_form + 2 * p->n_maxwell;
-    p->n_free = p->n_law + (settings->zero_prior > 0.0 ? WB_CYCLE_OWN_NUMBERS : own);
+    p->n_free = p->n_law + (settings->zero_prior > 0.0 ? WB_CYCLE_SPECIMEN_PARAMETERS : own);
     p->n_priors = count_priors(p);
     start_law(p, start);
     start_specimen(p, near);
 }
 
-bool wb_cycle_numbers_at_bound(const struct wb_cycle_numbers *p, const double *free)
+bool wb_cycle_parameters_at_bound(const struct wb_cycle_parameters *p, const double *free)
 {
     return (p->candidate->form == WB_LAW_LUDWIK && fabs(free[3]) > at_bound) ||
            (p->candidate->has_share && fabs(free[p->n_form - 1]) > at_bound);
 }
 
-bool wb_cycle_numbers_share_ends(const struct wb_cycle_numbers *p, const struct wb_law *law,
-                                 double step)
+bool wb_cycle_parameters_share_ends(const struct wb_cycle_parameters *p, const struct wb_law *law,
+                                    double step)
 {
     const double share = logistic(p->start[p->n_form - 1]);
     const double to = share + share * (1.0 - share) * step;
     return law->isotropic_share == 0.0 ? to < logistic(-at_bound) : to > logistic(at_bound);
 }
 
-/* Ludwik's are turned into those of K and n, which fits do not count in; a part's own scale does
- * not matter. */
-void wb_cycle_numbers_correlate(const struct wb_cycle_numbers *p, const gsl_matrix *covariance,
-                                double variance, struct wb_cycle_fit *fit)
+/* Transforms Ludwik's parameters to E, sigma_Y, K and n, and Chaboche's C / gamma to C. */
+void wb_cycle_parameters_correlate(const struct wb_cycle_parameters *p,
+                                   const gsl_matrix *covariance, double variance,
+                                   struct wb_cycle_fit *fit)
 {
     double turn[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW] = {{0.0}}, c[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
     const int n = p->n_law;
@@ -454,7 +457,6 @@ void wb_cycle_numbers_correlate(const struct wb_cycle_numbers *p, const gsl_matr
         turn[3][3] = exponent * (1.0 - exponent / largest_exponent_of(p->candidate));
         turn[2][3] = -turn[3][3] * log(middle_plastic_strain);
     }
-    /* C of where it saturates and gamma. */
     for (int i = FIRST_BACK; p->candidate->form == WB_LAW_CHABOCHE && i < p->n_form; i += 2)
         turn[i][i + 1] = 1.0;
     for (int i = 0; i < n; i++) {
