@@ -96,7 +96,7 @@ static void append_residual(const struct wb_dataset *dataset, struct wb_text *te
     if (!isfinite(residual))
         return;
     const double largest = find_range(dataset).deflection;
-    wb_text_append(text, "left deflected      %.2f mm at zero force on the way back (%.0f %%)\n",
+    wb_text_append(text, "residual deflection %.2f mm at zero force of the unloading (%.0f %%)\n",
                    residual / WB_MM, 100.0 * residual / largest);
 }
 
@@ -241,7 +241,7 @@ static void add_residual(struct wb_panel *panel, const struct wb_dataset *datase
     char label[64];
     if (!isfinite(residual))
         return;
-    snprintf(label, sizeof label, "left deflected: %.1f mm", residual);
+    snprintf(label, sizeof label, "residual deflection: %.1f mm", residual);
     wb_figure_add_line(panel, label, 1, &residual, &none, &style);
 }
 

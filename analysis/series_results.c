@@ -34,7 +34,7 @@ static const struct {
     [WB_SERIES_PEAK_FORCE] = {"peak force", "mN", "peak_force_mN", WB_MN, 2},
     [WB_SERIES_STIFFNESS] = {"initial stiffness", "mN/mm", "initial_stiffness_mN_per_mm",
                              WB_MN / WB_MM, 3},
-    [WB_SERIES_RESIDUAL] = {"left deflected", "mm", "residual_deflection_mm", WB_MM, 2},
+    [WB_SERIES_RESIDUAL] = {"residual deflection", "mm", "residual_deflection_mm", WB_MM, 2},
     [WB_SERIES_LOOP] = {"area of the loop", "mJ", "loop_area_mJ", WB_MJ, 3},
 };
 

@@ -88,10 +88,10 @@ static void print_numbers(const struct wb_cycle_calibration *c,
     }
     print_stiffness(c, "unloading stiffness over", &c->unloading);
     if (c->has_unloading) {
-        print_estimate(c, "springback, of a curvature", &c->springback, 1.0, "");
+        print_estimate(c, "residual curvature ratio", &c->residual_curvature_ratio, 1.0, "");
         print_estimate(c, "loop energy", &c->loop_energy, MILLI, "mJ/m");
     } else {
-        printf("no springback and no loop energy: the tests have no way back\n");
+        printf("no residual curvature ratio and no loop energy: the tests have no unloading\n");
     }
     print_stiffness(c, "secant EI to", &c->secant);
     print_estimate(c, "EI at zero curvature", &c->rigidity, N_MM2, "N mm2");
@@ -121,15 +121,17 @@ static void print_rule(const struct wb_cycle_calibration *c)
                c->ranked[0].misfit / PERCENT, WB_CYCLE_LARGEST_FOLLOWED / PERCENT);
     if (!c->has_unloading)
         printf("loading alone does not tell EI from early yield: EI may be 25 %% low\n");
-    printf("%-28s %8s %8s %8s %12s %10s\n", "candidate", "misfit %", "numbers", "weight",
-           "EI N mm2", "springback");
+    printf("%-28s %8s %8s %8s %12s %14s\n", "candidate", "misfit %", "numbers", "weight",
+           "EI N mm2", "residual ratio");
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &c->ranked[i];
-        char rigidity[NUMBER], springback[NUMBER];
-        printf("%-28s %8.3f %8d %8.3f %12s %10s%s%s\n", wb_candidate_name(rank->candidate),
+        char rigidity[NUMBER], residual_curvature_ratio[NUMBER];
+        printf("%-28s %8.3f %8d %8.3f %12s %14s%s%s\n", wb_candidate_name(rank->candidate),
                rank->misfit / PERCENT, rank->n_free, rank->weight,
                format(rank->rigidity.value / N_MM2, rigidity),
-               c->has_unloading ? format(rank->springback.value, springback) : "-",
+               c->has_unloading
+                   ? format(rank->residual_curvature_ratio.value, residual_curvature_ratio)
+                   : "-",
                rank->candidate == c->chosen ? "  chosen" : "",
                rank->counts ? "" : "  not in the ranges");
     }
@@ -238,30 +240,34 @@ static void print_law(const struct wb_cycle_calibration *c)
 
 static void print_specimens(const struct wb_cycle_calibration *c)
 {
-    printf("%-9s %6s %14s %9s %9s %8s %9s %9s %10s %9s\n", "specimen", "L mm", "bow mm",
-           "uneven mm", "level mm", "left mm", "misfit %", "EI N mm2", "springback", "outliers");
+    printf("%-9s %6s %14s %9s %9s %11s %9s %9s %14s %9s\n", "specimen", "L mm", "bow mm",
+           "uneven mm", "level mm", "residual mm", "misfit %", "EI N mm2", "residual ratio",
+           "outliers");
     for (int i = 0; i < c->n_members; i++) {
         const struct wb_cycle_member *const member = &c->members[i];
         const struct wb_cycle_answer *const answer = &member->answers[c->chosen];
         const struct wb_cycle_fit *const fit = &answer->fit;
         const double length = member->data.info.length;
         const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, length);
-        char rigidity[NUMBER], springback[NUMBER], left[NUMBER];
-        printf("%-9d %6g %6.2f +- %4.2f %9.2f %9.2f %8s %9.3f %9s %10s %9d%s%s\n", member->sample,
+        char rigidity[NUMBER], residual_curvature_ratio[NUMBER], left[NUMBER];
+        printf("%-9d %6g %6.2f +- %4.2f %9.2f %9.2f %11s %9.3f %9s %14s %9d%s%s\n", member->sample,
                length / WB_MM, bow.tip / WB_MM, bow.deviation / WB_MM, bow.uneven / WB_MM,
                /* Adding zero makes no number "-0.00". */
                round(100.0 * fit->level / WB_MM) / 100.0 + 0.0,
                format(member->data.residual_deflection / WB_MM, left), fit->misfit / PERCENT,
                format(answer->value[WB_CYCLE_RIGIDITY] / N_MM2, rigidity),
-               c->has_unloading ? format(answer->value[WB_CYCLE_SPRINGBACK], springback) : "-",
+               c->has_unloading
+                   ? format(answer->value[WB_CYCLE_RESIDUAL_CURVATURE], residual_curvature_ratio)
+                   : "-",
                fit->n_outliers + member->data.n_outliers,
                fit->is_converged ? "" : "  did not converge",
                fit->is_at_bound ? "  at a bound" : "");
     }
     printf("uneven: natural offset of the middle from that of an even curvature\n");
     if (c->has_unloading)
-        printf("left: deflection where the force has come down to that at zero deflection, as "
-               "measured\n");
+        printf(
+            "residual mm: residual deflection as measured, where the force has come down to that "
+            "at zero deflection\nresidual ratio: residual curvature over the largest curvature\n");
     if (c->specimens_for_5_percent > 0)
         printf("specimens needed for EI within +-5 %%: %d\n", c->specimens_for_5_percent);
 }

@@ -121,7 +121,8 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "DATASET...",
     .doc = "Calibrates a law of bending on datasets of one wire: flexural rigidity, moments, "
-           "springback and the hardening rule from the first loading and unloading of each "
+           "residual curvature ratio and the hardening rule from the first loading and unloading "
+           "of each "
            "specimen. With --method paper: E by eq. 10, the yield stress by eq. 11, K and n by "
            "Nelder-Mead on the averaged first loading, with the beam under the test's own "
            "loading.\v"

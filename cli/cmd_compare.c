@@ -54,7 +54,8 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "A.yaml B.yaml",
     .doc = "Compares two batches (lots, suppliers, temperatures) by the properties that "
-           "`calibrate` wrote of each: EI, springback and moments at the same curvatures. The "
+           "`calibrate` wrote of each: EI, residual curvature ratio and moments at the same "
+           "curvatures. The "
            "interval of 90 % of the logarithm of the ratio B over A (Welch) lies within -X to X: "
            "equivalent; outside as a whole: different; else it cannot tell, and says how many more "
            "specimens to test.\v"

@@ -244,8 +244,8 @@ static void print_cycles(const struct wb_validate_result *r)
            r->is_rule_untested ? "; the rule of these properties is untested" : "");
     const double left = cycles->residual_measured, predicted = cycles->residual_computed;
     if (isfinite(left))
-        printf("  left deflected %.2f mm measured, %.2f mm predicted (%+.2f mm)\n", left / WB_MM,
-               predicted / WB_MM, (predicted - left) / WB_MM);
+        printf("  residual deflection %.2f mm measured, %.2f mm predicted (%+.2f mm)\n",
+               left / WB_MM, predicted / WB_MM, (predicted - left) / WB_MM);
     for (int i = 0; i < cycles->n_loops; i++) {
         const struct wb_validate_loop *const loop = &cycles->loops[i];
         printf("  cycle %-2d       loses %.3g mJ measured, %.3g mJ predicted (%+.1f %%)\n",

@@ -29,8 +29,8 @@ static void print_unloading(const struct wb_validate_three_point *r)
            r->is_rule_untested ? "; the rule of these properties is untested" : "");
     const double left = r->left_measured, predicted = r->left_computed;
     if (isfinite(left))
-        printf("  left deflected %.3f mm measured, %.3f mm predicted (%+.3f mm)\n", left / WB_MM,
-               predicted / WB_MM, (predicted - left) / WB_MM);
+        printf("  residual deflection %.3f mm measured, %.3f mm predicted (%+.3f mm)\n",
+               left / WB_MM, predicted / WB_MM, (predicted - left) / WB_MM);
 }
 
 static void print_scatter(const struct wb_validate_three_point *r)

@@ -55,7 +55,7 @@ static int print(const struct wirebench_properties *properties)
         return fail();
     for (int i = 0; i < CURVATURES; i++)
         printf("M at %.4g 1/m: %.9g N m\n", curvature[i], moment[i]);
-    printf("springback %.9g of a curvature of %.4g 1/m\n", bending.springback,
+    printf("residual curvature ratio %.9g from %.4g 1/m\n", bending.residual_curvature_ratio,
            info.largest_curvature);
     return 0;
 }

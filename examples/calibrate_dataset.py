@@ -28,8 +28,8 @@ def main(paths):
     curvature = info.largest_curvature * np.arange(1, 5) / 4
     for at, moment in zip(curvature, properties.moments(curvature)):
         print("M at %.4g 1/m: %.9g N m" % (at, moment))
-    print("springback %.9g of a curvature of %.4g 1/m" %
-          (properties.bend(info.largest_curvature).springback, info.largest_curvature))
+    print("residual curvature ratio %.9g from %.4g 1/m" %
+          (properties.bend(info.largest_curvature).residual_curvature_ratio, info.largest_curvature))
 
 
 if __name__ == "__main__":

@@ -299,9 +299,9 @@ struct wirebench_properties_info {
     int n_parts;
     struct wirebench_part parts[WIREBENCH_MOST_PARTS];
     double kinematic_share;
-    double rms;                                     /* misfit of the calibration, over F_max */
-    double largest_curvature;                       /* 1/m, that the tests reached */
-    struct wirebench_estimate rigidity, springback; /* EI, N m2; 1 */
+    double rms;               /* misfit of the calibration, over F_max */
+    double largest_curvature; /* 1/m, that the tests reached */
+    struct wirebench_estimate rigidity, residual_curvature_ratio; /* EI, N m2; 1 */
     int n_samples;
     int is_rule_supported; /* the data support the hardening rule */
     int is_virtual, is_simulation;
@@ -337,8 +337,9 @@ enum wirebench_status wirebench_moments(const struct wirebench_properties *prope
 
 struct wirebench_bending {
     size_t size;
-    double rigidity;    /* EI of the virgin wire, N m2 */
-    double springback;  /* residual over largest curvature: bent to the largest and let go, 1 */
+    double rigidity;                 /* EI of the virgin wire, N m2 */
+    double residual_curvature_ratio; /* residual over largest curvature: bent to the largest and let
+                                        go, 1 */
     double loop_energy; /* J/m lost each time: from the largest curvature straight and back */
 };
 

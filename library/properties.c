@@ -158,7 +158,7 @@ enum wirebench_status wirebench_properties_describe(const struct wirebench_prope
         .rms = p->rms,
         .largest_curvature = p->largest_curvature,
         .rigidity = estimate(&rigidity),
-        .springback = estimate(&p->springback),
+        .residual_curvature_ratio = estimate(&p->residual_curvature_ratio),
         .n_samples = p->n_samples,
         .is_rule_supported = p->is_rule_supported,
         .is_virtual = p->is_virtual,
@@ -225,7 +225,8 @@ enum wirebench_status wirebench_bend(const struct wirebench_properties *properti
     if (status != WB_OK)
         return wb_call_end(status);
     const struct wirebench_bending mine = {.rigidity = found.flexural_rigidity,
-                                           .springback = found.springback,
+                                           .residual_curvature_ratio =
+                                               found.residual_curvature_ratio,
                                            .loop_energy = found.loop_energy};
     return wb_call_end(wb_call_give(bending, &mine, sizeof mine, "wirebench_bending"));
 }

@@ -24,7 +24,7 @@ const struct wb_card_kind wb_card_kinds[WB_CARD_KINDS] = {
      wb_card_solid_abaqus},
     {"mujoco", "chain of hinges for MuJoCo, of one secant stiffness", "mujoco.xml", PLACE_CHAIN,
      wb_card_mujoco},
-    {"table", "EI, moment over curvature, springback as JSON", "json", PLACE_TABLE,
+    {"table", "EI, moment over curvature, residual curvature ratio as JSON", "json", PLACE_TABLE,
      wb_card_table_json},
     {"table-csv", "moment over curvature as CSV", "csv", PLACE_TABLE, wb_card_table_csv},
 };

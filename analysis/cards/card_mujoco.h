@@ -2,7 +2,7 @@
  * on two bending hinges and a twist hinge a joint.
  *
  * The engine's joints are linear springs: the card holds one stiffness, that of the virgin wire or
- * the secant at a curvature, and never the springback; it says so. Torsion and damping are
+ * the secant at a curvature, and never the residual curvature; it says so. Torsion and damping are
  * assumptions, and said to be. Cables of the engine's plugin, and ball joints, which have one
  * stiffness about all axes, are not used.
  */

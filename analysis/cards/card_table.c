@@ -13,19 +13,21 @@
 
 #define WB_LOG_DOMAIN "card"
 
-/* Springback as calibrated; where that is unknown, what the law says, which then has no interval.
+/* Residual curvature ratio as calibrated; where that is unknown, what the law says, which then has
+ * no interval.
  */
-static enum wb_status find_springback(const struct wb_card_source *source,
-                                      struct wb_estimate *springback)
+static enum wb_status find_residual_curvature_ratio(const struct wb_card_source *source,
+                                                    struct wb_estimate *residual_curvature_ratio)
 {
     const struct wb_properties *const p = &source->properties;
     struct wb_bending bending;
-    *springback = p->springback;
-    if (isfinite(springback->value) || isfinite(springback->candidates_low))
+    *residual_curvature_ratio = p->residual_curvature_ratio;
+    if (isfinite(residual_curvature_ratio->value) ||
+        isfinite(residual_curvature_ratio->candidates_low))
         return WB_OK;
     WB_TRY(wb_bending_describe(&p->law, p->outer_diameter, wb_card_source_curvature(source),
                                &bending));
-    springback->value = bending.springback;
+    residual_curvature_ratio->value = bending.residual_curvature_ratio;
     return WB_OK;
 }
 
@@ -105,7 +107,7 @@ static void set_origin(struct wb_json *root, const struct wb_card_source *source
 
 static struct wb_json *make_json(const struct wb_card_source *source,
                                  const struct wb_card_curve *curve,
-                                 const struct wb_estimate *springback)
+                                 const struct wb_estimate *residual_curvature_ratio)
 {
     const struct wb_properties *const p = &source->properties;
     const struct wb_estimate rigidity = wb_card_source_rigidity(source);
@@ -124,7 +126,7 @@ static struct wb_json *make_json(const struct wb_card_source *source,
     set_law(root, &p->law);
     wb_json_set_boolean(root, "loading_only", !wb_card_source_has_way_back(source));
     set_estimate(root, "flexural_rigidity_N_m2", &rigidity);
-    set_estimate(root, "springback_ratio", springback);
+    set_estimate(root, "residual_curvature_ratio", residual_curvature_ratio);
     wb_json_set_number(root, "largest_curvature_1_m", wb_card_source_curvature(source));
     wb_json_set_boolean(root, "largest_curvature_tested", isfinite(p->largest_curvature));
     set_curve(root, curve);
@@ -137,12 +139,12 @@ enum wb_status wb_card_table_json(const struct wb_card_source *source,
                                   struct wb_reason *why)
 {
     struct wb_card_curve curve;
-    struct wb_estimate springback;
+    struct wb_estimate residual_curvature_ratio;
     char *formatted;
     (void)settings, (void)why;
     WB_TRY(wb_card_curve_init(&curve, source));
-    WB_TRY(find_springback(source, &springback));
-    struct wb_json *const root = make_json(source, &curve, &springback);
+    WB_TRY(find_residual_curvature_ratio(source, &residual_curvature_ratio));
+    struct wb_json *const root = make_json(source, &curve, &residual_curvature_ratio);
     const enum wb_status status = wb_json_format(root, &formatted);
     wb_json_destroy(root);
     WB_TRY(status);
@@ -166,15 +168,16 @@ enum wb_status wb_card_table_csv(const struct wb_card_source *source,
                                  struct wb_reason *why)
 {
     struct wb_card_curve curve;
-    struct wb_estimate springback;
+    struct wb_estimate residual_curvature_ratio;
     (void)settings, (void)why;
     WB_TRY(wb_card_curve_init(&curve, source));
-    WB_TRY(find_springback(source, &springback));
+    WB_TRY(find_residual_curvature_ratio(source, &residual_curvature_ratio));
     wb_card_source_append(source, "Table", "# ", text);
-    wb_text_append(text,
-                   "# Springback, residual over largest curvature: %.6g. Empty cells are not "
-                   "known.\n",
-                   springback.value);
+    wb_text_append(
+        text,
+        "# Residual curvature ratio, residual over largest curvature: %.6g. Empty cells are not "
+        "known.\n",
+        residual_curvature_ratio.value);
     wb_text_append(text, "curvature_1_m,moment_N_m,low_N_m,high_N_m,candidates_low_N_m,"
                          "candidates_high_N_m,secant_flexural_rigidity_N_m2\n");
     for (int k = 0; k < WB_CARD_CURVE; k++) {

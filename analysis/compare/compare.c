@@ -70,9 +70,9 @@ static enum wb_status find_moment(const struct wb_properties *p, double curvatur
     return WB_OK;
 }
 
-/* What the law says of the springback from `curvature`, over that from the file's largest. */
-static enum wb_status find_springback_ratio(const struct wb_properties *p, double curvature,
-                                            double *ratio)
+/* The law's residual curvature ratio from `curvature`, over that from the file's largest. */
+static enum wb_status scale_to_curvature(const struct wb_properties *p, double curvature,
+                                         double *ratio)
 {
     struct wb_bending here, largest;
     *ratio = 1.0;
@@ -80,7 +80,7 @@ static enum wb_status find_springback_ratio(const struct wb_properties *p, doubl
         return WB_OK;
     WB_TRY(wb_bending_describe(&p->law, p->outer_diameter, curvature, &here));
     WB_TRY(wb_bending_describe(&p->law, p->outer_diameter, p->largest_curvature, &largest));
-    *ratio = here.springback / largest.springback;
+    *ratio = here.residual_curvature_ratio / largest.residual_curvature_ratio;
     return WB_OK;
 }
 
@@ -122,17 +122,18 @@ static enum wb_status take_unloading(struct wb_compare_quantity *q,
     return WB_OK;
 }
 
-static enum wb_status take_springback(struct wb_compare_quantity *q,
-                                      const struct wb_properties *const *p, double curvature)
+static enum wb_status take_residual_curvature_ratio(struct wb_compare_quantity *q,
+                                                    const struct wb_properties *const *p,
+                                                    double curvature)
 {
     *q = (struct wb_compare_quantity){.factor = 1.0};
-    snprintf(q->name, sizeof q->name, "springback from %.3g 1/m", curvature);
+    snprintf(q->name, sizeof q->name, "residual curvature ratio from %.3g 1/m", curvature);
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         double ratio = 1.0;
-        if (isfinite(p[i]->springback.low))
-            WB_TRY(find_springback_ratio(p[i], curvature, &ratio));
-        if (!find_group(p[i], &p[i]->springback, ratio, &q->groups[i]))
-            q->reason = "a file has no interval of springback";
+        if (isfinite(p[i]->residual_curvature_ratio.low))
+            WB_TRY(scale_to_curvature(p[i], curvature, &ratio));
+        if (!find_group(p[i], &p[i]->residual_curvature_ratio, ratio, &q->groups[i]))
+            q->reason = "a file has no interval of the residual curvature ratio";
     }
     return WB_OK;
 }
@@ -211,7 +212,7 @@ enum wb_status wb_compare_run(struct wb_compare *compare,
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         WB_TRY(take_moment(q++, properties, wb_cycle_moment_parts[k] * c.curvature));
     WB_TRY(take_unloading(q++, properties, c.curvature));
-    WB_TRY(take_springback(q++, properties, c.curvature));
+    WB_TRY(take_residual_curvature_ratio(q++, properties, c.curvature));
     WB_TRY(take_rigidity(q, properties));
     for (int k = 0; k < WB_COMPARE_QUANTITIES; k++)
         decide(&c.quantities[k], within);

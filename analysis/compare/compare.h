@@ -1,11 +1,11 @@
-/* Two calibrated batches side by side: EI, springback and moments, of two suppliers, lots or
- * temperatures, by how specimens scatter, as their properties files say it.
+/* Two calibrated batches side by side: EI, residual curvature ratio and moments, of two suppliers,
+ * lots or temperatures, by how specimens scatter, as their properties files say it.
  *
  * Compared are means of logarithms over specimens (welch.h), so that the difference is the
- * logarithm of the ratio B over A. Springback and moments are compared at the same curvatures, up
- * to the smaller of the two largest ones: each file's number at its own curvature, times what its
- * law says between the two. What both batches have in common on one bench (gain of the cell,
- * lengths, diameter) cancels in the ratio; what two benches do not share does not.
+ * logarithm of the ratio B over A. Residual curvature ratios and moments are compared at the same
+ * curvatures, up to the smaller of the two largest ones: each file's number at its own curvature,
+ * times what its law says between the two. What both batches have in common on one bench (gain of
+ * the cell, lengths, diameter) cancels in the ratio; what two benches do not share does not.
  */
 #ifndef WB_ANALYSIS_COMPARE_COMPARE_H
 #define WB_ANALYSIS_COMPARE_COMPARE_H

@@ -260,7 +260,7 @@ static enum wb_status find_rankings(struct runs *runs, struct wb_bands_case *out
 
     WB_TRY(add_ranking(runs, "force", deflection * middle / last, runs->force + middle, rows, out));
     WB_TRY(add_ranking(runs, "force", deflection, runs->force + last, rows, out));
-    return add_ranking(runs, "springback", deflection, runs->springback, 1, out);
+    return add_ranking(runs, "deflection_springback", deflection, runs->springback, 1, out);
 }
 
 /* --- a case --- */

@@ -41,7 +41,7 @@ struct wb_bands_place {
 };
 
 struct wb_bands_ranking {
-    const char *of; /* "force" or "springback" */
+    const char *of; /* "force" or "deflection_springback" */
     double at;      /* m, the deflection */
     struct wb_ranking ranking;
 };
@@ -59,7 +59,7 @@ struct wb_bands_case {
     struct wb_bands_place force[WB_BANDS_ROWS + 1]; /* N over m */
     int n_moment;
     struct wb_bands_place moment[WB_BANDS_MOMENTS]; /* N m over 1/m */
-    struct wb_bands_interval springback;            /* 1; NaN: no run springs back */
+    struct wb_bands_interval springback; /* of the deflection, 1; NaN: no run springs back */
     int n_rankings;
     struct wb_bands_ranking ranking[WB_BANDS_RANKINGS];
 };

@@ -63,7 +63,7 @@ static void put_bands(struct wb_text *text, const struct wb_bands_case *c)
     }
     if (!isfinite(c->springback.median) || !last_force(c))
         return;
-    wb_text_append(text, "%s,springback", name);
+    wb_text_append(text, "%s,deflection_springback", name);
     put(text, last_force(c)->at, WB_MM);
     put_band(text, &c->springback, 1.0);
     wb_text_append(text, "\n");
@@ -85,8 +85,9 @@ static enum wb_status write_cases(const struct wb_bands *bands, const char *fold
     struct wb_text text = {0};
     wb_text_append(&text, "case,wires,packing,layers,outline,runs,lost,limited,deflection_mm,"
                           "force_N,force_low_N,force_high_N,force_runs_low_N,force_runs_high_N,"
-                          "springback,springback_low,springback_high,springback_runs_low,"
-                          "springback_runs_high\n");
+                          "deflection_springback,deflection_springback_low,deflection_springback_"
+                          "high,deflection_springback_runs_low,"
+                          "deflection_springback_runs_high\n");
     for (int i = 0; i < bands->n_cases; i++) {
         const struct wb_bands_case *const c = &bands->cases[i];
         const struct wb_bands_place *const last = last_force(c);
@@ -232,7 +233,7 @@ static void append_case(struct wb_json *array, const struct wb_bands *bands,
         wb_json_set_number(object, "deflection_mm", last_force(c)->at / WB_MM);
         set_band(object, "force_N", &last_force(c)->band);
     }
-    set_band(object, "springback", &c->springback);
+    set_band(object, "deflection_springback", &c->springback);
     struct wb_json *const rankings = wb_json_set_array(object, "ranking");
     for (int i = 0; i < c->n_rankings; i++)
         append_ranking(rankings, bands, &c->ranking[i]);
@@ -301,7 +302,7 @@ void wb_bands_output_summarise(const struct wb_bands *bands, struct wb_text *tex
                    wb_bands_model_error() / WB_PERCENT);
     wb_text_append(text,
                    "%-*s wires packing   layers outline     mm  force N (low to high)      "
-                   "springback (low to high)\n",
+                   "springback of the deflection (low to high)\n",
                    name_width, "case");
     for (int i = 0; i < bands->n_cases; i++)
         tell_case(text, &bands->cases[i], name_width);

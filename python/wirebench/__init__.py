@@ -8,7 +8,7 @@ SI units; NaN is a number that is not known. Tables are dictionaries of NumPy ar
         force = recording.table("load")["force_N"]
     dataset = wirebench.align("type1-L85-1.wbr.zst")
     wire = wirebench.calibrate([dataset])
-    print(wire.info.rigidity.value, wire.bend(20.0).springback)
+    print(wire.info.rigidity.value, wire.bend(20.0).residual_curvature_ratio)
     frame = dataset.table("shape").frame()   # with pandas
 
 A failure raises wirebench.Error with the library's message. Where results are there but something
@@ -298,7 +298,7 @@ class Properties(_Handle):
         return found.reshape(curvature.shape)
 
     def bend(self, largest):
-        """rigidity, springback and loop_energy of bending to `largest` (1/m)."""
+        """rigidity, residual_curvature_ratio and loop_energy of bending to `largest` (1/m)."""
         return _described(_s.Bending, _lib.wirebench_bend, self._open, largest)
 
 

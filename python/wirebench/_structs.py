@@ -75,11 +75,11 @@ PropertiesInfo = _struct("PropertiesInfo", _SIZE, ("wire", c.c_char_p), ("method
                          ("deviation", c.c_double * 4), ("n_parts", c.c_int),
                          ("parts", Part * MOST_PARTS),
                          *_doubles("kinematic_share rms largest_curvature"),
-                         ("rigidity", Estimate), ("springback", Estimate),
+                         ("rigidity", Estimate), ("residual_curvature_ratio", Estimate),
                          *_ints("n_samples is_rule_supported is_virtual is_simulation"),
                          *_CHABOCHE, *_doubles("law_youngs_modulus law_yield_stress"))
 
-Bending = _struct("Bending", _SIZE, *_doubles("rigidity springback loop_energy"))
+Bending = _struct("Bending", _SIZE, *_doubles("rigidity residual_curvature_ratio loop_energy"))
 
 Cantilever = _struct("Cantilever", _SIZE,
                      *_doubles("length strand_length counterweight gravity"),

@@ -202,7 +202,7 @@ static void summary_says_what_deflection_is_left(void **state)
     }
     assert_int_equal(wb_quicklook_summary(&dataset, &text), WB_OK);
     assert_non_null(strstr(wb_text_string(&text),
-                           "left deflected      13.07 mm at zero force on the way back (33 %)"));
+                           "residual deflection 13.07 mm at zero force of the unloading (33 %)"));
     wb_quicklook_describe(&dataset, object);
     assert_true(wb_json_get_number(object, "residual_deflection_mm", &left));
     assert_true(fabs(left - 13.07) < 0.02);

@@ -126,29 +126,29 @@ grep -q '^law:' cycle.yaml && fail 'a law beside the four numbers that say it'
 expect 0 'unloading' "$wirebench" validate cycle.yaml L85
 "$wirebench" calibrate cycle >said || fail 'calibrate cycle'
 for line in '^EI at zero curvature  *85[0-9]\.[0-9] N mm2' '^unloading stiffness over 1 1/m  *8[45][0-9]\.[0-9] N mm2' \
-    '^secant EI to 2 1/m ' '^the data of all specimens begin at' '^M at .* 1/m .* N mm' '^springback' '^loop energy' \
+    '^secant EI to 2 1/m ' '^the data of all specimens begin at' '^M at .* 1/m .* N mm' '^residual curvature ratio' '^loop energy' \
     '^one specimen: how specimens scatter is not known' '^Ludwik, kinematic .* not in the ranges' \
     '^  K  *13[0-9][0-9] MPa' '^  scatter between specimens  *unknown' \
     '^  gain of the load cell, not stated: per 1 %  *(1\.0' '^  free length, not stated: per 1 %  *([123]\.' \
     '^  combined ' '^  factor for 95 % ' '^settings: force_noise_mN 0.03, '; do
     grep -q "$line" said || fail "no line '$line': $(cat said)"
 done
-grep -qE '^(EI|M|unloading|secant|springback|loop) .*[0-9]e[-+]' said && fail "exponents: $(cat said)"
+grep -qE '^(EI|M|unloading|secant|residual|loop) .*[0-9]e[-+]' said && fail "exponents: $(cat said)"
 [ "$(grep -n '^M at' said | head -n 1 | cut -d: -f1)" -eq 2 ] || fail 'moments do not come first'
 "$wirebench" calibrate cycle --json >cycle.json || fail 'calibrate --json of cycles'
-for key in unloading_stiffness_N_mm2 secant_stiffness_N_mm2 flexural_rigidity_N_mm2 springback_ratio moment_curvature hardening_rule specimens \
+for key in unloading_stiffness_N_mm2 secant_stiffness_N_mm2 flexural_rigidity_N_mm2 residual_curvature_ratio moment_curvature hardening_rule specimens \
     budget settings; do
     grep -q "^  \"$key\": [{[]" cycle.json || fail "no $key in the JSON object"
 done
 within "$(number cycle.json data_step_mm)" 1 1
 within "$(number cycle.json length_mm)" 85 85
 
-# Loading alone: Ludwik's law, no springback.
+# Loading alone: Ludwik's law, no residual curvature ratio.
 expect 0 'hardening rule is untested' "$wirebench" calibrate L85
 "$wirebench" calibrate L85 -o loading.yaml >said || fail 'calibrate L85'
-grep -q '^springback' said && fail 'springback without a way back'
+grep -q '^residual curvature ratio' said && fail 'a residual curvature ratio without unloading'
 grep -q 'tested: false' loading.yaml || fail 'a rule that was not tested'
-grep -q 'springback' loading.yaml && fail 'springback without a way back in the properties'
+grep -q 'residual_curvature_ratio' loading.yaml && fail 'a residual curvature ratio without unloading in the properties'
 expect 0 '2 specimens' "$wirebench" calibrate L85 L100
 expect 1 'hold the same readings' "$wirebench" calibrate cycle cycle
 

@@ -477,7 +477,7 @@ static void bands_are_written_beside_the_curve_and_summarised(void **unused)
     assert_non_null(strstr(o.out, "\nlayers=2 "));
     read_all("bands/bands.csv", o.out, sizeof o.out);
     assert_non_null(strstr(o.out, "\nfile,force_N,53,"));
-    assert_non_null(strstr(o.out, "\nlayers=1,springback,53,"));
+    assert_non_null(strstr(o.out, "\nlayers=1,deflection_springback,53,"));
     assert_non_null(strstr(o.out, "\nlayers=2,moment_N_mm,"));
     read_all("bands/cases.csv", o.out, sizeof o.out);
     assert_non_null(strstr(o.out, "\nlayers=1,7,hexagon,1,hull,30,0,0,53,"));

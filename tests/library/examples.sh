@@ -30,9 +30,9 @@ rigidity=$(sed -n '/"flexural_rigidity_N_mm2"/,/}/s/.*"value": *\([0-9.e+-]*\).*
 [ -n "$rigidity" ] || fail "no rigidity in $(head -c 500 "$prepared/cycle.json")"
 close rigidity "$(sed -n 's/^EI \([^ ]*\) N m2.*/\1/p' "$folder/calibrated")" \
     "$(awk -v r="$rigidity" 'BEGIN { printf "%.17g", r * 1e-6 }')"
-springback=$(sed -n '/"springback_ratio"/,/}/s/.*"value": *\([0-9.e+-]*\).*/\1/p' \
+ratio=$(sed -n '/"residual_curvature_ratio"/,/}/s/.*"value": *\([0-9.e+-]*\).*/\1/p' \
     "$prepared/cycle.json")
-close springback "$(sed -n 's/^springback \([^ ]*\) .*/\1/p' "$folder/calibrated")" "$springback"
+close residual_curvature_ratio "$(sed -n 's/^residual curvature ratio \([^ ]*\) .*/\1/p' "$folder/calibrated")" "$ratio"
 
 # Aligned in memory, the same; what the test lacks is said.
 "$examples/calibrate_dataset" "$recording" >"$folder/calibrated-recording" 2>"$folder/err"

@@ -75,7 +75,7 @@ static void an_elastic_wire_bends_by_its_rigidity_and_springs_back(void **state)
         assert_close(moment[i], rigidity() * curvature[i], 1e-6 * rigidity() * 30.0);
     succeed(wirebench_bend(wire, 30.0, &bending));
     assert_close_relative(bending.rigidity, rigidity(), 1e-9);
-    assert_close(bending.springback, 0.0, 1e-9);
+    assert_close(bending.residual_curvature_ratio, 0.0, 1e-9);
     wirebench_properties_destroy(wire);
 }
 
@@ -135,7 +135,7 @@ static void kinematic_hardening_springs_back_less_and_loads_alike(void **state)
     assert_close_relative(moments[0], moments[1], 5e-3);
     succeed(wirebench_bend(isotropic, curvature, &one));
     succeed(wirebench_bend(kinematic, curvature, &other));
-    assert_true(one.springback > 1.2 * other.springback);
+    assert_true(one.residual_curvature_ratio > 1.2 * other.residual_curvature_ratio);
     wirebench_properties_destroy(isotropic);
     wirebench_properties_destroy(kinematic);
 }
@@ -180,7 +180,7 @@ static void a_shorter_struct_is_filled_as_far_as_it_reaches(void **state)
     double untouched;
     memset(&untouched, 0x5a, sizeof untouched);
     succeed(wirebench_bend(wire, 30.0, &bending));
-    assert_close(bending.springback, 0.0, 1e-9);
+    assert_close(bending.residual_curvature_ratio, 0.0, 1e-9);
     assert_memory_equal(&bending.loop_energy, &untouched, sizeof untouched);
     assert_int_equal(bending.size, offsetof(struct wirebench_bending, loop_energy));
     wirebench_properties_destroy(wire);

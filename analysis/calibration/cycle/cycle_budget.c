@@ -35,7 +35,7 @@ static const double unknown_part = 0.5;
 /* A residual curvature is a part of the largest. */
 static double largest_value(enum wb_cycle_number number)
 {
-    return number == WB_CYCLE_SPRINGBACK ? 1.0 : (double)INFINITY;
+    return number == WB_CYCLE_RESIDUAL_CURVATURE ? 1.0 : (double)INFINITY;
 }
 
 void wb_cycle_average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
@@ -274,8 +274,8 @@ int wb_cycle_budget_columns(const struct wb_cycle_calibration *c,
     columns[n].number = WB_CYCLE_FIRST_SECANT + k;
     snprintf(columns[n++].name, WB_BUDGET_TEXT, "secant to %.3g /m", c->secant.curvature[k]);
     if (c->has_unloading) {
-        columns[n].number = WB_CYCLE_SPRINGBACK;
-        snprintf(columns[n++].name, WB_BUDGET_TEXT, "springback");
+        columns[n].number = WB_CYCLE_RESIDUAL_CURVATURE;
+        snprintf(columns[n++].name, WB_BUDGET_TEXT, "residual curvature ratio");
     }
     return n;
 }
@@ -304,7 +304,8 @@ bool wb_cycle_budget_is_within(const struct wb_cycle_calibration *c, double part
         snprintf(text, sizeof text, "the unloading stiffness over %.3g /m",
                  c->unloading.curvature[k]);
         take_worse(&c->budget[WB_CYCLE_FIRST_UNLOADING + k], text, name, known);
-        take_worse(&c->budget[WB_CYCLE_SPRINGBACK], "springback", name, known);
+        take_worse(&c->budget[WB_CYCLE_RESIDUAL_CURVATURE], "residual curvature ratio", name,
+                   known);
     }
     if (!isfinite(c->rigidity.deviation)) {
         snprintf(name, WB_BUDGET_TEXT, "the scatter between specimens");
@@ -375,7 +376,8 @@ void wb_cycle_budget_put(struct wb_json *array, const struct wb_cycle_calibratio
     const double none = (double)NAN;
     put_budget(array, "flexural_rigidity", none, &c->budget[WB_CYCLE_RIGIDITY]);
     if (c->has_unloading) {
-        put_budget(array, "springback_ratio", none, &c->budget[WB_CYCLE_SPRINGBACK]);
+        put_budget(array, "residual_curvature_ratio", none,
+                   &c->budget[WB_CYCLE_RESIDUAL_CURVATURE]);
         put_budget(array, "loop_energy", none, &c->budget[WB_CYCLE_LOOP_ENERGY]);
     }
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)

@@ -11,7 +11,7 @@
 #include "base/json.h"
 
 /* Numbers whose budgets are printed: the moment at a tenth of the largest curvature and there, both
- * stiffnesses at 1 /m, or as far as there are data, and springback. */
+ * stiffnesses at 1 /m, or as far as there are data, and the residual curvature ratio. */
 enum {
     WB_BUDGET_COLUMNS = 5,
     WB_BUDGET_TEXT = 80
@@ -23,9 +23,9 @@ struct wb_budget_column {
 int wb_cycle_budget_columns(const struct wb_cycle_calibration *calibration,
                             struct wb_budget_column columns[WB_BUDGET_COLUMNS]);
 
-/* Whether the moments, the unloading stiffness over 1 /m and springback are known within a part of
- * them, with 95 %; `name` receives which is known worst, *known how well. What no file states is
- * not asked for. One specimen knows nothing of the product: infinite. */
+/* Whether the moments, the unloading stiffness over 1 /m and the residual curvature ratio are known
+ * within a part of them, with 95 %; `name` receives which is known worst, *known how well. What no
+ * file states is not asked for. One specimen knows nothing of the product: infinite. */
 bool wb_cycle_budget_is_within(const struct wb_cycle_calibration *calibration, double part,
                                char name[WB_BUDGET_TEXT], double *known);
 

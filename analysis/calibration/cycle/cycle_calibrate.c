@@ -79,8 +79,8 @@ static const struct wb_setting rows[] = {
      .otherwise = "any",
      .option = "at-most",
      .argument = "P",
-     .help = "Exit with 3 where a moment, the unloading stiffness over 1 /m or springback is not "
-             "known within this part of it (95 %)"},
+     .help = "Exit with 3 if a moment, the unloading stiffness over 1 /m or the residual "
+             "curvature ratio is not known within this part of its value (95 %)"},
     {.name = "threads",
      .type = WB_SETTING_INTEGER,
      .offset = offsetof(struct wb_cycle_calibrate_settings, threads),
@@ -702,7 +702,7 @@ static enum wb_status describe_law(const struct wb_cycle_calibration *calibratio
     struct wb_bending bending;
     WB_TRY(wb_bending_describe(law, diameter, largest, &bending));
     value[WB_CYCLE_RIGIDITY] = bending.flexural_rigidity;
-    value[WB_CYCLE_SPRINGBACK] = bending.springback;
+    value[WB_CYCLE_RESIDUAL_CURVATURE] = bending.residual_curvature_ratio;
     value[WB_CYCLE_LOOP_ENERGY] = bending.loop_energy;
     WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature,
                               value + WB_CYCLE_FIRST_MOMENT));
@@ -999,8 +999,8 @@ static struct wb_estimate *estimate_of(struct wb_cycle_calibration *calibration,
 {
     if (number == WB_CYCLE_RIGIDITY)
         return &calibration->rigidity;
-    if (number == WB_CYCLE_SPRINGBACK)
-        return &calibration->springback;
+    if (number == WB_CYCLE_RESIDUAL_CURVATURE)
+        return &calibration->residual_curvature_ratio;
     if (number == WB_CYCLE_LOOP_ENERGY)
         return &calibration->loop_energy;
     if (number < WB_CYCLE_FIRST_SECANT)
@@ -1026,8 +1026,8 @@ static enum wb_status conclude(struct wb_cycle_calibration *calibration,
         struct wb_cycle_rank *const rank = &calibration->ranked[i];
         wb_cycle_average(calibration, rank->candidate, WB_CYCLE_RIGIDITY, settings,
                          &rank->rigidity);
-        wb_cycle_average(calibration, rank->candidate, WB_CYCLE_SPRINGBACK, settings,
-                         &rank->springback);
+        wb_cycle_average(calibration, rank->candidate, WB_CYCLE_RESIDUAL_CURVATURE, settings,
+                         &rank->residual_curvature_ratio);
         average_law(calibration, rank->candidate, &rank->law);
     }
     average_law(calibration, calibration->chosen, &calibration->law);

@@ -75,10 +75,10 @@ struct wb_cycle_stiffness {
 
 /* What is reported of a law, and of a specimen with it. */
 enum wb_cycle_number {
-    WB_CYCLE_RIGIDITY,     /* EI at curvature zero, N m2 */
-    WB_CYCLE_SPRINGBACK,   /* 1 */
-    WB_CYCLE_LOOP_ENERGY,  /* J/m */
-    WB_CYCLE_FIRST_MOMENT, /* N m */
+    WB_CYCLE_RIGIDITY,           /* EI at curvature zero, N m2 */
+    WB_CYCLE_RESIDUAL_CURVATURE, /* 1 */
+    WB_CYCLE_LOOP_ENERGY,        /* J/m */
+    WB_CYCLE_FIRST_MOMENT,       /* N m */
     WB_CYCLE_FIRST_SECANT = WB_CYCLE_FIRST_MOMENT + WB_CYCLE_MOMENTS, /* N m2 */
     WB_CYCLE_FIRST_UNLOADING = WB_CYCLE_FIRST_SECANT + WB_CYCLE_STIFFNESSES,
     WB_CYCLE_NUMBERS = WB_CYCLE_FIRST_UNLOADING + WB_CYCLE_STIFFNESSES
@@ -118,7 +118,7 @@ struct wb_cycle_rank {
     double weight;
     bool counts; /* misfit at most twice the best, or chosen: its numbers are in the ranges */
     int n_free;  /* of the law */
-    struct wb_estimate rigidity, springback; /* without the ranges */
+    struct wb_estimate rigidity, residual_curvature_ratio; /* without the ranges */
     struct wb_law law; /* means of the specimens' numbers, as those of the chosen one */
 };
 
@@ -139,7 +139,7 @@ struct wb_cycle_calibration {
     double relaxation_prior;  /* 1, see struct wb_cycle_fit_settings */
     double strain_rate;       /* 1/s, of the outer fibre, mean over the specimens, at which numbers
                                  of laws with Maxwell elements are stated; 0: without */
-    struct wb_estimate rigidity, springback, loop_energy; /* N m2, 1, J/m */
+    struct wb_estimate rigidity, residual_curvature_ratio, loop_energy; /* N m2, 1, J/m */
     double curvature[WB_CYCLE_MOMENTS];
     struct wb_estimate moment[WB_CYCLE_MOMENTS];
     /* Of the virgin wire from straight, and on the way back from the largest curvature over changes

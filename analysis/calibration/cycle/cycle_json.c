@@ -60,8 +60,8 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
         wb_json_set_number(item, "weight", rank->weight);
         wb_json_set_boolean(item, "counts", rank->counts);
         wb_json_set_number(item, "flexural_rigidity_N_mm2", rank->rigidity.value / N_MM2);
-        wb_json_set_number(item, "springback_ratio",
-                           c->has_unloading ? rank->springback.value : (double)NAN);
+        wb_json_set_number(item, "residual_curvature_ratio",
+                           c->has_unloading ? rank->residual_curvature_ratio.value : (double)NAN);
         /* Numbers of a law that does not follow hang on where its search ended. */
         if (rank->counts)
             put_law(wb_json_set_object(item, "parameters"), &rank->law);
@@ -95,8 +95,9 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
         wb_json_set_number(item, "length_mm", member->data.info.length / WB_MM);
         wb_json_set_number(item, "flexural_rigidity_N_mm2",
                            answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
-        wb_json_set_number(item, "springback_ratio",
-                           c->has_unloading ? answer->value[WB_CYCLE_SPRINGBACK] : (double)NAN);
+        wb_json_set_number(item, "residual_curvature_ratio",
+                           c->has_unloading ? answer->value[WB_CYCLE_RESIDUAL_CURVATURE]
+                                            : (double)NAN);
         wb_json_set_number(item, "bow_mm", bow.tip / WB_MM);
         wb_json_set_number(item, "bow_uncertainty_mm", bow.deviation / WB_MM);
         wb_json_set_number(item, "uneven_bow_mm", bow.uneven / WB_MM);
@@ -137,8 +138,8 @@ void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration
     put_estimate(wb_json_set_object(object, "flexural_rigidity_N_mm2"), c, "value", &c->rigidity,
                  N_MM2);
     wb_json_set_boolean(object, "flexural_rigidity_resolved", c->is_rigidity_resolved);
-    put_estimate(wb_json_set_object(object, "springback_ratio"), c, "value",
-                 c->has_unloading ? &c->springback : &untested, 1.0);
+    put_estimate(wb_json_set_object(object, "residual_curvature_ratio"), c, "value",
+                 c->has_unloading ? &c->residual_curvature_ratio : &untested, 1.0);
     put_estimate(wb_json_set_object(object, "loop_energy_mJ_per_m"), c, "value",
                  c->has_unloading ? &c->loop_energy : &untested, MILLI);
     wb_json_set_number(object, "largest_curvature_1_m", c->largest_curvature);

@@ -122,7 +122,7 @@ enum wb_status wb_bending_describe(const struct wb_law *law, double diameter, do
         bending->flexural_rigidity =
             wb_fibres_bending_stiffness(p.fibres) * modulus / law->material.youngs_modulus;
         double M = keep_moment(&p, largest);
-        bending->springback = residual_curvature(&p, largest) / largest;
+        bending->residual_curvature_ratio = residual_curvature(&p, largest) / largest;
         bending->loop_energy = work_of(&p, largest, 0.0, &M);
         bending->loop_energy += work_of(&p, 0.0, largest, &M);
     }

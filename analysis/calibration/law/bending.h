@@ -6,8 +6,9 @@
 #include "fe/material/law.h"
 
 struct wb_bending {
-    double flexural_rigidity; /* EI of the virgin section, N m2 */
-    double springback;  /* residual over largest curvature: bent to the largest and let go, 1 */
+    double flexural_rigidity;        /* EI of the virgin section, N m2 */
+    double residual_curvature_ratio; /* residual over largest curvature: bent to the largest and let
+                                        go, 1 */
     double loop_energy; /* J/m lost each time: from the largest curvature straight and back */
 };
 

@@ -20,7 +20,8 @@ void wb_properties_make_unknown(struct wb_properties *properties)
     properties->scatter_rms = properties->residual_scatter_rms = (double)NAN;
     properties->ludwik_misfit = properties->largest_curvature = (double)NAN;
     properties->stiffness_deviation = (double)NAN;
-    properties->rigidity = properties->springback = properties->loop_energy = unknown_estimate;
+    properties->rigidity = properties->residual_curvature_ratio = properties->loop_energy =
+        unknown_estimate;
     for (int k = 0; k < WB_PROPERTIES_MOST_MOMENTS; k++)
         properties->moment[k] = unknown_estimate;
 }
@@ -161,7 +162,8 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
     properties->secant = known_stiffness(calibration, &calibration->secant);
     properties->unloading = known_stiffness(calibration, &calibration->unloading);
     if (calibration->has_unloading) {
-        properties->springback = known(calibration, &calibration->springback);
+        properties->residual_curvature_ratio =
+            known(calibration, &calibration->residual_curvature_ratio);
         properties->loop_energy = known(calibration, &calibration->loop_energy);
     }
     properties->is_rule_tested = is_rule_tested(calibration);

@@ -17,7 +17,7 @@
  *     method: cycle
  *     law: {...}     # fe/material/law_file.h; the four numbers are then its equivalent
  *     flexural_rigidity_N_mm2: {value: 210, low: 200, high: 221, candidates_low: 209, ...}
- *     springback_ratio: {...}
+ *     residual_curvature_ratio: {...}
  *     loop_energy_mJ_per_m: {...}
  *     largest_curvature_1_m: 29
  *     moment_curvature: [{curvature_1_m: 1.5, moment_N_mm: 0.3, low: 0.29, ...}, ...]
@@ -91,10 +91,10 @@ struct wb_properties {
     /* The law, of which `material` is the Ludwik equivalent; of files without one Ludwik's,
      * isotropic, of `material`. */
     struct wb_law law;
-    double ludwik_misfit;                        /* of `material`, of M; NaN unknown */
-    double largest_curvature;                    /* 1/m, of the data; NaN unknown */
-    struct wb_estimate rigidity, springback;     /* N m2, 1; NaN unknown */
-    struct wb_cycle_stiffness secant, unloading; /* without entries unknown */
+    double ludwik_misfit;                                  /* of `material`, of M; NaN unknown */
+    double largest_curvature;                              /* 1/m, of the data; NaN unknown */
+    struct wb_estimate rigidity, residual_curvature_ratio; /* N m2, 1; NaN unknown */
+    struct wb_cycle_stiffness secant, unloading;           /* without entries unknown */
     struct wb_estimate loop_energy; /* J/m, of a loop to the largest curvature; NaN unknown */
     bool is_rule_tested, is_rule_supported;       /* false unknown */
     int n_moments;                                /* points of the measured law; 0 unknown */

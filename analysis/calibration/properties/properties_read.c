@@ -243,7 +243,8 @@ static enum wb_status read_specimens(const struct wb_config_node *node,
 static enum wb_status read_root(const struct wb_config_node *root, struct wb_properties *properties)
 {
     const struct wb_config_node *deviations = NULL, *calibration = NULL, *law = NULL;
-    const struct wb_config_node *rigidity = NULL, *springback = NULL, *moments = NULL;
+    const struct wb_config_node *rigidity = NULL, *ratio = NULL, *moments = NULL;
+    const struct wb_config_node *old_ratio = NULL; /* its name before 0.1.0 */
     const struct wb_config_node *energy = NULL, *secant = NULL, *unloading = NULL;
     const struct wb_config_node *rule = NULL, *specimens = NULL, *three_point = NULL;
     int method = -1;
@@ -267,7 +268,8 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_CONFIG_OPTIONAL_NODE("unloading_stiffness_N_mm2", &unloading),
         WB_CONFIG_OPTIONAL_NODE("secant_stiffness_N_mm2", &secant),
         WB_CONFIG_OPTIONAL_NODE("flexural_rigidity_N_mm2", &rigidity),
-        WB_CONFIG_OPTIONAL_NODE("springback_ratio", &springback),
+        WB_CONFIG_OPTIONAL_NODE("residual_curvature_ratio", &ratio),
+        WB_CONFIG_OPTIONAL_NODE("springback_ratio", &old_ratio),
         WB_CONFIG_OPTIONAL_NODE("loop_energy_mJ_per_m", &energy),
         WB_CONFIG_OPTIONAL_NUMBER("largest_curvature_1_m", &properties->largest_curvature, 1.0,
                                   1e-6, 1e6),
@@ -291,7 +293,8 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
     WB_TRY(read_estimate(rigidity, N_MM2, 1e15, &properties->rigidity));
     WB_TRY(read_stiffness(unloading, &properties->unloading));
     WB_TRY(read_stiffness(secant, &properties->secant));
-    WB_TRY(read_estimate(springback, 1.0, 1.0, &properties->springback));
+    WB_TRY(
+        read_estimate(ratio ? ratio : old_ratio, 1.0, 1.0, &properties->residual_curvature_ratio));
     WB_TRY(read_estimate(energy, MILLI, 1e15, &properties->loop_energy));
     if (moments)
         WB_TRY(read_moments(moments, properties));

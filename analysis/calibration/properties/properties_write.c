@@ -359,8 +359,8 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
                        ? ""
                        : ", which the data do not resolve: take a stiffness from above");
     put_estimate(text, "flexural_rigidity_N_mm2", &p->rigidity, N_MM2);
-    put_estimate(text, "springback_ratio", &p->springback, 1.0);
-    if (isfinite(p->springback.candidates_low))
+    put_estimate(text, "residual_curvature_ratio", &p->residual_curvature_ratio, 1.0);
+    if (isfinite(p->residual_curvature_ratio.candidates_low))
         put_estimate(text, "loop_energy_mJ_per_m", &p->loop_energy, MILLI);
     wb_text_append(text, "# beyond it the law is not measured\n");
     put_number(text, "", "largest_curvature_1_m", p->largest_curvature);

@@ -573,7 +573,7 @@ static void add_rest(struct wb_panel *panel, const char *label,
                      const struct wb_recordings_cycle *cycle, struct wb_colour colour)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    const double rest = c->springback.value * c->largest_curvature, zero = 0.0;
+    const double rest = c->residual_curvature_ratio.value * c->largest_curvature, zero = 0.0;
     const struct wb_figure_style at_rest = {
         .colour = colour, .marker = WB_MARKER_TRIANGLE, .marker_size = 6.0};
     if (c->has_unloading && c->is_followed)

@@ -64,7 +64,7 @@ static void put_wire(struct wb_document_table *table, const struct wb_recordings
         return;
     }
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    const struct wb_estimate *const back = &c->springback;
+    const struct wb_estimate *const back = &c->residual_curvature_ratio;
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const double none = (double)NAN;
     /* Where no law follows the data, the range over laws is all that is known. */
@@ -85,7 +85,7 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
         {.heading = "Stiffness (N mm\xc2\xb2)", .right = true, .wraps = true},
         {.heading = "95 % interval", .right = true, .wraps = true},
         {.heading = "over laws", .right = true},
-        {.heading = "Spring- back", .right = true, .wraps = true},
+        {.heading = "Residual curvature ratio", .right = true, .wraps = true},
         {.heading = "over laws", .right = true},
         {"Law and hardening rule"},
         {.heading = "Misfit (%)", .right = true, .wraps = true},
@@ -95,9 +95,9 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
         &caption,
         "From the first loading and unloading of each sample. Stiffness: change of the moment over "
         "that of the curvature, of the first 1 /m on the way back from the largest curvature; "
-        "where there is no way back, from straight to 1 /m. Springback: curvature that stays over "
-        "the curvature it was bent to. 95 %%: combined of "
-        "all that the budgets below state. Over laws: range over all laws whose "
+        "where there is no unloading, from straight to 1 /m. Residual curvature ratio: curvature "
+        "that remains at zero moment, over the curvature that the wire was bent to. 95 %%: "
+        "combined of all that the budgets below state. Over laws: range over all laws whose "
         "misfit is at most twice the best. Misfit: RMS over both ways of the best law, "
         "over <i>F</i><sub>max</sub>; above 3 %% only ranges are given.");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
@@ -263,8 +263,8 @@ static void put_predictions(struct wb_document *document,
         {.heading = "Loading, RMS (%)", .right = true, .wraps = true},
         {.heading = "bound (%)", .right = true, .wraps = true},
         {.heading = "Unloading, RMS (%)", .right = true, .wraps = true},
-        {.heading = "Left, measured (mm)", .right = true, .wraps = true},
-        {.heading = "Left, predicted (mm)", .right = true, .wraps = true},
+        {.heading = "Residual deflection, measured (mm)", .right = true, .wraps = true},
+        {.heading = "Residual deflection, predicted (mm)", .right = true, .wraps = true},
         {.heading = "Shapes, RMS (mm)", .right = true, .wraps = true},
         {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
     };
@@ -274,7 +274,7 @@ static void put_predictions(struct wb_document *document,
                    "Mean of the samples of %g mm against what the laws of the %g mm samples "
                    "predict; RMS over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in "
                    "another part in one of twenty validations of a right law, because specimens "
-                   "differ. Left: deflection where the force on "
+                   "differ. Residual deflection: where the force on "
                    "the way back has come down to that at zero deflection.",
                    length[WB_RECORDINGS_VALIDATION] / WB_MM,
                    length[WB_RECORDINGS_CALIBRATION] / WB_MM);
@@ -367,9 +367,9 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
          q ? 100.0 * q->bounds[WB_VALIDATE_UNLOADING].found : none, 2},
         {"Unloading, bound", part, 100.0 * p->bounds[WB_VALIDATE_UNLOADING].bound,
          q ? 100.0 * q->bounds[WB_VALIDATE_UNLOADING].bound : none, 2},
-        {"Left deflected, measured", "mm", p_back ? a->residual_measured / WB_MM : none,
+        {"Residual deflection, measured", "mm", p_back ? a->residual_measured / WB_MM : none,
          q_back ? b->residual_measured / WB_MM : none, 2},
-        {"Left deflected, predicted", "mm", p_back ? a->residual_computed / WB_MM : none,
+        {"Residual deflection, predicted", "mm", p_back ? a->residual_computed / WB_MM : none,
          q_back ? b->residual_computed / WB_MM : none, 2},
         {"Residual deflection with each sample as stiff, off by", "mm",
          p->bounds[WB_VALIDATE_RESIDUAL].found / WB_MM,
@@ -475,20 +475,21 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     struct wb_text text = {0};
     if (!c->has_unloading) {
-        wb_text_append(&text, "<b>Rule untested.</b> There is no unloading, so Ludwik's law is "
-                              "fitted to the loading alone, and nothing is said of springback. ");
+        wb_text_append(
+            &text, "<b>Rule untested.</b> There is no unloading, so Ludwik's law is "
+                   "fitted to the loading alone, and the residual curvature ratio is not known. ");
     } else if (!c->is_followed) {
         wb_text_append(
             &text,
             "<b>No law follows the data.</b> The best misses both "
             "ways by %.2f %% of <i>F</i><sub>max</sub>. The stiffness lies between %.*f and "
-            "%.*f N mm\xc2\xb2, springback between %.3f and %.3f, over the laws that "
+            "%.*f N mm\xc2\xb2, residual curvature ratio between %.3f and %.3f, over the laws that "
             "fit about as well. ",
             100.0 * best_misfit(c), wb_pages_decimals(stiffness->candidates_low / N_MM2),
             stiffness->candidates_low / N_MM2,
             wb_pages_decimals(stiffness->candidates_high / N_MM2),
-            stiffness->candidates_high / N_MM2, c->springback.candidates_low,
-            c->springback.candidates_high);
+            stiffness->candidates_high / N_MM2, c->residual_curvature_ratio.candidates_low,
+            c->residual_curvature_ratio.candidates_high);
     } else {
         const char *const name = wb_candidate_name(c->chosen);
         wb_text_append(&text, "<b>%c%s.</b> ", toupper((unsigned char)name[0]), name + 1);
@@ -500,7 +501,7 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
                         " N mm\xc2\xb2");
     }
     if (c->is_followed) {
-        append_estimate(&text, "; springback", &c->springback, 1.0, "");
+        append_estimate(&text, "; residual curvature ratio", &c->residual_curvature_ratio, 1.0, "");
         append_estimate(&text, "; loop energy", &c->loop_energy, MILLI, " mJ/m");
         wb_text_append(&text, ", bent to %.1f /m and back.", c->largest_curvature);
     }
@@ -520,7 +521,7 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
         {.heading = "Numbers", .right = true},
         {.heading = "Weight", .right = true},
         {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true},
-        {.heading = "Springback", .right = true},
+        {.heading = "Residual ratio", .right = true},
         {""},
     };
     struct wb_text caption = {0};
@@ -544,7 +545,7 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", rank->n_free);
         wb_pages_cell_number(table, rank->weight, 3);
         put_number(table, rank->rigidity.value / N_MM2);
-        put_number(table, c->has_unloading ? rank->springback.value : (double)NAN);
+        put_number(table, c->has_unloading ? rank->residual_curvature_ratio.value : (double)NAN);
         wb_pages_cell(table, rank->counts ? WB_TONE_PLAIN : WB_TONE_QUIET,
                       is_chosen      ? "chosen"
                       : rank->counts ? "in range"
@@ -578,8 +579,8 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
     static const struct wb_document_column columns[] = {
         {.heading = "Sample", .right = true},
         {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true, .wraps = true},
-        {.heading = "Spring- back", .right = true, .wraps = true},
-        {.heading = "Left (mm)", .right = true, .wraps = true},
+        {.heading = "Residual curvature ratio", .right = true, .wraps = true},
+        {.heading = "Residual deflection (mm)", .right = true, .wraps = true},
         {.heading = "Bow (mm)", .right = true},
         {.heading = "Un- even (mm)", .right = true, .wraps = true},
         {.heading = "Level (mm)", .right = true, .wraps = true},
@@ -592,8 +593,8 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
     wb_document_heading(document, 2, "", "Samples");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Each sample fitted by itself with the chosen law. Left: residual deflection as measured, "
-        "where the force has come down to that at zero deflection. Bow, uneven and level: natural "
+        "Each sample fitted by itself with the chosen law. Residual deflection: as measured, where "
+        "the force has come down to that at zero deflection. Bow, uneven and level: natural "
         "offset of the tip, of the middle from an even curvature's, and error of zero deflection, "
         "fitted. Misfit up and back: RMS of the force residuals of loading and of unloading over "
         "<i>F</i><sub>max</sub>. Markers: RMS distance to the computed wire. Outliers: readings "
@@ -607,7 +608,8 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
         put_number(table, answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
-        put_number(table, c->has_unloading ? answer->value[WB_CYCLE_SPRINGBACK] : (double)NAN);
+        put_number(table,
+                   c->has_unloading ? answer->value[WB_CYCLE_RESIDUAL_CURVATURE] : (double)NAN);
         wb_pages_cell_number(table, member->data.residual_deflection / WB_MM, 1);
         put_signed(table, bow.tip / WB_MM, bow.deviation / WB_MM);
         wb_pages_cell_number(table, bow.uneven / WB_MM, 2);
@@ -631,7 +633,8 @@ static void put_budget(struct wb_document *document, const struct wb_cycle_calib
     wb_document_heading(document, 2, "", "Uncertainty budget");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Standard uncertainties (%) of moments, stiffnesses and springback, what they are made of, "
+        "Standard uncertainties (%) of moments, stiffnesses and the residual curvature ratio, what "
+        "they are made of, "
         "and the factor that makes an interval of 95 % of the combined one. In brackets: what no "
         "file states, and what is therefore in no interval; the change by 1 % of it, of the "
         "marker offset by 0.1 mm. It goes into the rig, specimen and wire files (u_...).",

@@ -7,8 +7,8 @@
 #include "analysis/report/document.h"
 #include "analysis/report/figures.h"
 
-/* EI, M(kappa), springback and the verdict on the hardening rule of every wire; nothing where the
- * campaign does not calibrate on whole cycles. */
+/* EI, M(kappa), residual curvature ratio and the verdict on the hardening rule of every wire;
+ * nothing where the campaign does not calibrate on whole cycles. */
 void wb_recordings_cycle_pages_summary(struct wb_document *document,
                                        const struct wb_recordings_results *results,
                                        const struct wb_figures *figures);

@@ -54,7 +54,7 @@ static void print_cycle(FILE *out, const struct wb_recordings_cycle *cycle)
         fprintf(out, "  stiffness %.0f N mm2%s", stiffness->value / N_MM2,
                 c->has_unloading ? "" : " by loading alone");
     if (c->has_unloading && c->is_followed)
-        fprintf(out, ", springback %.3f", c->springback.value);
+        fprintf(out, ", residual curvature ratio %.3f", c->residual_curvature_ratio.value);
 }
 
 static void print(FILE *out, const void *context)

@@ -128,16 +128,17 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
         {"Outline"},
         {.heading = "<i>\xce\xb4</i> (mm)", .right = true},
         {.heading = "Force there (N)", .right = true},
-        {.heading = "Springs back", .right = true},
+        {.heading = "Springback of the deflection", .right = true, .wraps = true},
         {.heading = "Runs lost", .right = true, .wraps = true},
     };
     struct wb_text caption = {0};
-    wb_text_append(&caption,
-                   "Median and band of 90 %% of %d runs a case, widened by the model's own error "
-                   "of %g %%. Cases are choices, not chances: the photograph of a cut says which "
-                   "one holds. Springs back: the part of the largest deflection that the bundle "
-                   "goes back by when it is let go.",
-                   bands->runs, wb_bands_model_error() / WB_PERCENT);
+    wb_text_append(
+        &caption,
+        "Median and band of 90 %% of %d runs a case, widened by the model's own error "
+        "of %g %%. Cases are choices, not chances: the photograph of a cut says which "
+        "one holds. Springback of the deflection: 1 less the residual deflection at zero "
+        "force over the largest deflection.",
+        bands->runs, wb_bands_model_error() / WB_PERCENT);
     struct wb_document_table *const table =
         wb_pages_start_table(document, &caption, (int)WB_COUNT(columns), columns);
     for (int i = 0; i < bands->n_cases; i++) {
@@ -213,7 +214,7 @@ static void put_place(struct wb_document_table *table, const struct wb_predictio
     if (isfinite(place->at))
         wb_pages_cell(table, WB_TONE_PLAIN, "force at %.1f mm (N)", place->at / WB_MM);
     else
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, "springs back");
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, "springback of the deflection");
     wb_pages_cell_number(table, place->measured, 3);
     put_interval(table, &place->band, 3);
     wb_pages_cell_plain(table,
@@ -351,7 +352,7 @@ static void put_test_numbers(struct wb_json *list, const struct wb_predictions_t
         const struct wb_predictions_place *const place = &verdict->places[k];
         struct wb_json *const item = wb_json_append_object(places);
         const bool is_force = isfinite(place->at);
-        wb_json_set_text(item, "of", is_force ? "force_N" : "springback");
+        wb_json_set_text(item, "of", is_force ? "force_N" : "deflection_springback");
         if (is_force)
             wb_json_set_number(item, "deflection_mm", place->at / WB_MM);
         wb_json_set_number(item, "test", place->measured);

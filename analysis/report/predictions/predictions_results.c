@@ -210,7 +210,8 @@ const char *wb_predictions_judge(const struct wb_predictions_place places[WB_PRE
     if (places[0].side == WB_PREDICTIONS_WITHIN && places[2].side == WB_PREDICTIONS_BELOW)
         return "within at first, too soft later: the tape lets go of the wires, or a bond breaks";
     if (forces == 0)
-        return "force within, springback outside: the law of the wires beyond yield, or the bond";
+        return "force within, springback of the deflection outside: the law of the wires beyond "
+               "yield, or the bond";
     if (n[0] + n[1] == 1)
         return "one number outside: of ten such numbers one is expected there; test a second "
                "bundle";

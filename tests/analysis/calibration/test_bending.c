@@ -49,7 +49,7 @@ static void a_perfectly_plastic_circle_springs_back_as_the_closed_form_says(void
     /* It is let go elastically: at most twice the yield moment is taken off. */
     const double expected = 1.0 - bilinear_moment(&law, largest) / (EI * largest);
     assert_true(expected > 0.5);
-    assert_close(bending.springback, expected, 2e-4);
+    assert_close(bending.residual_curvature_ratio, expected, 2e-4);
 }
 
 /* An elastic circle with a Maxwell element, bent and unloaded at one rate: in closed form. */
@@ -80,7 +80,7 @@ static void a_relaxing_circle_follows_its_strain_rate(void **unused)
     /* Where the moment has gone, at the same rate. */
     assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
     assert_close_relative(bending.flexural_rigidity, I * (E + relaxing), 1e-6);
-    const double left = bending.springback * largest;
+    const double left = bending.residual_curvature_ratio * largest;
     const double then = exp(-(largest - left) / rate / tau);
     assert_close(E * left + q * then - relaxing * rate * tau * (1.0 - then), 0.0, 1e-6 * E);
     /* Without a rate it is the relaxed law. */
@@ -95,7 +95,7 @@ static void an_elastic_circle_keeps_nothing(void **unused)
     const struct wb_law law = bilinear(1e9, 0.5, 2e9);
     struct wb_bending bending;
     assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
-    assert_close(bending.springback, 0.0, 1e-12);
+    assert_close(bending.residual_curvature_ratio, 0.0, 1e-12);
     assert_close(bending.loop_energy, 0.0, 1e-12 * 3e9 * second_moment() * largest * largest);
 }
 
@@ -116,7 +116,7 @@ static void a_hardening_circle_springs_back_by_masings_rule(void **unused)
             low = middle;
     }
     assert_true(low / largest > 0.1);
-    assert_close(bending.springback, low / largest, 3e-4);
+    assert_close(bending.residual_curvature_ratio, low / largest, 3e-4);
 }
 
 /* The loop between both branches, by integrals of the closed form of a first loading. */

@@ -23,8 +23,8 @@ enum {
     CAMPAIGNS = 34, /* of a truth: 408 of all */
     UNLOADING = 1,  /* behind the moments */
     SECANT,
-    SPRINGBACK,
-    NUMBERS = WB_CYCLE_MOMENTS + SPRINGBACK
+    RESIDUAL_CURVATURE,
+    NUMBERS = WB_CYCLE_MOMENTS + RESIDUAL_CURVATURE
 };
 
 /* Standard uncertainties of a careful bench. */
@@ -36,8 +36,8 @@ static const struct wb_test_uncertainty stated = {
 };
 
 /* A wire's law, of the virtual rig's, and candidates that are not tried. Of a knee from the start
- * that Ludwik's kinematic law follows to 0.2 % of F_max, unloading stiffness and springback are not
- * held: the force hardly knows them, and no other law is near. */
+ * that Ludwik's kinematic law follows to 0.2 % of F_max, unloading stiffness and residual curvature
+ * are not held: the force hardly knows them, and no other law is near. */
 enum group {
     CONTAINED,
     NOT_CONTAINED,
@@ -92,7 +92,7 @@ struct campaign {
 };
 
 static const char *const names[NUMBERS] = {"M(0.05)", "M(0.1)",    "M(0.3)", "M(0.6)",
-                                           "M(1)",    "unloading", "secant", "springback"};
+                                           "M(1)",    "unloading", "secant", "residual"};
 
 static void keep(struct campaign *campaign, int at, const struct wb_estimate *estimate,
                  const struct wb_budget *budget)
@@ -134,14 +134,14 @@ static void judge(struct campaign *campaign, const struct fast_rig *wire,
          &c.budget[WB_CYCLE_FIRST_UNLOADING + u]);
     keep(campaign, WB_CYCLE_MOMENTS - 1 + SECANT, &c.secant.estimate[s],
          &c.budget[WB_CYCLE_FIRST_SECANT + s]);
-    keep(campaign, WB_CYCLE_MOMENTS - 1 + SPRINGBACK, &c.springback,
-         &c.budget[WB_CYCLE_SPRINGBACK]);
+    keep(campaign, WB_CYCLE_MOMENTS - 1 + RESIDUAL_CURVATURE, &c.residual_curvature_ratio,
+         &c.budget[WB_CYCLE_RESIDUAL_CURVATURE]);
     fast_rig_truth(wire, WB_CYCLE_MOMENTS, c.curvature, campaign->is, NULL, &residual);
     fast_rig_truth(wire, 1, &c.secant.curvature[s], &secant, NULL, NULL);
     fast_rig_unloading(wire, c.largest_curvature, 1, &c.unloading.curvature[u],
                        &campaign->is[WB_CYCLE_MOMENTS - 1 + UNLOADING]);
     campaign->is[WB_CYCLE_MOMENTS - 1 + SECANT] = secant / c.secant.curvature[s];
-    campaign->is[WB_CYCLE_MOMENTS - 1 + SPRINGBACK] = residual / c.largest_curvature;
+    campaign->is[WB_CYCLE_MOMENTS - 1 + RESIDUAL_CURVATURE] = residual / c.largest_curvature;
     campaign->has_answer = c.is_followed;
     for (int i = 0; i < remarks.n; i++) {
         campaign->is_blamed |= remarks.items[i].severity >= WB_CHECK_DOUBT;

@@ -30,7 +30,7 @@ enum {
     CAMPAIGN_TYPE = 2,
     CAMPAIGN_SPECIMENS = 3,
     PREDICTED = 4,                 /* specimens of a type that are predicted at other lengths */
-    NUMBERS = WB_CYCLE_MOMENTS + 2 /* EI, springback, moments */
+    NUMBERS = WB_CYCLE_MOMENTS + 2 /* EI, residual_curvature_ratio, moments */
 };
 
 /* --- specimens and what is said of them --- */
@@ -52,8 +52,8 @@ struct verdict {
 
 static const char *name_of(int number)
 {
-    static const char *const names[NUMBERS] = {"EI",     "springback", "M(0.05)", "M(0.1)",
-                                               "M(0.3)", "M(0.6)",     "M(1)"};
+    static const char *const names[NUMBERS] = {"EI",     "residual", "M(0.05)", "M(0.1)",
+                                               "M(0.3)", "M(0.6)",   "M(1)"};
     return names[number];
 }
 
@@ -83,7 +83,7 @@ static void judge(struct verdict *verdict, const struct fast_rig *fast,
         return;
     }
     keep(verdict, 0, &c.rigidity);
-    keep(verdict, 1, &c.springback);
+    keep(verdict, 1, &c.residual_curvature_ratio);
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         keep(verdict, 2 + k, &c.moment[k]);
     fast_rig_truth(fast, WB_CYCLE_MOMENTS, c.curvature, verdict->truth + 2, &verdict->truth[0],
@@ -547,7 +547,8 @@ static void align_recording(struct wb_dataset *dataset, int type, int sample)
     assert_int_equal(wb_align_run(dataset, path, &settings, NULL), WB_OK);
 }
 
-/* By the paper's equations: EI, springback, moments of Ludwik's law with isotropic hardening. */
+/* By the paper's equations: EI, residual_curvature_ratio, moments of Ludwik's law with isotropic
+ * hardening. */
 static void judge_by_the_paper(double *value, const struct wb_dataset *const *datasets, int n,
                                const double *curvature)
 {
@@ -564,7 +565,7 @@ static void judge_by_the_paper(double *value, const struct wb_dataset *const *da
     assert_int_equal(wb_bending_moments(&law, diameter, WB_CYCLE_MOMENTS, curvature, value + 2),
                      WB_OK);
     value[0] = bending.flexural_rigidity;
-    value[1] = bending.springback;
+    value[1] = bending.residual_curvature_ratio;
     wb_calibrate_result_release(&result);
 }
 

@@ -229,8 +229,10 @@ static void the_range_holds_the_candidates_that_count(void **unused)
             continue;
         assert_true(all.rigidity.candidates_low < rank->rigidity.value);
         assert_true(all.rigidity.candidates_high > rank->rigidity.value);
-        assert_true(all.springback.candidates_low < rank->springback.value);
-        assert_true(all.springback.candidates_high > rank->springback.value);
+        assert_true(all.residual_curvature_ratio.candidates_low <
+                    rank->residual_curvature_ratio.value);
+        assert_true(all.residual_curvature_ratio.candidates_high >
+                    rank->residual_curvature_ratio.value);
     }
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
         assert_true(all.moment[k].candidates_low < all.moment[k].value);
@@ -454,7 +456,7 @@ static void noise_does_not_refute_a_law(void **unused)
     assert_true(c.is_followed);
     for (int k = 2; k < WB_CYCLE_MOMENTS; k++)
         assert_close_relative(c.moment[k].value, moment[k], 0.03);
-    assert_close(c.springback.value, residual / c.largest_curvature, 0.05);
+    assert_close(c.residual_curvature_ratio.value, residual / c.largest_curvature, 0.05);
     wb_cycle_calibrate_release(&c);
     wb_dataset_release(&dataset);
 }
@@ -479,16 +481,16 @@ static void an_unevenly_bent_wire_does_not_change_the_law(void **unused)
         assert_int_equal(fast_rig_run(&fast, &dataset), WB_OK);
         assert_int_equal(wb_cycle_calibrate_run(&c, &one, 1, &settings, NULL), WB_OK);
         fast_rig_truth(&fast, WB_CYCLE_MOMENTS, c.curvature, moment, NULL, &residual);
-        const double springback = residual / c.largest_curvature;
+        const double true_ratio = residual / c.largest_curvature;
         print_message(
-            "    %+d: springback off by %+.1f %%, M by %+.2f %%\n", sign,
-            100.0 * (c.springback.value / springback - 1.0),
+            "    %+d: residual curvature off by %+.1f %%, M by %+.2f %%\n", sign,
+            100.0 * (c.residual_curvature_ratio.value / true_ratio - 1.0),
             100.0 * (c.moment[WB_CYCLE_MOMENTS - 1].value / moment[WB_CYCLE_MOMENTS - 1] - 1.0));
-        assert_close_relative(c.springback.value, springback, 0.02);
+        assert_close_relative(c.residual_curvature_ratio.value, true_ratio, 0.02);
         assert_close_relative(c.moment[WB_CYCLE_MOMENTS - 1].value, moment[WB_CYCLE_MOMENTS - 1],
                               0.004);
-        assert_true(c.springback.candidates_low <= springback &&
-                    springback <= c.springback.candidates_high);
+        assert_true(c.residual_curvature_ratio.candidates_low <= true_ratio &&
+                    true_ratio <= c.residual_curvature_ratio.candidates_high);
         wb_cycle_calibrate_release(&c);
         wb_dataset_release(&dataset);
     }

@@ -44,7 +44,7 @@ static void make(struct made *made)
                 .is_followed = true,
                 .largest_curvature = 29.0,
                 .rigidity = around(3e-4),
-                .springback = around(0.27),
+                .residual_curvature_ratio = around(0.27),
                 .loop_energy = around(0.06),
                 .ludwik = ludwik,
                 .ludwik_misfit = 0.012,
@@ -66,12 +66,12 @@ static void make(struct made *made)
                                           .is_fitted = true,
                                           .misfit = 7e-4,
                                           .rigidity = around(3e-4),
-                                          .springback = around(0.27)};
+                                          .residual_curvature_ratio = around(0.27)};
     c->ranked[1] = (struct wb_cycle_rank){.candidate = WB_CANDIDATE_LUDWIK_MIXED,
                                           .is_fitted = true,
                                           .misfit = 9e-4,
                                           .rigidity = around(2.9e-4),
-                                          .springback = around(0.28)};
+                                          .residual_curvature_ratio = around(0.28)};
     wb_law_init_parallel(&c->law, parts, 3, 0.3, 0.39);
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
         c->curvature[k] = wb_cycle_moment_parts[k] * c->largest_curvature;
@@ -91,7 +91,7 @@ static void make(struct made *made)
         struct wb_cycle_answer *const answer = &member->answers[c->chosen];
         answer->is_fitted = true;
         answer->value[WB_CYCLE_RIGIDITY] = 3e-4;
-        answer->value[WB_CYCLE_SPRINGBACK] = 0.27;
+        answer->value[WB_CYCLE_RESIDUAL_CURVATURE] = 0.27;
         answer->value[WB_CYCLE_LOOP_ENERGY] = 0.06;
         answer->fit.law = c->law;
         answer->fit.bow_angle = 0.05 - 0.13 * i;
@@ -169,7 +169,7 @@ static void a_file_has_what_the_calibration_had(void **state)
     assert_close_relative(read.largest_curvature, 29.0, 1e-14);
     assert_close_relative(read.ludwik_misfit, 0.012, 1e-14);
     assert_estimate(&read.rigidity, &direct.rigidity);
-    assert_estimate(&read.springback, &direct.springback);
+    assert_estimate(&read.residual_curvature_ratio, &direct.residual_curvature_ratio);
     assert_stiffness(&read.secant, &direct.secant);
     assert_stiffness(&read.unloading, &direct.unloading);
     assert_true(read.is_rule_tested && read.is_rule_supported && read.is_virtual);
@@ -212,7 +212,7 @@ static void what_could_not_be_read_again_is_not_written(void **state)
     struct made made;
     remove(path);
     make(&made);
-    made.calibration.springback.candidates_high = 1.2;
+    made.calibration.residual_curvature_ratio.candidates_high = 1.2;
     assert_true(write_made(&made, true) != WB_OK);
     assert_message("candidates_high");
     assert_false(wb_file_exists(path));
@@ -274,7 +274,7 @@ static void what_was_stopped_says_so_and_leaves_the_rule_untested(void **state)
     wb_json_destroy(root);
 }
 
-static void without_a_way_back_there_is_no_springback(void **state)
+static void without_unloading_the_residual_curvature_ratio_is_absent(void **state)
 {
     (void)state;
     struct made made;
@@ -284,7 +284,8 @@ static void without_a_way_back_there_is_no_springback(void **state)
     read_back(&made, &read);
     assert_false(read.is_rule_tested);
     assert_close_relative(read.rigidity.value, 3e-4, 1e-12);
-    assert_true(isnan(read.springback.value) && isnan(read.springback.candidates_low));
+    assert_true(isnan(read.residual_curvature_ratio.value) &&
+                isnan(read.residual_curvature_ratio.candidates_low));
 }
 
 static void kinematic_ludwik_keeps_its_four_numbers(void **state)
@@ -352,8 +353,9 @@ static void what_is_wrong_is_refused_by_line_and_key(void **state)
         {"hardening: mixed", "hardening: odd", "hardening"},
         {"yield_strain: 0.0013", "yield_strain: -1", "yield_strain"},
         {"largest_curvature_1_m: 29", "largest_curvature_1_m: 29 1/m", "largest_curvature_1_m"},
-        {"springback_ratio: {value: 0.27", "springback_ratio: {value: 1.27", "value"},
-        {"springback_ratio: {value", "springback_ratio: {colour", "colour"},
+        {"residual_curvature_ratio: {value: 0.27", "residual_curvature_ratio: {value: 1.27",
+         "value"},
+        {"residual_curvature_ratio: {value", "residual_curvature_ratio: {colour", "colour"},
         {"\n    curvature_1_m: 29", "\n    curvature_1_m: 1", "curvature_1_m"},
         {"tested: true", "tested: maybe", "tested"},
         {"\n  - sample: 2", "\n  - sample: -2", "sample"},
@@ -455,9 +457,10 @@ static void json_gives_only_what_is_known(void **state)
     root = put(&made);
     rigidity = wb_json_get(root, "flexural_rigidity_N_mm2");
     assert_close_relative(number_at(rigidity, "value"), 300.0, 1e-12);
-    const struct wb_json *const springback = wb_json_get(root, "springback_ratio");
-    assert_true(isnan(number_at(springback, "value")));
-    assert_true(isnan(number_at(springback, "candidates_low")));
+    const struct wb_json *const residual_curvature_ratio =
+        wb_json_get(root, "residual_curvature_ratio");
+    assert_true(isnan(number_at(residual_curvature_ratio, "value")));
+    assert_true(isnan(number_at(residual_curvature_ratio, "candidates_low")));
     wb_json_destroy(root);
 }
 
@@ -469,7 +472,7 @@ int main(void)
         cmocka_unit_test(what_could_not_be_read_again_is_not_written),
         cmocka_unit_test(a_refuted_rule_leaves_only_ranges),
         cmocka_unit_test(what_was_stopped_says_so_and_leaves_the_rule_untested),
-        cmocka_unit_test(without_a_way_back_there_is_no_springback),
+        cmocka_unit_test(without_unloading_the_residual_curvature_ratio_is_absent),
         cmocka_unit_test(kinematic_ludwik_keeps_its_four_numbers),
         cmocka_unit_test(different_lengths_have_no_length_in_common),
         cmocka_unit_test(what_is_wrong_is_refused_by_line_and_key),

@@ -121,7 +121,7 @@ static void a_file_by_hand_needs_the_properties_only(void **state)
     assert_true(wb_law_is_plain(&read.law));
     assert_close_relative(read.law.material.strength_coefficient, 500e6, 1e-15);
     assert_true(isnan(read.largest_curvature) && isnan(read.rigidity.value));
-    assert_true(isnan(read.springback.candidates_low) && isnan(read.ludwik_misfit));
+    assert_true(isnan(read.residual_curvature_ratio.candidates_low) && isnan(read.ludwik_misfit));
     assert_true(isnan(read.loop_energy.value) && isnan(read.moment[0].value));
     assert_int_equal(read.n_specimens, 0);
     assert_int_equal(read.n_moments, 0);

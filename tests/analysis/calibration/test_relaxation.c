@@ -26,7 +26,7 @@ struct found {
     struct wb_cycle_calibration c;
     struct wb_cycle_remarks remarks;
     double fall; /* of the tension in the dwell, over the largest force */
-    double moment[WB_CYCLE_MOMENTS], springback, unloading; /* true */
+    double moment[WB_CYCLE_MOMENTS], residual_curvature_ratio, unloading; /* true */
 };
 
 /* Specimens of one wire, which differ in bow, markers and noise alone. */
@@ -60,7 +60,7 @@ static void calibrate(struct found *found, double jacket, double dwell, uint64_t
         found->fall =
             (data->held[0].tension - data->held[data->n_held - 1].tension) / data->max_force;
     fast_rig_truth(&wire, WB_CYCLE_MOMENTS, c->curvature, found->moment, NULL, &residual);
-    found->springback = residual / c->largest_curvature;
+    found->residual_curvature_ratio = residual / c->largest_curvature;
     fast_rig_unloading(&wire, c->largest_curvature, 1, &change, &found->unloading);
     for (int i = 0; i < SPECIMENS; i++)
         wb_dataset_release(&datasets[i]);
@@ -77,9 +77,11 @@ static void show(const struct found *f)
     printf("\n  M off by");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         printf(" %+.2f", 100.0 * (c->moment[k].value / f->moment[k] - 1.0));
-    printf(" %%, unloading stiffness by %+.2f %%, springback by %+.4f of %.4f; %.1f s of CPU\n",
+    printf(" %%, unloading stiffness by %+.2f %%, residual curvature ratio by %+.4f of %.4f; %.1f "
+           "s of CPU\n",
            100.0 * (wb_cycle_stiffness_at(&c->unloading, 1.0)->value / f->unloading - 1.0),
-           c->springback.value - f->springback, f->springback, c->cpu_s);
+           c->residual_curvature_ratio.value - f->residual_curvature_ratio,
+           f->residual_curvature_ratio, c->cpu_s);
 }
 
 static void moments_of_a_relaxing_wire_are_within_two_percent(void **unused)
@@ -132,9 +134,11 @@ static void intervals_of_a_test_without_a_dwell_allow_for_relaxation(void **unus
         assert_true(u > 0.0 && u < 0.05);
         assert_true(c->moment[k].low <= found.moment[k] && found.moment[k] <= c->moment[k].high);
     }
-    assert_true(c->budget[WB_CYCLE_SPRINGBACK].uncertainty[WB_FROM_SHARED + WB_SHARED_RELAXATION] >
-                0.01);
-    assert_true(c->springback.low <= found.springback && found.springback <= c->springback.high);
+    assert_true(
+        c->budget[WB_CYCLE_RESIDUAL_CURVATURE].uncertainty[WB_FROM_SHARED + WB_SHARED_RELAXATION] >
+        0.01);
+    assert_true(c->residual_curvature_ratio.low <= found.residual_curvature_ratio &&
+                found.residual_curvature_ratio <= c->residual_curvature_ratio.high);
     wb_cycle_calibrate_release(&found.c);
 }
 

@@ -13,7 +13,7 @@
         "method: cycle\nlargest_curvature_1_m: 20\n"                                               \
         "flexural_rigidity_N_mm2: {value: 500, low: 450, high: 560, candidates_low: 400, "         \
         "candidates_high: 600}\n"                                                                  \
-        "springback_ratio: {value: 0.3, low: 0.28, high: 0.33}\n"                                  \
+        "residual_curvature_ratio: {value: 0.3, low: 0.28, high: 0.33}\n"                          \
         "moment_curvature:\n"                                                                      \
         "  - {curvature_1_m: 4, moment_N_mm: 2, low: 1.9, high: 2.2}\n"                            \
         "  - {curvature_1_m: 20, moment_N_mm: 5, low: 4.9, high: 5.2}\n"                           \
@@ -61,7 +61,8 @@ static void json_gives_the_properties_back(void **state)
     assert_close_relative(number_at(rigidity, "value"), 500e-6, 1e-15);
     assert_close_relative(number_at(rigidity, "low"), 450e-6, 1e-15);
     assert_close_relative(number_at(rigidity, "candidates_high"), 600e-6, 1e-15);
-    assert_close_relative(number_at(wb_json_get(root, "springback_ratio"), "high"), 0.33, 1e-15);
+    assert_close_relative(number_at(wb_json_get(root, "residual_curvature_ratio"), "high"), 0.33,
+                          1e-15);
     assert_int_equal(wb_json_length(parts), 4);
     assert_close_relative(number_at(wb_json_item(parts, 1), "modulus_Pa"), 1500e6, 1e-15);
     assert_close_relative(number_at(wb_json_item(parts, 1), "yield_strain"), 0.0015, 1e-15);

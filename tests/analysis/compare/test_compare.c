@@ -20,7 +20,7 @@ static int set_up(void **state)
 /* Moments come first. */
 enum {
     UNLOADING = WB_CYCLE_MOMENTS,
-    SPRINGBACK,
+    RESIDUAL_CURVATURE,
     RIGIDITY
 };
 
@@ -54,7 +54,7 @@ static void make(struct wb_properties *p, double largest, double factor, double 
     assert_int_equal(wb_bending_moments(&p->law, diameter, WB_CYCLE_MOMENTS, p->curvature, moment),
                      WB_OK);
     p->rigidity = estimate(factor * bending.flexural_rigidity, s, n);
-    p->springback = estimate(factor * bending.springback, s, n);
+    p->residual_curvature_ratio = estimate(factor * bending.residual_curvature_ratio, s, n);
     const double change = 1.0;
     double unloading;
     assert_int_equal(
@@ -112,8 +112,8 @@ static void numbers_are_compared_at_the_same_curvatures(void **state)
     struct wb_compare c;
     make(&a, 30.0, 1.0, 0.03, 5);
     make(&b, 18.0, 1.0, 0.03, 5);
-    assert_true(a.springback.value < 0.95 * b.springback.value ||
-                a.springback.value > 1.05 * b.springback.value);
+    assert_true(a.residual_curvature_ratio.value < 0.95 * b.residual_curvature_ratio.value ||
+                a.residual_curvature_ratio.value > 1.05 * b.residual_curvature_ratio.value);
     assert_int_equal(run(&c, &a, &b, 0.1), WB_OK);
     assert_close(c.curvature, 18.0, 0.0);
     for (int k = 0; k < WB_COMPARE_QUANTITIES; k++)
@@ -128,18 +128,18 @@ static void one_quantity_that_differs_makes_batches_different(void **state)
     struct wb_compare c;
     make(&a, 30.0, 1.0, 0.01, 5);
     make(&b, 30.0, 1.0, 0.01, 5);
-    b.springback = estimate(1.3 * b.springback.value, 0.01, 5);
+    b.residual_curvature_ratio = estimate(1.3 * b.residual_curvature_ratio.value, 0.01, 5);
     assert_int_equal(run(&c, &a, &b, 0.1), WB_OK);
-    assert_int_equal(c.quantities[SPRINGBACK].verdict, WB_GROUPS_DIFFERENT);
+    assert_int_equal(c.quantities[RESIDUAL_CURVATURE].verdict, WB_GROUPS_DIFFERENT);
     assert_int_equal(c.verdict, WB_GROUPS_DIFFERENT);
-    b.springback = estimate(a.springback.value * exp(0.08), 0.03, 5);
+    b.residual_curvature_ratio = estimate(a.residual_curvature_ratio.value * exp(0.08), 0.03, 5);
     assert_int_equal(run(&c, &a, &b, 0.1), WB_OK);
-    assert_int_equal(c.quantities[SPRINGBACK].verdict, WB_GROUPS_UNDECIDED);
+    assert_int_equal(c.quantities[RESIDUAL_CURVATURE].verdict, WB_GROUPS_UNDECIDED);
     assert_int_equal(c.verdict, WB_GROUPS_UNDECIDED);
-    assert_true(c.more > 0 && c.more == c.quantities[SPRINGBACK].more);
+    assert_true(c.more > 0 && c.more == c.quantities[RESIDUAL_CURVATURE].more);
 }
 
-/* Where the data do not support the hardening rule there is no springback. */
+/* Where the data do not support the hardening rule there is no residual curvature ratio. */
 static void what_a_file_does_not_say_is_not_compared(void **state)
 {
     (void)state;
@@ -147,9 +147,10 @@ static void what_a_file_does_not_say_is_not_compared(void **state)
     struct wb_compare c;
     make(&a, 30.0, 1.0, 0.01, 5);
     make(&b, 30.0, 1.0, 0.01, 5);
-    b.springback.value = b.springback.low = b.springback.high = (double)NAN;
+    b.residual_curvature_ratio.value = b.residual_curvature_ratio.low =
+        b.residual_curvature_ratio.high = (double)NAN;
     assert_int_equal(run(&c, &a, &b, 0.1), WB_OK);
-    assert_non_null(c.quantities[SPRINGBACK].reason);
+    assert_non_null(c.quantities[RESIDUAL_CURVATURE].reason);
     assert_int_equal(c.n_compared, WB_COMPARE_QUANTITIES - 1);
     assert_int_equal(c.verdict, WB_GROUPS_EQUIVALENT);
     /* A file of an earlier release. */

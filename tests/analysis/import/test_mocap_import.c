@@ -345,10 +345,11 @@ static void a_test_in_files_is_the_same_test(void **state)
     assert_close(result.sync.lag, -CLOCKS - 0.05, 3.0 * result.sync.uncertainty);
     assert_close(result.offset, result.sync.lag + 0.05, 1e-12);
     align_output(&dataset);
-    print_message("lag off by %.1f ms, stated %.1f ms; left deflected %.2f mm, by the recording "
-                  "%.2f mm\n",
-                  1e3 * (result.sync.lag + CLOCKS + 0.05), 1e3 * result.sync.uncertainty,
-                  left_of(&dataset) / WB_MM, left_of(&reference) / WB_MM);
+    print_message(
+        "lag off by %.1f ms, stated %.1f ms; residual deflection %.2f mm, by the recording "
+        "%.2f mm\n",
+        1e3 * (result.sync.lag + CLOCKS + 0.05), 1e3 * result.sync.uncertainty,
+        left_of(&dataset) / WB_MM, left_of(&reference) / WB_MM);
     for (double at = 5.0; at < 51.0; at += 5.0)
         assert_close(force_at(&dataset, at * WB_MM), force_at(&reference, at * WB_MM), 0.3 * WB_MN);
     assert_true(wb_dataset_is_complete(&dataset));
@@ -550,7 +551,7 @@ static void a_take_with_its_force_in_it_is_the_same_test(void **state)
     assert_int_equal(result.sync.method, WB_SYNC_SAME);
     assert_string_equal(result.channel, "Fz");
     align_output(&dataset);
-    print_message("left deflected %.2f mm, by the recording %.2f\n", left_of(&dataset) / WB_MM,
+    print_message("residual deflection %.2f mm, by the recording %.2f\n", left_of(&dataset) / WB_MM,
                   left_of(&reference) / WB_MM);
     assert_close(left_of(&dataset), left_of(&reference), 0.05 * WB_MM);
     for (size_t i = 0; i < 12; i++)

@@ -92,7 +92,7 @@ static void the_law_predicts_both_ways_at_the_other_length(void **state)
     assert_false(says("good/report.html", "Broken line"));
 }
 
-/* Neither EI nor springback nor a moment has a value then, on no page. */
+/* Neither EI nor residual curvature ratio nor a moment has a value then, on no page. */
 static void a_rule_that_the_data_do_not_support_has_ranges_only(void **state)
 {
     struct bench *const bench = *state;

@@ -136,7 +136,7 @@ static void tests_are_held_against_the_case_that_they_are_of(void **state)
     assert_int_equal(tests[2].places[3].side, WB_PREDICTIONS_ABOVE);
     assert_non_null(strstr(tests[0].words, "within: model"));
     assert_non_null(strstr(tests[1].words, "stiffer than predicted at every deflection"));
-    assert_non_null(strstr(tests[2].words, "force within, springback outside"));
+    assert_non_null(strstr(tests[2].words, "force within, springback of the deflection outside"));
     assert_true(results.outcome.exceeds_limit && !results.outcome.is_complete);
     assert_int_equal(results.outcome.n_missing, 1);
     assert_int_equal(results.outcome.n_usable, 3);
