@@ -19,12 +19,10 @@ static void finish(GChecksum *checksum, char hex[WB_SHA256_TEXT])
 enum wb_status wb_hash_descriptor(int descriptor, const char *name, char hex[WB_SHA256_TEXT],
                                   struct wb_reason *why)
 {
-    if (lseek(descriptor, 0, SEEK_SET) < 0)
-        return wb_fail_to(why, WB_ERR_IO, "cannot read '%s': %s", name, strerror(errno));
     GChecksum *checksum = g_checksum_new(G_CHECKSUM_SHA256);
-    for (;;) {
+    for (off_t at = 0;;) {
         unsigned char block[65536];
-        const ssize_t n = read(descriptor, block, sizeof block);
+        const ssize_t n = pread(descriptor, block, sizeof block, at);
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0) {
@@ -34,6 +32,7 @@ enum wb_status wb_hash_descriptor(int descriptor, const char *name, char hex[WB_
         if (n == 0)
             break;
         g_checksum_update(checksum, block, (gssize)n);
+        at += n;
     }
     finish(checksum, hex);
     return WB_OK;

@@ -11,7 +11,7 @@
 
 /* Of a whole file; WB_ERR_NOT_FOUND or WB_ERR_IO with a message. */
 WB_MUST_CHECK enum wb_status wb_hash_file(const char *path, char hex[WB_SHA256_TEXT]);
-/* From an open descriptor, from its start to its end; the offset is left at the end. `why` receives
+/* From an open descriptor, from its start to its end; its offset stays. `why` receives
  * why it failed. NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_hash_descriptor(int descriptor, const char *name,
                                                 char hex[WB_SHA256_TEXT], struct wb_reason *why);

@@ -195,7 +195,7 @@ static void print_law(const struct wb_cycle_calibration *c)
     static const char *const forms[] = {"Ludwik's", "parallel parts'", "Chaboche's"};
     printf("%s law, %s hardening", forms[law->form], wb_law_rule_name(law));
     if (wb_law_has_share(law))
-        printf(", isotropic share %.2f", law->isotropic_share);
+        printf(", isotropic share %.3g", law->isotropic_share);
     printf(", over the outer diameter\n  %-8s %10s MPa\n", "E",
            format(law->material.youngs_modulus / WB_MPA, a));
     if (law->form == WB_LAW_LUDWIK) {

@@ -301,7 +301,7 @@ static int deliver_paper(const struct options *o, const struct wb_calibrate_resu
     } else {
         print_text(o, result);
     }
-    const bool complete = result->end == WB_CALIBRATE_SIZE || result->end == WB_CALIBRATE_ERROR;
+    const bool complete = wb_calibrate_is_complete(result->end);
     if (!complete)
         wb_warn("%s: these are the best properties so far", wb_calibrate_end_text(result->end));
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;

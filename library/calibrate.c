@@ -114,7 +114,7 @@ static enum wb_status run_paper(struct job *job, struct wb_text *text)
     const int n = wb_calibrate_remarks(&result, remarks);
     for (int i = 0; i < n; i++)
         wb_call_warn(remarks[i]);
-    if (result.end != WB_CALIBRATE_SIZE && result.end != WB_CALIBRATE_ERROR)
+    if (!wb_calibrate_is_complete(result.end))
         lack(job, wb_calibrate_end_text(result.end));
     wb_calibrate_result_release(&result);
     return WB_OK;

@@ -60,6 +60,9 @@ static enum wb_status make_law(const struct wirebench_law *given, struct wb_law 
         wb_law_init_parallel(law, parts, given->n_parts > 0 ? given->n_parts : 1, isotropic_share,
                              given->poissons_ratio);
         law->is_combined = given->is_combined;
+        if (law->is_combined && isotropic_share == 1.0)
+            return wb_fail(WB_ERR_ARGUMENT, "kinematic_share: 0: expected more of parallel parts "
+                                            "with is_combined, which would never yield");
     } else {
         wb_law_init_ludwik(law, &material);
         law->isotropic_share = isotropic_share;

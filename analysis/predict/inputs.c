@@ -22,24 +22,23 @@ static const double same_diameter = 1e-6;
 
 /* --- wires --- */
 
-/* Of a law of another form its Ludwik equivalent is drawn, with this rule. Of parallel parts whose
- * limits grow the share of the stress that does, where the last of them yields, takes the place of
- * the area's. */
+/* Largest strain that bending tests of wires reach, about. */
+static const double tested_strain = 0.02;
+
+/* The wires are drawn with the Ludwik equivalent of a law of another form, and with its hardening
+ * rule. Combined hardening of parallel parts becomes mixed hardening: its isotropic share is the
+ * share of the stress at the tested strain that comes from growing limits. */
 static void keep_rule(struct wb_inputs_wires *wires, const struct wb_law *law)
 {
-    const bool is_parallel = law->form == WB_LAW_PARALLEL;
     wires->isotropic_share = law->isotropic_share;
-    wires->is_combined = law->is_combined && !is_parallel;
-    if (!is_parallel || !law->is_combined)
+    wires->is_combined = law->is_combined;
+    if (law->form != WB_LAW_PARALLEL || !law->is_combined)
         return;
     struct wb_law perfect = *law;
     perfect.isotropic_share = 0.0;
-    double strain = 0.0;
-    for (int i = 0; i < law->n_parts && isfinite(law->parts[i].yield_strain); i++)
-        strain = law->parts[i].yield_strain;
-    if (strain > 0.0)
-        wires->isotropic_share = 1.0 - wb_law_virgin_stress(&perfect, strain, NULL) /
-                                           wb_law_virgin_stress(law, strain, NULL);
+    wires->is_combined = false;
+    wires->isotropic_share = 1.0 - wb_law_virgin_stress(&perfect, tested_strain, NULL) /
+                                       wb_law_virgin_stress(law, tested_strain, NULL);
 }
 
 static void keep_law(struct wb_inputs_wires *wires, const struct wb_bundle_spread *spread,

@@ -75,7 +75,7 @@ static enum wb_status compress(void *context, int index)
 }
 
 static enum wb_status draw_some(struct outputs *outputs, const struct wb_figures *figures,
-                                int begin, struct drawn *drawn)
+                                int begin, int n_threads, struct drawn *drawn)
 {
     for (int i = begin; i < figures->n && drawn->n < DRAWN; i++) {
         const struct wb_figure *const figure = figures->items[i].figure;
@@ -84,7 +84,8 @@ static enum wb_status draw_some(struct outputs *outputs, const struct wb_figures
         WB_TRY(wb_figure_draw(figure, png_scale, &drawn->pixels[drawn->n]));
         drawn->png[drawn->n++] = add_output(outputs, "figures/", name, "png");
     }
-    const struct wb_workers workers = {.n = drawn->n, .job = compress, .context = drawn};
+    const struct wb_workers workers = {
+        .n = drawn->n, .n_threads = n_threads, .job = compress, .context = drawn};
     if (wb_workers_run(&workers) < drawn->n)
         return WB_ERR_MEMORY;
     for (int i = 0; i < drawn->n; i++)
@@ -92,12 +93,13 @@ static enum wb_status draw_some(struct outputs *outputs, const struct wb_figures
     return WB_OK;
 }
 
-static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figures *figures)
+static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figures *figures,
+                                   int n_threads)
 {
     enum wb_status status = WB_OK;
     for (int begin = 0; begin < figures->n && status == WB_OK; begin += DRAWN) {
         struct drawn drawn = {.n = 0};
-        status = draw_some(outputs, figures, begin, &drawn);
+        status = draw_some(outputs, figures, begin, n_threads, &drawn);
         for (int i = 0; i < drawn.n; i++)
             wb_figure_pixels_release(&drawn.pixels[i]);
     }
@@ -106,13 +108,13 @@ static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figu
 
 static enum wb_status draw(struct outputs *outputs, const struct wb_document *document,
                            const struct wb_figures *figures, const struct wb_cards *cards,
-                           struct wb_json *numbers)
+                           struct wb_json *numbers, int n_threads)
 {
     outputs->items =
         wb_memory_new(2 * (size_t)figures->n + (size_t)cards->n + 3, sizeof *outputs->items);
     WB_TRY(wb_pdf_render(document, add_output(outputs, "", "report", "pdf")));
     WB_TRY(wb_html_render(document, add_output(outputs, "", "report", "html")));
-    WB_TRY(draw_figures(outputs, figures));
+    WB_TRY(draw_figures(outputs, figures, n_threads));
     for (int i = 0; i < cards->n; i++) {
         struct output *const output = &outputs->items[outputs->n++];
         snprintf(output->name, sizeof output->name, "%s", cards->files[i].name);
@@ -270,10 +272,10 @@ static enum wb_status write_folder(const struct outputs *outputs, const char *fo
 
 enum wb_status wb_files_write(const struct wb_document *document, const struct wb_figures *figures,
                               const struct wb_cards *cards, struct wb_json *numbers,
-                              const char *folder, bool force)
+                              const char *folder, bool force, int n_threads)
 {
     struct outputs outputs = {0};
-    enum wb_status status = draw(&outputs, document, figures, cards, numbers);
+    enum wb_status status = draw(&outputs, document, figures, cards, numbers, n_threads);
     if (status == WB_OK)
         status = write_folder(&outputs, folder, force);
     release(&outputs);

@@ -20,7 +20,7 @@
 WB_MUST_CHECK enum wb_status wb_files_write(const struct wb_document *document,
                                             const struct wb_figures *figures,
                                             const struct wb_cards *cards, struct wb_json *numbers,
-                                            const char *folder, bool force);
+                                            const char *folder, bool force, int n_threads);
 
 /* Whether a name is one that a report's file may have: nothing outside of its folder. */
 bool wb_files_is_ours(const char *name);

@@ -24,7 +24,7 @@ enum wb_status wb_kind_read(const struct wb_kind *kind, void *campaign, const ch
 }
 
 enum wb_status wb_kind_write(const struct wb_kind *kind, const void *results, const char *folder,
-                             bool force)
+                             bool force, int n_threads)
 {
     const struct wb_kind_outcome *const outcome = results;
     const struct wb_laboratory *const laboratory = &outcome->campaign->laboratory;
@@ -39,7 +39,7 @@ enum wb_status wb_kind_write(const struct wb_kind *kind, const void *results, co
     struct wb_json *const numbers = kind->json(results);
     wb_laboratory_put_numbers(numbers, laboratory);
     if (status == WB_OK)
-        status = wb_files_write(&document, &figures, &cards, numbers, folder, force);
+        status = wb_files_write(&document, &figures, &cards, numbers, folder, force, n_threads);
     wb_cards_release(&cards);
     wb_json_destroy(numbers);
     wb_document_release(&document);

@@ -92,6 +92,6 @@ WB_MUST_CHECK enum wb_status wb_kind_read(const struct wb_kind *kind, void *camp
 
 /* Writes computed results into `folder`, as wb_files_write() does. */
 WB_MUST_CHECK enum wb_status wb_kind_write(const struct wb_kind *kind, const void *results,
-                                           const char *folder, bool force);
+                                           const char *folder, bool force, int n_threads);
 
 #endif

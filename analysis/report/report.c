@@ -120,7 +120,8 @@ static enum wb_status deliver(struct making *making)
     const struct wb_kind_outcome *const outcome = making->results;
     if (outcome->interrupted)
         return refuse_interrupted(making);
-    WB_TRY(wb_kind_write(making->kind, making->results, order->folder, order->force));
+    WB_TRY(wb_kind_write(making->kind, making->results, order->folder, order->force,
+                         order->n_threads));
     WB_TRY(sign(making));
     if (!order->quiet)
         making->kind->print(stdout, making->results);

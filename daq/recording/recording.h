@@ -177,7 +177,8 @@ wb_recording_each_meta(struct wb_recording *recording,
                        enum wb_status (*visit)(void *context, const char *key, const char *value),
                        void *context);
 
-/* wb_recording_sha256() of one that is open for reading, which is not decompressed again. */
+/* wb_recording_sha256() of a recording that is open for reading, without decompressing it again.
+ * The reason for a failure goes where the recording was opened with. */
 WB_MUST_CHECK enum wb_status wb_recording_hash(const struct wb_recording *recording, char hex[65]);
 
 /* SHA-256 of the uncompressed database as lower-case hex, 64 characters and a NUL. Of a recording

@@ -160,7 +160,8 @@ static void interpolate(const struct nodes *nodes, double *value, double *coeffi
     }
 }
 
-/* ln r at x + h from r at x, to third order: of a power law dp/dc = 1 / (E (r + n (1 - r))). */
+/* ln r at x + h from r at x, to third order: of a power law d(ln p)/d(ln c) = 1 / (r + n (1 - r)).
+ */
 static double follow_ratio(double n, double r, double h)
 {
     const double s = 1.0 / (n + (1.0 - n) * r);

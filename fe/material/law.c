@@ -421,7 +421,7 @@ void wb_law_append_numbers(struct wb_text *text, const struct wb_law *law)
                            law->backs[i].modulus / WB_MPA, i + 1, law->backs[i].recovery);
     }
     if (wb_law_has_share(law))
-        wb_text_append(text, "; isotropic share %.2f", law->isotropic_share);
+        wb_text_append(text, "; isotropic share %.3g", law->isotropic_share);
     if (law->n_maxwell > 0) {
         wb_text_append(text, "; ");
         wb_law_append_relaxation(text, law);

@@ -11,14 +11,15 @@
  * The rule says what happens when the strain turns back. With isotropic hardening the wire yields
  * again at the stress that it reached, in either direction. With kinematic hardening it yields
  * earlier: every branch is the virgin curve at twice the size (Masing's rule), it returns to the
- * point of its turn, and a closed loop is forgotten from there on. Two rules lie between, with the
- * same virgin curve for each share beta, `isotropic_share`:
+ * point of its turn, and a closed loop is forgotten from there on. Two rules lie between, with a
+ * share beta, `isotropic_share`, that does not affect the virgin curve, except in combined
+ * hardening of parallel parts:
  *   - mixed: a share beta of the area hardens isotropically, the rest kinematically;
  *   - combined (Hodge 1957; Simo and Hughes, Computational Inelasticity, box 3.2): one yield
  *     surface grows by beta H(p) and moves by (1 - beta) dH, with H = K p^n of the accumulated
- *     plastic strain p. Of Ludwik's form 1 is isotropic hardening, and 0 not Masing's rule. Of
- *     parallel parts each has a surface of its own, whose limit grows: a part that yields keeps the
- *     share beta of its modulus; 0 is kinematic hardening.
+ *     plastic strain p. Of Ludwik's form; 1 is isotropic hardening, and 0 not Masing's rule. Of
+ *     parallel parts each has a surface of its own that grows: after yielding the part hardens
+ *     isotropically with the tangent modulus beta E_i; 0 is kinematic hardening.
  * Chaboche's form (Lemaitre and Chaboche, Mechanics of Solid Materials, 5.4) has its own:
  *
  *     |stress - sum X_i| = sigma_Y + R,  dR = b (Q - R) dp,  dX_i = C_i dep - gamma_i X_i dp.
@@ -29,8 +30,8 @@
  *
  * An overlay is what a section computes with in kinematic and mixed hardening. Ludwik's curve
  * becomes an overlay of WB_LAW_LUDWIK_PARTS parts, a chain of chords that follows the curve in the
- * mean; so are parallel parts whose limits grow. The other rules need none: a step of them is
- * computed exactly.
+ * mean. Parallel parts are an overlay as they are, with any rule. The other rules need none: a step
+ * of them is computed exactly.
  */
 #ifndef WB_FE_MATERIAL_LAW_H
 #define WB_FE_MATERIAL_LAW_H
@@ -77,8 +78,8 @@ struct wb_law {
     enum wb_law_form form;
     double isotropic_share;      /* beta, 0 (kinematic) to 1 (isotropic); of Chaboche's Q over all
                                     that it may harden by */
-    bool is_combined;            /* beta is of the hardening stress, or of the modulus of a parallel
-                                    part that yields; else of the area */
+    bool is_combined;            /* beta is of the hardening stress, or of a yielded part's modulus;
+                                    else of the area */
     struct wb_material material; /* Ludwik: isotropic power law; parallel parts: elastic, with E the
                                     sum of their moduli; Chaboche: elastic, with sigma_Y */
     int n_parts;                 /* of parallel parts */
@@ -96,8 +97,8 @@ struct wb_law {
 struct wb_overlay {
     int n;
     double isotropic_share;
-    double kept;                                /* share of its modulus that a part keeps which
-                                                   yields, and by which its limit grows; below 1 */
+    double kept;                                /* tangent modulus of a yielded part over its
+                                                   modulus, below 1; the part's limit grows by it */
     double modulus[WB_OVERLAY_MOST_PARTS];      /* Pa */
     double yield_strain[WB_OVERLAY_MOST_PARTS]; /* 1, ascending */
 };

@@ -2,8 +2,8 @@
  *
  *     law:
  *       form: parallel         # or ludwik: of the four numbers beside the block; or chaboche
- *       hardening: mixed       # isotropic, kinematic, mixed; combined: of ludwik and chaboche
- *       isotropic_share: 0.3   # of mixed hardening, and of combined with ludwik
+ *       hardening: mixed       # or isotropic, kinematic, combined; chaboche: combined only
+ *       isotropic_share: 0.3   # of mixed and combined hardening, but for chaboche
  *       parts:                 # of parallel parts, by ascending yield strain
  *         - {modulus_MPa: 2600, yield_strain: 0.00012}
  *         - {modulus_MPa: 350}   # without it the last stays elastic

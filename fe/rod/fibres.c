@@ -64,9 +64,9 @@ struct wb_fibres {
     double shear_stiffness;
     enum wb_fibres_kind kind;
     /* Of a section with a law; its fibres are of one batch. */
-    int capacity;               /* parts or back stresses that the history has room for */
-    struct wb_law law;          /* combined hardening */
-    struct wb_overlay *overlay; /* kinematic and mixed hardening; owned */
+    int capacity;                           /* rows of parts or back stresses in the history */
+    struct wb_law law;                      /* combined hardening */
+    struct wb_overlay *overlay;             /* kinematic and mixed hardening; owned */
     double tail[WB_OVERLAY_MOST_PARTS + 1]; /* Pa: sum of the moduli from a part on, */
     double full[WB_OVERLAY_MOST_PARTS + 1]; /* and stress of all parts before it once they yield */
     double compliance;                      /* 1/Pa: of all parts while they are elastic */

@@ -31,8 +31,9 @@ void wb_fibres_destroy(struct wb_fibres *fibres);
 /* Exchanges the materials (as many as the section has) and tabulates their laws again. */
 void wb_fibres_set_materials(struct wb_fibres *fibres, const struct wb_material *materials);
 
-/* Exchanges the law of a section that was made of one, for one of the same form and rule and of at
- * most as many parts or back stresses: else WB_ERR_ARGUMENT. */
+/* Replaces the law of a section that was made with one. The new law must be of the same kind and
+ * need no more rows of history: one for each part of kinematic or mixed hardening and for each back
+ * stress, two for each part of combined hardening; else WB_ERR_ARGUMENT. */
 WB_MUST_CHECK enum wb_status wb_fibres_set_law(struct wb_fibres *fibres, const struct wb_law *law);
 
 /* Duration (s, 0 to infinite) of the steps that follow, over which the law's Maxwell elements

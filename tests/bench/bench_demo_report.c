@@ -35,7 +35,8 @@ static bool time_report(const char *path, int n_threads, const char *folder, str
         return false;
     }
     const double computed = seconds(CLOCK_MONOTONIC);
-    const bool good = wb_kind_write(&wb_recordings_kind, &results, folder, true) == WB_OK;
+    const bool good =
+        wb_kind_write(&wb_recordings_kind, &results, folder, true, n_threads) == WB_OK;
     timing->compute = computed - start;
     timing->draw = seconds(CLOCK_MONOTONIC) - computed;
     timing->cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;

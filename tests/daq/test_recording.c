@@ -241,6 +241,22 @@ static void any_sqlite_reads_it_and_the_checksums_are_those_of_zlib(void **state
     assert_int_equal(wb_recording_crc32("123456789", 9), 0xcbf43926);
 }
 
+/* An open recording has the checksum of its file, and reads on afterwards. */
+static void assert_hash_while_open(const char *path, const char *expected)
+{
+    struct wb_recording *recording;
+    struct bench_tally tally;
+    char sum[65];
+    assert_int_equal(wb_recording_open(&recording, path), WB_OK);
+    assert_int_equal(wb_recording_hash(recording, sum), WB_OK);
+    assert_string_equal(sum, expected);
+    assert_int_equal(bench_walk(recording, &tally), WB_OK);
+    assert_true(tally.exact);
+    assert_int_equal(wb_recording_hash(recording, sum), WB_OK);
+    assert_string_equal(sum, expected);
+    assert_int_equal(wb_recording_close(recording), WB_OK);
+}
+
 static void compressed_recording_reads_the_same_and_has_the_same_checksum(void **state)
 {
     struct bench *bench = *state;
@@ -254,6 +270,8 @@ static void compressed_recording_reads_the_same_and_has_the_same_checksum(void *
     assert_int_equal(wb_recording_sha256(bench->path, plain_sum, NULL), WB_OK);
     assert_int_equal(wb_recording_sha256(packed, packed_sum, NULL), WB_OK);
     assert_string_equal(plain_sum, packed_sum);
+    assert_hash_while_open(bench->path, plain_sum);
+    assert_hash_while_open(packed, plain_sum);
     assert_int_equal(wb_hash_file(bench->path, file_sum), WB_OK);
     assert_string_equal(plain_sum, file_sum);
     /* Twice the same bytes, smaller ones, and the zstd tool takes them. */

@@ -53,11 +53,14 @@ static void killed_writer_leaves_what_was_flushed(void **state)
     assert_true(WIFSIGNALED(status));
 
     struct wb_recording *recording = bench_open(bench->path, false, 1500);
+    char open_sum[65];
+    assert_int_equal(wb_recording_hash(recording, open_sum), WB_OK);
     assert_int_equal(wb_recording_close(recording), WB_OK);
 
     /* It is told by its sum, log included, and is not compressed without the log. */
     char sum[65], expected[80], command[400];
     assert_int_equal(wb_recording_sha256(bench->path, sum, NULL), WB_OK);
+    assert_string_equal(open_sum, sum);
     snprintf(command, sizeof command, "cat %s %s-wal | sha256sum > %s/sum", bench->path,
              bench->path, bench->folder);
     assert_int_equal(system(command), 0);
@@ -177,10 +180,13 @@ static void truncated_compressed_recording_gives_what_is_left(void **state)
     assert_int_equal(bench_walk(recording, &tally), WB_ERR_DATA);
     assert_true(tally.exact);
     assert_true(tally.chunks > 0 && tally.chunks < 9000);
+    char open_hex[65];
+    assert_int_equal(wb_recording_hash(recording, open_hex), WB_OK);
     assert_int_equal(wb_recording_close(recording), WB_OK);
     /* One message in all; the hash is of what is left, so the same commands serve as with others.
      */
     assert_int_equal(wb_recording_sha256(packed, hex, NULL), WB_OK);
+    assert_string_equal(open_hex, hex);
     assert_non_null(strstr(bench->message, "cut short"));
     assert_null(strstr(bench->message, "breaks off"));
 }

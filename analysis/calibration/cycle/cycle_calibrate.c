@@ -370,7 +370,7 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     const struct wb_cycle_fit *const pure = fit_of(member, WB_CANDIDATE_PARALLEL_KINEMATIC);
     WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
     take_contained(member, WB_CANDIDATE_PARALLEL_MIXED, pure, settings);
-    WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_COMBINED, pure, NULL, grid, settings));
+    WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_COMBINED, pure, near, grid, settings));
     take_contained(member, WB_CANDIDATE_PARALLEL_COMBINED, pure, settings);
     return WB_OK;
 }
@@ -889,15 +889,19 @@ static void average_relaxed(const struct wb_cycle_calibration *calibration,
     const int n = calibration->n_members;
     const struct wb_law *const first = &calibration->members[0].answers[candidate].fit.law;
     double share = 0.0, E = 0.0, yield = 0.0, hardening = 0.0, exponent = 0.0;
-    double moduli[WB_LAW_MOST_PARTS] = {0.0};
+    double moduli[WB_LAW_MOST_PARTS] = {0.0}, yielding = 0.0, kept = 0.0;
     /* K goes with n; the stress that hardening adds at this plastic strain does not. */
     const double plastic = 3e-3;
 
     for (int i = 0; i < n; i++) {
         const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
         share += law->isotropic_share / n;
-        for (int k = 0; k < law->n_parts; k++)
-            moduli[k] += law->parts[k].modulus / n;
+        for (int k = 0; k < law->n_parts; k++) {
+            const double modulus = law->parts[k].modulus / n;
+            moduli[k] += modulus;
+            yielding += isfinite(law->parts[k].yield_strain) ? modulus : 0.0;
+            kept += isfinite(law->parts[k].yield_strain) ? law->isotropic_share * modulus : 0.0;
+        }
         if (law->form == WB_LAW_LUDWIK) {
             const struct wb_material *const m = &law->material;
             E += log(m->youngs_modulus) / n;
@@ -914,7 +918,10 @@ static void average_relaxed(const struct wb_cycle_calibration *calibration,
         struct wb_law_part parts[WB_LAW_MOST_PARTS];
         for (int k = 0; k < first->n_parts; k++)
             parts[k] = (struct wb_law_part){moduli[k], first->parts[k].yield_strain};
-        wb_law_init_parallel(average, parts, first->n_parts, share, first->material.poissons_ratio);
+        /* The mean of the moduli that yielded parts keep, in combined hardening. */
+        wb_law_init_parallel(average, parts, first->n_parts,
+                             first->is_combined ? kept / yielding : share,
+                             first->material.poissons_ratio);
         average->is_combined = first->is_combined;
         return;
     }

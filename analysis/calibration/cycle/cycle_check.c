@@ -666,13 +666,13 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
     const bool is_stated = is_force && fabs(force.zero) <= stated_zero(s->data);
     /* Within the limits of the chosen fit: where nothing holds the level, it would go anywhere. */
     looked_at.fit = &level;
-    if (status == WB_OK && is_stated) {
-        check_misfit(remarks, s);
-    } else if (status == WB_OK && !is_level && !is_force) {
+    if (status == WB_OK && !is_level && !is_force) {
         if (length_is_seen || !has_level || !check_other_length(remarks, s, level.level))
             check_misfit(remarks, s);
     } else if (status == WB_OK && is_level && (!is_force || level.misfit <= force.misfit)) {
         status = check_zeros_of(remarks, &looked_at, length_is_seen);
+    } else if (status == WB_OK && is_stated) {
+        check_misfit(remarks, s);
     } else if (status == WB_OK &&
                (length_is_seen || !has_level || !check_other_length(remarks, s, level.level))) {
         say(remarks, WB_CHECK_DOUBT, s->sample,

@@ -475,7 +475,7 @@ void wb_cycle_parameters_correlate(const struct wb_cycle_parameters *p,
     }
     fit->n_numbers = n;
     if (p->candidate->form == WB_LAW_LUDWIK) {
-        fit->ln_strength_error = sqrt(variance * c[2][2]);
+        fit->ln_strength_error = sqrt(variance * fmax(c[2][2], 0.0)); /* a difference */
         fit->exponent_error = sqrt(variance * c[3][3]);
     }
 }

@@ -230,6 +230,11 @@ wb_calibrate_settings_meant(const struct wb_calibrate_settings *settings)
     return meant;
 }
 
+bool wb_calibrate_is_complete(enum wb_calibrate_end end)
+{
+    return end == WB_CALIBRATE_SIZE || end == WB_CALIBRATE_ERROR || end == WB_CALIBRATE_REFINED;
+}
+
 const char *wb_calibrate_end_text(enum wb_calibrate_end end)
 {
     switch (end) {
@@ -237,6 +242,8 @@ const char *wb_calibrate_end_text(enum wb_calibrate_end end)
         return "the simplex became small";
     case WB_CALIBRATE_ERROR:
         return "the error became small";
+    case WB_CALIBRATE_REFINED:
+        return "Gauss-Newton steps settled";
     case WB_CALIBRATE_ITERATIONS:
         return "the iterations ran out";
     case WB_CALIBRATE_STOPPED:
@@ -465,14 +472,15 @@ static int rising_points(const struct wb_curve *curve)
     return n;
 }
 
-/* Gauss and Newton's steps from (K/K0, n/n0) = `at`, a tenth of a simplex' runs; `at` stays where
- * they do not settle. */
+/* Gauss-Newton steps from (K/K0, n/n0) = `at`, with a tenth of the beam runs of a simplex. `at`
+ * does not change unless they settle. */
 static enum wb_status refine(struct wb_calibrate_result *result, struct objective *objective,
                              double at[2], bool *settled)
 {
     struct wb_material material = objective->material;
     material.strength_coefficient = at[0] * objective->first_strength;
     material.hardening_exponent = at[1] * objective->first_exponent;
+    const struct wb_material before = material;
     WB_TRY(wb_refit_run(&material, settled, objective->computed, objective->curve,
                         &objective->evaluations));
     const double to[2] = {material.strength_coefficient / objective->first_strength,
@@ -480,11 +488,16 @@ static enum wb_status refine(struct wb_calibrate_result *result, struct objectiv
     *settled = *settled && violation(to[0], material.hardening_exponent) == 0.0;
     if (!*settled)
         return WB_OK;
-    const gsl_vector_const_view there = gsl_vector_const_view_array(to, 2);
-    at[0] = to[0];
-    at[1] = to[1];
+    for (int i = 0; i < 2; i++) {
+        const bool has_moved = i == 0 ? material.strength_coefficient != before.strength_coefficient
+                                      : material.hardening_exponent != before.hardening_exponent;
+        at[i] = has_moved ? to[i] : at[i];
+    }
+    const gsl_vector_const_view there = gsl_vector_const_view_array(at, 2);
     add_step(result, objective, &there.vector, evaluate(&there.vector, objective),
              result->path[result->n_path - 1].size);
+    if (result->end == WB_CALIBRATE_ITERATIONS)
+        result->end = WB_CALIBRATE_REFINED;
     return WB_OK;
 }
 

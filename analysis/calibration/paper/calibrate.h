@@ -65,10 +65,13 @@ wb_calibrate_settings_meant(const struct wb_calibrate_settings *settings);
 enum wb_calibrate_end {
     WB_CALIBRATE_SIZE,       /* the simplex became small */
     WB_CALIBRATE_ERROR,      /* the error became small */
+    WB_CALIBRATE_REFINED,    /* the iterations ran out, then Gauss-Newton steps settled */
     WB_CALIBRATE_ITERATIONS, /* the iterations ran out */
     WB_CALIBRATE_STOPPED     /* by the caller */
 };
 const char *wb_calibrate_end_text(enum wb_calibrate_end end);
+/* Whether the search ended by itself: not by a limit or by the caller. */
+bool wb_calibrate_is_complete(enum wb_calibrate_end end);
 
 /* One evaluation of the optimiser's path. */
 struct wb_calibrate_step {

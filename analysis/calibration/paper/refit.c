@@ -11,8 +11,8 @@
 
 /* Steps of ln K and n for the slopes. */
 #define SLOPE_STEP 0.01
-/* A refit is settled when ln K and n move less than this, or when Gauss and Newton's step promises
- * to lower the sum of squares by less than this part. */
+/* A refit is settled when ln K and n move less than this, or when the Gauss-Newton step was
+ * expected to lower the sum of squares by less than this part. */
 #define SETTLED 1e-3
 #define SETTLED_SQUARES 1e-5
 #define MOST_STEPS 12
@@ -119,23 +119,22 @@ static enum wb_status refit_hardening(struct refit *refit, bool *settled)
         double *const previous = refit->previous;
         if (!newton_step(refit, damping, step, &promised))
             return WB_OK;
-        *settled = damping <= FIRST_DAMPING && promised < SETTLED_SQUARES;
-        if (*settled)
-            return WB_OK;
         /* The curve of the last accepted point is kept until the trial proves better. */
         memcpy(previous, refit->value, (size_t)refit->curve->n * sizeof *previous);
         WB_TRY(run(refit, step[0], step[1], refit->value, &complete));
         const double error = curve_error(refit, complete);
-        const bool is_small = fmax(fabs(step[0]), fabs(step[1])) < SETTLED;
+        /* A step is small by damping too; only an undamped one shows that the search has arrived.
+         */
+        const bool is_last =
+            damping <= FIRST_DAMPING &&
+            (fmax(fabs(step[0]), fabs(step[1])) < SETTLED || promised < SETTLED_SQUARES);
         if (!(error < best)) {
-            /* A step is small by damping too; only an undamped one that gains nothing has arrived.
-             */
-            *settled = is_small && damping <= FIRST_DAMPING;
+            *settled = is_last;
             memcpy(refit->value, previous, (size_t)refit->curve->n * sizeof *previous);
             damping *= 10.0;
             continue;
         }
-        *settled = is_small && damping <= FIRST_DAMPING;
+        *settled = is_last;
         best = error;
         damping *= 0.1;
         refit->material.strength_coefficient *= exp(step[0]);

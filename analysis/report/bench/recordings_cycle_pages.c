@@ -691,7 +691,10 @@ static void put_parts(struct wb_document *document, const struct wb_law *law)
     }
     snprintf(caption, sizeof caption,
              "Parts side by side that share the strain, each elastic up to its yield strain; means "
-             "over the samples. Share of the area with isotropic hardening: %.2f.",
+             "over the samples. Hardening: %s. %s: %.3g.",
+             wb_law_rule_name(law),
+             law->is_combined ? "Tangent modulus of a yielded part over its modulus"
+                              : "Share of the area with isotropic hardening",
              law->isotropic_share);
     struct wb_document_table *const table = wb_document_table(document, caption, 1 + n, columns);
     wb_document_row(table, false);

@@ -568,9 +568,11 @@ static enum wb_status draw_optimiser(struct wb_figures_item *item)
     if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION) || wire->calibration.n_path < 1)
         return WB_OK;
     WB_TRY(wb_recordings_draw_start(item, "optimiser", WB_PDF_WIDTH, 170.0));
-    wb_text_append(&item->caption,
-                   "Left: error of the best corner of the simplex after each iteration. "
-                   "Right: its path from the first guess to the calibrated values.");
+    wb_text_append(
+        &item->caption,
+        "Left: error of the best corner of the simplex after each iteration, then of the "
+        "restart. "
+        "Right: its path from the first guess to the calibrated values.");
     add_path(item->figure, &wire->calibration, wb_palette_wire(item->index));
     return WB_OK;
 }

@@ -406,7 +406,7 @@ static int put_search_warnings(struct wb_document *document,
     if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
         return 0;
     wb_pages_escape(label, sizeof label, wire->wanted->label);
-    if (c->end != WB_CALIBRATE_SIZE && c->end != WB_CALIBRATE_ERROR) {
+    if (!wb_calibrate_is_complete(c->end)) {
         snprintf(item, sizeof item, "%s: the search for K and n ended because %s.", label,
                  wb_calibrate_end_text(c->end));
         wb_document_item(document, WB_TONE_WARNING, item);

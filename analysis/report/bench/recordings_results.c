@@ -120,9 +120,19 @@ static enum wb_status check_identity(const struct wb_recordings_results_test *te
     return WB_OK;
 }
 
-static enum wb_status align(struct wb_recordings_results_test *test,
-                            const struct wb_recordings_results_wire *wire, double length,
-                            struct wb_reason *why)
+/* Also of a recording that cannot be aligned, so that its reader knows which file it was. */
+static void keep_hash(struct wb_recordings_results_test *test)
+{
+    const struct wb_json *const list = wb_json_get(test->dataset.document, "recordings");
+    const char *sha256;
+    struct wb_reason why;
+    if (wb_json_text(wb_json_get(wb_json_item(list, 0), "sha256"), &sha256))
+        snprintf(test->sha256, sizeof test->sha256, "%s", sha256);
+    else if (wb_recording_sha256(test->wanted->path, test->sha256, &why) != WB_OK)
+        test->sha256[0] = '\0';
+}
+
+static enum wb_status align(struct wb_recordings_results_test *test, struct wb_reason *why)
 {
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
@@ -131,16 +141,7 @@ static enum wb_status align(struct wb_recordings_results_test *test,
         settings.rig_path = test->wanted->corrected_rig;
     if (test->wanted->corrected_specimen[0])
         settings.specimen_path = test->wanted->corrected_specimen;
-    WB_TRY(wb_align_run(&test->dataset, test->wanted->path, &settings, why));
-    const char *sha256;
-    if (wb_json_text(wb_json_get(wb_json_item(wb_json_get(test->dataset.document, "recordings"), 0),
-                                 "sha256"),
-                     &sha256))
-        snprintf(test->sha256, sizeof test->sha256, "%s", sha256);
-    const enum wb_status status = check_identity(test, wire, length, why);
-    if (status != WB_OK)
-        wb_dataset_release(&test->dataset);
-    return status;
+    return wb_align_run(&test->dataset, test->wanted->path, &settings, why);
 }
 
 static void run_align(const struct wb_recordings *campaign, const struct job *job)
@@ -151,7 +152,12 @@ static void run_align(const struct wb_recordings *campaign, const struct job *jo
         return;
     }
     struct wb_reason why = {.text = ""};
-    const enum wb_status status = align(test, job->wire, campaign->length[job->purpose], &why);
+    enum wb_status status = align(test, &why);
+    keep_hash(test);
+    if (status == WB_OK)
+        status = check_identity(test, job->wire, campaign->length[job->purpose], &why);
+    if (status != WB_OK)
+        wb_dataset_release(&test->dataset);
     test->usable = status == WB_OK;
     if (test->usable)
         return;

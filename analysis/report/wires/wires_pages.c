@@ -425,7 +425,7 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
     else
         wb_text_append(&text, "; its computation ended at %.1f N.",
                        results->fitted.force[results->fitted.n_curve - 1]);
-    if (results->fit.end != WB_CALIBRATE_SIZE && results->fit.end != WB_CALIBRATE_ERROR)
+    if (!wb_calibrate_is_complete(results->fit.end))
         wb_text_append(&text, " The search ended because %s.",
                        wb_calibrate_end_text(results->fit.end));
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];

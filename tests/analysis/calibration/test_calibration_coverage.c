@@ -35,9 +35,6 @@ static const struct wb_test_uncertainty stated = {
     .diameter = 0.01 * WB_MM,
 };
 
-/* A wire's law, of the virtual rig's, and candidates that are not tried. Of a knee from the start
- * that Ludwik's kinematic law follows to 0.2 % of F_max, unloading stiffness and residual curvature
- * are not held: the force hardly knows them, and no other law is near. */
 enum group {
     CONTAINED,
     NOT_CONTAINED,
@@ -51,9 +48,12 @@ static const struct {
 } groups_of_laws[GROUPS] = {
     {"that a candidate contains", 0.02},
     {"that no candidate contains", 0.02},
-    {"whose candidates are left out", 1.0},
+    {"whose candidates are left out", 0.6},
 };
 
+/* A wire's law, of the virtual rig's, and candidates that are not tried. Of a knee from the start
+ * that Ludwik's kinematic law follows to 0.2 % of F_max, unloading stiffness and residual curvature
+ * are not held: the force hardly knows them, and no other law is near. */
 static const struct truth {
     const char *name;
     enum wb_composite_variant variant;

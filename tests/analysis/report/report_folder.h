@@ -108,7 +108,7 @@ static inline void assert_clean_report(void)
 static inline void assert_same_report(const struct wb_kind *kind, const void *results)
 {
     char command[3 * WB_PATH];
-    assert_int_equal(wb_kind_write(kind, results, in_folder("again"), true), WB_OK);
+    assert_int_equal(wb_kind_write(kind, results, in_folder("again"), true, 0), WB_OK);
     snprintf(command, sizeof command, "diff -r '%s' '%s' >/dev/null", in_folder("report"),
              in_folder("again"));
     assert_int_equal(system(command), 0);

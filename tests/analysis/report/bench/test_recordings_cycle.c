@@ -72,8 +72,8 @@ static void the_law_predicts_both_ways_at_the_other_length(void **state)
     /* Another specimen of the product, so some percent off, but on both ways. */
     assert_true(p->elastoplastic.rms < 0.06);
     assert_true(p->cycles.n_samples == 1 && p->cycles.rms < 0.06);
-    assert_int_equal(wb_kind_write(&wb_recordings_kind, &bench->results, in_folder("good"), false),
-                     WB_OK);
+    assert_int_equal(
+        wb_kind_write(&wb_recordings_kind, &bench->results, in_folder("good"), false, 0), WB_OK);
     assert_int_equal(wb_json_read(&root, in_folder("good/report.json")), WB_OK);
     const struct wb_json *const cycle =
         wb_json_get(wb_json_item(wb_json_get(root, "wires"), 0), "cycle");
@@ -101,8 +101,8 @@ static void a_rule_that_the_data_do_not_support_has_ranges_only(void **state)
     /* Which wires come to this is for tests/analysis/calibration. */
     c->is_followed = false;
     c->ranked[0].misfit = 0.02;
-    assert_int_equal(wb_kind_write(&wb_recordings_kind, &bench->results, in_folder("bad"), false),
-                     WB_OK);
+    assert_int_equal(
+        wb_kind_write(&wb_recordings_kind, &bench->results, in_folder("bad"), false, 0), WB_OK);
     assert_true(says("bad/report.html", "no law follows the data"));
     assert_true(says("bad/report.html", "No law follows the data"));
     assert_true(says("bad/report.html", "Broken line"));

@@ -193,10 +193,11 @@ static void the_same_results_give_the_same_bytes_in_all_files(void **state)
     const struct good *const good = *state;
     assert_true(good->results.outcome.is_complete);
     assert_false(good->results.outcome.exceeds_limit);
-    assert_int_equal(wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
-                     WB_OK);
     assert_int_equal(
-        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("twice/deep"), false), WB_OK);
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), false, 0), WB_OK);
+    assert_int_equal(
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("twice/deep"), false, 0),
+        WB_OK);
     for (size_t i = 0; i < sizeof good_files / sizeof good_files[0]; i++) {
         char a[128], b[128];
         size_t n, m;
@@ -478,7 +479,8 @@ static void a_laboratorys_verdicts_have_uncertainty_and_rule(void **state)
     laboratory->is_given = true;
     snprintf(laboratory->report, sizeof laboratory->report, "WB-7");
     assert_int_equal(
-        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("laboratory"), false), WB_OK);
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("laboratory"), false, 0),
+        WB_OK);
     char verdict[120];
     snprintf(verdict, sizeof verdict, "<i>U</i> = %.4f (95 %%, scatter between specimens)", U);
     assert_true(says("laboratory/report.html", verdict));
@@ -524,7 +526,7 @@ static void a_campaign_may_ask_for_the_papers_route_alone(void **state)
     compute("paper.yaml", text, 1, &campaign, &results);
     assert_int_equal(results.wires[0].cycle_states[0], WB_RECORDINGS_NOT_WANTED);
     assert_int_equal(results.outcome.n_steps, 6);
-    assert_int_equal(wb_kind_write(&wb_recordings_kind, &results, in_folder("paper"), false),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &results, in_folder("paper"), false, 0),
                      WB_OK);
     assert_false(says("paper/report.html", "Bending properties"));
     assert_false(says("paper/report.json", "\"cycle\""));
@@ -563,14 +565,15 @@ static void a_full_folder_is_refused_and_force_replaces_only_the_reports_own_fil
 {
     const struct good *const good = *state;
     keep_messages();
-    assert_int_equal(wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
-                     WB_ERR_EXISTS);
+    assert_int_equal(
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), false, 0),
+        WB_ERR_EXISTS);
     assert_message("--force");
     write_text("once/mine.txt", "mine");
     write_text("once/figures/mine.svg", "mine");
     write_text("once/figures/stale.svg", "an old figure");
     write_text("once/report.json", "{\"files\": [\"figures/stale.svg\", \"../good.yaml\"]}");
-    assert_int_equal(wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), true),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), true, 0),
                      WB_OK);
     assert_true(says("once/mine.txt", "mine"));
     assert_true(says("once/figures/mine.svg", "mine"));
@@ -584,9 +587,10 @@ static void a_folder_that_cannot_be_written_leaves_nothing(void **state)
     const struct good *const good = *state;
     write_text("file", "a file");
     assert_int_not_equal(
-        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("file"), false), WB_OK);
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("file"), false, 0), WB_OK);
     assert_int_not_equal(
-        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("file/below"), true), WB_OK);
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("file/below"), true, 0),
+        WB_OK);
     assert_true(says("file", "a file"));
 }
 
@@ -606,7 +610,7 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
     const double rms = result->elastoplastic.rms;
     assert_close(share, fmin(1.0, (r_v * r_v + r_c * r_c) / 2.0 / (rms * rms)), 1e-12);
     assert_true(share > 0.01 && share < 0.9);
-    assert_int_equal(wb_kind_write(&wb_recordings_kind, &bad.results, in_folder("bad"), false),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &bad.results, in_folder("bad"), false, 0),
                      WB_OK);
     char text[80];
     snprintf(text, sizeof text, "about %.4f, above %.4f in one of twenty validations",
@@ -629,7 +633,7 @@ static void a_campaign_without_any_recording_still_reports(void **state)
     assert_false(results.any_virtual);
     assert_int_equal(results.outcome.n_wanted, 4);
     assert_int_equal(results.outcome.n_usable, 0);
-    assert_int_equal(wb_kind_write(&wb_recordings_kind, &results, in_folder("empty"), false),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &results, in_folder("empty"), false, 0),
                      WB_OK);
     assert_true(says("empty/report.html", "4 of 4 recordings are missing"));
     assert_true(says("empty/report.html", "there is no index of recordings"));
@@ -688,7 +692,8 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
         assert_int_equal(wire->steps[WB_RECORDINGS_VALIDATION].state, WB_RECORDINGS_NOT_WANTED);
         assert_int_not_equal(wire->cycle_states[0], WB_RECORDINGS_NOT_WANTED);
         assert_int_equal(
-            wb_kind_write(&wb_recordings_kind, &results, in_folder("made-up"), threads > 1), WB_OK);
+            wb_kind_write(&wb_recordings_kind, &results, in_folder("made-up"), threads > 1, 0),
+            WB_OK);
         texts[threads - 1] = read_text("made-up/report.json", NULL);
         if (threads == 2) {
             assert_true(says("made-up/report.html", "2 of 3 recordings are missing"));

@@ -133,7 +133,7 @@ static void write_report(void)
 {
     if (!wb_file_exists(in_folder("report")))
         assert_int_equal(
-            wb_kind_write(&wb_bundles_kind, whole_report(), in_folder("report"), false), WB_OK);
+            wb_kind_write(&wb_bundles_kind, whole_report(), in_folder("report"), false, 0), WB_OK);
 }
 
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
@@ -205,7 +205,7 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     assert_int_equal(read_campaign(text), WB_OK);
     compute();
     assert_int_equal(results.outcome.n_usable, 1); /* the beam that is named by its path */
-    assert_int_equal(wb_kind_write(&wb_bundles_kind, &results, in_folder("none"), true), WB_OK);
+    assert_int_equal(wb_kind_write(&wb_bundles_kind, &results, in_folder("none"), true, 0), WB_OK);
     release();
     assert_true(says("none/report.html", "6 of 7 datasets are missing"));
     assert_true(says("none/report.html", "-o xyz/twelve"));

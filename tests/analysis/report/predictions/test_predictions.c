@@ -184,8 +184,8 @@ static void the_places_together_say_what_to_look_at(void **state)
 static void the_report_says_what_is_predicted_and_what_was_tested(void **state)
 {
     (void)state;
-    assert_int_equal(wb_kind_write(&wb_predictions_kind, whole_report(), in_folder("report"), true),
-                     WB_OK);
+    assert_int_equal(
+        wb_kind_write(&wb_predictions_kind, whole_report(), in_folder("report"), true, 0), WB_OK);
     static const char *const texts[] = {
         "<b>Simulations.</b>",
         "Seven &lt;wires&gt;",

@@ -458,7 +458,7 @@ static void write_report(void)
 {
     if (!wb_file_exists(in_folder("report")))
         assert_int_equal(
-            wb_kind_write(&wb_wires_kind, whole_campaign(), in_folder("report"), false), WB_OK);
+            wb_kind_write(&wb_wires_kind, whole_campaign(), in_folder("report"), false, 0), WB_OK);
 }
 
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
@@ -528,7 +528,7 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     memset(&results, 0, sizeof results);
     assert_int_equal(wb_wires_results_load(&results, &comparison), WB_OK);
     assert_int_equal(wb_wires_results_compute(&results, 0, NULL, NULL), WB_OK);
-    assert_int_equal(wb_kind_write(&wb_wires_kind, &results, in_folder("none"), true), WB_OK);
+    assert_int_equal(wb_kind_write(&wb_wires_kind, &results, in_folder("none"), true, 0), WB_OK);
     release();
     assert_true(says("none/report.html", "<b>Incomplete.</b> 4 of 4 datasets are missing"));
     assert_true(says("none/report.html", "wirebench solve wire3d plastic.yaml -o "
