@@ -140,6 +140,44 @@ static void kinematic_hardening_springs_back_less_and_loads_alike(void **state)
     wirebench_properties_destroy(kinematic);
 }
 
+/* Parallel parts whose limits grow: beta of each yielded part's modulus remains, and unloading
+ * begins from a wider elastic range than with kinematic hardening. */
+static void combined_hardening_of_parallel_parts_widens_the_elastic_range(void **state)
+{
+    (void)state;
+    const double beta = 0.2, curvature = 40.0;
+    struct wirebench_law law = {.size = sizeof law,
+                                .outer_diameter = DIAMETER,
+                                .poissons_ratio = 0.3,
+                                .n_parts = 1,
+                                .parts = {{MODULUS, 1e-3}},
+                                .kinematic_share = 1.0 - beta,
+                                .is_combined = 1};
+    struct wirebench_properties *combined = NULL, *kinematic = NULL;
+    struct wirebench_bending one = {.size = sizeof one}, other = {.size = sizeof other};
+    succeed(wirebench_properties_create(&combined, &law));
+    /* The same virgin curve by kinematic parts: one yields, one stays elastic. */
+    law.n_parts = 2;
+    law.parts[0].modulus = (1.0 - beta) * MODULUS;
+    law.parts[1] = (struct wirebench_part){beta * MODULUS, INFINITY};
+    law.kinematic_share = 1.0;
+    law.is_combined = 0;
+    succeed(wirebench_properties_create(&kinematic, &law));
+    double moments[2];
+    succeed(wirebench_moments(combined, 1, &curvature, &moments[0]));
+    succeed(wirebench_moments(kinematic, 1, &curvature, &moments[1]));
+    assert_close_relative(moments[0], moments[1], 1e-9);
+    succeed(wirebench_bend(combined, curvature, &one));
+    succeed(wirebench_bend(kinematic, curvature, &other));
+    assert_true(one.residual_curvature_ratio > other.residual_curvature_ratio);
+    wirebench_properties_destroy(combined);
+    wirebench_properties_destroy(kinematic);
+    /* All hardening isotropic: the parts would never yield. */
+    law.kinematic_share = 0.0;
+    law.is_combined = 1;
+    assert_int_equal(wirebench_properties_create(&combined, &law), WIREBENCH_ERR_ARGUMENT);
+}
+
 static void a_natural_shape_and_weight_change_the_force_alone(void **state)
 {
     (void)state;
@@ -720,6 +758,7 @@ int main(int argc, char **argv)
         FACT(an_elastic_cantilever_follows_the_cubic_formula),
         FACT(elastic_three_point_bending_follows_the_cubic_formula),
         FACT(kinematic_hardening_springs_back_less_and_loads_alike),
+        FACT(combined_hardening_of_parallel_parts_widens_the_elastic_range),
         FACT(a_natural_shape_and_weight_change_the_force_alone),
         FACT(a_shorter_struct_is_filled_as_far_as_it_reaches),
         FACT(a_longer_struct_is_taken_where_its_new_members_are_zero),
