@@ -32,6 +32,10 @@ static const double unit_part = 0.01, unit_distance = 0.1 * WB_MM;
 /* Standard uncertainty of what a law adds to a stiffness below the data, over that. */
 static const double unknown_part = 0.5;
 
+/* Laws with a misfit of at most this many times the best fit nearly as well: the weights, which
+ * take residuals for noise, would exclude them where all laws miss the test in their own way. */
+static const double as_good = 1.3;
+
 /* A residual curvature is a part of the largest. */
 static double largest_value(enum wb_cycle_number number)
 {
@@ -139,21 +143,28 @@ static double miss_at_turn(const struct wb_cycle_calibration *calibration,
     return n > 0 ? sqrt(squares / n) : 0.0;
 }
 
-/* How far the other laws lie from the chosen one, each by its weight, what the chosen one misses
- * just behind the turn, and what is not known of what it says beyond the data. */
+/* Three contributions: the distance of the other laws from the chosen one, by their weights, or the
+ * width of a rectangular distribution over the laws that fit nearly as well, whichever is larger;
+ * what the chosen law misses just behind the turn; and part of what it says beyond the data. */
 static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
                      const struct wb_cycle_calibrate_settings *settings, double value,
                      struct wb_budget *budget)
 {
-    double squares = 0.0;
+    double squares = 0.0, low = 0.0, high = 0.0;
     for (int i = 0; i < calibration->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &calibration->ranked[i];
         struct wb_estimate other;
         wb_cycle_average(calibration, rank->candidate, number, settings, &other);
         const double off = log(other.value / value);
-        if (rank->weight > 0.0 && isfinite(off))
-            squares += rank->weight * off * off;
+        if (!isfinite(off))
+            continue;
+        squares += rank->weight * off * off;
+        if (rank->misfit <= as_good * calibration->ranked[0].misfit) {
+            low = fmin(low, off);
+            high = fmax(high, off);
+        }
     }
+    squares = fmax(squares, (high - low) * (high - low) / 12.0);
     const double alone = unknown_part * beyond_data(calibration, number, settings, value);
     const double missed = miss_at_turn(calibration, number);
     budget->uncertainty[WB_FROM_LAW] = sqrt(squares + alone * alone + missed * missed);

@@ -673,12 +673,17 @@ static void choose(struct wb_cycle_calibration *calibration)
                                best->misfit <= WB_CYCLE_LARGEST_FOLLOWED;
 }
 
-/* Whether laws of more kinds are worth their time. */
+/* Whether Chaboche's laws are worth their time. A good fit of combined parallel parts does not
+ * count: where the others fit less well, both kinds show how much the result depends on the law's
+ * form. */
 static bool leaves_something(const struct wb_cycle_calibration *calibration)
 {
-    return calibration->n_ranked > 0 &&
-           calibration->ranked[0].misfit >
-               fmax(follows_up_to, follows_noise * calibration->repeat_noise);
+    double best = (double)INFINITY;
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        if (calibration->ranked[i].candidate != WB_CANDIDATE_PARALLEL_COMBINED)
+            best = fmin(best, calibration->ranked[i].misfit);
+    }
+    return isfinite(best) && best > fmax(follows_up_to, follows_noise * calibration->repeat_noise);
 }
 
 static struct wb_law with_rate(const struct wb_law *law, double strain_rate)
