@@ -318,7 +318,8 @@ static void a_law_that_misses_the_turn_knows_less_of_unloading(void **unused)
     struct wb_cycle_calibration c;
     double missed = 0.0;
     wb_cycle_calibrate_default_settings(&settings);
-    settings.left_out = 1U << WB_CANDIDATE_PARALLEL_KINEMATIC | 1U << WB_CANDIDATE_PARALLEL_MIXED;
+    settings.left_out = 1U << WB_CANDIDATE_PARALLEL_KINEMATIC | 1U << WB_CANDIDATE_PARALLEL_MIXED |
+                        1U << WB_CANDIDATE_PARALLEL_COMBINED;
     assert_int_equal(wb_cycle_calibrate_run(&c, list, SPECIMENS, &settings, NULL), WB_OK);
     for (int i = 0; i < SPECIMENS; i++)
         missed += c.members[i].answers[c.chosen].fit.turn_miss / SPECIMENS;
