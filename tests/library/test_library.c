@@ -159,7 +159,7 @@ static void combined_hardening_of_parallel_parts_widens_the_elastic_range(void *
     /* The same virgin curve by kinematic parts: one yields, one stays elastic. */
     law.n_parts = 2;
     law.parts[0].modulus = (1.0 - beta) * MODULUS;
-    law.parts[1] = (struct wirebench_part){beta * MODULUS, INFINITY};
+    law.parts[1] = (struct wirebench_part){beta * MODULUS, (double)INFINITY};
     law.kinematic_share = 1.0;
     law.is_combined = 0;
     succeed(wirebench_properties_create(&kinematic, &law));

@@ -510,8 +510,7 @@ static void intervals_cover_the_truth(void **unused)
         jobs[i].n = CAMPAIGN_SPECIMENS;
         /* The rig's wires choose between the two that are left, see above. */
         jobs[i].left_out = 1U << WB_CANDIDATE_LUDWIK_ISOTROPIC | 1U << WB_CANDIDATE_LUDWIK_MIXED |
-                           1U << WB_CANDIDATE_PARALLEL_MIXED |
-                           1U << WB_CANDIDATE_PARALLEL_COMBINED;
+                           1U << WB_CANDIDATE_PARALLEL_MIXED | 1U << WB_CANDIDATE_PARALLEL_COMBINED;
     }
     work_on_all(jobs, CAMPAIGNS);
     for (int i = 0; i < CAMPAIGNS; i++) {

@@ -31,7 +31,7 @@ static struct wb_law growing_parts(double share)
     static const struct wb_law_part parts[] = {{1800.0 * WB_MPA, 6e-4},
                                                {1500.0 * WB_MPA, 1.5e-3},
                                                {900.0 * WB_MPA, 5e-3},
-                                               {250.0 * WB_MPA, INFINITY}};
+                                               {250.0 * WB_MPA, (double)INFINITY}};
     struct wb_law law;
     wb_law_init_parallel(&law, parts, sizeof parts / sizeof parts[0], share, 0.39);
     law.is_combined = true;
