@@ -579,8 +579,8 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
     static const struct wb_document_column columns[] = {
         {.heading = "Sample", .right = true},
         {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true, .wraps = true},
-        {.heading = "Residual curvature ratio", .right = true, .wraps = true},
-        {.heading = "Residual deflection (mm)", .right = true, .wraps = true},
+        {.heading = "Residual curva- ture ratio", .right = true, .wraps = true},
+        {.heading = "Residual deflec- tion (mm)", .right = true, .wraps = true},
         {.heading = "Bow (mm)", .right = true},
         {.heading = "Un- even (mm)", .right = true, .wraps = true},
         {.heading = "Level (mm)", .right = true, .wraps = true},
