@@ -12,6 +12,7 @@
 #define WB_G_PER_CM3 1e3               /* kg/m3 */
 #define WB_DAY 86400.0                 /* s */
 #define WB_NMM 1e-3                    /* N m: one newton millimetre */
+#define WB_NMM2 1e-6                   /* N m2: one newton square millimetre */
 #define WB_N_PER_MM 1e3                /* J/m2: energy of a crack in N/mm */
 #define WB_N_PER_MM3 1e9               /* Pa/m: stiffness of an interface in N/mm3 */
 #define WB_S_PER_MM 1e3                /* s/m */

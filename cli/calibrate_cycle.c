@@ -9,9 +9,6 @@
 #include "base/units.h"
 #include "cli/command.h"
 
-/* N mm2 in one N m2; N mm in one N m; mJ/m in one J/m; parts in one percent. */
-static const double N_MM2 = 1e-6, N_MM = 1e-3, MILLI = 1e-3, PERCENT = 1e-2;
-
 enum {
     NUMBER = 32 /* bytes of a number as text */
 };
@@ -74,7 +71,7 @@ static void print_stiffness(const struct wb_cycle_calibration *c, const char *wh
     char name[64];
     for (int k = 0; k < stiffness->n; k++) {
         snprintf(name, sizeof name, "%s %.3g 1/m", what, stiffness->curvature[k]);
-        print_estimate(c, name, &stiffness->estimate[k], N_MM2, "N mm2");
+        print_estimate(c, name, &stiffness->estimate[k], WB_NMM2, "N mm2");
     }
 }
 
@@ -84,17 +81,17 @@ static void print_numbers(const struct wb_cycle_calibration *c,
     char name[64], curvature[NUMBER];
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
         snprintf(name, sizeof name, "M at %s 1/m", format(c->curvature[k], curvature));
-        print_estimate(c, name, &c->moment[k], N_MM, "N mm");
+        print_estimate(c, name, &c->moment[k], WB_NMM, "N mm");
     }
     print_stiffness(c, "unloading stiffness over", &c->unloading);
     if (c->has_unloading) {
         print_estimate(c, "residual curvature ratio", &c->residual_curvature_ratio, 1.0, "");
-        print_estimate(c, "loop energy", &c->loop_energy, MILLI, "mJ/m");
+        print_estimate(c, "loop energy", &c->loop_energy, WB_MJ, "mJ/m");
     } else {
         printf("no residual curvature ratio and no loop energy: the tests have no unloading\n");
     }
     print_stiffness(c, "secant EI to", &c->secant);
-    print_estimate(c, "EI at zero curvature", &c->rigidity, N_MM2, "N mm2");
+    print_estimate(c, "EI at zero curvature", &c->rigidity, WB_NMM2, "N mm2");
     printf("the data of all specimens begin at a curvature of %.2g 1/m; below it%s",
            c->secant.resolved, c->has_unloading ? "" : " the law speaks alone\n");
     if (c->has_unloading)
@@ -118,7 +115,7 @@ static void print_rule(const struct wb_cycle_calibration *c)
                              : "no law follows loading and unloading");
     if (c->has_unloading && !c->is_stopped && !c->is_followed)
         printf("it misses both ways by %.2f %% of F_max, expected at most %g %%\n",
-               c->ranked[0].misfit / PERCENT, WB_CYCLE_LARGEST_FOLLOWED / PERCENT);
+               c->ranked[0].misfit / WB_PERCENT, WB_CYCLE_LARGEST_FOLLOWED / WB_PERCENT);
     if (!c->has_unloading)
         printf("loading alone does not tell EI from early yield: EI may be 25 %% low\n");
     printf("%-28s %8s %8s %8s %12s %14s\n", "candidate", "misfit %", "numbers", "weight",
@@ -127,8 +124,8 @@ static void print_rule(const struct wb_cycle_calibration *c)
         const struct wb_cycle_rank *const rank = &c->ranked[i];
         char rigidity[NUMBER], residual_curvature_ratio[NUMBER];
         printf("%-28s %8.3f %8d %8.3f %12s %14s%s%s\n", wb_candidate_name(rank->candidate),
-               rank->misfit / PERCENT, rank->n_free, rank->weight,
-               format(rank->rigidity.value / N_MM2, rigidity),
+               rank->misfit / WB_PERCENT, rank->n_free, rank->weight,
+               format(rank->rigidity.value / WB_NMM2, rigidity),
                c->has_unloading
                    ? format(rank->residual_curvature_ratio.value, residual_curvature_ratio)
                    : "-",
@@ -146,7 +143,7 @@ static void print_rule(const struct wb_cycle_calibration *c)
     printf(
         "weight: by the misfit on %.0f residuals that count, as neighbours miss alike, and a law's "
         "free numbers; repeat noise of the readings %.3f %% of F_max\n",
-        c->n_independent, c->repeat_noise / PERCENT);
+        c->n_independent, c->repeat_noise / WB_PERCENT);
 }
 
 /* What would tell K and n. */
@@ -217,7 +214,7 @@ static void print_law(const struct wb_cycle_calibration *c)
         const struct wb_law_part *const part = &law->parts[i];
         printf("  part %-3d %10s MPa", i + 1, format(part->modulus / WB_MPA, a));
         if (isfinite(part->yield_strain))
-            printf(", yields at a strain of %s %%\n", format(part->yield_strain / PERCENT, b));
+            printf(", yields at a strain of %s %%\n", format(part->yield_strain / WB_PERCENT, b));
         else
             printf(", elastic\n");
     }
@@ -231,7 +228,7 @@ static void print_law(const struct wb_cycle_calibration *c)
         return;
     printf("Ludwik equivalent, isotropic, of the first loading (misfit %.2f %% of M; its way back "
            "is not the wire's)\n",
-           c->ludwik_misfit / PERCENT);
+           c->ludwik_misfit / WB_PERCENT);
     printf("  E %s MPa,", format(c->ludwik.youngs_modulus / WB_MPA, a));
     printf(" sigma_Y %s MPa,", format(c->ludwik.yield_stress / WB_MPA, a));
     printf(" K %s MPa,", format(c->ludwik.strength_coefficient / WB_MPA, a));
@@ -254,8 +251,8 @@ static void print_specimens(const struct wb_cycle_calibration *c)
                length / WB_MM, bow.tip / WB_MM, bow.deviation / WB_MM, bow.uneven / WB_MM,
                /* Adding zero makes no number "-0.00". */
                round(100.0 * fit->level / WB_MM) / 100.0 + 0.0,
-               format(member->data.residual_deflection / WB_MM, left), fit->misfit / PERCENT,
-               format(answer->value[WB_CYCLE_RIGIDITY] / N_MM2, rigidity),
+               format(member->data.residual_deflection / WB_MM, left), fit->misfit / WB_PERCENT,
+               format(answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2, rigidity),
                c->has_unloading
                    ? format(answer->value[WB_CYCLE_RESIDUAL_CURVATURE], residual_curvature_ratio)
                    : "-",
@@ -293,14 +290,14 @@ static void print_budget(const struct wb_cycle_calibration *c)
         printf("  %-40s", name);
         for (int k = 0; k < n; k++) {
             const double u = wb_cycle_budget_cell(&c->budget[columns[k].number], i, &is_stated);
-            snprintf(value, sizeof value, is_stated ? "%.2f" : "(%.2f)", u / PERCENT);
+            snprintf(value, sizeof value, is_stated ? "%.2f" : "(%.2f)", u / WB_PERCENT);
             printf(" %9s", isfinite(u) ? value : "unknown");
         }
         printf("\n");
     }
     printf("  %-40s", "combined");
     for (int k = 0; k < n; k++)
-        printf(" %9.2f", c->budget[columns[k].number].combined / PERCENT);
+        printf(" %9.2f", c->budget[columns[k].number].combined / WB_PERCENT);
     printf("\n  %-40s", "degrees of freedom");
     for (int k = 0; k < n; k++)
         printf(" %9.1f", c->budget[columns[k].number].effective_degrees);

@@ -11,9 +11,6 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-/* N mm2 in one N m2; N mm in one N m. */
-static const double N_MM2 = 1e-6, N_MM = 1e-3;
-
 static bool report_fits(void *context, int done, int all)
 {
     (void)all;
@@ -40,7 +37,7 @@ static void print_member(const struct wb_three_point_member *m)
     }
     printf("EI %.4g N mm2 +- %.2g %%, first contact %.3f +- %.2g mm, used up to %.3g mm (%s), "
            "misfit %.2g%s\n",
-           m->rigidity / N_MM2, 200.0 * m->rigidity_error, m->fit.first_contact / WB_MM,
+           m->rigidity / WB_NMM2, 200.0 * m->rigidity_error, m->fit.first_contact / WB_MM,
            2.0 * m->fit.first_contact_error / WB_MM, m->data.usable / WB_MM,
            wb_three_point_limit_name(m->data.limit), m->fit.misfit,
            m->data.has_unloading ? ", with the way back" : "");
@@ -66,13 +63,13 @@ static void print_text(const struct wb_three_point_calibration *c)
     printf("rollers %g mm, nose %g mm, friction %g, compliance %g mm/N%s\n",
            info->machine.roller_radius / WB_MM, c->bench.nose_radius / WB_MM, c->bench.friction,
            c->bench.compliance / WB_MM, c->is_compliance_known ? "" : " (not known)");
-    print_estimate("EI", &c->rigidity, N_MM2, "N mm2");
+    print_estimate("EI", &c->rigidity, WB_NMM2, "N mm2");
     if (!c->is_rigidity_identifiable)
         printf("EI is not identifiable from loading alone: what stands here is the law's form "
                "before the first point\n");
     for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         snprintf(name, sizeof name, "M at %.4g /m", c->curvature[k]);
-        print_estimate(name, &c->moment[k], N_MM, "N mm");
+        print_estimate(name, &c->moment[k], WB_NMM, "N mm");
     }
     for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         const struct wb_three_point_variant *const v = &c->variants[i];
@@ -117,12 +114,12 @@ static int print_json(const struct wb_three_point_calibration *c)
     wb_json_set_number(root, "series_deviation", c->series_deviation);
     wb_json_set_number(root, "misfit", c->misfit);
     wb_json_set_boolean(root, "rigidity_identifiable", c->is_rigidity_identifiable);
-    set_estimate(wb_json_set_object(root, "flexural_rigidity_N_mm2"), &c->rigidity, N_MM2);
+    set_estimate(wb_json_set_object(root, "flexural_rigidity_N_mm2"), &c->rigidity, WB_NMM2);
     struct wb_json *const moments = wb_json_set_array(root, "moment_curvature");
     for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         struct wb_json *const item = wb_json_append_object(moments);
         wb_json_set_number(item, "curvature_1_m", c->curvature[k]);
-        set_estimate(wb_json_set_object(item, "moment_N_mm"), &c->moment[k], N_MM);
+        set_estimate(wb_json_set_object(item, "moment_N_mm"), &c->moment[k], WB_NMM);
     }
     struct wb_json *const bands = wb_json_set_array(root, "bands");
     for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
@@ -145,7 +142,7 @@ static int print_json(const struct wb_three_point_calibration *c)
             wb_json_set_text(item, "why", m->why.text);
             continue;
         }
-        wb_json_set_number(item, "flexural_rigidity_N_mm2", m->rigidity / N_MM2);
+        wb_json_set_number(item, "flexural_rigidity_N_mm2", m->rigidity / WB_NMM2);
         wb_json_set_number(item, "rigidity_error", m->rigidity_error);
         wb_json_set_number(item, "first_contact_mm", m->fit.first_contact / WB_MM);
         wb_json_set_number(item, "first_contact_error_mm", m->fit.first_contact_error / WB_MM);

@@ -13,8 +13,6 @@
 
 #define WB_LOG_DOMAIN "compare"
 
-static const double N_MM2 = 1e-6, N_MM = 1e-3;
-
 const char *wb_compare_word(enum wb_verdict_of_groups verdict)
 {
     static const char *const words[] = {"equivalent", "different", "cannot tell"};
@@ -90,7 +88,7 @@ static enum wb_status take_rigidity(struct wb_compare_quantity *q,
                                     const struct wb_properties *const *p)
 {
     *q = (struct wb_compare_quantity){
-        .name = "EI at zero curvature", .unit = "N mm2", .factor = N_MM2};
+        .name = "EI at zero curvature", .unit = "N mm2", .factor = WB_NMM2};
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         if (!find_group(p[i], &p[i]->rigidity, 1.0, &q->groups[i]))
             q->reason = "a file has no interval of EI";
@@ -104,7 +102,7 @@ static enum wb_status take_unloading(struct wb_compare_quantity *q,
 {
     static const double change = 1.0;
     *q = (struct wb_compare_quantity){
-        .name = "unloading stiffness over 1 1/m", .unit = "N mm2", .factor = N_MM2};
+        .name = "unloading stiffness over 1 1/m", .unit = "N mm2", .factor = WB_NMM2};
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         const struct wb_estimate *const e = wb_cycle_stiffness_at(&p[i]->unloading, change);
         double here, there;
@@ -141,7 +139,7 @@ static enum wb_status take_residual_curvature_ratio(struct wb_compare_quantity *
 static enum wb_status take_moment(struct wb_compare_quantity *q,
                                   const struct wb_properties *const *p, double curvature)
 {
-    *q = (struct wb_compare_quantity){.unit = "N mm", .factor = N_MM};
+    *q = (struct wb_compare_quantity){.unit = "N mm", .factor = WB_NMM};
     snprintf(q->name, sizeof q->name, "M at %.3g 1/m", curvature);
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         struct wb_estimate moment;

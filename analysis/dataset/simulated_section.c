@@ -10,8 +10,6 @@
 
 #define WB_LOG_DOMAIN "dataset"
 
-static const double n_mm2 = 1e-6; /* N m2 */
-
 static void add_rows(struct wb_dataset *dataset, const struct wb_section_run *run)
 {
     double before[3] = {0.0, 0.0, 0.0};
@@ -78,7 +76,7 @@ static void describe_beam(struct wb_json *object, const struct wb_section_run *r
         const struct wb_section_run_rigidity *const r = &run->rigidity[i];
         struct wb_json *const item = wb_json_append_object(lengths);
         wb_json_set_number(item, "length_mm", r->length / WB_MM);
-        wb_json_set_number(item, "flexural_rigidity_N_mm2", r->rigidity / n_mm2);
+        wb_json_set_number(item, "flexural_rigidity_N_mm2", r->rigidity / WB_NMM2);
         wb_json_set_number(item, "newmark_alpha_L", r->alpha);
     }
     for (int i = 0; i < run->n_curve; i++) {
@@ -86,7 +84,7 @@ static void describe_beam(struct wb_json *object, const struct wb_section_run *r
         struct wb_json *const item = wb_json_append_object(curve);
         wb_json_set_number(item, "curvature_1_m", p->curvature);
         wb_json_set_number(item, "moment_N_mm", p->moment / WB_MM);
-        wb_json_set_number(item, "secant_rigidity_N_mm2", p->moment / p->curvature / n_mm2);
+        wb_json_set_number(item, "secant_rigidity_N_mm2", p->moment / p->curvature / WB_NMM2);
     }
 }
 

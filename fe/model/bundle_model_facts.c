@@ -7,7 +7,6 @@
 #include "base/units.h"
 #include "fe/model/bundle_model.h"
 
-static const double n_mm2 = 1e-6;    /* N m2 of one N mm2 */
 static const double g_per_m = 1e-3;  /* kg/m of one g/m */
 static const double touching = 1e-9; /* m: wires so near to the tape touch it */
 
@@ -213,11 +212,11 @@ static void tell_rigidity(struct list *list, const struct wb_bundle_model *model
 {
     const struct wb_bundle_rigidity r = wb_bundle_model_rigidity(model);
     const double I = wb_circle_second_moment(wb_bundle_model_diameter(model));
-    tell(list, "wires_EI_N_mm2", "E I of the wires alone", "N mm2", r.wires / n_mm2);
-    tell(list, "sliding_EI_N_mm2", "E I, wires sliding", "N mm2", r.sliding[0] / n_mm2);
-    tell(list, "sliding_EI_across_N_mm2", "the same across", "N mm2", r.sliding[1] / n_mm2);
-    tell(list, "bonded_EI_N_mm2", "E I, wires bonded", "N mm2", r.bonded[0] / n_mm2);
-    tell(list, "bonded_EI_across_N_mm2", "the same across", "N mm2", r.bonded[1] / n_mm2);
+    tell(list, "wires_EI_N_mm2", "E I of the wires alone", "N mm2", r.wires / WB_NMM2);
+    tell(list, "sliding_EI_N_mm2", "E I, wires sliding", "N mm2", r.sliding[0] / WB_NMM2);
+    tell(list, "sliding_EI_across_N_mm2", "the same across", "N mm2", r.sliding[1] / WB_NMM2);
+    tell(list, "bonded_EI_N_mm2", "E I, wires bonded", "N mm2", r.bonded[0] / WB_NMM2);
+    tell(list, "bonded_EI_across_N_mm2", "the same across", "N mm2", r.bonded[1] / WB_NMM2);
     tell(list, "sliding_youngs_modulus_MPa", "E over the outer diameter, wires sliding", "MPa",
          r.sliding[0] / I / WB_MPA);
     tell(list, "bonded_youngs_modulus_MPa", "E over the outer diameter, wires bonded", "MPa",
@@ -237,7 +236,7 @@ static void tell_published(struct list *list, const struct wb_bundle_model *mode
     const double E = p->beam.material.youngs_modulus;
     tell(list, "published_youngs_modulus_MPa", "E, published", "MPa", E / WB_MPA);
     tell(list, "published_EI_N_mm2", "E I, published", "N mm2",
-         E * wb_wire_second_moment(&p->beam) / n_mm2);
+         E * wb_wire_second_moment(&p->beam) / WB_NMM2);
 }
 
 int wb_bundle_model_facts(const struct wb_bundle_model *model,

@@ -6,9 +6,6 @@
 #include "base/units.h"
 #include "fe/material/law_json.h"
 
-/* N mm2 in one N m2; N mm in one N m; mJ/m in one J/m. */
-static const double N_MM2 = 1e-6, N_MM = 1e-3, MILLI = 1e-3;
-
 /* Where no law follows the wire, only the range over the candidates is given. */
 static void put_estimate(struct wb_json *object, const struct wb_cycle_calibration *c,
                          const char *name, const struct wb_estimate *e, double unit)
@@ -59,7 +56,7 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
         wb_json_set_number(item, "misfit", rank->misfit);
         wb_json_set_number(item, "weight", rank->weight);
         wb_json_set_boolean(item, "counts", rank->counts);
-        wb_json_set_number(item, "flexural_rigidity_N_mm2", rank->rigidity.value / N_MM2);
+        wb_json_set_number(item, "flexural_rigidity_N_mm2", rank->rigidity.value / WB_NMM2);
         wb_json_set_number(item, "residual_curvature_ratio",
                            c->has_unloading ? rank->residual_curvature_ratio.value : (double)NAN);
         /* Numbers of a law that does not follow hang on where its search ended. */
@@ -94,7 +91,7 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
         wb_json_set_integer(item, "sample", member->sample);
         wb_json_set_number(item, "length_mm", member->data.info.length / WB_MM);
         wb_json_set_number(item, "flexural_rigidity_N_mm2",
-                           answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
+                           answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2);
         wb_json_set_number(item, "residual_curvature_ratio",
                            c->has_unloading ? answer->value[WB_CYCLE_RESIDUAL_CURVATURE]
                                             : (double)NAN);
@@ -125,7 +122,7 @@ static void put_stiffness(struct wb_json *object, const struct wb_cycle_calibrat
     for (int k = 0; k < stiffness->n; k++) {
         struct wb_json *const item = wb_json_append_object(array);
         wb_json_set_number(item, "curvature_1_m", stiffness->curvature[k]);
-        put_estimate(item, c, "value", &stiffness->estimate[k], N_MM2);
+        put_estimate(item, c, "value", &stiffness->estimate[k], WB_NMM2);
     }
 }
 
@@ -136,18 +133,18 @@ void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration
     put_stiffness(wb_json_set_object(object, "unloading_stiffness_N_mm2"), c, &c->unloading);
     put_stiffness(wb_json_set_object(object, "secant_stiffness_N_mm2"), c, &c->secant);
     put_estimate(wb_json_set_object(object, "flexural_rigidity_N_mm2"), c, "value", &c->rigidity,
-                 N_MM2);
+                 WB_NMM2);
     wb_json_set_boolean(object, "flexural_rigidity_resolved", c->is_rigidity_resolved);
     put_estimate(wb_json_set_object(object, "residual_curvature_ratio"), c, "value",
                  c->has_unloading ? &c->residual_curvature_ratio : &untested, 1.0);
     put_estimate(wb_json_set_object(object, "loop_energy_mJ_per_m"), c, "value",
-                 c->has_unloading ? &c->loop_energy : &untested, MILLI);
+                 c->has_unloading ? &c->loop_energy : &untested, WB_MJ);
     wb_json_set_number(object, "largest_curvature_1_m", c->largest_curvature);
     struct wb_json *const moments = wb_json_set_array(object, "moment_curvature");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
         struct wb_json *const item = wb_json_append_object(moments);
         wb_json_set_number(item, "curvature_1_m", c->curvature[k]);
-        put_estimate(item, c, "moment_N_mm", &c->moment[k], N_MM);
+        put_estimate(item, c, "moment_N_mm", &c->moment[k], WB_NMM);
     }
     put_rule(wb_json_set_object(object, "hardening_rule"), c);
     put_law(wb_json_set_object(object, "law"), &c->law);

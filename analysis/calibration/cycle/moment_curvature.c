@@ -77,7 +77,6 @@ static const double least_relative_deviation = 0.005, method_deviation = 0.007;
 /* Standard deviations by which law and cloud part; and by which the next stretch does then. */
 static const double apart = 3.0, backing = 2.0;
 /* N mm in one N m. */
-static const double N_MM = 1e-3;
 
 struct shape {
     double theta[NODES], x[NODES], y[NODES];
@@ -648,7 +647,7 @@ void wb_moment_curvature_put(struct wb_json *array, const struct wb_moment_cloud
         struct wb_json *const item = wb_json_append_object(array);
         wb_json_set_number(item, "curvature_1_m", point->curvature);
         wb_json_set_number(item, "curvature_deviation_1_m", point->deviation);
-        wb_json_set_number(item, "moment_N_mm", point->moment / N_MM);
+        wb_json_set_number(item, "moment_N_mm", point->moment / WB_NMM);
         wb_json_set_text(item, "branch", point->is_unloading ? "unloading" : "loading");
         wb_json_set_number(item, "s_mm", point->s / WB_MM);
         wb_json_set_boolean(item, "band", point->is_band);

@@ -4,11 +4,6 @@
 
 #include "analysis/calibration/properties/properties.h"
 
-/* N mm2 in one N m2; N mm in one N m; mJ/m in one J/m. */
-#define N_MM2 1e-6
-#define N_MM 1e-3
-#define MILLI 1e-3
-
 enum wb_properties_method {
     WB_PROPERTIES_METHOD_CYCLE,
     WB_PROPERTIES_METHOD_PAPER,

@@ -139,7 +139,7 @@ static enum wb_status read_stiffness(const struct wb_config_node *node,
                                   (double)NAN, (double)NAN, (double)NAN};
         const struct wb_config_key item[] = {
             WB_CONFIG_NUMBER("curvature_1_m", &stiffness->curvature[k], 1.0, 0.0, 1e6),
-            ESTIMATE_KEYS(e, N_MM2, 1e15),
+            ESTIMATE_KEYS(e, WB_NMM2, 1e15),
         };
         WB_TRY(wb_config_map(wb_config_item(list, k), item, WB_COUNT(item)));
     }
@@ -159,11 +159,11 @@ static enum wb_status read_moments(const struct wb_config_node *node,
         const struct wb_config_node *const item = wb_config_item(node, k);
         const struct wb_config_key keys[] = {
             WB_CONFIG_NUMBER("curvature_1_m", curvature, 1.0, 0.0, 1e6),
-            WB_CONFIG_OPTIONAL_NUMBER("moment_N_mm", &e->value, N_MM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("low", &e->low, N_MM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("high", &e->high, N_MM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &e->candidates_low, N_MM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &e->candidates_high, N_MM, 0.0, 1e9),
+            WB_CONFIG_OPTIONAL_NUMBER("moment_N_mm", &e->value, WB_NMM, 0.0, 1e9),
+            WB_CONFIG_OPTIONAL_NUMBER("low", &e->low, WB_NMM, 0.0, 1e9),
+            WB_CONFIG_OPTIONAL_NUMBER("high", &e->high, WB_NMM, 0.0, 1e9),
+            WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &e->candidates_low, WB_NMM, 0.0, 1e9),
+            WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &e->candidates_high, WB_NMM, 0.0, 1e9),
             WB_CONFIG_OPTIONAL_NUMBER("scatter", &e->deviation, 1.0, 0.0, 100.0),
         };
         WB_TRY(wb_config_map(item, keys, WB_COUNT(keys)));
@@ -290,12 +290,12 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
     if (calibration)
         WB_TRY(read_calibration(calibration, properties));
     WB_TRY(wb_law_file_read(law, material, &properties->law));
-    WB_TRY(read_estimate(rigidity, N_MM2, 1e15, &properties->rigidity));
+    WB_TRY(read_estimate(rigidity, WB_NMM2, 1e15, &properties->rigidity));
     WB_TRY(read_stiffness(unloading, &properties->unloading));
     WB_TRY(read_stiffness(secant, &properties->secant));
     WB_TRY(
         read_estimate(ratio ? ratio : old_ratio, 1.0, 1.0, &properties->residual_curvature_ratio));
-    WB_TRY(read_estimate(energy, MILLI, 1e15, &properties->loop_energy));
+    WB_TRY(read_estimate(energy, WB_MJ, 1e15, &properties->loop_energy));
     if (moments)
         WB_TRY(read_moments(moments, properties));
     if (rule)

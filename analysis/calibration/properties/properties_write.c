@@ -212,7 +212,7 @@ static void put_stiffness(struct wb_text *text, const char *key,
     for (int k = 0; k < stiffness->n; k++) {
         wb_text_append(text, "    - ");
         append_estimate(text, "curvature_1_m", stiffness->curvature[k], &stiffness->estimate[k],
-                        N_MM2);
+                        WB_NMM2);
     }
 }
 
@@ -223,11 +223,11 @@ static void put_moments(struct wb_text *text, const struct wb_properties *p)
         const struct wb_estimate *const e = &p->moment[k];
         wb_text_append(text, "  -\n");
         put_number(text, "    ", "curvature_1_m", p->curvature[k]);
-        put_number(text, "    ", "moment_N_mm", e->value / N_MM);
-        put_number(text, "    ", "low", e->low / N_MM);
-        put_number(text, "    ", "high", e->high / N_MM);
-        put_number(text, "    ", "candidates_low", e->candidates_low / N_MM);
-        put_number(text, "    ", "candidates_high", e->candidates_high / N_MM);
+        put_number(text, "    ", "moment_N_mm", e->value / WB_NMM);
+        put_number(text, "    ", "low", e->low / WB_NMM);
+        put_number(text, "    ", "high", e->high / WB_NMM);
+        put_number(text, "    ", "candidates_low", e->candidates_low / WB_NMM);
+        put_number(text, "    ", "candidates_high", e->candidates_high / WB_NMM);
         put_number(text, "    ", "scatter", e->deviation);
     }
 }
@@ -358,10 +358,10 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
                    calibration->is_rigidity_resolved
                        ? ""
                        : ", which the data do not resolve: take a stiffness from above");
-    put_estimate(text, "flexural_rigidity_N_mm2", &p->rigidity, N_MM2);
+    put_estimate(text, "flexural_rigidity_N_mm2", &p->rigidity, WB_NMM2);
     put_estimate(text, "residual_curvature_ratio", &p->residual_curvature_ratio, 1.0);
     if (isfinite(p->residual_curvature_ratio.candidates_low))
-        put_estimate(text, "loop_energy_mJ_per_m", &p->loop_energy, MILLI);
+        put_estimate(text, "loop_energy_mJ_per_m", &p->loop_energy, WB_MJ);
     wb_text_append(text, "# beyond it the law is not measured\n");
     put_number(text, "", "largest_curvature_1_m", p->largest_curvature);
     put_moments(text, p);
@@ -470,7 +470,7 @@ static void put_bench(struct wb_text *text, const struct wb_three_point_calibrat
         wb_text_append(text, "\n      fitted: %s\n", m->is_fitted ? "true" : "false");
         if (!m->is_fitted)
             continue;
-        put_number(text, "      ", "flexural_rigidity_N_mm2", m->rigidity / N_MM2);
+        put_number(text, "      ", "flexural_rigidity_N_mm2", m->rigidity / WB_NMM2);
         put_number(text, "      ", "rigidity_error", m->rigidity_error);
         put_number(text, "      ", "first_contact_mm", m->fit.first_contact / WB_MM);
         put_number(text, "      ", "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
@@ -504,7 +504,7 @@ static void format_three_point(struct wb_text *text, const struct wb_three_point
                          "radius, which the curves do\n"
                          "# not tell.\n");
     if (c->is_rigidity_identifiable)
-        put_estimate(text, "flexural_rigidity_N_mm2", &c->rigidity, N_MM2);
+        put_estimate(text, "flexural_rigidity_N_mm2", &c->rigidity, WB_NMM2);
     else
         wb_text_append(text, "# flexural_rigidity_N_mm2: not identifiable from loading alone\n");
     put_number(text, "", "largest_curvature_1_m", c->largest_curvature);

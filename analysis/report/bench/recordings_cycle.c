@@ -15,7 +15,6 @@
 
 static const double coverage = 0.95;
 /* mJ in one J. */
-static const double MILLI = 1e-3;
 
 /* What the interval of a mean of n logarithms is to both sides. */
 static double half_width(double deviation, int degrees, int n)
@@ -175,8 +174,8 @@ static void put_later(struct wb_json *object, const struct wb_cycle_later *later
     wb_json_set_integer(object, "sample", later->sample);
     wb_json_set_integer(object, "cycles", later->n_cycles);
     wb_json_set_number(object, "rms_over_F_max", later->rms);
-    wb_json_set_number(object, "measured_energy_mJ", later->measured_energy / MILLI);
-    wb_json_set_number(object, "computed_energy_mJ", later->computed_energy / MILLI);
+    wb_json_set_number(object, "measured_energy_mJ", later->measured_energy / WB_MJ);
+    wb_json_set_number(object, "computed_energy_mJ", later->computed_energy / WB_MJ);
 }
 
 static void put_valley(struct wb_json *object, const struct wb_cycle_valley *valley)

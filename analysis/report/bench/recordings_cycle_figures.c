@@ -10,9 +10,6 @@
 #include "base/memory.h"
 #include "base/units.h"
 
-/* N mm2 in one N m2; mJ in one J. */
-static const double N_MM2 = 1e-6, MILLI = 1e-3;
-
 enum {
     MOST_PANELS = 3, /* samples beside each other */
     MOST_FACES = WB_VALLEY_NODES * WB_VALLEY_NODES / 4,
@@ -300,7 +297,7 @@ enum wb_status wb_recordings_cycle_figures_later(struct wb_figures_item *item)
                    "alone: RMS %.2f %% of <i>F</i><sub>max</sub>, energy lost in a cycle %.2f mJ "
                    "measured, %.2f mJ predicted. Right: computed less measured.",
                    later->sample, measured_of(item), 100.0 * later->rms,
-                   later->measured_energy / MILLI, later->computed_energy / MILLI);
+                   later->measured_energy / WB_MJ, later->computed_energy / WB_MJ);
     add_later(item->figure, later, max_force_of(&cycle->calibration, later->sample));
     return WB_OK;
 }
@@ -369,13 +366,13 @@ enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *it
 static void range_of(const struct wb_cycle_calibration *c, const struct wb_cycle_member *member,
                      double range[2])
 {
-    range[0] = range[1] = member->answers[c->chosen].value[WB_CYCLE_RIGIDITY] / N_MM2;
+    range[0] = range[1] = member->answers[c->chosen].value[WB_CYCLE_RIGIDITY] / WB_NMM2;
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_answer *const answer = &member->answers[c->ranked[i].candidate];
         if (!c->ranked[i].counts || !answer->is_fitted)
             continue;
-        range[0] = fmin(range[0], answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
-        range[1] = fmax(range[1], answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
+        range[0] = fmin(range[0], answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2);
+        range[1] = fmax(range[1], answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2);
     }
 }
 
@@ -411,12 +408,12 @@ static int plant(const struct wb_recordings_cycle *cycle, struct wb_colour colou
     int n = 0;
     trees[n++] = (struct tree){"over laws",
                                (double)NAN,
-                               {EI->candidates_low / N_MM2, EI->candidates_high / N_MM2},
+                               {EI->candidates_low / WB_NMM2, EI->candidates_high / WB_NMM2},
                                dot,
                                thin};
     if (!wb_recordings_cycle_is_refuted(cycle))
         trees[n++] = (struct tree){
-            "mean", EI->value / N_MM2, {EI->low / N_MM2, EI->high / N_MM2}, mean, interval};
+            "mean", EI->value / WB_NMM2, {EI->low / WB_NMM2, EI->high / WB_NMM2}, mean, interval};
     const int first = n;
     for (int i = c->n_members - 1; i >= 0; i--) {
         const struct wb_cycle_member *const member = &c->members[i];
@@ -425,7 +422,7 @@ static int plant(const struct wb_recordings_cycle *cycle, struct wb_colour colou
         struct tree *const tree = &trees[n++];
         *tree = (struct tree){.dot = dot, .line = thin};
         snprintf(tree->name, sizeof tree->name, "sample %d", member->sample);
-        tree->value = member->answers[c->chosen].value[WB_CYCLE_RIGIDITY] / N_MM2;
+        tree->value = member->answers[c->chosen].value[WB_CYCLE_RIGIDITY] / WB_NMM2;
         range_of(c, member, tree->range);
     }
     return n;

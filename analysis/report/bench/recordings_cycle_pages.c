@@ -10,9 +10,6 @@
 #include "base/text.h"
 #include "base/units.h"
 
-/* N mm2 in one N m2; mJ in one J. */
-static const double N_MM2 = 1e-6, MILLI = 1e-3;
-
 /* --- numbers --- */
 
 static void put_number(struct wb_document_table *table, double value)
@@ -69,9 +66,9 @@ static void put_wire(struct wb_document_table *table, const struct wb_recordings
     const double none = (double)NAN;
     /* Where no law follows the data, the range over laws is all that is known. */
     const bool is_known = c->is_followed || !c->has_unloading;
-    put_number(table, is_known ? stiffness->value / N_MM2 : none);
-    put_range(table, is_known ? stiffness->low / N_MM2 : none, stiffness->high / N_MM2);
-    put_range(table, stiffness->candidates_low / N_MM2, stiffness->candidates_high / N_MM2);
+    put_number(table, is_known ? stiffness->value / WB_NMM2 : none);
+    put_range(table, is_known ? stiffness->low / WB_NMM2 : none, stiffness->high / WB_NMM2);
+    put_range(table, stiffness->candidates_low / WB_NMM2, stiffness->candidates_high / WB_NMM2);
     put_number(table, is_known && c->has_unloading ? back->value : none);
     put_range(table, c->has_unloading ? back->candidates_low : none, back->candidates_high);
     put_verdict(table, c);
@@ -148,15 +145,17 @@ static void put_stiffness_row(struct wb_document_table *table, const struct wb_c
         if (!e || c->largest_curvature < curvature)
             wb_pages_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
         else if (is_refuted)
-            wb_pages_cell_range(table, tone, e->candidates_low / N_MM2, e->candidates_high / N_MM2,
-                                wb_pages_decimals(e->candidates_high / N_MM2));
+            wb_pages_cell_range(table, tone, e->candidates_low / WB_NMM2,
+                                e->candidates_high / WB_NMM2,
+                                wb_pages_decimals(e->candidates_high / WB_NMM2));
         else if (isfinite(e->low))
-            wb_pages_cell(table, tone, "%.*f (%.*f to %.*f)", wb_pages_decimals(e->value / N_MM2),
-                          e->value / N_MM2, wb_pages_decimals(e->value / N_MM2), e->low / N_MM2,
-                          wb_pages_decimals(e->value / N_MM2), e->high / N_MM2);
+            wb_pages_cell(table, tone, "%.*f (%.*f to %.*f)", wb_pages_decimals(e->value / WB_NMM2),
+                          e->value / WB_NMM2, wb_pages_decimals(e->value / WB_NMM2),
+                          e->low / WB_NMM2, wb_pages_decimals(e->value / WB_NMM2),
+                          e->high / WB_NMM2);
         else
-            wb_pages_cell(table, tone, "%.*f", wb_pages_decimals(e->value / N_MM2),
-                          e->value / N_MM2);
+            wb_pages_cell(table, tone, "%.*f", wb_pages_decimals(e->value / WB_NMM2),
+                          e->value / WB_NMM2);
     }
 }
 
@@ -176,12 +175,12 @@ static void put_stiffness_of(struct wb_document_table *table,
     start_moments_row(table, true, wire->wanted->label, WB_TONE_PLAIN, "on the way back");
     wb_pages_cell_number(table, c->unloading.n > 0 ? c->unloading.resolved : (double)NAN, 2);
     put_stiffness_row(table, c, &c->unloading, is_refuted);
-    put_number(table, is_refuted ? (double)NAN : EI->value / N_MM2);
+    put_number(table, is_refuted ? (double)NAN : EI->value / WB_NMM2);
     start_moments_row(table, false, "", WB_TONE_PLAIN, "from straight");
     wb_pages_cell_number(table, c->secant.resolved, 2);
     put_stiffness_row(table, c, &c->secant, is_refuted);
-    put_range(table, (is_refuted ? EI->candidates_low : low) / N_MM2,
-              (is_refuted ? EI->candidates_high : high) / N_MM2);
+    put_range(table, (is_refuted ? EI->candidates_low : low) / WB_NMM2,
+              (is_refuted ? EI->candidates_high : high) / WB_NMM2);
 }
 
 static void put_stiffnesses(struct wb_document *document,
@@ -309,9 +308,9 @@ static void put_loop(struct wb_document_table *table, const struct wb_validate_c
     const double other = paper && i < paper->n_loops ? paper->loops[i].computed : (double)NAN;
     snprintf(names[0], sizeof names[0], "Energy lost in cycle %d, measured", loop->cycle);
     snprintf(names[1], sizeof names[1], "Energy lost in cycle %d, predicted", loop->cycle);
-    put_score(table, &(struct score){names[0], "mJ", loop->measured / MILLI,
-                                     paper ? loop->measured / MILLI : (double)NAN, 3});
-    put_score(table, &(struct score){names[1], "mJ", loop->computed / MILLI, other / MILLI, 3});
+    put_score(table, &(struct score){names[0], "mJ", loop->measured / WB_MJ,
+                                     paper ? loop->measured / WB_MJ : (double)NAN, 3});
+    put_score(table, &(struct score){names[1], "mJ", loop->computed / WB_MJ, other / WB_MJ, 3});
 }
 
 static void put_bounds(struct wb_document *document, const struct wb_validate_result *p)
@@ -485,10 +484,10 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
             "ways by %.2f %% of <i>F</i><sub>max</sub>. The stiffness lies between %.*f and "
             "%.*f N mm\xc2\xb2, residual curvature ratio between %.3f and %.3f, over the laws that "
             "fit about as well. ",
-            100.0 * best_misfit(c), wb_pages_decimals(stiffness->candidates_low / N_MM2),
-            stiffness->candidates_low / N_MM2,
-            wb_pages_decimals(stiffness->candidates_high / N_MM2),
-            stiffness->candidates_high / N_MM2, c->residual_curvature_ratio.candidates_low,
+            100.0 * best_misfit(c), wb_pages_decimals(stiffness->candidates_low / WB_NMM2),
+            stiffness->candidates_low / WB_NMM2,
+            wb_pages_decimals(stiffness->candidates_high / WB_NMM2),
+            stiffness->candidates_high / WB_NMM2, c->residual_curvature_ratio.candidates_low,
             c->residual_curvature_ratio.candidates_high);
     } else {
         const char *const name = wb_candidate_name(c->chosen);
@@ -497,12 +496,12 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
     if (c->is_followed || !c->has_unloading) {
         append_estimate(&text, "Moment at the largest curvature", &c->moment[WB_CYCLE_MOMENTS - 1],
                         WB_NMM, " N mm");
-        append_estimate(&text, "; stiffness", wb_recordings_cycle_stiffness(c), N_MM2,
+        append_estimate(&text, "; stiffness", wb_recordings_cycle_stiffness(c), WB_NMM2,
                         " N mm\xc2\xb2");
     }
     if (c->is_followed) {
         append_estimate(&text, "; residual curvature ratio", &c->residual_curvature_ratio, 1.0, "");
-        append_estimate(&text, "; loop energy", &c->loop_energy, MILLI, " mJ/m");
+        append_estimate(&text, "; loop energy", &c->loop_energy, WB_MJ, " mJ/m");
         wb_text_append(&text, ", bent to %.1f /m and back.", c->largest_curvature);
     }
     if (c->specimens_for_5_percent > 0)
@@ -544,7 +543,7 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
         wb_pages_cell_number(table, 100.0 * rank->misfit, 3);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", rank->n_free);
         wb_pages_cell_number(table, rank->weight, 3);
-        put_number(table, rank->rigidity.value / N_MM2);
+        put_number(table, rank->rigidity.value / WB_NMM2);
         put_number(table, c->has_unloading ? rank->residual_curvature_ratio.value : (double)NAN);
         wb_pages_cell(table, rank->counts ? WB_TONE_PLAIN : WB_TONE_QUIET,
                       is_chosen      ? "chosen"
@@ -607,7 +606,7 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
         const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, member->data.info.length);
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
-        put_number(table, answer->value[WB_CYCLE_RIGIDITY] / N_MM2);
+        put_number(table, answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2);
         put_number(table,
                    c->has_unloading ? answer->value[WB_CYCLE_RESIDUAL_CURVATURE] : (double)NAN);
         wb_pages_cell_number(table, member->data.residual_deflection / WB_MM, 1);

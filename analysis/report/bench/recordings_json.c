@@ -9,9 +9,6 @@
 #include "analysis/validation/validate_json.h"
 #include "base/units.h"
 
-/* N mm2 in one N m2. */
-static const double N_MM2 = 1e-6;
-
 static const char *state_text(enum wb_recordings_results_state state)
 {
     static const char *const texts[] = {"not wanted", "missing", "failed", "done"};
@@ -188,8 +185,8 @@ static void put_pooled(struct wb_json *of, const struct wb_recordings_results *r
         wb_json_set_object(of, "flexural_rigidity_N_mm2_pooled_over_wires");
     double low, high;
     wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
-    wb_json_set_number(pooled, "low", low / N_MM2);
-    wb_json_set_number(pooled, "high", high / N_MM2);
+    wb_json_set_number(pooled, "low", low / WB_NMM2);
+    wb_json_set_number(pooled, "high", high / WB_NMM2);
     wb_json_set_number(pooled, "deviation_of_logarithm", results->pool.deviation);
     wb_json_set_integer(pooled, "degrees_of_freedom", results->pool.degrees);
 }

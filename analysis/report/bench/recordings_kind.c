@@ -8,9 +8,6 @@
 
 #define WB_LOG_DOMAIN "report"
 
-/* N mm2 in one N m2. */
-static const double N_MM2 = 1e-6;
-
 static void print_step(FILE *out, const struct wb_recordings_results *results, int index,
                        enum wb_recordings_purpose purpose)
 {
@@ -49,9 +46,9 @@ static void print_cycle(FILE *out, const struct wb_recordings_cycle *cycle)
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     if (c->has_unloading && !c->is_followed)
         fprintf(out, "  stiffness %.0f to %.0f N mm2, no law follows the data",
-                stiffness->candidates_low / N_MM2, stiffness->candidates_high / N_MM2);
+                stiffness->candidates_low / WB_NMM2, stiffness->candidates_high / WB_NMM2);
     else
-        fprintf(out, "  stiffness %.0f N mm2%s", stiffness->value / N_MM2,
+        fprintf(out, "  stiffness %.0f N mm2%s", stiffness->value / WB_NMM2,
                 c->has_unloading ? "" : " by loading alone");
     if (c->has_unloading && c->is_followed)
         fprintf(out, ", residual curvature ratio %.3f", c->residual_curvature_ratio.value);

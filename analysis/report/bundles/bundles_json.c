@@ -6,8 +6,6 @@
 #include "analysis/report/numbers.h"
 #include "base/units.h"
 
-static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
-
 /* --- datasets --- */
 
 static void put_state(struct wb_json *entry, const struct wb_simulation *wanted,
@@ -74,7 +72,7 @@ static void put_section(struct wb_json *entry, const struct wb_bundles_section *
     for (int i = 0; i < WB_SECTION_RUN_LENGTHS; i++) {
         struct wb_json *const item = wb_json_append_object(lengths);
         wb_json_set_number(item, "length_mm", section->rigidity[i].length / WB_MM);
-        wb_json_set_number(item, "EI_N_mm2", section->rigidity[i].rigidity / n_mm2);
+        wb_json_set_number(item, "EI_N_mm2", section->rigidity[i].rigidity / WB_NMM2);
         wb_json_set_number(item, "newmark_alpha_L", section->rigidity[i].alpha);
     }
     wb_numbers_put_list(object, "force_N", section->curve.force, section->curve.n, 1.0);
@@ -114,7 +112,7 @@ static void put_beam(struct wb_json *object, const char *key, const struct wb_ma
     wb_json_set_number(entry, "outer_diameter_mm", diameter / WB_MM);
     wb_numbers_put_properties(entry, material);
     wb_json_set_number(entry, "EI_N_mm2",
-                       wb_bundles_results_rigidity(material->youngs_modulus, diameter) / n_mm2);
+                       wb_bundles_results_rigidity(material->youngs_modulus, diameter) / WB_NMM2);
 }
 
 static void put_fit(struct wb_json *entry, const struct wb_bundles_results *results, int index)
@@ -149,8 +147,8 @@ static void put_bundle(struct wb_json *list, const struct wb_bundles_results *re
     if (bundle->constant >= 0)
         wb_json_set_text(entry, "constant_friction", campaign->runs[bundle->constant].name);
     wb_json_set_number(entry, "packed_diameter_mm", wb_bundle_model_diameter(m) / WB_MM);
-    wb_json_set_number(entry, "EI_sliding_N_mm2", rigidity.sliding[0] / n_mm2);
-    wb_json_set_number(entry, "EI_bonded_N_mm2", rigidity.bonded[0] / n_mm2);
+    wb_json_set_number(entry, "EI_sliding_N_mm2", rigidity.sliding[0] / WB_NMM2);
+    wb_json_set_number(entry, "EI_bonded_N_mm2", rigidity.bonded[0] / WB_NMM2);
     if (published)
         put_beam(entry, "published", &published->material, published->outer_diameter);
     put_fit(entry, results, index);

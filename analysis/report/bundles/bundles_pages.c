@@ -159,7 +159,6 @@ static void put_runs(struct wb_document *document, const struct wb_bundles_resul
         put_run(table, results, runs[i]);
 }
 
-static const double n_mm2 = 1e-6;                     /* N m2 of one N mm2 */
 static const int property_decimals[4] = {0, 2, 1, 3}; /* E, sigma_Y, K, n */
 
 /* --- sections and Table 4 --- */
@@ -180,8 +179,8 @@ static void put_section(struct wb_document_table *table, const struct wb_bundles
     wb_pages_cell_number(
         table, wb_bundle_model_density(m, m->has_published ? printed : own) / WB_G_PER_CM3, 2);
     wb_pages_cell_number(table, m->has_published ? m->published.density / WB_G_PER_CM3 : none, 2);
-    wb_pages_cell_number(table, rigidity.sliding[0] / n_mm2, 0);
-    wb_pages_cell_number(table, rigidity.bonded[0] / n_mm2, 0);
+    wb_pages_cell_number(table, rigidity.sliding[0] / WB_NMM2, 0);
+    wb_pages_cell_number(table, rigidity.bonded[0] / WB_NMM2, 0);
 }
 
 static void put_sections(struct wb_document *document, const struct wb_bundles_results *results,
@@ -272,7 +271,7 @@ static void put_properties(struct wb_document_table *table, const char *label, c
                              property_decimals[k]);
     wb_pages_cell_number(
         table,
-        material ? wb_bundles_results_rigidity(material->youngs_modulus, diameter) / n_mm2
+        material ? wb_bundles_results_rigidity(material->youngs_modulus, diameter) / WB_NMM2
                  : (double)NAN,
         0);
 }

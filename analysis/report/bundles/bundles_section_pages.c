@@ -6,8 +6,6 @@
 #include "analysis/report/pages.h"
 #include "base/units.h"
 
-static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
-
 /* --- curves --- */
 
 static const struct wb_figure_style section_style = {.colour = WB_PALETTE_INK, .width = 1.3};
@@ -86,7 +84,7 @@ static void put_row(struct wb_document_table *table, const struct wb_bundles_res
     wb_pages_cell_number(table, section ? section->curve.max_force : none, 3);
     wb_pages_cell_number(table, section ? section->rms : none, 4);
     for (int i = 0; i < WB_SECTION_RUN_LENGTHS; i++)
-        wb_pages_cell_number(table, section ? section->rigidity[i].rigidity / n_mm2 : none, 0);
+        wb_pages_cell_number(table, section ? section->rigidity[i].rigidity / WB_NMM2 : none, 0);
     if (section && isfinite(section->loosens))
         wb_pages_cell(table, WB_TONE_WARNING, "%.3g mm", section->loosens / WB_MM);
     else

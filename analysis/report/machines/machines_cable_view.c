@@ -9,8 +9,6 @@
 
 #define WB_LOG_DOMAIN "report"
 
-static const double n_mm = 1e-3; /* N m */
-
 /* The curvatures that a table shows: these parts of the largest. */
 static const int shown[] = {4, 9, 14, 19};
 
@@ -38,9 +36,9 @@ static void add_moments(struct wb_panel *panel, const struct wb_machines_layer *
                                            0.0};
     double m[3][WB_MACHINES_PLACES];
     for (int k = 0; k < WB_MACHINES_PLACES; k++) {
-        m[0][k] = layer->place[k].measured / n_mm;
-        m[1][k] = layer->place[k].free / n_mm;
-        m[2][k] = layer->place[k].bonded / n_mm;
+        m[0][k] = layer->place[k].measured / WB_NMM;
+        m[1][k] = layer->place[k].free / WB_NMM;
+        m[2][k] = layer->place[k].bonded / WB_NMM;
     }
     wb_figure_set_axes(panel, "Nominal curvature 12 d / L<sup>2</sup> (1/m)",
                        "Moment F L / 4 (N mm)");
@@ -155,9 +153,9 @@ static void put_moments(struct wb_document *document, const struct wb_machines_r
         for (size_t row = 0; row < WB_COUNT(shown) && layer->n > 0; row++) {
             const struct wb_cable_place *const place = &layer->place[shown[row]];
             begin_row(table, results, layer, row);
-            wb_pages_cell_number(table, place->measured / n_mm, 2);
-            wb_pages_cell_number(table, place->free / n_mm, 2);
-            wb_pages_cell_number(table, place->bonded / n_mm, 2);
+            wb_pages_cell_number(table, place->measured / WB_NMM, 2);
+            wb_pages_cell_number(table, place->free / WB_NMM, 2);
+            wb_pages_cell_number(table, place->bonded / WB_NMM, 2);
             wb_pages_cell_number(table, place->ratio.value, 2);
             put_range(table, &place->ratio, 1);
             wb_pages_cell_number(table, layer->over_first[shown[row]], 2);
@@ -242,9 +240,9 @@ static void put_place(struct wb_json *list, const struct wb_machines_layer *laye
     struct wb_json *const entry = wb_json_append_object(list);
     wb_json_set_number(entry, "curvature_1_m", layer->curvature[k]);
     wb_json_set_boolean(entry, "seating", layer->is_seating[k]);
-    wb_json_set_number(entry, "measured_Nmm", place->measured / n_mm);
-    wb_json_set_number(entry, "free_Nmm", place->free / n_mm);
-    wb_json_set_number(entry, "bonded_Nmm", place->bonded / n_mm);
+    wb_json_set_number(entry, "measured_Nmm", place->measured / WB_NMM);
+    wb_json_set_number(entry, "free_Nmm", place->free / WB_NMM);
+    wb_json_set_number(entry, "bonded_Nmm", place->bonded / WB_NMM);
     wb_json_set_number(entry, "over_first_layer", layer->over_first[k]);
     put_interval(entry, "measured_over_free", &place->ratio);
     put_interval(entry, "chi", &place->chi);

@@ -9,7 +9,6 @@
 
 #define WB_LOG_DOMAIN "report"
 
-static const double n_mm = 1e-3, n_mm2 = 1e-6; /* N m, N m2 */
 /* A model whose bias is below this part of s is hard to tell from the tests. */
 static const double most_bias = 0.7;
 
@@ -153,7 +152,7 @@ static void put_calibrations(struct wb_document *document,
                     wb_pages_cell_plain(table, WB_TONE_PLAIN, "");
             }
             wb_pages_cell_number(table, c->curvature[at[k]], 1);
-            put_estimate(table, &c->moment[at[k]], n_mm, false);
+            put_estimate(table, &c->moment[at[k]], WB_NMM, false);
         }
     }
 }
@@ -182,7 +181,7 @@ static void put_rigidities(struct wb_document *document, const struct wb_machine
         wb_pages_cell_plain(table, WB_TONE_PLAIN, wire_of(results, fit));
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", c->n_series);
         wb_pages_cell_number(table, c->series_deviation, 2);
-        put_estimate(table, &c->rigidity, n_mm2, !c->is_rigidity_identifiable);
+        put_estimate(table, &c->rigidity, WB_NMM2, !c->is_rigidity_identifiable);
     }
 }
 
@@ -260,12 +259,12 @@ static void put_calibration(struct wb_json *entry, const struct wb_three_point_c
     wb_json_set_number(entry, "misfit", c->misfit);
     wb_json_set_number(entry, "s_of_ln_EI_between_series", c->series_deviation);
     wb_json_set_boolean(entry, "EI_identifiable", c->is_rigidity_identifiable);
-    put_number(entry, "EI_Nmm2", &c->rigidity, n_mm2);
+    put_number(entry, "EI_Nmm2", &c->rigidity, WB_NMM2);
     struct wb_json *const moments = wb_json_set_array(entry, "moments");
     for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         struct wb_json *const moment = wb_json_append_object(moments);
         wb_json_set_number(moment, "curvature_1_m", c->curvature[k]);
-        put_number(moment, "moment_Nmm", &c->moment[k], n_mm);
+        put_number(moment, "moment_Nmm", &c->moment[k], WB_NMM);
     }
     struct wb_json *const tests = wb_json_set_array(entry, "tests");
     for (int i = 0; i < c->n_members; i++) {
@@ -277,9 +276,9 @@ static void put_calibration(struct wb_json *entry, const struct wb_three_point_c
             wb_json_set_text(test, "problem", m->why.text);
             continue;
         }
-        wb_json_set_number(test, "EI_Nmm2", m->rigidity / n_mm2);
+        wb_json_set_number(test, "EI_Nmm2", m->rigidity / WB_NMM2);
         wb_json_set_number(test, "largest_moment_Nmm",
-                           m->moment[WB_THREE_POINT_MOMENTS - 1] / n_mm);
+                           m->moment[WB_THREE_POINT_MOMENTS - 1] / WB_NMM);
         wb_json_set_number(test, "misfit", m->fit.misfit);
         wb_json_set_boolean(test, "converged", m->fit.is_converged);
         wb_json_set_number(test, "first_contact_mm", m->fit.first_contact / WB_MM);

@@ -13,8 +13,6 @@
 #include "base/memory.h"
 #include "base/units.h"
 
-static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
-
 /* --- figures --- */
 
 static int count_groups(const void *context)
@@ -148,7 +146,7 @@ static void put_overview(struct wb_document *document, const struct wb_machines_
         wb_pages_cell_number(table, group->machine.span / WB_MM, 1);
         wb_pages_cell(table, of->n_usable < group->n_tests ? WB_TONE_WARNING : WB_TONE_PLAIN,
                       "%d of %d", of->n_usable, group->n_tests);
-        wb_pages_cell_number(table, of->rigidity / n_mm2, 1);
+        wb_pages_cell_number(table, of->rigidity / WB_NMM2, 1);
         wb_pages_cell_number(table, of->rigidity_deviation / of->rigidity / WB_PERCENT, 0);
         wb_pages_cell_number(table, of->n_usable > 0 ? of->reach / WB_MM : (double)NAN, 2);
         wb_pages_cell_number(table, of->force[WB_MACHINES_GRID - 1] / WB_MN, 1);
@@ -182,7 +180,7 @@ static void put_tests(struct wb_document *document, const struct wb_machines_gro
         wb_pages_cell(table, WB_TONE_PLAIN, "%zu", test->report.partial);
         wb_pages_cell_number(table, test->report.largest_force / WB_MN, 1);
         wb_pages_cell_number(table, test->start / WB_MM, 3);
-        wb_pages_cell_number(table, test->rigidity / n_mm2, 1);
+        wb_pages_cell_number(table, test->rigidity / WB_NMM2, 1);
     }
 }
 
@@ -232,7 +230,7 @@ static void put_test(struct wb_json *list, const char *file, const struct wb_mac
     wb_json_set_integer(entry, "partial_rows", (int64_t)test->report.partial);
     wb_json_set_number(entry, "largest_force_N", test->report.largest_force);
     wb_json_set_number(entry, "contact_mm", test->start / WB_MM);
-    wb_json_set_number(entry, "early_rigidity_Nmm2", test->rigidity / n_mm2);
+    wb_json_set_number(entry, "early_rigidity_Nmm2", test->rigidity / WB_NMM2);
 }
 
 static struct wb_json *build_json(const void *context)
@@ -256,8 +254,9 @@ static struct wb_json *build_json(const void *context)
         wb_json_set_number(entry, "outer_diameter_mm", group->piece.outer_diameter / WB_MM);
         wb_json_set_number(entry, "zero_force_mN", group->zero_force / WB_MN);
         wb_machine_set_json(&group->machine, wb_json_set_object(entry, "machine"));
-        wb_json_set_number(entry, "early_rigidity_Nmm2", of->rigidity / n_mm2);
-        wb_json_set_number(entry, "early_rigidity_deviation_Nmm2", of->rigidity_deviation / n_mm2);
+        wb_json_set_number(entry, "early_rigidity_Nmm2", of->rigidity / WB_NMM2);
+        wb_json_set_number(entry, "early_rigidity_deviation_Nmm2",
+                           of->rigidity_deviation / WB_NMM2);
         if (of->n_usable > 0) {
             wb_json_set_number(entry, "reach_mm", of->reach / WB_MM);
             wb_numbers_put_list(entry, "force_N", of->force, WB_MACHINES_GRID, 1.0);
@@ -284,7 +283,7 @@ static void print(FILE *out, const void *context)
         const struct wb_machines_group_results *const of = &results->groups[g];
         if (of->n_usable > 0)
             fprintf(out, "  %-40s F L^3/48 d = %.4g N mm2, s = %.2g\n", campaign->groups[g].label,
-                    of->rigidity / n_mm2, of->rigidity_deviation / n_mm2);
+                    of->rigidity / WB_NMM2, of->rigidity_deviation / WB_NMM2);
     }
     wb_machines_cable_print(out, results);
 }
