@@ -114,10 +114,14 @@ static void add_shape(struct wb_align *align, const struct wb_align_row *row)
     }
 }
 
-/* Rows from the start of the first cycle on; shapes whenever the tip went on by a step. */
+/* Rows from the start of the first cycle on, and a shape after each step of the tip.
+ *
+ * The deflection of the row before decides whether a step is complete. If the row's own deflection
+ * did, a row whose noise is large in the direction of motion would be taken too early, and the
+ * stored shapes would lag behind their deflections. */
 static enum wb_status export_rows(struct wb_align *align)
 {
-    double last_shape = (double)NAN;
+    double last_shape = (double)NAN, before = (double)NAN;
     for (size_t i = 0; i < align->n_rows; i++) {
         const struct wb_align_row *const row = &align->rows[i];
         if (row->t < 0.0)
@@ -134,10 +138,11 @@ static enum wb_status export_rows(struct wb_align *align)
             .tip_angle = rounded(row->tip_angle),
         };
         wb_dataset_add_row(align->dataset, &out);
-        if (!(fabs(row->tip_y - last_shape) < align->settings.shape_step)) {
+        if (!(fabs(before - last_shape) < align->settings.shape_step)) {
             add_shape(align, row);
             last_shape = row->tip_y;
         }
+        before = row->tip_y;
     }
     if (align->dataset->n_rows == 0)
         return wb_fail_to(align->why, WB_ERR_DATA,
