@@ -55,6 +55,8 @@ static const double full_travel = 0.35, short_travel = 0.20;
  * healthy bench of ten whose wire no law follows to its noise.) */
 static const double bench_level = 0.1 * WB_MM;
 static const double level_limit = 4.0, level_limit_with_bow = 2.5;
+/* Where the data determine less of the level than this, its prior says nothing of it. */
+static const double least_level_share = 0.2;
 /* A law with a larger misfit may move level and bow by what it does not follow. */
 static const double largest_followed = 5e-3;
 /* Measured and computed force at zero deflection, over the largest force. */
@@ -563,21 +565,34 @@ static bool check_other_length(struct wb_cycle_remarks *remarks, const struct sp
     return better > 0.0;
 }
 
-/* Level, force at zero deflection and bow hang together: a wrong zero of force or counterweight
- * moves all three, a wrong zero of deflection leaves the bow. */
+/* The level that the data alone ask for, and its standard uncertainties: of this specimen, and that
+ * which all specimens share. Where the data hardly determine it, as the fit gives it. */
+static void find_level(const struct specimen *s, double *level, double *own, double *shared)
+{
+    const struct wb_cycle_fit *const fit = s->fit;
+    const bool is_known = fit->level_share > least_level_share;
+    const double share = is_known ? fit->level_share : 1.0;
+    *level = fit->level / share;
+    *own = hypot(bench_level, is_known ? fit->level_error : 0.0);
+    *shared = s->level_of_shared / share;
+}
+
+/* Level, force at zero deflection and bow depend on each other: a wrong zero of force or a wrong
+ * counterweight changes all three, a wrong zero of deflection does not change the bow. */
 static enum wb_status check_zeros_of(struct wb_cycle_remarks *remarks, const struct specimen *s,
                                      bool length_is_seen)
 {
     const struct wb_cycle_data *const data = s->data;
-    const double length = data->info.length, level = s->fit->level;
+    const double length = data->info.length;
     const struct wb_cycle_bow bow = wb_cycle_fit_bow(s->fit, length);
-    double zero, bow_before, deviation;
+    double zero, bow_before, deviation, level, own, shared;
 
     WB_TRY(computed_zero(s, &zero));
     /* Behind the first points, where the strand still takes the load over from the rest. */
     const struct wb_cycle_point *const low = &data->points[3], *const high = &data->points[7];
     const double stiffness = (high->tension - low->tension) / (high->deflection - low->deflection);
-    const double level_deviation = hypot(bench_level, s->level_of_shared);
+    find_level(s, &level, &own, &shared);
+    const double level_deviation = hypot(own, shared);
     /* Nothing is wrong that the level may explain. */
     const double limit =
         fmax(zero_share * data->max_force, level_limit * level_deviation * fmax(stiffness, 0.0));
@@ -640,6 +655,66 @@ static double usual_miss(const struct specimen *s)
 static double stated_zero(const struct wb_cycle_data *data)
 {
     return 2.0 * data->info.uncertainty.counterweight * data->info.gravity;
+}
+
+/* An error in all specimens alike, beside its standard uncertainty: the specimens' own errors
+ * become smaller with their number, the shared one does not. */
+struct common_error {
+    int n;
+    double sum, own, shared; /* own: sum of squares */
+};
+
+static void add_error(struct common_error *error, double value, double own, double shared)
+{
+    error->n++;
+    error->sum += value;
+    error->own += own * own;
+    error->shared += shared;
+}
+
+static double mean_of(const struct common_error *error)
+{
+    return error->sum / error->n;
+}
+
+static double deviation_of(const struct common_error *error)
+{
+    return hypot(sqrt(error->own), error->shared) / error->n;
+}
+
+/* A zero or a counterweight that is wrong for the bench is wrong for all specimens: together they
+ * show an error that is within the limits of one specimen. Only specimens that the law follows. */
+static void check_zeros_of_all(struct wb_cycle_remarks *remarks, const struct specimen *specimens,
+                               int n)
+{
+    struct common_error level = {0}, bow = {0};
+    for (int i = 0; i < n; i++) {
+        const struct specimen *const s = &specimens[i];
+        const struct wb_cycle_fit *const fit = s->fit;
+        const struct wb_cycle_bow fitted = wb_cycle_fit_bow(fit, s->data->info.length);
+        double aligned, deviation, own_level, own, shared;
+        if (usual_miss(s) > least_missed)
+            continue;
+        find_level(s, &own_level, &own, &shared);
+        add_error(&level, own_level, own, shared);
+        if (aligned_bow(s->dataset, &aligned, &deviation))
+            add_error(&bow, fitted.tip - aligned, hypot(deviation, fitted.deviation),
+                      s->bow_of_shared);
+    }
+    if (bow.n > 1 && fabs(mean_of(&bow)) > level_limit * deviation_of(&bow))
+        say(remarks, WB_CHECK_DOUBT, 0,
+            "wire '%s': the zero of force or the counterweight is wrong: the bows of %d specimens "
+            "differ from those of the alignment by %.2f mm on average (expected within %.2f mm); "
+            "weigh the counterweight, tare the cell with nothing on it and record again",
+            specimens[0].wire, bow.n, mean_of(&bow) / WB_MM,
+            level_limit * deviation_of(&bow) / WB_MM);
+    else if (level.n > 1 && fabs(mean_of(&level)) > level_limit * deviation_of(&level))
+        say(remarks, WB_CHECK_DOUBT, 0,
+            "wire '%s': the zero of deflection, or of force, is wrong: in %d specimens zero "
+            "deflection lies %.2f mm off on average (expected within %.2f mm); look at the markers "
+            "of clamp and tip and their offset from the axis, then at tare and counterweight",
+            specimens[0].wire, level.n, mean_of(&level) / WB_MM,
+            level_limit * deviation_of(&level) / WB_MM);
 }
 
 /* A law that does not follow may be that of another wire, or a zero is wrong: then it follows with
@@ -864,9 +939,13 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
             "wire '%s': there is no way back in the data of all specimens: the hardening rule is "
             "untested and EI known poorly; record the return to zero force too",
             wire);
-    for (int i = 0; i < calibration->n_members; i++) {
+    const int n = calibration->n_members;
+    struct specimen *const specimens = wb_memory_new((size_t)n, sizeof *specimens);
+    enum wb_status status = WB_OK;
+    for (int i = 0; i < n && status == WB_OK; i++) {
         const struct wb_cycle_member *const member = &calibration->members[i];
-        struct specimen specimen = {
+        struct specimen *const specimen = &specimens[i];
+        *specimen = (struct specimen){
             .member = member,
             .data = &member->data,
             .dataset = datasets[i],
@@ -875,17 +954,20 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
             .wire = wire,
             .sample = member->sample,
         };
-        find_shared(&specimen);
-        check_travel(remarks, &specimen);
-        check_holds(remarks, &specimen);
-        check_relaxation(remarks, &specimen);
-        check_natural_shape(remarks, &specimen);
-        WB_TRY(check_zeros(remarks, &specimen, is_length_seen(datasets[i])));
-        check_outliers(remarks, &specimen);
+        find_shared(specimen);
+        check_travel(remarks, specimen);
+        check_holds(remarks, specimen);
+        check_relaxation(remarks, specimen);
+        check_natural_shape(remarks, specimen);
+        status = check_zeros(remarks, specimen, is_length_seen(datasets[i]));
+        check_outliers(remarks, specimen);
     }
+    if (status == WB_OK && !wb_cycle_check_find(remarks, WB_CHECK_DOUBT))
+        check_zeros_of_all(remarks, specimens, n);
     check_others(remarks, calibration);
     check_batches(remarks, calibration);
-    return WB_OK;
+    free(specimens);
+    return status;
 }
 
 enum wb_status wb_cycle_check_calibrate(struct wb_cycle_calibration *calibration,

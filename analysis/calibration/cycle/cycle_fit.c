@@ -352,12 +352,20 @@ static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_wo
         gsl_matrix_alloc((size_t)p->parameters.n_free, (size_t)p->parameters.n_free));
     double sum;
     fit->ln_strength_error = fit->exponent_error = fit->bow_angle_error = (double)NAN;
+    fit->level_share = fit->level_error = (double)NAN;
     gsl_blas_ddot(w->f, w->f, &sum);
     if (gsl_multifit_nlinear_covar(w->J, 0.0, covariance) == GSL_SUCCESS) {
         const double variance = sum / fmax(1.0, p->n_residuals - p->parameters.n_free);
         const size_t bow = (size_t)p->parameters.n_law;
         fit->bow_angle_error =
             p->parameters.scale[bow] * sqrt(variance * gsl_matrix_get(covariance, bow, bow));
+        /* Data and prior share the level by their inverse variances. */
+        const size_t level = (size_t)(p->parameters.n_law + WB_CYCLE_LEVEL);
+        const double prior = p->parameters.settings.level_prior;
+        const double both =
+            pow(p->parameters.scale[level], 2) * gsl_matrix_get(covariance, level, level);
+        fit->level_share = fmax(0.0, 1.0 - both / (prior * prior));
+        fit->level_error = sqrt(variance * both / fit->level_share);
         wb_cycle_parameters_correlate(&p->parameters, covariance, variance, fit);
     }
     if (wb_cycle_covariance_find(p->parameters.data, held_of(p) > 0, w->f, w->J, covariance))

@@ -84,13 +84,16 @@ struct wb_cycle_fit {
     struct wb_law law;
     double bow_angle, bow_angle_error; /* rad */
     double level;                      /* m */
-    double zero;                       /* N: what the cell shows too much; 0 where it is right */
-    double uneven_angle;               /* rad; 0 without places */
-    bool is_converged;                 /* else the iterations ran out */
-    bool is_at_bound;                  /* an exponent or a share at the end of its range */
-    bool is_contained; /* the fit near by is the best: nothing was searched; only the candidate,
-                          counts and cost are set */
-    double misfit;     /* RMS of the force residuals over the largest force, */
+    /* Part of the level that the data determine, 0 to 1; the rest is its prior. The data alone put
+     * it at level / level_share, with this standard error (m). NaN unknown. */
+    double level_share, level_error;
+    double zero;         /* N: what the cell shows too much; 0 where it is right */
+    double uneven_angle; /* rad; 0 without places */
+    bool is_converged;   /* else the iterations ran out */
+    bool is_at_bound;    /* an exponent or a share at the end of its range */
+    bool is_contained;   /* the fit near by is the best: nothing was searched; only the candidate,
+                            counts and cost are set */
+    double misfit;       /* RMS of the force residuals over the largest force, */
     double loading_misfit, unloading_misfit; /* of either branch; NaN: none */
     double place_rms;                        /* m, after the markers' offsets; NaN without places */
     double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
