@@ -4,54 +4,11 @@
 #include <stdio.h>
 
 #include "analysis/calibration/cycle/cycle_budget.h"
-#include "analysis/calibration/cycle/cycle_json.h"
+#include "analysis/calibration/properties/cycle_json.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "cli/command.h"
-
-enum {
-    NUMBER = 32 /* bytes of a number as text */
-};
-
-int wb_calibrate_cycle_decimals(double value, int digits)
-{
-    const double size = fabs(value);
-    if (!(size > 1e-9) || !(size < 1e15))
-        return 0;
-    const int n = digits - 1 - (int)floor(log10(size));
-    return n < 0 ? 0 : n;
-}
-
-/* Four digits, or "-" where there is no number. */
-static const char *format(double value, char text[NUMBER])
-{
-    if (isfinite(value))
-        snprintf(text, NUMBER, "%.*f", wb_calibrate_cycle_decimals(value, 4), value);
-    else
-        snprintf(text, NUMBER, "-");
-    return text;
-}
-
-static void print_range(const char *of, double low, double high)
-{
-    char a[NUMBER], b[NUMBER];
-    if (isfinite(low) && isfinite(high))
-        printf("%s %s to %s", of, format(low, a), format(high, b));
-}
-
-/* Value, interval, range; of a rule that the data do not support only the range. */
-static void print_estimate(const struct wb_cycle_calibration *c, const char *name,
-                           const struct wb_estimate *e, double unit, const char *unit_name)
-{
-    char value[NUMBER];
-    const bool only_range = c->has_unloading && !c->is_followed;
-    printf("%-34s %9s%s%-5s", name, only_range ? "" : format(e->value / unit, value),
-           unit_name[0] ? " " : "", unit_name);
-    if (!only_range)
-        print_range("  interval", e->low / unit, e->high / unit);
-    print_range("  candidates", e->candidates_low / unit, e->candidates_high / unit);
-    printf("\n");
-}
+#include "cli/print.h"
 
 static void print_meaning(const struct wb_cycle_calibration *c,
                           const struct wb_cycle_calibrate_settings *settings)
@@ -65,33 +22,15 @@ static void print_meaning(const struct wb_cycle_calibration *c,
         printf("one specimen: how specimens scatter is not known and not in the intervals\n");
 }
 
-static void print_stiffness(const struct wb_cycle_calibration *c, const char *what,
-                            const struct wb_cycle_stiffness *stiffness)
-{
-    char name[64];
-    for (int k = 0; k < stiffness->n; k++) {
-        snprintf(name, sizeof name, "%s %.3g 1/m", what, stiffness->curvature[k]);
-        print_estimate(c, name, &stiffness->estimate[k], WB_NMM2, "N mm2");
-    }
-}
-
 static void print_numbers(const struct wb_cycle_calibration *c,
                           const struct wb_cycle_calibrate_settings *settings)
 {
-    char name[64], curvature[NUMBER];
-    for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
-        snprintf(name, sizeof name, "M at %s 1/m", format(c->curvature[k], curvature));
-        print_estimate(c, name, &c->moment[k], WB_NMM, "N mm");
-    }
-    print_stiffness(c, "unloading stiffness over", &c->unloading);
-    if (c->has_unloading) {
-        print_estimate(c, "residual curvature ratio", &c->residual_curvature_ratio, 1.0, "");
-        print_estimate(c, "loop energy", &c->loop_energy, WB_MJ, "mJ/m");
-    } else {
+    char curvature[WB_PRINT_NUMBER];
+    struct wb_properties properties;
+    wb_properties_from_cycle(c, &properties);
+    wb_print_quantities(&properties, "candidates");
+    if (!c->has_unloading)
         printf("no residual curvature ratio and no loop energy: the tests have no unloading\n");
-    }
-    print_stiffness(c, "secant EI to", &c->secant);
-    print_estimate(c, "EI at zero curvature", &c->rigidity, WB_NMM2, "N mm2");
     printf("the data of all specimens begin at a curvature of %.2g 1/m; below it%s",
            c->secant.resolved, c->has_unloading ? "" : " the law speaks alone\n");
     if (c->has_unloading)
@@ -103,7 +42,7 @@ static void print_numbers(const struct wb_cycle_calibration *c,
     print_meaning(c, settings);
     printf("largest curvature that all specimens reached: %s 1/m; beyond it the law is not "
            "measured\n",
-           format(c->largest_curvature, curvature));
+           wb_print_number(c->largest_curvature, curvature));
 }
 
 static void print_rule(const struct wb_cycle_calibration *c)
@@ -122,12 +61,12 @@ static void print_rule(const struct wb_cycle_calibration *c)
            "EI N mm2", "residual ratio");
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &c->ranked[i];
-        char rigidity[NUMBER], residual_curvature_ratio[NUMBER];
+        char rigidity[WB_PRINT_NUMBER], residual_curvature_ratio[WB_PRINT_NUMBER];
         printf("%-28s %8.3f %8d %8.3f %12s %14s%s%s\n", wb_candidate_name(rank->candidate),
                rank->misfit / WB_PERCENT, rank->n_free, rank->weight,
-               format(rank->rigidity.value / WB_NMM2, rigidity),
+               wb_print_number(rank->rigidity.value / WB_NMM2, rigidity),
                c->has_unloading
-                   ? format(rank->residual_curvature_ratio.value, residual_curvature_ratio)
+                   ? wb_print_number(rank->residual_curvature_ratio.value, residual_curvature_ratio)
                    : "-",
                rank->candidate == c->chosen ? "  chosen" : "",
                rank->counts ? "" : "  not in the ranges");
@@ -164,9 +103,9 @@ static void print_remedy(const struct wb_cycle_calibration *c)
 static void print_ludwik_number(const struct wb_cycle_calibration *c, const char *name,
                                 bool is_identifiable, double value, const char *unit)
 {
-    char text[NUMBER];
+    char text[WB_PRINT_NUMBER];
     if (is_identifiable) {
-        printf("  %-8s %10s %s\n", name, format(value, text), unit);
+        printf("  %-8s %10s %s\n", name, wb_print_number(value, text), unit);
         return;
     }
     printf("  %-8s not identifiable with these data", name);
@@ -188,33 +127,36 @@ static void print_correlation(const struct wb_cycle_calibration *c)
 static void print_law(const struct wb_cycle_calibration *c)
 {
     const struct wb_law *const law = &c->law;
-    char a[NUMBER], b[NUMBER];
+    char a[WB_PRINT_NUMBER], b[WB_PRINT_NUMBER];
     static const char *const forms[] = {"Ludwik's", "parallel parts'", "Chaboche's"};
     printf("%s law, %s hardening", forms[law->form], wb_law_rule_name(law));
     if (wb_law_has_share(law))
         printf(", isotropic share %.3g", law->isotropic_share);
     printf(", over the outer diameter\n  %-8s %10s MPa\n", "E",
-           format(law->material.youngs_modulus / WB_MPA, a));
+           wb_print_number(law->material.youngs_modulus / WB_MPA, a));
     if (law->form == WB_LAW_LUDWIK) {
         const struct wb_material *const m = &law->material;
-        printf("  %-8s %10s MPa\n", "sigma_Y", format(m->yield_stress / WB_MPA, a));
+        printf("  %-8s %10s MPa\n", "sigma_Y", wb_print_number(m->yield_stress / WB_MPA, a));
         print_ludwik_number(c, "K", c->is_strength_identifiable, m->strength_coefficient / WB_MPA,
                             "MPa");
         print_ludwik_number(c, "n", c->is_exponent_identifiable, m->hardening_exponent, "");
     }
     if (law->form == WB_LAW_CHABOCHE) {
-        printf("  %-8s %10s MPa\n", "sigma_Y", format(law->material.yield_stress / WB_MPA, a));
-        printf("  %-8s %10s MPa, b %s\n", "Q", format(law->saturation / WB_MPA, a),
-               format(law->rate, b));
+        printf("  %-8s %10s MPa\n", "sigma_Y",
+               wb_print_number(law->material.yield_stress / WB_MPA, a));
+        printf("  %-8s %10s MPa, b %s\n", "Q", wb_print_number(law->saturation / WB_MPA, a),
+               wb_print_number(law->rate, b));
     }
     for (int i = 0; i < law->n_backs; i++)
-        printf("  C%-7d %10s MPa, gamma%d %s\n", i + 1, format(law->backs[i].modulus / WB_MPA, a),
-               i + 1, format(law->backs[i].recovery, b));
+        printf("  C%-7d %10s MPa, gamma%d %s\n", i + 1,
+               wb_print_number(law->backs[i].modulus / WB_MPA, a), i + 1,
+               wb_print_number(law->backs[i].recovery, b));
     for (int i = 0; i < law->n_parts; i++) {
         const struct wb_law_part *const part = &law->parts[i];
-        printf("  part %-3d %10s MPa", i + 1, format(part->modulus / WB_MPA, a));
+        printf("  part %-3d %10s MPa", i + 1, wb_print_number(part->modulus / WB_MPA, a));
         if (isfinite(part->yield_strain))
-            printf(", yields at a strain of %s %%\n", format(part->yield_strain / WB_PERCENT, b));
+            printf(", yields at a strain of %s %%\n",
+                   wb_print_number(part->yield_strain / WB_PERCENT, b));
         else
             printf(", elastic\n");
     }
@@ -229,10 +171,10 @@ static void print_law(const struct wb_cycle_calibration *c)
     printf("Ludwik equivalent, isotropic, of the first loading (misfit %.2f %% of M; its way back "
            "is not the wire's)\n",
            c->ludwik_misfit / WB_PERCENT);
-    printf("  E %s MPa,", format(c->ludwik.youngs_modulus / WB_MPA, a));
-    printf(" sigma_Y %s MPa,", format(c->ludwik.yield_stress / WB_MPA, a));
-    printf(" K %s MPa,", format(c->ludwik.strength_coefficient / WB_MPA, a));
-    printf(" n %s\n", format(c->ludwik.hardening_exponent, a));
+    printf("  E %s MPa,", wb_print_number(c->ludwik.youngs_modulus / WB_MPA, a));
+    printf(" sigma_Y %s MPa,", wb_print_number(c->ludwik.yield_stress / WB_MPA, a));
+    printf(" K %s MPa,", wb_print_number(c->ludwik.strength_coefficient / WB_MPA, a));
+    printf(" n %s\n", wb_print_number(c->ludwik.hardening_exponent, a));
 }
 
 static void print_specimens(const struct wb_cycle_calibration *c)
@@ -246,16 +188,18 @@ static void print_specimens(const struct wb_cycle_calibration *c)
         const struct wb_cycle_fit *const fit = &answer->fit;
         const double length = member->data.info.length;
         const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, length);
-        char rigidity[NUMBER], residual_curvature_ratio[NUMBER], left[NUMBER];
+        char rigidity[WB_PRINT_NUMBER], residual_curvature_ratio[WB_PRINT_NUMBER],
+            left[WB_PRINT_NUMBER];
         printf("%-9d %6g %6.2f +- %4.2f %9.2f %9.2f %11s %9.3f %9s %14s %9d%s%s\n", member->sample,
                length / WB_MM, bow.tip / WB_MM, bow.deviation / WB_MM, bow.uneven / WB_MM,
                /* Adding zero makes no number "-0.00". */
                round(100.0 * fit->level / WB_MM) / 100.0 + 0.0,
-               format(member->data.residual_deflection / WB_MM, left), fit->misfit / WB_PERCENT,
-               format(answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2, rigidity),
-               c->has_unloading
-                   ? format(answer->value[WB_CYCLE_RESIDUAL_CURVATURE], residual_curvature_ratio)
-                   : "-",
+               wb_print_number(member->data.residual_deflection / WB_MM, left),
+               fit->misfit / WB_PERCENT,
+               wb_print_number(answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2, rigidity),
+               c->has_unloading ? wb_print_number(answer->value[WB_CYCLE_RESIDUAL_CURVATURE],
+                                                  residual_curvature_ratio)
+                                : "-",
                fit->n_outliers + member->data.n_outliers,
                fit->is_converged ? "" : "  did not converge",
                fit->is_at_bound ? "  at a bound" : "");
@@ -273,7 +217,7 @@ static void print_specimens(const struct wb_cycle_calibration *c)
 static void print_budget(const struct wb_cycle_calibration *c)
 {
     struct wb_budget_column columns[WB_BUDGET_COLUMNS];
-    char name[WB_BUDGET_TEXT], value[NUMBER];
+    char name[WB_BUDGET_TEXT], value[WB_PRINT_NUMBER];
     const int n = wb_cycle_budget_columns(c, columns);
     bool is_stated = true;
     printf("standard uncertainty, %%, and what makes it up:\n");

@@ -11,9 +11,6 @@ struct wb_calibrate_cycle {
     struct wb_cycle_remarks remarks; /* on the data and what was made of them */
 };
 
-/* How many decimals show so many significant digits of a value without an exponent. */
-int wb_calibrate_cycle_decimals(double value, int digits);
-
 void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle);
 
 /* Returns an exit code. */

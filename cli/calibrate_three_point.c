@@ -4,10 +4,12 @@
 #include <stdio.h>
 
 #include "analysis/calibration/properties/properties.h"
+#include "analysis/calibration/properties/quantities.h"
 #include "base/interrupt.h"
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/units.h"
+#include "cli/print.h"
 
 #define WB_LOG_DOMAIN "calibrate"
 
@@ -16,14 +18,6 @@ static bool report_fits(void *context, int done, int all)
     (void)all;
     wb_progress_update(context, done, NULL);
     return !wb_interrupted();
-}
-
-static void print_estimate(const char *name, const struct wb_estimate *e, double unit,
-                           const char *unit_name)
-{
-    printf("%-26s %9.4g %-6s interval %.4g to %.4g  friction and nose %.4g to %.4g\n", name,
-           e->value / unit, unit_name, e->low / unit, e->high / unit, e->candidates_low / unit,
-           e->candidates_high / unit);
 }
 
 static void print_member(const struct wb_three_point_member *m)
@@ -53,24 +47,19 @@ static void print_member(const struct wb_three_point_member *m)
         printf("    natural bow %+.3f mm, given\n", m->fit.bow / WB_MM);
 }
 
-static void print_text(const struct wb_three_point_calibration *c)
+static void print_text(const struct wb_three_point_calibration *c,
+                       const struct wb_properties *properties)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
-    char name[64];
     printf("wire %s, three-point bending, span %g mm, %d of %d tests fitted%s\n", info->wire,
            info->length / WB_MM, c->n_fitted, c->n_members,
            info->is_simulation ? ", simulation" : "");
     printf("rollers %g mm, nose %g mm, friction %g, compliance %g mm/N%s\n",
            info->machine.roller_radius / WB_MM, c->bench.nose_radius / WB_MM, c->bench.friction,
            c->bench.compliance / WB_MM, c->is_compliance_known ? "" : " (not known)");
-    print_estimate("EI", &c->rigidity, WB_NMM2, "N mm2");
+    wb_print_quantities(properties, "friction and nose");
     if (!c->is_rigidity_identifiable)
-        printf("EI is not identifiable from loading alone: what stands here is the law's form "
-               "before the first point\n");
-    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
-        snprintf(name, sizeof name, "M at %.4g /m", c->curvature[k]);
-        print_estimate(name, &c->moment[k], WB_NMM, "N mm");
-    }
+        printf("EI at zero curvature cannot be determined from loading alone\n");
     for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         const struct wb_three_point_variant *const v = &c->variants[i];
         if (v->value == (i < 2 ? c->bench.friction : c->bench.nose_radius))
@@ -90,16 +79,8 @@ static void print_text(const struct wb_three_point_calibration *c)
         print_member(&c->members[i]);
 }
 
-static void set_estimate(struct wb_json *object, const struct wb_estimate *e, double unit)
-{
-    wb_json_set_number(object, "value", e->value / unit);
-    wb_json_set_number(object, "low", e->low / unit);
-    wb_json_set_number(object, "high", e->high / unit);
-    wb_json_set_number(object, "band_low", e->candidates_low / unit);
-    wb_json_set_number(object, "band_high", e->candidates_high / unit);
-}
-
-static int print_json(const struct wb_three_point_calibration *c)
+static int print_json(const struct wb_three_point_calibration *c,
+                      const struct wb_properties *properties)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     struct wb_json *const root = wb_json_create();
@@ -114,13 +95,7 @@ static int print_json(const struct wb_three_point_calibration *c)
     wb_json_set_number(root, "series_deviation", c->series_deviation);
     wb_json_set_number(root, "misfit", c->misfit);
     wb_json_set_boolean(root, "rigidity_identifiable", c->is_rigidity_identifiable);
-    set_estimate(wb_json_set_object(root, "flexural_rigidity_N_mm2"), &c->rigidity, WB_NMM2);
-    struct wb_json *const moments = wb_json_set_array(root, "moment_curvature");
-    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
-        struct wb_json *const item = wb_json_append_object(moments);
-        wb_json_set_number(item, "curvature_1_m", c->curvature[k]);
-        set_estimate(wb_json_set_object(item, "moment_N_mm"), &c->moment[k], WB_NMM);
-    }
+    wb_quantities_put(root, properties);
     struct wb_json *const bands = wb_json_set_array(root, "bands");
     for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         const struct wb_three_point_variant *const v = &c->variants[i];
@@ -171,12 +146,14 @@ static int deliver(const struct wb_three_point_calibration *c,
         if (status != WB_OK)
             return wb_command_exit(status);
     }
+    struct wb_properties properties;
+    wb_properties_from_three_point(c, &properties);
     if (common->json) {
-        const int code = print_json(c);
+        const int code = print_json(c, &properties);
         if (code != WB_EXIT_OK)
             return code;
     } else {
-        print_text(c);
+        print_text(c, &properties);
     }
     if (!complete)
         wb_warn("%d of %d tests could not be fitted", c->n_members - c->n_fitted, c->n_members);

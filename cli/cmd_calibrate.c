@@ -21,6 +21,7 @@
 #include "cli/command.h"
 #include "cli/complete.h"
 #include "cli/datasets.h"
+#include "cli/print.h"
 #include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "calibrate"
@@ -218,10 +219,10 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
 static void print_value(const char *name, double value, double deviation, const char *unit)
 {
     if (isfinite(deviation)) {
-        const int n = wb_calibrate_cycle_decimals(deviation, 2);
+        const int n = wb_print_decimals(deviation, 2);
         printf("%-8s %10.*f +- %-8.*f %s\n", name, n, value, n, deviation, unit);
     } else {
-        printf("%-8s %10.*f %s\n", name, wb_calibrate_cycle_decimals(value, 5), value, unit);
+        printf("%-8s %10.*f %s\n", name, wb_print_decimals(value, 5), value, unit);
     }
 }
 
@@ -245,7 +246,7 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     print_value("E", r->material.youngs_modulus / WB_MPA, r->deviation[0] / WB_MPA, "MPa");
     print_value("sigma_Y", r->material.yield_stress / WB_MPA, r->deviation[1] / WB_MPA, "MPa");
     const double strength = r->material.strength_coefficient / WB_MPA;
-    printf("%-8s %10.*f", "K", wb_calibrate_cycle_decimals(strength, 5), strength);
+    printf("%-8s %10.*f", "K", wb_print_decimals(strength, 5), strength);
     if (isfinite(r->deviation[2]))
         printf(" */ %-8.3g", exp(r->deviation[2]));
     printf(" MPa\n");

@@ -72,8 +72,8 @@ static void print(const struct wb_compare *c)
             continue;
         }
         printf("%-31s A %.4g  B %.4g %s  B/A %.3f (%.3f to %.3f)  %s", q->name,
-               exp(q->groups[0].mean) / q->factor, exp(q->groups[1].mean) / q->factor, q->unit,
-               exp(q->welch.difference), exp(q->welch.low), exp(q->welch.high),
+               exp(q->groups[0].mean) / q->row->scale, exp(q->groups[1].mean) / q->row->scale,
+               q->row->unit, exp(q->welch.difference), exp(q->welch.low), exp(q->welch.high),
                wb_compare_word(q->verdict));
         if (q->verdict == WB_GROUPS_UNDECIDED && q->more > 0)
             printf(", test %d more of each", q->more);

@@ -84,11 +84,16 @@ static enum wb_status scale_to_curvature(const struct wb_properties *p, double c
 
 /* --- the quantities --- */
 
+static void begin(struct wb_compare_quantity *q, enum wb_quantity_id id, double curvature)
+{
+    *q = (struct wb_compare_quantity){.row = &wb_quantities[id]};
+    wb_quantity_label(id, curvature, q->name);
+}
+
 static enum wb_status take_rigidity(struct wb_compare_quantity *q,
                                     const struct wb_properties *const *p)
 {
-    *q = (struct wb_compare_quantity){
-        .name = "EI at zero curvature", .unit = "N mm2", .factor = WB_NMM2};
+    begin(q, WB_QUANTITY_RIGIDITY, 0.0);
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         if (!find_group(p[i], &p[i]->rigidity, 1.0, &q->groups[i]))
             q->reason = "a file has no interval of EI";
@@ -101,8 +106,7 @@ static enum wb_status take_unloading(struct wb_compare_quantity *q,
                                      const struct wb_properties *const *p, double largest)
 {
     static const double change = 1.0;
-    *q = (struct wb_compare_quantity){
-        .name = "unloading stiffness over 1 1/m", .unit = "N mm2", .factor = WB_NMM2};
+    begin(q, WB_QUANTITY_UNLOADING_STIFFNESS, change);
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         const struct wb_estimate *const e = wb_cycle_stiffness_at(&p[i]->unloading, change);
         double here, there;
@@ -124,8 +128,8 @@ static enum wb_status take_residual_curvature_ratio(struct wb_compare_quantity *
                                                     const struct wb_properties *const *p,
                                                     double curvature)
 {
-    *q = (struct wb_compare_quantity){.factor = 1.0};
-    snprintf(q->name, sizeof q->name, "residual curvature ratio from %.3g 1/m", curvature);
+    begin(q, WB_QUANTITY_RESIDUAL_CURVATURE_RATIO, 0.0);
+    snprintf(q->name, sizeof q->name, "%s from %.3g 1/m", q->row->name, curvature);
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         double ratio = 1.0;
         if (isfinite(p[i]->residual_curvature_ratio.low))
@@ -139,8 +143,7 @@ static enum wb_status take_residual_curvature_ratio(struct wb_compare_quantity *
 static enum wb_status take_moment(struct wb_compare_quantity *q,
                                   const struct wb_properties *const *p, double curvature)
 {
-    *q = (struct wb_compare_quantity){.unit = "N mm", .factor = WB_NMM};
-    snprintf(q->name, sizeof q->name, "M at %.3g 1/m", curvature);
+    begin(q, WB_QUANTITY_MOMENT, curvature);
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         struct wb_estimate moment;
         WB_TRY(find_moment(p[i], curvature, &moment));
@@ -229,7 +232,7 @@ static void put_group(struct wb_json *of, const char *key, const struct wb_compa
 {
     const struct wb_welch_group *const group = &q->groups[side];
     struct wb_json *const entry = wb_json_set_object(of, key);
-    wb_json_set_number(entry, "mean", exp(group->mean) / q->factor);
+    wb_json_set_number(entry, "mean", exp(group->mean) / q->row->scale);
     wb_json_set_number(entry, "deviation_of_logarithm", group->deviation);
     wb_json_set_integer(entry, "n", group->n);
     wb_json_set_integer(entry, "degrees_of_freedom", group->degrees);
@@ -239,7 +242,7 @@ static void put_quantity(struct wb_json *list, const struct wb_compare_quantity 
 {
     struct wb_json *const entry = wb_json_append_object(list);
     wb_json_set_text(entry, "quantity", q->name);
-    wb_json_set_text(entry, "unit", q->unit[0] ? q->unit : "1");
+    wb_json_set_text(entry, "unit", q->row->unit[0] ? q->row->unit : "1");
     if (q->reason) {
         wb_json_set_text(entry, "not_compared", q->reason);
         return;

@@ -13,6 +13,7 @@
 #include <stdbool.h>
 
 #include "analysis/calibration/properties/properties.h"
+#include "analysis/calibration/properties/quantities.h"
 #include "analysis/compare/welch.h"
 #include "base/json.h"
 #include "base/status.h"
@@ -26,9 +27,8 @@ enum {
 #define WB_COMPARE_ALPHA 0.05
 
 struct wb_compare_quantity {
-    char name[64];      /* plain: "EI", "M(12.5 1/m)" */
-    char unit[16];      /* of `factor`: "N mm2"; "" none */
-    double factor;      /* unit to SI */
+    char name[WB_QUANTITY_LABEL];  /* with the curvature */
+    const struct wb_quantity *row; /* with its unit */
     const char *reason; /* why it is not compared; NULL: it is, and only then is the rest known */
     struct wb_welch_group groups[WB_COMPARE_SIDES]; /* of logarithms of SI values */
     struct wb_welch welch;                          /* of the logarithm of B over A */

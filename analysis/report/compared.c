@@ -145,13 +145,13 @@ static void put_verdict_cell(struct wb_document_table *table, const struct wb_co
 static void put_quantity(struct wb_document_table *table, const struct wb_compare_quantity *q)
 {
     wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, q->unit[0] ? "%s (%s)" : "%s", q->name, q->unit);
+    wb_pages_cell(table, WB_TONE_PLAIN, q->row->unit[0] ? "%s (%s)" : "%s", q->name, q->row->unit);
     if (q->reason) {
         wb_pages_cell(table, WB_TONE_QUIET, "%s", q->reason);
         return;
     }
     for (int i = 0; i < WB_COMPARE_SIDES; i++)
-        wb_pages_cell(table, WB_TONE_PLAIN, "%.4g", exp(q->groups[i].mean) / q->factor);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%.4g", exp(q->groups[i].mean) / q->row->scale);
     for (int i = 0; i < WB_COMPARE_SIDES; i++)
         wb_pages_cell_number(table, q->groups[i].deviation / WB_PERCENT, 1);
     wb_pages_cell_number(table, exp(q->welch.difference), 3);

@@ -1,23 +1,12 @@
-#include "analysis/calibration/cycle/cycle_json.h"
+#include "analysis/calibration/properties/cycle_json.h"
 
 #include <math.h>
 
 #include "analysis/calibration/cycle/cycle_budget.h"
+#include "analysis/calibration/properties/properties.h"
+#include "analysis/calibration/properties/quantities.h"
 #include "base/units.h"
 #include "fe/material/law_json.h"
-
-/* Where no law follows the wire, only the range over the candidates is given. */
-static void put_estimate(struct wb_json *object, const struct wb_cycle_calibration *c,
-                         const char *name, const struct wb_estimate *e, double unit)
-{
-    const bool only_range = c->has_unloading && !c->is_followed;
-    const double unknown = (double)NAN;
-    wb_json_set_number(object, name, only_range ? unknown : e->value / unit);
-    wb_json_set_number(object, "low", only_range ? unknown : e->low / unit);
-    wb_json_set_number(object, "high", only_range ? unknown : e->high / unit);
-    wb_json_set_number(object, "candidates_low", e->candidates_low / unit);
-    wb_json_set_number(object, "candidates_high", e->candidates_high / unit);
-}
 
 static void put_ludwik(struct wb_json *object, const struct wb_material *m, double misfit)
 {
@@ -59,7 +48,7 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
         wb_json_set_number(item, "flexural_rigidity_N_mm2", rank->rigidity.value / WB_NMM2);
         wb_json_set_number(item, "residual_curvature_ratio",
                            c->has_unloading ? rank->residual_curvature_ratio.value : (double)NAN);
-        /* Numbers of a law that does not follow hang on where its search ended. */
+        /* The parameters of a law that does not follow depend on where its search ended. */
         if (rank->counts)
             put_law(wb_json_set_object(item, "parameters"), &rank->law);
     }
@@ -113,39 +102,13 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
     }
 }
 
-static void put_stiffness(struct wb_json *object, const struct wb_cycle_calibration *c,
-                          const struct wb_cycle_stiffness *stiffness)
-{
-    wb_json_set_number(object, "resolved_from_1_m",
-                       stiffness->n > 0 ? stiffness->resolved : (double)NAN);
-    struct wb_json *const array = wb_json_set_array(object, "at");
-    for (int k = 0; k < stiffness->n; k++) {
-        struct wb_json *const item = wb_json_append_object(array);
-        wb_json_set_number(item, "curvature_1_m", stiffness->curvature[k]);
-        put_estimate(item, c, "value", &stiffness->estimate[k], WB_NMM2);
-    }
-}
-
 void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration *c)
 {
-    const double unknown = (double)NAN;
-    const struct wb_estimate untested = {unknown, unknown, unknown, unknown, unknown, unknown};
-    put_stiffness(wb_json_set_object(object, "unloading_stiffness_N_mm2"), c, &c->unloading);
-    put_stiffness(wb_json_set_object(object, "secant_stiffness_N_mm2"), c, &c->secant);
-    put_estimate(wb_json_set_object(object, "flexural_rigidity_N_mm2"), c, "value", &c->rigidity,
-                 WB_NMM2);
+    struct wb_properties properties;
+    wb_properties_from_cycle(c, &properties);
+    wb_quantities_put(object, &properties);
     wb_json_set_boolean(object, "flexural_rigidity_resolved", c->is_rigidity_resolved);
-    put_estimate(wb_json_set_object(object, "residual_curvature_ratio"), c, "value",
-                 c->has_unloading ? &c->residual_curvature_ratio : &untested, 1.0);
-    put_estimate(wb_json_set_object(object, "loop_energy_mJ_per_m"), c, "value",
-                 c->has_unloading ? &c->loop_energy : &untested, WB_MJ);
     wb_json_set_number(object, "largest_curvature_1_m", c->largest_curvature);
-    struct wb_json *const moments = wb_json_set_array(object, "moment_curvature");
-    for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
-        struct wb_json *const item = wb_json_append_object(moments);
-        wb_json_set_number(item, "curvature_1_m", c->curvature[k]);
-        put_estimate(item, c, "moment_N_mm", &c->moment[k], WB_NMM);
-    }
     put_rule(wb_json_set_object(object, "hardening_rule"), c);
     put_law(wb_json_set_object(object, "law"), &c->law);
     put_ludwik(wb_json_set_object(object, "ludwik_equivalent"), &c->ludwik, c->ludwik_misfit);

@@ -8,8 +8,8 @@
 
 #include "base/version.h"
 
-static const struct wb_estimate unknown_estimate = {(double)NAN, (double)NAN, (double)NAN,
-                                                    (double)NAN, (double)NAN, (double)NAN};
+const struct wb_estimate wb_properties_unknown_estimate = {(double)NAN, (double)NAN, (double)NAN,
+                                                           (double)NAN, (double)NAN, (double)NAN};
 
 void wb_properties_make_unknown(struct wb_properties *properties)
 {
@@ -21,9 +21,9 @@ void wb_properties_make_unknown(struct wb_properties *properties)
     properties->ludwik_misfit = properties->largest_curvature = (double)NAN;
     properties->stiffness_deviation = (double)NAN;
     properties->rigidity = properties->residual_curvature_ratio = properties->loop_energy =
-        unknown_estimate;
+        wb_properties_unknown_estimate;
     for (int k = 0; k < WB_PROPERTIES_MOST_MOMENTS; k++)
-        properties->moment[k] = unknown_estimate;
+        properties->moment[k] = wb_properties_unknown_estimate;
 }
 
 const char *const wb_properties_methods[] = {"cycle", "paper", "three-point", NULL};

@@ -16,11 +16,9 @@
  *
  *     method: cycle
  *     law: {...}     # fe/material/law_file.h; the four numbers are then its equivalent
- *     flexural_rigidity_N_mm2: {value: 210, low: 200, high: 221, candidates_low: 209, ...}
- *     residual_curvature_ratio: {...}
- *     loop_energy_mJ_per_m: {...}
+ *     ...: the quantities of quantities.h, each {value: 210, low: 200, high: 221,
+ *          candidates_low: 209, ...} or a list of these at several curvatures
  *     largest_curvature_1_m: 29
- *     moment_curvature: [{curvature_1_m: 1.5, moment_N_mm: 0.3, low: 0.29, ...}, ...]
  *     hardening_rule: {chosen: ..., supported: true, ...}
  *     ludwik_misfit: 0.004
  *     specimens: [{sample: 1, length_mm: 85, bow_mm: 1.2, uneven_bow_mm: 0.1, level_mm: 0, misfit:
@@ -153,6 +151,9 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties);
+/* Those of a calibration on three-point bending tests, without their specimens. */
+void wb_properties_from_three_point(const struct wb_three_point_calibration *calibration,
+                                    struct wb_properties *properties);
 /* Those of a wire's own file, of which nothing but the law is known. The wire has properties. */
 void wb_properties_from_wire(const struct wb_wire *wire, struct wb_properties *properties);
 

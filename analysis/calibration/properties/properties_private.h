@@ -12,13 +12,12 @@ enum wb_properties_method {
 /* As the key `method` has them; NULL ends them. */
 extern const char *const wb_properties_methods[];
 
+extern const struct wb_estimate wb_properties_unknown_estimate;
+
 /* All that no source of properties needs to know. */
 void wb_properties_make_unknown(struct wb_properties *properties);
 /* How far specimens differ, from the interval of a moment well within the data: EI carries more of
  * the fits' own noise. */
 void wb_properties_find_deviation(struct wb_properties *properties);
-/* Those of a calibration on three-point bending tests, without their specimens. */
-void wb_properties_from_three_point(const struct wb_three_point_calibration *c,
-                                    struct wb_properties *properties);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "analysis/calibration/properties/properties_private.h"
+#include "analysis/calibration/properties/quantities.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -100,79 +101,63 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
     return given ? wb_config_value(given, &pooled) : WB_OK;
 }
 
-#define ESTIMATE_KEYS(e, unit, largest)                                                            \
-    WB_CONFIG_OPTIONAL_NUMBER("value", &(e)->value, (unit), 0.0, (largest)),                       \
-        WB_CONFIG_OPTIONAL_NUMBER("low", &(e)->low, (unit), 0.0, (largest)),                       \
-        WB_CONFIG_OPTIONAL_NUMBER("high", &(e)->high, (unit), 0.0, (largest)),                     \
-        WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &(e)->candidates_low, (unit), 0.0, (largest)), \
-        WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &(e)->candidates_high, (unit), 0.0,           \
-                                  (largest)),                                                      \
-        WB_CONFIG_OPTIONAL_NUMBER("scatter", &(e)->deviation, 1.0, 0.0, 100.0)
-
-static enum wb_status read_estimate(const struct wb_config_node *node, double unit, double largest,
+/* Of a quantity that has no curvatures `curvature` is NULL. */
+static enum wb_status read_estimate(const struct wb_config_node *node,
+                                    const struct wb_quantity *row, double *curvature,
                                     struct wb_estimate *e)
 {
-    const struct wb_config_key keys[] = {ESTIMATE_KEYS(e, unit, largest)};
-    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+    const double scale = row->scale, largest = row->largest;
+    double unused;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_NUMBER(row->value_key, &e->value, scale, 0.0, largest),
+        WB_CONFIG_OPTIONAL_NUMBER("low", &e->low, scale, 0.0, largest),
+        WB_CONFIG_OPTIONAL_NUMBER("high", &e->high, scale, 0.0, largest),
+        WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &e->candidates_low, scale, 0.0, largest),
+        WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &e->candidates_high, scale, 0.0, largest),
+        WB_CONFIG_OPTIONAL_NUMBER("scatter", &e->deviation, 1.0, 0.0, 100.0),
+        WB_CONFIG_NUMBER("curvature_1_m", curvature ? curvature : &unused, 1.0, 0.0, 1e6),
+    };
+    return wb_config_map(node, keys, WB_COUNT(keys) - (curvature ? 0 : 1));
 }
 
-static enum wb_status read_stiffness(const struct wb_config_node *node,
-                                     struct wb_cycle_stiffness *stiffness)
+/* A list of estimates at ascending curvatures. */
+static enum wb_status read_list(const struct wb_config_node *list, const struct wb_quantity *row,
+                                const char *key, struct wb_properties *properties)
 {
+    char *const base = (char *)properties;
+    double *const curvature = (double *)(void *)(base + row->curvature);
+    struct wb_estimate *const estimate = (struct wb_estimate *)(void *)(base + row->estimate);
+    const int n = wb_config_length(list);
+    if (n < 1 || n > row->most)
+        return wb_config_refuse(list, key, "expected a list of 1 to %d curvatures", row->most);
+    for (int k = 0; k < n; k++) {
+        const struct wb_config_node *const item = wb_config_item(list, k);
+        estimate[k] = wb_properties_unknown_estimate;
+        WB_TRY(read_estimate(item, row, &curvature[k], &estimate[k]));
+        if (k > 0 && !(curvature[k] > curvature[k - 1]))
+            return wb_config_refuse(item, "curvature_1_m", "%g: expected more than the one before",
+                                    curvature[k]);
+    }
+    *(int *)(void *)(base + row->n) = n;
+    return WB_OK;
+}
+
+static enum wb_status read_quantity(const struct wb_config_node *node,
+                                    const struct wb_quantity *row, struct wb_properties *properties)
+{
+    char *const base = (char *)properties;
     const struct wb_config_node *list = NULL;
+    if (row->most == 0)
+        return read_estimate(node, row, NULL, (struct wb_estimate *)(void *)(base + row->estimate));
+    if (row->resolved == 0)
+        return read_list(node, row, row->key, properties);
     const struct wb_config_key keys[] = {
-        WB_CONFIG_NUMBER("resolved_from_1_m", &stiffness->resolved, 1.0, 0.0, 1e6),
+        WB_CONFIG_NUMBER("resolved_from_1_m", (double *)(void *)(base + row->resolved), 1.0, 0.0,
+                         1e6),
         WB_CONFIG_NODE("at", &list),
     };
-    if (!node)
-        return WB_OK;
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
-    stiffness->n = wb_config_length(list);
-    if (stiffness->n < 1 || stiffness->n > WB_CYCLE_STIFFNESSES) {
-        stiffness->n = 0;
-        return wb_config_refuse(list, "at", "expected a list of 1 to %d curvatures",
-                                WB_CYCLE_STIFFNESSES);
-    }
-    for (int k = 0; k < stiffness->n; k++) {
-        struct wb_estimate *const e = &stiffness->estimate[k];
-        *e = (struct wb_estimate){(double)NAN, (double)NAN, (double)NAN,
-                                  (double)NAN, (double)NAN, (double)NAN};
-        const struct wb_config_key item[] = {
-            WB_CONFIG_NUMBER("curvature_1_m", &stiffness->curvature[k], 1.0, 0.0, 1e6),
-            ESTIMATE_KEYS(e, WB_NMM2, 1e15),
-        };
-        WB_TRY(wb_config_map(wb_config_item(list, k), item, WB_COUNT(item)));
-    }
-    return WB_OK;
-}
-
-static enum wb_status read_moments(const struct wb_config_node *node,
-                                   struct wb_properties *properties)
-{
-    const int n = wb_config_length(node);
-    if (n < 1 || n > WB_PROPERTIES_MOST_MOMENTS)
-        return wb_config_refuse(node, "moment_curvature", "expected a list of 1 to %d moments",
-                                WB_PROPERTIES_MOST_MOMENTS);
-    for (int k = 0; k < n; k++) {
-        struct wb_estimate *const e = &properties->moment[k];
-        double *const curvature = &properties->curvature[k];
-        const struct wb_config_node *const item = wb_config_item(node, k);
-        const struct wb_config_key keys[] = {
-            WB_CONFIG_NUMBER("curvature_1_m", curvature, 1.0, 0.0, 1e6),
-            WB_CONFIG_OPTIONAL_NUMBER("moment_N_mm", &e->value, WB_NMM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("low", &e->low, WB_NMM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("high", &e->high, WB_NMM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("candidates_low", &e->candidates_low, WB_NMM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("candidates_high", &e->candidates_high, WB_NMM, 0.0, 1e9),
-            WB_CONFIG_OPTIONAL_NUMBER("scatter", &e->deviation, 1.0, 0.0, 100.0),
-        };
-        WB_TRY(wb_config_map(item, keys, WB_COUNT(keys)));
-        if (k > 0 && !(*curvature > properties->curvature[k - 1]))
-            return wb_config_refuse(item, "curvature_1_m", "%g: expected more than the one before",
-                                    *curvature);
-    }
-    properties->n_moments = n;
-    return WB_OK;
+    return read_list(list, row, "at", properties);
 }
 
 static enum wb_status read_rule(const struct wb_config_node *node, struct wb_properties *properties)
@@ -243,9 +228,8 @@ static enum wb_status read_specimens(const struct wb_config_node *node,
 static enum wb_status read_root(const struct wb_config_node *root, struct wb_properties *properties)
 {
     const struct wb_config_node *deviations = NULL, *calibration = NULL, *law = NULL;
-    const struct wb_config_node *rigidity = NULL, *ratio = NULL, *moments = NULL;
-    const struct wb_config_node *old_ratio = NULL; /* its name before 0.1.0 */
-    const struct wb_config_node *energy = NULL, *secant = NULL, *unloading = NULL;
+    const struct wb_config_node *quantities[WB_QUANTITIES] = {NULL};
+    const struct wb_config_node *old_ratio = NULL; /* residual curvature ratio before 0.1.0 */
     const struct wb_config_node *rule = NULL, *specimens = NULL, *three_point = NULL;
     int method = -1;
     struct wb_material *const material = &properties->material;
@@ -265,18 +249,20 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_CONFIG_OPTIONAL_CHOICE("method", &method, wb_properties_methods),
         WB_CONFIG_OPTIONAL_NODE("law", &law),
         WB_CONFIG_OPTIONAL_NUMBER("ludwik_misfit", &properties->ludwik_misfit, 1.0, 0.0, 1e6),
-        WB_CONFIG_OPTIONAL_NODE("unloading_stiffness_N_mm2", &unloading),
-        WB_CONFIG_OPTIONAL_NODE("secant_stiffness_N_mm2", &secant),
-        WB_CONFIG_OPTIONAL_NODE("flexural_rigidity_N_mm2", &rigidity),
-        WB_CONFIG_OPTIONAL_NODE("residual_curvature_ratio", &ratio),
         WB_CONFIG_OPTIONAL_NODE("springback_ratio", &old_ratio),
-        WB_CONFIG_OPTIONAL_NODE("loop_energy_mJ_per_m", &energy),
         WB_CONFIG_OPTIONAL_NUMBER("largest_curvature_1_m", &properties->largest_curvature, 1.0,
                                   1e-6, 1e6),
-        WB_CONFIG_OPTIONAL_NODE("moment_curvature", &moments),
         WB_CONFIG_OPTIONAL_NODE("hardening_rule", &rule),
         WB_CONFIG_OPTIONAL_NODE("specimens", &specimens),
         WB_CONFIG_OPTIONAL_NODE("three_point", &three_point),
+#define QUANTITY(id) WB_CONFIG_OPTIONAL_NODE(wb_quantities[id].key, &quantities[id])
+        QUANTITY(WB_QUANTITY_MOMENT),
+        QUANTITY(WB_QUANTITY_UNLOADING_STIFFNESS),
+        QUANTITY(WB_QUANTITY_RESIDUAL_CURVATURE_RATIO),
+        QUANTITY(WB_QUANTITY_LOOP_ENERGY),
+        QUANTITY(WB_QUANTITY_SECANT_STIFFNESS),
+        QUANTITY(WB_QUANTITY_RIGIDITY),
+#undef QUANTITY
     };
     material->hardening = WB_HARDENING_ISOTROPIC_POWER;
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
@@ -290,14 +276,12 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
     if (calibration)
         WB_TRY(read_calibration(calibration, properties));
     WB_TRY(wb_law_file_read(law, material, &properties->law));
-    WB_TRY(read_estimate(rigidity, WB_NMM2, 1e15, &properties->rigidity));
-    WB_TRY(read_stiffness(unloading, &properties->unloading));
-    WB_TRY(read_stiffness(secant, &properties->secant));
-    WB_TRY(
-        read_estimate(ratio ? ratio : old_ratio, 1.0, 1.0, &properties->residual_curvature_ratio));
-    WB_TRY(read_estimate(energy, WB_MJ, 1e15, &properties->loop_energy));
-    if (moments)
-        WB_TRY(read_moments(moments, properties));
+    if (!quantities[WB_QUANTITY_RESIDUAL_CURVATURE_RATIO])
+        quantities[WB_QUANTITY_RESIDUAL_CURVATURE_RATIO] = old_ratio;
+    for (enum wb_quantity_id id = 0; id < WB_QUANTITIES; id++) {
+        if (quantities[id])
+            WB_TRY(read_quantity(quantities[id], &wb_quantities[id], properties));
+    }
     if (rule)
         WB_TRY(read_rule(rule, properties));
     if (three_point)

@@ -5,6 +5,7 @@
 
 #include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/properties/properties_private.h"
+#include "analysis/calibration/properties/quantities.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -164,25 +165,25 @@ void wb_properties_format(struct wb_text *text, const struct wb_calibrate_result
 
 /* --- calibrations on whole cycles --- */
 
-/* "{value: 1, low: 2, ...}" of what is known, behind a number of another name, if one is given. */
-static void append_estimate(struct wb_text *text, const char *name, double first,
-                            const struct wb_estimate *estimate, double unit)
+/* "{curvature_1_m: 1, value: 2, ...}" with the numbers that are known. */
+static void append_estimate(struct wb_text *text, const struct wb_quantity *row,
+                            const double *curvature, const struct wb_estimate *estimate)
 {
     const struct {
         const char *name;
         double value;
     } parts[] = {
-        {name, first},
-        {"value", estimate->value / unit},
-        {"low", estimate->low / unit},
-        {"high", estimate->high / unit},
-        {"candidates_low", estimate->candidates_low / unit},
-        {"candidates_high", estimate->candidates_high / unit},
+        {"curvature_1_m", curvature ? *curvature : (double)NAN},
+        {row->value_key, estimate->value / row->scale},
+        {"low", estimate->low / row->scale},
+        {"high", estimate->high / row->scale},
+        {"candidates_low", estimate->candidates_low / row->scale},
+        {"candidates_high", estimate->candidates_high / row->scale},
         {"scatter", estimate->deviation},
     };
     char number[WB_NUMBER_TEXT];
     int n = 0;
-    for (size_t i = name ? 0 : 1; i < WB_COUNT(parts); i++) {
+    for (size_t i = 0; i < WB_COUNT(parts); i++) {
         if (!isfinite(parts[i].value))
             continue;
         wb_text_append(text, "%s%s: %s", n++ > 0 ? ", " : "{", parts[i].name,
@@ -191,44 +192,25 @@ static void append_estimate(struct wb_text *text, const char *name, double first
     wb_text_append(text, n > 0 ? "}\n" : "{}\n");
 }
 
-/* "key: {value: 1, low: 0.9, ...}" with what is known; nothing where nothing is. */
-static void put_estimate(struct wb_text *text, const char *key, const struct wb_estimate *estimate,
-                         double unit)
+/* The quantities that are known. */
+static void put_quantities(struct wb_text *text, const struct wb_properties *p)
 {
-    if (!isfinite(estimate->value) && !isfinite(estimate->candidates_low))
-        return;
-    wb_text_append(text, "%s: ", key);
-    append_estimate(text, NULL, 0.0, estimate, unit);
-}
-
-static void put_stiffness(struct wb_text *text, const char *key,
-                          const struct wb_cycle_stiffness *stiffness)
-{
-    if (stiffness->n == 0)
-        return;
-    wb_text_append(text, "%s:\n", key);
-    put_number(text, "  ", "resolved_from_1_m", stiffness->resolved);
-    wb_text_append(text, "  at:\n");
-    for (int k = 0; k < stiffness->n; k++) {
-        wb_text_append(text, "    - ");
-        append_estimate(text, "curvature_1_m", stiffness->curvature[k], &stiffness->estimate[k],
-                        WB_NMM2);
-    }
-}
-
-static void put_moments(struct wb_text *text, const struct wb_properties *p)
-{
-    wb_text_append(text, "moment_curvature:\n");
-    for (int k = 0; k < p->n_moments; k++) {
-        const struct wb_estimate *const e = &p->moment[k];
-        wb_text_append(text, "  -\n");
-        put_number(text, "    ", "curvature_1_m", p->curvature[k]);
-        put_number(text, "    ", "moment_N_mm", e->value / WB_NMM);
-        put_number(text, "    ", "low", e->low / WB_NMM);
-        put_number(text, "    ", "high", e->high / WB_NMM);
-        put_number(text, "    ", "candidates_low", e->candidates_low / WB_NMM);
-        put_number(text, "    ", "candidates_high", e->candidates_high / WB_NMM);
-        put_number(text, "    ", "scatter", e->deviation);
+    for (enum wb_quantity_id id = 0; id < WB_QUANTITIES; id++) {
+        const struct wb_quantity *const row = &wb_quantities[id];
+        const struct wb_quantity_values values = wb_quantity_values(p, id);
+        if (values.n == 0 || !wb_quantity_is_known(&values.estimate[0]))
+            continue;
+        wb_text_append(text, "%s:%s", row->key, row->most > 0 ? "\n" : " ");
+        if (row->resolved > 0) {
+            put_number(text, "  ", "resolved_from_1_m", values.resolved);
+            wb_text_append(text, "  at:\n");
+        }
+        for (int k = 0; k < values.n; k++) {
+            if (row->most > 0)
+                wb_text_append(text, "%s- ", row->resolved > 0 ? "    " : "  ");
+            append_estimate(text, row, values.curvature ? &values.curvature[k] : NULL,
+                            &values.estimate[k]);
+        }
     }
 }
 
@@ -349,22 +331,18 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
                          "over the laws that the data\n"
                          "# do not exclude.\n");
     put_what_is_in(text, calibration);
-    wb_text_append(text, "# Change of the moment over that of the curvature, from the largest one "
-                         "back, and from straight up.\n"
-                         "# Below the curvature that the data resolve the law speaks alone.\n");
-    put_stiffness(text, "unloading_stiffness_N_mm2", &p->unloading);
-    put_stiffness(text, "secant_stiffness_N_mm2", &p->secant);
-    wb_text_append(text, "# at zero curvature%s\n",
+    wb_text_append(text,
+                   "# Stiffness: change of the moment over the change of the curvature, unloading "
+                   "from the largest\n"
+                   "# curvature and loading from zero; below resolved_from_1_m only the law "
+                   "supports it. Flexural\n"
+                   "# rigidity: at zero curvature%s.\n",
                    calibration->is_rigidity_resolved
                        ? ""
-                       : ", which the data do not resolve: take a stiffness from above");
-    put_estimate(text, "flexural_rigidity_N_mm2", &p->rigidity, WB_NMM2);
-    put_estimate(text, "residual_curvature_ratio", &p->residual_curvature_ratio, 1.0);
-    if (isfinite(p->residual_curvature_ratio.candidates_low))
-        put_estimate(text, "loop_energy_mJ_per_m", &p->loop_energy, WB_MJ);
-    wb_text_append(text, "# beyond it the law is not measured\n");
+                       : ", which the data do not resolve: use a stiffness instead");
+    put_quantities(text, p);
+    wb_text_append(text, "# the law is not measured beyond it\n");
     put_number(text, "", "largest_curvature_1_m", p->largest_curvature);
-    put_moments(text, p);
     put_rule(text, calibration, p);
     put_specimens(text, p);
     wb_text_append(text, "calibration:\n");
@@ -503,12 +481,10 @@ static void format_three_point(struct wb_text *text, const struct wb_three_point
                          "# Means with an interval of 95 %%; candidates: over friction and nose "
                          "radius, which the curves do\n"
                          "# not tell.\n");
-    if (c->is_rigidity_identifiable)
-        put_estimate(text, "flexural_rigidity_N_mm2", &c->rigidity, WB_NMM2);
-    else
+    put_quantities(text, &p);
+    if (!c->is_rigidity_identifiable)
         wb_text_append(text, "# flexural_rigidity_N_mm2: not identifiable from loading alone\n");
     put_number(text, "", "largest_curvature_1_m", c->largest_curvature);
-    put_moments(text, &p);
     wb_text_append(text,
                    "# tested where all tests have a way back, supported where the law then follows "
                    "within 0.5 %% of F_max\n"

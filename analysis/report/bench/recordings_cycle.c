@@ -5,8 +5,8 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/calibration/cycle/cycle_json.h"
 #include "analysis/calibration/law/bending.h"
+#include "analysis/calibration/properties/cycle_json.h"
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/units.h"

@@ -2,7 +2,7 @@
  * that the data do not say. */
 #include <math.h>
 
-#include "analysis/calibration/cycle/cycle_json.h"
+#include "analysis/calibration/properties/cycle_json.h"
 #include "analysis/calibration/properties/properties.h"
 #include "base/file.h"
 #include "base/units.h"

@@ -1,0 +1,69 @@
+/* The quantities that a calibration of bending states, each with its value, its interval of 95 %
+ * and its range over the laws that the data do not exclude.
+ *
+ * One row describes a quantity. Properties files, JSON, the terminal and comparisons walk the rows,
+ * so that a quantity has one key, one name and one unit everywhere.
+ */
+#ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_QUANTITIES_H
+#define WB_ANALYSIS_CALIBRATION_PROPERTIES_QUANTITIES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "base/json.h"
+
+struct wb_properties;
+
+/* The main results first. */
+enum wb_quantity_id {
+    WB_QUANTITY_MOMENT,
+    WB_QUANTITY_UNLOADING_STIFFNESS,
+    WB_QUANTITY_RESIDUAL_CURVATURE_RATIO,
+    WB_QUANTITY_LOOP_ENERGY,
+    WB_QUANTITY_SECANT_STIFFNESS,
+    WB_QUANTITY_RIGIDITY,
+    WB_QUANTITIES
+};
+
+struct wb_quantity {
+    const char *key;       /* in files, with the unit */
+    const char *value_key; /* of its value in files, beside "low", "high" and so on */
+    const char *name;      /* in text; a curvature follows where the quantity has one */
+    const char *unit;      /* in text; "" of a ratio */
+    double scale;          /* one unit in SI */
+    double largest;        /* that a file may state, in the unit */
+    /* Where struct wb_properties has it. */
+    size_t estimate;  /* one, or at most `most` of them */
+    int most;         /* curvatures; 0: the quantity has none */
+    size_t n;         /* how many there are, and */
+    size_t curvature; /* where, 1/m */
+    size_t resolved;  /* the smallest curvature that the data resolve, 1/m; 0: not stated */
+};
+
+extern const struct wb_quantity wb_quantities[WB_QUANTITIES];
+
+/* What properties state of a quantity; borrowed. An estimate that is unknown is NaN. */
+struct wb_quantity_values {
+    int n;                              /* 1 of a quantity without curvatures */
+    const double *curvature;            /* 1/m, (n); NULL: has none */
+    const struct wb_estimate *estimate; /* (n), SI */
+    double resolved;                    /* 1/m; NaN: not stated */
+};
+struct wb_quantity_values wb_quantity_values(const struct wb_properties *properties,
+                                             enum wb_quantity_id id);
+
+/* Whether there is a value, or at least a range over laws. */
+bool wb_quantity_is_known(const struct wb_estimate *estimate);
+
+enum {
+    WB_QUANTITY_LABEL = 64
+};
+/* Its name, with the curvature (1/m) of a quantity that has one: "M at 1.41 1/m". */
+const char *wb_quantity_label(enum wb_quantity_id id, double curvature,
+                              char label[WB_QUANTITY_LABEL]);
+
+/* Sets a member for each quantity; unknown numbers are null. */
+void wb_quantities_put(struct wb_json *object, const struct wb_properties *properties);
+
+#endif
