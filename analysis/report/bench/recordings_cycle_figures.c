@@ -5,13 +5,13 @@
 #include <stdlib.h>
 
 #include "analysis/report/bench/recordings_draw.h"
+#include "analysis/report/draw/figures_cycle.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
 #include "base/memory.h"
 #include "base/units.h"
 
 enum {
-    MOST_PANELS = 3, /* samples beside each other */
     MOST_FACES = WB_VALLEY_NODES * WB_VALLEY_NODES / 4,
     MOST_ROWS = 24, /* of the samples' EI, with the two of the mean */
     BANDS = 5       /* stretches of curvature where the cloud is a band */
@@ -41,59 +41,7 @@ static double *columns_of(int n_columns, int n)
 static int panels_of(const struct wb_recordings_cycle *cycle)
 {
     const int n = cycle->calibration.n_members;
-    return n < MOST_PANELS ? n : MOST_PANELS;
-}
-
-/* The points of a way in mm and mN: measured, computed. */
-static int take_way(const struct wb_cycle_member *member, const struct wb_cycle_fit *fit,
-                    bool is_unloading, double *x, double *measured, double *computed)
-{
-    int n = 0;
-    for (int i = 0; i < member->data.n_points; i++) {
-        const struct wb_cycle_point *const point = &member->data.points[i];
-        if (point->is_unloading != is_unloading)
-            continue;
-        x[n] = point->deflection / WB_MM;
-        measured[n] = point->tension / WB_MN;
-        computed[n++] = fit->tension[i] / WB_MN;
-    }
-    return n;
-}
-
-static void title_sample(struct wb_panel *panel, const struct wb_cycle_member *member)
-{
-    char title[40];
-    snprintf(title, sizeof title, "sample %d", member->sample);
-    wb_figure_set_title(panel, title);
-}
-
-static void add_ways(struct wb_panel *panel, const struct wb_cycle_member *member,
-                     const struct wb_cycle_fit *fit, struct wb_colour colour, bool has_legend)
-{
-    const int most = member->data.n_points;
-    double *const x = columns_of(3, most), *const measured = x + most,
-                  *const computed = x + 2 * most;
-    const struct wb_figure_style points[2] = {
-        {.colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 3.2},
-        {.colour = colour, .marker = WB_MARKER_RING, .marker_size = 3.6}};
-    const struct wb_figure_style line = {.colour = wb_palette_ink(), .width = 1.0};
-    static const char *const labels[2] = {"loading", "unloading"};
-    for (int k = 0; k < 2; k++) {
-        const int n = take_way(member, fit, k == 1, x, measured, computed);
-        if (n == 0)
-            continue;
-        wb_figure_add_line(panel, has_legend && k == 0 ? "computed" : NULL, (size_t)n, x, computed,
-                           &line);
-        /* Every third, so that the line is seen between them. */
-        int shown = 0;
-        for (int i = 0; i < n; i += 3, shown++) {
-            x[shown] = x[i];
-            measured[shown] = measured[i];
-        }
-        wb_figure_add_line(panel, has_legend ? labels[k] : NULL, (size_t)shown, x, measured,
-                           &points[k]);
-    }
-    free(x);
+    return n < WB_FIGURES_CYCLE_MOST ? n : WB_FIGURES_CYCLE_MOST;
 }
 
 enum wb_status wb_recordings_cycle_figures_ways(struct wb_figures_item *item)
@@ -109,16 +57,10 @@ enum wb_status wb_recordings_cycle_figures_ways(struct wb_figures_item *item)
         "sample with its own fit; every third reading is drawn. Tension of the strand as read, "
         "weights included.",
         measured_of(item), wb_candidate_name(c->chosen));
-    if (c->n_members > MOST_PANELS)
-        wb_text_append(&item->caption, " The first %d of %d samples.", MOST_PANELS, c->n_members);
-    for (int i = 0; i < panels_of(cycle); i++) {
-        const struct wb_cycle_member *const member = &c->members[i];
-        struct wb_panel *const panel = wb_figure_add_panel(item->figure);
-        wb_figure_set_axes(panel, deflection_axis, i == 0 ? "Tension (mN)" : "");
-        title_sample(panel, member);
-        add_ways(panel, member, &member->answers[c->chosen].fit, wb_palette_wire(item->index),
-                 i == 0);
-    }
+    if (c->n_members > WB_FIGURES_CYCLE_MOST)
+        wb_text_append(&item->caption, " The first %d of %d samples.", WB_FIGURES_CYCLE_MOST,
+                       c->n_members);
+    wb_figures_cycle_add_panels(item->figure, c, wb_palette_wire(item->index));
     return WB_OK;
 }
 
@@ -147,7 +89,7 @@ static void add_residuals(struct wb_panel *panel, const struct wb_cycle_member *
     const double percent = 100.0 * WB_MN / member->data.max_force;
     int n_off = 0;
     for (int k = 0; k < 2; k++) {
-        const int n = take_way(member, fit, k == 1, x, measured, computed);
+        const int n = wb_figures_cycle_points(member, fit, k == 1, x, measured, computed);
         for (int i = 0; i < n; i++) {
             const double residual = computed[i] - measured[i];
             measured[i] = percent * residual;
