@@ -5,9 +5,11 @@
 
 #include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/properties/cycle_json.h"
+#include "analysis/report/draw/figures_cycle.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/finding.h"
 #include "cli/print.h"
 
 static void print_meaning(const struct wb_cycle_calibration *c,
@@ -251,7 +253,7 @@ static void print_budget(const struct wb_cycle_calibration *c)
     printf("\n");
 }
 
-void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle)
+static void print_all(const struct wb_calibrate_cycle *cycle)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_test_info *const info = &c->members[0].data.info;
@@ -277,6 +279,115 @@ void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle)
     wb_text_release(&settings);
 }
 
+static const char *source_of(const struct wb_test_info *info)
+{
+    return info->is_virtual ? "virtual rig" : info->is_simulation ? "simulation" : "measured";
+}
+
+static int count_doubts(const struct wb_cycle_remarks *remarks)
+{
+    int n = 0;
+    for (int i = 0; i < remarks->n; i++)
+        n += remarks->items[i].severity == WB_CHECK_DOUBT;
+    return n;
+}
+
+static void append_found(struct wb_text *text, const struct wb_cycle_calibration *c)
+{
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    struct wb_properties properties;
+    wb_properties_from_cycle(c, &properties);
+    wb_text_append(text, "%s (%s, %d specimen%s): ", info->wire, source_of(info), c->n_members,
+                   c->n_members == 1 ? "" : "s");
+    wb_finding_append_quantity(text, &properties, WB_QUANTITY_MOMENT, WB_CYCLE_MOMENTS - 1);
+    wb_text_append(text, "; ");
+    const enum wb_quantity_id stiffness =
+        c->has_unloading ? WB_QUANTITY_UNLOADING_STIFFNESS : WB_QUANTITY_SECANT_STIFFNESS;
+    const struct wb_quantity_values values = wb_quantity_values(&properties, stiffness);
+    int at = 0; /* 1 1/m, where the data reach that far */
+    while (at < values.n - 1 && values.curvature[at] < 1.0)
+        at++;
+    wb_finding_append_quantity(text, &properties, stiffness, at);
+    if (c->has_unloading) {
+        wb_text_append(text, "; ");
+        wb_finding_append_quantity(text, &properties, WB_QUANTITY_RESIDUAL_CURVATURE_RATIO, 0);
+    }
+    wb_text_append(text, "; intervals of 95 %%");
+}
+
+static void append_trust(struct wb_text *text, const struct wb_calibrate_cycle *cycle)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const int doubts = count_doubts(&cycle->remarks);
+    if (c->is_stopped) {
+        wb_text_append(text, "no: stopped before all laws were fitted to all specimens");
+    } else if (!wb_cycle_calibrate_is_converged(c)) {
+        wb_text_append(text, "no: the fit of a specimen did not converge");
+    } else if (c->has_unloading && !c->is_followed) {
+        wb_text_append(text, "no: no law fits loading and unloading within %g %% of F_max",
+                       WB_CYCLE_LARGEST_FOLLOWED / WB_PERCENT);
+    } else if (doubts > 0) {
+        wb_text_append(text, "not yet: %d doubt%s above", doubts, doubts == 1 ? "" : "s");
+    } else if (!c->has_unloading) {
+        wb_text_append(text, "for loading only: unloading was not recorded, and the hardening rule "
+                             "is not tested");
+    } else {
+        wb_text_append(text, "%s: %s, fits loading and unloading within %.2g %% of F_max",
+                       c->n_members > 1 ? "yes" : "for this specimen", wb_candidate_name(c->chosen),
+                       c->ranked[0].misfit / WB_PERCENT);
+        if (c->n_members == 1 && !isfinite(c->rigidity.deviation))
+            wb_text_append(text, "; one specimen cannot show how specimens differ");
+    }
+}
+
+static void append_next(struct wb_text *text, const struct wb_calibrate_cycle *cycle,
+                        const char *output)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    if (count_doubts(&cycle->remarks) > 0)
+        wb_text_append(text, "resolve the doubts above, then calibrate again");
+    else if (!c->has_unloading)
+        wb_text_append(text, "record tests with unloading, then calibrate again");
+    else if (c->n_members == 1)
+        wb_text_append(text, "record at least two more specimens, then calibrate all together");
+    else if (!output)
+        wb_text_append(text, "run the same command with -o %s.yaml to keep the properties",
+                       c->members[0].data.info.wire);
+    else
+        wb_text_append(text, "wirebench validate %s DATASET..., with tests of another length",
+                       output);
+}
+
+void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle, const char *output,
+                              const char *figure)
+{
+    struct wb_finding finding = {.figure = figure};
+    print_all(cycle);
+    append_found(&finding.found, &cycle->calibration);
+    append_trust(&finding.trust, cycle);
+    append_next(&finding.next, cycle, output);
+    wb_finding_print(&finding);
+}
+
+enum wb_status wb_calibrate_cycle_draw(const struct wb_calibrate_cycle *cycle, const char *path)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    const int panels = c->n_members < WB_FIGURES_CYCLE_MOST ? c->n_members : WB_FIGURES_CYCLE_MOST;
+    struct wb_figure *figure;
+    struct wb_text footer = {0};
+    WB_TRY(wb_figure_create(&figure, "calibration", panels == 1 ? 280.0 : 180.0 * panels, 220.0));
+    wb_figures_cycle_add_panels(figure, c, wb_palette_wire(0));
+    wb_text_append_escaped(&footer, info->wire);
+    wb_text_append(&footer, " (%s), law: %s", source_of(info), wb_candidate_name(c->chosen));
+    if (c->n_members > panels)
+        wb_text_append(&footer, "; the first %d of %d samples", panels, c->n_members);
+    wb_figure_set_footer(figure, wb_text_string(&footer));
+    const enum wb_status status = wb_figure_write_svg(figure, path);
+    wb_text_release(&footer);
+    wb_figure_destroy(figure);
+    return status;
+}
 static void put_settings(struct wb_json *object, const struct wb_cycle_calibrate_settings *settings)
 {
     for (int t = 0; t < WB_CYCLE_CALIBRATE_TABLES; t++) {

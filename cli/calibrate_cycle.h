@@ -11,7 +11,13 @@ struct wb_calibrate_cycle {
     struct wb_cycle_remarks remarks; /* on the data and what was made of them */
 };
 
-void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle);
+/* `output`: the properties file that was written, or NULL; `figure` beside it, or NULL. */
+void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle, const char *output,
+                              const char *figure);
+
+/* Draws measured and computed tension of the first specimens into a new SVG file. */
+WB_MUST_CHECK enum wb_status wb_calibrate_cycle_draw(const struct wb_calibrate_cycle *cycle,
+                                                     const char *path);
 
 /* Returns an exit code. */
 int wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle);

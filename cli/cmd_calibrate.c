@@ -21,6 +21,7 @@
 #include "cli/command.h"
 #include "cli/complete.h"
 #include "cli/datasets.h"
+#include "cli/finding.h"
 #include "cli/print.h"
 #include "cli/settings.h"
 
@@ -60,8 +61,11 @@ static const struct argp_option other_options[] = {
      "How much a machine gives way, from a stiff bar; see `wirebench calibrate --compliance "
      "--help`",
      0},
-    {"output", 'o', "PROPERTIES.yaml", 0, "Write the properties here", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
+    {"output", 'o', "PROPERTIES.yaml", 0,
+     "Write the properties here, and measured and computed tension beside them (PROPERTIES.svg)",
+     0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties and the figure", 0},
+    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figure", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -343,10 +347,16 @@ static enum wb_status calibrate_on_cycles(struct options *o)
 static int deliver_cycle(const struct options *o)
 {
     const struct wb_cycle_calibration *const c = &o->cycle.calibration;
+    const char *figure = NULL;
+    char path[WB_PATH];
     if (o->common.output) {
-        const enum wb_status status =
+        enum wb_status status =
             wb_properties_write_cycle(o->common.output, c, &o->cycle.settings, o->common.inputs,
                                       c->n_members, o->common.force);
+        if (status == WB_OK && !o->common.no_figure) {
+            figure = wb_finding_figure_path(path, o->common.output);
+            status = wb_calibrate_cycle_draw(&o->cycle, figure);
+        }
         if (status != WB_OK)
             return wb_command_exit(status);
     }
@@ -355,7 +365,7 @@ static int deliver_cycle(const struct options *o)
         if (code != WB_EXIT_OK)
             return code;
     } else {
-        wb_calibrate_cycle_print(&o->cycle);
+        wb_calibrate_cycle_print(&o->cycle, o->common.output, figure);
     }
     const bool is_refuted = c->has_unloading && !c->is_followed && !c->is_stopped;
     const bool is_converged = wb_cycle_calibrate_is_converged(c);
@@ -438,7 +448,13 @@ static enum wb_status begin(struct options *o)
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
     WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs, o->common.n,
                             WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
-    return choose_method(o);
+    WB_TRY(choose_method(o));
+    char figure[WB_PATH];
+    if (o->method == WB_METHOD_CYCLE && o->common.output && !o->common.no_figure &&
+        !o->common.force && wb_file_exists(wb_finding_figure_path(figure, o->common.output)))
+        return wb_fail(WB_ERR_EXISTS,
+                       "'%s' exists; --force overwrites it, --no-figure draws no figure", figure);
+    return WB_OK;
 }
 
 static int run(struct options *o)

@@ -102,6 +102,9 @@ error_t wb_command_parse_common(int key, char *argument, struct argp_state *stat
     case WB_KEY_JSON:
         common->json = true;
         return 0;
+    case WB_KEY_NO_FIGURE:
+        common->no_figure = true;
+        return 0;
     case ARGP_KEY_ARG:
         if (!common->noun)
             return ARGP_ERR_UNKNOWN;

@@ -50,16 +50,18 @@ struct wb_command_common {
     int n;
     const char *output;
     bool force, json;
+    bool no_figure; /* of a command that draws a figure beside its output */
 };
 
 enum {
     WB_KEY_FORCE = 1000,
     WB_KEY_JSON,
+    WB_KEY_NO_FIGURE,
     WB_KEY_OWN /* the first key for options of a command's own */
 };
 
-/* The rest of a command's argp parser: takes 'o', WB_KEY_FORCE, WB_KEY_JSON and the argument, and
- * sees at the end that argument and output were given. */
+/* The rest of a command's argp parser: takes 'o', WB_KEY_FORCE, WB_KEY_JSON, WB_KEY_NO_FIGURE and
+ * the argument, and sees at the end that argument and output were given. */
 error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
                                 struct wb_command_common *common);
 
