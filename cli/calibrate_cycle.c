@@ -279,11 +279,6 @@ static void print_all(const struct wb_calibrate_cycle *cycle)
     wb_text_release(&settings);
 }
 
-static const char *source_of(const struct wb_test_info *info)
-{
-    return info->is_virtual ? "virtual rig" : info->is_simulation ? "simulation" : "measured";
-}
-
 static int count_doubts(const struct wb_cycle_remarks *remarks)
 {
     int n = 0;
@@ -297,8 +292,8 @@ static void append_found(struct wb_text *text, const struct wb_cycle_calibration
     const struct wb_test_info *const info = &c->members[0].data.info;
     struct wb_properties properties;
     wb_properties_from_cycle(c, &properties);
-    wb_text_append(text, "%s (%s, %d specimen%s): ", info->wire, source_of(info), c->n_members,
-                   c->n_members == 1 ? "" : "s");
+    wb_text_append(text, "%s (%s, %d specimen%s): ", info->wire, wb_finding_source(info),
+                   c->n_members, c->n_members == 1 ? "" : "s");
     wb_finding_append_quantity(text, &properties, WB_QUANTITY_MOMENT, WB_CYCLE_MOMENTS - 1);
     wb_text_append(text, "; ");
     const enum wb_quantity_id stiffness =
@@ -379,7 +374,8 @@ enum wb_status wb_calibrate_cycle_draw(const struct wb_calibrate_cycle *cycle, c
     WB_TRY(wb_figure_create(&figure, "calibration", panels == 1 ? 280.0 : 180.0 * panels, 220.0));
     wb_figures_cycle_add_panels(figure, c, wb_palette_wire(0));
     wb_text_append_escaped(&footer, info->wire);
-    wb_text_append(&footer, " (%s), law: %s", source_of(info), wb_candidate_name(c->chosen));
+    wb_text_append(&footer, " (%s), law: %s", wb_finding_source(info),
+                   wb_candidate_name(c->chosen));
     if (c->n_members > panels)
         wb_text_append(&footer, "; the first %d of %d samples", panels, c->n_members);
     wb_figure_set_footer(figure, wb_text_string(&footer));

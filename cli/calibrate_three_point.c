@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "analysis/calibration/properties/properties.h"
-#include "analysis/calibration/properties/quantities.h"
+#include "analysis/calibration/properties/quantity.h"
 #include "base/interrupt.h"
 #include "base/json.h"
 #include "base/progress.h"
@@ -95,7 +95,7 @@ static int print_json(const struct wb_three_point_calibration *c,
     wb_json_set_number(root, "series_deviation", c->series_deviation);
     wb_json_set_number(root, "misfit", c->misfit);
     wb_json_set_boolean(root, "rigidity_identifiable", c->is_rigidity_identifiable);
-    wb_quantities_put(root, properties);
+    wb_quantity_put(root, properties);
     struct wb_json *const bands = wb_json_set_array(root, "bands");
     for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         const struct wb_three_point_variant *const v = &c->variants[i];

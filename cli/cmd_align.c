@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/finding.h"
 #include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -125,7 +126,35 @@ static int print_json(const struct result *results, size_t n)
     return wb_command_print_json(root);
 }
 
-static int print_text(const struct result *results, size_t n)
+static void print_finding(const struct options *o, const struct result *results, size_t n)
+{
+    struct wb_finding finding = {.figure = NULL};
+    const struct wb_test_info *const info = &results[0].dataset.info;
+    int n_warnings = 0, n_incomplete = 0;
+    bool is_one_wire = true;
+    for (size_t i = 0; i < n; i++) {
+        const struct wb_dataset *const dataset = &results[i].dataset;
+        n_warnings += (int)wb_json_length(wb_json_get(dataset->document, "warnings"));
+        n_incomplete += !wb_dataset_is_complete(dataset);
+        is_one_wire = is_one_wire && strcmp(dataset->info.wire, info->wire) == 0;
+    }
+    wb_text_append(&finding.found, "%zu dataset%s", n, n == 1 ? "" : "s");
+    if (is_one_wire)
+        wb_text_append(&finding.found, " of wire %s (%s)", info->wire, wb_finding_source(info));
+    if (n_incomplete > 0)
+        wb_text_append(&finding.trust, "in part: %d incomplete (gaps, damaged or lost data)%s",
+                       n_incomplete, n_warnings > 0 ? "; " : "");
+    if (n_warnings > 0)
+        wb_text_append(&finding.trust, "%sread the %d warning%s above first",
+                       n_incomplete > 0 ? "" : "in part: ", n_warnings, n_warnings == 1 ? "" : "s");
+    if (n_incomplete == 0 && n_warnings == 0)
+        wb_text_append(&finding.trust, "yes: complete, without warnings");
+    wb_text_append(&finding.next, "wirebench calibrate %s%s -o %s.yaml", o->common.output,
+                   o->common.n > 1 ? "/*" : "", is_one_wire ? info->wire : "WIRE");
+    wb_finding_print(&finding);
+}
+
+static int print_text(const struct options *o, const struct result *results, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         if (i > 0)
@@ -133,6 +162,8 @@ static int print_text(const struct result *results, size_t n)
         if (wb_datasets_print(&results[i].dataset, results[i].folder) != WB_OK)
             return WB_EXIT_FAILED;
     }
+    if (n > 0)
+        print_finding(o, results, n);
     return WB_EXIT_OK;
 }
 
@@ -150,7 +181,8 @@ int wb_cmd_align(int argc, char **argv)
     struct result *const results = wb_memory_new(n, sizeof *results);
     int code = wb_command_exit(run(&options, results, &n_done));
     if (code == WB_EXIT_OK)
-        code = options.common.json ? print_json(results, n_done) : print_text(results, n_done);
+        code = options.common.json ? print_json(results, n_done)
+                                   : print_text(&options, results, n_done);
     for (size_t i = 0; i < n_done; i++) {
         if (code == WB_EXIT_OK && !wb_dataset_is_complete(&results[i].dataset))
             code = WB_EXIT_INCOMPLETE;

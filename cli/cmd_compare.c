@@ -6,6 +6,7 @@
 #include "analysis/report/compared.h"
 #include "base/number.h"
 #include "cli/command.h"
+#include "cli/finding.h"
 
 #define WB_LOG_DOMAIN "compare"
 
@@ -62,9 +63,37 @@ static const struct argp argp = {
            "Exit code 3: it cannot tell. Exit code 4: a quantity is different.",
 };
 
-static void print(const struct wb_compare *c)
+/* The ratio that is farthest from 1. */
+static void append_farthest(struct wb_text *text, const struct wb_compare *c)
 {
-    struct wb_text text = {0};
+    const struct wb_compare_quantity *farthest = NULL;
+    for (int k = 0; k < WB_COMPARE_QUANTITIES; k++) {
+        const struct wb_compare_quantity *const q = &c->quantities[k];
+        if (!q->reason &&
+            (!farthest || fabs(q->welch.difference) > fabs(farthest->welch.difference)))
+            farthest = q;
+    }
+    if (farthest)
+        wb_text_append(text, "; farthest: %s, B/A %.3f (%.3f to %.3f)", farthest->name,
+                       exp(farthest->welch.difference), exp(farthest->welch.low),
+                       exp(farthest->welch.high));
+}
+
+static void append_next(struct wb_text *text, const struct wb_compare *c)
+{
+    if (c->verdict == WB_GROUPS_EQUIVALENT)
+        wb_text_append(text, "use one set of properties for both batches");
+    else if (c->verdict == WB_GROUPS_DIFFERENT)
+        wb_text_append(text, "keep the properties of the batches apart");
+    else if (c->more > 0)
+        wb_text_append(text, "test %d more specimens of each batch and compare again", c->more);
+    else
+        wb_text_append(text, "choose another limit: a ratio lies at this one");
+}
+
+static void print(const struct options *o, const struct wb_compare *c)
+{
+    struct wb_finding finding = {.figure = o->common.output};
     for (int k = 0; k < WB_COMPARE_QUANTITIES; k++) {
         const struct wb_compare_quantity *const q = &c->quantities[k];
         if (q->reason) {
@@ -79,9 +108,15 @@ static void print(const struct wb_compare *c)
             printf(", test %d more of each", q->more);
         printf("\n");
     }
-    wb_compared_append_verdict(&text, c);
-    printf("%s (alpha %g each)\n", wb_text_string(&text), WB_COMPARE_ALPHA);
-    wb_text_release(&text);
+    wb_compared_append_verdict(&finding.found, c);
+    append_farthest(&finding.found, c);
+    wb_text_append(&finding.trust,
+                   "%s: each quantity by Welch's intervals of 90 %% within +-%g of ln(B/A), alpha "
+                   "%g",
+                   c->verdict == WB_GROUPS_UNDECIDED ? "undecided" : "yes", c->within,
+                   WB_COMPARE_ALPHA);
+    append_next(&finding.next, c);
+    wb_finding_print(&finding);
 }
 
 /* What a page calls a file: its name, and where both files have the same the folders up to one that
@@ -112,7 +147,7 @@ static enum wb_status run(const struct options *o, struct wb_compare *compare,
     if (o->common.output)
         WB_TRY(wb_compared_write(&page, o->common.output, o->common.force));
     if (!o->common.json) {
-        print(compare);
+        print(o, compare);
         return WB_OK;
     }
     return wb_command_print_json(wb_compare_json(compare, page.properties, page.names)) ==

@@ -3,17 +3,21 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/calibration/properties/properties.h"
+#include "analysis/report/draw/figures_compared.h"
 #include "analysis/validation/validate_bounds.h"
 #include "analysis/validation/validate_json.h"
 #include "analysis/validation/validate_tables.h"
 #include "analysis/validation/validate_three_point.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/memory.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/finding.h"
 #include "cli/settings.h"
 #include "cli/validate_three_point.h"
 
@@ -28,8 +32,10 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"output", 'o', "DIR", 0, "Write forces, errors and scores of each group there as CSV", 0},
+    {"output", 'o', "DIR", 0,
+     "Write forces, errors and scores of each group there as CSV, and a figure of each as SVG", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
+    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figures", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -131,10 +137,10 @@ static enum wb_status run_groups(struct options *o, const struct wb_properties *
     return WB_OK;
 }
 
-/* Name of a group's CSV file: the wire's name with anything unusual in a path replaced. */
-static void csv_name(char *name, size_t size, const struct wb_test_info *info, const char *what)
+/* Name of a group's file: the wire's name with anything unusual in a path replaced. */
+static void file_name(char *name, size_t size, const struct wb_test_info *info, const char *what)
 {
-    snprintf(name, size, "%s-L%g%s%s.csv", info->wire, info->length / WB_MM,
+    snprintf(name, size, "%s-L%g%s%s", info->wire, info->length / WB_MM,
              info->kind == WB_TEST_THREE_POINT ? "-three-point"
              : info->is_follower               ? "-follower"
                                                : "",
@@ -148,8 +154,8 @@ static void csv_name(char *name, size_t size, const struct wb_test_info *info, c
 static enum wb_status write_table(const char *folder, const struct group *g, bool unloading)
 {
     char name[128], path[WB_PATH];
-    csv_name(name, sizeof name, g->is_three_point ? &g->three_point.info : &g->result.info,
-             unloading ? "-unloading" : "");
+    file_name(name, sizeof name, g->is_three_point ? &g->three_point.info : &g->result.info,
+              unloading ? "-unloading.csv" : ".csv");
     WB_TRY(wb_file_join(path, folder, name));
     if (g->is_three_point)
         return wb_validate_three_point_write_csv(&g->three_point, unloading, path);
@@ -181,6 +187,46 @@ static enum wb_status write_tables(const struct options *o, const struct groups 
     const enum wb_status status = wb_file_write_text(path, &scores);
     wb_text_release(&scores);
     return status;
+}
+
+/* A prediction of a cantilever under a tip force has a figure. */
+static bool has_figure(const struct group *g)
+{
+    return !g->is_three_point && !g->result.info.is_follower && g->result.curve.max_force > 0.0;
+}
+
+static enum wb_status draw(const struct options *o, const struct group *g, char path[WB_PATH])
+{
+    const struct wb_test_info *const info = &g->result.info;
+    char name[128];
+    struct wb_text footer = {0};
+    struct wb_figure *figure;
+    file_name(name, sizeof name, info, ".svg");
+    WB_TRY(wb_file_join(path, o->common.output, name));
+    WB_TRY(wb_figure_create(&figure, "prediction", 480.0, 200.0));
+    wb_figures_compared_prediction(figure, &g->result, wb_palette_wire(0));
+    wb_text_append_escaped(&footer, info->wire);
+    wb_text_append(&footer, " (%s), L = %g mm, mean of %d specimen%s", wb_finding_source(info),
+                   info->length / WB_MM, g->result.curve.n_samples,
+                   g->result.curve.n_samples == 1 ? "" : "s");
+    wb_figure_set_footer(figure, wb_text_string(&footer));
+    const enum wb_status status = wb_figure_write_svg(figure, path);
+    wb_text_release(&footer);
+    wb_figure_destroy(figure);
+    return status;
+}
+
+/* One of each group; `path` receives the first one's, "" where there is none. */
+static enum wb_status draw_groups(const struct options *o, const struct groups *groups,
+                                  char path[WB_PATH])
+{
+    char other[WB_PATH];
+    path[0] = '\0';
+    for (int i = 0; i < groups->n; i++) {
+        if (has_figure(&groups->items[i]))
+            WB_TRY(draw(o, &groups->items[i], path[0] ? other : path));
+    }
+    return WB_OK;
 }
 
 static void set_prediction(struct wb_json *object, const struct wb_prediction *prediction)
@@ -325,12 +371,104 @@ static void print_group(const struct wb_validate_result *r)
                r->cycles.clamp_curvature);
 }
 
+static void append_found(struct wb_text *text, const struct wb_validate_result *r)
+{
+    wb_text_append(text, "%s at L = %g mm (%s, %d specimen%s): RMS error of the loading %.2g %%",
+                   r->info.wire, r->info.length / WB_MM, wb_finding_source(&r->info),
+                   r->curve.n_samples, r->curve.n_samples == 1 ? "" : "s",
+                   r->elastoplastic.rms / WB_PERCENT);
+    if (r->cycles.n_samples > 0)
+        wb_text_append(text, ", of the unloading %.2g %%", r->cycles.rms / WB_PERCENT);
+    wb_text_append(text, " of %s", r->info.is_follower ? "the largest deflection" : "F_max");
+    if (r->cycles.n_samples > 0 && isfinite(r->cycles.residual_measured))
+        wb_text_append(text, "; residual deflection %.1f mm measured, %.1f mm predicted",
+                       r->cycles.residual_measured / WB_MM, r->cycles.residual_computed / WB_MM);
+}
+
+/* Whether the properties were calibrated on these very data. */
+static bool is_calibrated_on(const struct wb_properties *properties, const char *folder)
+{
+    char path[WB_PATH], sha256[WB_SHA256_TEXT];
+    if (wb_file_join(path, folder, "force_deflection.csv") != WB_OK || !wb_file_exists(path) ||
+        wb_hash_file(path, sha256) != WB_OK)
+        return false;
+    for (int i = 0; i < properties->n_datasets && i < WB_PROPERTIES_MOST_DATASETS; i++) {
+        if (strcmp(properties->datasets[i].sha256, sha256) == 0)
+            return true;
+    }
+    return false;
+}
+
+static void append_verdict(struct wb_text *text, const struct wb_validate_result *r)
+{
+    if (r->elastoplastic.n_reached < r->elastoplastic.n)
+        wb_text_append(text, "no: the beam did not converge up to the largest deflection");
+    else if (wb_validate_bounds_exceeded(r)) {
+        wb_text_append(text, "no: beyond what the scatter of specimens explains: ");
+        wb_validate_bounds_append(text, r);
+    } else if (r->is_beyond)
+        wb_text_append(text, "with care: bent further than the properties are known");
+    else if (!wb_validate_bounds_known(r))
+        wb_text_append(text, "undecided: without the scatter between specimens there is no bound");
+    else
+        wb_text_append(text, "yes: within what the scatter of specimens explains");
+}
+
+/* Of cantilevers; tests of three-point bending have their own verdict. */
+static void print_finding(const struct options *o, const struct wb_properties *properties,
+                          const struct groups *groups, const char *figure)
+{
+    struct wb_finding finding = {.figure = figure && figure[0] ? figure : NULL};
+    const int n_all = o->common.n - 1;
+    int n_same = 0, n = 0;
+    bool is_exceeded = false;
+    for (int i = 1; i <= n_all; i++)
+        n_same += is_calibrated_on(properties, o->common.inputs[i]);
+    for (int i = 0; i < groups->n; i++) {
+        const struct group *const g = &groups->items[i];
+        if (g->is_three_point)
+            continue;
+        if (n > 0)
+            wb_text_append(&finding.found, "; ");
+        if (n++ > 0 && n_same < n_all)
+            wb_text_append(&finding.trust, "; ");
+        append_found(&finding.found, &g->result);
+        if (n_same < n_all && groups->n > 1)
+            wb_text_append(&finding.trust, "L = %g mm: ", g->result.info.length / WB_MM);
+        if (n_same < n_all)
+            append_verdict(&finding.trust, &g->result);
+        is_exceeded |= wb_validate_bounds_exceeded(&g->result);
+    }
+    if (n == 0)
+        return;
+    if (n_same == n_all)
+        wb_text_append(&finding.trust, "no: the calibration used these tests, so they do not test "
+                                       "the law");
+    else if (n_same > 0)
+        wb_text_append(&finding.trust,
+                       "; the calibration used %d of these %d tests, which do not test the law",
+                       n_same, n_all);
+    if (is_exceeded)
+        wb_text_append(&finding.next, "compare length, zeros and batch of these specimens with "
+                                      "those of the calibration; then calibrate on both");
+    else if (n_same == n_all)
+        wb_text_append(&finding.next, "validate with specimens of another length");
+    else
+        wb_text_append(&finding.next,
+                       "wirebench export %s --to table -o CARD.json, for other programs",
+                       o->common.input);
+    wb_finding_print(&finding);
+}
+
 static int deliver(const struct options *o, const struct wb_properties *properties,
                    const struct groups *groups)
 {
     bool complete = true;
+    char figure[WB_PATH] = "";
     if (o->common.output) {
-        const enum wb_status status = write_tables(o, groups);
+        enum wb_status status = write_tables(o, groups);
+        if (status == WB_OK && !o->common.no_figure)
+            status = draw_groups(o, groups, figure);
         if (status != WB_OK)
             return wb_command_exit(status);
     }
@@ -349,6 +487,8 @@ static int deliver(const struct options *o, const struct wb_properties *properti
         complete = complete && (g->is_three_point ? g->three_point.n_used == g->three_point.n_tests
                                                   : prediction->n_reached == prediction->n);
     }
+    if (!o->common.json)
+        print_finding(o, properties, groups, figure);
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 

@@ -60,7 +60,7 @@ void wb_finding_print(struct wb_finding *finding)
 void wb_finding_append_quantity(struct wb_text *text, const struct wb_properties *properties,
                                 enum wb_quantity_id id, int k)
 {
-    const struct wb_quantity *const row = &wb_quantities[id];
+    const struct wb_quantity *const row = &wb_quantity_rows[id];
     const struct wb_quantity_values values = wb_quantity_values(properties, id);
     const struct wb_estimate *const e = &values.estimate[k];
     char label[WB_QUANTITY_LABEL], a[WB_PRINT_NUMBER], b[WB_PRINT_NUMBER], c[WB_PRINT_NUMBER];
@@ -77,6 +77,11 @@ void wb_finding_append_quantity(struct wb_text *text, const struct wb_properties
                        wb_print_number(e->candidates_low / row->scale, b),
                        wb_print_number(e->candidates_high / row->scale, c), space, row->unit);
     }
+}
+
+const char *wb_finding_source(const struct wb_test_info *info)
+{
+    return info->is_virtual ? "virtual rig" : info->is_simulation ? "simulation" : "measured";
 }
 
 const char *wb_finding_figure_path(char path[WB_PATH], const char *output)

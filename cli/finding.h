@@ -4,7 +4,7 @@
 #ifndef WB_CLI_FINDING_H
 #define WB_CLI_FINDING_H
 
-#include "analysis/calibration/properties/quantities.h"
+#include "analysis/calibration/properties/quantity.h"
 #include "base/file.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -22,6 +22,9 @@ void wb_finding_print(struct wb_finding *finding);
  * range over laws where no value is known. `k` is the index of its curvature. */
 void wb_finding_append_quantity(struct wb_text *text, const struct wb_properties *properties,
                                 enum wb_quantity_id id, int k);
+
+/* Where tests come from: "measured", "virtual rig" or "simulation". */
+const char *wb_finding_source(const struct wb_test_info *info);
 
 /* The figure's path beside an output file: its name with the ending .svg. */
 const char *wb_finding_figure_path(char path[WB_PATH], const char *output);

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/calibration/properties/quantities.h"
+#include "analysis/calibration/properties/quantity.h"
 
 int wb_print_decimals(double value, int digits)
 {
@@ -51,7 +51,7 @@ void wb_print_quantities(const struct wb_properties *properties, const char *ran
             if (wb_quantity_is_known(&values.estimate[k]))
                 print_estimate(
                     wb_quantity_label(id, values.curvature ? values.curvature[k] : 0.0, label),
-                    &wb_quantities[id], &values.estimate[k], range);
+                    &wb_quantity_rows[id], &values.estimate[k], range);
         }
     }
 }

@@ -86,7 +86,7 @@ static enum wb_status scale_to_curvature(const struct wb_properties *p, double c
 
 static void begin(struct wb_compare_quantity *q, enum wb_quantity_id id, double curvature)
 {
-    *q = (struct wb_compare_quantity){.row = &wb_quantities[id]};
+    *q = (struct wb_compare_quantity){.row = &wb_quantity_rows[id]};
     wb_quantity_label(id, curvature, q->name);
 }
 

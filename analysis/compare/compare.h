@@ -13,7 +13,7 @@
 #include <stdbool.h>
 
 #include "analysis/calibration/properties/properties.h"
-#include "analysis/calibration/properties/quantities.h"
+#include "analysis/calibration/properties/quantity.h"
 #include "analysis/compare/welch.h"
 #include "base/json.h"
 #include "base/status.h"

@@ -143,6 +143,32 @@ done
 within "$(number cycle.json data_step_mm)" 1 1
 within "$(number cycle.json length_mm)" 85 85
 
+# The last lines: what was found, whether to trust it, the figure, the next command.
+"$wirebench" calibrate cycle -o found.yaml >said || fail 'calibrate cycle -o'
+for line in '^found .*type3 (simulation, 1 specimen): M at .* N mm.*; unloading stiffness over 1 1/m .* N mm2.*; residual curvature ratio 0' \
+    '^trust .*for this specimen: Ludwik, isotropic, fits .* one specimen cannot show' '^figure *found\.svg$' '^next .*two more specimens'; do
+    tail -4 said | grep -q "$line" || fail "no line '$line' at the end: $(tail -5 said)"
+done
+[ "$(grep -c '<path' found.svg)" -gt 10 ] || fail 'the figure is empty'
+rm found.yaml
+expect 1 'found.svg' "$wirebench" calibrate cycle -o found.yaml
+[ -e found.yaml ] && fail 'properties were written beside a figure that is in the way'
+expect 0 'found ' "$wirebench" calibrate cycle -o found.yaml --no-figure
+expect 0 'found.svg' "$wirebench" calibrate cycle -o found.yaml --force
+script -qec "stty cols 60; '$wirebench' calibrate cycle" /dev/null | tr -d '\r' >said
+tail -12 said | sed -n '/^found/,$p' | awk 'length > 60 { exit 1 }' || fail "a line is longer than the terminal: $(tail -12 said)"
+[ "$(sed -n '/^found/,$p' said | grep -c '^        [^ ]')" -ge 3 ] || fail "no wrapped lines: $(tail -12 said)"
+
+# The tests of the calibration itself do not test it.
+expect 0 'the calibration used these tests' "$wirebench" validate found.yaml cycle -o predicted
+[ -s predicted/type3-L85.svg ] || fail 'no figure of the prediction'
+tail -4 <("$wirebench" validate found.yaml L100 -o predicted2) >said
+for line in '^found .*type3 at L = 100 mm (simulation, 1 specimen): RMS error of the loading' '^trust ' '^figure *predicted2/type3-L100.svg' '^next '; do
+    grep -q "$line" said || fail "no line '$line': $(cat said)"
+done
+"$wirebench" validate found.yaml L100 -o predicted3 --no-figure >said || fail 'validate --no-figure'
+[ -e predicted3/type3-L100.svg ] && fail 'a figure despite --no-figure'
+
 # Loading alone: Ludwik's law, no residual curvature ratio.
 expect 0 'hardening rule is untested' "$wirebench" calibrate L85
 "$wirebench" calibrate L85 -o loading.yaml >said || fail 'calibrate L85'

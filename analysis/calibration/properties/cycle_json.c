@@ -4,7 +4,7 @@
 
 #include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/properties/properties.h"
-#include "analysis/calibration/properties/quantities.h"
+#include "analysis/calibration/properties/quantity.h"
 #include "base/units.h"
 #include "fe/material/law_json.h"
 
@@ -106,7 +106,7 @@ void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration
 {
     struct wb_properties properties;
     wb_properties_from_cycle(c, &properties);
-    wb_quantities_put(object, &properties);
+    wb_quantity_put(object, &properties);
     wb_json_set_boolean(object, "flexural_rigidity_resolved", c->is_rigidity_resolved);
     wb_json_set_number(object, "largest_curvature_1_m", c->largest_curvature);
     put_rule(wb_json_set_object(object, "hardening_rule"), c);

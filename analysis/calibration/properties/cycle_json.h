@@ -5,7 +5,7 @@
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "base/json.h"
 
-/* Sets the quantities (quantities.h), the hardening rule, the law, the specimens and the budget as
+/* Sets the quantities (quantity.h), the hardening rule, the law, the specimens and the budget as
  * members of `object`. Unknown numbers are null. */
 void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration *calibration);
 

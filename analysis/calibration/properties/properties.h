@@ -16,7 +16,7 @@
  *
  *     method: cycle
  *     law: {...}     # fe/material/law_file.h; the four numbers are then its equivalent
- *     ...: the quantities of quantities.h, each {value: 210, low: 200, high: 221,
+ *     ...: the quantities of quantity.h, each {value: 210, low: 200, high: 221,
  *          candidates_low: 209, ...} or a list of these at several curvatures
  *     largest_curvature_1_m: 29
  *     hardening_rule: {chosen: ..., supported: true, ...}

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "analysis/calibration/properties/properties_private.h"
-#include "analysis/calibration/properties/quantities.h"
+#include "analysis/calibration/properties/quantity.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -255,7 +255,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_CONFIG_OPTIONAL_NODE("hardening_rule", &rule),
         WB_CONFIG_OPTIONAL_NODE("specimens", &specimens),
         WB_CONFIG_OPTIONAL_NODE("three_point", &three_point),
-#define QUANTITY(id) WB_CONFIG_OPTIONAL_NODE(wb_quantities[id].key, &quantities[id])
+#define QUANTITY(id) WB_CONFIG_OPTIONAL_NODE(wb_quantity_rows[id].key, &quantities[id])
         QUANTITY(WB_QUANTITY_MOMENT),
         QUANTITY(WB_QUANTITY_UNLOADING_STIFFNESS),
         QUANTITY(WB_QUANTITY_RESIDUAL_CURVATURE_RATIO),
@@ -280,7 +280,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         quantities[WB_QUANTITY_RESIDUAL_CURVATURE_RATIO] = old_ratio;
     for (enum wb_quantity_id id = 0; id < WB_QUANTITIES; id++) {
         if (quantities[id])
-            WB_TRY(read_quantity(quantities[id], &wb_quantities[id], properties));
+            WB_TRY(read_quantity(quantities[id], &wb_quantity_rows[id], properties));
     }
     if (rule)
         WB_TRY(read_rule(rule, properties));

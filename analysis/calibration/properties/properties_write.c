@@ -5,7 +5,7 @@
 
 #include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/properties/properties_private.h"
-#include "analysis/calibration/properties/quantities.h"
+#include "analysis/calibration/properties/quantity.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -196,7 +196,7 @@ static void append_estimate(struct wb_text *text, const struct wb_quantity *row,
 static void put_quantities(struct wb_text *text, const struct wb_properties *p)
 {
     for (enum wb_quantity_id id = 0; id < WB_QUANTITIES; id++) {
-        const struct wb_quantity *const row = &wb_quantities[id];
+        const struct wb_quantity *const row = &wb_quantity_rows[id];
         const struct wb_quantity_values values = wb_quantity_values(p, id);
         if (values.n == 0 || !wb_quantity_is_known(&values.estimate[0]))
             continue;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "analysis/report/bench/recordings_draw.h"
+#include "analysis/report/draw/figures_compared.h"
 #include "analysis/report/draw/figures_cycle.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
@@ -153,49 +154,13 @@ enum wb_status wb_recordings_cycle_figures_residuals(struct wb_figures_item *ite
 
 /* --- later cycles --- */
 
-/* Forces beside each other, and what parts them. */
-struct compared {
-    struct wb_panel *forces, *errors;
-    double max_force; /* N */
-};
-
-static void start_compared(struct compared *to, struct wb_figure *figure, const char *force_label,
-                           double max_force)
-{
-    to->forces = wb_figure_add_panel(figure);
-    to->errors = wb_figure_add_panel(figure);
-    to->max_force = max_force;
-    wb_figure_set_axes(to->forces, deflection_axis, force_label);
-    wb_figure_set_axes(to->errors, deflection_axis, "Error (% of <i>F</i><sub>max</sub>)");
-}
-
-/* A way or a cycle: `label` of the measured points and of their error, `line` (NULL: none) of what
- * is computed. Odd ones have rings and broken lines. x in mm, forces in mN. */
-static void add_compared(const struct compared *to, const char *label, const char *line, int n,
-                         const double *x, const double *measured, const double *computed,
-                         struct wb_colour colour, bool is_odd)
-{
-    double *const error = columns_of(1, n);
-    for (int i = 0; i < n; i++)
-        error[i] = 100.0 * WB_MN * (computed[i] - measured[i]) / to->max_force;
-    const struct wb_figure_style points = {
-        .colour = colour, .marker = is_odd ? WB_MARKER_RING : WB_MARKER_CIRCLE, .marker_size = 3.0};
-    const struct wb_figure_style ink = {.colour = wb_palette_ink(), .width = 0.9};
-    const struct wb_figure_style thin = {
-        .colour = colour, .width = 1.0, .dash = is_odd ? WB_DASH_DASHED : WB_DASH_SOLID};
-    wb_figure_add_line(to->forces, label, (size_t)n, x, measured, &points);
-    wb_figure_add_line(to->forces, line, (size_t)n, x, computed, &ink);
-    wb_figure_add_line(to->errors, label, (size_t)n, x, error, &thin);
-    free(error);
-}
-
 static void add_later(struct wb_figure *figure, const struct wb_cycle_later *later,
                       double max_force)
 {
     double *const x = columns_of(3, later->n), *const measured = x + later->n;
     double *const computed = x + 2 * later->n;
-    struct compared to;
-    start_compared(&to, figure, "Tension (mN)", max_force);
+    struct wb_figures_compared to;
+    wb_figures_compared_start(&to, figure, "Tension (mN)", max_force);
     for (int cycle = 2; cycle <= later->n_cycles; cycle++) {
         int n = 0;
         for (int i = 0; i < later->n; i++) {
@@ -208,8 +173,9 @@ static void add_later(struct wb_figure *figure, const struct wb_cycle_later *lat
         }
         char label[40];
         snprintf(label, sizeof label, "cycle %d", cycle);
-        add_compared(&to, label, cycle == later->n_cycles ? "predicted" : NULL, n, x, measured,
-                     computed, wb_palette_sequence(cycle - 2, later->n_cycles), cycle % 2 != 0);
+        wb_figures_compared_add(&to, label, cycle == later->n_cycles ? "predicted" : NULL, n, x,
+                                measured, computed, wb_palette_sequence(cycle - 2, later->n_cycles),
+                                cycle % 2 != 0);
     }
     free(x);
 }
@@ -246,36 +212,6 @@ enum wb_status wb_recordings_cycle_figures_later(struct wb_figures_item *item)
 
 /* --- the other length --- */
 
-static void add_prediction(struct wb_figure *figure, const struct wb_validate_result *result,
-                           struct wb_colour colour)
-{
-    const struct wb_curve *const curve = &result->curve;
-    const struct wb_validate_cycles *const back = &result->cycles;
-    const int most = curve->n > back->n ? curve->n : back->n;
-    double *const x = columns_of(3, most), *const measured = x + most,
-                  *const computed = x + 2 * most;
-    struct compared to;
-    int n = 0;
-    start_compared(&to, figure, "Force <i>F</i> (mN)", curve->max_force);
-    /* Points as far apart as those of the way back, and no others than the beam reached. */
-    const int every = (int)fmax(1.0, round(WB_MM / curve->step));
-    for (int i = 0; i < result->elastoplastic.n_reached; i += every) {
-        x[n] = i * curve->step / WB_MM;
-        measured[n] = curve->force[i] / WB_MN;
-        computed[n++] = result->elastoplastic.force[i] / WB_MN;
-    }
-    add_compared(&to, "loading", back->n > 0 ? NULL : "predicted", n, x, measured, computed, colour,
-                 false);
-    for (int i = 0; i < back->n; i++) {
-        x[i] = back->deflection[i] / WB_MM;
-        measured[i] = back->measured[i] / WB_MN;
-        computed[i] = back->computed[i] / WB_MN;
-    }
-    if (back->n > 0)
-        add_compared(&to, "unloading", "predicted", back->n, x, measured, computed, colour, true);
-    free(x);
-}
-
 enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *item)
 {
     const struct wb_recordings_results_wire *const wire =
@@ -298,7 +234,7 @@ enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *it
         wb_text_append(&item->caption, ", %.2f %% on unloading", 100.0 * result->cycles.rms);
     wb_text_append(&item->caption,
                    ". Forces less that at zero deflection; right: computed less measured.");
-    add_prediction(item->figure, result, wb_palette_wire(item->index));
+    wb_figures_compared_prediction(item->figure, result, wb_palette_wire(item->index));
     return WB_OK;
 }
 

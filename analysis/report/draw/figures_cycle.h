@@ -14,8 +14,8 @@ enum {
 int wb_figures_cycle_points(const struct wb_cycle_member *member, const struct wb_cycle_fit *fit,
                             bool is_unloading, double *x, double *measured, double *computed);
 
-/* Adds a panel for each of the first WB_FIGURES_CYCLE_MOST specimens, with its own fit of the chosen
- * law; every third point is drawn. */
+/* Adds a panel for each of the first WB_FIGURES_CYCLE_MOST specimens, with its own fit of the
+ * chosen law; every third point is drawn. */
 void wb_figures_cycle_add_panels(struct wb_figure *figure,
                                  const struct wb_cycle_calibration *calibration,
                                  struct wb_colour colour);

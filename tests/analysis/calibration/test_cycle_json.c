@@ -356,7 +356,7 @@ static void what_is_wrong_is_refused_by_line_and_key(void **state)
         {"residual_curvature_ratio: {value: 0.27", "residual_curvature_ratio: {value: 1.27",
          "value"},
         {"residual_curvature_ratio: {value", "residual_curvature_ratio: {colour", "colour"},
-        {"\n    curvature_1_m: 29", "\n    curvature_1_m: 1", "curvature_1_m"},
+        {"\n  - {curvature_1_m: 29", "\n  - {curvature_1_m: 1", "curvature_1_m"},
         {"tested: true", "tested: maybe", "tested"},
         {"\n  - sample: 2", "\n  - sample: -2", "sample"},
         {"\n    bow_mm: ", "\n    bow_mm: nan #", "bow_mm"},

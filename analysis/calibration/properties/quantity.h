@@ -4,8 +4,8 @@
  * One row describes a quantity. Properties files, JSON, the terminal and comparisons walk the rows,
  * so that a quantity has one key, one name and one unit everywhere.
  */
-#ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_QUANTITIES_H
-#define WB_ANALYSIS_CALIBRATION_PROPERTIES_QUANTITIES_H
+#ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_QUANTITY_H
+#define WB_ANALYSIS_CALIBRATION_PROPERTIES_QUANTITY_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,7 +41,7 @@ struct wb_quantity {
     size_t resolved;  /* the smallest curvature that the data resolve, 1/m; 0: not stated */
 };
 
-extern const struct wb_quantity wb_quantities[WB_QUANTITIES];
+extern const struct wb_quantity wb_quantity_rows[WB_QUANTITIES];
 
 /* What properties state of a quantity; borrowed. An estimate that is unknown is NaN. */
 struct wb_quantity_values {
@@ -64,6 +64,6 @@ const char *wb_quantity_label(enum wb_quantity_id id, double curvature,
                               char label[WB_QUANTITY_LABEL]);
 
 /* Sets a member for each quantity; unknown numbers are null. */
-void wb_quantities_put(struct wb_json *object, const struct wb_properties *properties);
+void wb_quantity_put(struct wb_json *object, const struct wb_properties *properties);
 
 #endif

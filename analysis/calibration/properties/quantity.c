@@ -1,4 +1,4 @@
-#include "analysis/calibration/properties/quantities.h"
+#include "analysis/calibration/properties/quantity.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
     .estimate = AT(field.estimate), .most = WB_CYCLE_STIFFNESSES, .n = AT(field.n),                \
     .curvature = AT(field.curvature), .resolved = AT(field.resolved)
 
-const struct wb_quantity wb_quantities[WB_QUANTITIES] = {
+const struct wb_quantity wb_quantity_rows[WB_QUANTITIES] = {
     [WB_QUANTITY_MOMENT] = {"moment_curvature", "moment_N_mm", "M at", "N mm", WB_NMM, 1e9,
                             .estimate = AT(moment), .most = WB_PROPERTIES_MOST_MOMENTS,
                             .n = AT(n_moments), .curvature = AT(curvature)},
@@ -32,7 +32,7 @@ const struct wb_quantity wb_quantities[WB_QUANTITIES] = {
 struct wb_quantity_values wb_quantity_values(const struct wb_properties *properties,
                                              enum wb_quantity_id id)
 {
-    const struct wb_quantity *const row = &wb_quantities[id];
+    const struct wb_quantity *const row = &wb_quantity_rows[id];
     const char *const base = (const char *)properties;
     struct wb_quantity_values values = {
         .n = 1,
@@ -56,7 +56,7 @@ bool wb_quantity_is_known(const struct wb_estimate *estimate)
 const char *wb_quantity_label(enum wb_quantity_id id, double curvature,
                               char label[WB_QUANTITY_LABEL])
 {
-    const struct wb_quantity *const row = &wb_quantities[id];
+    const struct wb_quantity *const row = &wb_quantity_rows[id];
     if (row->most > 0)
         snprintf(label, WB_QUANTITY_LABEL, "%s %.4g 1/m", row->name, curvature);
     else
@@ -74,10 +74,10 @@ static void put_estimate(struct wb_json *object, const struct wb_quantity *row,
     wb_json_set_number(object, "candidates_high", e->candidates_high / row->scale);
 }
 
-void wb_quantities_put(struct wb_json *object, const struct wb_properties *properties)
+void wb_quantity_put(struct wb_json *object, const struct wb_properties *properties)
 {
     for (enum wb_quantity_id id = 0; id < WB_QUANTITIES; id++) {
-        const struct wb_quantity *const row = &wb_quantities[id];
+        const struct wb_quantity *const row = &wb_quantity_rows[id];
         const struct wb_quantity_values values = wb_quantity_values(properties, id);
         if (row->most == 0) {
             put_estimate(wb_json_set_object(object, row->key), row, values.estimate);
