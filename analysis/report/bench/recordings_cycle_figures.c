@@ -464,7 +464,7 @@ enum wb_status wb_recordings_cycle_figures_moments(struct wb_figures_item *item)
     wb_text_append(
         &item->caption,
         "Moment over curvature of the chosen law with the interval of its mean (95 %%), "
-        "and where the wire would come to rest if it were let go at the end. Dots: from "
+        "and the residual curvature after unloading from its end. Dots: from "
         "shapes and tension, %s, without any law; they are no data of the fit. Grey: range "
         "of the same where the wire is bent too little to see how much.",
         measured_of(item));
@@ -474,7 +474,7 @@ enum wb_status wb_recordings_cycle_figures_moments(struct wb_figures_item *item)
     add_cloud_band(panel, cycle);
     add_cloud(panel, cycle);
     add_law(panel, "law", "95 %", cycle, wb_palette_wire(item->index));
-    add_rest(panel, "let go", cycle, wb_palette_ink());
+    add_rest(panel, "unloaded", cycle, wb_palette_ink());
     return WB_OK;
 }
 
@@ -494,7 +494,7 @@ enum wb_status wb_recordings_cycle_figures_all_moments(struct wb_figures_item *i
             wb_text_append(&item->caption,
                            "Moment over curvature of the first loading, by the chosen laws, with "
                            "the interval of the mean of the samples (95 %%). Triangles: the "
-                           "curvature that is left when the wire is let go at the end.");
+                           "residual curvature after unloading from the end of the curve.");
             panel = add_moment_panel(item->figure);
         }
         wb_pages_escape(label, sizeof label, wire->wanted->label);

@@ -41,6 +41,172 @@ static double best_misfit(const struct wb_cycle_calibration *c)
 
 /* --- the first page --- */
 
+static void append_estimate(struct wb_text *text, const char *name, const struct wb_estimate *e,
+                            double unit, const char *unit_name)
+{
+    const int decimals = wb_pages_decimals(e->value / unit);
+    wb_text_append(text, "%s = %.*f%s", name, decimals, e->value / unit, unit_name);
+    if (isfinite(e->low))
+        wb_text_append(text, " (%.*f to %.*f)", decimals, e->low / unit, decimals, e->high / unit);
+}
+
+/* "Type 1: moment ..., stiffness ..., residual curvature ratio ...". */
+static void append_properties(struct wb_text *text, const struct wb_cycle_calibration *c)
+{
+    const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
+    const struct wb_estimate *const ratio = &c->residual_curvature_ratio;
+    if (c->has_unloading && !c->is_followed) {
+        wb_text_append(
+            text,
+            "no law fits loading and unloading (%.1f %% of <i>F</i><sub>max</sub>); "
+            "unloading stiffness between %.*f and %.*f N mm\xc2\xb2, residual curvature "
+            "ratio between %.2f and %.2f.",
+            100.0 * best_misfit(c), wb_pages_decimals(stiffness->candidates_low / WB_NMM2),
+            stiffness->candidates_low / WB_NMM2,
+            wb_pages_decimals(stiffness->candidates_high / WB_NMM2),
+            stiffness->candidates_high / WB_NMM2, ratio->candidates_low, ratio->candidates_high);
+        return;
+    }
+    append_estimate(text, c->has_unloading ? "unloading stiffness" : "secant stiffness", stiffness,
+                    WB_NMM2, " N mm\xc2\xb2");
+    if (c->has_unloading)
+        append_estimate(text, ", residual curvature ratio", ratio, 1.0, "");
+    else
+        wb_text_append(text, "; unloading was not recorded");
+    wb_text_append(text, ", bent to %.0f /m.", c->largest_curvature);
+}
+
+/* Whether specimens of the other length are predicted: the numbers of the bound that is exceeded
+ * most, else those of the loading. */
+static void append_prediction(struct wb_text *text, const struct wb_validate_result *p)
+{
+    const struct wb_validate_bound *worst = &p->bounds[WB_VALIDATE_LOADING];
+    enum wb_validate_part part = WB_VALIDATE_LOADING;
+    for (int k = 0; k < WB_VALIDATE_PARTS; k++) {
+        const struct wb_validate_bound *const bound = &p->bounds[k];
+        if (bound->is_exceeded &&
+            !(worst->is_exceeded && bound->found / bound->bound < worst->found / worst->bound)) {
+            worst = bound;
+            part = (enum wb_validate_part)k;
+        }
+    }
+    const bool is_length = part == WB_VALIDATE_RESIDUAL || part == WB_VALIDATE_SHAPES;
+    const double unit = is_length ? WB_MM : WB_PERCENT;
+    wb_text_append(text, " Specimens of %g mm are predicted: ", p->info.length / WB_MM);
+    if (!isfinite(worst->bound)) {
+        wb_text_append(text,
+                       "undecided; loading within %.2g %% of <i>F</i><sub>max</sub>, without a "
+                       "bound, as one specimen does not show the scatter.",
+                       p->elastoplastic.rms / WB_PERCENT);
+        return;
+    }
+    wb_text_append(text,
+                   worst->is_exceeded ? "<b>no</b>; %s %.2g %s, where the scatter of specimens "
+                                        "explains %.2g."
+                                      : "<b>yes</b>; %s within %.2g %s, where the scatter of "
+                                        "specimens explains %.2g.",
+                   wb_validate_part_name(part), worst->found / unit,
+                   is_length ? "mm" : "% of <i>F</i><sub>max</sub>", worst->bound / unit);
+}
+
+static void put_wire_found(struct wb_document *document,
+                           const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+    const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
+    struct wb_text text = {0};
+    wb_text_append(&text, "<b>");
+    wb_text_append_escaped(&text, wire->wanted->label);
+    wb_text_append(&text, "</b>: ");
+    if (cycle)
+        append_properties(&text, &cycle->calibration);
+    else
+        wb_text_append(&text, "not calibrated; the reason stands below.");
+    if (p)
+        append_prediction(&text, p);
+    const bool is_good =
+        cycle && cycle->calibration.is_followed && !(p && wb_validate_bounds_exceeded(p));
+    wb_pages_put_text(document, WB_BLOCK_ITEM, is_good ? WB_TONE_PLAIN : WB_TONE_WARNING, &text);
+}
+
+/* Smallest and largest RMS of the unloading, of one route or the other. */
+struct span {
+    double low, high; /* 1 */
+    int n;
+};
+
+static void add_to_span(struct span *span, const struct wb_validate_result *p)
+{
+    if (!p || p->cycles.n_samples == 0 || !isfinite(p->cycles.rms))
+        return;
+    span->low = span->n > 0 ? fmin(span->low, p->cycles.rms) : p->cycles.rms;
+    span->high = span->n > 0 ? fmax(span->high, p->cycles.rms) : p->cycles.rms;
+    span->n++;
+}
+
+/* Which of the two methods predicts the unloading, and how many specimens are missing. */
+static void put_advice(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    struct span cycle = {0.0, 0.0, 0}, paper = {0.0, 0.0, 0};
+    struct wb_text text = {0};
+    for (int i = 0; i < results->n_wires; i++) {
+        add_to_span(&cycle, wb_recordings_results_prediction(&results->wires[i]));
+        add_to_span(&paper, wb_recordings_results_of(&results->wires[i], WB_RECORDINGS_VALIDATION));
+    }
+    if (cycle.n > 0 && paper.n > 0) {
+        const bool is_better = cycle.high <= paper.high;
+        wb_text_append(&text,
+                       "<b>Method</b>: use the law of %s. On unloading, the law of loading and "
+                       "unloading misses %.1f to %.1f %% of <i>F</i><sub>max</sub>, the paper's "
+                       "route, fitted to the loading alone, %.1f to %.1f %%.",
+                       is_better ? "loading and unloading" : "the paper's route",
+                       cycle.low / WB_PERCENT, cycle.high / WB_PERCENT, paper.low / WB_PERCENT,
+                       paper.high / WB_PERCENT);
+        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
+    }
+    bool any = false;
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_cycle *const of =
+            wb_recordings_results_cycle(&results->wires[i]);
+        if (!of || of->calibration.specimens_for_5_percent <= of->calibration.n_members)
+            continue;
+        wb_text_append(&text, any ? ", "
+                                  : "<b>Test next</b>: for EI within \xc2\xb1"
+                                    "5 %%, ");
+        wb_text_append(&text, "%d specimens of ", of->calibration.specimens_for_5_percent);
+        wb_text_append_escaped(&text, results->wires[i].wanted->label);
+        wb_text_append(&text, " (%d tested)", of->calibration.n_members);
+        any = true;
+    }
+    if (any) {
+        wb_text_append(&text, ".");
+        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
+    }
+    wb_text_release(&text);
+}
+
+bool wb_recordings_cycle_pages_found(struct wb_document *document,
+                                     const struct wb_recordings_results *results,
+                                     const struct wb_figures *figures)
+{
+    bool is_predicted = true;
+    if (!results->campaign->whole_cycle)
+        return is_predicted;
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_validate_result *const p =
+            wb_recordings_results_prediction(&results->wires[i]);
+        put_wire_found(document, &results->wires[i]);
+        is_predicted = is_predicted && !(p && wb_validate_bounds_exceeded(p));
+    }
+    put_advice(document, results);
+    wb_document_paragraph(document,
+                          "In brackets: intervals of 95 %. Unloading stiffness: change of "
+                          "the moment over the change of the curvature, over the first "
+                          "1 /m from the largest curvature.");
+    wb_figures_put(figures, document, "bending", 0);
+    return is_predicted;
+}
+
 static void put_verdict(struct wb_document_table *table, const struct wb_cycle_calibration *c)
 {
     if (!c->has_unloading)
@@ -435,8 +601,7 @@ static void put_failures(struct wb_document *document, const struct wb_recording
 }
 
 void wb_recordings_cycle_pages_summary(struct wb_document *document,
-                                       const struct wb_recordings_results *results,
-                                       const struct wb_figures *figures)
+                                       const struct wb_recordings_results *results)
 {
     bool any = false, any_prediction = false;
     if (!results->campaign->whole_cycle)
@@ -450,7 +615,6 @@ void wb_recordings_cycle_pages_summary(struct wb_document *document,
         put_stiffnesses(document, results);
     }
     put_failures(document, results);
-    wb_figures_put(figures, document, "bending", 0);
     for (int i = 0; i < results->n_wires; i++)
         any_prediction |= wb_recordings_results_prediction(&results->wires[i]) != NULL;
     if (any_prediction)
@@ -458,15 +622,6 @@ void wb_recordings_cycle_pages_summary(struct wb_document *document,
 }
 
 /* --- one wire --- */
-
-static void append_estimate(struct wb_text *text, const char *name, const struct wb_estimate *e,
-                            double unit, const char *unit_name)
-{
-    const int decimals = wb_pages_decimals(e->value / unit);
-    wb_text_append(text, "%s = %.*f%s", name, decimals, e->value / unit, unit_name);
-    if (isfinite(e->low))
-        wb_text_append(text, " (%.*f to %.*f)", decimals, e->low / unit, decimals, e->high / unit);
-}
 
 static void put_answer(struct wb_document *document, const struct wb_recordings_cycle *cycle)
 {

@@ -123,7 +123,9 @@ static void put_verdict(struct wb_document *document, const struct wb_recordings
     wb_pages_put_text(document, WB_BLOCK_ITEM, is_kept ? WB_TONE_GOOD : WB_TONE_WARNING, &text);
 }
 
-static void put_limits(struct wb_document *document, const struct wb_recordings_results *results)
+/* Limits judge the paper's route: no green box where a prediction of the other one fails. */
+static void put_limits(struct wb_document *document, const struct wb_recordings_results *results,
+                       bool is_predicted)
 {
     const double *const limit = results->campaign->limit;
     int judged = 0;
@@ -155,7 +157,10 @@ static void put_limits(struct wb_document *document, const struct wb_recordings_
                            limit[k]);
     }
     wb_text_append(&text, " of <i>F</i><sub>max</sub>.");
-    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_GOOD, &text);
+    if (!is_predicted)
+        wb_text_append(&text, " They do not judge the predictions above.");
+    wb_pages_put_text(document, WB_BLOCK_NOTICE, is_predicted ? WB_TONE_GOOD : WB_TONE_QUIET,
+                      &text);
 }
 
 /* Why a step of a wire could not be done; NULL: it was, or there is none. */
@@ -463,11 +468,12 @@ static void put_excluded(struct wb_document *document, const struct wb_recording
 static void put_summary(struct wb_document *document, const struct wb_recordings_results *results,
                         const struct wb_figures *figures)
 {
-    wb_document_heading(document, 1, "summary", "Summary");
+    wb_document_heading(document, 1, "summary", "What was found");
     put_origin(document, results);
-    put_limits(document, results);
+    const bool is_predicted = wb_recordings_cycle_pages_found(document, results, figures);
+    put_limits(document, results, is_predicted);
     put_missing(document, results);
-    wb_recordings_cycle_pages_summary(document, results, figures);
+    wb_recordings_cycle_pages_summary(document, results);
     put_properties(document, results);
     put_merits(document, results);
     put_excluded(document, results);

@@ -12,6 +12,8 @@
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_kind.h"
 #include "analysis/report/bench/recordings_results_private.h"
+#include "analysis/report/pages.h"
+#include "analysis/validation/validate_bounds.h"
 #include "base/interrupt_private.h"
 #include "base/json.h"
 #include "tests/analysis/report/report_folder.h"
@@ -303,6 +305,35 @@ static void the_html_page_needs_no_other_file_and_escapes_what_comes_from_files(
     assert_non_null(strstr(html, "id=\"type1-cycles-0\""));
     assert_non_null(strstr(html, "id=\"type1-samples-0\""));
     assert_null(strstr(html, "id=\"glyph"));
+    free(html);
+}
+
+static void the_first_page_says_what_was_found(void **state)
+{
+    const struct good *const good = *state;
+    char *const html = read_text("once/report.html", NULL);
+    const char *const found = strstr(html, "What was found");
+    assert_non_null(found);
+    assert_true(found < strstr(html, "Bending properties, from loading and unloading"));
+    for (int i = 0; i < good->results.n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &good->results.wires[i];
+        const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+        const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
+        char label[80], text[200];
+        assert_true(cycle && p);
+        snprintf(text, sizeof text, "%s</b>: %s stiffness = ",
+                 wb_pages_escape(label, sizeof label, wire->wanted->label),
+                 cycle->calibration.has_unloading ? "unloading" : "secant");
+        const char *const sentence = strstr(found, text);
+        assert_non_null(sentence);
+        assert_close_relative(strtod(sentence + strlen(text), NULL),
+                              wb_recordings_cycle_stiffness(&cycle->calibration)->value / WB_NMM2,
+                              5e-3);
+        const char *const verdict = strstr(sentence, "are predicted: ");
+        assert_non_null(verdict);
+        assert_true(strncmp(strstr(verdict, "<b>"),
+                            wb_validate_bounds_exceeded(p) ? "<b>no</b>" : "<b>yes</b>", 9) == 0);
+    }
     free(html);
 }
 
@@ -747,6 +778,7 @@ int main(void)
         cmocka_unit_test(every_output_says_virtual_rig_and_none_says_experiment),
         cmocka_unit_test(cards_are_those_of_the_properties_beside_them),
         cmocka_unit_test(the_html_page_needs_no_other_file_and_escapes_what_comes_from_files),
+        cmocka_unit_test(the_first_page_says_what_was_found),
         cmocka_unit_test(recordings_with_gaps_are_counted_in_one_line),
         cmocka_unit_test(the_capacity_is_what_weighs_so_much_on_that_bench),
         cmocka_unit_test(a_slack_strand_or_a_gap_breaks_the_line),
