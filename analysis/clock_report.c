@@ -19,7 +19,7 @@
 /* --- making --- */
 
 /* The next reversal of the dataset's rows from *at on: the last row of a cycle's way there that is
- * followed by its way back. */
+ * followed by its unloading. */
 static bool next_reversal(const struct wb_dataset *dataset, size_t *at,
                           struct wb_reversal *reversal)
 {

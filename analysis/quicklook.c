@@ -78,7 +78,7 @@ static bool find_bow(const struct wb_json *document, double *bow_mm, double *unc
            wb_json_get_number(natural, "bow_uncertainty_mm", uncertainty_mm);
 }
 
-/* Deflection at which the force on the first way back is zero, m; NaN: there is none. */
+/* Deflection at which the force on the first unloading is zero, m; NaN: there is none. */
 static double find_residual(const struct wb_dataset *dataset)
 {
     struct wb_cycle_data data;
@@ -232,7 +232,7 @@ static void add_curve(struct wb_panel *panel, const struct wb_dataset *dataset, 
         wb_figure_add_line(panel, label, line->n, line->x, line->y, &style);
 }
 
-/* Where the force is gone on the first way back: a ring, with the number in the legend. */
+/* Where the force is gone on the first unloading: a ring, with the number in the legend. */
 static void add_residual(struct wb_panel *panel, const struct wb_dataset *dataset)
 {
     const double residual = find_residual(dataset) / WB_MM, none = 0.0;

@@ -82,7 +82,7 @@ static void find_values(struct wb_series_test *test)
         return;
     test->values[WB_SERIES_STIFFNESS] = find_stiffness(&data);
     test->values[WB_SERIES_RESIDUAL] = data.residual_deflection;
-    /* Without a way back the area is not one of a loop. */
+    /* Without unloading the area is not one of a loop. */
     if (data.n_loading < data.n_points && wb_json_get_number(timing, "loop_area_mJ", &loop_mJ))
         test->values[WB_SERIES_LOOP] = loop_mJ * WB_MJ;
     wb_cycle_data_release(&data);

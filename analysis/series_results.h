@@ -18,7 +18,7 @@
 enum wb_series_quantity {
     WB_SERIES_PEAK_FORCE, /* N: largest force of the curve's rows */
     WB_SERIES_STIFFNESS,  /* N/m: least-squares slope up to a deflection of 0.05 of the length */
-    WB_SERIES_RESIDUAL,   /* m: deflection left at zero force on the way back */
+    WB_SERIES_RESIDUAL,   /* m: residual deflection: at zero force of the unloading */
     WB_SERIES_LOOP,       /* J: area of the loop above zero deflection */
     WB_SERIES_QUANTITIES
 };

@@ -58,7 +58,7 @@ static void print_text(const struct wb_machine_compliance *c, const struct wb_te
            c->of_readings / WB_MM, c->of_rigidity / WB_MM, c->of_friction / WB_MM);
     printf("readings are %.2g mm off their line\n", c->misfit / WB_MM);
     if (c->has_way_back)
-        printf("on the way back %.3g mm/N; %.2g of %.3g mm are left\n", c->value_back / WB_MM,
+        printf("during unloading %.3g mm/N; %.2g of %.3g mm are left\n", c->value_back / WB_MM,
                c->left / WB_MM, c->most_travel / WB_MM);
     if (c->is_told)
         printf("in the machine file:\ncompliance_mm_N: %.3g\n", c->value / WB_MM);
@@ -106,7 +106,7 @@ static int deliver(const struct options *o, const struct wb_machine_compliance *
     }
     if (!c->has_way_back)
         wb_warn(
-            "no way back was measured: a bar that yields early looks as straight, and makes the "
+            "no unloading was measured: a bar that yields early looks as straight, and makes the "
             "machine too soft; its outer fibre was strained by %.2g %%, so its steel must not "
             "yield below %.0f MPa",
             100.0 * c->strain, c->strain * youngs_modulus(&o->settings, info) / WB_MPA);

@@ -50,7 +50,7 @@ static void print_numbers(const struct wb_cycle_calibration *c,
 static void print_rule(const struct wb_cycle_calibration *c)
 {
     printf("law: %s; %s\n", wb_candidate_name(c->chosen),
-           !c->has_unloading ? "its hardening rule is untested: the tests have no way back"
+           !c->has_unloading ? "its hardening rule is untested: the tests have no unloading"
            : c->is_stopped   ? "undecided: stopped before all laws were fitted to all specimens"
            : c->is_followed  ? "it follows loading and unloading"
                              : "no law follows loading and unloading");
@@ -96,7 +96,7 @@ static void print_remedy(const struct wb_cycle_calibration *c)
                ceil(WB_CYCLE_SMALLEST_TRAVEL * length), WB_CYCLE_SMALLEST_TRAVEL,
                c->travel_share * length);
     else if (!c->has_unloading)
-        printf("; record the way back");
+        printf("; record the unloading");
     else
         printf("; a larger deflection tells more");
     printf("\n");
@@ -170,7 +170,7 @@ static void print_law(const struct wb_cycle_calibration *c)
     print_correlation(c);
     if (wb_law_is_plain(law))
         return;
-    printf("Ludwik equivalent, isotropic, of the first loading (misfit %.2f %% of M; its way back "
+    printf("Ludwik equivalent, isotropic, of the first loading (misfit %.2f %% of M; its unloading "
            "is not the wire's)\n",
            c->ludwik_misfit / WB_PERCENT);
     printf("  E %s MPa,", wb_print_number(c->ludwik.youngs_modulus / WB_MPA, a));

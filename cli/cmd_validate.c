@@ -46,8 +46,8 @@ static const struct argp argp = {
     .args_doc = "PROPERTIES.yaml DATASET...",
     .doc =
         "Predicts tests with calibrated properties and scores each part of them apart: the first "
-        "loading (eqs. 18 and 19, beside a linear elastic prediction), the way back, the "
-        "deflection that is left, the energy that later cycles lose, and shapes. Datasets are "
+        "loading (eqs. 18 and 19, beside a linear elastic prediction), the unloading, the "
+        "residual deflection, the energy that later cycles lose, and shapes. Datasets are "
         "grouped by wire, length and loading, those of three-point bending by bench, and each "
         "group is averaged.\v"
         "Errors are over F_max, the largest force of the measured average, or over the largest "
@@ -283,7 +283,7 @@ static void print_cycles(const struct wb_validate_result *r)
     if (cycles->n_samples == 0) {
         if (!r->info.is_follower)
             printf("  unloading      not scored: %s\n",
-                   cycles->why.text[0] ? cycles->why.text : "no way back was measured");
+                   cycles->why.text[0] ? cycles->why.text : "no unloading was measured");
         return;
     }
     printf("  unloading      RMS %.3g, largest error %.3g%s\n", cycles->rms, cycles->largest_error,

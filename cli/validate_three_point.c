@@ -20,8 +20,9 @@ static void print_bench(const struct wb_validate_three_point *r)
 static void print_unloading(const struct wb_validate_three_point *r)
 {
     if (r->n_unloading == 0) {
-        printf("  unloading      not scored: no way back was measured, or the beam does not follow "
-               "it\n");
+        printf(
+            "  unloading      not scored: no unloading was measured, or the beam does not follow "
+            "it\n");
         return;
     }
     printf("  unloading      RMS %.3g, largest error %.3g, of each test by itself %.3g%s\n",

@@ -267,9 +267,10 @@ struct wirebench_law {
     /* Or parallel parts. */
     int n_parts;
     struct wirebench_part parts[WIREBENCH_MOST_PARTS];
-    /* Share of kinematic hardening, 0 (isotropic) to 1; how the wire yields on the way back. Of the
-     * area; with `is_combined`, of Ludwik's hardening stress in one law, and of parallel parts 1
-     * less beta: after yielding a part hardens isotropically with the tangent modulus beta E_i. */
+    /* Share of kinematic hardening, 0 (isotropic) to 1; how the wire yields during unloading. Of
+     * the area; with `is_combined`, of Ludwik's hardening stress in one law, and of parallel parts
+     * 1 less beta: after yielding a part hardens isotropically with the tangent modulus beta E_i.
+     */
     double kinematic_share;
     /* Or Chaboche's law, where n_backs or saturation is above 0: E and sigma_Y from above, a yield
      * stress that grows by saturation (1 - exp(-rate p)), and back stresses. */

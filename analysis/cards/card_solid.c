@@ -207,7 +207,7 @@ static void put_plain(struct wb_text *text, const struct dialect *dialect, const
                                      : law->is_combined && law->isotropic_share < 1.0)
         wb_text_append(text, "** The law hardens in part kinematically, in a way that this program "
                              "does not have. The table is\n"
-                             "** isotropic: right for a first loading, not for the way back.\n");
+                             "** isotropic: right for a first loading, not for unloading.\n");
     if (table.error > 0.0)
         wb_text_append(text,
                        "** Chords of the table lie at most %.2g of the stress beside the "

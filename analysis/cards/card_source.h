@@ -40,7 +40,7 @@ struct wb_estimate wb_card_source_rigidity(const struct wb_card_source *source);
  * strains the outer fibre by 2 %. */
 double wb_card_source_curvature(const struct wb_card_source *source);
 
-/* Whether the data support what the law says of the way back. */
+/* Whether the data support what the law says of the unloading. */
 bool wb_card_source_has_way_back(const struct wb_card_source *source);
 
 /* "MADE OF VIRTUAL DATA: ..." or of simulated data; NULL: of neither, as far as the file says. */

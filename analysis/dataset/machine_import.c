@@ -16,7 +16,7 @@
 
 #define WB_LOG_DOMAIN "import"
 
-/* A turn of the travel is a way back of this part of its range. */
+/* A turn of the travel is a return of this part of its range. */
 #define TURN 0.02
 /* Fewer rows are no curve. */
 #define LEAST_ROWS 5

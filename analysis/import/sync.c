@@ -22,7 +22,7 @@
 #define FLOOR_NOISE 4.0
 /* Events nearer than this, s, are one. */
 #define SAME_TAP 0.6
-/* A turn is a way back by this part of the whole way. */
+/* A turn is a return by this part of the whole way. */
 #define TURN_PART 0.15
 /* Lines to the top of a turn see so much time, s, and this part of a branch at most. */
 #define SIDE_WINDOW 2.5
@@ -114,7 +114,7 @@ struct turn {
     size_t before, peak, after;
 };
 
-/* Walks up and down; a turn counts when the way back is long enough. */
+/* Walks up and down; a turn counts when the return is long enough. */
 static int find_turns(const double *y, size_t n, double least, struct turn *turns)
 {
     size_t low = 0, high = 0;

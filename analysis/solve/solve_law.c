@@ -39,20 +39,20 @@ enum wb_status wb_solve_law_tell(const struct wb_wire *wire)
         return WB_OK;
     if (law->form == WB_LAW_CHABOCHE) {
         wb_info("wire %s has Chaboche's law: computed with the four numbers beside it, its Ludwik "
-                "equivalent; loading is nearly the same, the way back is not",
+                "equivalent; loading is nearly the same, the unloading is not",
                 wire->name);
         return WB_OK;
     }
     if (law->form == WB_LAW_LUDWIK || !(strain > 0.0)) {
         wb_info("wire %s has a law with %s hardening: computed with its four numbers and isotropic "
-                "hardening; loading is the same, the way back is not",
+                "hardening; loading is the same, the unloading is not",
                 wire->name, wb_law_rule_name(law));
         return WB_OK;
     }
     WB_TRY(wb_bending_compare(law, &wire->material, wire->outer_diameter,
                               strain / (0.5 * wire->outer_diameter), &difference));
     wb_info("wire %s: the four numbers are the Ludwik equivalent of a law of parallel parts; "
-            "loading within %.2g %%, the way back is not the law's",
+            "loading within %.2g %%, the unloading is not the law's",
             wire->name, 100.0 * difference);
     return WB_OK;
 }

@@ -294,7 +294,7 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
     return check_reached(result, why);
 }
 
-/* The way back and later cycles; a test that has none is as good. */
+/* The unloading and later cycles; a test that has none is as good. */
 static enum wb_status validate_cycles(struct wb_validate_result *result,
                                       const struct wb_properties *properties,
                                       const struct wb_dataset *const *datasets, int n,

@@ -1,6 +1,6 @@
 /* Validation of calibrated properties on other datasets, each part of a test scored apart: the
  * first loading by eqs. 18 and 19 with the linear elastic prediction beside it, the distance of the
- * markers from the computed shapes, the way back, the deflection that is left, and the work of
+ * markers from the computed shapes, the unloading, the residual deflection, and the work of
  * later cycles (analysis/validate_cycle.h).
  *
  * Not even a perfect model, one of the product's mean, predicts a few specimens exactly. Specimen i
@@ -86,7 +86,7 @@ struct wb_validate_result {
     double scatter_share;
     struct wb_validate_cycles cycles; /* owned; zero samples of a follower test */
     bool is_beyond;        /* bent further than the properties are known: curvature of the clamp */
-    bool is_rule_untested; /* the properties are of a loading alone: the way back is its guess */
+    bool is_rule_untested; /* the properties are of a loading alone: the unloading is its guess */
     struct wb_test_info info;
     double cpu_s;
 };
@@ -106,7 +106,7 @@ WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
  * existing file. */
 WB_MUST_CHECK enum wb_status wb_validate_write_csv(const struct wb_validate_result *result,
                                                    const char *path);
-/* The mean way back likewise: deflection_mm,measured_N,elastoplastic_N,elastoplastic_error; forces
+/* The mean unloading likewise: deflection_mm,measured_N,elastoplastic_N,elastoplastic_error; forces
  * are tensions less that at zero deflection. */
 WB_MUST_CHECK enum wb_status wb_validate_write_unloading(const struct wb_validate_result *result,
                                                          const char *path);

@@ -8,8 +8,8 @@
 
 /* Probability of each part, which makes that of any one in twenty: tests/analysis/validation. */
 static const double level = 0.028;
-/* Least standard deviations between samples: of the way back over F_max, of the residual deflection
- * in m. Few samples agree better than they differ. */
+/* Least standard deviations between samples: of the unloading over F_max, of the residual
+ * deflection in m. Few samples agree better than they differ. */
 static const double least_unloading = 2e-3, least_residual = 0.2 * WB_MM;
 /* How far the law may miss, in units of its misfit in the calibration. */
 static const double misfits = 2.0;

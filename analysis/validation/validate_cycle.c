@@ -11,7 +11,7 @@
 
 #define WB_LOG_DOMAIN "validate"
 
-/* Between the points of the mean way back, and of the model where nothing was measured. */
+/* Between the points of the mean unloading, and of the model where nothing was measured. */
 static const double step = 1.0 * WB_MM;
 
 const double wb_validate_stiffer_by = 0.01;
@@ -52,7 +52,7 @@ struct sample {
     double adapted_zero;
     double ln_stiffness; /* by its own loading: NaN where that was not found */
     double curvature;
-    bool is_good; /* its first way back is computed */
+    bool is_good; /* its first unloading is computed */
 };
 
 static void release_sample(struct sample *sample)
@@ -158,7 +158,7 @@ static void take_later(struct sample *sample, const struct wb_dataset *dataset)
 }
 
 /* The law as stiff as the specimen: by least squares over the points of its first loading, to first
- * order. What remains of the way back is then the law's, and not the specimen's stiffness. */
+ * order. What remains of the unloading is then the law's, and not the specimen's stiffness. */
 static void find_stiffness(struct sample *sample, const double *stiffer)
 {
     const struct wb_cycle_data *const data = &sample->data[0];
@@ -241,9 +241,9 @@ static enum wb_status compute(struct sample *sample, const struct wb_law *law,
     return sample->is_good ? adapt(sample, law, &specimen, &how) : WB_OK;
 }
 
-/* --- the way back --- */
+/* --- the unloading --- */
 
-/* Measured and computed tension at a deflection of the first way back, between its points. */
+/* Measured and computed tension at a deflection of the first unloading, between its points. */
 static void at_deflection(const struct sample *sample, double deflection, double *measured,
                           double *computed, double *adapted)
 {
@@ -265,8 +265,8 @@ static void at_deflection(const struct sample *sample, double deflection, double
     *adapted += (1.0 - part) * own[i - 1] + part * own[i] - sample->adapted_zero;
 }
 
-/* What is left of the specimens' way back at a deflection once the law is as stiff as each of them:
- * mean over the specimens, and variance between them. */
+/* What is left of the specimens' unloading at a deflection once the law is as stiff as each of
+ * them: mean over the specimens, and variance between them. */
 static void find_left(const struct sample *samples, int n, double deflection, double *mean,
                       double *variance)
 {

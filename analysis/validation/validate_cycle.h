@@ -1,4 +1,4 @@
-/* What properties predict of a test beyond its first loading: the way back, the deflection that is
+/* What properties predict of a test beyond its first loading: the unloading, the deflection that is
  * left, and the work that later cycles lose.
  *
  * Each sample is computed by itself (analysis/calibration/cycle/cycle_model.h) with the bow of its
@@ -30,10 +30,10 @@ struct wb_validate_loop {
 
 struct wb_validate_cycles {
     double clamp_curvature; /* 1/m: largest computed one of all samples; NaN: not known */
-    int n_samples;          /* with a way back that is computed to its end; 0: none */
+    int n_samples;          /* with unloading that is computed to its end; 0: none */
     struct wb_reason why;   /* why one of them is not; empty */
 
-    /* The mean way back, downwards at every mm that all samples have. */
+    /* The mean unloading, downwards at every mm that all samples have. */
     int n;
     double *deflection;        /* (n) m; owned, and its memory also holds: */
     double *measured;          /* (n) N, */
@@ -46,8 +46,8 @@ struct wb_validate_cycles {
     double adapted_rms, adapted_scatter;
     int n_adapted;
 
-    /* Where the tension on the way back has come down to that at zero deflection, m: means over the
-     * samples that reach it; NaN: none does. */
+    /* Where the tension during unloading has come down to that at zero deflection, m: means over
+     * the samples that reach it; NaN: none does. */
     double residual_measured, residual_computed;
     /* As above, of n_residuals samples, at least two: mean of computed less measured, and standard
      * deviation between them, m; NaN unknown. */

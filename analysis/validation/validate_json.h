@@ -7,7 +7,7 @@
 #include "base/json.h"
 
 /* Sets the members clamp_curvature_1_m, beyond_known_curvature, unloading, residual_deflection_mm
- * and loop_energy_mJ of `item`; without a way back `unloading` is null and the last two are left
+ * and loop_energy_mJ of `item`; without unloading `unloading` is null and the last two are left
  * out. */
 void wb_validate_json_put_cycles(struct wb_json *item, const struct wb_validate_result *result);
 

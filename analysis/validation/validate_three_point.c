@@ -19,7 +19,7 @@
 
 enum {
     GRID = WB_VALIDATE_THREE_POINT_GRID,
-    LAST_POINTS = 3 /* of the way back, whose line leads to zero force */
+    LAST_POINTS = 3 /* of the unloading, whose line leads to zero force */
 };
 
 /* See validate.c. */
@@ -230,7 +230,7 @@ static enum wb_status vary_bench(const struct group *g)
     return WB_OK;
 }
 
-/* --- the way back --- */
+/* --- the unloading --- */
 
 static double zero_of(const struct wb_validate_three_point_test *test)
 {
@@ -276,7 +276,7 @@ static enum wb_status go_back(const struct group *g, struct wb_validate_three_po
     return WB_OK;
 }
 
-/* Deflections of all ways back. */
+/* Deflections of all unloadings. */
 static void find_common(const struct wb_validate_three_point *r, double *low, double *high)
 {
     *low = 0.0;

@@ -1,5 +1,5 @@
 /* Validation of calibrated properties on three-point bending tests, each part of a test scored
- * apart: the first loading beside an elastic prediction, the way back, and the deflection that is
+ * apart: the first loading beside an elastic prediction, the unloading, and the deflection that is
  * left when the nose leaves the wire.
  *
  * Where a wire is first touched is the test's, not the law's: each test's first contact is found
@@ -35,10 +35,10 @@ struct wb_validate_three_point_test {
     double first_contact;      /* m of travel, found with the law */
     double bow;                /* m, see struct wb_three_point_fit */
     bool is_bow_searched;      /* else it is the specimen's, or none */
-    double rms, unloading_rms; /* of its own points over its own F_max; NaN: no way back */
+    double rms, unloading_rms; /* of its own points over its own F_max; NaN: no unloading */
     double left_measured,
         left_computed; /* m beyond the first contact, where the force comes to zero
-                          on the way back, by a line through the last points */
+                          during unloading, by a line through the last points */
 };
 
 /* Mean curves over the tests on an even grid. */
@@ -66,7 +66,7 @@ struct wb_validate_three_point {
                                              of struct wb_three_point_calibration; NaN: known, or it
                                              does not come so far */
     struct wb_three_point_variant ends[WB_THREE_POINT_VARIANTS]; /* name and value of those */
-    int n_unloading;                                             /* tests with a way back */
+    int n_unloading;                                             /* tests with unloading */
     double unloading_rms_of_tests;       /* of all their points, each test by itself, over F_max */
     double left_measured, left_computed; /* m, means over those tests; NaN none */
     double scatter_rms; /* standard deviation between tests, over F_max; NaN of one */
@@ -74,7 +74,7 @@ struct wb_validate_three_point {
     struct wb_expected expected;
     double largest_curvature; /* 1/m, in the middle */
     bool is_beyond;           /* bent further than the properties are known */
-    bool is_rule_untested;    /* the way back is the law's guess */
+    bool is_rule_untested;    /* the unloading is the law's guess */
     double cpu_s;
 };
 

@@ -595,7 +595,7 @@ static double target_of(const struct run *r, double place)
     return r->model->run.deflection * (unloads(r) ? 1.0 - share : share);
 }
 
-/* On its way back a strand is slack when the tip stays behind the target; a single force below
+/* During unloading a strand is slack when the tip stays behind the target; a single force below
  * zero is an oscillation. */
 static bool went_slack(const struct run *r)
 {

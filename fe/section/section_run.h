@@ -76,7 +76,7 @@ void wb_section_run_release(struct wb_section_run *run); /* accepts a zeroed one
 struct wb_section_run_settings {
     bool (*stop)(void *context); /* asked before every row, true ends the run; NULL: never */
     void *context;
-    bool until_free;    /* the last way back ends in the first row whose force is not above zero */
+    bool until_free;    /* the last unloading ends in the first row whose force is not above zero */
     bool no_rigidities; /* `rigidity` stays empty */
 };
 
@@ -87,8 +87,8 @@ WB_MUST_CHECK enum wb_status wb_section_run(struct wb_section_run *run,
                                             const struct wb_section_run_settings *settings);
 
 /* The part of the largest deflection that springs back when the force of the first loading is let
- * go, from 0 to 1: 1 - d_0 / d_max, with the deflection d_0 where the way back reaches zero force.
- * NaN: there is no way back, or it ends before. */
+ * go, from 0 to 1: 1 - d_0 / d_max, with the deflection d_0 where the unloading reaches zero force.
+ * NaN: there is no unloading, or it ends before. */
 double wb_section_run_springback(const struct wb_section_run *run);
 
 /* The deflection (m) from which on the section model is too stiff, by 14 to 35 % at the end of the

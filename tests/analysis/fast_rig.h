@@ -43,7 +43,7 @@ WB_MUST_CHECK enum wb_status fast_rig_run(const struct fast_rig *fast, struct wb
 void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature, double *moment,
                     double *rigidity, double *residual_curvature);
 
-/* Change of its moment on the way back from the largest curvature, over n ascending changes of the
+/* Change of its moment during unloading from the largest curvature, over n ascending changes of the
  * curvature, N m2. */
 void fast_rig_unloading(const struct fast_rig *fast, double largest, int n, const double *change,
                         double *stiffness);

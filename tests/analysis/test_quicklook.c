@@ -184,8 +184,8 @@ static void a_dataset_without_shapes_or_rows_has_a_summary(void **state)
     wb_dataset_release(&dataset);
 }
 
-/* The force of the way back falls faster than that of the way up has grown: it is gone at 13.07 mm,
- * where the tension is that of zero deflection. */
+/* The force of the unloading falls faster than that of the way up has grown: it is gone at 13.07
+ * mm, where the tension is that of zero deflection. */
 static void summary_says_what_deflection_is_left(void **state)
 {
     (void)state;

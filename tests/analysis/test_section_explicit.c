@@ -120,7 +120,7 @@ static void the_curve_on_a_strand_with_weight_agrees_within_two_percent(void **u
     assert_true(compare(&pair, true) < limit);
 }
 
-/* Where the way back of an explicit cycle reaches zero force, or that of the section model. */
+/* Where the unloading of an explicit cycle reaches zero force, or that of the section model. */
 static double left_at(size_t from, size_t to, const double deflection[], const double force[])
 {
     for (size_t i = from + 1; i < to; i++)
@@ -173,7 +173,7 @@ static void ways_back_agree_within_one_and_a_half_percent(void **unused)
         }
         assert_int_equal(n_back, top);
         const double rms = sqrt(squares / (double)n_back) / most;
-        print_message("%-22s way back: RMS %.2f %% of F_max, left %.2f mm, explicit %.2f mm\n",
+        print_message("%-22s unloading: RMS %.2f %% of F_max, left %.2f mm, explicit %.2f mm\n",
                       cycles[c].pair.dataset, 100.0 * rms,
                       1e3 * left_at(top, dataset.n_rows, deflection, force[0]),
                       1e3 * left_at(top, dataset.n_rows, deflection, force[1]));

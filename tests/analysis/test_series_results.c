@@ -122,7 +122,7 @@ static void numbers_are_those_of_the_curve(void **state)
     const double elastic = 3.0 * 396e-6 / (0.085 * 0.085 * 0.085);
     assert_true(test->values[WB_SERIES_STIFFNESS] < elastic);
     assert_true(test->values[WB_SERIES_STIFFNESS] > 0.6 * elastic);
-    /* Where the way back comes to the force 0, the curve left 0. */
+    /* Where the unloading comes to the force 0, the curve left 0. */
     double left = (double)NAN;
     for (size_t i = 1; i < test->dataset.n_rows && isnan(left); i++) {
         const struct wb_row *const row = &test->dataset.rows[i];

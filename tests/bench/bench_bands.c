@@ -1,6 +1,6 @@
 /* What bands of a bundle cost (analysis/predict/bands.h): seven wires of fixtures/bundles/template,
  * the file alone, in CPU time, over as many runs of the section model as it stands in the file.
- * What is more are draws, laws and ways back; the ranking and its bootstrap are in it. Goal: 500
+ * What is more are draws, laws and unloadings; the ranking and its bootstrap are in it. Goal: 500
  * runs in 20 s on two cores, which is 40 s of CPU. */
 #include <stdio.h>
 
@@ -15,7 +15,7 @@ enum {
 
 static struct wb_bundle_model model;
 
-/* A loading and its way back to zero force, as a run of the bands is; negative when it fails. */
+/* A loading and its unloading to zero force, as a run of the bands is; negative when it fails. */
 static double run_once(void)
 {
     static const struct wb_section_run_settings settings = {.until_free = true,

@@ -258,10 +258,10 @@ for sample in 1 2; do
         --roller-radius-mm 2 --nose-radius-mm 2 --roller-friction 0.2 -o bent-$sample >/dev/null ||
         fail 'solve bending3p'
 done
-expect 0 'with the way back' "$wirebench" calibrate bent-1 -o bent.yaml
+expect 0 'with the unloading' "$wirebench" calibrate bent-1 -o bent.yaml
 expect 0 'unloading      RMS' "$wirebench" validate bent.yaml bent-2 -o bent-scores
-grep -q 'parts,20,unloading,' bent-scores/scores.csv || fail 'no score of the way back'
-[ -s bent-scores/parts-L20-three-point-unloading.csv ] || fail 'no table of the way back'
+grep -q 'parts,20,unloading,' bent-scores/scores.csv || fail 'no score of the unloading'
+[ -s bent-scores/parts-L20-three-point-unloading.csv ] || fail 'no table of the unloading'
 expect 0 '"kind": "three-point"' "$wirebench" validate bent.yaml bent-2 --json
 
 # The compliance of a machine: from a stiff bar, and not from a soft one.

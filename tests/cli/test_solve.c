@@ -162,7 +162,7 @@ static void hardening_rule_of_the_wire_decides_the_way_back(void **unused)
                "  law:\n    form: parallel\n    hardening: kinematic\n    parts:\n"
                "      - {modulus_MPa: 4000, yield_strain: 0.001}\n      - {modulus_MPa: 800}\n",
                &parallel);
-    /* One virgin curve, two ways back. */
+    /* One virgin curve, two unloadings. */
     const double top = force_at(&plain, 1, WB_PHASE_LOAD, 0.05);
     assert_close(force_at(&kinematic, 1, WB_PHASE_LOAD, 0.05), top, 3e-3 * top);
     assert_close(force_at(&kinematic, 1, WB_PHASE_LOAD, 0.02),

@@ -48,7 +48,7 @@ paste "$folder/library-forces" "$folder/forces" | awk '{ d = $1 - $2; if (d < 0)
     if (d > 1e-8) { print "row " NR ": " $0; bad = 1 } n++ } END { exit bad || n != 21 }' ||
     fail "solve_cantilever differs from the tool"
 
-# The tool ends where the nose has left the wire on its way back, beyond which the force is 0.
+# The tool ends where the nose has left the wire during unloading, beyond which the force is 0.
 "$examples/solve_three_point" type1 0.04 0.008 >"$folder/solved"
 "$tool" solve bending3p type1 --span-mm 40 --deflection-mm 8 --points 10 --cycles 1 \
     --roller-radius-mm 3 --nose-radius-mm 3 >"$folder/curve"

@@ -88,7 +88,7 @@ static void look_at_bending(const char *path)
     assert_true(wb_json_get_boolean(import_entry(), "byte_order_mark", &mark));
     const bool with_mark = strstr(path, "group-5b") || strstr(path, "group-7-test-1");
     assert_int_equal(mark, with_mark);
-    /* Loading only: one cycle, no way back, and group 5b without time. */
+    /* Loading only: one cycle, no unloading, and group 5b without time. */
     for (size_t i = 0; i < dataset.n_rows; i++) {
         assert_int_equal(dataset.rows[i].cycle, 1);
         assert_int_equal(dataset.rows[i].phase, WB_PHASE_LOAD);

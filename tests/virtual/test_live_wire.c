@@ -280,7 +280,7 @@ static void kinematic_hardening_shows_in_unloading_only(void **state)
         wb_section_release(&section);
     }
     assert_close_relative(loads[0][0], loads[1][0], 1e-6);
-    /* It yields earlier on the way back, so more force is left. */
+    /* It yields earlier during unloading, so more force is left. */
     assert_true(loads[0][1] - loads[1][1] > 0.02 * loads[0][0]);
 }
 

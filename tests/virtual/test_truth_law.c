@@ -49,7 +49,7 @@ static void linear_hardening_grows_or_moves(void **unused)
     assert_close_relative(strain_to(&b, top), expected, 1e-12);
     assert_close_relative(a.tangent, slope, 1e-12);
     assert_close_relative(b.tangent, slope, 1e-12);
-    /* On the way back one yields at -expected, the other 2 yield below the top. */
+    /* during unloading one yields at -expected, the other 2 yield below the top. */
     const double back = top - 2.0 * yield / E - 1e-3;
     assert_close_relative(strain_to(&a, back), expected - E * (top - back), 1e-12);
     assert_close_relative(strain_to(&b, back), expected - 2.0 * yield - slope * 1e-3, 1e-11);
@@ -113,7 +113,7 @@ static void a_maxwell_part_relaxes_faster_at_a_larger_stress(void **unused)
     assert_close_relative(1.0 - left[1], 0.1 / tau * exp(1.0), 0.03);
 }
 
-/* A negative Q: the stress falls once the part slips, and stays there on the way back. */
+/* A negative Q: the stress falls once the part slips, and stays there during unloading. */
 static void strands_carry_less_once_they_slip(void **unused)
 {
     (void)unused;

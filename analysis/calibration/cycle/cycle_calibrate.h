@@ -142,8 +142,8 @@ struct wb_cycle_calibration {
     struct wb_estimate rigidity, residual_curvature_ratio, loop_energy; /* N m2, 1, J/m */
     double curvature[WB_CYCLE_MOMENTS];
     struct wb_estimate moment[WB_CYCLE_MOMENTS];
-    /* Of the virgin wire from straight, and on the way back from the largest curvature over changes
-     * of it; the second without entries where no way back was measured. */
+    /* Of the virgin wire from straight, and during unloading from the largest curvature over
+     * changes of it; the second without entries where no unloading was measured. */
     struct wb_cycle_stiffness secant, unloading;
     struct wb_budget budget[WB_CYCLE_NUMBERS];
     /* EI, the slope at curvature zero, is no more than 2 % from a stiffness at the smallest

@@ -924,7 +924,7 @@ static void check_relaxation(struct wb_cycle_remarks *remarks, const struct spec
         say(remarks, share >= doubted_fall ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
             "wire '%s', sample %d: the force falls by %.1f %% of the largest in %.1f s while "
             "nothing moves, at a deflection of %.1f mm: the wire relaxes, and the law does not. "
-            "The stiffness on the way back and EI come out too high, moments too low; record with "
+            "The stiffness during unloading and EI come out too high, moments too low; record with "
             "a dwell at the turn (--dwell-s), from which relaxation is fitted",
             s->wire, s->sample, 100.0 * share, seconds, at);
 }
@@ -936,7 +936,7 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
     const char *const wire = calibration->members[0].data.info.wire;
     if (!calibration->has_unloading)
         say(remarks, WB_CHECK_NOTE, 0,
-            "wire '%s': there is no way back in the data of all specimens: the hardening rule is "
+            "wire '%s': there is no unloading in the data of all specimens: the hardening rule is "
             "untested and EI known poorly; record the return to zero force too",
             wire);
     const int n = calibration->n_members;

@@ -73,7 +73,7 @@ const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS] = {
      .fallback = 0.5,
      .option = "turn-distance-mm",
      .argument = "D",
-     .help = "Distance below the turn where the way back begins"},
+     .help = "Distance below the turn where the unloading begins"},
     {.name = "smallest_tension_mN",
      .unit = "mN",
      .type = WB_SETTING_NUMBER,
@@ -84,7 +84,7 @@ const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS] = {
      .fallback = 2.5,
      .option = "smallest-tension-mn",
      .argument = "F",
-     .help = "Tension at which the way back ends"},
+     .help = "Tension at which the unloading ends"},
     {.name = "marker_step_mm",
      .unit = "mm",
      .type = WB_SETTING_NUMBER,
@@ -366,7 +366,7 @@ static double tension_at_zero(const struct wb_dataset *dataset)
     return n > 0 ? sum / (double)n : 0.0;
 }
 
-/* Where the way back crosses the tension of zero deflection. */
+/* Where the unloading crosses the tension of zero deflection. */
 static double residual_of(const struct wb_cycle_data *data)
 {
     for (int i = data->n_loading; i + 1 < data->n_points; i++) {
@@ -401,7 +401,7 @@ static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dat
         markers[n] = row->marker;
         arc[n++] = row->s;
     }
-    /* The time of the turn tells the frames of the way back. */
+    /* The time of the turn tells the frames of the unloading. */
     double turn = (double)INFINITY;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         if (is_on_way(&dataset->rows[i], 1, true)) {

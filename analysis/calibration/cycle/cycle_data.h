@@ -57,7 +57,7 @@ struct wb_cycle_data {
     struct wb_cycle_held held[WB_CYCLE_MOST_HELD];
     double max_force;           /* N: largest tension less that at zero deflection */
     double zero_tension;        /* N: that at zero deflection on the first loading */
-    double residual_deflection; /* m: where the tension of the way back has come down to that at
+    double residual_deflection; /* m: where the tension of the unloading has come down to that at
                                    zero deflection; NaN: not reached */
     int n_outliers;             /* rows left out */
 };
@@ -73,8 +73,8 @@ struct wb_cycle_data_settings {
     double step;             /* m between points; 0: 1 mm */
     double fine_step;        /* m, of the first points of either way; 0: 0.5 mm */
     double fine_reach;       /* m: how far they go; 0: 4 mm */
-    double turn_distance;    /* m below the turn where the way back begins; 0: 0.5 mm */
-    double smallest_tension; /* N: where the way back ends; 0: 2.5 mN */
+    double turn_distance;    /* m below the turn where the unloading begins; 0: 0.5 mm */
+    double smallest_tension; /* N: where the unloading ends; 0: 2.5 mN */
     double marker_step;      /* m of deflection between places; 0: 4 mm */
 };
 
@@ -85,7 +85,7 @@ enum {
 extern const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS];
 
 /* Takes them from a cycle. WB_ERR_DATA for a test whose cycle makes too few points, or with a
- * follower force. Without a way back, n_loading is n_points. `settings` NULL: defaults. `why`
+ * follower force. Without unloading, n_loading is n_points. `settings` NULL: defaults. `why`
  * receives the reason; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_cycle_data_take(struct wb_cycle_data *data,
                                                 const struct wb_dataset *dataset,

@@ -481,7 +481,8 @@ void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit)
     free(r);
 }
 
-/* From the mean residual of the last points of the loading to that of the first of the way back. */
+/* From the mean residual of the last points of the loading to that of the first of the unloading.
+ */
 static double turn_miss(const struct wb_cycle_fit *fit, const struct wb_cycle_data *data)
 {
     const struct wb_cycle_point *const turn = data->points + data->n_loading;

@@ -7,7 +7,7 @@
  * down (Huber) and counted.
  *
  * Loading alone leaves E and the hardening rule open: a wire that yields early and hardens bends up
- * like one that is soft. The way back tells them apart.
+ * like one that is soft. The unloading tells them apart.
  */
 #ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_FIT_H
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_FIT_H
@@ -116,7 +116,7 @@ struct wb_cycle_fit {
     double correlation[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
     double clamp_curvature; /* 1/m, largest */
     double first_curvature; /* 1/m, at the first point */
-    double turn_change;     /* 1/m, of it from the turn to the first point of the way back */
+    double turn_change;     /* 1/m, of it from the turn to the first point of the unloading */
     double turn_miss;       /* part of the force's change just behind the turn that the law misses,
                                more than 0 where it is too soft; NaN: not known */
     int n_free, n_law;      /* numbers fitted; of them the law's */
@@ -134,7 +134,7 @@ struct wb_cycle_fit {
  * whose specimen and weights are near by (NULL: none). Where the candidate is near's law with an
  * isotropic share, and `start` is near's law, the fit ends at once as is_contained if Gauss and
  * Newton's step keeps the share at its end. `grid` is used by parallel parts and Chaboche's laws
- * (NULL: none of them). Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted. `data`
+ * (NULL: none of them). Without unloading only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted. `data`
  * is borrowed as long as the fit is. WB_ERR_CONVERGENCE where the beam cannot compute the start;
  * `why` receives it, NULL: logged. */
 WB_MUST_CHECK enum wb_status

@@ -45,7 +45,7 @@ static double largest_deflection(const struct wb_dataset *dataset, int cycle, do
     return largest;
 }
 
-/* Where the way back of a cycle ends or the strand becomes slack, by its lowest row; what is read
+/* Where the unloading of a cycle ends or the strand becomes slack, by its lowest row; what is read
  * below the rest is noise. */
 static double lowest_deflection(const struct wb_dataset *dataset, int cycle, double *t)
 {

@@ -35,7 +35,7 @@ struct wb_cycle_run {
     bool reached;           /* all points: else the others are NaN */
     double first_curvature; /* 1/m: of the clamp at the first point, beyond the natural one, */
     double clamp_curvature; /* and the largest of all points */
-    double turn_change;     /* change of that from the turn to the first point of the way back; NaN
+    double turn_change;     /* change of that from the turn to the first point of the unloading; NaN
                                without one */
 };
 

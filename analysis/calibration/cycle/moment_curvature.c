@@ -18,7 +18,7 @@
  * the clamp comes out 1 or 2 % too large. On a first loading all places follow one curve, which
  * the first pass shows in the mean of all states; later passes take it for b, at the moments of
  * the state, so that the polynomial has only the rest to follow. It stays as free as before, so
- * that each state still speaks for itself. On the way back b is what the turn left.
+ * that each state still speaks for itself. During unloading b is what the turn left.
  */
 #include "analysis/calibration/cycle/moment_curvature.h"
 
@@ -313,7 +313,7 @@ static double turn_factor(const struct fitting *f, const struct wb_cycle_point *
     return hypot(1.0, off_middle / ((frame_reach + beyond) / sqrt(12.0)));
 }
 
-/* The points of a fitted state. Along the wire the way back is another one at each place, so only
+/* The points of a fitted state. Along the wire the unloading is another one at each place, so only
  * the clamp's is taken of it. Deviations stand for places that are off by 1 m, see finish(). */
 static void add_points(struct wb_moment_cloud *cloud, const struct fitting *f,
                        const struct wb_cycle_point *point)

@@ -84,7 +84,7 @@ static double keep_moment(struct point *p, double curvature)
     return M;
 }
 
-/* Where the moment is gone on the way back from the largest curvature. */
+/* Where the moment is gone during unloading from the largest curvature. */
 static double residual_curvature(struct point *p, double largest)
 {
     double low = 0.0, high = largest;

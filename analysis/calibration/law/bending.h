@@ -21,7 +21,7 @@ WB_MUST_CHECK enum wb_status wb_bending_moments(const struct wb_law *law, double
                                                 const double *curvature, double *moment);
 
 /* Stiffness of the section between two places of its moment, N m2: `secant` of a first loading from
- * straight to n curvatures, and `unloading` over m changes of the curvature on the way back from
+ * straight to n curvatures, and `unloading` over m changes of the curvature during unloading from
  * `largest` (1/m, above 0, at most `largest`). */
 WB_MUST_CHECK enum wb_status wb_bending_stiffness(const struct wb_law *law, double diameter,
                                                   double largest, int n, const double *curvature,
@@ -31,7 +31,7 @@ WB_MUST_CHECK enum wb_status wb_bending_stiffness(const struct wb_law *law, doub
 /* Ludwik's law with isotropic hardening that bends like `law` on a first loading: E, sigma_Y, K and
  * n by least squares on ln M at curvatures up to `largest`. It yields at a thousandth of the
  * largest strain or above: for a law that yields from the start the misfit tells how far that is
- * off. What it says of the way back is another rule's. *misfit is the root mean square of the
+ * off. What it says of the unloading is another rule's. *misfit is the root mean square of the
  * relative differences of M. */
 WB_MUST_CHECK enum wb_status wb_bending_ludwik(const struct wb_law *law, double diameter,
                                                double largest, struct wb_material *equivalent,

@@ -86,7 +86,7 @@ static struct wb_cycle_stiffness known_stiffness(const struct wb_cycle_calibrati
     return known_ones;
 }
 
-/* By a way back, and to the end. */
+/* By unloading, and to the end. */
 static bool is_rule_tested(const struct wb_cycle_calibration *calibration)
 {
     return calibration->has_unloading && !calibration->is_stopped;
@@ -180,7 +180,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
         keep_specimen(calibration, &calibration->members[i], &properties->specimens[i]);
 }
 
-/* All tests have a way back, and the law follows both ways. */
+/* All tests have unloading, and the law follows both ways. */
 static bool has_tested_rule(const struct wb_three_point_calibration *c)
 {
     return c->is_rigidity_identifiable;

@@ -280,11 +280,11 @@ static void put_law(struct wb_text *text, const struct wb_cycle_calibration *cal
         wb_text_append(text, "# The law is Ludwik's of these four numbers with the hardening rule "
                              "below; models that know\n"
                              "# isotropic hardening alone bend alike on a first loading and not on "
-                             "the way back.\n");
+                             "the unloading.\n");
     else
         wb_text_append(text, "# These four numbers are derived from the law below: Ludwik's, "
                              "isotropic, that bends alike on a\n"
-                             "# first loading; EI and the way back are the law's, not theirs.\n");
+                             "# first loading; EI and the unloading are the law's, not theirs.\n");
     put_material(text, "", &p->material);
     put_number(text, "", "poissons_ratio", p->law.material.poissons_ratio);
     put_number(text, "", "ludwik_misfit", p->ludwik_misfit);
@@ -486,7 +486,7 @@ static void format_three_point(struct wb_text *text, const struct wb_three_point
         wb_text_append(text, "# flexural_rigidity_N_mm2: not identifiable from loading alone\n");
     put_number(text, "", "largest_curvature_1_m", c->largest_curvature);
     wb_text_append(text,
-                   "# tested where all tests have a way back, supported where the law then follows "
+                   "# tested where all tests have unloading, supported where the law then follows "
                    "within 0.5 %% of F_max\n"
                    "hardening_rule:\n  chosen: \"%s\"\n  tested: %s\n  supported: %s\n",
                    wb_candidate_name(WB_CANDIDATE_PARALLEL_MIXED),

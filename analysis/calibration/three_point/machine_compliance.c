@@ -60,10 +60,10 @@ enum {
 };
 
 static const double coverage = 0.95;
-/* Part of a line's rise over either half of its forces by which it may be curved; the way back may
+/* Part of a line's rise over either half of its forces by which it may be curved; the unloading may
  * be off by as much in slope, and in travel. */
 static const double most_curved = 0.03;
-/* Part of the largest force above which the way back does not count: friction turns there. */
+/* Part of the largest force above which the unloading does not count: friction turns there. */
 static const double below_turn = 0.9;
 /* Standard deviations that are no difference. */
 static const double noises = 3.0;
@@ -205,13 +205,13 @@ static enum wb_status check(const struct wb_dataset *const *datasets, int n,
 /* Mean over the tests with the bench's friction. */
 struct mean {
     double slope, deviation, error, misfit, of_bar, curved;
-    /* Of the ways back: their mean slope and its error, what is left at the least force, the
+    /* Of the unloadings: their mean slope and its error, what is left at the least force, the
      * largest travel from zero force. NaN: not all tests have one. */
     double back, back_error, left, most_travel;
     double strain; /* of the bar, largest */
 };
 
-/* Adds the way back of one test to the sums. */
+/* Adds the unloading of one test to the sums. */
 static enum wb_status add_back(struct mean *mean, const struct test *test, int n,
                                const struct slope *up, const struct wb_three_point_model *model,
                                double most)

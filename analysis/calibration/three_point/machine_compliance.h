@@ -7,8 +7,8 @@
  * past the seating.
  *
  * That holds of a bar which does not yield. One that yields early, far below the first reading that
- * counts, bends along a line, too: so the way back, where it was measured, must be along the same
- * line, or nothing is told. Without a way back the strain of the bar's outer fibre is what is left
+ * counts, bends along a line, too: so the unloading, where it was measured, must be along the same
+ * line, or nothing is told. Without unloading the strain of the bar's outer fibre is what is left
  * to judge by.
  *
  * What is known of C: the scatter of the slope over several tests (Student's t, 95 %), or of one
@@ -41,10 +41,10 @@ struct wb_machine_compliance {
                           slips, or the machine has play */
     bool has_way_back; /* of all tests: at least ten readings, too */
     bool comes_back;   /* it is the way up; else the bar yields, or slips: by 3 % in slope or in
-                          travel, beyond noise and friction. True without a way back */
-    double value_back; /* m/N, of the way back; NaN: none */
+                          travel, beyond noise and friction. True without unloading */
+    double value_back; /* m/N, of the unloading; NaN: none */
     double
-        left; /* m of travel that is left on the way back, mean, at the least force that counts */
+        left; /* m of travel that is left during unloading, mean, at the least force that counts */
     double most_travel; /* m, largest way from zero force */
     double strain;      /* 1, of the bar's outer fibre, largest, if it is elastic */
     bool is_told;       /* they are straight, come back, and the interval is above zero */

@@ -57,7 +57,7 @@ struct wb_three_point_calibration {
     double series_deviation;               /* s of ln EI between the means of series; NaN: one */
     double largest_curvature;              /* 1/m */
     struct wb_estimate rigidity;
-    /* Every test has a way back: a loading alone, whose first points the seating takes, leaves EI
+    /* Every test has unloading: a loading alone, whose first points the seating takes, leaves EI
      * to the law's form where the wire yields early. */
     bool is_rigidity_identifiable;
     double curvature[WB_THREE_POINT_MOMENTS];

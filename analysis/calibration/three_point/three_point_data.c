@@ -70,8 +70,8 @@ static const double kink_drop = 0.03, kink_reach = 0.03, kink_noises = 6.0, kink
 enum {
     KINK_MEANS = 4
 };
-/* Part of the span below the turn where the way back begins, and of the way back at most: friction
- * turns there. */
+/* Part of the span below the turn where the unloading begins, and of the unloading at most:
+ * friction turns there. */
 static const double turn_distance = 0.02, turn_part = 0.25;
 /* Part of the largest force at which it ends; a wire that springs back little has as many points.
  */
@@ -88,7 +88,7 @@ const char *wb_three_point_limit_name(enum wb_three_point_limit limit)
     return names[limit];
 }
 
-/* The readings of the first loading, by growing travel, and of the way back. */
+/* The readings of the first loading, by growing travel, and of the unloading. */
 struct readings {
     size_t n, top; /* all; index of the largest travel */
     double *travel, *force;
@@ -258,7 +258,7 @@ static void add_point(struct wb_three_point_data *data, double travel, double fo
     data->max_force = fmax(data->max_force, force);
 }
 
-/* The way back counts where the wire came to it within its usable range. */
+/* The unloading counts where the wire came to it within its usable range. */
 static void add_way_back(struct wb_three_point_data *data, const struct readings *r, double span,
                          double step)
 {

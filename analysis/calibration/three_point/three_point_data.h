@@ -1,5 +1,5 @@
 /* A three-point bending test as points to fit: zero of the force, first contact, usable range, and
- * an even grid of the first loading and, where there is one, the way back.
+ * an even grid of the first loading and, where there is one, the unloading.
  *
  * Where the wire was first touched is not seen: the force rises from nothing, and a wire that is
  * not quite straight settles on its rollers before it bends. Below some hundredth of the span that
@@ -64,7 +64,7 @@ wb_three_point_data_make(struct wb_three_point_data *data, const struct wb_datas
                          struct wb_reason *why);
 /* How many of its points are of the loading. */
 int wb_three_point_data_count_loading(const struct wb_three_point_data *data);
-/* Force at a travel between the points of the loading or of the way back (straight lines; before
+/* Force at a travel between the points of the loading or of the unloading (straight lines; before
  * and beyond them the first or last goes on). */
 double wb_three_point_data_force(const struct wb_three_point_data *data, double travel,
                                  bool is_unloading);

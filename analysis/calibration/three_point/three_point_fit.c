@@ -38,7 +38,7 @@ static const double share_spread = 0.5, share_step = 0.02, share_wall = 0.02;
 /* What no reading and no prior tells stays finite by a prior of this weight; a law is moved by this
  * many standard errors, and no number by more than that. Units of the free numbers. */
 static const double know_nothing = 1e-6, moved_by = 0.1, farthest = 1.0;
-/* Parts may yield before the first point, down to this part of its strain; with a way back, which
+/* Parts may yield before the first point, down to this part of its strain; with unloading, which
  * tells the stiffness before them, from earlier on: what yields there and has no part is taken for
  * a later contact. */
 static const double before_first = 0.25, before_first_back = 0.1;
@@ -118,7 +118,7 @@ struct problem {
     struct wb_three_point_model *model;
     /* The law's numbers (moduli, and share), the bow where it is free, and last the contact. */
     int n_law, n_curve, n_free, n_residuals; /* n_curve: those that change the curve; the contact
-                                                where there is a way back, which begins at the turn,
+                                                where there is unloading, which begins at the turn,
                                                 so much further from the contact */
     double bow, bow_deviation;               /* m: where it is looked for, and its prior; 0: held */
     double start_bow;

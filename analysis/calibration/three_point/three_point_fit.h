@@ -2,7 +2,7 @@
  *
  * Least squares (GSL multifit_nlinear, dogleg) on the force. Free are the moduli of parallel parts
  * (fe/material/law.h) at given yield strains, the travel of the first contact, the natural bow,
- * and, where there is a way back, the isotropic share. Friction, the nose's radius and the
+ * and, where there is unloading, the isotropic share. Friction, the nose's radius and the
  * machine's compliance are the caller's: the curves do not tell them (theory, "Three-point
  * bending").
  */

@@ -13,10 +13,10 @@
 
 enum {
     STEPS = 36, /* of the way up, */
-    BACK = 24   /* and of the way back, at most */
+    BACK = 24   /* and of the unloading, at most */
 };
 
-/* The first step of the way back, as a part of the deflection; and for how much of the steps that
+/* The first step of the unloading, as a part of the deflection; and for how much of the steps that
  * are left the rest of it would do, going on as it falls: it falls ever more slowly. */
 static const double first_back = 0.01, slower = 0.6;
 
@@ -143,7 +143,7 @@ static enum wb_status go_up(struct wb_three_point_model *model, double deflectio
     return WB_OK;
 }
 
-/* Whether a curve goes through the points of the way back, which come as the nose moves. */
+/* Whether a curve goes through the points of the unloading, which come as the nose moves. */
 static bool draw_back(struct way *back)
 {
     for (int i = 0, k = back->n - 1; i < k; i++, k--) {

@@ -1,5 +1,5 @@
 /* A three-point bending test of any law, computed: force over the travel beyond the first contact,
- * on the way up and, where it is asked for, the way back. */
+ * on the way up and, where it is asked for, the unloading. */
 #ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_MODEL_H
 #define WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_MODEL_H
 
@@ -23,7 +23,7 @@ struct wb_three_point_run {
     double travel;                       /* m, largest */
     double largest_curvature;            /* 1/m, in the middle, beyond the natural one */
     double wrapped;                      /* rad, largest */
-    double left; /* m of travel where the nose leaves the wire; NaN: no way back */
+    double left; /* m of travel where the nose leaves the wire; NaN: no unloading */
 };
 
 /* For tests with this span, rollers and diameter, and for laws of one kind: plain, or overlays of

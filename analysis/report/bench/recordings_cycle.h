@@ -69,7 +69,7 @@ void wb_recordings_cycle_pool(struct wb_recordings_cycle_pool *pool,
                               const struct wb_recordings_cycle *cycle);
 void wb_recordings_cycle_close(struct wb_recordings_cycle_pool *pool);
 
-/* What is called stiffness in short: over the first 1 /m on the way back, without a way back from
+/* What is called stiffness in short: over the first 1 /m during unloading, without unloading from
  * straight to 1 /m; of tests that do not go so far, at the largest curvature that is stated. */
 const struct wb_estimate *
 wb_recordings_cycle_stiffness(const struct wb_cycle_calibration *calibration);

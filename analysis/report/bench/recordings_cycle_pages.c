@@ -257,7 +257,7 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
     wb_text_append(
         &caption,
         "From the first loading and unloading of each sample. Stiffness: change of the moment over "
-        "that of the curvature, of the first 1 /m on the way back from the largest curvature; "
+        "that of the curvature, of the first 1 /m during unloading from the largest curvature; "
         "where there is no unloading, from straight to 1 /m. Residual curvature ratio: curvature "
         "that remains at zero moment, over the curvature that the wire was bent to. 95 %%: "
         "combined of all that the budgets below state. Over laws: range over all laws whose "
@@ -298,7 +298,8 @@ static void put_moments_of(struct wb_document_table *table,
                   (is_refuted ? M[k].candidates_high : M[k].high) / WB_NMM);
 }
 
-/* Of each wire the stiffness at the curvatures that are stated: from straight, and on the way back.
+/* Of each wire the stiffness at the curvatures that are stated: from straight, and during
+ * unloading.
  */
 static void put_stiffness_row(struct wb_document_table *table, const struct wb_cycle_calibration *c,
                               const struct wb_cycle_stiffness *stiffness, bool is_refuted)
@@ -338,7 +339,7 @@ static void put_stiffness_of(struct wb_document_table *table,
     double low = EI->low, high = EI->high;
     if (results->pool.degrees > 0)
         wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
-    start_moments_row(table, true, wire->wanted->label, WB_TONE_PLAIN, "on the way back");
+    start_moments_row(table, true, wire->wanted->label, WB_TONE_PLAIN, "during unloading");
     wb_pages_cell_number(table, c->unloading.n > 0 ? c->unloading.resolved : (double)NAN, 2);
     put_stiffness_row(table, c, &c->unloading, is_refuted);
     put_number(table, is_refuted ? (double)NAN : EI->value / WB_NMM2);
@@ -440,7 +441,7 @@ static void put_predictions(struct wb_document *document,
                    "predict; RMS over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in "
                    "another part in one of twenty validations of a right law, because specimens "
                    "differ. Residual deflection: where the force on "
-                   "the way back has come down to that at zero deflection.",
+                   "the unloading has come down to that at zero deflection.",
                    length[WB_RECORDINGS_VALIDATION] / WB_MM,
                    length[WB_RECORDINGS_CALIBRATION] / WB_MM);
     wb_document_heading(document, 2, "prediction", "How well another length is predicted");
@@ -916,7 +917,7 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
         wb_text_append(&text,
                        "Ludwik's law that bends alike on a first loading (RMS %.1f %% of <i>M</i>)"
                        ": <i>E</i> = %.0f MPa, <i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = "
-                       "%.0f MPa, <i>n</i> = %.3f. Of the way back it says nothing.",
+                       "%.0f MPa, <i>n</i> = %.3f. It says nothing about unloading.",
                        100.0 * c->ludwik_misfit, m->youngs_modulus / WB_MPA,
                        m->yield_stress / WB_MPA, m->strength_coefficient / WB_MPA,
                        m->hardening_exponent);

@@ -48,7 +48,7 @@ void wb_figures_compared_prediction(struct wb_figure *figure,
     struct wb_figures_compared to;
     int n = 0;
     wb_figures_compared_start(&to, figure, "Force <i>F</i> (mN)", curve->max_force);
-    /* Points as far apart as those of the way back, and no others than the beam reached. */
+    /* Points as far apart as those of the unloading, and no others than the beam reached. */
     const int every = (int)fmax(1.0, round(WB_MM / curve->step));
     for (int i = 0; i < result->elastoplastic.n_reached; i += every) {
         x[n] = i * curve->step / WB_MM;

@@ -97,7 +97,7 @@ static enum wb_status draw_bands(struct wb_figures_item *item)
                    "Predicted force and, of the homogenised beam of this length and these ends, "
                    "moment over curvature: median and band of 90 %%, with the model's error.%s%s",
                    of->bands->n_cases > 1 ? " A colour for each case." : "",
-                   n_tests > 0 ? " Black: tests, with their way back." : "");
+                   n_tests > 0 ? " Black: tests, with their unloading." : "");
     return WB_OK;
 }
 

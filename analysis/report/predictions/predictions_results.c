@@ -134,8 +134,8 @@ static double largest_deflection(const struct wb_dataset *dataset)
     return most;
 }
 
-/* 1 - d_0 / d_max, with the deflection at zero force on the first way back; NaN: the force does not
- * reach it. */
+/* 1 - d_0 / d_max, with the deflection at zero force on the first unloading; NaN: the force does
+ * not reach it. */
 static double springback(const struct wb_dataset *dataset)
 {
     const struct wb_row *before = NULL;

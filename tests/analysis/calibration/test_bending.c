@@ -99,7 +99,7 @@ static void an_elastic_circle_keeps_nothing(void **unused)
     assert_close(bending.loop_energy, 0.0, 1e-12 * 3e9 * second_moment() * largest * largest);
 }
 
-/* Masing: the way back is the first loading at twice the size from the turn on. */
+/* Masing: the unloading is the first loading at twice the size from the turn on. */
 static void a_hardening_circle_springs_back_by_masings_rule(void **unused)
 {
     (void)unused;

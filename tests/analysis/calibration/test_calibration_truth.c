@@ -337,7 +337,7 @@ static void no_wire_of_another_law_is_wrong_without_a_warning(void **unused)
 /* How far a prediction is off what was measured. */
 struct prediction {
     double loading, unloading; /* RMS over F_max */
-    double residual;           /* m, of the deflection without force on the way back */
+    double residual;           /* m, of the deflection without force during unloading */
     double loop;               /* of the second cycle's energy, relative */
 };
 
@@ -470,7 +470,7 @@ static void other_lengths_are_predicted(void **unused)
                 predict(&one, &types[t][i], lengths[l], travel);
                 sum.loading += one.loading / PREDICTED;
                 sum.unloading += one.unloading / PREDICTED;
-                /* A short way back may end above it. */
+                /* A short unloading may end above it. */
                 if (isfinite(one.residual))
                     worst.residual = fmax(worst.residual, fabs(one.residual));
                 sum.loop += one.loop / PREDICTED;

@@ -309,7 +309,7 @@ static void a_stiffness_beyond_the_data_is_less_known(void **unused)
     assert_true(n_beyond > 0);
 }
 
-/* Where no law of parallel parts is tried, the best starts its way back elastically and too soft,
+/* Where no law of parallel parts is tried, the best starts its unloading elastically and too soft,
  * though its misfit is small: the stated uncertainty says so. */
 static void a_law_that_misses_the_turn_knows_less_of_unloading(void **unused)
 {
@@ -331,7 +331,7 @@ static void a_law_that_misses_the_turn_knows_less_of_unloading(void **unused)
     wb_cycle_calibrate_release(&c);
 }
 
-/* Without the way back there is no rule to tell. */
+/* Without the unloading there is no rule to tell. */
 static void a_wire_without_a_way_back_is_ludwiks_and_its_rule_untested(void **unused)
 {
     (void)unused;

@@ -11,7 +11,7 @@ enum {
 
 static const double speed = 1.0 * WB_MM, top = 40.0 * WB_MM, weight = 30e-3;
 
-/* Tension of a wire that softens, and of its way back to a residual deflection of 15 mm. */
+/* Tension of a wire that softens, and of its unloading to a residual deflection of 15 mm. */
 static double loading(double deflection)
 {
     return weight + 0.12 * (1.0 - exp(-deflection / (25.0 * WB_MM)));

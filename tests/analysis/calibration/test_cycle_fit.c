@@ -378,7 +378,7 @@ static void a_share_at_its_end_is_known_at_once(void **unused)
     }
 }
 
-/* What the rule is worth: the other one misses the way back by far. */
+/* What the rule is worth: the other one misses the unloading by far. */
 static void the_wrong_rule_shows_in_the_misfit(void **unused)
 {
     (void)unused;

@@ -24,7 +24,7 @@ struct bar {
     double exponent; /* of its hardening; 0: one half */
     bool with_way_back;
     double slip;   /* m, at the turn */
-    double softer; /* m/N, on the way back, from a fifth of the largest force on */
+    double softer; /* m/N, during unloading, from a fifth of the largest force on */
 };
 
 static struct wb_dataset datasets[MOST];

@@ -205,7 +205,7 @@ static double curvature_of_the_turn(const struct wb_dataset *dataset, const stru
     return run.clamp_curvature;
 }
 
-/* The clamp's on the way back: the law bent to the largest curvature and let go. */
+/* The clamp's during unloading: the law bent to the largest curvature and let go. */
 static void way_back_is_that_of_the_hardening_rule(void **state)
 {
     (void)state;
@@ -237,7 +237,7 @@ static void way_back_is_that_of_the_hardening_rule(void **state)
         worst = fmax(worst, fabs(point->moment - response.M) / largest);
         n++;
     }
-    print_message("way back: %d points within %.1f %% of the largest moment\n", n, 100.0 * worst);
+    print_message("unloading: %d points within %.1f %% of the largest moment\n", n, 100.0 * worst);
     assert_true(n > 5);
     assert_true(worst < 0.03);
     free(history);

@@ -1,6 +1,7 @@
 /* What the defaults of the three-point fit are worth beside others: bias and coverage of EI and of
  * moments over made-up tests with noise, a zero, a first contact and seating; and of tests with a
- * way back, what their laws predict of another one's: its force and the deflection that is left. */
+ * unloading, what their laws predict of another one's: its force and the deflection that is left.
+ */
 #include "analysis/calibration/law/bending.h"
 #include "analysis/calibration/three_point/three_point_calibrate.h"
 
@@ -11,7 +12,7 @@
 enum {
     TESTS = 6,
     WAYS_BACK = 8,
-    ALTERNATIVES_BACK = 2, /* a way back costs several loadings */
+    ALTERNATIVES_BACK = 2, /* unloading costs several loadings */
     NUMBERS = 1 + WB_THREE_POINT_MOMENTS
 };
 
@@ -37,7 +38,7 @@ enum {
 struct sums {
     int n, covered[NUMBERS];
     double error[NUMBERS], squares[NUMBERS]; /* of ln(found / true) */
-    /* Of the way back of another test: RMS over its F_max, and what is left predicted less true, m
+    /* Of the unloading of another test: RMS over its F_max, and what is left predicted less true, m
      */
     double unloading, left, left_squares, most_left;
 };
@@ -102,7 +103,7 @@ static void predict(struct sums *sums, const struct wb_three_point_calibration *
         fail_msg("%s", why.text);
     const double left = result.left_computed - result.left_measured;
     if (!isfinite(left) || !isfinite(result.unloading.rms))
-        fail_msg("no way back: %d, RMS %g, left %g and %g mm", result.n_unloading,
+        fail_msg("no unloading: %d, RMS %g, left %g and %g mm", result.n_unloading,
                  result.unloading.rms, result.left_computed / WB_MM, result.left_measured / WB_MM);
     sums->unloading += pow(result.unloading.rms, 2);
     sums->left += left;
@@ -181,15 +182,15 @@ static void defaults_are_as_good_as_others_on_ways_back(void **state)
                       alternatives[a].name, 100.0 * sqrt(sums[a].unloading / n),
                       sums[a].left / n / WB_MM, sqrt(sums[a].left_squares / n) / WB_MM,
                       sums[a].most_left / WB_MM);
-    /* The way back of a test that was not seen, and the deflection that is left: within 2.5 % of
-     * F_max and 0.05 mm (0.25 % of the span), and no alternative knows the way back twice as well.
+    /* The unloading of a test that was not seen, and the deflection that is left: within 2.5 % of
+     * F_max and 0.05 mm (0.25 % of the span), and no alternative knows the unloading twice as well.
      * Points from 0.002 of the span on know better what is left, but not EI. */
     assert_true(sqrt(sums[0].unloading / n) < 0.025);
     assert_true(sqrt(sums[0].left_squares / n) < 0.05 * WB_MM);
     for (int a = 1; a < ALTERNATIVES_BACK; a++)
         assert_true(sums[0].unloading < 4.0 * sums[a].unloading &&
                     sums[0].squares[0] < 4.0 * sums[a].squares[0]);
-    /* With a way back EI is told: within 5 %. Intervals of 95 % hold EI and the moments: 8 of them
+    /* With unloading EI is told: within 5 %. Intervals of 95 % hold EI and the moments: 8 of them
      * miss more than one in one of seventeen cases. */
     assert_true(sqrt(sums[0].squares[0] / n) < 0.05);
     for (int k = 0; k < NUMBERS; k++)

@@ -302,7 +302,8 @@ static double force_at(const struct wb_dataset *dataset, double deflection)
     return (double)NAN;
 }
 
-/* Deflection where the force comes to zero on the way back, by a line through the rows about it. */
+/* Deflection where the force comes to zero during unloading, by a line through the rows about it.
+ */
 static double left_of(const struct wb_dataset *dataset)
 {
     double x[200], y[200];

@@ -36,7 +36,7 @@ static double noise(void)
     return sum;
 }
 
-/* A wire that softens: force over deflection, with a stiffer way back; `highest` it was so far. */
+/* A wire that softens: force over deflection, with a stiffer unloading; `highest` it was so far. */
 static double force_of(const struct bench *bench, double t, double highest)
 {
     const double u = bench->deflection(t);
@@ -152,7 +152,7 @@ static void a_wire_that_relaxes_in_its_rest_gives_the_lag(void **state)
     assert_true(sync.uncertainty < 0.1);
 }
 
-/* The way back is steeper, so that the force has its corner nearer to the end of the rest. */
+/* The unloading is steeper, so that the force has its corner nearer to the end of the rest. */
 static void a_stage_that_waits_before_it_turns_does_not_bias_the_lag(void **state)
 {
     (void)state;

@@ -250,7 +250,7 @@ static void way_back_and_later_cycles_are_those_of_the_rule(void **state)
     wb_dataset_release(&dataset);
 }
 
-/* Three samples that differ by 5 % in stiffness and in their bows: what is left of the way back
+/* Three samples that differ by 5 % in stiffness and in their bows: what is left of the unloading
  * once the law is as stiff as each is the rule's alone. */
 static void bounds_tell_a_wrong_rule_from_specimens_that_differ(void **state)
 {

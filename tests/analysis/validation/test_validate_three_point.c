@@ -66,7 +66,7 @@ static void true_law_predicts_loading_and_way_back(void **state)
     const struct wb_properties properties = properties_of(&made);
     three_point_make(&datasets[0], &made, "");
     assert_int_equal(validate(&properties, 1, NULL), WB_OK);
-    print_message("loading %.2g, way back %.2g, left %.3f of %.3f mm, elastic %.2g\n",
+    print_message("loading %.2g, unloading %.2g, left %.3f of %.3f mm, elastic %.2g\n",
                   result.loading.rms, result.unloading.rms, result.left_computed / WB_MM,
                   result.left_measured / WB_MM, result.elastic_rms);
     assert_true(result.loading.rms < 2e-3);
@@ -181,7 +181,7 @@ static void bows_of_the_specimens_are_taken(void **state)
                 (struct wb_band){known == 1, made.bow, made.bow, made.bow};
         }
         assert_int_equal(validate(&properties, 2, NULL), WB_OK);
-        print_message("loading %.2g, way back %.2g\n", result.loading.rms, result.unloading.rms);
+        print_message("loading %.2g, unloading %.2g\n", result.loading.rms, result.unloading.rms);
         if (known == 0)
             straight = result.loading.rms;
         for (int i = 0; i < 2 && known == 1; i++)

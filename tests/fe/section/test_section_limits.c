@@ -60,7 +60,7 @@ static void cycles_of_other_packings_balance_and_come_back(void **unused)
         assert_close_relative(run.rows[3 * ROWS].force, run.rows[ROWS].force, 0.03);
         for (int i = 1; i <= 2 * ROWS; i++) {
             const struct wb_section_run_row *const row = &run.rows[i];
-            /* The way back is softer, and friction spends on both ways. */
+            /* The unloading is softer, and friction spends on both ways. */
             if (i > ROWS && row->phase == WB_PHASE_UNLOAD)
                 assert_true(row->force < run.rows[2 * ROWS - i].force);
             assert_true(row->energies.friction >
