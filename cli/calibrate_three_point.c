@@ -40,8 +40,8 @@ static void print_member(const struct wb_three_point_member *m)
                m->fit.bow / WB_MM, 2.0 * m->fit.bow_error / WB_MM,
                fabs(m->fit.bow_off) > 2.0
                    ? "far off its prior: it takes up what the law cannot follow"
-               : m->fit.is_bow_told ? "told by the curve"
-                                    : "not told by the curve: its prior",
+               : m->fit.is_bow_told ? "determined by the curve"
+                                    : "not determined by the curve: its prior",
                m->fit.bow_contact_correlation);
     else if (m->fit.bow != 0.0)
         printf("    natural bow %+.3f mm, given\n", m->fit.bow / WB_MM);

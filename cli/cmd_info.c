@@ -50,7 +50,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         if (options->mesh && !options->figure)
             argp_error(state, "--mesh goes with --figure");
         if (options->figure && options->common.input && !wb_info_is_bundle(options->common.input))
-            argp_error(state, "--figure is of a bundle, and '%s' is none", options->common.input);
+            argp_error(state, "--figure applies to bundles, and '%s' is not a bundle",
+                       options->common.input);
         break;
     default:
         break;

@@ -102,7 +102,7 @@ static const struct argp argp = {
            "all is written, but a limit of the campaign is exceeded. The same recordings or "
            "datasets and the same revision give the same bytes. --solve and --slurm first make "
            "the datasets that a campaign misses, those that are outdated too (recordings cannot be "
-           "computed); run again, they go on where they ended. Logs lie in DIR.jobs. "
+           "computed); run the same command again to continue. Logs lie in DIR.jobs. "
            "--check ends with exit code 0 where the same bytes come out again, or by another build "
            "numbers within 1e-9, fitted ones within 1e-5; 3: the campaign is not here to be "
            "computed.",

@@ -230,7 +230,7 @@ static bool take_exclusion(const struct run *run, const char *answer,
 {
     const char *const reason = answer + 1 + strspn(answer + 1, " \t");
     if ((answer[0] != 'x' && answer[0] != 'r') || (answer[1] && answer[1] != ' ')) {
-        wb_warn("'%s' is none of these answers", answer);
+        wb_warn("'%s' is not one of these answers", answer);
         return false;
     }
     if (!*reason || strlen(reason) >= sizeof exclusion->reason) {
@@ -477,7 +477,7 @@ static int finish(struct run *run)
         print_table(stdout, &run->results);
     }
     if (!is_complete)
-        wb_info("%d of %d specimens are done; the same command goes on", n_done,
+        wb_info("%d of %d specimens done; run the same command again to continue", n_done,
                 run->series.n_specimens);
     return is_complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

@@ -149,7 +149,7 @@ bool wb_record_views_tell(struct wb_record_views *views, bool now)
     if (views->terminal >= 0 && atomic_load(&views->feed.view[views->terminal].is_gone) &&
         wb_live_feed_has_ended(&views->feed, views->terminal)) {
         take_terminal_back(views);
-        wb_warn("the live view has ended; the recording goes on");
+        wb_warn("the live view has ended; the recording continues");
     }
     if (views->feed.n_views > 0 && (now || now_ns - views->told_ns >= TELL_NS)) {
         views->told_ns = now_ns;

@@ -398,8 +398,9 @@ void wb_align_natural(struct wb_align *align)
         observe_force(align, from_force, path, &obs, &from_force_deviation);
     }
     if (obs.n == 0 || !estimate_shape(&obs, length, &estimate)) {
-        wb_align_warn(align, "the natural shape cannot be told from this recording: the wire is "
-                             "taken as straight");
+        wb_align_warn(align,
+                      "the natural shape cannot be determined from this recording: the wire is "
+                      "taken as straight");
         return;
     }
     info->n_natural_shape = estimate.n_terms;

@@ -146,7 +146,7 @@ static enum wb_status ask_sbatch(const char *const *words, char array[32], char 
             "there is no sbatch in PATH: --slurm needs Slurm's commands on this machine; "
             "--solve computes here, on all cores");
     if (status == WB_ERR_TIMEOUT)
-        return wb_fail(WB_ERR_TIMEOUT, "it cannot be told whether the array was submitted: look "
+        return wb_fail(WB_ERR_TIMEOUT, "it is not known whether the array was submitted: look "
                                        "with squeue before trying again");
     if (status != WB_OK)
         return status;

@@ -216,9 +216,10 @@ static void say_who_goes_on(struct wb_jobs_plan *plan)
         last = item->array;
     }
     wb_jobs_plan_clear(plan);
-    wb_warn("stopped waiting; Slurm goes on with %d of the runs: the same command again collects "
-            "them, `scancel%s` ends them",
-            count_queued(plan), wb_text_string(&arrays));
+    wb_warn(
+        "stopped waiting; Slurm continues %d of the runs: run the same command again to collect "
+        "them, or end them with `scancel%s`",
+        count_queued(plan), wb_text_string(&arrays));
     wb_text_release(&arrays);
 }
 

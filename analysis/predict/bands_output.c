@@ -278,7 +278,7 @@ static void tell_ranking(struct wb_text *text, const struct wb_bands *bands,
                          const struct wb_bands_ranking *of)
 {
     const struct wb_ranking *const ranking = &of->ranking;
-    wb_text_append(text, "\n%s at %.3g mm hangs on (R2 %.3f, %.3f to %.3f)%s\n", of->of,
+    wb_text_append(text, "\n%s at %.3g mm depends on (R2 %.3f, %.3f to %.3f)%s\n", of->of,
                    of->at / WB_MM, ranking->r2, ranking->low, ranking->high,
                    ranking->is_valid ? ":"
                                      : ": no ranking, ranks of the inputs do not explain it (R2 "

@@ -127,7 +127,7 @@ static enum wb_status deliver(const struct wb_solve *solve, wb_solve_show *show,
     const char *const rows = solve->n_rows == 1 ? "row" : "rows";
 
     if (solve->kept) {
-        wb_warn("stopped after %d %s; the same command goes on from there ('%s')", solve->n_rows,
+        wb_warn("stopped after %d %s; run the same command again to continue ('%s')", solve->n_rows,
                 rows, s->checkpoint);
         return WB_OK;
     }

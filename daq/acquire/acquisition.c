@@ -641,7 +641,7 @@ static void note_rates(struct wb_acquisition *a, int64_t now_ns)
 /* Told from here on: flushes are due ten times a second. */
 #define STORAGE_LAG_NS (800 * WB_NS_PER_MS)
 
-/* A disk that takes nothing, or too slowly. The test goes on: what came is in memory. */
+/* The disk cannot be written to, or is too slow. The test continues; new data stay in memory. */
 static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
 {
     if (!a->writer)
@@ -653,12 +653,13 @@ static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
     if (late && !a->latest.is_storage_late) {
         a->storage_ns = now_ns - state->lag_ns;
         push_event(a, now_ns, "storage",
-                   state->failing != WB_OK ? "the disk takes nothing; what comes is in memory"
-                                           : "the disk is late; what comes is in memory");
-        wb_warn("%s: what came in the last %.1f s is in memory only%s",
-                state->failing != WB_OK ? "the disk takes nothing" : "the disk is late",
+                   state->failing != WB_OK
+                       ? "nothing can be written to the disk; new data stay in memory"
+                       : "the disk is late; what comes is in memory");
+        wb_warn("%s: the data of the last %.1f s are in memory only%s",
+                state->failing != WB_OK ? "nothing can be written to the disk" : "the disk is late",
                 wb_seconds_from_ns(state->lag_ns),
-                state->failing != WB_OK ? "; make room on it while the test goes on" : "");
+                state->failing != WB_OK ? "; make room on it during the test" : "");
     } else if (!late && a->latest.is_storage_late) {
         char text[120];
         snprintf(text, sizeof text, "all is on the disk again, after %.1f s",
@@ -698,9 +699,10 @@ static void check_rest(struct wb_acquisition *a)
         return;
     }
     if (a->writer && wb_writer_status(a->writer) != WB_OK)
-        wb_acquisition_stop(a, WB_INTERLOCK_DISK,
-                            "the recording cannot be written: the disk takes nothing, and the "
-                            "memory that keeps what comes is nearly full");
+        wb_acquisition_stop(
+            a, WB_INTERLOCK_DISK,
+            "the recording cannot be written: nothing can be written to the disk, and the "
+            "memory that keeps what comes is nearly full");
 }
 
 /* Silence up to `heard_ns`, which is a time before the streams were read: what comes later may wait

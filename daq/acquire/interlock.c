@@ -142,7 +142,7 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
     if (report->state == WB_STAGE_HOLD || report->state == WB_STAGE_OTHER)
         return trip(interlock, WB_INTERLOCK_STAGE, report->t_ns,
                     report->state == WB_STAGE_HOLD
-                        ? "the stage went on hold without being told to"
+                        ? "the stage went on hold without a command"
                         : "the stage left its normal operation (door, check or sleep mode)");
     const double travel = limit->down * (report->position - interlock->start_position);
     if (!isfinite(travel))

@@ -430,9 +430,9 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
 {
     if (!state->connected) {
         if (first_time(state, SAID_EARLY))
-            wb_driver_remark(
-                sink, WB_LOG_INFO, t_ns, "early",
-                "frames come before the server told its NatNet version: they are not decoded");
+            wb_driver_remark(sink, WB_LOG_INFO, t_ns, "early",
+                             "frames arrived before the server reported its NatNet version: they "
+                             "are not decoded");
         return;
     }
     struct wb_mocap_frame *const mocap = &state->frame.mocap;

@@ -144,11 +144,11 @@ static enum wb_status read_preset(const struct wb_config_node *map,
     struct wb_text known = {0};
     for (size_t i = 0; wb_loadcell_preset_at(i); i++)
         wb_text_append(&known, "%s%s", i ? ", " : "", wb_loadcell_preset_at(i)->name);
-    const enum wb_status status = wb_config_refuse(
-        map, "preset",
-        "expected one of %s, not '%s'; an instrument that is none of them needs no "
-        "preset but its own line settings",
-        wb_text_string(&known), name ? name : "");
+    const enum wb_status status =
+        wb_config_refuse(map, "preset",
+                         "expected one of %s, not '%s'; for another instrument, replace the preset "
+                         "by its line settings",
+                         wb_text_string(&known), name ? name : "");
     wb_text_release(&known);
     return status;
 }

@@ -122,7 +122,7 @@ static void end_settings(struct grbl_state *state, int64_t t_ns, const struct wb
     const struct wb_motion_limits top = {speed * scale, acceleration_of(settings)};
     wb_driver_remark(sink, WB_LOG_INFO, t_ns, "settings",
                      "axis %c: %g steps/mm, at most %g mm/s, %g mm/s2, travel %g mm, soft limits "
-                     "%s; left alone at %g mm/s it goes on by %.3f mm at most",
+                     "%s; at %g mm/s it continues by %.3f mm at most without this computer",
                      state->rig.stage.axis, settings->steps * WB_MM, settings->speed / WB_MM,
                      settings->acceleration / WB_MM, settings->travel / WB_MM,
                      settings->soft_limits ? "on" : "off", speed / WB_MM,

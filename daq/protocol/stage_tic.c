@@ -82,7 +82,7 @@ static void find_fault(const struct wb_tic_settings *tic, char *text, size_t siz
              tic->command_timeout_ms > MOST_TIMEOUT_MS)
         snprintf(text, size,
                  "the Tic's command timeout (setting 0x09) is %d ms: set it to %d to %d ms %s; the "
-                 "stage goes on for so long when this computer dies",
+                 "stage continues that long when this computer fails",
                  tic->command_timeout_ms, LEAST_TIMEOUT_MS, MOST_TIMEOUT_MS, where);
     else if (tic->soft_error_response == WB_TIC_GO_TO_PLACE)
         snprintf(text, size,
@@ -112,11 +112,12 @@ static void tell_settings(struct tic_state *state, int64_t t_ns, const struct wb
              tic->soft_error_response);
     const double alone =
         speed * (1e-3 * tic->command_timeout_ms + 0.5 * speed / settings.acceleration);
-    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "settings",
-                     "Tic: at most %g mm/s, %g mm/s2, command timeout %d ms; left alone at %g mm/s "
-                     "it goes on by %.3f mm at most",
-                     settings.speed / WB_MM, settings.acceleration / WB_MM, tic->command_timeout_ms,
-                     state->rig.stage.speed / WB_MM, alone / WB_MM);
+    wb_driver_remark(
+        sink, WB_LOG_INFO, t_ns, "settings",
+        "Tic: at most %g mm/s, %g mm/s2, command timeout %d ms; at %g mm/s it continues "
+        "by %.3f mm at most without this computer",
+        settings.speed / WB_MM, settings.acceleration / WB_MM, tic->command_timeout_ms,
+        state->rig.stage.speed / WB_MM, alone / WB_MM);
     if (settings.fault[0])
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings", "%s", settings.fault);
     if (settings.lets_go)
@@ -177,8 +178,8 @@ static void remark_changes(const struct tic_state *state, int64_t t_ns,
                          "a limit switch is pressed");
     if (!homes && rises(before->flags, now->flags, WB_TIC_POSITION_UNCERTAIN))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "position",
-                         "the Tic is not certain of its position: home the stage, or go on from "
-                         "where it stands");
+                         "the Tic is not certain of its position: home the stage, or continue from "
+                         "its present place");
     if ((before->flags & WB_TIC_HOMING) &&
         !(now->flags & (WB_TIC_HOMING | WB_TIC_POSITION_UNCERTAIN)))
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "homed",

@@ -15,7 +15,7 @@
 
 #define WB_LOG_DOMAIN "writer"
 
-/* Between two tries of a disk that takes nothing. */
+/* Pause before writing is tried again. */
 #define RETRY_NS (200 * WB_NS_PER_MS)
 
 enum entry_kind {
@@ -257,7 +257,8 @@ static enum wb_status write_rest(struct wb_writer *writer)
     const int64_t until_ns = wb_time_now_ns() + writer->settings.patience_ns;
     const double kilobytes = (double)writer->waiting_bytes * 1e-3;
     if (status != WB_OK && writer->settings.patience_ns > 0)
-        wb_warn("the disk takes nothing, and %.1f kB of the recording are in memory only: make "
+        wb_warn("nothing can be written to the disk, and %.1f kB of the recording are in memory "
+                "only: make "
                 "room on it within %.0f s and they are written; Ctrl-C gives it up",
                 kilobytes, wb_seconds_from_ns(writer->settings.patience_ns));
     while (status != WB_OK && wb_time_now_ns() < until_ns &&

@@ -46,7 +46,7 @@ static void see_it_stand(struct wb_bend_hold *hold, struct wb_sequence *run)
     hold->stands = run->idle_reports >= STANDING_REPORTS;
     if (hold->stands) {
         wb_acquisition_motion_ended(run->acquisition);
-        wb_info("held at %.2f mm: r goes on, q ends the test",
+        wb_info("held at %.2f mm: press r to resume, q to end the test",
                 wb_sequence_travel(run, latest->stage.position) / WB_MM);
     } else if (wb_sequence_lasts_ns(run) > run->allowed_ns) {
         wb_sequence_give_up(run, WB_INTERLOCK_STAGE,

@@ -328,7 +328,7 @@ static void step_check(struct wb_bend_test *test)
     }
     /* Later it may come back; with nothing moved yet there is nothing to lose. */
     if (latest->storage.failing != WB_OK) {
-        refuse(test, "the disk takes nothing: the message before says why");
+        refuse(test, "nothing can be written to the disk: see the message before");
         return;
     }
     test->run.start_position = latest->stage.position;

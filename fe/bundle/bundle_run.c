@@ -284,8 +284,8 @@ static enum wb_status resume(struct run *r, struct wb_checkpoint *c)
     h->resumed = true;
     r->wall_before = h->wall;
     r->cpu_before = h->cpu;
-    wb_info("%s: goes on at %.2f mm, step %lld, of a run of %.0f s so far", r->options.checkpoint,
-            r->state.deflection / WB_MM, r->state.steps, h->wall);
+    wb_info("%s: continues at %.2f mm, step %lld, after %.0f s of computation",
+            r->options.checkpoint, r->state.deflection / WB_MM, r->state.steps, h->wall);
     return WB_OK;
 }
 

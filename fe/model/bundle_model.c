@@ -704,7 +704,7 @@ static enum wb_status read_tape(struct reader *reader, const char *name,
     if (*name == '\0') {
         if (has_tape_of_its_own(reader->variant))
             return wb_config_refuse(reader->file.root, "tape",
-                                    "variant %s is of a tape, and there is none",
+                                    "variant %s applies to a tape, and this bundle has no tape",
                                     reader->variant->name);
         if (map)
             return wb_config_refuse(reader->file.root, "taping", "there is no tape");

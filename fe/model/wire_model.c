@@ -138,8 +138,7 @@ static enum wb_status read_jacket_contact(struct reader *reader, const struct wb
 
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     if (m->n_parts != 2)
-        return wb_config_refuse(reader->file.root, "interface",
-                                "there is none in a wire of one part");
+        return wb_config_refuse(reader->file.root, "interface", "a wire of one part has none");
     const struct wb_wire_model_part *const jacket = &m->part[1];
     wb_trial_default_jacket_contact(
         &m->jacket_contact, jacket->material.youngs_modulus, jacket->material.poissons_ratio,

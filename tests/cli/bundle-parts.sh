@@ -72,7 +72,7 @@ process=$!
 until ls states/*-0001.vtu >/dev/null 2>&1 || ! kill -0 $process 2>/dev/null; do sleep 0.05; done
 kill -INT $process
 wait $process && { echo "it was not stopped"; exit 1; }
-grep -q 'the same command goes on' log || { cat log; exit 1; }
+grep -q 'run the same command again to continue' log || { cat log; exit 1; }
 refused() { # WHY COMMAND...
     why=$1
     shift

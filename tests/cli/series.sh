@@ -50,7 +50,7 @@ holds() { # FILE WORDS
 # The first specimen is tested and kept; the second one's test is excluded, and then the answers end.
 stopped_and_gone_on_with() {
     series a 'first note\n\n\n\n\nx the wire slipped\n' --figure "$folder/a.svg"
-    expect a 3 '2 of 3 specimens are done; the same command goes on'
+    expect a 3 '2 of 3 specimens done; run the same command again to continue'
     holds a.err 'standard input is no terminal: answers are read from it'
     holds a.out 'excluded: the wire slipped'
     grep -Eq '^tests +1 +1 +1 +1$' "$folder/a.out" || fail "a: not one test counts: $(cat "$folder/a.out")"

@@ -270,7 +270,7 @@ static void full_disk_keeps_what_was_written_before(void **state)
     run("record rig.yaml " SPECIMEN "-o full.wbr --travel-mm 10");
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     assert_code(3);
-    assert_said("the disk takes nothing");
+    assert_said("nothing can be written to the disk");
     assert_said("kB of the recording are lost; what was written before stays");
     run("info full.wbr");
     assert_code(3);

@@ -583,7 +583,7 @@ static void a_full_disk_is_told_and_what_comes_is_kept_until_there_is_room(void 
     assert_int_equal(result.drops, 0);
     assert_int_equal(fixture->bench->holds, 0);
     read_events(fixture);
-    assert_non_null(strstr(fixture->events, "storage: the disk takes nothing"));
+    assert_non_null(strstr(fixture->events, "storage: nothing can be written to the disk"));
     assert_replay_identical(fixture->output, &fixture->log);
 }
 

@@ -483,7 +483,7 @@ static void look_at_hold(struct show *show)
         draw(show, 40, 110, true);
         assert_shows(show, " held ");
         assert_shows(show, "held at");
-        assert_shows(show, "r goes on, q ends the test");
+        assert_shows(show, "press r to resume, q to end the test");
         assert_shows(show, "r  resume");
     }
 }

@@ -167,7 +167,7 @@ held_and_stopped() {
 held_view_killed() {
     begin_held held_view_killed C.UTF-8 --live --travel-mm 5
     kill -s KILL "$view"
-    wait_until "$script" grep -qa 'the live view has ended; the recording goes on' \
+    wait_until "$script" grep -qa 'the live view has ended; the recording continues' \
         "$folder/held_view_killed.screen" || fail 'held_view_killed: no line'
     printf r >&8
     finish held_view_killed 0

@@ -246,7 +246,8 @@ static bool check_deflections(struct wb_cycle_remarks *remarks, const struct loa
     if (share < least_travel) {
         say(remarks, WB_CHECK_UNUSABLE, info->sample,
             "wire '%s', sample %d: the first loading ends at %.2f mm of deflection, %.2f of the "
-            "length: nothing can be told from so little; at least %.1f mm give EI, %.0f mm the "
+            "length: nothing can be determined from so little; at least %.1f mm give EI, %.0f mm "
+            "the "
             "law: test with a longer travel",
             info->wire, info->sample, loading->top / WB_MM, share,
             least_travel * info->length / WB_MM, full_travel * info->length / WB_MM);

@@ -364,7 +364,7 @@ static enum wb_status iterate(struct wb_calibrate_result *result, struct objecti
         /* The only failure is a contraction that hits a non-finite value, which evaluate() never
          * returns. */
         if (gsl_multimin_fminimizer_iterate(minimizer) != GSL_SUCCESS)
-            return wb_fail_to(objective->why, WB_ERR_CONVERGENCE, "the simplex could not go on");
+            return wb_fail_to(objective->why, WB_ERR_CONVERGENCE, "the simplex could not continue");
     }
 }
 

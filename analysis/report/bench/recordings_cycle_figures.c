@@ -579,7 +579,7 @@ static enum wb_status add_pairs(struct wb_panel *panel, struct wb_figures_item *
         wb_recordings_draw_wire(item->results, item->index);
     const struct wb_cycle_valley *const valley = &wire->cycle.valley;
     wb_figure_set_axes(panel, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
-    WB_TRY(add_region(panel, valley, false, "not told apart"));
+    WB_TRY(add_region(panel, valley, false, "indistinguishable"));
     const double n = valley->best.hardening_exponent;
     const double K = valley->best.strength_coefficient / WB_MPA;
     const struct wb_figure_style best = {

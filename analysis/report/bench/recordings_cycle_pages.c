@@ -946,12 +946,13 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
     int one, other;
     const struct wb_cycle_fit *const fit = &c->members[0].answers[c->chosen].fit;
     if (wb_cycle_fit_strongest(fit, &one, &other))
-        wb_text_append(&text,
-                       " The law's numbers hang together: in the fit of sample %d the strongest "
-                       "correlation is %s%.2f, of %s and %s.",
-                       c->members[0].sample, minus(fit->correlation[one][other]),
-                       fabs(fit->correlation[one][other]), wb_cycle_fit_number(fit, one, a),
-                       wb_cycle_fit_number(fit, other, b));
+        wb_text_append(
+            &text,
+            " The law's parameters are strongly correlated: in the fit of sample %d the strongest "
+            "correlation is %s%.2f, of %s and %s.",
+            c->members[0].sample, minus(fit->correlation[one][other]),
+            fabs(fit->correlation[one][other]), wb_cycle_fit_number(fit, one, a),
+            wb_cycle_fit_number(fit, other, b));
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 

@@ -167,7 +167,7 @@ static void put_ranking(struct wb_document *document, const struct wb_bands *ban
     static const struct wb_document_column columns[] = {
         {"Of"},
         {.heading = "at (mm)", .right = true},
-        {"hangs on"},
+        {"depends on"},
         {.heading = "Share (%)", .right = true},
         {.heading = "90 % (%)", .right = true},
     };

@@ -325,7 +325,7 @@ static void append_misprint(struct wb_text *text, const struct wb_wires_results 
         wb_text_append(text, " That the solid of copper as soft as the literature has it curls up "
                              "too says that the paper's figures need a harder copper than this, or "
                              "show a curl that its text does not mention; without its Table 1 "
-                             "neither can be told.");
+                             "neither can be determined.");
 }
 
 /* What the reader must know before comparing with the paper. */

@@ -295,7 +295,7 @@ static void a_short_travel_gives_a_stiffness_alone(void **state)
     }
     struct bench *const bench = calloc(1, sizeof *bench);
     add(bench, 2, 85.0 * WB_MM, 4.0 * WB_MM, 1);
-    assert_refused(bench, "nothing can be told from so little");
+    assert_refused(bench, "nothing can be determined from so little");
 }
 
 /* --- zeros --- */
