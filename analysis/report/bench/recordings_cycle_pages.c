@@ -339,11 +339,11 @@ static void put_stiffness_of(struct wb_document_table *table,
     double low = EI->low, high = EI->high;
     if (results->pool.degrees > 0)
         wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
-    start_moments_row(table, true, wire->wanted->label, WB_TONE_PLAIN, "during unloading");
+    start_moments_row(table, true, wire->wanted->label, WB_TONE_PLAIN, "unloading");
     wb_pages_cell_number(table, c->unloading.n > 0 ? c->unloading.resolved : (double)NAN, 2);
     put_stiffness_row(table, c, &c->unloading, is_refuted);
     put_number(table, is_refuted ? (double)NAN : EI->value / WB_NMM2);
-    start_moments_row(table, false, "", WB_TONE_PLAIN, "from straight");
+    start_moments_row(table, false, "", WB_TONE_PLAIN, "secant");
     wb_pages_cell_number(table, c->secant.resolved, 2);
     put_stiffness_row(table, c, &c->secant, is_refuted);
     put_range(table, (is_refuted ? EI->candidates_low : low) / WB_NMM2,
@@ -353,14 +353,17 @@ static void put_stiffness_of(struct wb_document_table *table,
 static void put_stiffnesses(struct wb_document *document,
                             const struct wb_recordings_results *results)
 {
-    static const struct wb_document_column columns[] = {
+    const struct wb_document_column columns[] = {
         {"Wire"},
         {""},
         {.heading = "from (1/m)", .right = true, .wraps = true},
         {.heading = "0.5 /m", .right = true},
         {.heading = "1 /m", .right = true},
         {.heading = "2 /m", .right = true},
-        {.heading = "<i>EI</i> at zero", .right = true, .wraps = true},
+        {.heading =
+             results->pool.degrees > 0 ? "<i>EI</i> at zero, pooled interval" : "<i>EI</i> at zero",
+         .right = true,
+         .wraps = true},
     };
     struct wb_text caption = {0};
     wb_text_append(

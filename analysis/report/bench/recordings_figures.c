@@ -500,7 +500,8 @@ static enum wb_status draw_error(struct wb_figures_item *item)
     WB_TRY(wb_recordings_draw_start(item, "error", WB_PDF_WIDTH, 155.0));
     wb_text_append(&item->caption,
                    "Error of the computed force against the mean force, %s (eq. 18), as part of "
-                   "each curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19).",
+                   "each curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19); each sample is "
+                   "computed with its own bow.",
                    wb_recordings_draw_measured(results));
     struct wb_panel *const panel = add_error_panel(item);
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {

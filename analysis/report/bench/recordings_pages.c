@@ -290,7 +290,7 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
     const struct wb_recordings *const campaign = results->campaign;
     static const struct wb_document_column columns[] = {
         {"Wire"},
-        {.heading = "Calibration RMS", .right = true, .wraps = true},
+        {.heading = "RMS of the fit", .right = true, .wraps = true},
         {.heading = "Validation RMS", .right = true, .wraps = true},
         {.heading = "Validation, largest", .right = true, .wraps = true},
         {.heading = "Linear elastic RMS", .right = true, .wraps = true},
@@ -781,14 +781,16 @@ static void put_calibration_text(struct wb_document *document,
     const struct wb_validate_result *const v =
         wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
     struct wb_text text = {0};
-    wb_text_append(&text,
-                   "Calibrated on %d %s of %g mm: <i>E</i> = %.0f MPa, "
-                   "<i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = %.0f MPa, <i>n</i> = %.3f, "
-                   "RMS %.4f of <i>F</i><sub>max</sub> = %.1f mN (largest error %.4f).",
-                   n, wb_pages_plural(n, "sample", "samples"), campaign->length[0] / WB_MM,
-                   c->material.youngs_modulus / WB_MPA, c->material.yield_stress / WB_MPA,
-                   c->material.strength_coefficient / WB_MPA, c->material.hardening_exponent,
-                   c->rms, steps[0].result.curve.max_force / WB_MN, c->max_error);
+    wb_text_append(
+        &text,
+        "Calibrated on %d %s of %g mm: <i>E</i> = %.0f MPa, "
+        "<i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = %.0f MPa, <i>n</i> = %.3f, "
+        "RMS of the fit with the mean bow %.4f of <i>F</i><sub>max</sub> = %.1f mN (largest "
+        "error %.4f).",
+        n, wb_pages_plural(n, "sample", "samples"), campaign->length[0] / WB_MM,
+        c->material.youngs_modulus / WB_MPA, c->material.yield_stress / WB_MPA,
+        c->material.strength_coefficient / WB_MPA, c->material.hardening_exponent, c->rms,
+        steps[0].result.curve.max_force / WB_MN, c->max_error);
     if (v)
         wb_text_append(&text,
                        " Predicts %d %s of %g mm with RMS %.4f of <i>F</i><sub>max</sub> = %.1f mN "
@@ -830,7 +832,8 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
     const bool scatters = fit->curve.n_samples > 1, v_scatters = v && v->curve.n_samples > 1;
     const char *const part = "of <i>F</i><sub>max</sub>";
     const struct merit merits[] = {
-        {"RMS (eq. 19)", part, fit->elastoplastic.rms, v ? v->elastoplastic.rms : none, 4},
+        {"RMS (eq. 19), each sample with its own bow", part, fit->elastoplastic.rms,
+         v ? v->elastoplastic.rms : none, 4},
         {"RMS beyond 5 mm", part, fit->elastoplastic.rms_from_5mm,
          v ? v->elastoplastic.rms_from_5mm : none, 4},
         {"Largest error (eq. 18)", part, fit->elastoplastic.max_error,
