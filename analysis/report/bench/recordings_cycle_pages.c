@@ -356,12 +356,11 @@ static void put_stiffnesses(struct wb_document *document,
     const struct wb_document_column columns[] = {
         {"Wire"},
         {""},
-        {.heading = "from (1/m)", .right = true, .wraps = true},
+        {.heading = "from (1/m)", .right = true},
         {.heading = "0.5 /m", .right = true},
         {.heading = "1 /m", .right = true},
         {.heading = "2 /m", .right = true},
-        {.heading =
-             results->pool.degrees > 0 ? "<i>EI</i> at zero, pooled interval" : "<i>EI</i> at zero",
+        {.heading = results->pool.degrees > 0 ? "<i>EI</i> at zero, pooled" : "<i>EI</i> at zero",
          .right = true,
          .wraps = true},
     };
