@@ -17,8 +17,15 @@ compare() { # EXPECTED ARGUMENTS...
 
 # All numbers of the batch B that carry a moment are a factor higher.
 mkdir "$folder/other"
-awk '/^(moment_N_mm|low|high|candidates_low|candidates_high):/ || /^    (moment_N_mm|low|high|candidates_low|candidates_high):/ { $2 *= 1.6; print "    " $1 " " $2; next } { print }' \
-    "$card" >"$folder/other/type1.yaml"
+sed -n '/^moment_curvature:/,/^[a-z_]*stiffness/p' "$card" | grep -q moment_N_mm || fail 'no moments in the card'
+python3 - "$card" "$folder/other/type1.yaml" <<'PYTHON'
+import re, sys
+text = open(sys.argv[1]).read()
+scale = lambda m: m[1] + repr(1.6 * float(m[2]))
+numbers = r"((?:moment_N_mm|low|high|candidates_low|candidates_high): )([-+.e0-9]+)"
+moments = re.compile(r"^  - \{curvature_1_m: .*$", re.M)
+open(sys.argv[2], "w").write(moments.sub(lambda line: re.sub(numbers, scale, line[0]), text))
+PYTHON
 cmp -s "$card" "$folder/other/type1.yaml" && fail 'the other batch is the same'
 
 compare 2 "$card"
@@ -35,7 +42,7 @@ compare 3 "$card" "$card" --within 0.03
 grep -q 'cannot tell: test [0-9]* more specimens of each' "$folder/out" || fail 'no number of specimens'
 compare 4 "$card" "$folder/other/type1.yaml" --within 0.01
 grep -q '^M at .* B/A 1.6.*different$' "$folder/out" || fail 'the moments are not different'
-grep -q '^different: at least one of 8' "$folder/out" || fail 'no verdict on all'
+grep -q '^found .*different: at least one of 8' "$folder/out" || fail 'no verdict on all'
 
 # One page, which says where the data come from, and the same bytes again.
 compare 0 "$card" "$card" --within 1 -o "$folder/page.pdf"
