@@ -9,11 +9,15 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static wb_log_sink *current_sink;
 static void *sink_context;
 static enum wb_log_level threshold = WB_LOG_INFO;
+static bool has_line; /* see wb_log_note_line() */
 static _Thread_local enum wb_log_level gravest = WB_LOG_ERROR;
 
 static void write_to_stderr(enum wb_log_level level, const char *domain, const char *message)
 {
     static const char *const names[] = {"error: ", "warning: ", "", "debug: "};
+    if (has_line)
+        fputs("\r\033[K", stderr);
+    has_line = false;
     if (level == WB_LOG_DEBUG)
         fprintf(stderr, "wirebench: %s%s: %s\n", names[level], domain, message);
     else
@@ -61,5 +65,12 @@ void wb_log_set_threshold(enum wb_log_level level)
 {
     pthread_mutex_lock(&lock);
     threshold = level;
+    pthread_mutex_unlock(&lock);
+}
+
+void wb_log_note_line(bool is_drawn)
+{
+    pthread_mutex_lock(&lock);
+    has_line = is_drawn;
     pthread_mutex_unlock(&lock);
 }

@@ -12,6 +12,8 @@
 #ifndef WB_BASE_LOG_H
 #define WB_BASE_LOG_H
 
+#include <stdbool.h>
+
 enum wb_log_level {
     WB_LOG_ERROR,
     WB_LOG_WARNING,
@@ -36,6 +38,10 @@ enum wb_log_level wb_log_set_gravest(enum wb_log_level level);
 
 /* Sets the highest level that is delivered; WB_LOG_INFO at start. */
 void wb_log_set_threshold(enum wb_log_level level);
+
+/* A line without end stands on stderr's terminal (a progress line): the next message to stderr
+ * erases it first, instead of continuing it. false: it is gone. */
+void wb_log_note_line(bool is_drawn);
 
 #define wb_error(...) wb_log(WB_LOG_ERROR, WB_LOG_DOMAIN, __VA_ARGS__)
 #define wb_warn(...) wb_log(WB_LOG_WARNING, WB_LOG_DOMAIN, __VA_ARGS__)

@@ -4,6 +4,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/log.h"
 #include "base/timing.h"
 #include "base/units.h"
 
@@ -51,6 +52,7 @@ void wb_progress_update(struct wb_progress *progress, double done, const char *n
     if (note && note[0])
         fprintf(stderr, ", %s", note);
     fflush(stderr);
+    wb_log_note_line(true);
 }
 
 void wb_progress_finish(struct wb_progress *progress)
@@ -58,6 +60,7 @@ void wb_progress_finish(struct wb_progress *progress)
     if (progress->on_terminal && progress->drawn) {
         fprintf(stderr, "\r\033[K");
         fflush(stderr);
+        wb_log_note_line(false);
     }
     progress->drawn = false;
 }

@@ -291,8 +291,7 @@ static enum wb_status settle(struct run *run, int number, const char *path)
     show_curves(&run->results);
     print_table(stderr, &run->results);
     if (!judge(run, &entry, progress.is_whole && test->is_usable)) {
-        wb_info("'%s' is not listed yet: the series asks again when it is gone on with",
-                test->name);
+        wb_info("'%s' is not listed yet: the series asks again when it is continued", test->name);
         return WB_OK;
     }
     test->excluded = entry.excluded;
@@ -443,8 +442,8 @@ static enum wb_status look_back(struct run *run)
 static enum wb_status go_on(struct run *run)
 {
     int n_done, sample = wb_series_next_sample(&run->series, &run->index, &n_done);
-    fprintf(stderr, "series %s: %d of %d specimens are done; recordings go to '%s'\n",
-            run->series.name, n_done, run->series.n_specimens, run->folder);
+    fprintf(stderr, "series %s: %d of %d specimens done; recordings go to '%s'\n", run->series.name,
+            n_done, run->series.n_specimens, run->folder);
     if (run->is_scripted)
         wb_info("standard input is no terminal: answers are read from it line by line");
     while (!run->operator_name[0] && !run->is_over) {

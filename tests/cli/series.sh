@@ -77,7 +77,7 @@ stopped_and_gone_on_with() {
         fail "a: other files: $(ls "$folder/a")"
     cp "$folder/a/index.yaml" "$folder/index.before"
     series a ''
-    expect a 0 '3 of 3 specimens are done'
+    expect a 0 '3 of 3 specimens done'
     cmp -s "$folder/a/index.yaml" "$folder/index.before" || fail 'a: a series that is done was changed'
 }
 
@@ -117,7 +117,7 @@ killed_before_the_judgement() {
     [ ! -e "$folder/b/index.yaml" ] || fail 'b: listed before it was judged'
     series b '\nn\nq\n'
     expect b 3 'nobody has said what to make of it'
-    expect b 3 '1 of 3 specimens are done'
+    expect b 3 '1 of 3 specimens done'
     holds b.err 'goes to s-002-type1-L85-2.wbr'
     holds b/index.yaml "file: 's-001-type1-L85-1.wbr'"
 }
@@ -127,12 +127,12 @@ killed_before_the_judgement() {
 wrong_answers_and_refused_tests() {
     series d 'n\n\nx\nwhat?\nk\nn\nq\n'
     expect d 3 'a reason is needed'
-    holds d.err "'what?' is none of these answers"
-    holds d.err '1 of 3 specimens are done'
+    holds d.err "'what?'"
+    holds d.err '1 of 3 specimens done'
     # The bench's own ports are not there.
     virtual=()
     series d 'n\n\nn\nq\n'
-    expect d 3 '1 of 3 specimens are done'
+    expect d 3 '1 of 3 specimens done'
     [ "$(grep -c 'goes to s-002-type1-L85-2.wbr' "$folder/d.err")" = 2 ] ||
         fail "d: the specimen is not asked for again: $(cat "$folder/d.err")"
     printf 'series: s\nspecimen: like.yaml\nspecimens: 3\noutput: "{series}.wbr"\n' >"$folder/bad.yaml"

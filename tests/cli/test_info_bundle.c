@@ -142,7 +142,7 @@ static void wrong_usage_and_files_are_refused(void **state)
     (void)state;
     expect("info fixtures/bundles/12-type3.yaml --figure a.gif", 2, "--figure");
     expect("info fixtures/bundles/12-type3.yaml --mesh paper", 2, "--mesh goes with --figure");
-    expect("info a.wbr --figure b.svg", 2, "'a.wbr' is none");
+    expect("info a.wbr --figure b.svg", 2, "--figure applies to bundles, and 'a.wbr'");
     expect("info", 2, "name a recording or bundle file");
     expect("info none.yaml", 1, "none.yaml");
     expect("info fixtures/bundles/12-type3.yaml --figure b.svg --mesh none", 2, "no mesh 'none'");

@@ -433,7 +433,7 @@ static void what_the_piece_cannot_have_is_said_in_options(void **unused)
     assert_int_equal(solve("--packing places"), 2);
     assert_non_null(strstr(o.err, "expected file, hexagon, triangle or densest"));
     assert_int_equal(solve("--layers 1"), 1);
-    assert_non_null(strstr(o.err, "of a tape, and there is none"));
+    assert_non_null(strstr(o.err, "applies to a tape"));
     tool("solve wire3d none --cycles 2");
     assert_int_equal(o.code, 2);
     assert_non_null(strstr(o.err, "--cycles is for cantilever and bundle and bending3p"));

@@ -146,7 +146,7 @@ waiting=$!
 soon '[ -e r.jobs/one.slurm -a -e r.jobs/one-0.2.slurm -a -e r.jobs/slow.slurm ]' || fail 'nothing is submitted again'
 kill -TERM $waiting
 wait $waiting
-says err 'stopped waiting; Slurm goes on with 3 of the runs'
+says err 'Slurm continues 3 of the runs'
 {
     soon 'grep -q "still with Slurm" "$folder/err"'
     scontrol release "$(task slow | sed 's/_.*//')"

@@ -763,7 +763,7 @@ static void variants_are_read_as_if_the_file_said_so(void **unused)
     replace(text, known_badly, "tape: tape\n", "");
     read_text(text);
     assert_int_not_equal(try_variant(&round), WB_OK);
-    assert_message("variant round is of a tape");
+    assert_message("variant round");
     replace(text, known_badly, "[{wire: type3, count: 7}]",
             "[{wire: type3, count: 4}, {wire: type2, count: 3}]");
     read_text(text);

