@@ -127,9 +127,9 @@ static int deliver(const struct options *o, const struct wb_machine_compliance *
                 c->of_bar / WB_MM, 100.0 * c->of_rigidity / c->of_bar,
                 fmax(2.0, 4.0 * c->of_rigidity / fmax(fabs(c->value), 0.1 * c->of_rigidity)));
     else
-        wb_warn(
-            "the machine's compliance cannot be determined: its uncertainty (%s) exceeds its value",
-            c->of_readings > c->of_friction ? "the readings" : "the bounds of friction");
+        wb_warn("the machine's compliance cannot be determined: its uncertainty, mainly from %s, "
+                "exceeds its value",
+                c->of_readings > c->of_friction ? "the readings" : "the bounds of friction");
     return WB_EXIT_INCOMPLETE;
 }
 

@@ -298,10 +298,10 @@ static void append_found(struct wb_text *text, const struct wb_cycle_calibration
     wb_text_append(text, "; ");
     const enum wb_quantity_id stiffness =
         c->has_unloading ? WB_QUANTITY_UNLOADING_STIFFNESS : WB_QUANTITY_SECANT_STIFFNESS;
-    const struct wb_quantity_values values = wb_quantity_values(&properties, stiffness);
-    int at = 0; /* 1 1/m, where the data reach that far */
-    while (at < values.n - 1 && values.curvature[at] < 1.0)
-        at++;
+    const struct wb_cycle_stiffness *const of = c->has_unloading ? &c->unloading : &c->secant;
+    int at = wb_cycle_stiffness_near_one(of);
+    if (of->curvature[at] < of->resolved) /* the law's alone */
+        at = wb_cycle_stiffness_resolved(of);
     wb_finding_append_quantity(text, &properties, stiffness, at);
     if (c->has_unloading) {
         wb_text_append(text, "; ");
@@ -310,10 +310,27 @@ static void append_found(struct wb_text *text, const struct wb_cycle_calibration
     wb_text_append(text, "; intervals of 95 %%");
 }
 
+/* Without their scatter the intervals are those of these specimens, not of the product. */
+static bool has_scatter(const struct wb_cycle_calibration *c)
+{
+    return isfinite(c->rigidity.deviation);
+}
+
+static bool is_enough(const struct wb_calibrate_cycle *cycle)
+{
+    char worst[WB_BUDGET_TEXT];
+    double known;
+    const double at_most = cycle->settings.at_most;
+    return !(at_most > 0.0) ||
+           wb_cycle_budget_is_within(&cycle->calibration, at_most, worst, &known);
+}
+
 static void append_trust(struct wb_text *text, const struct wb_calibrate_cycle *cycle)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const int doubts = count_doubts(&cycle->remarks);
+    struct wb_properties properties;
+    wb_properties_from_cycle(c, &properties);
     if (c->is_stopped) {
         wb_text_append(text, "no: stopped before all laws were fitted to all specimens");
     } else if (!wb_cycle_calibrate_is_converged(c)) {
@@ -323,14 +340,17 @@ static void append_trust(struct wb_text *text, const struct wb_calibrate_cycle *
                        WB_CYCLE_LARGEST_FOLLOWED / WB_PERCENT);
     } else if (doubts > 0) {
         wb_text_append(text, "not yet: %d doubt%s above", doubts, doubts == 1 ? "" : "s");
+    } else if (!is_enough(cycle)) {
+        wb_text_append(text, "no: the uncertainty exceeds %g %% (--at-most)",
+                       cycle->settings.at_most / WB_PERCENT);
     } else if (!c->has_unloading) {
         wb_text_append(text, "for loading only: unloading was not recorded, and the hardening rule "
                              "is not tested");
     } else {
         wb_text_append(text, "%s: %s, fits loading and unloading within %.2g %% of F_max",
-                       c->n_members > 1 ? "yes" : "for this specimen", wb_candidate_name(c->chosen),
-                       c->ranked[0].misfit / WB_PERCENT);
-        if (c->n_members == 1 && !isfinite(c->rigidity.deviation))
+                       has_scatter(c) ? "yes" : "for this specimen", wb_candidate_name(c->chosen),
+                       properties.rms / WB_PERCENT);
+        if (!has_scatter(c))
             wb_text_append(text, "; one specimen cannot show how specimens differ");
     }
 }
@@ -339,11 +359,22 @@ static void append_next(struct wb_text *text, const struct wb_calibrate_cycle *c
                         const char *output)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    if (count_doubts(&cycle->remarks) > 0)
+    if (c->is_stopped)
+        wb_text_append(text, "run the same command again and let it finish");
+    else if (!wb_cycle_calibrate_is_converged(c))
+        wb_text_append(text, "run the same command again with a larger --fit-iterations (now %d)",
+                       cycle->settings.fit.max_iterations);
+    else if (c->has_unloading && !c->is_followed)
+        wb_text_append(text,
+                       "look at the curves (wirebench quicklook): a strand that slips, a cell "
+                       "that creeps; otherwise use the ranges");
+    else if (count_doubts(&cycle->remarks) > 0)
         wb_text_append(text, "resolve the doubts above, then calibrate again");
+    else if (!is_enough(cycle))
+        wb_text_append(text, "reduce the largest contributions of the budget above");
     else if (!c->has_unloading)
         wb_text_append(text, "record tests with unloading, then calibrate again");
-    else if (c->n_members == 1)
+    else if (!has_scatter(c))
         wb_text_append(text, "record at least two more specimens, then calibrate all together");
     else if (!output)
         wb_text_append(text, "run the same command with -o %s.yaml to keep the properties",

@@ -34,7 +34,7 @@ static void print_member(const struct wb_three_point_member *m)
            m->rigidity / WB_NMM2, 200.0 * m->rigidity_error, m->fit.first_contact / WB_MM,
            2.0 * m->fit.first_contact_error / WB_MM, m->data.usable / WB_MM,
            wb_three_point_limit_name(m->data.limit), m->fit.misfit,
-           m->data.has_unloading ? ", with the unloading" : "");
+           m->data.has_unloading ? ", with unloading" : "");
     if (m->fit.bow_error > 0.0)
         printf("    natural bow %+.3f +- %.2g mm, %s; correlation with the first contact %+.2f\n",
                m->fit.bow / WB_MM, 2.0 * m->fit.bow_error / WB_MM,

@@ -141,16 +141,23 @@ static void print_finding(const struct options *o, const struct result *results,
     wb_text_append(&finding.found, "%zu dataset%s", n, n == 1 ? "" : "s");
     if (is_one_wire)
         wb_text_append(&finding.found, " of wire %s (%s)", info->wire, wb_finding_source(info));
+    const int n_left = o->common.n - (int)n;
+    if (n_left > 0)
+        wb_text_append(&finding.trust, "in part: interrupted, %d recording%s not aligned%s", n_left,
+                       n_left == 1 ? "" : "s", n_incomplete + n_warnings > 0 ? "; " : "");
     if (n_incomplete > 0)
         wb_text_append(&finding.trust, "in part: %d incomplete (gaps, damaged or lost data)%s",
                        n_incomplete, n_warnings > 0 ? "; " : "");
     if (n_warnings > 0)
         wb_text_append(&finding.trust, "%sread the %d warning%s above first",
                        n_incomplete > 0 ? "" : "in part: ", n_warnings, n_warnings == 1 ? "" : "s");
-    if (n_incomplete == 0 && n_warnings == 0)
+    if (n_left + n_incomplete + n_warnings == 0)
         wb_text_append(&finding.trust, "yes: complete, without warnings");
-    wb_text_append(&finding.next, "wirebench calibrate %s%s -o %s.yaml", o->common.output,
-                   o->common.n > 1 ? "/*" : "", is_one_wire ? info->wire : "WIRE");
+    if (is_one_wire)
+        wb_text_append(&finding.next, "wirebench calibrate %s%s -o %s.yaml", o->common.output,
+                       o->common.n > 1 ? "/*" : "", info->wire);
+    else
+        wb_text_append(&finding.next, "wirebench calibrate the datasets of each wire by itself");
     wb_finding_print(&finding);
 }
 

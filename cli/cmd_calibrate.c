@@ -65,7 +65,7 @@ static const struct argp_option other_options[] = {
      "Write the properties here, and measured and computed tension beside them (PROPERTIES.svg)",
      0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties and the figure", 0},
-    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figure", 0},
+    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Of whole cycles: draw no figure", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -344,6 +344,14 @@ static enum wb_status calibrate_on_cycles(struct options *o)
     return status;
 }
 
+/* Beside a YAML file only: not beside a device, and not in place of the properties. */
+static bool has_figure(const struct options *o)
+{
+    return o->common.output && !o->common.no_figure &&
+           (wb_command_ends_in(o->common.output, ".yaml") ||
+            wb_command_ends_in(o->common.output, ".yml"));
+}
+
 static int deliver_cycle(const struct options *o)
 {
     const struct wb_cycle_calibration *const c = &o->cycle.calibration;
@@ -353,7 +361,7 @@ static int deliver_cycle(const struct options *o)
         enum wb_status status =
             wb_properties_write_cycle(o->common.output, c, &o->cycle.settings, o->common.inputs,
                                       c->n_members, o->common.force);
-        if (status == WB_OK && !o->common.no_figure) {
+        if (status == WB_OK && has_figure(o)) {
             figure = wb_finding_figure_path(path, o->common.output);
             status = wb_calibrate_cycle_draw(&o->cycle, figure);
         }
@@ -450,8 +458,8 @@ static enum wb_status begin(struct options *o)
                             WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
     WB_TRY(choose_method(o));
     char figure[WB_PATH];
-    if (o->method == WB_METHOD_CYCLE && o->common.output && !o->common.no_figure &&
-        !o->common.force && wb_file_exists(wb_finding_figure_path(figure, o->common.output)))
+    if (o->method == WB_METHOD_CYCLE && has_figure(o) && !o->common.force &&
+        wb_file_exists(wb_finding_figure_path(figure, o->common.output)))
         return wb_fail(WB_ERR_EXISTS,
                        "'%s' exists; --force overwrites it, --no-figure draws no figure", figure);
     return WB_OK;

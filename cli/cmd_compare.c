@@ -88,7 +88,7 @@ static void append_next(struct wb_text *text, const struct wb_compare *c)
     else if (c->more > 0)
         wb_text_append(text, "test %d more specimens of each batch and compare again", c->more);
     else
-        wb_text_append(text, "choose another limit: a ratio lies at this one");
+        wb_text_append(text, "a ratio lies at the limit: choose another --within");
 }
 
 static void print(const struct options *o, const struct wb_compare *c)
@@ -111,10 +111,11 @@ static void print(const struct options *o, const struct wb_compare *c)
     wb_compared_append_verdict(&finding.found, c);
     append_farthest(&finding.found, c);
     wb_text_append(&finding.trust,
-                   "%s: each quantity by Welch's intervals of 90 %% within +-%g of ln(B/A), alpha "
-                   "%g",
-                   c->verdict == WB_GROUPS_UNDECIDED ? "undecided" : "yes", c->within,
+                   "Welch's intervals of 90 %% of ln(B/A) against +-%g (alpha %g each)", c->within,
                    WB_COMPARE_ALPHA);
+    if (c->n_compared < WB_COMPARE_QUANTITIES)
+        wb_text_append(&finding.trust, "; %d of %d quantities cannot be compared",
+                       WB_COMPARE_QUANTITIES - c->n_compared, WB_COMPARE_QUANTITIES);
     append_next(&finding.next, c);
     wb_finding_print(&finding);
 }

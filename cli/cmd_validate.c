@@ -33,7 +33,10 @@ struct options {
 
 static const struct argp_option other_options[] = {
     {"output", 'o', "DIR", 0,
-     "Write forces, errors and scores of each group there as CSV, and a figure of each as SVG", 0},
+     "Write forces, errors and scores of each group there as CSV, and a figure of each group of "
+     "cantilevers "
+     "under a tip force as SVG",
+     0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
     {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figures", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
@@ -401,17 +404,31 @@ static bool is_calibrated_on(const struct wb_properties *properties, const char 
 
 static void append_verdict(struct wb_text *text, const struct wb_validate_result *r)
 {
-    if (r->elastoplastic.n_reached < r->elastoplastic.n)
-        wb_text_append(text, "no: the beam did not converge up to the largest deflection");
-    else if (wb_validate_bounds_exceeded(r)) {
-        wb_text_append(text, "no: beyond what the scatter of specimens explains: ");
+    static const char *const verdicts[] = {
+        [WB_VALIDATE_PREDICTED] = "yes: within what the scatter of specimens explains",
+        [WB_VALIDATE_NOT_PREDICTED] = "no: beyond what the scatter of specimens explains: ",
+        [WB_VALIDATE_UNDECIDED] = "undecided: the scatter between specimens is not known",
+        [WB_VALIDATE_BEYOND] = "with care: bent further than the properties are known",
+        [WB_VALIDATE_NOT_CONVERGED] = "no: the beam did not converge up to the largest deflection",
+    };
+    const enum wb_validate_verdict verdict = wb_validate_bounds_verdict(r);
+    wb_text_append(text, "%s", verdicts[verdict]);
+    if (verdict == WB_VALIDATE_NOT_PREDICTED)
         wb_validate_bounds_append(text, r);
-    } else if (r->is_beyond)
-        wb_text_append(text, "with care: bent further than the properties are known");
-    else if (!wb_validate_bounds_known(r))
-        wb_text_append(text, "undecided: without the scatter between specimens there is no bound");
-    else
-        wb_text_append(text, "yes: within what the scatter of specimens explains");
+}
+
+/* By the worst verdict of the groups. */
+static const char *next_of(enum wb_validate_verdict worst)
+{
+    static const char *const next[] = {
+        [WB_VALIDATE_NOT_PREDICTED] = "compare length, zeros and batch of these specimens with "
+                                      "those of the calibration; then calibrate on both",
+        [WB_VALIDATE_UNDECIDED] = "calibrate on at least three specimens, which show the scatter",
+        [WB_VALIDATE_BEYOND] = "calibrate on tests that are bent as far as these",
+        [WB_VALIDATE_NOT_CONVERGED] = "refine the beam (--elements), or validate with a shorter "
+                                      "travel (--largest-deflection-mm)",
+    };
+    return next[worst];
 }
 
 /* Of cantilevers; tests of three-point bending have their own verdict. */
@@ -421,7 +438,7 @@ static void print_finding(const struct options *o, const struct wb_properties *p
     struct wb_finding finding = {.figure = figure && figure[0] ? figure : NULL};
     const int n_all = o->common.n - 1;
     int n_same = 0, n = 0;
-    bool is_exceeded = false;
+    enum wb_validate_verdict worst = WB_VALIDATE_PREDICTED;
     for (int i = 1; i <= n_all; i++)
         n_same += is_calibrated_on(properties, o->common.inputs[i]);
     for (int i = 0; i < groups->n; i++) {
@@ -437,7 +454,8 @@ static void print_finding(const struct options *o, const struct wb_properties *p
             wb_text_append(&finding.trust, "L = %g mm: ", g->result.info.length / WB_MM);
         if (n_same < n_all)
             append_verdict(&finding.trust, &g->result);
-        is_exceeded |= wb_validate_bounds_exceeded(&g->result);
+        const enum wb_validate_verdict verdict = wb_validate_bounds_verdict(&g->result);
+        worst = verdict > worst || worst == WB_VALIDATE_PREDICTED ? verdict : worst;
     }
     if (n == 0)
         return;
@@ -446,13 +464,12 @@ static void print_finding(const struct options *o, const struct wb_properties *p
                                        "the law");
     else if (n_same > 0)
         wb_text_append(&finding.trust,
-                       "; the calibration used %d of these %d tests, which do not test the law",
+                       "; %d of these %d tests were used by the calibration and do not count",
                        n_same, n_all);
-    if (is_exceeded)
-        wb_text_append(&finding.next, "compare length, zeros and batch of these specimens with "
-                                      "those of the calibration; then calibrate on both");
-    else if (n_same == n_all)
+    if (n_same == n_all)
         wb_text_append(&finding.next, "validate with specimens of another length");
+    else if (worst != WB_VALIDATE_PREDICTED)
+        wb_text_append(&finding.next, "%s", next_of(worst));
     else
         wb_text_append(&finding.next,
                        "wirebench export %s --to table -o CARD.json, for other programs",

@@ -24,6 +24,8 @@ static int width_of_terminal(void)
 static void print_line(const char *label, const char *text, int width)
 {
     int column = INDENT;
+    if (!text[0])
+        return;
     printf("%-*s", INDENT, label);
     while (*text) {
         const int word = (int)strcspn(text, " ");

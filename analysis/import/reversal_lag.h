@@ -4,7 +4,7 @@
  * - t1) + v2 max(0, t - t2). The force follows it, later by the lag: F = F0 + a polynomial of
  * second degree in min(0, t - t1 - lag) + another in max(0, t - t2 - lag). All numbers are found
  * together by least squares, each signal weighted by its noise. The rest matters: a stage waits a
- * tenth of a second for its next command, and the force, steeper on the way back, then has its
+ * tenth of a second for its next command, and the force, steeper on the return, then has its
  * corner nearer to the end of the rest than the motion.
  *
  * Where the rest is long, the two corners are looked at by themselves: the lines of one way are

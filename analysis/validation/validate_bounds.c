@@ -108,3 +108,15 @@ bool wb_validate_bounds_known(const struct wb_validate_result *result)
     }
     return false;
 }
+
+enum wb_validate_verdict wb_validate_bounds_verdict(const struct wb_validate_result *result)
+{
+    if (result->elastoplastic.n_reached < result->elastoplastic.n)
+        return WB_VALIDATE_NOT_CONVERGED;
+    if (wb_validate_bounds_exceeded(result))
+        return WB_VALIDATE_NOT_PREDICTED;
+    if (result->is_beyond)
+        return WB_VALIDATE_BEYOND;
+    return isfinite(result->bounds[WB_VALIDATE_LOADING].bound) ? WB_VALIDATE_PREDICTED
+                                                               : WB_VALIDATE_UNDECIDED;
+}

@@ -33,6 +33,16 @@ double wb_validate_part_unit(enum wb_validate_part part);
 /* Appends "loading, unloading": the parts whose bound is exceeded. */
 void wb_validate_bounds_append(struct wb_text *text, const struct wb_validate_result *result);
 
+/* Whether the law predicts these tests. */
+enum wb_validate_verdict {
+    WB_VALIDATE_PREDICTED,
+    WB_VALIDATE_NOT_PREDICTED, /* a bound is exceeded */
+    WB_VALIDATE_UNDECIDED,     /* without the bound of the loading: the scatter is not known */
+    WB_VALIDATE_BEYOND,        /* bent further than the properties are known */
+    WB_VALIDATE_NOT_CONVERGED  /* the beam did not reach the largest deflection */
+};
+enum wb_validate_verdict wb_validate_bounds_verdict(const struct wb_validate_result *result);
+
 /* Whether any bound is exceeded; whether any is known. */
 bool wb_validate_bounds_exceeded(const struct wb_validate_result *result);
 bool wb_validate_bounds_known(const struct wb_validate_result *result);

@@ -701,8 +701,7 @@ static void check_rest(struct wb_acquisition *a)
     if (a->writer && wb_writer_status(a->writer) != WB_OK)
         wb_acquisition_stop(
             a, WB_INTERLOCK_DISK,
-            "the recording cannot be written: nothing can be written to the disk, and the "
-            "memory that keeps what comes is nearly full");
+            "nothing can be written to the disk, and the memory for new data is nearly full");
 }
 
 /* Silence up to `heard_ns`, which is a time before the streams were read: what comes later may wait

@@ -120,13 +120,13 @@ static void end_settings(struct grbl_state *state, int64_t t_ns, const struct wb
     state->tried_settings = true;
     const double speed = state->rig.stage.speed, scale = state->rig.time_scale;
     const struct wb_motion_limits top = {speed * scale, acceleration_of(settings)};
-    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "settings",
-                     "axis %c: %g steps/mm, at most %g mm/s, %g mm/s2, travel %g mm, soft limits "
-                     "%s; at %g mm/s it continues by %.3f mm at most without this computer",
-                     state->rig.stage.axis, settings->steps * WB_MM, settings->speed / WB_MM,
-                     settings->acceleration / WB_MM, settings->travel / WB_MM,
-                     settings->soft_limits ? "on" : "off", speed / WB_MM,
-                     wb_jog_feed_ahead(&top) / WB_MM);
+    wb_driver_remark(
+        sink, WB_LOG_INFO, t_ns, "settings",
+        "axis %c: %g steps/mm, at most %g mm/s, %g mm/s2, travel %g mm, soft limits "
+        "%s; if this computer fails at %g mm/s, the stage moves at most %.3f mm further",
+        state->rig.stage.axis, settings->steps * WB_MM, settings->speed / WB_MM,
+        settings->acceleration / WB_MM, settings->travel / WB_MM,
+        settings->soft_limits ? "on" : "off", speed / WB_MM, wb_jog_feed_ahead(&top) / WB_MM);
     if (settings->lets_go)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings",
                          "the stage switches its motors off when a motion has ended, and the clamp "

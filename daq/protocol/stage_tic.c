@@ -114,8 +114,8 @@ static void tell_settings(struct tic_state *state, int64_t t_ns, const struct wb
         speed * (1e-3 * tic->command_timeout_ms + 0.5 * speed / settings.acceleration);
     wb_driver_remark(
         sink, WB_LOG_INFO, t_ns, "settings",
-        "Tic: at most %g mm/s, %g mm/s2, command timeout %d ms; at %g mm/s it continues "
-        "by %.3f mm at most without this computer",
+        "Tic: at most %g mm/s, %g mm/s2, command timeout %d ms; if this computer fails at "
+        "%g mm/s, the stage moves at most %.3f mm further",
         settings.speed / WB_MM, settings.acceleration / WB_MM, tic->command_timeout_ms,
         state->rig.stage.speed / WB_MM, alone / WB_MM);
     if (settings.fault[0])

@@ -166,6 +166,18 @@ tail -4 <("$wirebench" validate found.yaml L100 -o predicted2) >said
 for line in '^found .*type3 at L = 100 mm (simulation, 1 specimen): RMS error of the loading' '^trust ' '^figure *predicted2/type3-L100.svg' '^next '; do
     grep -q "$line" said || fail "no line '$line': $(cat said)"
 done
+"$wirebench" validate found.yaml L100 >said
+grep -q '^trust .*undecided: the scatter between specimens is not known' said || fail "trust: $(tail -4 said)"
+grep -q '^next .*at least three specimens' said || fail "next: $(tail -4 said)"
+"$wirebench" validate found.yaml cycle L100 >said
+grep -q '^trust .*1 of these 2 tests were used by the calibration' said || fail "trust: $(tail -4 said)"
+"$wirebench" calibrate L85 >said
+grep -q '^trust .*for loading only' said || fail "trust: $(tail -4 said)"
+grep -q '^next .*record tests with unloading' said || fail "next: $(tail -4 said)"
+"$wirebench" calibrate cycle --at-most 1 >said 2>err
+grep -q '^trust .*no: the uncertainty exceeds 1 %' said || fail "trust: $(tail -4 said)"
+"$wirebench" calibrate cycle -o /dev/null --force >said || fail 'calibrate -o /dev/null'
+grep -q '^figure' said && fail 'a figure beside a device'
 "$wirebench" validate found.yaml L100 -o predicted3 --no-figure >said || fail 'validate --no-figure'
 [ -e predicted3/type3-L100.svg ] && fail 'a figure despite --no-figure'
 
@@ -258,7 +270,17 @@ for sample in 1 2; do
         --roller-radius-mm 2 --nose-radius-mm 2 --roller-friction 0.2 -o bent-$sample >/dev/null ||
         fail 'solve bending3p'
 done
-expect 0 'with the unloading' "$wirebench" calibrate bent-1 -o bent.yaml
+expect 0 'with unloading' "$wirebench" calibrate bent-1 -o bent.yaml
+"$wirebench" calibrate bent-1 --json >bent.json || fail 'calibrate --json of three-point bending'
+python3 - bent.json <<'PYTHON' || fail 'the JSON object of three-point bending has other keys'
+import json, sys
+root = json.load(open(sys.argv[1]))
+for key in "value", "low", "high", "candidates_low", "candidates_high":
+    assert root["flexural_rigidity_N_mm2"][key] > 0, key
+for item in root["moment_curvature"]:
+    assert item["curvature_1_m"] > 0 and item["candidates_low"] <= item["moment_N_mm"], item
+assert "unloading_stiffness_N_mm2" not in root and "loop_energy_mJ_per_m" not in root
+PYTHON
 expect 0 'unloading      RMS' "$wirebench" validate bent.yaml bent-2 -o bent-scores
 grep -q 'parts,20,unloading,' bent-scores/scores.csv || fail 'no score of the unloading'
 [ -s bent-scores/parts-L20-three-point-unloading.csv ] || fail 'no table of the unloading'

@@ -177,7 +177,7 @@ static void settings_become_limits_in_si(void **state)
     assert_string_equal(collect.settings.fault, "");
     assert_non_null(strstr(collect.settings.text, "command_timeout_ms=1000\n"));
     /* 1 s of 1 mm/s, and braking from it. */
-    assert_non_null(strstr(collect_text(&collect, "settings"), "by 1.025 mm"));
+    assert_non_null(strstr(collect_text(&collect, "settings"), " 1.025 mm"));
 }
 
 static void a_tic_that_would_go_on_alone_is_refused(void **state)

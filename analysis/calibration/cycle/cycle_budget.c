@@ -257,15 +257,6 @@ void wb_cycle_estimate(const struct wb_cycle_calibration *calibration, enum wb_c
 
 /* --- what is printed of it --- */
 
-/* Of a stiffness at 1 /m, or at the largest curvature below. */
-static int near_one(const struct wb_cycle_stiffness *stiffness)
-{
-    int k = stiffness->n - 1;
-    while (k > 0 && stiffness->curvature[k] > 1.0)
-        k--;
-    return k;
-}
-
 int wb_cycle_budget_columns(const struct wb_cycle_calibration *c,
                             struct wb_budget_column columns[WB_BUDGET_COLUMNS])
 {
@@ -276,12 +267,12 @@ int wb_cycle_budget_columns(const struct wb_cycle_calibration *c,
         snprintf(columns[n++].name, WB_BUDGET_TEXT, "M at %.3g /m", c->curvature[moments[i]]);
     }
     if (c->unloading.n > 0) {
-        const int k = near_one(&c->unloading);
+        const int k = wb_cycle_stiffness_near_one(&c->unloading);
         columns[n].number = WB_CYCLE_FIRST_UNLOADING + k;
         snprintf(columns[n++].name, WB_BUDGET_TEXT, "unloading over %.3g /m",
                  c->unloading.curvature[k]);
     }
-    const int k = near_one(&c->secant);
+    const int k = wb_cycle_stiffness_near_one(&c->secant);
     columns[n].number = WB_CYCLE_FIRST_SECANT + k;
     snprintf(columns[n++].name, WB_BUDGET_TEXT, "secant to %.3g /m", c->secant.curvature[k]);
     if (c->has_unloading) {
@@ -311,7 +302,7 @@ bool wb_cycle_budget_is_within(const struct wb_cycle_calibration *c, double part
         take_worse(&c->budget[WB_CYCLE_FIRST_MOMENT + k], text, name, known);
     }
     if (c->has_unloading) {
-        const int k = near_one(&c->unloading);
+        const int k = wb_cycle_stiffness_near_one(&c->unloading);
         snprintf(text, sizeof text, "the unloading stiffness over %.3g /m",
                  c->unloading.curvature[k]);
         take_worse(&c->budget[WB_CYCLE_FIRST_UNLOADING + k], text, name, known);

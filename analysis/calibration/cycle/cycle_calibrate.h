@@ -199,6 +199,15 @@ static inline int wb_cycle_stiffness_resolved(const struct wb_cycle_stiffness *s
     return k;
 }
 
+/* Index of the curvature 1 1/m, or of the largest below; -1 without entries. */
+static inline int wb_cycle_stiffness_near_one(const struct wb_cycle_stiffness *stiffness)
+{
+    int k = stiffness->n - 1;
+    while (k > 0 && stiffness->curvature[k] > 1.0)
+        k--;
+    return k;
+}
+
 /* The stiffness at a curvature that is stated; NULL: there is none. */
 const struct wb_estimate *wb_cycle_stiffness_at(const struct wb_cycle_stiffness *stiffness,
                                                 double curvature);

@@ -667,6 +667,8 @@ struct common_error {
 
 static void add_error(struct common_error *error, double value, double own, double shared)
 {
+    if (!isfinite(value + own + shared))
+        return;
     error->n++;
     error->sum += value;
     error->own += own * own;
@@ -943,6 +945,7 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
     const int n = calibration->n_members;
     struct specimen *const specimens = wb_memory_new((size_t)n, sizeof *specimens);
     enum wb_status status = WB_OK;
+    int n_zeros = 0; /* remarks on the zeros of single specimens */
     for (int i = 0; i < n && status == WB_OK; i++) {
         const struct wb_cycle_member *const member = &calibration->members[i];
         struct specimen *const specimen = &specimens[i];
@@ -960,10 +963,13 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
         check_holds(remarks, specimen);
         check_relaxation(remarks, specimen);
         check_natural_shape(remarks, specimen);
+        const int before = remarks->n;
         status = check_zeros(remarks, specimen, is_length_seen(datasets[i]));
+        for (int k = before; k < remarks->n; k++)
+            n_zeros += remarks->items[k].severity == WB_CHECK_DOUBT;
         check_outliers(remarks, specimen);
     }
-    if (status == WB_OK && !wb_cycle_check_find(remarks, WB_CHECK_DOUBT))
+    if (status == WB_OK && n_zeros == 0)
         check_zeros_of_all(remarks, specimens, n);
     check_others(remarks, calibration);
     check_batches(remarks, calibration);

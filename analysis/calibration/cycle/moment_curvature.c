@@ -76,7 +76,6 @@ static const double edges[WB_MOMENT_STRETCHES + 1] = {0.12, 0.2, 0.32, 0.46, 0.6
 static const double least_relative_deviation = 0.005, method_deviation = 0.007;
 /* Standard deviations by which law and cloud part; and by which the next stretch does then. */
 static const double apart = 3.0, backing = 2.0;
-/* N mm in one N m. */
 
 struct shape {
     double theta[NODES], x[NODES], y[NODES];

@@ -290,7 +290,7 @@ static double violation(double strength_ratio, double exponent)
 
 /* E_L2 over F_max sqrt(delta_max), or its like, at (K/K0, n/n0). Always finite: a penalty grows
  * with the distance to the domain, and with the part of the curve that a beam did not reach, so
- * that the simplex finds its unloading. */
+ * that the simplex returns to the domain. */
 static double evaluate(const gsl_vector *at, void *parameters)
 {
     struct objective *const objective = parameters;

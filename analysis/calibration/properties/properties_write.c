@@ -332,7 +332,8 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
                          "# do not exclude.\n");
     put_what_is_in(text, calibration);
     wb_text_append(text,
-                   "# Stiffness: change of the moment over the change of the curvature, unloading "
+                   "# moment_curvature: first loading. Stiffness: change of the moment over the "
+                   "change of the curvature, unloading "
                    "from the largest\n"
                    "# curvature and loading from zero; below resolved_from_1_m only the law "
                    "supports it. Flexural\n"

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "analysis/calibration/properties/properties.h"
 #include "base/units.h"
@@ -79,6 +80,10 @@ void wb_quantity_put(struct wb_json *object, const struct wb_properties *propert
     for (enum wb_quantity_id id = 0; id < WB_QUANTITIES; id++) {
         const struct wb_quantity *const row = &wb_quantity_rows[id];
         const struct wb_quantity_values values = wb_quantity_values(properties, id);
+        /* Three-point bending has no unloading from a known curvature. */
+        if (strcmp(properties->method, "three-point") == 0 &&
+            (values.n == 0 || !wb_quantity_is_known(values.estimate)))
+            continue;
         if (row->most == 0) {
             put_estimate(wb_json_set_object(object, row->key), row, values.estimate);
             continue;

@@ -63,7 +63,8 @@ enum {
 const char *wb_quantity_label(enum wb_quantity_id id, double curvature,
                               char label[WB_QUANTITY_LABEL]);
 
-/* Sets a member for each quantity; unknown numbers are null. */
+/* Sets a member for each quantity; unknown numbers are null. Of three-point bending only for those
+ * that are known. */
 void wb_quantity_put(struct wb_json *object, const struct wb_properties *properties);
 
 #endif

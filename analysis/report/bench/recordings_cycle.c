@@ -14,7 +14,6 @@
 #define WB_LOG_DOMAIN "report"
 
 static const double coverage = 0.95;
-/* mJ in one J. */
 
 /* What the interval of a mean of n logarithms is to both sides. */
 static double half_width(double deviation, int degrees, int n)
@@ -228,11 +227,9 @@ void wb_recordings_cycle_close(struct wb_recordings_cycle_pool *pool)
 const struct wb_estimate *
 wb_recordings_cycle_stiffness(const struct wb_cycle_calibration *calibration)
 {
-    static const double curvature = 1.0;
     const struct wb_cycle_stiffness *const stiffness =
         calibration->unloading.n > 0 ? &calibration->unloading : &calibration->secant;
-    const struct wb_estimate *const there = wb_cycle_stiffness_at(stiffness, curvature);
-    return there ? there : &stiffness->estimate[stiffness->n - 1];
+    return &stiffness->estimate[wb_cycle_stiffness_near_one(stiffness)];
 }
 
 void wb_recordings_cycle_interval(const struct wb_recordings_cycle_pool *pool,

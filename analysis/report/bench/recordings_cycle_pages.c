@@ -50,21 +50,30 @@ static void append_estimate(struct wb_text *text, const char *name, const struct
         wb_text_append(text, " (%.*f to %.*f)", decimals, e->low / unit, decimals, e->high / unit);
 }
 
-/* "Type 1: moment ..., stiffness ..., residual curvature ratio ...". */
+/* Stiffness and residual curvature ratio between their ends over the laws. */
+static void append_ranges(struct wb_text *text, const struct wb_cycle_calibration *c)
+{
+    const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
+    const struct wb_estimate *const ratio = &c->residual_curvature_ratio;
+    wb_text_append(
+        text,
+        "unloading stiffness between %.*f and %.*f N mm\xc2\xb2, residual curvature ratio "
+        "between %.3f and %.3f, over the laws that fit about as well.",
+        wb_pages_decimals(stiffness->candidates_low / WB_NMM2), stiffness->candidates_low / WB_NMM2,
+        wb_pages_decimals(stiffness->candidates_high / WB_NMM2),
+        stiffness->candidates_high / WB_NMM2, ratio->candidates_low, ratio->candidates_high);
+}
+
+/* "unloading stiffness = ..., residual curvature ratio = ..., bent to ...". */
 static void append_properties(struct wb_text *text, const struct wb_cycle_calibration *c)
 {
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const struct wb_estimate *const ratio = &c->residual_curvature_ratio;
     if (c->has_unloading && !c->is_followed) {
-        wb_text_append(
-            text,
-            "no law fits loading and unloading (%.1f %% of <i>F</i><sub>max</sub>); "
-            "unloading stiffness between %.*f and %.*f N mm\xc2\xb2, residual curvature "
-            "ratio between %.2f and %.2f.",
-            100.0 * best_misfit(c), wb_pages_decimals(stiffness->candidates_low / WB_NMM2),
-            stiffness->candidates_low / WB_NMM2,
-            wb_pages_decimals(stiffness->candidates_high / WB_NMM2),
-            stiffness->candidates_high / WB_NMM2, ratio->candidates_low, ratio->candidates_high);
+        wb_text_append(text,
+                       "no law fits loading and unloading (%.1f %% of <i>F</i><sub>max</sub>); ",
+                       100.0 * best_misfit(c));
+        append_ranges(text, c);
         return;
     }
     append_estimate(text, c->has_unloading ? "unloading stiffness" : "secant stiffness", stiffness,
@@ -76,37 +85,45 @@ static void append_properties(struct wb_text *text, const struct wb_cycle_calibr
     wb_text_append(text, ", bent to %.0f /m.", c->largest_curvature);
 }
 
-/* Whether specimens of the other length are predicted: the numbers of the bound that is exceeded
- * most, else those of the loading. */
+/* Whether specimens of the other length are predicted, with the numbers of the bound that is
+ * exceeded most, else those of the loading. */
 static void append_prediction(struct wb_text *text, const struct wb_validate_result *p)
 {
-    const struct wb_validate_bound *worst = &p->bounds[WB_VALIDATE_LOADING];
+    static const char *const words[] = {
+        [WB_VALIDATE_PREDICTED] = "yes",       [WB_VALIDATE_NOT_PREDICTED] = "no",
+        [WB_VALIDATE_UNDECIDED] = "undecided", [WB_VALIDATE_BEYOND] = "with care",
+        [WB_VALIDATE_NOT_CONVERGED] = "no",
+    };
+    const enum wb_validate_verdict verdict = wb_validate_bounds_verdict(p);
     enum wb_validate_part part = WB_VALIDATE_LOADING;
-    for (int k = 0; k < WB_VALIDATE_PARTS; k++) {
+    double most = 1.0;
+    for (enum wb_validate_part k = 0; k < WB_VALIDATE_PARTS; k++) {
         const struct wb_validate_bound *const bound = &p->bounds[k];
-        if (bound->is_exceeded &&
-            !(worst->is_exceeded && bound->found / bound->bound < worst->found / worst->bound)) {
-            worst = bound;
-            part = (enum wb_validate_part)k;
+        if (bound->is_exceeded && bound->found / bound->bound > most) {
+            most = bound->found / bound->bound;
+            part = k;
         }
     }
     const bool is_length = part == WB_VALIDATE_RESIDUAL || part == WB_VALIDATE_SHAPES;
     const double unit = is_length ? WB_MM : WB_PERCENT;
-    wb_text_append(text, " Specimens of %g mm are predicted: ", p->info.length / WB_MM);
-    if (!isfinite(worst->bound)) {
+    const struct wb_validate_bound *const bound = &p->bounds[part];
+    wb_text_append(text, " Specimens of %g mm are predicted: <b>%s</b>; ", p->info.length / WB_MM,
+                   words[verdict]);
+    if (verdict == WB_VALIDATE_NOT_CONVERGED)
+        wb_text_append(text, "the beam did not converge up to the largest deflection.");
+    else if (!isfinite(bound->bound))
         wb_text_append(text,
-                       "undecided; loading within %.2g %% of <i>F</i><sub>max</sub>, without a "
-                       "bound, as one specimen does not show the scatter.",
+                       "loading within %.2g %% of <i>F</i><sub>max</sub>; the scatter of specimens "
+                       "is not known.",
                        p->elastoplastic.rms / WB_PERCENT);
-        return;
-    }
-    wb_text_append(text,
-                   worst->is_exceeded ? "<b>no</b>; %s %.2g %s, where the scatter of specimens "
-                                        "explains %.2g."
-                                      : "<b>yes</b>; %s within %.2g %s, where the scatter of "
-                                        "specimens explains %.2g.",
-                   wb_validate_part_name(part), worst->found / unit,
-                   is_length ? "mm" : "% of <i>F</i><sub>max</sub>", worst->bound / unit);
+    else
+        wb_text_append(text, "%s%s %.2g %s, where the scatter of specimens explains %.2g.%s",
+                       wb_validate_part_name(part), bound->is_exceeded ? " off by" : " within",
+                       bound->found / unit, is_length ? "mm" : "% of <i>F</i><sub>max</sub>",
+                       bound->bound / unit,
+                       verdict == WB_VALIDATE_BEYOND
+                           ? " They are bent further than the law was measured."
+                           : "");
 }
 
 static void put_wire_found(struct wb_document *document,
@@ -118,7 +135,9 @@ static void put_wire_found(struct wb_document *document,
     wb_text_append(&text, "<b>");
     wb_text_append_escaped(&text, wire->wanted->label);
     wb_text_append(&text, "</b>: ");
-    if (cycle)
+    if (cycle && cycle->calibration.is_stopped)
+        wb_text_append(&text, "undecided: stopped before all laws were fitted.");
+    else if (cycle)
         append_properties(&text, &cycle->calibration);
     else
         wb_text_append(&text, "not calibrated; the reason stands below.");
@@ -135,13 +154,16 @@ struct span {
     int n;
 };
 
-static void add_to_span(struct span *span, const struct wb_validate_result *p)
+static void add_to_span(struct span *span, double rms)
 {
-    if (!p || p->cycles.n_samples == 0 || !isfinite(p->cycles.rms))
-        return;
-    span->low = span->n > 0 ? fmin(span->low, p->cycles.rms) : p->cycles.rms;
-    span->high = span->n > 0 ? fmax(span->high, p->cycles.rms) : p->cycles.rms;
+    span->low = span->n > 0 ? fmin(span->low, rms) : rms;
+    span->high = span->n > 0 ? fmax(span->high, rms) : rms;
     span->n++;
+}
+
+static bool has_unloading(const struct wb_validate_result *p)
+{
+    return p && p->cycles.n_samples > 0 && isfinite(p->cycles.rms);
 }
 
 /* Which of the two methods predicts the unloading, and how many specimens are missing. */
@@ -150,18 +172,25 @@ static void put_advice(struct wb_document *document, const struct wb_recordings_
     struct span cycle = {0.0, 0.0, 0}, paper = {0.0, 0.0, 0};
     struct wb_text text = {0};
     for (int i = 0; i < results->n_wires; i++) {
-        add_to_span(&cycle, wb_recordings_results_prediction(&results->wires[i]));
-        add_to_span(&paper, wb_recordings_results_of(&results->wires[i], WB_RECORDINGS_VALIDATION));
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        const struct wb_validate_result *const by_cycle = wb_recordings_results_prediction(wire);
+        const struct wb_validate_result *const by_paper =
+            wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
+        if (!has_unloading(by_cycle) || !has_unloading(by_paper))
+            continue;
+        add_to_span(&cycle, by_cycle->cycles.rms);
+        add_to_span(&paper, by_paper->cycles.rms);
     }
-    if (cycle.n > 0 && paper.n > 0) {
-        const bool is_better = cycle.high <= paper.high;
-        wb_text_append(&text,
-                       "<b>Method</b>: use the law of %s. On unloading, the law of loading and "
-                       "unloading misses %.1f to %.1f %% of <i>F</i><sub>max</sub>, the paper's "
-                       "route, fitted to the loading alone, %.1f to %.1f %%.",
-                       is_better ? "loading and unloading" : "the paper's route",
-                       cycle.low / WB_PERCENT, cycle.high / WB_PERCENT, paper.low / WB_PERCENT,
-                       paper.high / WB_PERCENT);
+    if (cycle.n > 0) {
+        wb_text_append(
+            &text,
+            "<b>Method</b>: %s. The law of loading and unloading predicts the unloading "
+            "with an RMS error of %.1f to %.1f %% of <i>F</i><sub>max</sub>, the paper's "
+            "route, which is fitted to the loading alone, of %.1f to %.1f %%.",
+            cycle.high <= paper.high ? "use the law of loading and unloading"
+                                     : "neither law predicts the unloading better for all wires",
+            cycle.low / WB_PERCENT, cycle.high / WB_PERCENT, paper.low / WB_PERCENT,
+            paper.high / WB_PERCENT);
         wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
     }
     bool any = false;
@@ -442,8 +471,8 @@ static void put_predictions(struct wb_document *document,
                    "Mean of the samples of %g mm against what the laws of the %g mm samples "
                    "predict; RMS over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in "
                    "another part in one of twenty validations of a right law, because specimens "
-                   "differ. Residual deflection: where the force on "
-                   "the unloading has come down to that at zero deflection.",
+                   "differ. Residual deflection: where the force during "
+                   "unloading has come down to that at zero deflection.",
                    length[WB_RECORDINGS_VALIDATION] / WB_MM,
                    length[WB_RECORDINGS_CALIBRATION] / WB_MM);
     wb_document_heading(document, 2, "prediction", "How well another length is predicted");
@@ -629,24 +658,18 @@ void wb_recordings_cycle_pages_summary(struct wb_document *document,
 static void put_answer(struct wb_document *document, const struct wb_recordings_cycle *cycle)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     struct wb_text text = {0};
     if (!c->has_unloading) {
         wb_text_append(
             &text, "<b>Rule untested.</b> There is no unloading, so Ludwik's law is "
                    "fitted to the loading alone, and the residual curvature ratio is not known. ");
     } else if (!c->is_followed) {
-        wb_text_append(
-            &text,
-            "<b>No law follows the data.</b> The best misses both "
-            "ways by %.2f %% of <i>F</i><sub>max</sub>. The stiffness lies between %.*f and "
-            "%.*f N mm\xc2\xb2, residual curvature ratio between %.3f and %.3f, over the laws that "
-            "fit about as well. ",
-            100.0 * best_misfit(c), wb_pages_decimals(stiffness->candidates_low / WB_NMM2),
-            stiffness->candidates_low / WB_NMM2,
-            wb_pages_decimals(stiffness->candidates_high / WB_NMM2),
-            stiffness->candidates_high / WB_NMM2, c->residual_curvature_ratio.candidates_low,
-            c->residual_curvature_ratio.candidates_high);
+        wb_text_append(&text,
+                       "<b>No law fits the data.</b> The best misses loading and unloading by "
+                       "%.2f %% of <i>F</i><sub>max</sub>: ",
+                       100.0 * best_misfit(c));
+        append_ranges(&text, c);
+        wb_text_append(&text, " ");
     } else {
         const char *const name = wb_candidate_name(c->chosen);
         wb_text_append(&text, "<b>%c%s.</b> ", toupper((unsigned char)name[0]), name + 1);

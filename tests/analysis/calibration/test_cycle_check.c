@@ -359,8 +359,7 @@ static void a_common_counterweight_is_doubted_unless_it_is_stated(void **state)
     }
 }
 
-/* A stated uncertainty of the counterweight leaves room for a level that is 0.2 mm off by 0.05 g,
- * but not for more. */
+/* A stated uncertainty of 0.02 g of the counterweight does not explain a zero that is 1 mm off. */
 static void a_zero_of_deflection_off_is_told(void **state)
 {
     static const struct {
@@ -394,6 +393,21 @@ static void a_common_zero_of_deflection_is_doubted(void **state)
         assert_non_null(wb_cycle_check_find(&bench->remarks, WB_CHECK_DOUBT));
         release(bench);
     }
+}
+
+/* Within the limits of each specimen, and of all together not; nor hidden by another doubt. */
+static void a_small_common_counterweight_is_found_beside_another_doubt(void **state)
+{
+    (void)state;
+    struct bench *const bench = three_held();
+    for (int k = 0; k < bench->n; k++)
+        bench->datasets[k].info.counterweight += 0.2e-3;
+    for (size_t i = 0; i < bench->datasets[0].n_rows; i += 20)
+        hit_row(&bench->datasets[0].rows[i], i % 40 == 0 ? 1.0 : -1.0);
+    check(bench);
+    assert_told(bench, WB_CHECK_DOUBT, 1, "rows were left out as outliers");
+    assert_told(bench, WB_CHECK_DOUBT, 0, "the zero of force or the counterweight is wrong");
+    release(bench);
 }
 
 static void a_lost_natural_shape_is_found_by_the_fit(void **state)
@@ -619,6 +633,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_common_counterweight_is_doubted_unless_it_is_stated),
         cmocka_unit_test(a_zero_of_deflection_off_is_told),
         cmocka_unit_test(a_common_zero_of_deflection_is_doubted),
+        cmocka_unit_test(a_small_common_counterweight_is_found_beside_another_doubt),
         cmocka_unit_test(a_lost_natural_shape_is_found_by_the_fit),
         cmocka_unit_test(outliers_are_survived_and_counted),
         cmocka_unit_test(many_outliers_are_doubted),

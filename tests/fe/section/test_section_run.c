@@ -128,7 +128,7 @@ static void the_homogenised_curve_does_not_depend_on_how_the_test_is_loaded(void
     }
 }
 
-/* Rows of neither unloading lie where the force is zero. */
+/* No row of either unloading lies where the force is zero. */
 static void a_run_until_free_ends_there_and_says_what_springs_back(void **unused)
 {
     (void)unused;
