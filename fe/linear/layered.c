@@ -472,8 +472,8 @@ static void subtract_product(enum CBLAS_TRANSPOSE transpose, int rows, int colum
                     plain ? columns : rows, -1.0, A, rows, x, stride, 1.0, y, stride);
 }
 
-/* Right-hand sides of an indefinite block are kept for the backward substitution; what they give to the next
- * block goes through the workspace, as many at a time as it holds. */
+/* Right-hand sides of an indefinite block are kept for the backward substitution; what they give to
+ * the next block goes through the workspace, as many at a time as it holds. */
 static void forward_indefinite(struct wb_layered *layered, const struct block *block, int k,
                                const double *x, double *next)
 {
