@@ -69,8 +69,7 @@ static void fill_text(const struct wb_bend_test_status *status, char text[WB_LIV
     else if (is_held)
         snprintf(text, WB_LIVE_FRAME_TEXT,
                  "held at %.2f mm for %.0f s: press r to resume, q to end the test; it ends by "
-                 "itself in "
-                 "%.0f s",
+                 "itself in %.0f s",
                  status->travel / WB_MM, status->held, fmax(status->hold_left, 0.0));
     else
         snprintf(text, WB_LIVE_FRAME_TEXT, "%.*s", WB_LIVE_FRAME_TEXT - 1, status->end_text);

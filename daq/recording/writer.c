@@ -258,8 +258,7 @@ static enum wb_status write_rest(struct wb_writer *writer)
     const double kilobytes = (double)writer->waiting_bytes * 1e-3;
     if (status != WB_OK && writer->settings.patience_ns > 0)
         wb_warn("nothing can be written to the disk, and %.1f kB of the recording are in memory "
-                "only: make "
-                "room on it within %.0f s and they are written; Ctrl-C gives it up",
+                "only: make room on it within %.0f s and they are written; Ctrl-C gives it up",
                 kilobytes, wb_seconds_from_ns(writer->settings.patience_ns));
     while (status != WB_OK && wb_time_now_ns() < until_ns &&
            wb_interrupt_count() == writer->interrupts) {

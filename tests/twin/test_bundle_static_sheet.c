@@ -79,7 +79,7 @@ static void stresses_lie_on_the_surface_and_plastic_flow_keeps_the_volume(void *
     assert_close_relative(
         after.accumulated,
         sqrt(4.0 / 3.0 * (e[0] * e[0] + e[1] * e[1] + e[0] * e[1]) + e[2] * e[2] / 3.0), 1e-10);
-    /* during unloading it is elastic. */
+    /* During unloading it is elastic. */
     const double back[3] = {0.045, -0.018, 0.036};
     wb_bundle_static_sheet_respond(&tape, back, &after, &more, &r);
     assert_true(more.accumulated == after.accumulated && mises(r.stress) < flow);

@@ -49,7 +49,7 @@ static void linear_hardening_grows_or_moves(void **unused)
     assert_close_relative(strain_to(&b, top), expected, 1e-12);
     assert_close_relative(a.tangent, slope, 1e-12);
     assert_close_relative(b.tangent, slope, 1e-12);
-    /* during unloading one yields at -expected, the other 2 yield below the top. */
+    /* During unloading one yields at -expected, the other 2 yield below the top. */
     const double back = top - 2.0 * yield / E - 1e-3;
     assert_close_relative(strain_to(&a, back), expected - E * (top - back), 1e-12);
     assert_close_relative(strain_to(&b, back), expected - 2.0 * yield - slope * 1e-3, 1e-11);

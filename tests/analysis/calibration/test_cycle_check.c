@@ -341,7 +341,7 @@ static struct bench *three_held(void)
 static void a_common_counterweight_is_doubted_unless_it_is_stated(void **state)
 {
     (void)state;
-    static const double off[] = {0.15e-3, 0.2e-3, 0.25e-3, 0.35e-3};
+    static const double off[] = {0.2e-3, 0.25e-3, 0.3e-3, 0.35e-3};
     for (int i = 0; i < 8; i++) {
         struct bench *const bench = three_held();
         const bool is_stated = i % 2;
@@ -383,7 +383,7 @@ static void a_zero_of_deflection_off_is_told(void **state)
 
 static void a_common_zero_of_deflection_is_doubted(void **state)
 {
-    static const double offsets[] = {0.5 * WB_MM, -0.5 * WB_MM};
+    static const double offsets[] = {0.7 * WB_MM, -0.7 * WB_MM};
     (void)state;
     for (size_t i = 0; i < sizeof offsets / sizeof offsets[0]; i++) {
         struct bench *const bench = three_held();
