@@ -3,12 +3,10 @@
  * filled struct, the inputs of a result, the test of the documentation.
  *
  *     static const struct wb_setting rows[] = {
- *         {.name = "step_mm", .unit = "mm", .type = WB_SETTING_NUMBER,
- *          .offset = offsetof(struct wb_example_settings, step), .scale = WB_MM,
- *          .least = 0.01, .largest = 100.0, .fallback = 0.5,
- *          .option = "step-mm", .argument = "H", .help = "Step of the comparison"},
+ *         {WB_ROW_QUANTITY(wb_example_settings, step, "step_mm", "mm", WB_MM, 0.01, 100.0, 0.5),
+ *          WB_ROW_OPTION("step-mm", "H", "Deflection step of the comparison")},
  *     };
- *     const struct wb_setting_table wb_example_table = {.rows = rows, .n = WB_COUNT(rows)};
+ *     const struct wb_setting_table wb_example_table = {WB_SETTING_ROWS(rows)};
  *
  * To add a setting, add its field and its row. A field holds SI; a row's numbers are in the unit of
  * files and options.
@@ -64,6 +62,45 @@ struct wb_setting {
     int (*complete)(void *members, int n, char *problem, size_t size);
 };
 
+/* A row is written with one macro for the type of its field (tag of the struct, field, key, range,
+ * default), WB_ROW_OPTION where the command line has it, and further members by their names:
+ *
+ *     {WB_ROW_INTEGER(wb_example_settings, n_points, "points", 1, 1000, 0),
+ *      WB_ROW_OPTION("points", "N", "Points of the curve"), .otherwise = "one a row"},
+ *
+ * A field of another type than the macro's does not compile. */
+#define WB_ROW_NUMBER(struct_, field_, key_, least_, largest_, fallback_)                          \
+    WB_ROW_QUANTITY(struct_, field_, key_, NULL, 1.0, least_, largest_, fallback_)
+#define WB_ROW_QUANTITY(struct_, field_, key_, unit_, scale_, least_, largest_, fallback_)         \
+    .name = (key_), .unit = (unit_), .type = WB_SETTING_NUMBER,                                    \
+    .offset = WB_ROW_OFFSET(struct_, field_, double : 1), .scale = (scale_), .least = (least_),    \
+    .largest = (largest_), .fallback = (fallback_)
+#define WB_ROW_INTEGER(struct_, field_, key_, least_, largest_, fallback_)                         \
+    .name = (key_), .type = WB_SETTING_INTEGER, .offset = WB_ROW_OFFSET(struct_, field_, int : 1), \
+    .least = (least_), .largest = (largest_), .fallback = (fallback_)
+#define WB_ROW_BOOLEAN(struct_, field_, key_, fallback_)                                           \
+    .name = (key_), .type = WB_SETTING_BOOLEAN,                                                    \
+    .offset = WB_ROW_OFFSET(struct_, field_, bool : 1), .fallback = (fallback_)
+#define WB_ROW_TEXT(struct_, field_, key_)                                                         \
+    .name = (key_), .type = WB_SETTING_TEXT, .offset = offsetof(struct struct_, field_),           \
+    .size = _Generic(WB_ROW_FIELD(struct_, field_), const char * : 0,                              \
+                     char * : sizeof(WB_ROW_FIELD(struct_, field_)))
+#define WB_ROW_CHOICE(struct_, field_, key_, choices_, fallback_)                                  \
+    .name = (key_), .type = WB_SETTING_CHOICE,                                                     \
+    .offset = WB_ROW_OFFSET(struct_, field_, int : 1, unsigned : 1 /* an enum */),                 \
+    .choices = (choices_), .fallback = (fallback_)
+#define WB_ROW_LIST(struct_, field_, key_, members_, given_)                                       \
+    .name = (key_), .type = WB_SETTING_LIST, .offset = offsetof(struct struct_, field_),           \
+    .members = &(members_), .given = WB_ROW_OFFSET(struct_, given_, bool : 1)
+#define WB_ROW_OPTION(option_, argument_, help_)                                                   \
+    .option = (option_), .argument = (argument_), .help = (help_)
+
+/* Used by the macros above: a field of a struct, and its offset if it has one of these types. */
+#define WB_ROW_FIELD(struct_, field_) ((struct struct_ *)NULL)->field_
+#define WB_ROW_OFFSET(struct_, field_, ...)                                                        \
+    (offsetof(struct struct_, field_) +                                                            \
+     0 * sizeof(_Generic(WB_ROW_FIELD(struct_, field_), __VA_ARGS__)))
+
 struct wb_setting_table {
     const struct wb_setting *rows;
     size_t n;
@@ -71,6 +108,9 @@ struct wb_setting_table {
     /* The default of all rows in words, in place of their own; may be NULL. */
     const char *otherwise;
 };
+
+/* Designators of a table of an array of rows. */
+#define WB_SETTING_ROWS(array) .rows = (array), .n = WB_COUNT(array)
 
 enum {
     WB_SETTING_PROBLEM = 320, /* bytes of a message */

@@ -18,14 +18,16 @@ struct wb_stage_options {
     const char *masses; /* of a check's series, in g between commas; NULL: the rig's */
 };
 
-/* What a virtual bench is, of whichever command. */
+struct wb_virtual_version {
+    int major, minor; /* of the motion capture's protocol */
+};
+
+/* Options of a virtual bench, of all commands that start one. */
 struct wb_virtual_options {
     struct wb_bench_settings bench;
     int seed;
     bool has_version, has_lost_steps;
-    struct {
-        int major, minor;
-    } version; /* of the motion capture's protocol, if has_version */
+    struct wb_virtual_version version; /* if has_version */
 };
 
 struct wb_rig_options {

@@ -38,33 +38,16 @@
 #define REST_BEFORE 1.0
 
 static const struct wb_setting setting_rows[] = {
-    {.name = "offset_s",
-     .unit = "s",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_mocap_import_request, offset),
-     .least = -1e6,
-     .largest = 1e6,
-     .fallback = (double)NAN,
-     .otherwise = "found by a tap or a reversal",
-     .option = "offset-s",
-     .argument = "S",
-     .help = "Time of the take less that of the force file, for the same moment"},
-    {.name = "tare_mN",
-     .unit = "mN",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_mocap_import_request, tare),
-     .scale = WB_MN,
-     .least = -1e7,
-     .largest = 1e7,
-     .fallback = (double)NAN,
-     .otherwise = "mean before the motion begins",
-     .option = "tare-mN",
-     .argument = "F",
-     .help = "Force that the file shows for the load cell at rest"},
+    {WB_ROW_QUANTITY(wb_mocap_import_request, offset, "offset_s", "s", 1.0, -1e6, 1e6, (double)NAN),
+     WB_ROW_OPTION("offset-s", "S",
+                   "Time of the take less that of the force file, for the same moment"),
+     .otherwise = "found by a tap or a reversal"},
+    {WB_ROW_QUANTITY(wb_mocap_import_request, tare, "tare_mN", "mN", WB_MN, -1e7, 1e7, (double)NAN),
+     WB_ROW_OPTION("tare-mN", "F", "Force that the file shows for the load cell at rest"),
+     .otherwise = "mean before the motion begins"},
 };
 
-const struct wb_setting_table wb_mocap_import_table = {.rows = setting_rows,
-                                                       .n = WB_COUNT(setting_rows)};
+const struct wb_setting_table wb_mocap_import_table = {WB_SETTING_ROWS(setting_rows)};
 
 /* A file as it was read. */
 struct source {

@@ -36,19 +36,11 @@ struct wb_doctor {
 };
 
 static const struct wb_setting rows[] = {
-    {.name = "seconds",
-     .unit = "s",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_doctor_request, seconds),
-     .least = 0.5,
-     .largest = 600.0,
-     .fallback = 4.0,
-     .option = "seconds",
-     .argument = "T",
-     .help = "How long the instruments are listened to"},
+    {WB_ROW_QUANTITY(wb_doctor_request, seconds, "seconds", "s", 1.0, 0.5, 600.0, 4.0),
+     WB_ROW_OPTION("seconds", "T", "How long the instruments are listened to")},
 };
 
-const struct wb_setting_table wb_doctor_table = {.rows = rows, .n = WB_COUNT(rows)};
+const struct wb_setting_table wb_doctor_table = {WB_SETTING_ROWS(rows)};
 
 void wb_doctor_default_request(struct wb_doctor_request *request)
 {

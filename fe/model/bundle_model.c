@@ -23,115 +23,45 @@ static const char *const precisions[] = {"single", "double", NULL};
 
 /* --- settings --- */
 
+/* In the order of the enum. */
 const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTINGS] = {
-    [WB_BUNDLE_MODEL_MESH] = {.name = "mesh",
-                              .type = WB_SETTING_TEXT,
-                              .offset = offsetof(struct wb_bundle_run, mesh),
-                              .size = sizeof((struct wb_bundle_run *)NULL)->mesh,
-                              .otherwise = "engineering",
-                              .option = "mesh",
-                              .argument = "NAME",
-                              .help = "Mesh: engineering, paper, or one of the file"},
-    [WB_BUNDLE_MODEL_DURATION] = {.name = "duration_s",
-                                  .unit = "s",
-                                  .type = WB_SETTING_NUMBER,
-                                  .offset = offsetof(struct wb_bundle_run, duration),
-                                  .least = 1e-6,
-                                  .largest = 1e6,
-                                  .otherwise = "chosen",
-                                  .option = "duration-s",
-                                  .argument = "T",
-                                  .help = "Duration of a loading; where the file has none, it is "
-                                          "chosen so that kinetic energy stays small"},
-    [WB_BUNDLE_MODEL_MASS_SCALING] = {.name = "mass_scaling",
-                                      .type = WB_SETTING_NUMBER,
-                                      .offset = offsetof(struct wb_bundle_run, mass_scaling),
-                                      .least = 1.0,
-                                      .largest = 1e6,
-                                      .fallback = 25.0,
-                                      .option = "mass-scaling",
-                                      .argument = "F",
-                                      .help = "Factor on all masses"},
-    [WB_BUNDLE_MODEL_SELECTIVE] = {.name = "selective_mass_scaling",
-                                   .type = WB_SETTING_NUMBER,
-                                   .offset = offsetof(struct wb_bundle_run, selective),
-                                   .least = 1.0,
-                                   .largest = 1e6,
-                                   .fallback = 100.0,
-                                   .option = "selective",
-                                   .argument = "B",
-                                   .help = "Selective mass scaling of sections"},
-    [WB_BUNDLE_MODEL_DEFLECTION] = {.name = "deflection_mm",
-                                    .unit = "mm",
-                                    .type = WB_SETTING_NUMBER,
-                                    .offset = offsetof(struct wb_bundle_run, deflection),
-                                    .scale = WB_MM,
-                                    .least = 1e-6,
-                                    .largest = 1e6,
-                                    .fallback = 53.0,
-                                    .option = "deflection-mm",
-                                    .argument = "D",
-                                    .help = "Largest deflection of the tip"},
-    [WB_BUNDLE_MODEL_ROWS] = {.name = "rows",
-                              .type = WB_SETTING_INTEGER,
-                              .offset = offsetof(struct wb_bundle_run, rows),
-                              .least = 1,
-                              .largest = 10000,
-                              .fallback = 53,
-                              .option = "points",
-                              .argument = "N",
-                              .help = "Equal steps to the largest deflection"},
-    [WB_BUNDLE_MODEL_CYCLES] = {.name = "cycles",
-                                .type = WB_SETTING_INTEGER,
-                                .offset = offsetof(struct wb_bundle_run, cycles),
-                                .least = 0,
-                                .largest = 1000},
-    [WB_BUNDLE_MODEL_KINETIC_LIMIT] = {.name = "kinetic_energy_limit",
-                                       .type = WB_SETTING_NUMBER,
-                                       .offset = offsetof(struct wb_bundle_run, kinetic_limit),
-                                       .least = 1e-6,
-                                       .largest = 1.0,
-                                       .fallback = 0.05},
-    [WB_BUNDLE_MODEL_PRECISION] = {.name = "precision",
-                                   .type = WB_SETTING_CHOICE,
-                                   .offset = offsetof(struct wb_bundle_run, double_precision),
-                                   .choices = precisions},
+    {WB_ROW_TEXT(wb_bundle_run, mesh, "mesh"),
+     WB_ROW_OPTION("mesh", "NAME", "Mesh: engineering, paper, or one of the file"),
+     .otherwise = "engineering"},
+    {WB_ROW_QUANTITY(wb_bundle_run, duration, "duration_s", "s", 1.0, 1e-6, 1e6, 0.0),
+     WB_ROW_OPTION("duration-s", "T",
+                   "Duration of a loading; where the file has none, it is "
+                   "chosen so that kinetic energy stays small"),
+     .otherwise = "chosen"},
+    {WB_ROW_NUMBER(wb_bundle_run, mass_scaling, "mass_scaling", 1.0, 1e6, 25.0),
+     WB_ROW_OPTION("mass-scaling", "F", "Factor on all masses")},
+    {WB_ROW_NUMBER(wb_bundle_run, selective, "selective_mass_scaling", 1.0, 1e6, 100.0),
+     WB_ROW_OPTION("selective", "B", "Selective mass scaling of sections")},
+    {WB_ROW_QUANTITY(wb_bundle_run, deflection, "deflection_mm", "mm", WB_MM, 1e-6, 1e6, 53.0),
+     WB_ROW_OPTION("deflection-mm", "D", "Largest deflection of the tip")},
+    {WB_ROW_INTEGER(wb_bundle_run, rows, "rows", 1, 10000, 53),
+     WB_ROW_OPTION("points", "N", "Equal steps to the largest deflection")},
+    {WB_ROW_INTEGER(wb_bundle_run, cycles, "cycles", 0, 1000, 0)},
+    {WB_ROW_NUMBER(wb_bundle_run, kinetic_limit, "kinetic_energy_limit", 1e-6, 1.0, 0.05)},
+    {WB_ROW_CHOICE(wb_bundle_run, double_precision, "precision", precisions, 0)},
 };
 
 static const struct wb_setting_table run_table = {.rows = wb_bundle_model_run_settings,
                                                   .n = WB_BUNDLE_MODEL_RUN_SETTINGS};
 
 static const struct wb_setting friction_rows[] = {
-    {.name = "static",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_bundle_interface, friction.mu_static),
-     .least = 0.0,
-     .largest = 10.0,
-     .required = true},
-    {.name = "kinetic",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_bundle_interface, friction.mu_kinetic),
-     .least = 0.0,
-     .largest = 10.0,
-     .required = true},
-    {.name = "decay_s_mm",
-     .unit = "s/mm",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_bundle_interface, friction.decay),
-     .scale = WB_S_PER_MM,
-     .least = 1e-9,
-     .largest = 1e9,
+    {WB_ROW_NUMBER(wb_friction, mu_static, "static", 0.0, 10.0, 0.0), .required = true},
+    {WB_ROW_NUMBER(wb_friction, mu_kinetic, "kinetic", 0.0, 10.0, 0.0), .required = true},
+    {WB_ROW_QUANTITY(wb_friction, decay, "decay_s_mm", "s/mm", WB_S_PER_MM, 1e-9, 1e9, 0.0),
      .required = true},
 };
 
-static const struct wb_setting_table friction_table = {.rows = friction_rows,
-                                                       .n = WB_COUNT(friction_rows)};
+static const struct wb_setting_table friction_table = {WB_SETTING_ROWS(friction_rows)};
 
 /* A coefficient alone is constant. */
 static int complete_friction(void *members, int n, char *problem, size_t size)
 {
-    struct wb_bundle_interface *const interface = members;
-    struct wb_friction *const friction = &interface->friction;
+    struct wb_friction *const friction = members;
     if (n == 1) {
         friction->mu_kinetic = friction->mu_static;
         friction->decay = 0.0;
@@ -144,51 +74,32 @@ static int complete_friction(void *members, int n, char *problem, size_t size)
 }
 
 const struct wb_setting wb_bundle_model_friction_setting[1] = {
-    {.name = "friction",
-     .type = WB_SETTING_LIST,
-     .required = true,
-     .option = "friction",
-     .argument = "S[,K,D]",
-     .help = "Constant friction, or static and kinetic with the decay between them in s/mm; "
-             "coefficients",
-     .members = &friction_table,
-     .given = offsetof(struct wb_bundle_interface, has_friction),
-     .complete = complete_friction},
+    {WB_ROW_LIST(wb_bundle_interface, friction, "friction", friction_table, has_friction),
+     WB_ROW_OPTION("friction", "S[,K,D]",
+                   "Constant friction, or static and kinetic with the decay between them in s/mm; "
+                   "coefficients"),
+     .required = true, .complete = complete_friction},
 };
 
 const struct wb_setting wb_bundle_model_cohesion_setting[1] = {
-    {.name = "cohesive_stiffness_N_mm3",
-     .unit = "N/mm3",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_bundle_interface, normal_stiffness),
-     .scale = WB_N_PER_MM3,
-     .least = 1e-6,
-     .largest = 1e9,
-     .required = true,
-     .option = "cohesive-stiffness",
-     .argument = "K",
-     .help = "Normal stiffness between tape and wires; the shear stiffness keeps its ratio to it"},
+    {WB_ROW_QUANTITY(wb_bundle_interface, normal_stiffness, "cohesive_stiffness_N_mm3", "N/mm3",
+                     WB_N_PER_MM3, 1e-6, 1e9, 0.0),
+     WB_ROW_OPTION(
+         "cohesive-stiffness", "K",
+         "Normal stiffness between tape and wires; the shear stiffness keeps its ratio to it"),
+     .required = true},
 };
 
 static const struct wb_setting_table cohesion_table = {.rows = wb_bundle_model_cohesion_setting,
                                                        .n = 1};
 
 static const struct wb_setting loads_rows[] = {
-    {.name = "strand_mm",
-     .unit = "mm",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct wb_bundle_loads, strand_length),
-     .scale = WB_MM,
-     .least = 1e-3,
-     .largest = 1e9,
+    {WB_ROW_QUANTITY(wb_bundle_loads, strand_length, "strand_mm", "mm", WB_MM, 1e-3, 1e9, 0.0),
      .otherwise = "none"},
-    {.name = "weight",
-     .type = WB_SETTING_BOOLEAN,
-     .offset = offsetof(struct wb_bundle_loads, weight),
-     .required = true},
+    {WB_ROW_BOOLEAN(wb_bundle_loads, weight, "weight", false), .required = true},
 };
 
-static const struct wb_setting_table loads_table = {.rows = loads_rows, .n = WB_COUNT(loads_rows)};
+static const struct wb_setting_table loads_table = {WB_SETTING_ROWS(loads_rows)};
 
 static const struct wb_bundle_mesh own_meshes[2] = {
     {.name = "engineering",

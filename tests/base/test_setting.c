@@ -23,22 +23,10 @@ struct example {
 static const char *const colours[] = {"red", "green", "blue", NULL};
 
 static const struct wb_setting pair_rows[] = {
-    {.name = "first_mm",
-     .unit = "mm",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct pair, first),
-     .scale = 1e-3,
-     .least = 0.0,
-     .largest = 10.0,
-     .required = true},
-    {.name = "second_s",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct pair, second),
-     .least = 1.0,
-     .largest = 2.0,
-     .required = true},
+    {WB_ROW_QUANTITY(pair, first, "first_mm", "mm", 1e-3, 0.0, 10.0, 0.0), .required = true},
+    {WB_ROW_QUANTITY(pair, second, "second_s", NULL, 1.0, 1.0, 2.0, 0.0), .required = true},
 };
-static const struct wb_setting_table pair_table = {.rows = pair_rows, .n = WB_COUNT(pair_rows)};
+static const struct wb_setting_table pair_table = {WB_SETTING_ROWS(pair_rows)};
 
 /* The second follows from the first, and must not be 1.5. */
 static int complete_pair(void *members, int n, char *problem, size_t size)
@@ -53,59 +41,19 @@ static int complete_pair(void *members, int n, char *problem, size_t size)
 }
 
 static const struct wb_setting rows[] = {
-    {.name = "length_mm",
-     .unit = "mm",
-     .type = WB_SETTING_NUMBER,
-     .offset = offsetof(struct example, length),
-     .scale = 1e-3,
-     .least = 0.1,
-     .largest = 1e6,
-     .fallback = 85.0,
-     .option = "length-mm",
-     .argument = "L",
-     .help = "Free length",
-     .applies = 1},
-    {.name = "count",
-     .type = WB_SETTING_INTEGER,
-     .offset = offsetof(struct example, count),
-     .least = 1,
-     .largest = 9,
-     .otherwise = "one for each",
-     .option = "count",
-     .argument = "N",
-     .help = "How many",
-     .applies = 2},
-    {.name = "is_on",
-     .type = WB_SETTING_BOOLEAN,
-     .offset = offsetof(struct example, is_on),
-     .fallback = true,
-     .option = "off",
-     .help = "Turn it off"},
-    {.name = "is_off",
-     .type = WB_SETTING_BOOLEAN,
-     .offset = offsetof(struct example, is_off),
-     .option = "on",
-     .help = "Turn it on"},
-    {.name = "name",
-     .type = WB_SETTING_TEXT,
-     .offset = offsetof(struct example, name),
-     .size = sizeof((struct example *)NULL)->name},
-    {.name = "path", .type = WB_SETTING_TEXT, .offset = offsetof(struct example, path)},
-    {.name = "colour",
-     .type = WB_SETTING_CHOICE,
-     .offset = offsetof(struct example, colour),
-     .choices = colours,
-     .fallback = 1,
-     .help = "Colour"},
-    {.name = "pair",
-     .type = WB_SETTING_LIST,
-     .offset = offsetof(struct example, pair),
-     .argument = "F[,S]",
-     .members = &pair_table,
-     .given = offsetof(struct example, has_pair),
+    {WB_ROW_QUANTITY(example, length, "length_mm", "mm", 1e-3, 0.1, 1e6, 85.0),
+     WB_ROW_OPTION("length-mm", "L", "Free length"), .applies = 1},
+    {WB_ROW_INTEGER(example, count, "count", 1, 9, 0), WB_ROW_OPTION("count", "N", "How many"),
+     .otherwise = "one for each", .applies = 2},
+    {WB_ROW_BOOLEAN(example, is_on, "is_on", true), WB_ROW_OPTION("off", NULL, "Turn it off")},
+    {WB_ROW_BOOLEAN(example, is_off, "is_off", false), WB_ROW_OPTION("on", NULL, "Turn it on")},
+    {WB_ROW_TEXT(example, name, "name")},
+    {WB_ROW_TEXT(example, path, "path")},
+    {WB_ROW_CHOICE(example, colour, "colour", colours, 1), .help = "Colour"},
+    {WB_ROW_LIST(example, pair, "pair", pair_table, has_pair), .argument = "F[,S]",
      .complete = complete_pair},
 };
-static const struct wb_setting_table table = {.rows = rows, .n = WB_COUNT(rows)};
+static const struct wb_setting_table table = {WB_SETTING_ROWS(rows)};
 
 /* The row of that name or option. */
 static const struct wb_setting *find(const char *name)
@@ -199,13 +147,8 @@ static void wrong_options_are_refused_and_change_nothing(void **unused)
 static void lists_may_have_another_separator_and_need_all_members(void **unused)
 {
     (void)unused;
-    const struct wb_setting row = {.name = "pair",
-                                   .type = WB_SETTING_LIST,
-                                   .offset = offsetof(struct example, pair),
-                                   .argument = "F@S",
-                                   .separator = '@',
-                                   .members = &pair_table,
-                                   .given = offsetof(struct example, has_pair)};
+    const struct wb_setting row = {WB_ROW_LIST(example, pair, "pair", pair_table, has_pair),
+                                   .separator = '@', .argument = "F@S"};
     struct example e = {0};
     char text[WB_SETTING_VALUE];
     assert_true(wb_setting_parse(&row, "0.8@1.2", &e, problem));

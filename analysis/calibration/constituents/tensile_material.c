@@ -12,36 +12,17 @@
 #define WB_LOG_DOMAIN "tensile"
 
 static const struct wb_setting rows[] = {
-    {.name = "youngs_modulus_MPa",
-     .unit = "MPa",
-     .offset = offsetof(struct wb_tensile_material_settings, youngs_modulus),
-     .scale = WB_MPA,
-     .least = 0.001,
-     .largest = 1e7,
-     .otherwise = "of the tests",
-     .option = "youngs-modulus-mpa",
-     .argument = "E",
-     .help = "Young's modulus, known from elsewhere"},
-    {.name = "density_g_cm3",
-     .unit = "g/cm3",
-     .offset = offsetof(struct wb_tensile_material_settings, density),
-     .scale = WB_G_PER_CM3,
-     .least = 0.001,
-     .largest = 30.0,
-     .otherwise = "none",
-     .option = "density-g-cm3",
-     .argument = "R",
-     .help = "Density"},
-    {.name = "poissons_ratio",
-     .offset = offsetof(struct wb_tensile_material_settings, poissons_ratio),
-     .least = 0.0,
-     .largest = 0.499,
-     .otherwise = "none",
-     .option = "poissons-ratio",
-     .argument = "NU",
-     .help = "Poisson's ratio"},
+    {WB_ROW_QUANTITY(wb_tensile_material_settings, youngs_modulus, "youngs_modulus_MPa", "MPa",
+                     WB_MPA, 0.001, 1e7, 0.0),
+     WB_ROW_OPTION("youngs-modulus-mpa", "E", "Young's modulus, known from elsewhere"),
+     .otherwise = "of the tests"},
+    {WB_ROW_QUANTITY(wb_tensile_material_settings, density, "density_g_cm3", "g/cm3", WB_G_PER_CM3,
+                     0.001, 30.0, 0.0),
+     WB_ROW_OPTION("density-g-cm3", "R", "Density"), .otherwise = "none"},
+    {WB_ROW_NUMBER(wb_tensile_material_settings, poissons_ratio, "poissons_ratio", 0.0, 0.499, 0.0),
+     WB_ROW_OPTION("poissons-ratio", "NU", "Poisson's ratio"), .otherwise = "none"},
 };
-const struct wb_setting_table wb_tensile_material_table = {.rows = rows, .n = WB_COUNT(rows)};
+const struct wb_setting_table wb_tensile_material_table = {WB_SETTING_ROWS(rows)};
 
 static void put(struct wb_text *text, const char *indent, const char *key, double value,
                 double unit)

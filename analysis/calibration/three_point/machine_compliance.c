@@ -16,43 +16,20 @@
 
 #define WB_LOG_DOMAIN "compliance"
 
-#define AT(field) offsetof(struct wb_machine_compliance_settings, field)
-
 static const struct wb_setting rows[] = {
-    {.name = "rigidity_N_mm2",
-     .unit = "N mm2",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(rigidity),
-     .scale = 1e-6,
-     .least = 1e-6,
-     .largest = 1e15,
-     .otherwise = "required",
-     .option = "rigidity-n-mm2",
-     .argument = "EI",
-     .help = "Flexural rigidity of the bar"},
-    {.name = "rigidity_error",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(rigidity_error),
-     .least = 1e-6,
-     .largest = 1.0,
-     .fallback = 0.02,
-     .option = "rigidity-error",
-     .argument = "R",
-     .help = "Part of the rigidity by which it may be off (95 %)"},
-    {.name = "from_force",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(from_force),
-     .least = 0.01,
-     .largest = 0.9,
-     .fallback = 0.2,
-     .option = "from-force",
-     .argument = "R",
-     .help = "Part of the largest force below which readings serve not: the bar is seating"},
+    {WB_ROW_QUANTITY(wb_machine_compliance_settings, rigidity, "rigidity_N_mm2", "N mm2", 1e-6,
+                     1e-6, 1e15, 0.0),
+     WB_ROW_OPTION("rigidity-n-mm2", "EI", "Flexural rigidity of the bar"),
+     .otherwise = "required"},
+    {WB_ROW_NUMBER(wb_machine_compliance_settings, rigidity_error, "rigidity_error", 1e-6, 1.0,
+                   0.02),
+     WB_ROW_OPTION("rigidity-error", "R", "Part of the rigidity by which it may be off (95 %)")},
+    {WB_ROW_NUMBER(wb_machine_compliance_settings, from_force, "from_force", 0.01, 0.9, 0.2),
+     WB_ROW_OPTION("from-force", "R",
+                   "Part of the largest force below which readings serve not: the bar is seating")},
 };
 
-#undef AT
-
-const struct wb_setting_table wb_machine_compliance_table = {.rows = rows, .n = WB_COUNT(rows)};
+const struct wb_setting_table wb_machine_compliance_table = {WB_SETTING_ROWS(rows)};
 
 enum {
     LEAST_READINGS = 10,

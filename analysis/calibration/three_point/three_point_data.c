@@ -12,41 +12,17 @@
 
 #define WB_LOG_DOMAIN "three-point"
 
-#define AT(field) offsetof(struct wb_three_point_data_settings, field)
-
 const struct wb_setting wb_three_point_data_rows[WB_THREE_POINT_DATA_ROWS] = {
-    {.name = "seating",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(seating),
-     .least = 0.0,
-     .largest = 0.1,
-     .fallback = 0.01,
-     .option = "seating",
-     .argument = "R",
-     .help = "Part of the span, beyond the first contact, that serves no fit"},
-    {.name = "usable_mm",
-     .unit = "mm",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(usable),
-     .scale = WB_MM,
-     .least = 1e-3,
-     .largest = 1e5,
-     .otherwise = "as the specimen's file says, else up to a kink",
-     .option = "usable-mm",
-     .argument = "D",
-     .help = "Travel up to which the test serves"},
-    {.name = "point_step",
-     .type = WB_SETTING_NUMBER,
-     .offset = AT(step),
-     .least = 1e-4,
-     .largest = 0.05,
-     .fallback = 5e-3,
-     .option = "point-step",
-     .argument = "R",
-     .help = "Part of the span between points that are fitted"},
+    {WB_ROW_NUMBER(wb_three_point_data_settings, seating, "seating", 0.0, 0.1, 0.01),
+     WB_ROW_OPTION("seating", "R",
+                   "Part of the span, beyond the first contact, that serves no fit")},
+    {WB_ROW_QUANTITY(wb_three_point_data_settings, usable, "usable_mm", "mm", WB_MM, 1e-3, 1e5,
+                     0.0),
+     WB_ROW_OPTION("usable-mm", "D", "Travel up to which the test serves"),
+     .otherwise = "as the specimen's file says, else up to a kink"},
+    {WB_ROW_NUMBER(wb_three_point_data_settings, step, "point_step", 1e-4, 0.05, 5e-3),
+     WB_ROW_OPTION("point-step", "R", "Part of the span between points that are fitted")},
 };
-
-#undef AT
 
 enum {
     LEAST_POINTS = 10,
