@@ -11,20 +11,18 @@ static const struct wb_setting stage_rows[] = {
      WB_ROW_OPTION("speed-mm-s", "V", "Speed of jog and release"),
      .otherwise = "the rig's; of release half of it"},
     {WB_ROW_QUANTITY(wb_stage_options, job.zero, "zero_mn", "mN", WB_MN, -1e6, 1e6, (double)NAN),
-     WB_ROW_OPTION("zero-mn", "F", "What the load cell reads with a slack strand, for release"),
+     WB_ROW_OPTION("zero-mn", "F", "Load cell reading with a slack strand, for release"),
      .otherwise = "not known"},
     {WB_ROW_BOOLEAN(wb_stage_options, job.without_load_cell, "without_load_cell", false),
-     WB_ROW_OPTION("without-load-cell", NULL,
-                   "Home or jog blindly, with the load cell not connected")},
+     WB_ROW_OPTION("without-load-cell", NULL, "Home or jog with the load cell not connected")},
     {WB_ROW_QUANTITY(wb_stage_options, seconds, "seconds", "s", 1.0, 0.2, 3600.0, 5.0),
-     WB_ROW_OPTION("seconds", "T", "How long check averages under each mass, and without one")},
+     WB_ROW_OPTION("seconds", "T", "Averaging time of check, under each mass and without one")},
     {WB_ROW_QUANTITY(wb_stage_options, tolerance, "tolerance_percent", "%", WB_PERCENT, 1e-3, 100.0,
                      0.0),
      WB_ROW_OPTION("tolerance-percent", "P", "Largest deviation of check"),
      .otherwise = "the rig's check_tolerance_percent"},
     {WB_ROW_TEXT(wb_stage_options, masses, "masses"),
-     WB_ROW_OPTION("masses", "LIST",
-                   "Masses in g that check asks for one after another, such as 0,5,10,20,10,5,0"),
+     WB_ROW_OPTION("masses", "LIST", "Series of masses in g for check, such as 0,5,10,20,10,5,0"),
      .otherwise = "the rig's check_masses_g"},
 };
 
@@ -49,18 +47,16 @@ static const struct wb_setting virtual_rows[] = {
      WB_ROW_OPTION("natnet-version", "M.N", "Protocol of the motion capture, 2.5 to 4.4; M"),
      .otherwise = "3.0", .separator = '.'},
     {WB_ROW_CHOICE(wb_virtual_options, bench.variant, "wire_law", wb_composite_variant_names, 0),
-     WB_ROW_OPTION("wire-law", "NAME", "What the wire is made of, to try a calibration on")},
+     WB_ROW_OPTION("wire-law", "NAME", "Material law of the virtual wire")},
     {WB_ROW_LIST(wb_virtual_options, bench, "lost_steps", lost_steps_table, has_lost_steps),
-     WB_ROW_OPTION(
-         "lost-steps", "MM@MM",
-         "The stage loses so many mm once it is so many mm down (up to 5000), such as 0.8@20; "
-         "lost"),
+     WB_ROW_OPTION("lost-steps", "MM@MM",
+                   "Travel lost by the stage, and the downward travel (up to 5000) at which it is "
+                   "lost, such as 0.8@20; lost"),
      .otherwise = "none", .separator = '@'},
     {WB_ROW_TEXT(wb_virtual_options, bench.faults, "faults"),
      WB_ROW_OPTION(
          "faults", "LIST",
-         "What is wrong with the bench, such as loss=5,wrong-up: names and values are in the "
-         "manual"),
+         "Faults of the bench, such as loss=5,wrong-up; the manual lists their names and values"),
      .otherwise = "none"},
 };
 
@@ -68,23 +64,23 @@ const struct wb_setting_table wb_bench_options_virtual = {WB_SETTING_ROWS(virtua
 
 static const struct wb_setting rig_rows[] = {
     {WB_ROW_TEXT(wb_rig_options, virtual.bench.specimen, "specimen"),
-     WB_ROW_OPTION("specimen", "SPECIMEN.yaml", "The piece of wire to put on the rig")},
+     WB_ROW_OPTION("specimen", "SPECIMEN.yaml", "Specimen to put on the rig")},
     {WB_ROW_TEXT(wb_rig_options, run, "run"),
      WB_ROW_OPTION("run", "DIR", "Folder that receives rig.yaml, the rig file for `record`")},
     {WB_ROW_NUMBER(wb_rig_options, virtual.bench.time_scale, "time_scale", 0.05, 50.0, 1.0),
-     WB_ROW_OPTION("time-scale", "X", "Let all clocks, filters and drifts run X times as fast")},
+     WB_ROW_OPTION("time-scale", "X", "Run all clocks, filters and drifts X times as fast")},
     {WB_ROW_INTEGER(wb_rig_options, virtual.bench.natnet_port, "natnet_port", 0, 65535, 0),
-     WB_ROW_OPTION("natnet-port", "N", "UDP port of the motion capture; 0 is a free one")},
+     WB_ROW_OPTION("natnet-port", "N", "UDP port of the motion capture; 0: any free port")},
     {WB_ROW_BOOLEAN(wb_rig_options, virtual.bench.multicast, "multicast", false),
      WB_ROW_OPTION("multicast", NULL,
-                   "Let the motion capture stream to a multicast group on the loopback")},
+                   "Stream the motion capture to a multicast group on the loopback interface")},
 };
 
 const struct wb_setting_table wb_bench_options_rig = {WB_SETTING_ROWS(rig_rows)};
 
 static const struct wb_setting replay_rows[] = {
     {WB_ROW_NUMBER(wb_replay_options, rate, "rate", 1e-3, 1e6, 1.0),
-     WB_ROW_OPTION("rate", "1|N|max", "Speed: 1 as recorded, N times, or as fast as it goes"),
+     WB_ROW_OPTION("rate", "1|N|max", "Speed: 1 as recorded, N times as fast, or without waiting"),
      .zero = "max"},
 };
 

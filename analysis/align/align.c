@@ -16,7 +16,7 @@
 
 static const struct wb_setting setting_rows[] = {
     {WB_ROW_QUANTITY(wb_align_settings, longest_gap, "longest_gap_s", "s", 1.0, 1e-3, 60.0, 0.1),
-     WB_ROW_OPTION("longest-gap-s", "S", "Make no row where force or shape is missing for longer")},
+     WB_ROW_OPTION("longest-gap-s", "S", "Omit rows where force or shape is missing for longer")},
     {WB_ROW_NUMBER(wb_align_settings, row_rate, "row_rate", 0.1, 1e4, 0.0),
      WB_ROW_OPTION("row-rate", "N", "Rows per second of bench time"), .otherwise = "20"},
     {WB_ROW_QUANTITY(wb_align_settings, shape_step, "shape_step_mm", "mm", WB_MM, 0.0, 1000.0, 0.5),

@@ -34,7 +34,7 @@ const char *const wb_card_places[] = {"--to calculix and abaqus", "--to mujoco",
 
 static const struct wb_setting rows[] = {
     {WB_ROW_QUANTITY(wb_card_settings, curvature, "curvature_1_m", "1/m", 1.0, 0.0, 1e4, 0.0),
-     WB_ROW_OPTION("curvature", "K", "Curvature at which the stiffness is taken as the secant"),
+     WB_ROW_OPTION("curvature", "K", "Curvature at which the secant stiffness is taken"),
      .otherwise = "0: the virgin wire", .applies = PLACE_CHAIN},
     {WB_ROW_QUANTITY(wb_card_settings, length, "length_mm", "mm", WB_MM, 1.0, 1e5, 0.0),
      WB_ROW_OPTION("length-mm", "L", "Length of the wire"), .otherwise = "the specimens', else 100",
@@ -42,8 +42,7 @@ static const struct wb_setting rows[] = {
     {WB_ROW_INTEGER(wb_card_settings, segments, "segments", 2, 200, 10),
      WB_ROW_OPTION("segments", "N", "Joints of the chain"), .applies = PLACE_CHAIN},
     {WB_ROW_NUMBER(wb_card_settings, damping_ratio, "damping_ratio", 0.0, 10.0, 0.05),
-     WB_ROW_OPTION("damping-ratio", "Z",
-                   "Damping ratio of the first bending mode, which is assumed"),
+     WB_ROW_OPTION("damping-ratio", "Z", "Assumed damping ratio of the first bending mode"),
      .applies = PLACE_CHAIN},
 };
 

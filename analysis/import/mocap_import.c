@@ -40,10 +40,10 @@
 static const struct wb_setting setting_rows[] = {
     {WB_ROW_QUANTITY(wb_mocap_import_request, offset, "offset_s", "s", 1.0, -1e6, 1e6, (double)NAN),
      WB_ROW_OPTION("offset-s", "S",
-                   "Time of the take less that of the force file, for the same moment"),
+                   "Time of the take minus time of the force file at the same moment"),
      .otherwise = "found by a tap or a reversal"},
     {WB_ROW_QUANTITY(wb_mocap_import_request, tare, "tare_mN", "mN", WB_MN, -1e7, 1e7, (double)NAN),
-     WB_ROW_OPTION("tare-mN", "F", "Force that the file shows for the load cell at rest"),
+     WB_ROW_OPTION("tare-mN", "F", "Force reading of the load cell at rest"),
      .otherwise = "mean before the motion begins"},
 };
 

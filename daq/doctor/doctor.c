@@ -37,7 +37,7 @@ struct wb_doctor {
 
 static const struct wb_setting rows[] = {
     {WB_ROW_QUANTITY(wb_doctor_request, seconds, "seconds", "s", 1.0, 0.5, 600.0, 4.0),
-     WB_ROW_OPTION("seconds", "T", "How long the instruments are listened to")},
+     WB_ROW_OPTION("seconds", "T", "How long data of the instruments are received")},
 };
 
 const struct wb_setting_table wb_doctor_table = {WB_SETTING_ROWS(rows)};

@@ -81,19 +81,18 @@ static const char *const phase_names[] = {
 
 static const struct wb_setting rows[] = {
     {WB_ROW_INTEGER(wb_bend_test_request, cycles, "cycles", 1, 10000, 1),
-     WB_ROW_OPTION("cycles", "N", "Times down and back")},
+     WB_ROW_OPTION("cycles", "N", "Number of loading cycles")},
     {WB_ROW_QUANTITY(wb_bend_test_request, travel, "travel_mm", "mm", WB_MM, 0.1, 5000.0, 53.0),
-     WB_ROW_OPTION("travel-mm", "D", "How far down from the start position")},
+     WB_ROW_OPTION("travel-mm", "D", "Downward travel from the start position")},
     {WB_ROW_QUANTITY(wb_bend_test_request, dwell_time, "dwell_s", "s", 1.0, 0.0, 36000.0, 2.0),
-     WB_ROW_OPTION(
-         "dwell-s", "S",
-         "Stay at the turn: calibrate fits relaxation from how the force falls there; 60 for a "
-         "wire whose jacket carries much")},
+     WB_ROW_OPTION("dwell-s", "S",
+                   "Dwell at the turning point, to which calibrate fits the relaxation; 60 for a "
+                   "wire whose jacket carries much")},
     {WB_ROW_TEXT(wb_bend_test_request, speeds, "speeds_mm_s"),
      WB_ROW_OPTION("speeds", "V[,V...]", "Speeds of the cycles in turn"),
      .otherwise = "the rig file's", .unit = "mm/s"},
     {WB_ROW_QUANTITY(wb_bend_test_request, hold_most, "hold_most_s", "s", 1.0, 1.0, 86400.0, 600.0),
-     WB_ROW_OPTION("hold-most-s", "S", "End the test when it is held (key h) for longer")},
+     WB_ROW_OPTION("hold-most-s", "S", "End a test that is held (key h) for longer")},
 };
 
 const struct wb_setting_table wb_bend_test_table = {WB_SETTING_ROWS(rows)};

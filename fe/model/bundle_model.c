@@ -26,12 +26,12 @@ static const char *const precisions[] = {"single", "double", NULL};
 /* In the order of the enum. */
 const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTINGS] = {
     {WB_ROW_TEXT(wb_bundle_run, mesh, "mesh"),
-     WB_ROW_OPTION("mesh", "NAME", "Mesh: engineering, paper, or one of the file"),
+     WB_ROW_OPTION("mesh", "NAME", "Mesh: engineering, paper, or a mesh of the file"),
      .otherwise = "engineering"},
     {WB_ROW_QUANTITY(wb_bundle_run, duration, "duration_s", "s", 1.0, 1e-6, 1e6, 0.0),
      WB_ROW_OPTION("duration-s", "T",
-                   "Duration of a loading; where the file has none, it is "
-                   "chosen so that kinetic energy stays small"),
+                   "Duration of a loading; if the file has none, it is chosen so that the kinetic "
+                   "energy stays small"),
      .otherwise = "chosen"},
     {WB_ROW_NUMBER(wb_bundle_run, mass_scaling, "mass_scaling", 1.0, 1e6, 25.0),
      WB_ROW_OPTION("mass-scaling", "F", "Factor on all masses")},
@@ -76,7 +76,7 @@ static int complete_friction(void *members, int n, char *problem, size_t size)
 const struct wb_setting wb_bundle_model_friction_setting[1] = {
     {WB_ROW_LIST(wb_bundle_interface, friction, "friction", friction_table, has_friction),
      WB_ROW_OPTION("friction", "S[,K,D]",
-                   "Constant friction, or static and kinetic with the decay between them in s/mm; "
+                   "Constant friction, or static and kinetic friction with their decay in s/mm; "
                    "coefficients"),
      .required = true, .complete = complete_friction},
 };
@@ -86,7 +86,7 @@ const struct wb_setting wb_bundle_model_cohesion_setting[1] = {
                      WB_N_PER_MM3, 1e-6, 1e9, 0.0),
      WB_ROW_OPTION(
          "cohesive-stiffness", "K",
-         "Normal stiffness between tape and wires; the shear stiffness keeps its ratio to it"),
+         "Normal stiffness between tape and wires; the shear stiffness changes in proportion"),
      .required = true},
 };
 

@@ -21,23 +21,23 @@ static const struct wb_setting piece_rows[] = {
     {WB_ROW_QUANTITY(wb_bundle_override, length, "length_mm", "mm", WB_MM, 1e-3, 1e6, 0.0),
      WB_ROW_OPTION("length-mm", "L", "Free length from clamp to tip")},
     {WB_ROW_CHOICE(wb_bundle_override, packing, "packing", packings, 0),
-     WB_ROW_OPTION("packing", "PACKING", "How the wires are packed")},
+     WB_ROW_OPTION("packing", "PACKING", "Packing of the wires")},
     {WB_ROW_INTEGER(wb_bundle_override, layers, "layers", 1, 20, 0),
      WB_ROW_OPTION("layers", "N", "Layers of the tape")},
     {WB_ROW_CHOICE(wb_bundle_override, outline, "outline", outlines, 0),
      WB_ROW_OPTION("outline", "OUTLINE",
-                   "How the tape lies: taut on the wires, or on a circle round them")},
+                   "Outline of the tape: taut on the wires, or a circle around them")},
     {WB_ROW_LIST(wb_bundle_override, bond.reach, "bond_reach_mm", bond_table, bond.is_given),
-     WB_ROW_OPTION("bond-reach-mm", "R", "The tape is bonded where it is no farther off a wire")},
+     WB_ROW_OPTION("bond-reach-mm", "R", "Bond the tape to wires within this distance")},
     {WB_ROW_INTEGER(wb_bundle_override, run.cycles, "cycles", 1, 1000, 0),
      WB_ROW_OPTION("cycles", "N", "Load and unload N times")},
 };
 
 static const struct wb_setting load_rows[] = {
     {WB_ROW_BOOLEAN(wb_bundle_override, dead_force, "dead_force", false),
-     WB_ROW_OPTION("dead-force", NULL, "Raise the tip by a vertical force in place of a strand")},
+     WB_ROW_OPTION("dead-force", NULL, "Load the tip by a vertical force instead of a strand")},
     {WB_ROW_BOOLEAN(wb_bundle_override, no_weight, "no_weight", false),
-     WB_ROW_OPTION("no-weight", NULL, "Leave the weight out")},
+     WB_ROW_OPTION("no-weight", NULL, "Ignore the weight")},
 };
 
 #define RUN_AT offsetof(struct wb_bundle_override, run)

@@ -18,7 +18,7 @@ static const struct wb_setting rows[] = {
     {WB_ROW_QUANTITY(wb_layers, conductor_diameter, "conductor_diameter_mm", "mm", WB_MM, 1e-3,
                      1000.0, 0.0),
      WB_ROW_OPTION("conductor-diameter-mm", "D",
-                   "Diameter of the conductor, of strands that of their circle"),
+                   "Diameter of the conductor; of strands, of the circle around them"),
      .otherwise = "none"},
     {WB_ROW_QUANTITY(wb_layers, outer_diameter, "outer_diameter_mm", "mm", WB_MM, 1e-3, 1000.0,
                      0.0),

@@ -30,16 +30,14 @@ const double wb_tensile_plastic_strains[WB_TENSILE_STRESSES] = {0.002, 0.01, 0.0
 
 static const struct wb_setting rows[] = {
     {WB_ROW_NUMBER(wb_tensile_settings, proof_offset, "proof_offset", 1e-6, 0.1, 0.002),
-     WB_ROW_OPTION("proof-offset", "E",
-                   "Strain by which the line of the start is moved for the proof stress")},
+     WB_ROW_OPTION("proof-offset", "E", "Strain offset of the elastic line for the proof stress")},
     {WB_ROW_NUMBER(wb_tensile_settings, stretch, "stretch", 0.01, 0.95, 0.4),
-     WB_ROW_OPTION(
-         "stretch", "R",
-         "Part of the largest force that the straight stretch of the start spans at least")},
+     WB_ROW_OPTION("stretch", "R",
+                   "Smallest force range of the straight initial part, over the largest force")},
     {WB_ROW_NUMBER(wb_tensile_settings, fit_from, "fit_from", 0.0, 1.0, 0.002),
-     WB_ROW_OPTION("fit-from", "E", "Plastic strain where the least squares begin")},
+     WB_ROW_OPTION("fit-from", "E", "Plastic strain where the least-squares fit begins")},
     {WB_ROW_NUMBER(wb_tensile_settings, fit_to, "fit_to", 0.0, 10.0, 0.0),
-     WB_ROW_OPTION("fit-to", "E", "Plastic strain where they end"),
+     WB_ROW_OPTION("fit-to", "E", "Plastic strain where the least-squares fit ends"),
      .otherwise = "at the largest force"},
     {WB_ROW_NUMBER(wb_tensile_settings, alike, "alike", 1e-6, 0.5, 0.01),
      WB_ROW_OPTION("alike", "R", "Laws fit alike whose misfit is below this part of the strength")},

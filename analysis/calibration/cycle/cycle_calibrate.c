@@ -62,11 +62,11 @@ static const struct wb_setting rows[] = {
     {WB_ROW_QUANTITY(wb_cycle_calibrate_settings, at_most, "at_most_percent", "%", WB_PERCENT, 0.01,
                      1000.0, 0.0),
      WB_ROW_OPTION("at-most", "P",
-                   "Exit with 3 if a moment, the unloading stiffness over 1 /m or the residual "
-                   "curvature ratio is not known within this part of its value (95 %)"),
+                   "Exit with 3 if the 95 % uncertainty of a moment, of the unloading stiffness "
+                   "above 1 /m or of the residual curvature ratio exceeds this part of its value"),
      .otherwise = "any"},
     {WB_ROW_INTEGER(wb_cycle_calibrate_settings, threads, "threads", 1, MOST_THREADS, 0),
-     WB_ROW_OPTION("threads", "N", "Threads to compute on"), .otherwise = "as many as processors"},
+     WB_ROW_OPTION("threads", "N", "Number of threads"), .otherwise = "as many as processors"},
 };
 
 const struct wb_setting_table wb_cycle_calibrate_tables[WB_CYCLE_CALIBRATE_TABLES] = {

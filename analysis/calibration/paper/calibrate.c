@@ -76,7 +76,7 @@ static const struct wb_setting rows[] = {
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
                 WB_CALIBRATE_REPORT},
     {WB_ROW_BOOLEAN(wb_calibrate_settings, restart, "restart", true),
-     WB_ROW_OPTION("no-restart", NULL, "Do not start once more from the optimum"),
+     WB_ROW_OPTION("no-restart", NULL, "Do not restart the simplex from the optimum"),
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
     {WB_ROW_INTEGER(wb_calibrate_settings, n_elements, "elements", 2, 2000, 50),
      WB_ROW_OPTION("elements", "N", "Beam elements"),
@@ -91,7 +91,7 @@ static const struct wb_setting rows[] = {
                    "Stop when the simplex is smaller, in units of K0 and n0"),
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
     {WB_ROW_NUMBER(wb_calibrate_settings, error_tolerance, "error_tolerance", 0.0, 1.0, 1e-4),
-     WB_ROW_OPTION("error-tolerance", "X", "Stop when the error is smaller, over F_max"),
+     WB_ROW_OPTION("error-tolerance", "X", "Stop when the error over F_max is smaller"),
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
     {WB_ROW_INTEGER(wb_calibrate_settings, max_iterations, "max_iterations", 1, 100000, 200),
      WB_ROW_OPTION("max-iterations", "N", "Stop after N iterations of a simplex"),
@@ -99,7 +99,7 @@ static const struct wb_setting rows[] = {
     {WB_ROW_BOOLEAN(wb_calibrate_settings, bow_corrected, "bow_corrected", false),
      WB_ROW_OPTION(
          "bow-corrected", NULL,
-         "Take what the samples' bows make of eqs. 10 and 11 out of E and the yield stress"),
+         "Correct E and the yield stress for the effect of the samples' bows on eqs. 10 and 11"),
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN},
     {WB_ROW_QUANTITY(wb_calibrate_settings, youngs_modulus, "youngs_modulus_MPa", "MPa", WB_MPA,
                      1e-3, 1e7, 0.0),
@@ -118,7 +118,7 @@ static const struct wb_setting rows[] = {
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
     {WB_ROW_QUANTITY(wb_calibrate_settings, largest_deflection, "largest_deflection_mm", "mm",
                      WB_MM, 1e-3, 1e6, 0.0),
-     WB_ROW_OPTION("largest-deflection-mm", "D", "Leave out what comes later in the loading"),
+     WB_ROW_OPTION("largest-deflection-mm", "D", "Ignore the loading beyond this deflection"),
      .otherwise = "nothing", .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
 };
 

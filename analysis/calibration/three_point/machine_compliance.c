@@ -23,10 +23,11 @@ static const struct wb_setting rows[] = {
      .otherwise = "required"},
     {WB_ROW_NUMBER(wb_machine_compliance_settings, rigidity_error, "rigidity_error", 1e-6, 1.0,
                    0.02),
-     WB_ROW_OPTION("rigidity-error", "R", "Part of the rigidity by which it may be off (95 %)")},
+     WB_ROW_OPTION("rigidity-error", "R", "Uncertainty of the rigidity (95 %), as a part of it")},
     {WB_ROW_NUMBER(wb_machine_compliance_settings, from_force, "from_force", 0.01, 0.9, 0.2),
-     WB_ROW_OPTION("from-force", "R",
-                   "Part of the largest force below which readings serve not: the bar is seating")},
+     WB_ROW_OPTION(
+         "from-force", "R",
+         "Part of the largest force below which readings are ignored, while the bar seats")},
 };
 
 const struct wb_setting_table wb_machine_compliance_table = {WB_SETTING_ROWS(rows)};

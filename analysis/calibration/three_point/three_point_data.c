@@ -15,13 +15,13 @@
 const struct wb_setting wb_three_point_data_rows[WB_THREE_POINT_DATA_ROWS] = {
     {WB_ROW_NUMBER(wb_three_point_data_settings, seating, "seating", 0.0, 0.1, 0.01),
      WB_ROW_OPTION("seating", "R",
-                   "Part of the span, beyond the first contact, that serves no fit")},
+                   "Part of the span, beyond the first contact, that is excluded from the fit")},
     {WB_ROW_QUANTITY(wb_three_point_data_settings, usable, "usable_mm", "mm", WB_MM, 1e-3, 1e5,
                      0.0),
-     WB_ROW_OPTION("usable-mm", "D", "Travel up to which the test serves"),
+     WB_ROW_OPTION("usable-mm", "D", "Largest travel that is used"),
      .otherwise = "as the specimen's file says, else up to a kink"},
     {WB_ROW_NUMBER(wb_three_point_data_settings, step, "point_step", 1e-4, 0.05, 5e-3),
-     WB_ROW_OPTION("point-step", "R", "Part of the span between points that are fitted")},
+     WB_ROW_OPTION("point-step", "R", "Part of the span between fitted points")},
 };
 
 enum {

@@ -46,25 +46,23 @@ static const double before_first = 0.25, before_first_back = 0.1;
 const struct wb_setting wb_three_point_fit_rows[WB_THREE_POINT_FIT_ROWS] = {
     {WB_ROW_NUMBER(wb_three_point_fit_settings, force_share, "curve_share", 1e-6, 1.0, 5e-3),
      WB_ROW_OPTION("curve-share", "R",
-                   "Error of a point as a part of the largest force, where the noise is less")},
+                   "Smallest error of a point, as a part of the largest force")},
     {WB_ROW_NUMBER(wb_three_point_fit_settings, modulus_prior, "part_prior", 1e-2, 1e3, 2.0),
-     WB_ROW_OPTION(
-         "part-prior", "X",
-         "Prior of the second differences of the logarithms of the moduli of parts that yield"),
+     WB_ROW_OPTION("part-prior", "X",
+                   "Prior of the second differences of the yielding parts' log moduli"),
      .applies = WB_CALIBRATE_COMMAND},
     {WB_ROW_NUMBER(wb_three_point_fit_settings, contact_prior, "contact_prior", 1e-6, 1.0, 5e-3),
-     WB_ROW_OPTION(
-         "contact-prior", "R",
-         "Part of the span by which the first contact may well be off where it seems to be")},
+     WB_ROW_OPTION("contact-prior", "R",
+                   "Prior of the error of the first contact, as a part of the span")},
     {WB_ROW_NUMBER(wb_three_point_fit_settings, bow_prior, "bow_prior", 1e-6, 0.1, 0.0),
-     WB_ROW_OPTION("bow-prior", "R",
-                   "Part of the span by which a wire may well be bowed on the rollers where its "
-                   "specimen's file does not say"),
+     WB_ROW_OPTION(
+         "bow-prior", "R",
+         "Prior of the bow of a wire whose specimen file gives none, as a part of the span"),
      .otherwise = "straight"},
     {WB_ROW_INTEGER(wb_three_point_fit_settings, n_elements, "half_elements", 8, 500, 32),
      WB_ROW_OPTION("half-elements", "N", "Beam elements of half the wire")},
     {WB_ROW_INTEGER(wb_three_point_fit_settings, max_iterations, "curve_iterations", 1, 10000, 40),
-     WB_ROW_OPTION("curve-iterations", "N", "Most iterations of a fit"),
+     WB_ROW_OPTION("curve-iterations", "N", "Maximum number of iterations of a fit"),
      .applies = WB_CALIBRATE_COMMAND},
 };
 
