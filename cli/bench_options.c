@@ -47,7 +47,7 @@ static const struct wb_setting virtual_rows[] = {
      WB_ROW_OPTION("natnet-version", "M.N", "Protocol of the motion capture, 2.5 to 4.4; M"),
      .otherwise = "3.0", .separator = '.'},
     {WB_ROW_CHOICE(wb_virtual_options, bench.variant, "wire_law", wb_composite_variant_names, 0),
-     WB_ROW_OPTION("wire-law", "NAME", "Material law of the virtual wire")},
+     WB_ROW_OPTION("wire-law", "NAME", "Material law of the wire")},
     {WB_ROW_LIST(wb_virtual_options, bench, "lost_steps", lost_steps_table, has_lost_steps),
      WB_ROW_OPTION("lost-steps", "MM@MM",
                    "Travel lost by the stage, and the downward travel (up to 5000) at which it is "
@@ -73,7 +73,7 @@ static const struct wb_setting rig_rows[] = {
      WB_ROW_OPTION("natnet-port", "N", "UDP port of the motion capture; 0: any free port")},
     {WB_ROW_BOOLEAN(wb_rig_options, virtual.bench.multicast, "multicast", false),
      WB_ROW_OPTION("multicast", NULL,
-                   "Stream the motion capture to a multicast group on the loopback interface")},
+                   "Stream the motion capture to a multicast group on the loopback")},
 };
 
 const struct wb_setting_table wb_bench_options_rig = {WB_SETTING_ROWS(rig_rows)};

@@ -66,7 +66,7 @@ static const struct wb_setting rows[] = {
                    "above 1 /m or of the residual curvature ratio exceeds this part of its value"),
      .otherwise = "any"},
     {WB_ROW_INTEGER(wb_cycle_calibrate_settings, threads, "threads", 1, MOST_THREADS, 0),
-     WB_ROW_OPTION("threads", "N", "Number of threads"), .otherwise = "as many as processors"},
+     WB_ROW_OPTION("threads", "N", "Threads"), .otherwise = "as many as processors"},
 };
 
 const struct wb_setting_table wb_cycle_calibrate_tables[WB_CYCLE_CALIBRATE_TABLES] = {
