@@ -34,7 +34,7 @@ void wb_align_default_settings(struct wb_align_settings *settings)
     settings->rig_path = settings->specimen_path = NULL;
 }
 
-/* To 1e-9 m, N, s and rad: far below all noise, and short in the file. */
+/* Rounds to 1e-9 (m, N, s or rad): far below the noise, and keeps the file short. */
 static double rounded(double value)
 {
     return round(value * 1e9) / 1e9;
@@ -76,17 +76,17 @@ static void add_shape(struct wb_align *align, const struct wb_align_row *row)
             .s = align->specimen.markers[k],
             .x = rounded(row->x[k]),
             .y = rounded(row->y[k]),
-            .z = (double)NAN, /* the frame is the plane of bending */
+            .z = (double)NAN, /* not set: shapes lie in the plane of bending */
         };
         wb_dataset_add_shape_row(align->dataset, &shape);
     }
 }
 
-/* Rows from the start of the first cycle on, and a shape after each step of the tip.
+/* Exports the rows from the start of the first cycle, and a shape after each step of the tip.
  *
- * The deflection of the row before decides whether a step is complete. If the row's own deflection
- * did, a row whose noise is large in the direction of motion would be taken too early, and the
- * stored shapes would lag behind their deflections. */
+ * The deflection of the previous row decides whether a step is complete. Had the row's own
+ * deflection to decide, rows with a large noise in the direction of motion would be chosen too
+ * early, and the stored shapes would lag behind their deflections. */
 static enum wb_status export_rows(struct wb_align *align)
 {
     double last_shape = (double)NAN, before = (double)NAN;
@@ -121,8 +121,9 @@ static enum wb_status export_rows(struct wb_align *align)
 static void describe_rows(struct wb_align *align)
 {
     struct wb_json *const document = align->dataset->document;
-    /* A row stands at the mean time of its frames, of which half may be lost: a marker hidden for
-     * just the longest gap keeps its rows up to one and a half of their intervals farther apart. */
+    /* A row's time is the mean time of its frames, of which half may be lost. A marker that is
+     * hidden for exactly longest_gap separates two rows by up to 1.5 row intervals more than
+     * that. */
     const double most = align->settings.longest_gap + 1.5 / align->settings.row_rate;
     size_t n_gaps = 0;
     double longest = 0.0, largest = 0.0;
@@ -149,7 +150,7 @@ static void describe_rows(struct wb_align *align)
                  wb_align_level_uncertainty(align) / WB_MM);
     wb_json_set_text(rows, "note",
                      "a row is the mean of the frames of 1/row_rate seconds in which the tip's "
-                     "marker was seen, with the readings around that time; nothing is filled in");
+                     "marker was seen, with the readings around that time; gaps are not filled");
     if (n_gaps > 0)
         wb_align_warn(align, "%zu gap%s " WB_ALIGN_GAPS_TEXT " %.2f s", n_gaps,
                       n_gaps == 1 ? "" : "s", longest);
@@ -247,7 +248,7 @@ static enum wb_status run_all(struct wb_dataset *dataset, struct wb_align_signal
     if (why)
         *why = lost;
     WB_TRY(wb_setting_check(&wb_align_table, settings, why));
-    /* GSL's own handler aborts; its codes are looked at here. */
+    /* GSL's default handler aborts; its status codes are checked instead. */
     gsl_set_error_handler_off();
     struct wb_align *const align = wb_memory_new(1, sizeof *align);
     wb_dataset_init(dataset);

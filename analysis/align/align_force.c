@@ -1,4 +1,4 @@
-/* From readings to tension and force: slack, zero drift, lean of the strand, zero of force. */
+/* Tension and force from readings: slack, zero drift, lean of the strand, zero of force. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,32 +9,35 @@
 
 #define WB_LOG_DOMAIN "align"
 
-/* The strand is slack where the tip stands lower over the clamp's travel than a taut strand
- * allows, by more than the markers' noise. */
+/* Tip height (m) below that of a taut strand from which on the strand is slack; larger than the
+ * noise of the markers. */
 #define SLACK_LENGTH (0.3 * WB_MM)
-/* After a jump a first-order filter of the known delay has settled to 3e-4. */
+/* Settling time after a jump, in filter delays: a first-order filter has then settled to 3e-4. */
 #define SETTLE_DELAYS 8.0
 #define LEAST_SETTLE 0.2 /* s */
-/* A stretch without load has at least this number of rows. */
+/* Fewest rows of a zero-load stretch. */
 #define LEAST_ZERO_ROWS 6
-/* Part of the largest tension above which a strand is taut beyond doubt. */
+/* Part of the largest tension above which the strand is certainly taut. */
 #define TAUT_PART 0.3
-/* A strand that becomes taut pulls by more than so many deviations of a row's reading, and this
+/* Least tension of a strand that has become taut: in standard deviations of a row's reading, and as
  * part of the largest tension. */
 #define PULL_NOISES 10.0
 #define PULL_PART 0.02
-/* Without a strand, or without its geometry: tension below this part of the largest is none. */
+/* Without a strand, or without its geometry: tension below this part of the largest counts as
+ * zero. */
 #define NO_TENSION_PART 0.005
-/* The zero of force and the initial slope are read over so much deflection at the least, or this
- * part of the length. */
+/* The zero of force and the initial slope are fitted over at least this deflection, m, or this part
+ * of the length. */
 #define ZERO_WINDOW (1.6 * WB_MM)
 #define SLOPE_PART 0.03
-/* The zero of force, of the second degree, over so much deflection from the first taut row on. */
+/* Range of deflection (m), from the first taut row, of the second-degree fit for the zero of
+ * force. */
 #define ZERO_RANGE (3.0 * WB_MM)
 #define LEAST_FIT_ROWS 8
-/* Zero drift of a load cell of this kind a minute, over its capacity. */
+/* Typical zero drift of such load cells per minute, as part of the capacity. */
 #define TYPICAL_DRIFT 2e-4
-/* The taut part may begin so far above zero deflection; force is then extrapolated. */
+/* Largest deflection (m) at which the strand may become taut; the force is extrapolated from there
+ * to zero. */
 #define FARTHEST_ZERO (2.0 * WB_MM)
 
 static double settle_time(const struct wb_align *align)
@@ -49,15 +52,15 @@ static double reading_period(const struct wb_align *align)
     return n > 1 && r[n - 1].t > r[0].t ? (r[n - 1].t - r[0].t) / (double)(n - 1) : 1.0;
 }
 
-/* Standard deviation of a row's reading: a straight line through n readings, taken at its middle,
- * has that of a mean. */
+/* Standard deviation of a row's reading: a straight line fitted to n readings has, at its middle,
+ * that of their mean. */
 static double row_noise(const struct wb_align *align)
 {
     const double in_row = fmax(1.0 / align->settings.row_rate / reading_period(align), 5.0);
     return align->reading_noise / sqrt(in_row);
 }
 
-/* --- how large forces are --- */
+/* --- largest force --- */
 
 static enum wb_status find_largest(struct wb_align *align)
 {
@@ -73,17 +76,15 @@ static enum wb_status find_largest(struct wb_align *align)
                            : align->rig.load_cell.noise > 0.0 ? align->rig.load_cell.noise
                                                               : 1e-3 * fabs(align->largest);
     if (-low > fabs(align->largest) && -low > 10.0 * align->reading_noise)
-        return wb_fail_to(
-            align->why, WB_ERR_DATA,
-            "%s: the strand would push (readings down to %.1f mN below the tare): the "
-            "sign of the rig's load_cell is reversed",
-            align->name, -low / WB_MN);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: readings fall to %.1f mN below the tare, as if the strand pushed: "
+                          "the sign of the rig's load_cell is reversed",
+                          align->name, -low / WB_MN);
     if (!(align->largest > 10.0 * align->reading_noise))
-        return wb_fail_to(
-            align->why, WB_ERR_DATA,
-            "%s: the load cell never rises above its noise (largest %.3f mN, noise %.3f "
-            "mN): nothing pulls at it",
-            align->name, align->largest / WB_MN, align->reading_noise / WB_MN);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: no reading of the load cell exceeds its noise (largest %.3f mN, "
+                          "noise %.3f mN): is the strand attached?",
+                          align->name, align->largest / WB_MN, align->reading_noise / WB_MN);
     return WB_OK;
 }
 
@@ -107,8 +108,8 @@ static void find_taut_level(struct wb_align *align)
     free(levels);
 }
 
-/* By geometry where there is a strand: a drifting zero does not matter to it. */
-static bool hangs_slack(const struct wb_align *align, const struct wb_align_row *row)
+/* Uses geometry where there is a strand, which zero drift does not affect. */
+static bool is_slack(const struct wb_align *align, const struct wb_align_row *row)
 {
     if (isfinite(align->taut_level))
         return tautness(align, row) - align->taut_level > SLACK_LENGTH;
@@ -117,8 +118,8 @@ static bool hangs_slack(const struct wb_align *align, const struct wb_align_row 
 
 /* --- zero drift --- */
 
-/* Mean reading of a zero-load stretch, rows first..last-1, without what the filter still carries
- * at its ends; with `begins` it continues the tare. */
+/* Adds the mean reading of a zero-load stretch, rows first..last-1, without the filter's settling
+ * at its ends; with `begins` the stretch continues the tare. */
 static void add_zero(struct wb_align *align, size_t first, size_t last, bool begins)
 {
     const double settle = settle_time(align);
@@ -151,8 +152,9 @@ static double tare_time(const struct wb_align *align)
     return wb_seconds_from_ns(align->tare_ns - align->zero_ns) * align->rig.time_scale;
 }
 
-/* The tare is a zero-load stretch too. Rows before it say nothing: the specimen may have been
- * handled. A stretch that follows it at once is joined with it by their weights. */
+/* Finds the zero-load stretches; the tare is one too. Rows before it are not used: the specimen may
+ * have been handled. A stretch within 5 s of the tare is merged with it, weighted by their
+ * variances. */
 static void find_zeros(struct wb_align *align)
 {
     const double tare_t = tare_time(align);
@@ -167,7 +169,7 @@ static void find_zeros(struct wb_align *align)
     const size_t after_tare = first;
     while (first < align->n_rows) {
         size_t last = first;
-        while (last < align->n_rows && hangs_slack(align, &align->rows[last]))
+        while (last < align->n_rows && is_slack(align, &align->rows[last]))
             last++;
         if (last > first)
             add_zero(align, first, last, first == after_tare);
@@ -189,7 +191,8 @@ static void find_zeros(struct wb_align *align)
     }
 }
 
-/* Zero of the cell at bench time t: straight between stretches, and never beyond them. */
+/* Zero of the cell at bench time t: linear between stretches, constant before the first and after
+ * the last. */
 static double zero_at(const struct wb_align *align, double t)
 {
     const struct wb_align_zero *const zeros = align->zeros;
@@ -204,7 +207,7 @@ static double zero_at(const struct wb_align *align, double t)
     return (1.0 - part) * zeros[next - 1].value + part * zeros[next].value;
 }
 
-/* Fastest drift that the recording itself shows, N/s. */
+/* Fastest drift between two stretches of the recording, N/s. */
 static double drift_seen(const struct wb_align *align)
 {
     const struct wb_align_zero *const z = align->zeros;
@@ -244,28 +247,27 @@ static void describe_drift(struct wb_align *align)
                 correction.value = zeros[i].value;
         }
         correction.uncertainty = hypot(zeros[0].deviation, zeros[n - 1].deviation);
-        wb_align_correct(align, &correction,
-                         "the largest of what was subtracted: straight lines between %zu zero-load "
-                         "stretches, the fastest of %.3g mN/min; of the time after the last one "
-                         "(%.1f s) it is not known and bounded by %.3g mN",
-                         n, seen * 60.0 / WB_MN, outside, seen * outside / WB_MN);
+        wb_align_correct(
+            align, &correction,
+            "largest value subtracted: linear between %zu zero-load stretches, the fastest drift "
+            "%.3g mN/min; unknown after the last stretch (%.1f s), and bounded by %.3g mN there",
+            n, seen * 60.0 / WB_MN, outside, seen * outside / WB_MN);
         return;
     }
-    /* Only the tare and the rest of the time before the test (which may have moved the zero by its
-     * noise): nothing in the recording separates drift from load. */
+    /* Zero load was recorded only before the test (the tare and the rest of that time, which may
+     * have changed the zero by its noise): drift cannot be separated from load. */
     correction.value = zeros[0].value;
     const double rate = TYPICAL_DRIFT * align->rig.load_cell.capacity / 60.0;
     correction.uncertainty = rate * outside;
-    wb_align_correct(align, &correction,
-                     "not corrected: the cell was surely without load only before the test; the "
-                     "uncertainty is a bound from what such cells do, %.0e of the capacity a "
-                     "minute",
-                     TYPICAL_DRIFT);
-    wb_align_warn(
-        align,
-        "zero drift is not corrected, there is no zero-load stretch after the test began; it "
-        "is bounded by %.3g mN",
-        rate * outside / WB_MN);
+    wb_align_correct(
+        align, &correction,
+        "not corrected: the cell was certainly unloaded only before the test; the uncertainty is a "
+        "bound from the typical drift of such cells, %.0e of the capacity per minute",
+        TYPICAL_DRIFT);
+    wb_align_warn(align,
+                  "zero drift is not corrected: no zero-load stretch after the start of the test; "
+                  "it is bounded by %.3g mN",
+                  rate * outside / WB_MN);
 }
 
 /* --- tension --- */
@@ -279,7 +281,7 @@ static void set_tension(struct wb_align *align)
         row->tension = row->reading - row->drift;
         row->vertical = row->tension * row->lean_cosine;
         const bool without_tension = align->rig.strand.length > 0.0 && row->tension < least;
-        if (hangs_slack(align, row) || without_tension)
+        if (is_slack(align, row) || without_tension)
             row->phase = WB_PHASE_SLACK;
     }
 }
@@ -310,8 +312,8 @@ static bool is_first_loading(const struct wb_align_row *row)
     return row->cycle == 1 && row->phase == WB_PHASE_LOAD;
 }
 
-/* Where the first loading became taut for good, and the first row after the filter settled. Before,
- * the markers' noise lets single rows of a slack strand look taut: nothing pulls in them. */
+/* Finds where the strand became taut for good in the first loading, and the first row after the
+ * filter settled. Earlier rows may look taut by the markers' noise, but carry no tension. */
 static bool find_taut(struct wb_align *align, size_t *settled)
 {
     const double least = fmax(PULL_NOISES * row_noise(align), PULL_PART * align->largest);
@@ -374,8 +376,8 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
                           align->name, n, LEAST_FIT_ROWS);
     align->zero_force = line.value;
     align->zero_force_deviation = line.value_deviation;
-    /* A wire that yielded before zero has a bent curve there, on which a line through one side
-     * stands too high. */
+    /* If the wire yielded before zero deflection, its curve is bent there, and a straight line
+     * fitted to one side would be too high at zero. */
     double c[3], deviation;
     n = gather(align, first, begin + ZERO_RANGE, x, y);
     if (n >= 3 * LEAST_FIT_ROWS && wb_fit_parabola(x, y, n, c, &deviation) && c[1] > 0.0) {
@@ -419,8 +421,8 @@ static void describe_zero(struct wb_align *align)
         .uncertainty = (double)NAN,
     };
     wb_align_correct(align, &strand,
-                     "largest difference of tension and its vertical part; the strand's upper end "
-                     "is taken to be straight above the straight wire's tip");
+                     "largest difference of the tension and its vertical component; the strand's "
+                     "upper end is assumed to be vertically above the straight wire's tip");
     const double level = wb_align_level_uncertainty(align);
     const struct wb_align_correction zero = {
         .name = "force at zero deflection",
@@ -429,18 +431,18 @@ static void describe_zero(struct wb_align *align)
         .value = align->zero_force,
         .uncertainty = hypot(align->zero_force_deviation, align->stiffness * level),
     };
-    wb_align_correct(align, &zero,
-                     "vertical part of the tension where the tip is level with the clamp on the "
-                     "first loading (second-degree fit to the taut part near it), subtracted "
-                     "from all; initial slope %.4g N/m; that the level itself is uncertain by "
-                     "%.3g mm is in the uncertainty",
-                     align->stiffness, level / WB_MM);
+    wb_align_correct(
+        align, &zero,
+        "vertical component of the tension where the tip is level with the clamp on the first "
+        "loading (second-degree fit to the taut rows near it), subtracted from all forces; initial "
+        "slope %.4g N/m; the uncertainty includes that of the level, %.3g mm",
+        align->stiffness, level / WB_MM);
 }
 
 /* --- timing --- */
 
-/* Area of the first cycle's loop above zero deflection, and how it changes with a lag of the
- * force: a lag makes a false loop of width 2 v dt. */
+/* Area of the first cycle's loop above zero deflection, and its change per second of lag of the
+ * force: a lag opens a false loop of width 2 v dt. */
 static void loop_area(const struct wb_align *align, double *area, double *per_second)
 {
     const struct wb_align_row *last = NULL;
@@ -481,9 +483,9 @@ static void describe_timing(struct wb_align *align)
     wb_align_set(object, "loop_area_error_mJ", fabs(per_second) * lag * 1e3);
     wb_json_set_text(object, "note",
                      "a lag between force and deflection moves a loading curve by speed times lag "
-                     "(force: times stiffness too) and opens a false loop of twice that width; "
-                     "delays of the cameras before their data reach the server are not known and "
-                     "not in the uncertainty, and of a clock without probes 1 ms is taken");
+                     "(force: times stiffness too) and opens a false loop of twice that width; the "
+                     "uncertainty excludes the unknown delay of the cameras before their data "
+                     "reach the server, and assumes 1 ms for a clock without probes");
 }
 
 enum wb_status wb_align_force(struct wb_align *align)

@@ -1,4 +1,4 @@
-/* A rig or specimen file that holds in place of the recording's own, and how they differ. */
+/* Rig and specimen files used in place of the recording's own, and their differences. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 
 #define WB_LOG_DOMAIN "align"
 
-/* Maps within maps of a rig file; a file that is deeper is compared down to here. */
+/* Levels of nested maps that are compared key by key; deeper maps are compared whole. */
 #define DEPTH 8
 
 enum wb_status wb_align_given_text(const struct wb_align *align, struct wb_recording *recording,
@@ -30,8 +30,8 @@ enum wb_status wb_align_given_text(const struct wb_align *align, struct wb_recor
     snprintf(origin, WB_PATH, "%s: %s", align->name, key);
     if (status == WB_ERR_NOT_FOUND)
         return wb_fail_to(align->why, WB_ERR_DATA,
-                          "%s: the recording has no meta '%s': name a file with --%s", align->name,
-                          key, key);
+                          "%s: the recording has no '%s' in its meta data: name a file with --%s",
+                          align->name, key, key);
     return status;
 }
 
@@ -43,7 +43,8 @@ struct differences {
     struct wb_json *list;
 };
 
-/* A scalar as it is written, a sequence with brackets, "none" for what is not there. */
+/* Appends a scalar as written, a sequence in brackets, a map in braces, "none" for a missing
+ * node. */
 static void put_value(struct wb_text *text, const struct wb_config_node *node, int depth)
 {
     const char *const scalar = node ? wb_config_scalar(node) : "none";
@@ -67,7 +68,7 @@ static void put_value(struct wb_text *text, const struct wb_config_node *node, i
     wb_text_append(text, "%s", n >= 0 ? "]" : "}");
 }
 
-/* Numbers are the same however they are written. */
+/* Compares numbers by value, not by spelling. */
 static bool is_same(const struct wb_config_node *a, const struct wb_config_node *b, int depth)
 {
     const char *const text_a = a ? wb_config_scalar(a) : NULL;
@@ -87,8 +88,9 @@ static bool is_same(const struct wb_config_node *a, const struct wb_config_node 
     return true;
 }
 
-static void tell(const struct differences *d, const char *key,
-                 const struct wb_config_node *recorded, const struct wb_config_node *given)
+static void report_difference(const struct differences *d, const char *key,
+                              const struct wb_config_node *recorded,
+                              const struct wb_config_node *given)
 {
     struct wb_text before = {.bytes = NULL}, now = {.bytes = NULL};
     put_value(&before, recorded, DEPTH);
@@ -103,7 +105,7 @@ static void tell(const struct differences *d, const char *key,
     wb_text_release(&now);
 }
 
-/* Tells each key in which the maps differ, by its path "load_cell.unit". */
+/* Reports each key in which the maps differ by its path, such as "load_cell.unit". */
 static void compare(const struct differences *d, const char *path,
                     const struct wb_config_node *recorded, const struct wb_config_node *given,
                     int depth)
@@ -116,7 +118,7 @@ static void compare(const struct differences *d, const char *path,
             const struct wb_config_node *const value = wb_config_entry(maps[side], i, &name);
             const struct wb_config_node *const other =
                 maps[1 - side] ? wb_config_find(maps[1 - side], name) : NULL;
-            /* What both have was compared from the first side. */
+            /* Keys of both maps were compared in the first round. */
             if (side == 1 && other)
                 continue;
             snprintf(key, sizeof key, "%.180s%s%.60s", path, path[0] ? "." : "", name);
@@ -124,13 +126,13 @@ static void compare(const struct differences *d, const char *path,
                 wb_config_entries(other) >= 0)
                 compare(d, key, other, value, depth - 1);
             else if (!is_same(value, other, DEPTH))
-                tell(d, key, side == 0 ? other : value, side == 0 ? value : NULL);
+                report_difference(d, key, side == 0 ? other : value, side == 0 ? value : NULL);
         }
     }
 }
 
-/* The files' top nodes; a text that is no YAML was refused, or is the reason for the correction:
- * all keys differ then. */
+/* Compares the files' top nodes. A recorded text that is not valid YAML may be why a file was
+ * given: all keys differ then. */
 static enum wb_status compare_texts(const struct differences *d, const char *recorded,
                                     const char *given, const char *path)
 {
@@ -161,7 +163,7 @@ static enum wb_status describe(struct wb_align *align, struct wb_recording *reco
     wb_json_set_text(object, "sha256", sha256);
     const struct differences d = {align, what, wb_json_set_array(object, "differences")};
     const enum wb_status status = compare_texts(&d, recorded, given, path);
-    /* A recording of the virtual rig stays one, whatever file is given with it. */
+    /* A recording of the virtual rig stays virtual, whatever file is given. */
     struct wb_rig rig;
     struct wb_reason unread = {.text = ""};
     if (recorded && strcmp(what, "rig") == 0 &&
@@ -198,8 +200,8 @@ enum wb_status wb_align_given_tare(struct wb_align *align)
     }
     if (zero.n < align->tare_samples)
         return wb_fail_to(align->why, WB_ERR_DATA,
-                          "%s: %ld of the %ld readings of the tare are there: without all of them "
-                          "the tare cannot be made again with the rig that was given",
+                          "%s: only %ld of the %ld readings of the tare exist: all are needed to "
+                          "compute the tare again with the given rig",
                           align->name, (long)zero.n, align->tare_samples);
     align->tare = zero.mean - wb_rig_tare_load(&align->rig);
     align->tare_deviation = wb_average_deviation(&zero);

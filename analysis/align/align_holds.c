@@ -1,5 +1,5 @@
-/* Holds: the operator stopped the stage for a while, and the bent wire relaxed. No row is made of
- * them. */
+/* Holds: the operator stopped the stage for some time, and the bent wire relaxed. No rows are made
+ * from holds. */
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 #define WB_LOG_DOMAIN "align"
 
-/* When a hold that did not end is over, bench time. */
+/* End of a hold, bench time; infinite if the hold did not end. */
 static double end_of(const struct wb_align *align, const struct wb_bend_hold_told *hold)
 {
     return hold->to_ns == INT64_MAX ? (double)INFINITY : wb_align_bench_time(align, hold->to_ns);
@@ -41,12 +41,12 @@ void wb_align_describe_holds(struct wb_align *align)
         wb_align_set(object, "tension_before_mN", hold->before / WB_MN);
         wb_align_set(object, "tension_after_mN", hold->after / WB_MN);
         if (strcmp(hold->phase, "rest") != 0)
-            wb_align_warn(align,
-                          "held at %.2f mm of travel on the way %s of cycle %d for %.1f s, where "
-                          "the tension went from %.2f to %.2f mN: a bent wire relaxes, and the "
-                          "curve behind the hold is that of a wire with another history; the rows "
-                          "of the hold are left out",
-                          hold->travel / WB_MM, hold->phase, hold->cycle, lasted,
-                          hold->before / WB_MN, hold->after / WB_MN);
+            wb_align_warn(
+                align,
+                "held at %.2f mm of travel on the way %s of cycle %d for %.1f s, while the tension "
+                "went from %.2f to %.2f mN: a bent wire relaxes, so the curve after the hold is "
+                "that of a wire with another history; the rows of the hold are left out",
+                hold->travel / WB_MM, hold->phase, hold->cycle, lasted, hold->before / WB_MN,
+                hold->after / WB_MN);
     }
 }

@@ -1,29 +1,30 @@
-/* The specimen's natural shape: its bow, from what it does at zero deflection.
+/* The specimen's natural shape: its bow, from force and shape near zero deflection.
  *
  * Small slopes, clamped at s = 0, a net vertical force P at the tip, weight w per length, natural
  * shape n(s), u = s/L:
  *
- *     y(s) = n(s) + P/EI (L s^2/2 - s^3/6) - w/EI (s^4/24 - L s^3/6 + L^2 s^2/4)
+ *   y(s) = n(s) + P/EI (L s^2/2 - s^3/6) - w/EI (s^4/24 - L s^3/6 + L^2 s^2/4)
  *
- * Wherever the tip is held (by strand or rest), P follows from its height Y = y(L), and then
+ * While strand or rest hold the tip, P follows from its height Y = y(L), and then
  *
- *     y(s) - Y p(u) - w L^4/EI (p(u)/8 - g(u)) = n(s) - n(L) p(u)
+ *   y(s) - Y p(u) - w L^4/EI (p(u)/8 - g(u)) = n(s) - n(L) p(u)
  *
- *     p(u) = (3 u^2 - u^3)/2,  g(u) = u^4/24 - u^3/6 + u^2/4
+ *   p(u) = (3 u^2 - u^3)/2,  g(u) = u^4/24 - u^3/6 + u^2/4
  *
- * The right side is small, n(L)/13.5 at most for a uniform curvature, and each marker has an error
- * of its own. The force knows more: the natural tip offset is where the loading curve would carry
- * nothing but the weights, F_w = counterweight + 3/8 w L.
+ * The right side is small, at most n(L)/13.5 for a uniform curvature, and each marker has its own
+ * position error. The force determines the bow better: at the natural tip offset the loading curve
+ * would carry the weights alone, F_w = counterweight + 3/8 w L.
  *
- * A wire yields early, so it matters how it came to zero deflection. Bowed downwards it was lifted
- * by the rest from its natural shape: the loading curve goes on from there, and is extrapolated
- * back (second degree) to F_w. Bowed upwards it was pulled down onto the rest by the weights, and
+ * A wire yields early, so its path to zero deflection matters. If it is bowed downwards, the rest
+ * lifted it from its natural shape: the loading curve continues from there and is extrapolated back
+ * (second degree) to F_w. If it is bowed upwards, the weights pulled it down onto the rest, and
  * loading reverses that: by Masing's rule the reversed branch is the first one doubled, so the
- * natural place lies half-way between the rest, force F_r, and where the force is 2 F_w - F_r.
+ * natural offset lies half-way between the rest (force F_r) and the deflection at which the force
+ * is 2 F_w - F_r.
  *
- * Force and markers are joined by generalised least squares for
+ * Force and markers are combined by generalised least squares for
  *
- *     theta0(s) = sum_i b_i u^(i+1),  n(s) = L sum_i b_i u^(i+2)/(i+2)
+ *   theta0(s) = sum_i b_i u^(i+1),  n(s) = L sum_i b_i u^(i+2)/(i+2)
  */
 #include <math.h>
 #include <stdlib.h>
@@ -39,19 +40,20 @@
 
 #define WB_LOG_DOMAIN "align"
 
-/* Rows whose tip is this near to zero deflection count; slopes are small there. */
+/* Rows with the tip this near to zero deflection (m) are used; slopes are small there. */
 #define NEAR_ZERO (1.5 * WB_MM)
-/* Markers sit on the wire no better than this when the specimen file does not say. */
+/* Standard uncertainty of a marker's offset from the axis, m, where the specimen file gives
+ * none. */
 #define DEFAULT_OFFSET_ERROR (0.05 * WB_MM)
-/* The loading curve is extrapolated from so much of it, over the length. */
+/* Range of the loading curve used for the extrapolation, as part of the length. */
 #define EXTRAPOLATION_PART 0.06
-/* The bow from the force is uncertain by this part of what following the wire's yielding changed
- * against a straight line. */
+/* Uncertainty of the bow from the force, as part of the difference between the bow that accounts
+ * for yielding and that of a straight line. */
 #define PATH_ERROR 0.2
-/* An extrapolated bow is uncertain by this part of itself too: what yielded before the first row
- * was stiffer than all that is seen, and the parabola is too shallow there. */
+/* Further uncertainty of an extrapolated bow, as part of the bow: before the first row the wire was
+ * stiffer than in any row, so the parabola is too shallow there. */
 #define EXTRAPOLATION_ERROR 0.1
-/* A second term is kept when it is this number of times its uncertainty. */
+/* A second term is kept if it exceeds its uncertainty by this factor. */
 #define SIGNIFICANT 3.0
 #define MAX_TERMS 2
 #define MAX_OBSERVATIONS (WB_SPECIMEN_MAX_MARKERS + 1)
@@ -74,8 +76,8 @@ static double term_shape(int term, double u)
     return (pow(u, power) - tip_shape(u)) / power;
 }
 
-/* Observations, their errors as combinations of independent ones: each marker's own (the clamp's
- * and the tip's go into all), and the force's. */
+/* Observations, with their errors as combinations of independent ones: one of each marker (those of
+ * clamp and tip enter all observations) and one of the force. */
 struct observations {
     int n, n_errors;
     double value[MAX_OBSERVATIONS];                        /* m */
@@ -101,7 +103,7 @@ static int mean_deviation(const struct wb_align *align, int marker, double u, do
     return n;
 }
 
-/* Of a marker's place on the wire. */
+/* Standard uncertainty of a marker's place, m. */
 static double own_error(const struct wb_specimen *specimen)
 {
     return specimen->marker_offset_uncertainty > 0.0 ? specimen->marker_offset_uncertainty
@@ -164,7 +166,8 @@ static bool fit_parabola(const struct loading *loading, double highest, double *
            coefficients[1] > 0.0;
 }
 
-/* The root of c0 + c1 y + c2 y^2 next to zero on the rising branch; its top when there is none. */
+/* The root of c0 + c1 y + c2 y^2 next to zero on the rising branch; the parabola's top if it has no
+ * root. */
 static double root_near_zero(const double *c)
 {
     const double discriminant = c[1] * c[1] - 4.0 * c[0] * c[2];
@@ -173,8 +176,9 @@ static double root_near_zero(const double *c)
     return -2.0 * c[0] / (c[1] + sqrt(discriminant));
 }
 
-/* Deflection at which the loading curve passes a force: the first mean of ten rows beyond it, then
- * a straight line through a millimetre on both sides. NaN when it does not get there. */
+/* Deflection at which the loading curve crosses a force: the first mean of ten rows above it,
+ * refined by a straight line over a millimetre on either side. NaN if the curve does not reach
+ * it. */
 static double crossing(const struct loading *loading, double force)
 {
     enum {
@@ -202,7 +206,7 @@ static double crossing(const struct loading *loading, double force)
     return (force - line.value) / line.slope;
 }
 
-/* The natural tip offset, and in `path` how uncertain it is for the way the wire yielded. */
+/* The natural tip offset; `path` receives the uncertainty from the wire's yielding. */
 static double bow_from_loading(const struct wb_align *align, const struct loading *loading,
                                double *path)
 {
@@ -222,8 +226,8 @@ static double bow_from_loading(const struct wb_align *align, const struct loadin
     return bow;
 }
 
-/* The level of zero deflection is the tip's marker over the clamp's, so both their errors are in
- * the bow as they are. */
+/* Zero deflection is where the tip's marker is level with the clamp's, so both their errors enter
+ * the bow in full. */
 static void observe_force(const struct wb_align *align, double bow, double path,
                           struct observations *obs, double *deviation)
 {
@@ -245,7 +249,7 @@ static void observe_force(const struct wb_align *align, double bow, double path,
     obs->n++;
 }
 
-/* --- joining --- */
+/* --- combination --- */
 
 struct estimate {
     int n_terms;
@@ -279,7 +283,7 @@ static bool estimate_terms(const struct observations *obs, int first, int n_term
     gsl_vector_view v = gsl_vector_view_array(value, rows);
     if (gsl_linalg_cholesky_decomp1(&c.matrix) != GSL_SUCCESS)
         return false;
-    /* Whitened by the covariance's Cholesky factor they are plain least squares. */
+    /* Whitening by the Cholesky factor of the covariance turns them into ordinary least squares. */
     gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1.0, &c.matrix, &w.matrix);
     gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &c.matrix, &v.vector);
     double normal[MAX_TERMS * MAX_TERMS], right[MAX_TERMS];
@@ -342,10 +346,9 @@ static void describe_natural(struct wb_align *align, const struct estimate *esti
         .uncertainty = estimate->bow_deviation,
     };
     wb_align_correct(align, &correction,
-                     "natural tip offset (bow), upwards positive; not subtracted from the data "
-                     "but given to the model as natural_shape_rad; from the force at zero "
-                     "deflection and the markers' places there; the counterweight's mass is taken "
-                     "as exact");
+                     "natural tip offset (bow), upwards positive; not subtracted from the data but "
+                     "passed to the model as natural_shape_rad; from the force at zero deflection "
+                     "and the markers' places there; the counterweight's mass is assumed exact");
     const double apart = fabs(from_markers->bow - from_force);
     if (isfinite(from_force) && isfinite(from_markers->bow) &&
         apart > 3.0 * hypot(from_markers->bow_deviation, from_force_deviation))
@@ -355,8 +358,8 @@ static void describe_natural(struct wb_align *align, const struct estimate *esti
                       from_markers->bow / WB_MM, from_force / WB_MM);
 }
 
-/* A rest below the tip: where the strand takes load while the tip does not move yet. Without one
- * the tension would begin at nothing. */
+/* Finds a rest below the tip: the strand takes load there before the tip moves. Without a rest the
+ * tension begins at zero. */
 static double find_rest(const struct wb_align *align)
 {
     double levels[256];
@@ -388,7 +391,7 @@ void wb_align_natural(struct wb_align *align)
     observe_markers(align, weight, align->stiffness, &obs);
     if (obs.n > 0 && !estimate_terms(&obs, 0, 1, length, &from_markers))
         from_markers.bow = from_markers.bow_deviation = (double)NAN;
-    /* The bow follows from the force only when the tare is known to be that of an unloaded cell. */
+    /* The force determines the bow only if the tare is certainly that of an unloaded cell. */
     if (align->slack_seen) {
         struct loading loading;
         double path;
@@ -398,9 +401,8 @@ void wb_align_natural(struct wb_align *align)
         observe_force(align, from_force, path, &obs, &from_force_deviation);
     }
     if (obs.n == 0 || !estimate_shape(&obs, length, &estimate)) {
-        wb_align_warn(align,
-                      "the natural shape cannot be determined from this recording: the wire is "
-                      "taken as straight");
+        wb_align_warn(align, "the natural shape cannot be determined from this recording: the wire "
+                             "is assumed straight");
         return;
     }
     info->n_natural_shape = estimate.n_terms;

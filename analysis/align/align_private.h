@@ -1,12 +1,11 @@
-/* What the parts of the alignment share: one recording on its way to a dataset.
+/* State that the parts of the alignment share: one recording on its way to a dataset.
  *
- * The order: align_recording.c decodes the recording and puts everything on the bench's clock,
- * align_given.c tells how files that were given differ from what was recorded,
- * align_rows.c makes rows of it in the clamp's frame, compares the stage and cuts cycles,
- * align_holds.c tells which were made while the operator held the test,
- * align_force.c turns readings into tension and force, align_natural.c finds the natural shape, and
- * align.c, which calls them all, fills the dataset. align_report.c, which all call, writes what was
- * done into dataset.json.
+ * In order: align_recording.c decodes the recording and puts everything on the bench's clock,
+ * align_given.c reports how given files differ from the recorded ones, align_rows.c makes rows in
+ * the clamp's frame, compares the stage and cuts cycles, align_holds.c finds the times in which the
+ * operator held the test, align_force.c turns readings into tension and force, align_natural.c
+ * finds the natural shape, and align.c, which calls them all, fills the dataset. align_report.c,
+ * which all call, writes corrections and warnings into dataset.json.
  */
 #ifndef WB_ANALYSIS_ALIGN_ALIGN_PRIVATE_H
 #define WB_ANALYSIS_ALIGN_ALIGN_PRIVATE_H
@@ -38,14 +37,14 @@ struct wb_align_reading {
     double force; /* N, as read; NaN when not valid */
 };
 
-/* What the stage reported of itself. */
+/* One position report of the stage. */
 struct wb_align_report_point {
     int64_t t_ns;
     double t;      /* s, bench time of arrival */
     double travel; /* m, commanded, downwards from the first report */
 };
 
-/* A growing array; where one is declared stands what its items are. */
+/* A growing array; each declaration names the type of its items. */
 struct wb_align_list {
     void *items; /* owned */
     size_t n, capacity;
@@ -54,7 +53,7 @@ struct wb_align_list {
 /* Adds a copy of an item. */
 void wb_align_list_add(struct wb_align_list *list, const void *item, size_t size);
 
-/* One row of the dataset while it is made. */
+/* One row of the dataset under construction. */
 struct wb_align_row {
     double t;      /* s, bench time */
     double travel; /* m, measured at the clamp's marker, downwards from the start */
@@ -70,7 +69,7 @@ struct wb_align_row {
     enum wb_phase phase;
 };
 
-/* Where the load cell carried nothing. */
+/* Zero of the load cell over a stretch without load. */
 struct wb_align_zero {
     double t;                /* s, its middle */
     double value, deviation; /* N: mean reading less tare, standard error */
@@ -81,19 +80,19 @@ struct wb_align_zero {
 
 struct wb_align {
     struct wb_align_settings settings;
-    struct wb_reason *why;  /* receives why a step failed; NULL: that is logged */
-    struct wb_reason *lost; /* what the recording's reader tells; NULL: that is logged */
+    struct wb_reason *why;  /* receives why a step failed; NULL: it is logged */
+    struct wb_reason *lost; /* receives what the reader could not read; NULL: it is logged */
     struct wb_dataset *dataset;
     struct wb_json *corrections, *checks, *warnings; /* in the dataset's document */
     char name[128];                                  /* of the recording, without folder */
     char sha256[65];
 
-    /* What the recording says of the test. */
+    /* From the recording's meta data. */
     struct wb_rig rig;
     struct wb_specimen specimen;
     struct wb_wire wire;
-    double gravity;      /* m/s2 */
-    double checked_gain; /* standard uncertainty of the cell's gain by its last check; 0: unknown */
+    double gravity; /* m/s2 */
+    double checked_gain; /* standard uncertainty of the gain by its last check; 0: unknown */
     bool is_virtual;
 
     /* Decoded. */
@@ -102,8 +101,8 @@ struct wb_align {
     struct wb_align_list probes;   /* struct wb_clock_probe */
     struct wb_point_cloud cloud;
     struct wb_replay_counts counts;
-    uint64_t n_invalid;      /* readings that were no numbers */
-    bool is_losing_readings; /* of the load cell: lines that never came, more than chance */
+    uint64_t n_invalid;      /* readings that were not numbers */
+    bool is_losing_readings; /* the load cell lost more lines than occasional ones */
 
     /* Events. */
     bool has_tare, has_start;
@@ -111,7 +110,7 @@ struct wb_align {
     long tare_samples;
     int64_t tare_ns, start_ns;
     int n_cycle_starts;
-    bool is_cut_short;     /* not done to its end, or parts are damaged */
+    bool is_cut_short;     /* aborted, or parts are damaged */
     char stop_reason[384]; /* text of the event `stop` */
     unsigned n_lost, n_drops;
     int n_holds; /* by the operator */
@@ -123,10 +122,9 @@ struct wb_align {
     const char *method;                            /* of the camera's clock */
     double camera_uncertainty;                     /* s, bench time; NaN unknown */
     double filter_delay, filter_delay_uncertainty; /* s, bench time */
-    bool camera_times_given, load_times_given;     /* by files: no line is drawn through them */
-    double
-        import_uncertainty; /* s, of the lag between two files; NaN: not imported, or not known */
-    double load_scatter;    /* s, bench time: lateness of arrivals that was removed */
+    bool camera_times_given, load_times_given; /* by files: used as given, without a fitted line */
+    double import_uncertainty; /* s, of the lag between two files; NaN: not imported, or unknown */
+    double load_scatter;       /* s, bench time: lateness of arrivals that was removed */
 
     struct wb_marker_tracks tracks;
     struct wb_bench_frame frame;
@@ -143,9 +141,9 @@ struct wb_align {
     double taut_level;    /* m: tip_y - lean - travel while the strand is taut; NaN unknown */
     size_t n_zeros;
     struct wb_align_zero zeros[WB_ALIGN_MAX_ZEROS];
-    bool slack_seen;  /* some zero-load stretch was seen, so that the tare is a true zero */
+    bool slack_seen;  /* a zero-load stretch was seen after the tare, so the tare is a true zero */
     double taut_t;    /* s: where the first loading became taut */
-    double settled_t; /* s: from where on the filter no longer remembers that */
+    double settled_t; /* s: from here on the filter has settled */
     double carried;   /* N: weights that the strand carries at zero deflection */
     double zero_force, zero_force_deviation; /* N: vertical force at zero deflection */
     double stiffness, stiffness_deviation;   /* N/m: initial slope of the loading curve */
@@ -156,8 +154,7 @@ struct wb_align {
 struct wb_align_reading *wb_align_readings(const struct wb_align *align);
 struct wb_align_report_point *wb_align_reports(const struct wb_align *align);
 
-/* The steps of the alignment, in the order in which they are made. Each tells align->why of its
- * failure. */
+/* The steps of the alignment, in their order. Each puts its failure into align->why. */
 WB_MUST_CHECK enum wb_status wb_align_load(struct wb_align *align, const char *path);
 WB_MUST_CHECK enum wb_status wb_align_times(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_markers(struct wb_align *align);
@@ -167,8 +164,8 @@ void wb_align_stage(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_force(struct wb_align *align);
 void wb_align_natural(struct wb_align *align);
 
-/* wb_align_run() from another source: `load` does what wb_align_load() does. Tests make specimens
- * by it without a recording. */
+/* wb_align_run() from another source: `load` replaces wb_align_load(). Tests make specimens with it
+ * without a recording. */
 WB_MUST_CHECK enum wb_status
 wb_align_run_from(struct wb_dataset *dataset, const struct wb_align_settings *settings,
                   enum wb_status (*load)(struct wb_align *align, const void *context),
@@ -177,14 +174,14 @@ wb_align_run_from(struct wb_dataset *dataset, const struct wb_align_settings *se
 /* Bench time of a host time, s. */
 double wb_align_bench_time(const struct wb_align *align, int64_t host_ns);
 
-/* Whether the operator held the test at some time between two bench times. */
+/* Whether the operator held the test at any time between two bench times. */
 bool wb_align_is_held(const struct wb_align *align, double from, double to);
 
-/* Writes the holds into the checks, and warns of those of a bent wire. */
+/* Writes the holds into the checks, and warns of holds with a bent wire. */
 void wb_align_describe_holds(struct wb_align *align);
 
-/* How well zero deflection is known, m: the offsets of the clamp's and the tip's marker, and the
- * vertical over the wire's length. */
+/* Uncertainty of zero deflection, m: from the offsets of the clamp's and the tip's marker, and from
+ * the vertical over the wire's length. */
 double wb_align_level_uncertainty(const struct wb_align *align);
 
 /* --- the document --- */
@@ -193,8 +190,8 @@ double wb_align_level_uncertainty(const struct wb_align *align);
 void wb_align_warn(struct wb_align *align, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Adds one correction: "value_UNIT" and "uncertainty_UNIT" in that unit (factor to SI), NaN is
- * null. */
+/* Adds one correction as "value_UNIT" and "uncertainty_UNIT"; NaN is written as null. `factor`
+ * converts that unit to SI. */
 struct wb_align_correction {
     const char *name, *unit;
     double factor, value, uncertainty; /* SI */
@@ -202,24 +199,24 @@ struct wb_align_correction {
 void wb_align_correct(struct wb_align *align, const struct wb_align_correction *correction,
                       const char *note, ...) __attribute__((format(printf, 3, 4)));
 
-/* Sets a number rounded to six digits: what stands in a document is for reading. */
+/* Sets a number rounded to six digits, for readability. */
 void wb_align_set(struct wb_json *object, const char *key, double value);
 
-/* The text of the recording's meta `key` ("rig", "specimen"), or of the file `given` where that is
- * not NULL, into an allocated string; `origin` names where it is from in messages. */
+/* Reads the recording's meta `key` ("rig", "specimen"), or the file `given` if not NULL, into an
+ * allocated string; `origin` names the source in messages. */
 WB_MUST_CHECK enum wb_status wb_align_given_text(const struct wb_align *align,
                                                  struct wb_recording *recording, const char *key,
                                                  const char *given, char **text,
                                                  char origin[WB_PATH]);
 
-/* Writes which keys of the files that were given differ from the recording's own into the
- * recording's entry of dataset.json, and warns of each. */
+/* Writes the keys in which the given files differ from the recording's own into the recording's
+ * entry of dataset.json, and warns of each. */
 WB_MUST_CHECK enum wb_status wb_align_given_describe(struct wb_align *align,
                                                      struct wb_recording *recording,
                                                      struct wb_json *entry);
 
-/* The tare once more, from the readings that it was made of: the recorded number was read with the
- * unit and scale of the recorded rig. */
+/* Computes the tare again from its readings: the recorded value was read with the unit and scale of
+ * the recorded rig. */
 WB_MUST_CHECK enum wb_status wb_align_given_tare(struct wb_align *align);
 
 /* Provenance: recording, settings, specimen, rig. */

@@ -1,5 +1,5 @@
-/* A recording's bytes, decoded, what its meta and events say, and everything of it on the bench's
- * clock: seconds since the first cycle began, host time times the rig's time scale. */
+/* Decodes a recording's bytes, meta data and events, and puts them on the bench's clock: seconds
+ * since the start of the first cycle, host time times the rig's time scale. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@
 
 /* A device clock that jumps by more than this, s of host time, was restarted. */
 #define JUMP 0.5
-/* Stamps over less than this, s of device time, are too short to find a skew from. */
+/* Stamps over a shorter span, s of device time, do not determine the clock's skew. */
 #define LEAST_SPAN 5.0
 
 void wb_align_list_add(struct wb_align_list *list, const void *item, size_t size)
@@ -87,20 +87,20 @@ static enum wb_status decode(struct wb_align *align, struct wb_recording *record
         .probe = take_probe,
     };
     const enum wb_status status = wb_replay_run(recording, &align->rig, &sink, 0.0, &align->counts);
-    /* What was read before the database broke off can still serve. */
+    /* What was read before the damaged place can still be used. */
     if (status == WB_ERR_DATA) {
         if (wb_recording_is_complete(recording))
-            wb_align_warn(align, "the recording breaks off; what is readable is used");
+            wb_align_warn(align, "the recording breaks off; its readable part is used");
         align->is_cut_short = true;
     } else if (status != WB_OK) {
         return status;
     }
     if (align->readings.n == 0)
-        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no reading of a load cell in it",
-                          align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: the recording has no reading of a load cell", align->name);
     if (align->cloud.n_frames == 0)
-        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no frame of motion capture in it",
-                          align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: the recording has no frame of motion capture", align->name);
     if (align->counts.damaged_chunks > 0) {
         align->is_cut_short = true;
         wb_align_warn(align, "%llu of %llu chunks %s damaged and left out",
@@ -111,7 +111,7 @@ static enum wb_status decode(struct wb_align *align, struct wb_recording *record
     return WB_OK;
 }
 
-/* --- what never came --- */
+/* --- losses --- */
 
 static void note_loss(struct wb_align *align, struct wb_json *losses, const char *what,
                       const struct wb_loss *loss)
@@ -126,12 +126,12 @@ static void note_loss(struct wb_align *align, struct wb_json *losses, const char
     wb_align_set(object, "longest_gap_s", counts.longest_gap);
     if (wb_loss_is_told(loss))
         wb_align_warn(
-            align, "%.2g %% of the %s never came: %llu in %llu place%s, the longest of %.3g s",
+            align, "%.2g %% of the %s were lost: %llu in %llu gap%s, the longest of %.3g s",
             wb_loss_share(&counts) / WB_PERCENT, what, (unsigned long long)counts.missing,
             (unsigned long long)counts.gaps, counts.gaps == 1 ? "" : "s", counts.longest_gap);
 }
 
-/* Before frames are put in order and readings on a line. */
+/* Called before frames are sorted and readings are mapped to a line. */
 static void note_losses(struct wb_align *align)
 {
     struct wb_loss frames, readings;
@@ -147,7 +147,7 @@ static void note_losses(struct wb_align *align)
     align->is_losing_readings = wb_loss_is_told(&readings);
 }
 
-/* Imported recordings may have their probes in the table only. */
+/* The probes of imported recordings may be in the clock table only. */
 static enum wb_status take_clock_row(void *context, const struct wb_clock_row *row)
 {
     struct wb_align *const align = context;
@@ -184,24 +184,24 @@ static enum wb_status take_tare(struct wb_align *align, const struct wb_event *e
 static void take_hold(struct wb_align *align, const struct wb_event *event)
 {
     const bool begins = strcmp(event->kind, WB_BEND_HOLD_START) == 0;
-    struct wb_bend_hold_told told;
+    struct wb_bend_hold_told hold;
     if (begins && align->n_holds == WB_ALIGN_MAX_HOLDS) {
-        wb_align_warn(align,
-                      "the test was held more than %d times: the rows of the later holds are "
-                      "taken for motion",
-                      WB_ALIGN_MAX_HOLDS);
+        wb_align_warn(
+            align,
+            "the test was held more than %d times: the rows of later holds are treated as motion",
+            WB_ALIGN_MAX_HOLDS);
         return;
     }
     if (!begins && align->n_holds == 0)
         return;
     if (!begins)
-        told = align->holds[align->n_holds - 1];
-    if (wb_bend_hold_read(event, &told) != WB_OK) {
-        wb_align_warn(align, "an event %s is not understood: '%.100s'", event->kind, event->text);
+        hold = align->holds[align->n_holds - 1];
+    if (wb_bend_hold_read(event, &hold) != WB_OK) {
+        wb_align_warn(align, "invalid event %s: '%.100s'", event->kind, event->text);
         return;
     }
     align->n_holds += begins;
-    align->holds[align->n_holds - 1] = told;
+    align->holds[align->n_holds - 1] = hold;
 }
 
 static enum wb_status take_event(void *context, const struct wb_event *event)
@@ -240,9 +240,9 @@ static enum wb_status load_events(struct wb_align *align, struct wb_recording *r
         WB_TRY(status);
     if (!align->has_tare)
         return wb_fail_to(align->why, WB_ERR_DATA,
-                          "%s: no tare: the load cell's zero is not known, so there is no force",
+                          "%s: no event 'tare': without the load cell's zero there is no force",
                           align->name);
-    /* From here on the reading of the unloaded cell. */
+    /* From here on `tare` is the reading of the unloaded cell. */
     align->tare -= wb_rig_tare_load(&align->rig);
     if (align->is_cut_short)
         wb_align_warn(align, "the test was cut short%s%s", align->stop_reason[0] ? ": " : "",
@@ -271,8 +271,8 @@ static enum wb_status load_rig_and_specimen(struct wb_align *align, struct wb_re
     return status;
 }
 
-/* True when the specimen is of the wire that was recorded: its name is, where a specimen file was
- * given. */
+/* Whether the specimen is of the recorded wire; where a specimen file was given, by the wire's
+ * name. */
 static enum wb_status is_recorded_wire(const struct wb_align *align, struct wb_recording *recording,
                                        bool *is_it)
 {
@@ -288,7 +288,7 @@ static enum wb_status is_recorded_wire(const struct wb_align *align, struct wb_r
     return status;
 }
 
-/* The wire as it was when the test was recorded; for recordings without it, the file of that
+/* The wire's file as recorded with the test; for recordings without it, the current file of that
  * name. */
 static enum wb_status load_wire(struct wb_align *align, struct wb_recording *recording)
 {
@@ -335,13 +335,13 @@ static void load_gravity(struct wb_align *align, struct wb_recording *recording)
         return;
     if (wb_recording_meta(recording, "g", &text) == WB_OK) {
         if (!wb_number_parse(text, &align->gravity))
-            wb_align_warn(align, "meta 'g' is no number; gravity is taken from the rig file");
+            wb_align_warn(align, "meta 'g' is not a number; gravity is taken from the rig file");
         free(text);
     }
 }
 
-/* A cell that passed its check may be off by the tolerance either way, and by anything between
- * alike (JCGM 100:2008, 4.3.7). */
+/* The error of a cell that passed its check is uniformly distributed within the tolerance (JCGM
+ * 100:2008, 4.3.7). */
 static void load_check(struct wb_align *align, struct wb_recording *recording)
 {
     struct wb_check_log_entry check;
@@ -364,7 +364,7 @@ static bool says_virtual(struct wb_recording *recording)
     return is_virtual;
 }
 
-/* Streams that hold a file of another program: their samples carry the file's own times. */
+/* Finds the streams made from another program's file: their samples carry the file's own times. */
 static enum wb_status look_at_files(struct wb_align *align, struct wb_recording *recording)
 {
     align->import_uncertainty = (double)NAN;
@@ -382,7 +382,7 @@ static enum wb_status look_at_files(struct wb_align *align, struct wb_recording 
     return WB_OK;
 }
 
-/* What the import found, into the dataset. */
+/* Copies the results of the import into the dataset. */
 static void copy_import(struct wb_align *align, struct wb_recording *recording)
 {
     struct wb_json *json;
@@ -397,7 +397,7 @@ static void copy_import(struct wb_align *align, struct wb_recording *recording)
     free(text);
 }
 
-/* What `wirebench recover` could not bring back. */
+/* Warns of what `wirebench recover` could not restore. */
 static void note_recovery(struct wb_align *align, struct wb_recording *recording)
 {
     char *missing;
@@ -411,7 +411,7 @@ static void note_recovery(struct wb_align *align, struct wb_recording *recording
     free(missing);
 }
 
-/* What was decided of the test after it was recorded stands in the index beside it. */
+/* The index beside the recording says whether the test was excluded later. */
 static void note_exclusion(struct wb_align *align, const char *path, struct wb_json *recording)
 {
     struct wb_index_entry entry;
@@ -419,7 +419,7 @@ static void note_exclusion(struct wb_align *align, const char *path, struct wb_j
     char text[WB_INDEX_EXCLUSION_TEXT];
     const bool is_listed = wb_index_look_up(&entry, path, align->sha256, &why);
     if (why.text[0])
-        wb_align_warn(align, "whether the test was excluded is not known: %s", why.text);
+        wb_align_warn(align, "cannot read whether the test was excluded: %s", why.text);
     if (!is_listed || !entry.excluded.is_excluded)
         return;
     wb_index_exclusion_set_json(&entry.excluded, recording);
@@ -495,7 +495,7 @@ struct stamps {
     bool on_probe_clock;
 };
 
-/* Which of a frame's stamps serves: that on the probes' clock if there are probes, else the
+/* The stamp of a frame that is used: the one on the probes' clock if there are probes, else the
  * capture stamp. */
 static double stamp_of(const struct wb_point_frame *frame, bool on_probe_clock)
 {
@@ -513,8 +513,8 @@ static bool choose_stamp(const struct wb_align *align, bool *on_probe_clock)
     return *on_probe_clock || 2 * n_device > align->cloud.n_frames;
 }
 
-/* Puts frames of datagrams that were overtaken in their place, and drops those without a stamp and
- * repeated ones. A jump back by more than JUMP is a restart: what follows it stays behind it. */
+/* Sorts overtaken frames, and drops repeated ones and those without a stamp. A jump back by more
+ * than JUMP is a restart: frames after it keep their place. */
 static size_t order_frames(struct wb_align *align, bool on_probe_clock)
 {
     struct wb_point_frame *const frames = align->cloud.frames;
@@ -554,15 +554,16 @@ static void use_arrivals(struct wb_align *align)
                          "the network's jitter");
 }
 
-/* Line for the frames first..last-1: through the probes of that time where there are some. Fails
- * silently. */
+/* Fits a line to the frames first..last-1, through the probes of that time if there are any. No
+ * message on failure. */
 static enum wb_status fit_segment(struct wb_align *align, const struct stamps *stamps, size_t first,
                                   size_t last, struct wb_clock_line *line)
 {
     const double nominal = 1.0 / align->rig.time_scale;
     enum wb_status status = WB_ERR_DATA;
     if (stamps->on_probe_clock) {
-        /* Probes answered by the same run of the server: between these stamps, with a margin. */
+        /* Probes answered by the same run of the server: those between these stamps, with a
+         * margin. */
         const struct wb_clock_probe *const all = align->probes.items;
         struct wb_clock_probe *const used = wb_memory_new(align->probes.n, sizeof *used);
         size_t n = 0;
@@ -581,7 +582,7 @@ static enum wb_status fit_segment(struct wb_align *align, const struct stamps *s
                                  last - first, nominal, LEAST_SPAN);
 }
 
-/* A segment of so many frames, `span` seconds of the server's clock. */
+/* Describes a segment of n_frames frames and `span` seconds of the server's clock. */
 static void describe_segment(struct wb_align *align, struct wb_json *list, size_t n_frames,
                              double span, const struct wb_clock_line *line)
 {
@@ -602,7 +603,7 @@ static void describe_segment(struct wb_align *align, struct wb_json *list, size_
     wb_align_set(entry, "uncertainty_ms", line->uncertainty * 1e3);
     if (!probed)
         wb_json_set_text(entry, "note",
-                         "the shortest latency of the network is an unknown constant in it");
+                         "includes the shortest network latency, an unknown constant");
 }
 
 static enum wb_status map_segments(struct wb_align *align, const struct stamps *stamps)
@@ -634,12 +635,12 @@ static enum wb_status map_segments(struct wb_align *align, const struct stamps *
     if (n_segments > 1)
         wb_align_warn(align,
                       "the motion-capture server's clock broke %zu time%s (set or restarted): each "
-                      "stretch was mapped by itself",
+                      "stretch was mapped separately",
                       n_segments - 1, n_segments == 2 ? "" : "s");
     return WB_OK;
 }
 
-/* Times must ascend over all segments. */
+/* Drops frames whose time does not ascend across segments. */
 static void drop_backward(struct wb_align *align)
 {
     struct wb_point_frame *const frames = align->cloud.frames;
@@ -699,9 +700,9 @@ static enum wb_status map_cameras(struct wb_align *align)
 
 /* --- the load cell --- */
 
-/* Readings that were asked for one by one keep their arrival, and so do those of a stream that lost
- * many, whose number no longer tells their time. The arrivals of any other stream are put on a line
- * over the readings' number, which takes out the host's jitter. */
+/* Puts the readings of a stream on a line over their number, which removes the host's jitter.
+ * Readings that were requested one by one keep their arrival times, and so do those of a stream
+ * with many losses, where the number does not determine the time. */
 static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, double *number,
                                  size_t *n_used)
 {
@@ -765,8 +766,8 @@ static enum wb_status map_load(struct wb_align *align)
 {
     struct wb_align_reading *const readings = wb_align_readings(align);
     const size_t n = align->readings.n;
-    /* Times of a file, and of readings that were asked for one by one or of which many are lost,
-     * are taken as they are. */
+    /* Times from a file, and arrivals of readings that were requested one by one or of which many
+     * were lost, are used as they are. */
     const bool by_arrival = align->load_times_given ||
                             align->rig.load_cell.poll_command[0] != '\0' ||
                             align->is_losing_readings;
@@ -782,23 +783,24 @@ static enum wb_status map_load(struct wb_align *align)
         free(number);
         if (status != WB_OK)
             return wb_fail_to(align->why, status,
-                              "%s: the load cell's readings cannot be put on a clock", align->name);
+                              "%s: the load cell's readings cannot be mapped to the host's clock",
+                              align->name);
     }
     describe_load(align, by_arrival, n_segments);
     align->filter_delay = align->rig.load_cell.filter_delay;
-    /* A lag found by what both files show holds the filter's delay, whatever it is. */
+    /* A lag found from an event in both files includes the filter's delay, whatever it is. */
     align->filter_delay_uncertainty =
         isfinite(align->import_uncertainty) ? 0.0 : align->rig.load_cell.filter_delay_uncertainty;
     for (size_t i = 0; i < n; i++)
         readings[i].t -= align->filter_delay;
     drop_invalid_readings(align);
     if (align->readings.n == 0)
-        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no valid reading of the load cell in it",
-                          align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: the recording has no valid reading of the load cell", align->name);
     return WB_OK;
 }
 
-/* --- the stage, and all --- */
+/* --- the stage and the start of time --- */
 
 static void map_stage(struct wb_align *align)
 {
@@ -809,7 +811,7 @@ static void map_stage(struct wb_align *align)
 
 enum wb_status wb_align_times(struct wb_align *align)
 {
-    /* Without events the test starts where both streams are there. */
+    /* Without events the test starts where both streams have data. */
     const int64_t load_ns = wb_align_readings(align)[0].t_ns;
     const int64_t mocap_ns = align->cloud.frames[0].t_ns;
     align->zero_ns = load_ns > mocap_ns ? load_ns : mocap_ns;
@@ -821,7 +823,8 @@ enum wb_status wb_align_times(struct wb_align *align)
     WB_TRY(map_load(align));
     map_stage(align);
     if (align->cloud.n_frames == 0)
-        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no frame of motion capture with a time",
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: the recording has no frame of motion capture with a time",
                           align->name);
     const struct wb_align_correction correction = {
         .name = "filter delay",
@@ -831,7 +834,7 @@ enum wb_status wb_align_times(struct wb_align *align)
         .uncertainty = align->filter_delay_uncertainty,
     };
     wb_align_correct(align, &correction,
-                     "the load cell's stamps were moved back by its filter's delay, from the rig "
-                     "file; the time its line takes on the port is not known apart from it");
+                     "the load cell's stamps were moved back by its filter's delay from the rig "
+                     "file; the transmission time of a line cannot be separated from it");
     return WB_OK;
 }

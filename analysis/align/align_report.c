@@ -1,4 +1,4 @@
-/* What alignment writes about itself into dataset.json. */
+/* Writes corrections, checks, warnings and provenance into dataset.json. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -15,19 +15,19 @@
 
 #define WB_LOG_DOMAIN "align"
 
-/* The clamp's path is smoothed over this time before and after, s of bench time. */
+/* Half width of the window that smooths the clamp's path, s of bench time. */
 #define CLAMP_WINDOW 0.1
-/* A row whose markers miss the smooth axis by more is made without the worst of them. */
+/* Largest residual of a marker from the smooth axis; above it the worst marker is left out. */
 #define BAD_RESIDUAL (0.6 * WB_MM)
 #define GOOD_RESIDUAL (0.4 * WB_MM)
-/* A turning point is one when the clamp then goes back by this part of its whole range. */
+/* Return travel that makes an extremum a turning point, as part of the clamp's range. */
 #define TURN_PART 0.05
 #define LEAST_TURN (1.0 * WB_MM)
-/* The clamp's speed is taken over this time before and after, s of bench time. */
+/* Half width of the window for the clamp's speed, s of bench time. */
 #define SPEED_WINDOW 0.05
-/* Reports that the host read later than this, s of bench time, are left out. */
+/* Reports that the host read later than this (s of bench time) are not used. */
 #define MOST_LATENESS 0.1
-/* Reports at either end of the test from which the stage's place there is taken. */
+/* Number of reports at either end of the test that give the stage's position there. */
 #define STANDING 5
 
 /* --- markers --- */
@@ -81,15 +81,16 @@ enum wb_status wb_align_markers(struct wb_align *align)
         wb_markers_track(&align->tracks, &align->cloud, &align->specimen, &settings, align->why));
     if (wb_frame_is_reversed(&align->tracks, up)) {
         if (!align->tracks.symmetric)
-            wb_align_warn(align, "by their distances the markers are in the other order than by "
-                                 "their motion (the clamp moves, the tip does not): markers_mm of "
-                                 "the specimen may be the wrong way round");
+            wb_align_warn(align,
+                          "the markers' distances and their motion give opposite orders (the clamp "
+                          "moves, the tip does not): markers_mm of the specimen may be reversed");
         else
             wb_markers_reverse(&align->tracks);
     }
     WB_TRY(
         wb_frame_fit(&align->frame, &align->tracks, align->frame_t, CLAMP_WINDOW, up, align->why));
-    /* Across the axis it is anybody's guess which way is up, and the force's sign with it. */
+    /* At more than 45 degrees the direction of up, and with it the sign of the force, is a
+     * guess. */
     if (align->frame.tilt > 45.0 * WB_DEGREE)
         return wb_fail_to(align->why, WB_ERR_DATA,
                           "%s: the clamp's motion leans %.1f degrees from the server's %c axis: "
@@ -99,8 +100,8 @@ enum wb_status wb_align_markers(struct wb_align *align)
                           align->rig.mocap.up == 'z' ? 'y' : 'z');
     if (align->frame.tilt > 5.0 * WB_DEGREE)
         wb_align_warn(align,
-                      "the clamp's motion leans %.1f degrees from the server's %c axis: is "
-                      "the rig's mocap.up right?",
+                      "the clamp's motion leans %.1f degrees from the server's %c axis: check "
+                      "mocap.up of the rig file",
                       align->frame.tilt / WB_DEGREE, align->rig.mocap.up);
     describe_markers(align);
     return WB_OK;
@@ -115,8 +116,8 @@ static size_t first_reading_at(const struct wb_align *align, double t)
     return wb_fit_first_at(&readings->t, sizeof *readings, align->readings.n, t);
 }
 
-/* Reading less tare at bench time t: a local straight line over +-half seconds, or between the two
- * neighbours. False when a neighbour is farther than the longest gap. */
+/* Reading less tare at bench time t: from a local straight line over +-half seconds, or linear
+ * between the two neighbours. False if a neighbour is farther away than the longest gap. */
 static bool reading_at(const struct wb_align *align, double t, double half, double *reading)
 {
     const struct wb_align_reading *const r = wb_align_readings(align);
@@ -190,7 +191,7 @@ static void average_frames(const struct wb_align *align, size_t first, size_t la
     }
 }
 
-/* Fits the axis to the markers of a row but the one `left_out` (-1: none). */
+/* Fits the axis to the markers of a row except `left_out` (-1: all). */
 static bool fit_axis(const struct wb_align *align, const struct means *means, int left_out,
                      struct wb_axis_fit *fit)
 {
@@ -208,7 +209,8 @@ static bool fit_axis(const struct wb_align *align, const struct means *means, in
     return wb_axis_fit(fit, align->specimen.length, &markers) == WB_OK;
 }
 
-/* The axis of a row. A marker that alone spoils the fit is dropped; a bad tip drops the row. */
+/* Finds the axis of a row. A marker that spoils the fit is dropped; if that is the tip's, the row
+ * is. */
 static bool find_axis(const struct wb_align *align, struct means *means, struct wb_axis_fit *fit)
 {
     const int tip = align->specimen.n_markers - 1;
@@ -233,7 +235,7 @@ static bool find_axis(const struct wb_align *align, struct means *means, struct 
     return true;
 }
 
-/* One row from frames first..last-1; false when they cannot make one. */
+/* Makes one row from frames first..last-1; false if they do not suffice. */
 static bool make_row(const struct wb_align *align, size_t first, size_t last, double half,
                      struct wb_align_row *row)
 {
@@ -243,7 +245,8 @@ static bool make_row(const struct wb_align *align, size_t first, size_t last, do
     struct wb_axis_fit fit;
     average_frames(align, first, last, &means);
     memset(row, 0, sizeof *row);
-    /* Beside a loss of tip or clamp a mean of the few frames left would stand at the bin's edge. */
+    /* Next to a loss of tip or clamp the mean of the few remaining frames would lie at the bin's
+     * edge. */
     if (2 * (size_t)means.n_tip < last - first ||
         !reading_at(align, means.t, half, &row->reading) || !find_axis(align, &means, &fit))
         return false;
@@ -260,14 +263,14 @@ static bool make_row(const struct wb_align *align, size_t first, size_t last, do
     row->tip_y = row->y[tip];
     row->tip_angle = wb_axis_fit_angle(&fit, specimen->length);
     row->commanded = (double)NAN;
-    /* Direction of the strand: its upper end is straight above the straight wire's tip. */
+    /* Direction of the strand, whose upper end is vertically above the straight wire's tip. */
     const double strand = align->rig.strand.length;
     const double lean = strand > 0.0 ? (specimen->length - row->tip_x) / strand : 0.0;
     row->lean_cosine = fabs(lean) < 1.0 ? sqrt(1.0 - lean * lean) : 0.0;
     return true;
 }
 
-/* Travel counts from where the clamp stood when the first cycle began. */
+/* Sets travel to zero where the first cycle began. */
 static void zero_travel(struct wb_align *align)
 {
     double heights[10];
@@ -299,7 +302,7 @@ enum wb_status wb_align_rows(struct wb_align *align)
             if (floor(align->frame_t[last] * rate) > bin)
                 break;
         }
-        /* The wire relaxes while it is held: that is no motion, and not the curve's. */
+        /* While the test is held the wire relaxes, which is not part of the curve. */
         if (wb_align_is_held(align, align->frame_t[first], align->frame_t[last - 1]))
             align->n_held_rows++;
         else if (make_row(align, first, last, half, &align->rows[align->n_rows]))
@@ -321,8 +324,8 @@ enum wb_status wb_align_rows(struct wb_align *align)
         .uncertainty = align->specimen.marker_offset_uncertainty,
     };
     wb_align_correct(align, &correction,
-                     "taken off along the local normal of the axis fitted to all markers; the "
-                     "uncertainty is a marker's own and goes into the deflection as it is");
+                     "removed along the local normal of the axis fitted to all markers; the "
+                     "uncertainty is that of one marker and enters the deflection in full");
     return WB_OK;
 }
 
@@ -348,7 +351,7 @@ static void mark(struct wb_align *align, size_t first, size_t last, int cycle, e
 }
 
 /* Follows the travel up and down: `extreme` is the farthest row since the last turning point, and
- * becomes one once the travel has come back by `threshold`. */
+ * becomes a turning point once the travel has come back by `threshold`. */
 static void cut_cycles(struct wb_align *align, double threshold)
 {
     const struct wb_align_row *const rows = align->rows;
@@ -372,7 +375,7 @@ static void cut_cycles(struct wb_align *align, double threshold)
     align->n_cycles = cycle;
 }
 
-/* Typical speed of the clamp on the way down: the median over the rows that move. */
+/* Typical speed of the clamp on the way down: the median over the moving rows. */
 static void measure_speed(struct wb_align *align)
 {
     double *const speeds = wb_memory_new(align->n_rows, sizeof *speeds);
@@ -393,12 +396,13 @@ enum wb_status wb_align_cycles(struct wb_align *align)
     find_range(align, &low, &high);
     if (high - low < LEAST_TURN)
         return wb_fail_to(align->why, WB_ERR_DATA,
-                          "%s: the clamp moved by %.2f mm only along the server's %c axis: this is "
-                          "no bending test, or the rig's mocap.up is wrong",
+                          "%s: the clamp moved by only %.2f mm along the server's %c axis: not a "
+                          "bending test, or the rig's mocap.up is wrong",
                           align->name, (high - low) / WB_MM, align->rig.mocap.up);
     cut_cycles(align, fmax(TURN_PART * (high - low), LEAST_TURN));
     if (align->n_cycle_starts > 0 && align->n_cycle_starts != align->n_cycles)
-        wb_align_warn(align, "the recording tells %d cycles, the clamp's path has %d",
+        wb_align_warn(align,
+                      "the recording has %d cycle starts, but the clamp's path has %d cycles",
                       align->n_cycle_starts, align->n_cycles);
     measure_speed(align);
     return WB_OK;
@@ -423,9 +427,9 @@ static bool clamp_at(const struct wb_align *align, double t, double *height)
     return isfinite(*height);
 }
 
-/* How late the host was when it read what arrived at t_ns: lateness of the camera frames around, s
- * of bench time. A host that was busy stamps all streams late, and a stage that moves then seems to
- * be elsewhere. */
+/* How late the host read what arrived at t_ns, s of bench time, from the lateness of the camera
+ * frames around it. A busy host stamps all streams late, and a moving stage then seems to be
+ * elsewhere. */
 static double host_lateness(const struct wb_align *align, int64_t t_ns)
 {
     const struct wb_point_frame *const frames = align->cloud.frames;
@@ -446,8 +450,8 @@ static double host_lateness(const struct wb_align *align, int64_t t_ns)
     return late;
 }
 
-/* Reports of the test with the clamp's measured height at the time they arrived. Travel downwards,
- * both from their first. */
+/* Pairs of the stage's reports and the clamp's measured height at their arrival. Both travels count
+ * downwards from their first value. */
 static size_t make_pairs(const struct wb_align *align, struct pair *pairs)
 {
     const struct wb_align_report_point *const reports = wb_align_reports(align);
@@ -479,11 +483,11 @@ struct stage_fit {
     double offset, slope, lag; /* m, 1, s: measured = offset + slope (commanded + lag speed) */
     double slope_deviation;
     double rms, largest; /* m: residuals; the largest of medians of three */
-    double returned;     /* m: measured less commanded at the end, less that at the start */
+    double returned;     /* m: measured less commanded travel at the end, less that at the start */
     double lost_at;      /* m, commanded: where the difference passed half of `returned` */
 };
 
-/* Whether the stage went both ways, so that a lag differs from an offset. */
+/* Whether the stage moved both ways; otherwise a lag cannot be separated from an offset. */
 static bool goes_both_ways(const struct pair *pairs, size_t n)
 {
     double slowest = 0.0, fastest = 0.0;
@@ -494,7 +498,7 @@ static bool goes_both_ways(const struct pair *pairs, size_t n)
     return slowest < -0.2 * fastest && fastest > 0.0;
 }
 
-/* Robust least squares (Tukey's bisquare): steps that were lost must not bend the line. */
+/* Robust least squares (Tukey's bisquare), so that lost steps do not bend the line. */
 static bool fit_pairs(const struct pair *pairs, size_t n, bool with_lag, struct stage_fit *fit)
 {
     const size_t p = with_lag && goes_both_ways(pairs, n) ? 3 : 2;
@@ -570,7 +574,8 @@ static bool lost_steps(const struct wb_align *align, const struct stage_fit *fit
     return fit->largest > limit || fabs(fit->returned) > limit;
 }
 
-/* Lost steps look like a lag on the way down or up: then none is sought. */
+/* Fits lag and line. Lost steps look like a lag on the way down or up, so with lost steps no lag is
+ * fitted. */
 static bool fit_stage(const struct wb_align *align, const struct pair *pairs, size_t n,
                       struct stage_fit *fit)
 {
@@ -599,12 +604,12 @@ static void describe_stage(struct wb_align *align, const struct stage_fit *fit, 
     wb_align_set(object, "not_returned_mm", fit->returned / WB_MM);
     wb_json_set_boolean(object, "lost_steps", lost);
     if (lost)
-        wb_align_warn(align,
-                      "the stage seems to have lost steps near %.1f mm of travel: measured and "
-                      "commanded travel differ by up to %.2f mm from their line, and after the "
-                      "test the clamp stands %.2f mm off its start. The deflection is measured at "
-                      "the markers and not affected",
-                      fit->lost_at / WB_MM, fit->largest / WB_MM, fit->returned / WB_MM);
+        wb_align_warn(
+            align,
+            "the stage seems to have lost steps near %.1f mm of travel: measured and commanded "
+            "travel differ by up to %.2f mm from their line, and after the test the clamp is %.2f "
+            "mm from its start. The deflection is measured at the markers and is not affected",
+            fit->lost_at / WB_MM, fit->largest / WB_MM, fit->returned / WB_MM);
     else if (fabs(fit->slope - 1.0) > 0.01)
         wb_align_warn(align,
                       "the clamp moves %.4f mm for each millimetre commanded: check the stage's "
@@ -655,13 +660,13 @@ void wb_align_stage(struct wb_align *align)
         describe_stage(align, &fit, n);
     } else if (n >= 4 * STANDING) {
         wb_json_set_boolean(wb_json_set_object(align->checks, "stage"), "lost_steps", true);
-        wb_align_warn(align, "the clamp did not go with the stage, which went on counting: it "
-                             "jammed, or the motor lost its steps. The deflection is measured at "
-                             "the markers and not affected");
+        wb_align_warn(
+            align, "the clamp did not follow the stage's reported travel: it jammed, or the motor "
+                   "lost its steps. The deflection is measured at the markers and is not affected");
     } else {
         wb_align_warn(align,
-                      "too few reports of the stage (%zu) to compare its travel with the "
-                      "clamp's: lost steps would not be seen",
+                      "too few reports of the stage (%zu) to compare its travel with the clamp's: "
+                      "lost steps would not be detected",
                       n);
     }
     free(pairs);

@@ -26,7 +26,7 @@ void wb_axis_fit_move(const struct wb_axis_fit *fit, double offset, double s, do
     *y -= offset * cos(angle);
 }
 
-/* A marker's computed place and its derivatives over the terms. */
+/* A marker's computed place and its derivatives with respect to the terms. */
 struct place {
     double x, y;
     double dx[WB_AXIS_FIT_TERMS], dy[WB_AXIS_FIT_TERMS];
@@ -135,9 +135,11 @@ enum wb_status wb_axis_fit(struct wb_axis_fit *fit, double length,
     if (n < 1)
         return WB_ERR_DATA;
     struct wb_axis_fit current = {.length = length};
-    /* Both coordinates of a marker count, but x hardly depends on the shape of a straight wire. */
+    /* Both coordinates of a marker are used, but x hardly depends on the shape of a straight
+     * wire. */
     current.n_terms = n < WB_AXIS_FIT_TERMS ? n : WB_AXIS_FIT_TERMS;
-    /* Start from the chord to the last marker: the angle of a uniformly bent wire is twice its. */
+    /* Initial guess from the chord to the last marker: the end angle of a uniformly bent wire is
+     * twice that of its chord. */
     current.terms[0] = 2.0 * atan2(markers->y[n - 1] - markers->offset, markers->x[n - 1]) *
                        length / markers->s[n - 1];
     for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {

@@ -12,12 +12,13 @@
 
 #define WB_LOG_DOMAIN "frame"
 
-/* From a clamp that moved less than this no direction is taken. */
+/* A direction is found only from a clamp that moved at least this far, m. */
 #define LEAST_MOTION (5.0 * WB_MM)
-/* Markers that leave the vertical, or their own line, by less than this span no plane. */
+/* Markers span a plane only if they spread from the vertical, or from their own line, by at least
+ * this, m. */
 #define LEAST_SPREAD (5.0 * WB_MM)
-/* A position of the clamp's path is not taken when its variance is above this part of one frame's,
- * or, where there are too few frames for a line, when their mean lies so far away, s. */
+/* A position of the clamp's path is rejected if its variance exceeds this part of one frame's, or,
+ * with too few frames for a line, if their mean is this far away, s. */
 #define LARGEST_VARIANCE 0.5
 #define FARTHEST_MEAN 0.01
 
@@ -86,8 +87,8 @@ bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const double se
     return last > LEAST_MOTION && last > first;
 }
 
-/* The vertical from the clamp's path. Positions are taken relative to the first seen one, for the
- * sums of squares to keep their digits. */
+/* Fits the vertical to the clamp's path. Positions are relative to the first one seen, which keeps
+ * the digits of the sums of squares. */
 static enum wb_status fit_motion(struct wb_bench_frame *frame,
                                  const struct wb_marker_tracks *tracks, const double *server_up,
                                  struct wb_reason *why)
@@ -117,7 +118,7 @@ static enum wb_status fit_motion(struct wb_bench_frame *frame,
         for (int k = 0; k < 3; k++)
             frame->up[k] = sign * directions[0][k];
     }
-    /* Its cosine would leave nothing of a small one but round-off. */
+    /* From the cross product: the cosine of a small angle would lose it to round-off. */
     double cross[3];
     wb_vec3_cross(frame->up, server_up, cross);
     frame->tilt = atan2(sqrt(wb_vec3_dot(cross, cross)), fabs(wb_vec3_dot(frame->up, server_up)));
@@ -132,7 +133,8 @@ struct path {
     const double *times; /* s, of the frames */
 };
 
-/* Straight-line fit of the clamp marker's coordinates over frames first..last-1, at time t. */
+/* Straight line through the clamp marker's coordinates over frames first..last-1, evaluated at time
+ * t. */
 static bool local_line(const struct path *path, size_t first, size_t last, double t,
                        double *position)
 {
@@ -154,8 +156,8 @@ static bool local_line(const struct path *path, size_t first, size_t last, doubl
         return false;
     const double determinant = n * sum_tt - sum_t * sum_t;
     const bool is_line = n > 2.0 && determinant > 1e-12 * n * sum_tt;
-    /* Beside a loss the line would be extrapolated: its value at t has the variance of one position
-     * times sum_tt / determinant. A mean is taken right there only. */
+    /* Next to a loss the line would be extrapolated: its value at t has the variance of one
+     * position times sum_tt / determinant. A mean is valid only close to its own time. */
     if (is_line ? sum_tt > LARGEST_VARIANCE * determinant : fabs(sum_t) > FARTHEST_MEAN * n)
         return false;
     for (int k = 0; k < 3; k++)
@@ -190,7 +192,7 @@ static void relative_to_clamp(const struct wb_bench_frame *frame, size_t index, 
         relative[k] = p[k] - frame->clamp[index][k];
 }
 
-/* Where a marker is from the clamp, in frame `index`; false when one of them is not seen. */
+/* Position of a marker relative to the clamp in frame `index`; false if either is not seen. */
 static bool find_from_clamp(const struct wb_bench_frame *frame,
                             const struct wb_marker_tracks *tracks, size_t index, int marker,
                             double *relative)
@@ -221,9 +223,10 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
         }
     }
     if (flat.n < 3)
-        return wb_fail_to(why, WB_ERR_DATA, "too few markers are seen together with the clamp's");
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "too few frames show both the clamp's and another marker");
     double directions[3][3], spread[3];
-    /* With one marker beside the clamp's there is no spread: its mean gives the direction. */
+    /* A single marker besides the clamp's has no spread: its mean gives the direction. */
     if (tracks->n_markers > 2)
         principal(&flat, directions, spread);
     else
@@ -235,8 +238,8 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
     if (!(wb_vec3_normalise(frame->along) > 0.0) ||
         !(wb_vec3_dot(flat.sum, frame->along) / (double)flat.n > LEAST_SPREAD))
         return wb_fail_to(why, WB_ERR_DATA,
-                          "the markers lie one above the other along the clamp's motion: "
-                          "no bending plane (is the rig's mocap.up right?)");
+                          "the markers lie on one line along the clamp's motion, which gives no "
+                          "bending plane: check mocap.up of the rig file");
     wb_vec3_cross(frame->along, frame->up, frame->normal);
     principal(&full, directions, spread);
     frame->plane_tilt = 0.0;

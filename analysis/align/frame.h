@@ -1,8 +1,9 @@
-/* The clamp's frame: from the motion-capture server's coordinates to the bench's.
+/* The clamp's frame: conversion from the motion-capture server's coordinates to the bench's.
  *
- * The clamp moves straight down and up, and that motion is the vertical. The wire bends in a plane
- * that holds the vertical; its horizontal direction is x, along the straight wire. The origin is
- * the clamp point: it moves with the clamp's marker, which sits one marker offset above it.
+ * The clamp moves straight down and up, and its motion gives the vertical. The wire bends in a
+ * plane that contains the vertical; the plane's horizontal direction is x, along the straight wire.
+ * The origin is the clamp point: it moves with the clamp's marker, which is one marker offset above
+ * it.
  */
 #ifndef WB_ANALYSIS_ALIGN_FRAME_H
 #define WB_ANALYSIS_ALIGN_FRAME_H
@@ -29,14 +30,14 @@ struct wb_bench_frame {
     double (*clamp)[3];
 };
 
-/* True when the last marker moved along `server_up` (unit vector) more than the first: then the
- * order is the wrong way round, since the clamp moves and the tip hangs on the strand. False
- * also where neither moved 5 mm, and the order cannot be found. */
+/* True if the last marker moved along `server_up` (unit vector) more than the first: the order is
+ * then reversed, since the clamp moves and the tip is held by the strand. False also if neither
+ * moved 5 mm, which leaves the order undetermined. */
 bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const double server_up[3]);
 
-/* Fits the frame. `times` (s, ascending, one a frame) serve the smoothing of the clamp's path over
- * +-`window` seconds. WB_ERR_DATA when the markers and the vertical span no plane. `why` receives
- * why it failed. NULL: that is logged. */
+/* Fits the frame. `times` (s, ascending, one per frame) are used to smooth the clamp's path over
+ * +-`window` seconds. WB_ERR_DATA if the markers and the vertical span no plane. `why` receives the
+ * reason; with NULL it is logged. */
 WB_MUST_CHECK enum wb_status wb_frame_fit(struct wb_bench_frame *frame,
                                           const struct wb_marker_tracks *tracks,
                                           const double *times, double window,
@@ -44,7 +45,7 @@ WB_MUST_CHECK enum wb_status wb_frame_fit(struct wb_bench_frame *frame,
 void wb_frame_release(struct wb_bench_frame *frame);
 
 /* Coordinates x, y (and z out of the plane; may be NULL) of a server point relative to the clamp's
- * marker in a frame. NaN when the clamp's marker is not known there. */
+ * marker in a frame. NaN if the clamp's position is unknown there. */
 void wb_frame_coordinates(const struct wb_bench_frame *frame, size_t index, const double point[3],
                           double *x, double *y, double *z);
 

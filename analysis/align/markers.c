@@ -15,24 +15,24 @@
 #define DEFAULT_GATE (2.0 * WB_MM)
 #define DEFAULT_SPEED (5.0 * WB_MM) /* m/s */
 #define DEFAULT_PERIOD (1.0 / 120.0)
-/* Among this number of frames the cheapest complete chain is where following starts. */
+/* Following starts at the cheapest complete chain among this number of frames. */
 #define START_FRAMES 240
-/* The start of a long recording is sought in this number of frames, evenly over it. */
+/* Number of frames, evenly over a long recording, that are searched for the start. */
 #define LOOKED_AT 4000
-/* How much a frame counts in which a marker is not seen, but carried along by seen neighbours on
- * both sides, or on one. */
+/* Weight of a frame in which a marker is not seen but carried along, by seen neighbours on both
+ * sides or on one. */
 #define CARRIED_BY_TWO 0.02
 #define CARRIED_BY_ONE 0.3
-/* A link that is off by four tolerances is a wrong marker. */
+/* Cost above which a link belongs to a wrong marker: four tolerances, squared. */
 #define BROKEN_LINK_COST 16.0
-/* What a chain may cost: a missing marker costs as much as a link at three tolerances. */
+/* Cost of a missing marker: that of a link off by three tolerances. */
 #define MISSING_COST 9.0
 #define LARGEST_LINK_COST 16.0
-/* Two links in a row turn by less than this (60 degrees). */
+/* Cosine of the largest turn (60 degrees) between two successive links. */
 #define LEAST_COSINE 0.5
-/* A hostile cloud must not take forever. */
+/* Limit of the search; without it a dense cloud of points would take exponential time. */
 #define MOST_VISITS 20000
-/* Markers sit on the wire to this, m, whatever the cameras resolve. */
+/* Standard uncertainty of a marker's placement on the wire, m, however well the cameras resolve. */
 #define PLACEMENT (0.3 * WB_MM)
 /* A bent wire's chord is shorter than its arc, by at most this part (and by what the marker's
  * offset towards the inside of the bend takes, PLACEMENT's order). */
@@ -79,7 +79,8 @@ void wb_point_cloud_release(struct wb_point_cloud *cloud)
 
 /* --- the best chain of points: which are our markers, in order along the wire --- */
 
-/* Cost of two points as markers `i` < `j`: square of the distance's error over its tolerance. */
+/* Cost of two points as markers `i` < `j`: the squared ratio of the distance's error to its
+ * tolerance. */
 static double link_cost(const struct wb_specimen *specimen, double noise, int i, int j,
                         const double *a, const double *b)
 {
@@ -91,7 +92,7 @@ static double link_cost(const struct wb_specimen *specimen, double noise, int i,
     return error * error / (tolerance * tolerance);
 }
 
-/* What a chain is sought among, and how far the search has come: zeros at first. */
+/* Input and state of a search for a chain; the state starts as zeros. */
 struct search {
     const double (*points)[3];
     int n;
@@ -115,7 +116,7 @@ static bool is_used(const struct search *search, int marker, int point)
     return false;
 }
 
-/* Bend between the links to the two markers last chosen; 1 is straight on. */
+/* Cosine of the turn between the links to the two markers last chosen; 1 is straight. */
 static double cosine(const struct search *search, int second_last, int last, int point)
 {
     const double *const a = search->points[second_last];
@@ -128,7 +129,7 @@ static double cosine(const struct search *search, int second_last, int last, int
     return lengths > 0.0 ? dot / lengths : -1.0;
 }
 
-/* The last two markers that have a point, before `marker`; -1 when there is none. */
+/* The last two markers before `marker` that have a point; -1 if there is none. */
 static void find_last_two(const struct search *search, int marker, int *last, int *second_last)
 {
     *last = *second_last = -1;
@@ -185,8 +186,8 @@ static void extend(struct search *search, int marker, int length, double cost)
     extend(search, marker + 1, length, cost + MISSING_COST);
 }
 
-/* The number of markers in the best chain, which is search->best at search->best_cost then; 0:
- * there is none. */
+/* Number of markers in the best chain (then search->best, with search->best_cost), or 0 if there is
+ * no chain. */
 static int find_chain(struct search *search)
 {
     if (search->least < 2)
@@ -216,7 +217,7 @@ struct tracker {
     struct wb_marker_settings settings;
     double smallest_spacing;
     double predicted[WB_SPECIMEN_MAX_MARKERS][3];
-    /* Frames since it was seen, each by how little is known of its motion then. */
+    /* frames since it was last seen, weighted by the uncertainty of its motion in each */
     double unseen[WB_SPECIMEN_MAX_MARKERS];
 };
 
@@ -230,8 +231,8 @@ static const double (*points_of(const struct wb_point_cloud *cloud, size_t frame
     return (const double(*)[3])cloud->points + cloud->frames[frame].first;
 }
 
-/* How far a marker may be from where it is expected: more after a gap, but never so far that its
- * neighbour would do. */
+/* Largest distance of a marker from its prediction: it grows in a gap, but stays below the distance
+ * at which the neighbour could be taken instead. */
 static double gate_of(const struct tracker *tracker, int marker)
 {
     const double gap = tracker->unseen[marker] * tracker->settings.frame_period;
@@ -239,7 +240,7 @@ static double gate_of(const struct tracker *tracker, int marker)
                 0.45 * tracker->smallest_spacing);
 }
 
-/* Takes the nearest pair of marker and point, then the next nearest, and so on. */
+/* Pairs markers and points by distance, nearest first. */
 static void assign_nearest(const struct tracker *tracker, size_t frame, int *chosen)
 {
     const double(*const points)[3] = points_of(tracker->cloud, frame);
@@ -270,8 +271,8 @@ static void assign_nearest(const struct tracker *tracker, size_t frame, int *cho
     }
 }
 
-/* Drops markers whose distances to their neighbours do not fit: of a bad pair the one that is
- * farther from its prediction. Returns how many were dropped. */
+/* Drops markers whose distances to their neighbours do not fit: the one of a bad pair that is
+ * farther from its prediction. Returns the number dropped. */
 static int drop_broken_links(const struct tracker *tracker, size_t frame, int *chosen)
 {
     const double(*const points)[3] = points_of(tracker->cloud, frame);
@@ -304,7 +305,7 @@ static int count_chosen(const int *chosen, int n)
     return count;
 }
 
-/* Distance of a chain from the predictions, taken forwards or backwards. */
+/* Distance of a chain from the predictions, with the chain taken forwards or backwards. */
 static double chain_distance(const struct tracker *tracker, size_t frame, const int *chosen,
                              bool reversed)
 {
@@ -341,7 +342,8 @@ static struct search search_in(const struct tracker *tracker, size_t frame, int 
     };
 }
 
-/* After most markers were lost: the chain anew, in the order nearer to the last one known. */
+/* Searches for the chain again after most markers were lost, in the order that is nearer to the
+ * last known one. */
 static void search_again(struct tracker *tracker, size_t frame, int *chosen)
 {
     const int n_markers = tracker->specimen->n_markers;
@@ -361,7 +363,7 @@ static void search_again(struct tracker *tracker, size_t frame, int *chosen)
     memcpy(chosen, found, sizeof search.best);
 }
 
-/* A marker that is not seen is carried along by its seen neighbours. */
+/* Moves a marker that is not seen along with its seen neighbours. */
 static void carry_along(struct tracker *tracker, const int *chosen, double (*moved)[3])
 {
     const int n = tracker->specimen->n_markers;
@@ -454,7 +456,7 @@ static bool find_start(const struct tracker *tracker, int least, size_t *start, 
     return n_found > 0;
 }
 
-static enum wb_status refuse_start(const struct tracker *tracker, struct wb_reason *why)
+static enum wb_status fail_without_start(const struct tracker *tracker, struct wb_reason *why)
 {
     const struct wb_point_cloud *const cloud = tracker->cloud;
     int most = 0;
@@ -462,13 +464,12 @@ static enum wb_status refuse_start(const struct tracker *tracker, struct wb_reas
         most = cloud->frames[i].n > most ? cloud->frames[i].n : most;
     return wb_fail_to(
         why, WB_ERR_DATA,
-        "markers not found: no frame of %zu shows at least %d of the %d markers, first "
-        "and last among them, at the distances of markers_mm (a frame has at most %d "
-        "points that are measurements)",
+        "markers not found: no frame of %zu shows at least %d of the %d markers, with the first "
+        "and the last, at the distances of markers_mm (a frame has at most %d measured points)",
         cloud->n_frames, tracker->specimen->n_markers - 2, tracker->specimen->n_markers, most);
 }
 
-/* Predictions at the start; of a marker that is missing there, between its neighbours. */
+/* Predictions at the start; a marker missing there is placed between its neighbours. */
 static void place(struct tracker *tracker, size_t start, const int *chosen)
 {
     const double(*const points)[3] = points_of(tracker->cloud, start);
@@ -513,7 +514,7 @@ static enum wb_status track(struct tracker *tracker, struct wb_reason *why)
     for (int least = n_markers; !found && least >= n_markers - 2 && least >= 2; least--)
         found = find_start(tracker, least, &start, chosen);
     if (!found)
-        return refuse_start(tracker, why);
+        return fail_without_start(tracker, why);
     tracker->tracks->start_frame = start;
     place(tracker, start, chosen);
     update(tracker, start, chosen);

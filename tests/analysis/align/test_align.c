@@ -1,4 +1,4 @@
-/* Alignment of made-up recordings whose truth is known, with the faults that benches have. */
+/* Alignment of synthetic recordings whose truth is known, with typical faults of benches. */
 #include "analysis/align/align.h"
 
 #include "base/file.h"
@@ -17,7 +17,7 @@ static int start(void **state)
     return make_folder(state);
 }
 
-/* What a test records, and what becomes of it. */
+/* The test to record, and its dataset. */
 static struct syn syn;
 static struct wb_dataset dataset;
 
@@ -36,7 +36,7 @@ static int end(void **state)
     return 0;
 }
 
-/* A test of its own bench and dataset. */
+/* A test with its own bench and dataset. */
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
 
 static void record(char path[WB_PATH])
@@ -62,9 +62,9 @@ static void align(void)
         fail_msg("not aligned: %s", kept.last);
 }
 
-/* The same text goes to the log, or to the reason and not to the log. The bench is as at first
- * again. */
-static void refuse(const char *expected)
+/* Aligning must fail with `expected` in the reason, or in the log if no reason is passed, but never
+ * in both. Restores the default bench. */
+static void expect_rejection(const char *expected)
 {
     struct wb_reason why = {.text = "of before"};
     char path[WB_PATH];
@@ -79,7 +79,7 @@ static void refuse(const char *expected)
     syn_default(&syn);
 }
 
-/* Overwrites the recording from that part of its length on. */
+/* Overwrites the recording from this part of its length on. */
 static void overwrite(const char *path, double part)
 {
     FILE *const file = fopen(path, "r+b");
@@ -92,7 +92,7 @@ static void overwrite(const char *path, double part)
     assert_int_equal(fclose(file), 0);
 }
 
-/* --- reading what alignment says of itself --- */
+/* --- corrections, checks and warnings of the dataset --- */
 
 static double correction(const struct wb_dataset *of, const char *name, const char *key)
 {
@@ -134,7 +134,8 @@ struct errors {
     double deflection_mean, deflection_rms, force_mean, force_rms, largest_force; /* SI */
 };
 
-/* Errors of the rows of one phase, without the settling of the filter after a jump or a turn. */
+/* Errors of the rows of one phase, without those in which the filter settles after a jump or a
+ * turn. */
 static struct errors compare(enum wb_phase phase)
 {
     struct errors errors = {0};
@@ -167,8 +168,8 @@ static struct errors compare(enum wb_phase phase)
     return errors;
 }
 
-/* Noise of 0.1 mm and 98 uN, averaged over six frames and five readings. The vertical comes from
- * 20 mm of noisy motion: 0.2 mrad, 0.02 mm at the tip, and as much force as that is worth. */
+/* Noise of 0.1 mm and 98 uN, averaged over six frames and five readings. The vertical is found from
+ * 20 mm of noisy motion: 0.2 mrad, 0.02 mm at the tip, and the corresponding force. */
 static void assert_true_to_bench(void)
 {
     for (int phase = WB_PHASE_LOAD; phase <= WB_PHASE_UNLOAD; phase++) {
@@ -181,7 +182,7 @@ static void assert_true_to_bench(void)
     }
 }
 
-static void a_test_comes_back_as_it_was(void **state)
+static void dataset_matches_the_true_test(void **state)
 {
     (void)state;
     align();
@@ -212,9 +213,9 @@ static void a_test_comes_back_as_it_was(void **state)
     assert_close(sqrt(sum / (double)dataset.n_shape_rows), 0.0, 0.1e-3);
 }
 
-/* Mean height of the inner markers above the true wire of their deflection, on the way up or back,
- * m. Only deflections that both ways pass count: a vertical that is a little wrong then gives both
- * ways the same error. */
+/* Mean height (m) of the inner markers above the true wire at their deflection, loading or
+ * unloading. Only deflections that both phases reach are used: a small error of the vertical then
+ * affects both alike. */
 static double mean_height(enum wb_phase phase)
 {
     double sum = 0.0, turn = 0.0;
@@ -238,8 +239,8 @@ static double mean_height(enum wb_phase phase)
     return sum / n;
 }
 
-/* A row's deflection is the mean of six frames and has a noise of 0.16 mm here. Rows picked by
- * their own deflection are ahead of their inner markers by 0.05 mm on average. */
+/* A row's deflection is the mean of six frames, here with a noise of 0.16 mm. Rows chosen by their
+ * own deflection would lead their inner markers by 0.05 mm on average. */
 static void shapes_do_not_lag_behind_their_deflections(void **state)
 {
     enum {
@@ -257,7 +258,7 @@ static void shapes_do_not_lag_behind_their_deflections(void **state)
     assert_close(lag, 0.0, 0.012e-3);
 }
 
-static void bows_are_found_within_what_is_stated(void **state)
+static void bows_are_within_their_stated_uncertainty(void **state)
 {
     (void)state;
     static const double bows[] = {-4e-3, -2.2e-3, 0.0, 2e-3, 3.7e-3};
@@ -269,7 +270,7 @@ static void bows_are_found_within_what_is_stated(void **state)
         const double bow = wb_dataset_bow(&dataset.info);
         assert_true(stated < 0.4e-3);
         assert_close(bow, bows[i], 2.0 * stated);
-        /* By the markers alone it is only just seen. */
+        /* The markers alone barely resolve it. */
         assert_close(check("natural_shape", "bow_from_markers_mm") * WB_MM, bows[i],
                      2.0 * WB_MM * check("natural_shape", "bow_from_markers_uncertainty_mm"));
     }
@@ -281,14 +282,15 @@ static void an_elastic_loop_is_closed(void **state)
     syn.unloading = syn.stiffness;
     syn.force_noise = 30e-6;
     align();
-    /* Without the filter's delay taken off, the loop would be 2 v dt = 0.1 mm wide: 36 uN rms. */
+    /* Without the correction of the filter's delay the loop would be 2 v dt = 0.1 mm wide: 36 uN
+     * rms. */
     const double width = check("timing", "loop_area_mJ") * 1e-3 / (syn.stiffness * 19e-3);
     assert_close(width, 0.0, 0.01e-3);
     assert_close(check("timing", "loop_width_error_mm"), 0.01, 0.001);
     assert_close(check("timing", "speed_mm_s"), 1.0, 0.01);
 }
 
-static void drift_between_zero_loads_is_taken_off(void **state)
+static void drift_between_zero_loads_is_subtracted(void **state)
 {
     (void)state;
     syn.drift = 20e-6; /* 1.2 mN/min: a bad cell */
@@ -299,7 +301,7 @@ static void drift_between_zero_loads_is_taken_off(void **state)
                  syn.drift * 2.0 * syn_cycle_time(&syn) / WB_MN, 0.1);
 }
 
-/* Only the event differs: the weight that hung on the cell is taken off the tare again. */
+/* Only the event differs: the weight on the cell is subtracted from the tare. */
 static void a_tare_with_the_counterweight_gives_the_same_tension(void **state)
 {
     (void)state;
@@ -318,11 +320,11 @@ static void a_tare_with_the_counterweight_gives_the_same_tension(void **state)
     wb_dataset_release(&unloaded);
 }
 
-static void drift_that_cannot_be_seen_is_bounded(void **state)
+static void undetectable_drift_is_bounded(void **state)
 {
     (void)state;
     char path[WB_PATH];
-    /* The cell falls silent before the strand goes slack again. */
+    /* The cell stops sending before the strand becomes slack again. */
     syn.gap_from = 35.0;
     syn.gap_until = 1e9;
     record(path);
@@ -367,7 +369,7 @@ static void slack_rows_are_those_without_tension(void **state)
         const struct wb_row *const row = &dataset.rows[i];
         const double tension = syn_move(&truth, row->t).tension;
         slack += row->phase == WB_PHASE_SLACK;
-        /* Between, where filter and noise blur it, either is right. */
+        /* In between, filter and noise blur the transition, and either is right. */
         if (tension == 0.0 || tension > 1e-3)
             wrong += (row->phase == WB_PHASE_SLACK) != (tension == 0.0);
     }
@@ -375,7 +377,7 @@ static void slack_rows_are_those_without_tension(void **state)
     assert_true(wrong <= 6);
 }
 
-static void lost_steps_are_flagged_and_do_no_harm(void **state)
+static void lost_steps_are_flagged_and_do_not_change_the_deflection(void **state)
 {
     (void)state;
     align();
@@ -406,7 +408,7 @@ static void occlusions_strays_and_new_ids_leave_gaps_only(void **state)
         assert_false(row->marker == 3 && row->t > 8.03 && row->t < 13.97);
     }
 
-    /* The tip's own marker, filled in by the server at a wrong place: no row. */
+    /* The tip's own marker, filled in by the server at a wrong place, gives no row. */
     syn.hidden_marker = SYN_MARKERS - 1;
     syn.model_filled = true;
     align();
@@ -455,7 +457,7 @@ static void a_silent_load_cell_leaves_a_gap(void **state)
         assert_false(dataset.rows[i].t > 10.1 && dataset.rows[i].t < 12.8);
 }
 
-/* What aligning says was lost of frames or readings. */
+/* A loss of frames or readings from dataset.json. */
 static double loss(const char *what, const char *key)
 {
     double value;
@@ -464,7 +466,8 @@ static double loss(const char *what, const char *key)
     return wb_json_get_number(losses, key, &value) ? value : (double)NAN;
 }
 
-/* What verify finds from the data alone: no sequence number is missing. */
+/* A problem that the check of the recording finds in the data alone: no sequence number is
+ * missing. */
 static void assert_problem(const char *path, const char *words)
 {
     struct wb_recording *recording;
@@ -495,7 +498,7 @@ static void frames_and_lines_that_never_came_are_counted(void **state)
     assert_true(loss("frames", "missing") == (double)syn.vanished_frames);
     assert_close(loss("readings", "missing"), (double)syn.vanished_lines,
                  0.03 * (double)syn.vanished_lines);
-    assert_true(warns("% of the frames never came") && warns("% of the readings never came"));
+    assert_true(warns("% of the frames were lost") && warns("% of the readings were lost"));
     assert_true_to_bench();
     assert_problem(path, "mocap stream 1: 30 % of its frames never came");
     assert_problem(path, "load stream 0: 30 % of its lines never came");
@@ -518,8 +521,8 @@ static void overtaken_and_repeated_frames_are_put_in_order(void **state)
     assert_true_to_bench();
 }
 
-/* Streams as bad as a network and a clock can make them, all at once. */
-static void force_and_deflection_hold_under_loss_disorder_and_drift(void **state)
+/* The worst streams of a network and a clock, all faults at once. */
+static void force_and_deflection_are_right_despite_loss_disorder_and_drift(void **state)
 {
     (void)state;
     static const double shares[] = {0.05, 0.2, 0.5}, skews[] = {-200e-6, 0.0, 200e-6};
@@ -534,16 +537,16 @@ static void force_and_deflection_hold_under_loss_disorder_and_drift(void **state
                 syn.restart_at = way & 2 ? 17.0 : 0.0;
                 align();
                 assert_true_to_bench();
-                assert_true(warns("% of the frames never came"));
+                assert_true(warns("% of the frames were lost"));
             }
         }
     }
     count_trials(
         "Frames and lines lost to 50 %, overtaken, repeated; clocks restarted, 200 ppm off",
-        (uint64_t)n, "tests: force and deflection as without, the loss told");
+        (uint64_t)n, "tests: force and deflection as without, and the loss reported");
 }
 
-static void servers_without_echo_and_restarted_ones_serve(void **state)
+static void servers_without_echo_and_restarted_servers_are_supported(void **state)
 {
     (void)state;
     syn.version_major = 2;
@@ -582,7 +585,7 @@ static void a_scaled_bench_keeps_its_own_time(void **state)
     assert_close(dataset.rows[dataset.n_rows - 1].t, syn_cycle_time(&syn), 0.3);
 }
 
-static void cameras_may_stand_anyhow(void **state)
+static void any_position_of_the_cameras_is_supported(void **state)
 {
     (void)state;
     for (int i = 0; i < 4; i++) {
@@ -594,7 +597,7 @@ static void cameras_may_stand_anyhow(void **state)
     }
 }
 
-static void a_busy_host_does_no_harm(void **state)
+static void a_busy_host_does_not_change_the_result(void **state)
 {
     (void)state;
     syn.busy_from = 9.0;
@@ -632,7 +635,7 @@ static enum wb_status run_corrected(const char *path, const char *rig, const cha
     return wb_align_run(&dataset, path, &settings, why);
 }
 
-/* What dataset.json says of key `key` of the corrected rig or specimen. */
+/* The entry of key `key` of the corrected rig or specimen in dataset.json. */
 static void assert_difference(const char *what, const char *key, const char *recorded,
                               const char *given)
 {
@@ -655,7 +658,7 @@ static void assert_difference(const char *what, const char *key, const char *rec
     fail_msg("no difference in '%s' of %zu", key, wb_json_length(list));
 }
 
-static void a_specimen_of_wrong_length_is_mended_afterwards(void **state)
+static void a_wrong_specimen_length_can_be_corrected(void **state)
 {
     (void)state;
     char path[WB_PATH], right[WB_PATH];
@@ -679,7 +682,7 @@ static void a_specimen_of_wrong_length_is_mended_afterwards(void **state)
     assert_false(warns("uncertainty"));
 }
 
-/* Within the tolerance that it was checked to, where the rig file states nothing. */
+/* The uncertainty is the tolerance of the check where the rig file states none. */
 static void a_checked_load_cell_has_the_uncertainty_of_its_check(void **state)
 {
     (void)state;
@@ -701,7 +704,7 @@ static void a_checked_load_cell_has_the_uncertainty_of_its_check(void **state)
     }
 }
 
-static void a_wrong_scale_of_the_load_cell_is_mended_with_its_tare(void **state)
+static void a_wrong_load_cell_scale_is_corrected_with_its_tare(void **state)
 {
     (void)state;
     char path[WB_PATH], right[WB_PATH], rig[2048];
@@ -716,7 +719,7 @@ static void a_wrong_scale_of_the_load_cell_is_mended_with_its_tare(void **state)
     assert_true(warns("rig corrected: load_cell.scale is none in place of the recorded 0.5"));
 }
 
-static void a_virtual_recording_stays_one_whatever_corrects_it(void **state)
+static void a_virtual_recording_stays_virtual_when_corrected(void **state)
 {
     (void)state;
     char path[WB_PATH], right[WB_PATH], rig[2048];
@@ -731,7 +734,7 @@ static void a_virtual_recording_stays_one_whatever_corrects_it(void **state)
     assert_difference("rig", "virtual", "true", "none");
 }
 
-static void files_that_correct_are_read_like_any(void **state)
+static void errors_in_given_files_are_reported(void **state)
 {
     (void)state;
     char path[WB_PATH], wrong[WB_PATH];
@@ -749,20 +752,20 @@ static void files_that_correct_are_read_like_any(void **state)
     assert_non_null(strstr(why.text, "other-wire.yaml:1: wire"));
 }
 
-static void what_cannot_serve_is_refused_with_the_reason(void **state)
+static void unusable_recordings_are_rejected_with_the_reason(void **state)
 {
     (void)state;
     syn.no_tare = true;
-    refuse("no tare");
+    expect_rejection("no tare");
     syn.sign = -1.0;
-    refuse("sign");
+    expect_rejection("sign");
     syn.no_motion = true;
-    refuse("moved");
+    expect_rejection("moved");
     syn.marker_noise = 20e-3;
-    refuse("markers not found");
+    expect_rejection("markers not found");
     syn.gap_from = -100.0;
     syn.gap_until = 1e9;
-    refuse("no reading");
+    expect_rejection("no reading");
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
     assert_int_equal(wb_align_run(&dataset, "/nonexistent/test.wbr", &settings, NULL),
@@ -772,9 +775,9 @@ static void what_cannot_serve_is_refused_with_the_reason(void **state)
                      WB_ERR_ARGUMENT);
 }
 
-/* What could not be read stands before what that led to; of a recording that serves all the same it
- * is logged. */
-static void what_is_lost_is_told_with_the_reason(void **state)
+/* Unreadable parts precede the failure that they caused; those of a recording that can still be
+ * aligned are logged. */
+static void unreadable_parts_are_reported_with_the_reason(void **state)
 {
     (void)state;
     char path[WB_PATH];
@@ -799,7 +802,7 @@ static void what_is_lost_is_told_with_the_reason(void **state)
     assert_string_equal(failed + 2, kept.error);
 }
 
-static void wrong_bytes_never_crash_it(void **state)
+static void corrupt_bytes_never_crash_the_alignment(void **state)
 {
     (void)state;
     static const double parts[] = {0.003, 0.05, 0.5, 1.0};
@@ -811,7 +814,7 @@ static void wrong_bytes_never_crash_it(void **state)
         record(path);
         const enum wb_status status = run(path, NULL);
         assert_true(status == WB_OK || status == WB_ERR_DATA);
-        /* A few wrong bytes are what a bad cable does; the test is still worth something. */
+        /* A few wrong bytes are typical of a bad cable; the rest of the test is still usable. */
         if (i == 0)
             assert_int_equal(status, WB_OK);
     }
@@ -846,36 +849,36 @@ static void the_same_recording_gives_the_same_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(a_test_comes_back_as_it_was),
+        TEST(dataset_matches_the_true_test),
         TEST(shapes_do_not_lag_behind_their_deflections),
-        TEST(bows_are_found_within_what_is_stated),
+        TEST(bows_are_within_their_stated_uncertainty),
         TEST(an_elastic_loop_is_closed),
-        TEST(drift_between_zero_loads_is_taken_off),
+        TEST(drift_between_zero_loads_is_subtracted),
         TEST(a_tare_with_the_counterweight_gives_the_same_tension),
-        TEST(drift_that_cannot_be_seen_is_bounded),
+        TEST(undetectable_drift_is_bounded),
         TEST(cycles_and_phases_come_from_the_clamp),
         TEST(slack_rows_are_those_without_tension),
-        TEST(lost_steps_are_flagged_and_do_no_harm),
+        TEST(lost_steps_are_flagged_and_do_not_change_the_deflection),
         TEST(occlusions_strays_and_new_ids_leave_gaps_only),
         TEST(rows_beside_a_loss_of_the_clamp_are_right),
         TEST(a_silent_load_cell_leaves_a_gap),
         TEST(frames_and_lines_that_never_came_are_counted),
         TEST(overtaken_and_repeated_frames_are_put_in_order),
-        TEST(servers_without_echo_and_restarted_ones_serve),
+        TEST(servers_without_echo_and_restarted_servers_are_supported),
         TEST(the_clock_is_mapped_by_the_probes),
-        TEST(force_and_deflection_hold_under_loss_disorder_and_drift),
+        TEST(force_and_deflection_are_right_despite_loss_disorder_and_drift),
         TEST(a_scaled_bench_keeps_its_own_time),
-        TEST(cameras_may_stand_anyhow),
-        TEST(a_busy_host_does_no_harm),
+        TEST(any_position_of_the_cameras_is_supported),
+        TEST(a_busy_host_does_not_change_the_result),
         TEST(polled_readings_keep_their_arrival),
-        TEST(a_specimen_of_wrong_length_is_mended_afterwards),
+        TEST(a_wrong_specimen_length_can_be_corrected),
         TEST(a_checked_load_cell_has_the_uncertainty_of_its_check),
-        TEST(a_wrong_scale_of_the_load_cell_is_mended_with_its_tare),
-        TEST(a_virtual_recording_stays_one_whatever_corrects_it),
-        TEST(files_that_correct_are_read_like_any),
-        TEST(what_cannot_serve_is_refused_with_the_reason),
-        TEST(what_is_lost_is_told_with_the_reason),
-        TEST(wrong_bytes_never_crash_it),
+        TEST(a_wrong_load_cell_scale_is_corrected_with_its_tare),
+        TEST(a_virtual_recording_stays_virtual_when_corrected),
+        TEST(errors_in_given_files_are_reported),
+        TEST(unusable_recordings_are_rejected_with_the_reason),
+        TEST(unreadable_parts_are_reported_with_the_reason),
+        TEST(corrupt_bytes_never_crash_the_alignment),
         TEST(the_same_recording_gives_the_same_bytes),
     };
     return cmocka_run_group_tests(tests, start, remove_folder);

@@ -1,5 +1,5 @@
-/* Alignment of what the virtual rig sends, against the truth behind it. The rig's instruments run
- * without ports or clocks here: each sample at its own time, as the rig would at any time scale. */
+/* Alignment of a test on the virtual rig, compared with its truth. The rig's instruments run
+ * without ports or clocks here: each sample at its own time, as on the rig at any time scale. */
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -22,7 +22,7 @@
 #define DWELL_S 1.0
 #define MAX_FRAMES 20000
 
-/* What the wire really did, at each frame. */
+/* The true state of the wire at each frame. */
 struct truth_row {
     double t, deflection, tension;
 };
@@ -64,7 +64,7 @@ static double end_time(void)
     return START_S + 2.0 * session.travel / session.setup.rig.stage.speed + session.hold + DWELL_S;
 }
 
-/* When the operator holds the test: half way down. */
+/* Time at which the operator holds the test: half way down. */
 static double hold_time(void)
 {
     return START_S + 0.5 * session.travel / session.setup.rig.stage.speed;
@@ -103,7 +103,7 @@ static void take_frame(uint64_t k)
     const double sent = wb_sim_mocap_send_time(&session.mocap, k);
     chunk(session.camera, host(sent) + 200000, bytes, n);
     if (session.version.major >= 3 && k % 120 == 0) {
-        /* A probe that takes 0.1 ms each way. */
+        /* A probe with 0.1 ms of latency each way. */
         const double at = sent + 1e-4 * session.time_scale;
         const size_t size = wb_natnet_encode_echo_response(
             bytes, sizeof bytes, (uint64_t)host(sent), wb_sim_mocap_ticks(&session.mocap, at));
@@ -277,8 +277,8 @@ static double number_in(const struct wb_dataset *dataset, const char *group, con
     return value;
 }
 
-/* The level of zero deflection is off by what the offsets of the clamp's and the tip's markers are
- * off the nominal one, which nobody can know. */
+/* The level of zero deflection is wrong by the difference of the true offsets of the clamp's and
+ * the tip's marker from the nominal one, which cannot be measured. */
 static double unknown_level(void)
 {
     const double *const offsets = session.setup.truth.marker_offsets;
@@ -299,7 +299,7 @@ static void assert_aligned(const struct plan *plan)
     for (size_t i = 0; i < dataset.n_rows; i++) {
         const struct wb_row *const row = &dataset.rows[i];
         const struct truth_row truth = truth_at(row->t);
-        /* The filter still remembers where the tension jumped or turned. */
+        /* The filter has not settled after a jump or a turn of the tension. */
         if (row->phase == WB_PHASE_SLACK || row->deflection < 0.5 * WB_MM ||
             fabs(row->t - plan->travel / session.setup.rig.stage.speed) < 0.5)
             continue;
@@ -333,7 +333,7 @@ static void assert_aligned(const struct plan *plan)
     wb_dataset_release(&dataset);
 }
 
-static void the_rows_of_a_hold_are_left_out_and_it_is_told(void **state)
+static void rows_of_a_hold_are_left_out_and_the_hold_is_reported(void **state)
 {
     (void)state;
     char path[WB_PATH];
@@ -370,7 +370,7 @@ static void the_rows_of_a_hold_are_left_out_and_it_is_told(void **state)
     for (size_t i = 0; i < wb_json_length(warnings) && !strstr(warning, "held at"); i++)
         assert_true(wb_json_text(wb_json_item(warnings, i), &warning));
     assert_non_null(strstr(warning, "held at 10.00 mm of travel on the way down of cycle 1 for "
-                                    "6.0 s, where the tension went from 60.00 to 58.50 mN"));
+                                    "6.0 s, while the tension went from 60.00 to 58.50 mN"));
     wb_dataset_release(&dataset);
 }
 
@@ -386,14 +386,14 @@ static void type_3_is_aligned_at_twenty_times_the_speed(void **state)
     assert_aligned(&(struct plan){"type3-L100-1", 5, 4, 1, 0.02, 20.0});
 }
 
-static void a_server_without_echo_serves(void **state)
+static void a_server_without_echo_is_supported(void **state)
 {
     (void)state;
     assert_aligned(&(struct plan){"type2-L85-2", 3, 2, 7, 0.02, 1.0});
 }
 
-/* Tension of the truth where the tip passes a deflection on the first loading; the strand is
- * upright there. */
+/* True tension where the tip passes a deflection on the first loading; the strand is vertical
+ * there. */
 static double true_tension(double deflection)
 {
     for (int i = 1; i < session.n_truth; i++) {
@@ -419,9 +419,9 @@ static double zero_force_of(const struct wb_dataset *dataset)
     return value * WB_MN;
 }
 
-/* Wires that bow down have yielded before the first row that counts: what is said of their bow and
- * of the force at zero must hold over many of them. */
-static void what_is_stated_of_downward_bows_holds(void **state)
+/* Wires that bow down yield before the first row that is used: the stated bow and force at zero
+ * must be right over many such wires. */
+static void downward_bows_are_within_their_stated_uncertainty(void **state)
 {
     (void)state;
     static const char *const specimens[] = {"type1-L85-1",  "type2-L85-1",  "type3-L85-1",
@@ -457,7 +457,7 @@ static void what_is_stated_of_downward_bows_holds(void **state)
     assert_true(n >= 15.0);
     assert_true(pulls > 0.3 && pulls < 1.3);
     assert_close(error / n, 0.0, 0.4 * WB_MM);
-    /* The same seeds with a straight line instead: 15.5 uN. */
+    /* A straight line instead gives 15.5 uN for the same seeds. */
     assert_close(zero / n, 0.0, 12e-6);
 }
 
@@ -465,10 +465,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(type_1_is_aligned),
-        cmocka_unit_test(the_rows_of_a_hold_are_left_out_and_it_is_told),
+        cmocka_unit_test(rows_of_a_hold_are_left_out_and_the_hold_is_reported),
         cmocka_unit_test(type_3_is_aligned_at_twenty_times_the_speed),
-        cmocka_unit_test(a_server_without_echo_serves),
-        cmocka_unit_test(what_is_stated_of_downward_bows_holds),
+        cmocka_unit_test(a_server_without_echo_is_supported),
+        cmocka_unit_test(downward_bows_are_within_their_stated_uncertainty),
     };
     return cmocka_run_group_tests(tests, start, remove_folder);
 }

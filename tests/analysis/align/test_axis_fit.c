@@ -8,7 +8,7 @@
 
 static const double arcs[N] = {0.0142, 0.0283, 0.0425, 0.0567, 0.0708, 0.085};
 
-/* Angle of a wire bent most at its root. */
+/* Angle of a wire that is bent most at its root. */
 static double angle_at(double bend, double s)
 {
     const double u = s / LENGTH;
@@ -58,7 +58,7 @@ static void offset_is_taken_off_along_the_normal(void **state)
     }
 }
 
-static void missing_markers_are_done_without(void **state)
+static void missing_markers_do_not_disturb_the_fit(void **state)
 {
     (void)state;
     for (int missing = 0; missing < N - 1; missing++) {
@@ -90,7 +90,7 @@ static void a_single_marker_gives_an_arc(void **state)
     assert_close(wb_axis_fit_angle(&fit, s), s / radius, 1e-5);
 }
 
-static void nothing_and_nonsense_are_no_data(void **state)
+static void missing_and_invalid_markers_are_rejected(void **state)
 {
     (void)state;
     struct wb_axis_fit fit;
@@ -103,9 +103,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(offset_is_taken_off_along_the_normal),
-        cmocka_unit_test(missing_markers_are_done_without),
+        cmocka_unit_test(missing_markers_do_not_disturb_the_fit),
         cmocka_unit_test(a_single_marker_gives_an_arc),
-        cmocka_unit_test(nothing_and_nonsense_are_no_data),
+        cmocka_unit_test(missing_and_invalid_markers_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -139,7 +139,7 @@ static void the_clamp_is_not_extrapolated_into_a_loss(void **state)
     struct wb_bench_frame frame;
     const struct scene scene = tilted();
     film(&scene);
-    /* Losses of the clamp's marker, the first with three frames left in the middle of it. */
+    /* Losses of the clamp's marker; three frames remain in the middle of the first. */
     size_t n_none = 0;
     for (int f = 500; f < 560; f++)
         indices[f * N] = f >= 529 && f < 532 ? f * N : -1;
@@ -160,7 +160,7 @@ static void the_clamp_is_not_extrapolated_into_a_loss(void **state)
     wb_point_cloud_release(&cloud);
 }
 
-static void a_clamp_that_stands_still_leaves_the_servers_axis(void **state)
+static void without_motion_up_is_the_servers_axis(void **state)
 {
     (void)state;
     struct wb_bench_frame frame;
@@ -174,7 +174,7 @@ static void a_clamp_that_stands_still_leaves_the_servers_axis(void **state)
     wb_point_cloud_release(&cloud);
 }
 
-static void the_end_that_moves_is_the_clamps(void **state)
+static void the_moving_end_is_the_clamp(void **state)
 {
     (void)state;
     struct scene scene = tilted();
@@ -191,7 +191,7 @@ static void the_end_that_moves_is_the_clamps(void **state)
     wb_point_cloud_release(&cloud);
 }
 
-static void a_clamp_that_is_hidden_leaves_frames_out(void **state)
+static void frames_with_a_hidden_clamp_are_left_out(void **state)
 {
     (void)state;
     struct wb_bench_frame frame;
@@ -217,7 +217,7 @@ static void quiet(void *context, enum wb_log_level level, const char *domain, co
     (void)message;
 }
 
-static void markers_along_the_vertical_are_no_plane(void **state)
+static void markers_along_the_vertical_are_rejected(void **state)
 {
     (void)state;
     struct wb_bench_frame frame;
@@ -237,10 +237,10 @@ int main(void)
         cmocka_unit_test(vertical_and_plane_are_found),
         cmocka_unit_test(coordinates_count_from_the_clamp),
         cmocka_unit_test(the_clamp_is_not_extrapolated_into_a_loss),
-        cmocka_unit_test(a_clamp_that_stands_still_leaves_the_servers_axis),
-        cmocka_unit_test(the_end_that_moves_is_the_clamps),
-        cmocka_unit_test(a_clamp_that_is_hidden_leaves_frames_out),
-        cmocka_unit_test(markers_along_the_vertical_are_no_plane),
+        cmocka_unit_test(without_motion_up_is_the_servers_axis),
+        cmocka_unit_test(the_moving_end_is_the_clamp),
+        cmocka_unit_test(frames_with_a_hidden_clamp_are_left_out),
+        cmocka_unit_test(markers_along_the_vertical_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Which point is which marker: chains at the start, following, losses, strays. */
+/* Identification of markers: chains at the start, following, losses, strays. */
 #include "analysis/align/markers_private.h"
 
 #include <stdlib.h>
@@ -54,7 +54,7 @@ struct scene {
     int hidden_from, hidden_until; /* frames */
     int all_hidden_from, all_hidden_until;
     int n_strays;
-    bool carried_stray; /* one stray rides along with the wire, 6 mm above marker 3 */
+    bool carried_stray; /* one stray moves with the wire, 6 mm above marker 3 */
     double bend;        /* rad over the whole recording */
 };
 
@@ -87,7 +87,7 @@ static void film(const struct scene *scene, struct wb_point_cloud *cloud, int *t
                 p[2] = -0.16;
             }
             struct wb_marker *const marker = &frame.markers[frame.n_markers++];
-            marker->id = 7 * f + k; /* means nothing */
+            marker->id = 7 * f + k; /* arbitrary */
             for (int axis = 0; axis < 3; axis++)
                 marker->position[axis] = (float)(p[axis] + noise());
             truth[n_truth++] = i < scene->n ? i : -1;
@@ -132,7 +132,7 @@ static struct score run(const struct scene *scene, struct wb_marker_tracks *trac
     film(scene, &cloud, truth);
     assert_int_equal(wb_markers_track(tracks, &cloud, &specimen, &settings, NULL), WB_OK);
     struct score result = score(tracks, &cloud, truth, false);
-    /* Equal spacings cannot tell the ends apart. */
+    /* Equal spacings cannot distinguish the ends. */
     if (tracks->symmetric && result.right < result.wrong)
         result = score(tracks, &cloud, truth, true);
     wb_point_cloud_release(&cloud);
@@ -145,7 +145,7 @@ static struct scene plain(void)
         .s = arcs, .n = N, .n_frames = 2400, .hidden = -1, .all_hidden_from = -1, .bend = 1.2};
 }
 
-static void all_are_followed_through_the_test(void **state)
+static void all_markers_are_followed_through_the_test(void **state)
 {
     (void)state;
     struct wb_marker_tracks tracks;
@@ -158,7 +158,7 @@ static void all_are_followed_through_the_test(void **state)
     wb_marker_tracks_release(&tracks);
 }
 
-static void strays_are_nobody(void **state)
+static void strays_are_not_taken_for_markers(void **state)
 {
     (void)state;
     struct wb_marker_tracks tracks;
@@ -221,7 +221,7 @@ static void a_marker_hidden_at_the_start_is_found_later(void **state)
     wb_marker_tracks_release(&tracks);
 }
 
-static void a_marker_that_is_never_there_is_missing(void **state)
+static void a_marker_that_is_never_seen_is_missing(void **state)
 {
     (void)state;
     struct wb_marker_tracks tracks;
@@ -234,7 +234,7 @@ static void a_marker_that_is_never_there_is_missing(void **state)
     wb_marker_tracks_release(&tracks);
 }
 
-static void uneven_spacings_tell_the_order(void **state)
+static void uneven_spacings_determine_the_order(void **state)
 {
     (void)state;
     static const double uneven[] = {0.0, 0.008, 0.02, 0.036, 0.085};
@@ -288,7 +288,7 @@ static void occluded_and_filled_points_are_left_out(void **state)
     wb_point_cloud_release(&cloud);
 }
 
-static void no_chain_is_no_data(void **state)
+static void recordings_without_a_chain_are_rejected(void **state)
 {
     (void)state;
     static struct wb_mocap_frame frame;
@@ -298,7 +298,7 @@ static void no_chain_is_no_data(void **state)
     const struct wb_marker_settings settings = {0};
     wb_log_set_sink(quiet, NULL);
     assert_int_equal(wb_markers_track(&tracks, &cloud, &specimen, &settings, NULL), WB_ERR_DATA);
-    /* A dense random cloud: ends in time, and finds nothing. */
+    /* A dense random cloud: the search ends in time and finds no chain. */
     for (int f = 0; f < 5; f++) {
         frame.n_markers = WB_MAX_MARKERS;
         for (int i = 0; i < frame.n_markers; i++) {
@@ -315,7 +315,7 @@ static void no_chain_is_no_data(void **state)
 static void a_hostile_cloud_ends_in_time(void **state)
 {
     (void)state;
-    /* Points in a lattice at the markers' own distance: chains everywhere. */
+    /* Points in a lattice with the markers' spacing form chains everywhere. */
     static double points[WB_MAX_MARKERS][3];
     static double even[N];
     int chosen[N];
@@ -334,16 +334,16 @@ static void a_hostile_cloud_ends_in_time(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_are_followed_through_the_test),
-        cmocka_unit_test(strays_are_nobody),
+        cmocka_unit_test(all_markers_are_followed_through_the_test),
+        cmocka_unit_test(strays_are_not_taken_for_markers),
         cmocka_unit_test(a_hidden_marker_is_missing_and_found_again),
         cmocka_unit_test(the_chain_is_found_again_after_all_were_lost),
         cmocka_unit_test(a_marker_hidden_at_the_start_is_found_later),
-        cmocka_unit_test(a_marker_that_is_never_there_is_missing),
-        cmocka_unit_test(uneven_spacings_tell_the_order),
+        cmocka_unit_test(a_marker_that_is_never_seen_is_missing),
+        cmocka_unit_test(uneven_spacings_determine_the_order),
         cmocka_unit_test(reversing_turns_the_order_round),
         cmocka_unit_test(occluded_and_filled_points_are_left_out),
-        cmocka_unit_test(no_chain_is_no_data),
+        cmocka_unit_test(recordings_without_a_chain_are_rejected),
         cmocka_unit_test(a_hostile_cloud_ends_in_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
