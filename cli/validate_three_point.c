@@ -28,7 +28,7 @@ static void print_unloading(const struct wb_validate_three_point *r)
     printf("  unloading      RMS %.3g, largest error %.3g, of each test by itself %.3g%s\n",
            r->unloading.rms, r->unloading.largest_error, r->unloading_rms_of_tests,
            r->is_rule_untested ? "; the rule of these properties is untested" : "");
-    const double left = r->left_measured, predicted = r->left_computed;
+    const double left = r->residual_measured, predicted = r->residual_computed;
     if (isfinite(left))
         printf("  residual deflection %.3f mm measured, %.3f mm predicted (%+.3f mm)\n",
                left / WB_MM, predicted / WB_MM, (predicted - left) / WB_MM);

@@ -10,7 +10,7 @@
 #define WB_LOG_DOMAIN "validation"
 
 /* Deflection of a point of the loading. */
-static double way_of(const struct wb_three_point_member *member, int i)
+static double deflection_of(const struct wb_three_point_member *member, int i)
 {
     return member->data.points[i].travel - member->data.first_contact;
 }
@@ -31,8 +31,8 @@ static enum wb_status find_grid(struct wb_left_out *r, const struct wb_three_poi
         if (!m->is_fitted)
             continue;
         r->n++;
-        from = fmax(from, way_of(m, 0));
-        to = fmin(to, way_of(m, wb_three_point_data_count_loading(&m->data) - 1));
+        from = fmax(from, deflection_of(m, 0));
+        to = fmin(to, deflection_of(m, wb_three_point_data_count_loading(&m->data) - 1));
     }
     if (r->n < 2)
         return wb_fail_to(why, WB_ERR_DATA, "%d of %d tests fitted: none can be left out", r->n,
@@ -64,9 +64,10 @@ static void find_scatter(struct wb_left_out *r, const struct wb_three_point_cali
     r->expected = sqrt(r->n / (r->n - 1.0)) * r->scatter;
 }
 
-/* Where the others' fits put the first contact beyond where the readings show it, and their bow. */
-static double contact_of_others(const struct wb_three_point_calibration *c, int without,
-                                double *bow)
+/* Mean difference of the other tests' fitted first contact from the one that the readings show, m;
+ * `bow` receives their mean bow. */
+static double mean_contact_shift(const struct wb_three_point_calibration *c, int without,
+                                 double *bow)
 {
     double sum = 0.0, bows = 0.0;
     int n = 0;
@@ -90,7 +91,7 @@ static enum wb_status compute(struct wb_three_point_model *model,
     WB_TRY(wb_three_point_model_run(model, law, curvature, to, false, &run));
     if (!run.reached)
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
-                          "wire '%s': the model of the others comes to %.3g of %.3g mm (%s)",
+                          "wire '%s': the model of the other tests reaches %.3g of %.3g mm (%s)",
                           c->members[0].data.info.wire, run.travel / WB_MM, to / WB_MM,
                           wb_three_point_bending_end_name(run.end));
     return WB_OK;
@@ -100,7 +101,7 @@ static enum wb_status leave_out(struct wb_left_out *r, const struct wb_three_poi
                                 int i, int n_elements, double *squares, struct wb_reason *why)
 {
     double bow;
-    const double contact = contact_of_others(c, i, &bow);
+    const double contact = mean_contact_shift(c, i, &bow);
     struct wb_three_point_model *model;
     struct wb_law law;
     wb_three_point_calibrate_law(c, i, &law);

@@ -10,13 +10,13 @@
 
 #define WB_LOG_DOMAIN "marker_distance"
 
-/* Most different arc lengths at which markers sit. */
+/* Largest number of different arc lengths of markers. */
 #define MOST_POSITIONS 256
 /* Parts of the range over which a marker's displacements are averaged. */
 #define PARTS 10
 
-/* Shapes of the model at equal steps of deflection or follower force, at every arc length that has
- * a marker. */
+/* Shapes of the model at equal steps of deflection or follower force, at the arc lengths of all
+ * markers. */
 struct gallery {
     int n_positions, n_frames, n_reached;
     double s[MOST_POSITIONS];
@@ -32,7 +32,7 @@ static double end_of_loading(const struct wb_dataset *dataset)
     return n > 0 ? dataset->rows[n - 1].t : -HUGE_VAL;
 }
 
-/* Force at a time, straight between the rows; NaN outside. Rows come by ascending time. */
+/* Force at a time, linear between the rows, which ascend in time; NaN outside. */
 static double force_at(const struct wb_dataset *dataset, double t)
 {
     const size_t n = dataset->n_rows;
@@ -45,7 +45,7 @@ static double force_at(const struct wb_dataset *dataset, double t)
     return a->force + (b->force - a->force) * (t - a->t) / (b->t - a->t);
 }
 
-/* Where along the range a frame lies. */
+/* Deflection (follower test: force) of a frame. */
 static double place_of(const struct wb_dataset *dataset, const struct wb_shape_row *row)
 {
     return dataset->info.is_follower ? force_at(dataset, row->t) : row->deflection;
@@ -110,7 +110,7 @@ static enum wb_status fill(struct gallery *gallery, struct wb_computed *computed
     return WB_OK;
 }
 
-/* Displacement of one marker from the model; false when the model did not get there. */
+/* Displacement of one marker from the model; false if the model did not reach its place. */
 static bool displacement(const struct gallery *gallery, const struct wb_dataset *dataset,
                          const struct wb_shape_row *row, double *dx, double *dy)
 {
@@ -148,7 +148,7 @@ static void add_to_cell(struct cell *cells, const struct gallery *gallery,
     cell->n++;
 }
 
-/* Over the samples; `cells` has n_positions x PARTS of each. */
+/* Averages over the samples; `cells` has n_positions x PARTS for each. */
 static void average(struct wb_marker_mean *mean, const struct cell *cells, int n_positions, int n)
 {
     const int n_cells = n_positions * PARTS;
@@ -156,7 +156,7 @@ static void average(struct wb_marker_mean *mean, const struct cell *cells, int n
     int used = 0;
     mean->n_samples = n;
     mean->n_positions = 0;
-    int counted = -1; /* the last position that counts */
+    int counted = -1; /* the last position that was counted */
     for (int c = 0; c < n_cells; c++) {
         double sum[2] = {0.0, 0.0}, square = 0.0;
         int count = 0;

@@ -23,18 +23,19 @@
 
 #define WB_LOG_DOMAIN "validate"
 
-/* Below this deflection the zero of force rules the error, m. */
+/* Below this deflection (m) the error of the force's zero dominates. */
 #define NEAR_ZERO (5.0 * WB_MM)
-/* Diameters further apart than this are different wires. */
+/* Relative difference of diameters above which two wires are different. */
 #define SAME_DIAMETER 0.01
-/* Deflection step on the way to one shape, m, and how many steps of force there are. */
+/* Deflection step towards a shape, m, and number of force steps towards one. */
 #define SHAPE_STEP (1.0 * WB_MM)
 #define FORCE_STEPS 100
-/* Frames of a follower test's model to a step of the grid, whose ends may be far from each other.
- */
+/* Frames of a follower test's model per step of the grid, between which the deflection may change a
+ * lot. */
 #define FRAMES 4
-/* Curvatures larger than the known ones by this factor are beyond. A test like the calibration's
- * own, which is known as far as its least bent specimen, is not. */
+/* Curvatures larger than the known ones by this factor are reported as beyond. The factor excludes
+ * tests like the calibration's own, whose curvatures are known up to those of the least bent
+ * specimen. */
 #define BEYOND 1.1
 
 enum wb_status wb_validate_check_wire(const struct wb_properties *properties,
@@ -53,7 +54,7 @@ enum wb_status wb_validate_check_wire(const struct wb_properties *properties,
     return WB_OK;
 }
 
-/* The first point beyond 5 mm; n when there is none. */
+/* The first point beyond 5 mm; n if there is none. */
 static int beyond_zero(const struct wb_curve *curve)
 {
     int first = 0;
@@ -64,7 +65,7 @@ static int beyond_zero(const struct wb_curve *curve)
     return first;
 }
 
-/* Room for a prediction of a curve. */
+/* Allocates the arrays of a prediction. */
 static void take_room(struct wb_prediction *prediction, const struct wb_curve *curve)
 {
     const size_t size = (size_t)curve->n;
@@ -73,12 +74,12 @@ static void take_room(struct wb_prediction *prediction, const struct wb_curve *c
     prediction->error = wb_memory_new(size, sizeof *prediction->error);
 }
 
-/* How far the predicted values are off. */
-static void judge(struct wb_prediction *prediction, const struct wb_curve *curve)
+/* Computes the errors of the predicted values. */
+static void compute_errors(struct wb_prediction *prediction, const struct wb_curve *curve)
 {
     wb_errors_curve(curve->n, curve->value, prediction->value, wb_curve_scale(curve),
                     prediction->error);
-    /* Cut short, the errors are of the part that was reached; n_reached is their number. */
+    /* A prediction that was cut short is scored over the part that it reached. */
     const int n = prediction->n_reached;
     const int first = beyond_zero(curve);
     prediction->rms = n >= 2 ? wb_errors_rms(n, prediction->error) : (double)NAN;
@@ -93,12 +94,12 @@ static enum wb_status predict(struct wb_prediction *prediction, struct wb_comput
     take_room(prediction, curve);
     WB_TRY(wb_computed_curve(computed, material, curve->n, curve->step, prediction->value,
                              &prediction->n_reached));
-    judge(prediction, curve);
+    compute_errors(prediction, curve);
     return WB_OK;
 }
 
-/* The mean of what each sample does with its own bow. A wire that is bowed up yields otherwise than
- * one that is bowed down, so that the curve of the mean bow is not the mean curve. */
+/* Mean of the predictions for each sample's own bow. Wires bowed up and down yield differently, so
+ * the curve of the mean bow is not the mean curve. */
 static enum wb_status predict_mean(struct wb_prediction *prediction,
                                    const struct wb_dataset *const *datasets, int n,
                                    const struct wb_material *material, const struct wb_curve *curve,
@@ -122,14 +123,14 @@ static enum wb_status predict_mean(struct wb_prediction *prediction,
     }
     free(value);
     if (status == WB_OK)
-        judge(prediction, curve);
+        compute_errors(prediction, curve);
     return status;
 }
 
-/* --- what scatter lets expect --- */
+/* --- error expected from scatter --- */
 
-/* G of validate.h: root mean square of dF/d ln k over F_max; NaN where the beam does not reach the
- * end of the curve. */
+/* G of validate.h: root mean square of dF/d ln k over F_max; NaN if the beam does not reach the end
+ * of the curve. */
 static enum wb_status find_sensitivity(double *G, const struct wb_validate_result *result,
                                        const struct wb_law *law,
                                        const struct wb_computed_settings *how)
@@ -160,16 +161,16 @@ static enum wb_status find_sensitivity(double *G, const struct wb_validate_resul
     return status;
 }
 
-/* s of specimens whose curves scatter so. What the model makes of bows that the specimens do not
- * have is in the residual scatter alone, so that the smaller counts. */
+/* s of specimens whose curves have this scatter. The residual scatter contains errors of the model
+ * for bows that the specimens do not have, so the smaller of the two is used. */
 static double deviation_of(double scatter, double residual_scatter, double G)
 {
     return isfinite(scatter) ? fmin(scatter, residual_scatter) / G : (double)NAN;
 }
 
-/* What scatter between specimens makes of a perfect model's error; see validate.h. Properties that
- * do not say how much the calibration's specimens differ in stiffness say how much their curves do,
- * and G changes little with the length. */
+/* Error of a perfect model expected from scatter between specimens; see validate.h. If the
+ * properties do not give the calibration's scatter of stiffness, it follows from the scatter of its
+ * curves, as G changes little with the length. */
 static void judge_scatter(struct wb_validate_result *result, const struct wb_properties *properties,
                           double G)
 {
@@ -190,7 +191,7 @@ static void judge_scatter(struct wb_validate_result *result, const struct wb_pro
     result->scatter_share = e.share;
 }
 
-/* A prediction that goes nowhere is an error, one that is cut short is warned about. */
+/* A prediction that does not start is an error, one that is cut short a warning. */
 static enum wb_status check_reached(const struct wb_validate_result *result, struct wb_reason *why)
 {
     const struct wb_curve *const curve = &result->curve;
@@ -200,25 +201,26 @@ static enum wb_status check_reached(const struct wb_validate_result *result, str
     if (n < 2)
         return wb_fail_to(
             why, WB_ERR_CONVERGENCE,
-            "wire '%s': the beam with the calibrated properties does not converge even "
-            "at %g %s",
+            "wire '%s': the beam with the calibrated properties does not converge even at %g %s",
             result->info.wire, curve->step / size, unit);
     if (n < curve->n)
-        wb_warn("wire '%s': the beam stops converging at %.2f of %.2f %s; errors are of that part",
-                result->info.wire, (n - 1) * curve->step / size,
-                (curve->n - 1) * curve->step / size, unit);
+        wb_warn(
+            "wire '%s': the beam converges only up to %.2f of %.2f %s; the errors are of that part",
+            result->info.wire, (n - 1) * curve->step / size, (curve->n - 1) * curve->step / size,
+            unit);
     return WB_OK;
 }
 
-/* What is left of a plain law is its material, which runs are given. */
+/* The law for a run in addition to its material; NULL for a plain law, which its material describes
+ * completely. */
 static const struct wb_law *overlay_of(const struct wb_properties *properties)
 {
     const bool is_plain = wb_law_is_plain(&properties->law) && properties->law.n_maxwell == 0;
     return is_plain ? NULL : &properties->law;
 }
 
-/* Mean speed of the deflection on the first loadings, m/s; 0 where no time is known, and of a
- * follower test. */
+/* Mean rate of deflection of the first loadings, m/s; 0 if a dataset has no times or is a follower
+ * test. */
 static double loading_speed(const struct wb_dataset *const *datasets, int n)
 {
     double sum = 0.0;
@@ -239,7 +241,7 @@ static double loading_speed(const struct wb_dataset *const *datasets, int n)
     return sum;
 }
 
-/* The elastic prediction beside it. */
+/* The elastic prediction for comparison. */
 static enum wb_status predict_elastic(struct wb_validate_result *result,
                                       const struct wb_material *material,
                                       const struct wb_computed_settings *how)
@@ -294,7 +296,7 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
     return check_reached(result, why);
 }
 
-/* The unloading and later cycles; a test that has none is as good. */
+/* The unloading and later cycles; a test without them is valid. */
 static enum wb_status validate_cycles(struct wb_validate_result *result,
                                       const struct wb_properties *properties,
                                       const struct wb_dataset *const *datasets, int n,
@@ -311,16 +313,17 @@ static enum wb_status validate_cycles(struct wb_validate_result *result,
     WB_TRY(wb_validate_cycles_run(&result->cycles, &properties->law, datasets, n, &how));
     result->is_beyond = result->cycles.clamp_curvature > BEYOND * known;
     if (result->is_beyond)
-        wb_warn("wire '%s', L = %g mm: the clamp is bent to %.3g /m, the properties are known up "
-                "to %.3g /m: beyond, they are a guess",
+        wb_warn("wire '%s', L = %g mm: the curvature at the clamp reaches %.3g /m, but the "
+                "properties are known only up to %.3g /m: the prediction is an extrapolation",
                 result->info.wire, result->info.length / WB_MM, result->cycles.clamp_curvature,
                 known);
     return WB_OK;
 }
 
-/* The datasets with the bows that the properties find, see analysis/calibration/cycle/cycle_bow.h;
- * their rows are borrowed. A law of a loading alone, whose E is uncertain, leaves the bows to the
- * alignment, and so does a sample whose first cycle cannot be taken. */
+/* Copies the datasets with the bows that the properties find
+ * (analysis/calibration/cycle/cycle_bow.h); their rows are borrowed. The bow is left as aligned
+ * for a law of loading alone, whose E is uncertain, and for a sample whose first cycle cannot be
+ * read. */
 static enum wb_status find_bows(struct wb_dataset *bent, const struct wb_dataset *const *datasets,
                                 int n, const struct wb_properties *properties,
                                 const struct wb_calibrate_settings *settings)
@@ -499,9 +502,9 @@ void wb_validate_result_release(struct wb_validate_result *result)
     memset(result, 0, sizeof *result);
 }
 
-/* Moves the virgin wire to a deflection in even steps. */
-static enum wb_status reach(struct wb_computed *computed, const struct wb_material *material,
-                            double deflection)
+/* Moves the virgin wire to a deflection in equal steps. */
+static enum wb_status move_to_deflection(struct wb_computed *computed,
+                                         const struct wb_material *material, double deflection)
 {
     bool reached;
     double force;
@@ -510,14 +513,14 @@ static enum wb_status reach(struct wb_computed *computed, const struct wb_materi
     for (int i = 1; reached && i <= steps; i++)
         WB_TRY(wb_computed_move(computed, deflection * i / steps, &force, &reached));
     if (!reached)
-        return wb_fail(WB_ERR_CONVERGENCE, "the beam does not converge on the way to %.2f mm",
+        return wb_fail(WB_ERR_CONVERGENCE, "the beam does not converge before %.2f mm",
                        deflection / WB_MM);
     return WB_OK;
 }
 
-/* The same to a follower force. */
-static enum wb_status push(struct wb_computed *computed, const struct wb_material *material,
-                           double force)
+/* The same for a follower force. */
+static enum wb_status load_to_force(struct wb_computed *computed,
+                                    const struct wb_material *material, double force)
 {
     bool reached;
     double deflection;
@@ -525,12 +528,11 @@ static enum wb_status push(struct wb_computed *computed, const struct wb_materia
     for (int i = 1; reached && i <= FORCE_STEPS; i++)
         WB_TRY(wb_computed_push(computed, force * i / FORCE_STEPS, &deflection, &reached));
     if (!reached)
-        return wb_fail(WB_ERR_CONVERGENCE, "the beam does not converge on the way to %.4g N",
-                       force);
+        return wb_fail(WB_ERR_CONVERGENCE, "the beam does not converge before %.4g N", force);
     return WB_OK;
 }
 
-/* Goes there and takes the shape. */
+/* Loads the wire to the target and copies its shape. */
 static enum wb_status
 find_shape(const struct wb_properties *properties, const struct wb_test_info *info,
            enum wb_status (*go)(struct wb_computed *, const struct wb_material *, double),
@@ -560,12 +562,12 @@ enum wb_status wb_validate_shape(const struct wb_properties *properties,
                                  double *x, double *y)
 {
     const struct wb_validate_points points = {.n = n, .x = x, .y = y};
-    return find_shape(properties, info, reach, deflection, &points);
+    return find_shape(properties, info, move_to_deflection, deflection, &points);
 }
 
 enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
                                           const struct wb_test_info *info, double force,
                                           const struct wb_validate_points *points)
 {
-    return find_shape(properties, info, push, force, points);
+    return find_shape(properties, info, load_to_force, force, points);
 }

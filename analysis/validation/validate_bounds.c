@@ -6,12 +6,13 @@
 
 #include "base/units.h"
 
-/* Probability of each part, which makes that of any one in twenty: tests/analysis/validation. */
+/* Level of each part's bound, so that a correct law exceeds any bound in one of twenty validations:
+ * tests/analysis/validation. */
 static const double level = 0.028;
-/* Least standard deviations between samples: of the unloading over F_max, of the residual
- * deflection in m. Few samples agree better than they differ. */
+/* Smallest standard deviations between samples that are used: of the unloading over F_max, of the
+ * residual deflection in m. The deviation of few samples is often too small by chance. */
 static const double least_unloading = 2e-3, least_residual = 0.2 * WB_MM;
-/* How far the law may miss, in units of its misfit in the calibration. */
+/* Error of the law that is allowed, in units of its misfit in the calibration. */
 static const double misfits = 2.0;
 
 static const struct part {

@@ -11,7 +11,7 @@
 
 #define WB_LOG_DOMAIN "validate"
 
-/* Between the points of the mean unloading, and of the model where nothing was measured. */
+/* Spacing of the points of the mean unloading, and of the model where there is no measurement. */
 static const double step = 1.0 * WB_MM;
 
 const double wb_validate_stiffer_by = 0.01;
@@ -33,26 +33,26 @@ struct wb_law wb_validate_stiffer(const struct wb_law *law, double ln_factor)
     return scaled;
 }
 
-/* One way of a test, measured and computed. */
-struct way {
-    int n, first; /* points, and where they begin in the path */
-    int n_before; /* points of the cycle's data before them */
+/* One branch (loading or unloading) of a cycle, measured and computed. */
+struct branch {
+    int n, first; /* number of points, and index of the first in the path */
+    int n_before; /* points of the cycle's data before this branch */
 };
 
-/* A sample's cycles as one path of the tip from zero up and back, again and again. */
+/* A sample's cycles as one path of the tip: from zero up and down, repeatedly. */
 struct sample {
     int n_cycles;
     struct wb_cycle_data data[WB_VALIDATE_MOST_LOOPS + 1]; /* of each cycle */
-    struct way up[WB_VALIDATE_MOST_LOOPS + 1], back[WB_VALIDATE_MOST_LOOPS + 1];
-    int end_of_first; /* of the path's points: those of the first cycle down to zero */
+    struct branch up[WB_VALIDATE_MOST_LOOPS + 1], back[WB_VALIDATE_MOST_LOOPS + 1];
+    int end_of_first; /* number of the path's points up to the end of the first cycle at zero */
     struct wb_cycle_data path;
-    double *tension; /* (path.n_points) N; beyond what was reached NaN */
+    double *tension; /* (path.n_points) N; NaN beyond the point that was reached */
     double zero;     /* N: computed tension at zero deflection */
-    double *adapted; /* (end_of_first) N: the same of a law as stiff as this specimen, */
+    double *adapted; /* (end_of_first) N: tension of a law as stiff as this specimen, */
     double adapted_zero;
-    double ln_stiffness; /* by its own loading: NaN where that was not found */
+    double ln_stiffness; /* from its own loading; NaN if not found */
     double curvature;
-    bool is_good; /* its first unloading is computed */
+    bool is_good; /* its first unloading was computed */
 };
 
 static void release_sample(struct sample *sample)
@@ -69,25 +69,25 @@ static void add_point(struct wb_cycle_data *path, double deflection, double t)
     path->points[path->n_points++] = (struct wb_cycle_point){.deflection = deflection, .t = t};
 }
 
-/* When the line through two points reaches a deflection. */
+/* Time at which the line through two points reaches a deflection. */
 static double time_at(const struct wb_cycle_point *a, const struct wb_cycle_point *b,
                       double deflection)
 {
     return a->t + (b->t - a->t) * (deflection - a->deflection) / (b->deflection - a->deflection);
 }
 
-static struct way add_way(struct wb_cycle_data *path, const struct wb_cycle_data *data, int begin,
-                          int end)
+static struct branch add_branch(struct wb_cycle_data *path, const struct wb_cycle_data *data,
+                                int begin, int end)
 {
-    const struct way way = {.n = end - begin, .first = path->n_points, .n_before = begin};
+    const struct branch branch = {.n = end - begin, .first = path->n_points, .n_before = begin};
     for (int i = begin; i < end; i++)
         add_point(path, data->points[i].deflection, data->points[i].t);
-    return way;
+    return branch;
 }
 
-/* On downwards to the rest; where the strand becomes slack on the way, the tip stays. A wire that
- * is still held at zero deflection is bent back as far as the rest, and loses the more for it in
- * the next cycle. */
+/* Continues downwards to the rest; if the strand becomes slack before, the tip stays there. A wire
+ * that is still loaded at zero deflection is bent back as far as the rest, which adds to the loss
+ * in the next cycle. */
 static void add_descent(struct wb_cycle_data *path)
 {
     const double lowest = wb_cycle_model_rest(&path->info);
@@ -118,14 +118,14 @@ static void make_path(struct sample *sample)
     add_point(path, 0.0, time_at(sample->data[0].points, sample->data[0].points + 1, 0.0));
     for (int k = 0; k < sample->n_cycles; k++) {
         const struct wb_cycle_data *const data = &sample->data[k];
-        sample->up[k] = add_way(path, data, 0, data->n_loading);
+        sample->up[k] = add_branch(path, data, 0, data->n_loading);
         if (k == 0)
-            path->n_loading = path->n_points; /* the model goes on to the turn by itself */
+            path->n_loading = path->n_points; /* the model reaches the turn on its own */
         else
             add_point(path, data->top, data->arrival);
         if (k > 0 && data->n_held > 0)
             add_point(path, data->top, data->departure);
-        sample->back[k] = add_way(path, data, data->n_loading, data->n_points);
+        sample->back[k] = add_branch(path, data, data->n_loading, data->n_points);
         if (sample->back[k].n > 0)
             add_descent(path);
         if (k == 0)
@@ -142,8 +142,8 @@ static bool is_finite(const struct sample *sample, int begin, int end)
     return true;
 }
 
-/* Its later cycles as far as they are there, one after the other. */
-static void take_later(struct sample *sample, const struct wb_dataset *dataset)
+/* Reads the later cycles in order until one is missing. */
+static void read_later_cycles(struct sample *sample, const struct wb_dataset *dataset)
 {
     while (sample->n_cycles <= WB_VALIDATE_MOST_LOOPS) {
         const struct wb_cycle_data_settings settings = {.cycle = sample->n_cycles + 1};
@@ -157,12 +157,13 @@ static void take_later(struct sample *sample, const struct wb_dataset *dataset)
     }
 }
 
-/* The law as stiff as the specimen: by least squares over the points of its first loading, to first
- * order. What remains of the unloading is then the law's, and not the specimen's stiffness. */
+/* Scales the law to the specimen's stiffness: least squares over the points of its first loading,
+ * to first order. The remaining error of the unloading is then that of the law, not of the
+ * specimen's stiffness. */
 static void find_stiffness(struct sample *sample, const double *stiffer)
 {
     const struct wb_cycle_data *const data = &sample->data[0];
-    const struct way *const up = &sample->up[0];
+    const struct branch *const up = &sample->up[0];
     double squares = 0.0, products = 0.0;
     for (int i = 0; i < up->n; i++) {
         const int at = up->first + i;
@@ -204,7 +205,8 @@ static enum wb_status adapt(struct sample *sample, const struct wb_law *law,
     return status;
 }
 
-/* WB_OK with sample->is_good false: `why` says why. */
+/* Returns WB_OK with sample->is_good false if the sample cannot be computed; `why` receives the
+ * reason. */
 static enum wb_status compute(struct sample *sample, const struct wb_law *law,
                               const struct wb_dataset *dataset,
                               const struct wb_validate_cycle_settings *settings,
@@ -222,9 +224,9 @@ static enum wb_status compute(struct sample *sample, const struct wb_law *law,
     if (taken != WB_OK)
         return taken == WB_ERR_DATA ? WB_OK : taken;
     sample->n_cycles = 1;
-    const bool has_way_back = sample->data[0].n_points > sample->data[0].n_loading;
-    if (has_way_back)
-        take_later(sample, dataset);
+    const bool has_unloading = sample->data[0].n_points > sample->data[0].n_loading;
+    if (has_unloading)
+        read_later_cycles(sample, dataset);
     make_path(sample);
     WB_TRY(wb_cycle_model_create(&model, &sample->path, law, &how));
     const enum wb_status status =
@@ -233,8 +235,8 @@ static enum wb_status compute(struct sample *sample, const struct wb_law *law,
     WB_TRY(status);
     sample->curvature = run.clamp_curvature;
     sample->zero = sample->tension[0];
-    sample->is_good = has_way_back && is_finite(sample, 0, sample->end_of_first);
-    if (has_way_back && !sample->is_good)
+    sample->is_good = has_unloading && is_finite(sample, 0, sample->end_of_first);
+    if (has_unloading && !sample->is_good)
         (void)wb_fail_to(why, WB_ERR_CONVERGENCE,
                          "wire '%s', sample %d: the beam does not converge over the first cycle",
                          info->wire, info->sample);
@@ -247,7 +249,7 @@ static enum wb_status compute(struct sample *sample, const struct wb_law *law,
 static void at_deflection(const struct sample *sample, double deflection, double *measured,
                           double *computed, double *adapted)
 {
-    const struct way *const back = &sample->back[0];
+    const struct branch *const back = &sample->back[0];
     const struct wb_cycle_data *const data = &sample->data[0];
     const struct wb_cycle_point *const points = data->points + data->n_loading;
     const double *const tension = sample->tension + back->first;
@@ -265,10 +267,10 @@ static void at_deflection(const struct sample *sample, double deflection, double
     *adapted += (1.0 - part) * own[i - 1] + part * own[i] - sample->adapted_zero;
 }
 
-/* What is left of the specimens' unloading at a deflection once the law is as stiff as each of
- * them: mean over the specimens, and variance between them. */
-static void find_left(const struct sample *samples, int n, double deflection, double *mean,
-                      double *variance)
+/* Error of the unloading at a deflection with the law as stiff as each specimen: mean over the
+ * specimens, and variance between them. */
+static void find_remaining_error(const struct sample *samples, int n, double deflection,
+                                 double *mean, double *variance)
 {
     double sum = 0.0, squares = 0.0;
     int count = 0;
@@ -332,7 +334,7 @@ static void find_mean(struct wb_validate_cycles *cycles, const struct sample *sa
             if (samples[i].is_good)
                 at_deflection(&samples[i], cycles->deflection[k], measured, computed, &unused);
         }
-        find_left(samples, n, cycles->deflection[k], &mean, &variance);
+        find_remaining_error(samples, n, cycles->deflection[k], &mean, &variance);
         left += mean * mean;
         scatter += variance;
         *measured /= cycles->n_samples;
@@ -396,7 +398,7 @@ static void find_residual(struct wb_validate_cycles *cycles, const struct sample
 
 /* --- later cycles --- */
 
-/* Work of the tension between two deflections on a way up, or got back on the way down. */
+/* Work of the tension between two deflections of a branch; on unloading the recovered work. */
 static double work_of(const struct wb_cycle_point *points, const double *tension, int n, double low,
                       double high)
 {
@@ -419,7 +421,7 @@ static void find_loop(struct wb_validate_loop *loop, const struct sample *sample
         const struct sample *const sample = &samples[i];
         if (!sample->is_good || sample->n_cycles <= k || sample->back[k].n < 2)
             continue;
-        const struct way *const up = &sample->up[k], *const back = &sample->back[k];
+        const struct branch *const up = &sample->up[k], *const back = &sample->back[k];
         if (!is_finite(sample, up->first, back->first + back->n))
             continue;
         const struct wb_cycle_point *const p = sample->data[k].points;

@@ -1,4 +1,4 @@
-/* Scores of a validation beyond the first loading as JSON: the same in `validate --json` and
+/* Scores of a validation beyond the first loading as JSON, for `validate --json` and
  * report.json. */
 #ifndef WB_ANALYSIS_VALIDATION_VALIDATE_JSON_H
 #define WB_ANALYSIS_VALIDATION_VALIDATE_JSON_H
@@ -6,9 +6,9 @@
 #include "analysis/validation/validate.h"
 #include "base/json.h"
 
-/* Sets the members clamp_curvature_1_m, beyond_known_curvature, unloading, residual_deflection_mm
- * and loop_energy_mJ of `item`; without unloading `unloading` is null and the last two are left
- * out. */
+/* Sets the members clamp_curvature_1_m, beyond_known_curvature, unloading,
+ * residual_deflection_mm and loop_energy_mJ of `item`; without unloading `unloading` is null and
+ * the last two are absent. */
 void wb_validate_json_put_cycles(struct wb_json *item, const struct wb_validate_result *result);
 
 #endif

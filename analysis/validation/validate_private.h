@@ -1,10 +1,10 @@
-/* A part of validate.c that tests call by itself. */
+/* Declarations for the tests of validate.c. */
 #ifndef WB_ANALYSIS_VALIDATION_VALIDATE_PRIVATE_H
 #define WB_ANALYSIS_VALIDATION_VALIDATE_PRIVATE_H
 
 #include "analysis/validation/validate.h"
 
-/* Points at equal arc length from the clamp to the tip, to be filled in. */
+/* Points at equal arc length from the clamp to the tip; arrays of the caller. */
 struct wb_validate_points {
     int n;
     double *x, *y; /* (n) m */
@@ -12,7 +12,7 @@ struct wb_validate_points {
 };
 
 /* The shape of a follower test under a force (N), otherwise as wb_validate_shape(). The force may
- * be one under which the wire has curled up and the deflection falls again. */
+ * be one under which the wire has curled up and the deflection decreases again. */
 WB_MUST_CHECK enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
                                                         const struct wb_test_info *info,
                                                         double force,

@@ -13,7 +13,7 @@ void wb_validate_tables_put(struct wb_text *text, double value, char end)
     wb_text_append(text, "%s%c", isfinite(value) ? wb_number_format(value, number) : "", end);
 }
 
-/* The wire's name without what would break a table. */
+/* The wire's name with the characters replaced that would break a table. */
 static void plain_name(char *name, size_t size, const struct wb_test_info *info)
 {
     snprintf(name, size, "%s", info->wire);

@@ -19,29 +19,29 @@
 
 enum {
     GRID = WB_VALIDATE_THREE_POINT_GRID,
-    LAST_POINTS = 3 /* of the unloading, whose line leads to zero force */
+    LAST_POINTS = 3 /* points of the unloading whose line is extrapolated to zero force */
 };
 
-/* See validate.c. */
+/* Factor as in validate.c. */
 static const double beyond = 1.1;
 
-/* What one group is computed with. */
+/* Common input of the runs of one group. */
 struct group {
     struct wb_validate_three_point *result;
     const struct wb_law *law;
     const struct wb_three_point_calibrate_settings *settings;
     struct wb_three_point_model *model;
-    double deepest; /* m of deflection, of all tests */
+    double deepest; /* largest deflection of all tests, m */
 };
 
-/* --- a law on a bench --- */
+/* --- runs of a law on a bench --- */
 
 /* Means over the tests, each with its own bow, at the deflections of the loading. */
 struct curve {
     double force[GRID], stiffness[GRID]; /* N, N/m of travel */
-    double force_as_read[GRID];          /* where each test begins where the readings show it */
-    double largest_curvature;            /* 1/m */
-    bool reached;                        /* else nothing is computed */
+    double force_as_read[GRID]; /* each test begins at the first contact that the readings show */
+    double largest_curvature;   /* 1/m */
+    bool reached;               /* else the arrays are not set */
 };
 
 static double bend(const struct group *g, const struct wb_validate_three_point_test *test)
@@ -61,7 +61,7 @@ static enum wb_status compute(const struct group *g, struct wb_three_point_model
 {
     const struct wb_validate_three_point *const r = g->result;
     struct wb_three_point_run run = {.reached = false};
-    double bent = (double)NAN; /* none is computed */
+    double bent = (double)NAN; /* not computed yet */
     *curve = (struct curve){.reached = true};
     for (int i = 0; i < r->n_tests && curve->reached; i++) {
         const struct wb_validate_three_point_test *const test = &r->tests[i];
@@ -85,7 +85,7 @@ static enum wb_status compute(const struct group *g, struct wb_three_point_model
     return WB_OK;
 }
 
-/* A bench or a law other than the group's. */
+/* Computes with a bench or a law other than the group's. */
 static enum wb_status compute_other(const struct group *g, const struct wb_three_point_bench *bench,
                                     const struct wb_law *law, struct curve *curve)
 {
@@ -113,7 +113,7 @@ static enum wb_status find_places(const struct group *g, struct wb_reason *why)
                                          &g->settings->fit, &run));
         if (!run.reached)
             return wb_fail_to(why, WB_ERR_CONVERGENCE,
-                              "wire '%s', span %g mm: the model comes to %.3g of %.3g mm (%s): use "
+                              "wire '%s', span %g mm: the model reaches %.3g of %.3g mm (%s): use "
                               "less of the test (usable_travel_mm, --usable-mm)",
                               r->info.wire, r->info.length / WB_MM, run.travel / WB_MM,
                               g->deepest / WB_MM, wb_three_point_bending_end_name(run.end));
@@ -136,10 +136,10 @@ static enum wb_status find_places(const struct group *g, struct wb_reason *why)
 
 /* --- the loading --- */
 
-/* The deflections that all tests have, and the mean of what was measured. */
+/* Finds the deflections that all tests have, and the mean measured loading. */
 static enum wb_status find_loading(struct wb_validate_three_point *r, struct wb_reason *why)
 {
-    struct wb_validate_three_point_way *const way = &r->loading;
+    struct wb_validate_three_point_branch *const branch = &r->loading;
     double from = 0.0, to = HUGE_VAL, squares = 0.0;
     for (int i = 0; i < r->n_tests; i++) {
         const struct wb_validate_three_point_test *const test = &r->tests[i];
@@ -153,27 +153,27 @@ static enum wb_status find_loading(struct wb_validate_three_point *r, struct wb_
     if (!(to > from))
         return wb_fail_to(why, WB_ERR_DATA,
                           "wire '%s', span %g mm: the tests have no deflections in common: "
-                          "validate them by themselves",
+                          "validate them separately",
                           r->info.wire, r->info.length / WB_MM);
-    way->n = GRID;
+    branch->n = GRID;
     for (int k = 0; k < GRID; k++) {
         double sum = 0.0, spread = 0.0;
-        way->deflection[k] = from + (to - from) * k / (GRID - 1);
+        branch->deflection[k] = from + (to - from) * k / (GRID - 1);
         for (int pass = 0; pass < 2; pass++) {
             for (int i = 0; i < r->n_tests; i++) {
                 const struct wb_validate_three_point_test *const test = &r->tests[i];
                 if (!test->is_used)
                     continue;
                 const double force = wb_three_point_data_force(
-                    &test->data, way->deflection[k] + test->first_contact, false);
+                    &test->data, branch->deflection[k] + test->first_contact, false);
                 if (pass == 0)
                     sum += force / r->n_used;
                 else
                     spread += pow(force - sum, 2);
             }
         }
-        way->measured[k] = sum;
-        way->deviation[k] = r->n_used > 1 ? sqrt(spread / (r->n_used - 1)) : (double)NAN;
+        branch->measured[k] = sum;
+        branch->deviation[k] = r->n_used > 1 ? sqrt(spread / (r->n_used - 1)) : (double)NAN;
         squares += spread / fmax(1.0, r->n_used - 1.0) / GRID;
         r->max_force = fmax(r->max_force, sum);
     }
@@ -181,12 +181,12 @@ static enum wb_status find_loading(struct wb_validate_three_point *r, struct wb_
     return WB_OK;
 }
 
-static void judge(struct wb_validate_three_point_way *way, double max_force)
+static void compute_errors(struct wb_validate_three_point_branch *branch, double max_force)
 {
     double error[GRID];
-    wb_errors_curve(way->n, way->measured, way->computed, max_force, error);
-    way->rms = wb_errors_rms(way->n, error);
-    way->largest_error = wb_errors_largest(way->n, error);
+    wb_errors_curve(branch->n, branch->measured, branch->computed, max_force, error);
+    branch->rms = wb_errors_rms(branch->n, error);
+    branch->largest_error = wb_errors_largest(branch->n, error);
 }
 
 static double rms_of(const struct wb_validate_three_point *r, const double *force)
@@ -247,9 +247,9 @@ static double zero_of(const struct wb_validate_three_point_test *test)
                                                                      : (double)NAN;
 }
 
-/* The test by itself up to its own turn and back. */
-static enum wb_status go_back(const struct group *g, struct wb_validate_three_point_test *test,
-                              bool *reached)
+/* Computes a test separately, up to its own turn and back. */
+static enum wb_status run_unloading(const struct group *g,
+                                    struct wb_validate_three_point_test *test, bool *reached)
 {
     const struct wb_three_point_data *const data = &test->data;
     const double top = data->usable - test->first_contact;
@@ -271,12 +271,12 @@ static enum wb_status go_back(const struct group *g, struct wb_validate_three_po
                        data->points[i].force,
                    2);
     test->unloading_rms = sqrt(sum / (data->n_points - loading)) / data->max_force;
-    test->left_measured = zero_of(test);
-    test->left_computed = run.left;
+    test->residual_measured = zero_of(test);
+    test->residual_computed = run.left;
     return WB_OK;
 }
 
-/* Deflections of all unloadings. */
+/* Deflections that all unloadings have. */
 static void find_common(const struct wb_validate_three_point *r, double *low, double *high)
 {
     *low = 0.0;
@@ -295,20 +295,20 @@ static void find_common(const struct wb_validate_three_point *r, double *low, do
 static enum wb_status validate_unloading(const struct group *g)
 {
     struct wb_validate_three_point *const r = g->result;
-    struct wb_validate_three_point_way *const way = &r->unloading;
+    struct wb_validate_three_point_branch *const branch = &r->unloading;
     double low, high, squares = 0.0, measured = 0.0, computed = 0.0;
     long n_points = 0;
     int n_left = 0;
     find_common(r, &low, &high);
     for (int k = 0; k < GRID; k++)
-        way->deflection[k] = high - (high - low) * k / (GRID - 1);
+        branch->deflection[k] = high - (high - low) * k / (GRID - 1);
     for (int i = 0; i < r->n_tests; i++) {
         struct wb_validate_three_point_test *const test = &r->tests[i];
         bool reached = false;
-        test->unloading_rms = test->left_measured = test->left_computed = (double)NAN;
+        test->unloading_rms = test->residual_measured = test->residual_computed = (double)NAN;
         if (!test->is_used || !test->data.has_unloading)
             continue;
-        WB_TRY(go_back(g, test, &reached));
+        WB_TRY(run_unloading(g, test, &reached));
         if (!reached)
             continue;
         const int n = test->data.n_points - wb_three_point_data_count_loading(&test->data);
@@ -316,37 +316,38 @@ static enum wb_status validate_unloading(const struct group *g)
         squares += n * pow(test->unloading_rms * test->data.max_force, 2);
         n_points += n;
         for (int k = 0; k < GRID; k++) {
-            way->measured[k] += wb_three_point_data_force(
-                &test->data, way->deflection[k] + test->first_contact, true);
-            way->computed[k] += wb_three_point_model_force(g->model, way->deflection[k], true);
+            branch->measured[k] += wb_three_point_data_force(
+                &test->data, branch->deflection[k] + test->first_contact, true);
+            branch->computed[k] +=
+                wb_three_point_model_force(g->model, branch->deflection[k], true);
         }
-        if (!isfinite(test->left_measured))
+        if (!isfinite(test->residual_measured))
             continue;
-        measured += test->left_measured;
-        computed += test->left_computed;
+        measured += test->residual_measured;
+        computed += test->residual_computed;
         n_left++;
     }
-    r->left_measured = n_left > 0 ? measured / n_left : (double)NAN;
-    r->left_computed = n_left > 0 ? computed / n_left : (double)NAN;
-    r->unloading_rms_of_tests = way->rms = way->largest_error = (double)NAN;
+    r->residual_measured = n_left > 0 ? measured / n_left : (double)NAN;
+    r->residual_computed = n_left > 0 ? computed / n_left : (double)NAN;
+    r->unloading_rms_of_tests = branch->rms = branch->largest_error = (double)NAN;
     if (r->n_unloading == 0)
         return WB_OK;
     r->unloading_rms_of_tests = sqrt(squares / (double)n_points) / r->max_force;
     if (!(high > low))
         return WB_OK;
-    way->n = GRID;
+    branch->n = GRID;
     for (int k = 0; k < GRID; k++) {
-        way->measured[k] /= r->n_unloading;
-        way->computed[k] /= r->n_unloading;
-        way->deviation[k] = (double)NAN;
+        branch->measured[k] /= r->n_unloading;
+        branch->computed[k] /= r->n_unloading;
+        branch->deviation[k] = (double)NAN;
     }
-    judge(way, r->max_force);
+    compute_errors(branch, r->max_force);
     return WB_OK;
 }
 
-/* --- what scatter lets expect --- */
+/* --- error expected from scatter --- */
 
-/* G of validate.h. A wire that is stiffer by a factor bends a machine that gives way, too. */
+/* G of validate.h. With a stiffer wire a compliant machine deforms more, too. */
 static double find_sensitivity(const struct wb_validate_three_point *r, const struct curve *curve)
 {
     double of[GRID];
@@ -403,7 +404,7 @@ static void judge_scatter(struct wb_validate_three_point *r, const struct curve 
                                            !r->is_by_series  ? r->scatter_rms / G
                                            : r->n_series > 1 ? scatter_of_series(r) / G
                                                              : (double)NAN};
-    /* Of one series, the calibration says nothing of how much series differ. */
+    /* One series does not show how much series differ. */
     const bool is_one = r->is_by_series && properties->n_series <= 1;
     const struct wb_expected_group calibration = {
         is_one ? properties->n_samples > 0 : wb_properties_units(properties),
@@ -411,7 +412,7 @@ static void judge_scatter(struct wb_validate_three_point *r, const struct curve 
     r->expected = wb_expected_find(&here, &calibration, G, r->loading.rms);
 }
 
-/* --- all of it --- */
+/* --- the validation --- */
 
 static enum wb_status take_tests(struct group *g, const struct wb_dataset *const *datasets,
                                  struct wb_reason *why)
@@ -434,10 +435,11 @@ static enum wb_status take_tests(struct group *g, const struct wb_dataset *const
             fmax(g->deepest, data->usable - data->first_contact - r->bench.compliance * last);
     }
     if (r->n_used == 0)
-        return wb_fail_to(why, WB_ERR_DATA, "no test can be validated; the first: %s",
+        return wb_fail_to(why, WB_ERR_DATA, "no test can be validated; reason of the first: %s",
                           r->tests[0].why.text);
     if (!(g->deepest > 0.0))
-        return wb_fail_to(why, WB_ERR_DATA, "wire '%s': the compliance takes all of the travel",
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s': the machine's compliance accounts for all of the travel",
                           r->info.wire);
     return WB_OK;
 }
@@ -452,7 +454,7 @@ static enum wb_status validate(struct group *g, const struct wb_properties *prop
     WB_TRY(compute(g, g->model, g->law, &curve));
     r->largest_curvature = curve.largest_curvature;
     memcpy(r->loading.computed, curve.force, sizeof curve.force);
-    judge(&r->loading, r->max_force);
+    compute_errors(&r->loading, r->max_force);
     r->rms_as_read = rms_of(r, curve.force_as_read);
     judge_scatter(r, &curve, properties);
     WB_TRY(find_elastic(g));
@@ -461,8 +463,8 @@ static enum wb_status validate(struct group *g, const struct wb_properties *prop
     r->is_rule_untested = !properties->is_rule_tested;
     r->is_beyond = r->largest_curvature > beyond * properties->largest_curvature;
     if (r->is_beyond)
-        wb_warn("wire '%s', span %g mm: the middle is bent to %.3g /m, the properties are known up "
-                "to %.3g /m: beyond, they are a guess",
+        wb_warn("wire '%s', span %g mm: the curvature at midspan reaches %.3g /m, but the "
+                "properties are known only up to %.3g /m: the prediction is an extrapolation",
                 r->info.wire, r->info.length / WB_MM, r->largest_curvature,
                 properties->largest_curvature);
     return WB_OK;
@@ -507,18 +509,19 @@ void wb_validate_three_point_release(struct wb_validate_three_point *result)
 enum wb_status wb_validate_three_point_write_csv(const struct wb_validate_three_point *result,
                                                  bool unloading, const char *path)
 {
-    const struct wb_validate_three_point_way *const way =
+    const struct wb_validate_three_point_branch *const branch =
         unloading ? &result->unloading : &result->loading;
     struct wb_text text = {0};
     wb_validate_tables_put_origin(&text, &result->info, result->n_used);
     wb_text_append(&text, "deflection_mm,measured_N,deviation_N,computed_N,error%s\n",
                    unloading ? "" : ",elastic_N");
-    for (int k = 0; k < way->n; k++) {
-        wb_validate_tables_put(&text, way->deflection[k] / WB_MM, ',');
-        wb_validate_tables_put(&text, way->measured[k], ',');
-        wb_validate_tables_put(&text, way->deviation[k], ',');
-        wb_validate_tables_put(&text, way->computed[k], ',');
-        wb_validate_tables_put(&text, fabs(way->measured[k] - way->computed[k]) / result->max_force,
+    for (int k = 0; k < branch->n; k++) {
+        wb_validate_tables_put(&text, branch->deflection[k] / WB_MM, ',');
+        wb_validate_tables_put(&text, branch->measured[k], ',');
+        wb_validate_tables_put(&text, branch->deviation[k], ',');
+        wb_validate_tables_put(&text, branch->computed[k], ',');
+        wb_validate_tables_put(&text,
+                               fabs(branch->measured[k] - branch->computed[k]) / result->max_force,
                                unloading ? '\n' : ',');
         if (!unloading)
             wb_validate_tables_put(
@@ -532,7 +535,7 @@ enum wb_status wb_validate_three_point_write_csv(const struct wb_validate_three_
 void wb_validate_three_point_put_scores(struct wb_text *text,
                                         const struct wb_validate_three_point *r)
 {
-    const double none = (double)NAN, left = r->left_measured, computed = r->left_computed;
+    const double none = (double)NAN, left = r->residual_measured, computed = r->residual_computed;
     wb_validate_tables_put_score(text, &r->info, "loading", (double[]){none, none, r->loading.rms},
                                  "1");
     wb_validate_tables_put_score(text, &r->info, "loading_perfect_model_95",
@@ -590,7 +593,7 @@ void wb_validate_three_point_put_json(struct wb_json *item, const struct wb_vali
     struct wb_json *const bands = wb_json_set_array(item, "bands");
     for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         if (r->ends[i].value == (i < 2 ? r->bench.friction : r->bench.nose_radius))
-            continue; /* known */
+            continue; /* known exactly, not varied */
         struct wb_json *const entry = wb_json_append_object(bands);
         wb_json_set_text(entry, "of", r->ends[i].name);
         wb_json_set_number(entry, i < 2 ? "value" : "value_mm",
@@ -616,8 +619,8 @@ void wb_validate_three_point_put_json(struct wb_json *item, const struct wb_vali
         wb_json_set_number(unloading, "rms_of_samples", r->unloading_rms_of_tests);
         wb_json_set_boolean(unloading, "rule_untested", r->is_rule_untested);
         struct wb_json *const left = wb_json_set_object(item, "residual_deflection_mm");
-        wb_json_set_number(left, "measured", r->left_measured / WB_MM);
-        wb_json_set_number(left, "predicted", r->left_computed / WB_MM);
+        wb_json_set_number(left, "measured", r->residual_measured / WB_MM);
+        wb_json_set_number(left, "predicted", r->residual_computed / WB_MM);
     }
     put_tests(item, r);
     wb_json_set_number(item, "cpu_s", r->cpu_s);

@@ -101,14 +101,15 @@ static void predict(struct sums *sums, const struct wb_three_point_calibration *
     const struct wb_dataset *const pointer = &dataset;
     if (wb_validate_three_point_run(&result, &properties, &pointer, 1, &settings, &why) != WB_OK)
         fail_msg("%s", why.text);
-    const double left = result.left_computed - result.left_measured;
+    const double left = result.residual_computed - result.residual_measured;
     if (!isfinite(left) || !isfinite(result.unloading.rms))
         fail_msg("no unloading: %d, RMS %g, left %g and %g mm", result.n_unloading,
-                 result.unloading.rms, result.left_computed / WB_MM, result.left_measured / WB_MM);
+                 result.unloading.rms, result.residual_computed / WB_MM,
+                 result.residual_measured / WB_MM);
     sums->unloading += pow(result.unloading.rms, 2);
     sums->left += left;
     sums->left_squares += left * left;
-    sums->most_left = fmax(sums->most_left, result.left_measured);
+    sums->most_left = fmax(sums->most_left, result.residual_measured);
     wb_validate_three_point_release(&result);
     wb_dataset_release(&dataset);
 }

@@ -1,4 +1,4 @@
-/* Tests left out, with made-up curves whose laws are known. */
+/* Validation by tests left out, with synthetic curves whose laws are known. */
 #include "analysis/validation/left_out.h"
 
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static void set_law(struct wb_law *law, double times)
     wb_law_init_parallel(law, parts, WB_THREE_POINT_PARTS, 0.0, 0.4);
 }
 
-/* The curve of a law, as points behind a contact at `contact`. */
+/* The curve of a law, as points after a contact at `contact`. */
 static void make_member(struct wb_three_point_member *m, double times, double contact)
 {
     struct wb_section section = {0};
@@ -91,9 +91,9 @@ static void equal_tests_are_predicted_by_each_other(void **state)
     assert_close(r.deflection[WB_LEFT_OUT_GRID - 1], 3.15 * WB_MM, 1e-6);
 }
 
-/* Stiffnesses of 0.9, 1 and 1.1: s is 0.1 of the force, and a model without a bias is off the test
- * left out by what the others' mean is. */
-static void an_unbiased_model_is_off_by_the_scatter_alone(void **state)
+/* Stiffnesses of 0.9, 1 and 1.1: s is 0.1 of the force. The error of a model without bias is the
+ * difference between the test left out and the mean of the others. */
+static void the_error_of_an_unbiased_model_is_the_scatter(void **state)
 {
     (void)state;
     struct wb_left_out r;
@@ -107,7 +107,7 @@ static void an_unbiased_model_is_off_by_the_scatter_alone(void **state)
 }
 
 /* Laws that are 30 % too stiff for their curves. */
-static void a_wrong_law_is_a_bias(void **state)
+static void a_wrong_law_gives_a_bias(void **state)
 {
     (void)state;
     struct wb_left_out r;
@@ -121,7 +121,7 @@ static void a_wrong_law_is_a_bias(void **state)
     assert_close_relative(r.rms, hypot(r.expected, r.bias), 0.05);
 }
 
-static void a_contact_that_the_others_put_elsewhere_moves_the_model(void **state)
+static void the_contact_found_in_other_tests_shifts_the_model(void **state)
 {
     (void)state;
     struct wb_left_out r;
@@ -147,9 +147,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(equal_tests_are_predicted_by_each_other, release),
-        cmocka_unit_test_teardown(an_unbiased_model_is_off_by_the_scatter_alone, release),
-        cmocka_unit_test_teardown(a_wrong_law_is_a_bias, release),
-        cmocka_unit_test_teardown(a_contact_that_the_others_put_elsewhere_moves_the_model, release),
+        cmocka_unit_test_teardown(the_error_of_an_unbiased_model_is_the_scatter, release),
+        cmocka_unit_test_teardown(a_wrong_law_gives_a_bias, release),
+        cmocka_unit_test_teardown(the_contact_found_in_other_tests_shifts_the_model, release),
         cmocka_unit_test_teardown(one_test_cannot_be_left_out, release),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

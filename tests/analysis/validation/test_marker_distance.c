@@ -4,7 +4,7 @@
 
 static const double mm = WB_MM;
 
-/* Compares a dataset of the beam, changed by the caller, with the beam. */
+/* Compares a dataset of the beam, modified by the caller, with the beam. */
 static struct wb_marker_distance compare(const struct wb_dataset *dataset,
                                          const struct wb_material *material)
 {
@@ -26,14 +26,14 @@ static void make(struct wb_dataset *dataset)
     beam_dataset(dataset, &info, &material, 0.7 * mm, 49 * mm, 1.0);
 }
 
-static void the_beams_own_shapes_are_no_distance_away(void **state)
+static void the_distance_of_the_beams_own_shapes_is_zero(void **state)
 {
     (void)state;
     const struct wb_material material = beam_material(0);
     struct wb_dataset dataset;
     make(&dataset);
-    /* 71 frames of six markers beyond the clamp; between the grid's frames shapes are joined by a
-     * straight line. */
+    /* 71 frames of six markers beyond the clamp; between the grid's frames shapes are interpolated
+     * linearly. */
     const struct wb_marker_distance distance = compare(&dataset, &material);
     assert_int_equal(distance.n_points, 71 * 6);
     assert_true(distance.largest < 0.01 * mm);
@@ -56,7 +56,7 @@ static void a_shift_is_measured(void **state)
     wb_dataset_release(&dataset);
 }
 
-static void clamp_unloading_and_far_frames_do_not_count(void **state)
+static void clamp_unloading_and_far_frames_are_left_out(void **state)
 {
     (void)state;
     const struct wb_material material = beam_material(0);
@@ -81,7 +81,7 @@ static void clamp_unloading_and_far_frames_do_not_count(void **state)
     wb_dataset_release(&dataset);
 }
 
-static void without_shapes_there_is_no_distance(void **state)
+static void without_shapes_the_distance_is_unknown(void **state)
 {
     (void)state;
     const struct wb_material material = beam_material(0);
@@ -97,10 +97,10 @@ static void without_shapes_there_is_no_distance(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_beams_own_shapes_are_no_distance_away),
+        cmocka_unit_test(the_distance_of_the_beams_own_shapes_is_zero),
         cmocka_unit_test(a_shift_is_measured),
-        cmocka_unit_test(clamp_unloading_and_far_frames_do_not_count),
-        cmocka_unit_test(without_shapes_there_is_no_distance),
+        cmocka_unit_test(clamp_unloading_and_far_frames_are_left_out),
+        cmocka_unit_test(without_shapes_the_distance_is_unknown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,7 +55,7 @@ static void true_properties_predict_another_length(void **state)
     assert_true(result.elastoplastic.max_error < 1e-6);
     assert_true(result.shape_rms < 1e-3 * mm);
     assert_int_equal(result.n_shape_points, 54 * 6);
-    /* Without plasticity the prediction is far off, as in the paper's Fig. 14. */
+    /* Without plasticity the prediction is far too high, as in the paper's Fig. 14. */
     assert_true(result.elastic.rms > 0.1);
     assert_int_equal(result.elastic.n_reached, 54);
     assert_close(result.scatter_rms, 0.0, 0.0);
@@ -82,7 +82,7 @@ static void errors_are_over_the_largest_measured_force(void **state)
     wb_validate_result_release(&result);
 }
 
-static void a_bow_that_is_ignored_shows(void **state)
+static void ignoring_the_bow_increases_the_error(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
@@ -98,8 +98,8 @@ static void a_bow_that_is_ignored_shows(void **state)
     wb_validate_result_release(&result);
 }
 
-/* Their mean bow is none, and yet their mean curve is not a straight wire's. */
-static void samples_are_predicted_each_with_its_own_bow(void **state)
+/* Their mean bow is zero, but their mean curve differs from that of a straight wire. */
+static void each_sample_is_predicted_with_its_own_bow(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
@@ -124,7 +124,7 @@ static void samples_are_predicted_each_with_its_own_bow(void **state)
 /* Student's t of 0.975 for 2 and 5 degrees of freedom. */
 static const double t2 = 4.302653, t5 = 2.570582;
 
-static void scatter_explains_what_the_average_of_few_cannot(void **state)
+static void expected_error_follows_from_the_scatter(void **state)
 {
     (void)state;
     struct wb_properties properties = true_properties(2);
@@ -139,8 +139,8 @@ static void scatter_explains_what_the_average_of_few_cannot(void **state)
         datasets[i] = &dataset[i];
     }
     assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings, NULL), WB_OK);
-    /* The mean is 2 % above the truth, the samples scatter by 3.6 %. Their forces grow a little
-     * less than their stiffness, which the weights do not share. */
+    /* The mean is 2 % above the truth, the samples scatter by 3.6 %. Forces grow a little less than
+     * the stiffness, because the weights do not change. */
     assert_close_relative(result.scatter_rms / result.elastoplastic.rms, 0.0361 / 0.02, 0.01);
     assert_int_equal(result.stiffness_degrees, 2);
     assert_close_relative(result.stiffness_deviation, 0.0358, 0.05);
@@ -150,7 +150,8 @@ static void scatter_explains_what_the_average_of_few_cannot(void **state)
     const double own = result.stiffness_deviation;
     const double G = result.expected_rms / own * sqrt(3.0);
     wb_validate_result_release(&result);
-    /* The calibration's scatter is pooled with it, and its mean is off as well. */
+    /* The calibration's scatter is pooled with it, and the mean of the calibration is uncertain as
+     * well. */
     properties.n_samples = 4;
     properties.stiffness_deviation = 0.07;
     assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings, NULL), WB_OK);
@@ -159,7 +160,7 @@ static void scatter_explains_what_the_average_of_few_cannot(void **state)
     assert_close_relative(result.expected_rms, pooled * sqrt(1.0 / 3.0 + 1.0 / 4.0) * G, 1e-9);
     assert_close_relative(result.expected_rms_95, t5 * result.expected_rms, 1e-6);
     wb_validate_result_release(&result);
-    /* Files that do not know it have the scatter of curves; the smaller one counts. */
+    /* Files without it have the scatter of curves; the smaller of the two is used. */
     properties.stiffness_deviation = (double)NAN;
     properties.scatter_rms = 0.01;
     properties.residual_scatter_rms = 0.06;
@@ -171,7 +172,7 @@ static void scatter_explains_what_the_average_of_few_cannot(void **state)
         wb_dataset_release(&dataset[i]);
 }
 
-/* Two cycles of the beam itself with a law. */
+/* Two cycles of the beam model with a law. */
 static void cycle_dataset(struct wb_dataset *dataset, const struct wb_law *law, double bow)
 {
     const struct wb_test_info info = beam_info(2, 0.1, bow);
@@ -196,7 +197,7 @@ static void cycle_dataset(struct wb_dataset *dataset, const struct wb_law *law, 
         assert_int_equal(wb_computed_move(computed, row.deflection, &force, &reached), WB_OK);
         assert_true(reached);
         row.force = force;
-        /* A weight of 20 mN hangs at the strand; below it the strand is slack. */
+        /* A weight of 20 mN on the strand, which becomes slack below it. */
         row.tension = force + 0.02;
         if (row.tension < 0.0)
             row.phase = WB_PHASE_SLACK;
@@ -205,7 +206,7 @@ static void cycle_dataset(struct wb_dataset *dataset, const struct wb_law *law, 
     wb_computed_destroy(computed);
 }
 
-static void way_back_and_later_cycles_are_those_of_the_rule(void **state)
+static void unloading_and_later_cycles_follow_the_hardening_rule(void **state)
 {
     (void)state;
     struct wb_properties kinematic = true_properties(2), plain = true_properties(2);
@@ -232,7 +233,7 @@ static void way_back_and_later_cycles_are_those_of_the_rule(void **state)
     const double left = cycles->residual_measured;
     wb_validate_result_release(&result);
 
-    /* The rule of another hardening loads alike and comes back otherwise; it is marked untested. */
+    /* Another hardening rule has the same loading and another unloading; it is marked untested. */
     assert_int_equal(wb_validate_run(&result, &plain, datasets, 1, NULL, NULL), WB_OK);
     assert_true(result.elastoplastic.rms < 5e-3);
     assert_true(result.is_rule_untested);
@@ -245,14 +246,14 @@ static void way_back_and_later_cycles_are_those_of_the_rule(void **state)
     keep_messages();
     assert_int_equal(wb_validate_run(&result, &kinematic, datasets, 1, NULL, NULL), WB_OK);
     assert_true(result.is_beyond);
-    assert_message("known up to 5 /m");
+    assert_message("only up to 5 /m");
     wb_validate_result_release(&result);
     wb_dataset_release(&dataset);
 }
 
-/* Three samples that differ by 5 % in stiffness and in their bows: what is left of the unloading
- * once the law is as stiff as each is the rule's alone. */
-static void bounds_tell_a_wrong_rule_from_specimens_that_differ(void **state)
+/* Three samples that differ by 5 % in stiffness, and in their bows. With the law as stiff as each
+ * sample, the remaining error of the unloading is that of the hardening rule. */
+static void bounds_distinguish_a_wrong_rule_from_scatter(void **state)
 {
     (void)state;
     static const double ln_stiffness[] = {-0.05, 0.01, 0.04}, bow[] = {1.0, -1.5, 0.5};
@@ -276,7 +277,7 @@ static void bounds_tell_a_wrong_rule_from_specimens_that_differ(void **state)
     assert_true(wb_validate_bounds_known(&result));
     assert_true(bounds[WB_VALIDATE_UNLOADING].found < 2e-3);
     assert_true(result.cycles.rms > 2.0 * bounds[WB_VALIDATE_UNLOADING].found);
-    /* Three samples that agree: the least deviation counts. */
+    /* Three samples that agree: the smallest permitted deviation is used. */
     assert_close_relative(bounds[WB_VALIDATE_UNLOADING].bound,
                           gsl_cdf_tdist_Qinv(0.014, 2) * 2e-3 / sqrt(3.0), 0.05);
     assert_true(isnan(bounds[WB_VALIDATE_SHAPES].bound)); /* no markers */
@@ -291,7 +292,7 @@ static void bounds_tell_a_wrong_rule_from_specimens_that_differ(void **state)
     wb_text_release(&text);
     wb_validate_result_release(&result);
 
-    /* One sample does not show how samples differ. */
+    /* One sample does not show how samples scatter. */
     assert_int_equal(wb_validate_run(&result, &wrong, datasets, 1, NULL, NULL), WB_OK);
     assert_true(isnan(bounds[WB_VALIDATE_UNLOADING].bound));
     assert_false(wb_validate_bounds_exceeded(&result));
@@ -300,7 +301,7 @@ static void bounds_tell_a_wrong_rule_from_specimens_that_differ(void **state)
         wb_dataset_release(&dataset[i]);
 }
 
-static void loading_alone_leaves_the_way_back_unscored(void **state)
+static void without_unloading_data_the_unloading_is_not_scored(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
@@ -311,9 +312,9 @@ static void loading_alone_leaves_the_way_back_unscored(void **state)
     wb_validate_result_release(&result);
 }
 
-/* Straight samples all alike, computed with bows that they do not have: all residual scatter is the
- * model's, and none of its error is explained. */
-static void an_error_with_the_bow_is_not_taken_for_scatter(void **state)
+/* Identical straight samples, computed with bows that they do not have: all residual scatter comes
+ * from the model, and explains no part of its error. */
+static void an_error_of_the_bow_does_not_count_as_scatter(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
@@ -337,7 +338,7 @@ static void an_error_with_the_bow_is_not_taken_for_scatter(void **state)
         wb_dataset_release(&dataset[i]);
 }
 
-static void another_wire_is_refused_and_another_name_warned_about(void **state)
+static void another_wire_is_rejected_and_another_name_warned_about(void **state)
 {
     (void)state;
     struct wb_properties properties = true_properties(0);
@@ -374,7 +375,7 @@ static void a_prediction_that_does_not_converge_is_an_error(void **state)
     double x[9], y[9];
     wb_dataset_init(&dataset);
     dataset.info = beam_info(2, 0.085, 0.0);
-    /* Nothing less upsets the beam: 80 m of deflection in one step. */
+    /* A smaller step would converge: 80 m of deflection in one step. */
     coarse.step = 80.0;
     for (int k = 0; k < 20; k++) {
         const struct wb_row row = {.cycle = 1, .deflection = 80.0 * k, .force = 1e-3 * k};
@@ -389,7 +390,7 @@ static void a_prediction_that_does_not_converge_is_an_error(void **state)
     wb_dataset_release(&dataset);
 }
 
-static void the_csv_has_a_line_for_each_deflection(void **state)
+static void the_csv_has_a_row_for_each_deflection(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
@@ -445,16 +446,16 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(true_properties_predict_another_length),
         cmocka_unit_test(errors_are_over_the_largest_measured_force),
-        cmocka_unit_test(a_bow_that_is_ignored_shows),
-        cmocka_unit_test(samples_are_predicted_each_with_its_own_bow),
-        cmocka_unit_test(scatter_explains_what_the_average_of_few_cannot),
-        cmocka_unit_test(an_error_with_the_bow_is_not_taken_for_scatter),
-        cmocka_unit_test(way_back_and_later_cycles_are_those_of_the_rule),
-        cmocka_unit_test(bounds_tell_a_wrong_rule_from_specimens_that_differ),
-        cmocka_unit_test(loading_alone_leaves_the_way_back_unscored),
-        cmocka_unit_test(another_wire_is_refused_and_another_name_warned_about),
+        cmocka_unit_test(ignoring_the_bow_increases_the_error),
+        cmocka_unit_test(each_sample_is_predicted_with_its_own_bow),
+        cmocka_unit_test(expected_error_follows_from_the_scatter),
+        cmocka_unit_test(an_error_of_the_bow_does_not_count_as_scatter),
+        cmocka_unit_test(unloading_and_later_cycles_follow_the_hardening_rule),
+        cmocka_unit_test(bounds_distinguish_a_wrong_rule_from_scatter),
+        cmocka_unit_test(without_unloading_data_the_unloading_is_not_scored),
+        cmocka_unit_test(another_wire_is_rejected_and_another_name_warned_about),
         cmocka_unit_test(a_prediction_that_does_not_converge_is_an_error),
-        cmocka_unit_test(the_csv_has_a_line_for_each_deflection),
+        cmocka_unit_test(the_csv_has_a_row_for_each_deflection),
         cmocka_unit_test(a_shape_starts_at_the_clamp_and_ends_at_the_deflection),
     };
     return cmocka_run_group_tests(tests, silence, NULL);

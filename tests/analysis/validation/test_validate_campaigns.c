@@ -1,4 +1,4 @@
-/* What scatter between specimens lets a perfect model be off by, tried on many campaigns of the
+/* Bounds of a perfect model's error from scatter between specimens, on many campaigns of the
  * virtual rig. The model is fitted to the nominal wire, without noise and scatter. */
 #include "tests/messages.h"
 
@@ -26,7 +26,7 @@ enum {
 
 static const double calibrated_at = 0.085, validated_at = 0.1;
 
-/* Ludwik's law first, from which parallel parts start. */
+/* Ludwik's law is fitted first; it is the initial guess for parallel parts. */
 static void fit_nominal(struct wb_properties *properties)
 {
     struct fast_rig fast;
@@ -88,7 +88,7 @@ static void fit_nominal(struct wb_properties *properties)
     wb_dataset_release(&dataset);
 }
 
-/* False where the beginning of a test is lost, which is refused. */
+/* Returns false if the beginning of a test is lost, which is an error. */
 static bool validate(const struct wb_properties *properties, int campaign,
                      struct wb_validate_result *result)
 {
@@ -111,7 +111,7 @@ static bool validate(const struct wb_properties *properties, int campaign,
     return status == WB_OK;
 }
 
-/* Campaigns of which a part, or any (at WB_VALIDATE_PARTS), is beyond its bound. */
+/* Counts the campaigns in which a part, or any part (at WB_VALIDATE_PARTS), exceeds its bound. */
 static void count_exceeded(const struct wb_validate_result *result, int *counts)
 {
     for (int i = 0; i < WB_VALIDATE_PARTS; i++)
@@ -127,14 +127,14 @@ static void print_counts(const char *what, const int *counts, int n)
     print_message(" any %d\n", counts[WB_VALIDATE_PARTS]);
 }
 
-static void perfect_model_is_beyond_its_bound_in_one_of_twenty(void **state)
+static void a_perfect_model_exceeds_its_bound_in_one_of_twenty(void **state)
 {
     (void)state;
     struct wb_properties properties;
     double squares = 0.0, expected = 0.0, unloading = 0.0, left = 0.0, energy = 0.0;
     int beyond = 0, done = 0, counts[WB_VALIDATE_PARTS + 1] = {0};
     double mean[WB_VALIDATE_PARTS][2] = {{0.0}};
-    wb_log_set_threshold(WB_LOG_ERROR); /* seeds have gaps and odd bows */
+    wb_log_set_threshold(WB_LOG_ERROR); /* some seeds cause warnings about gaps and bows */
     fit_nominal(&properties);
     for (int k = 0; done < CAMPAIGNS; k++) {
         struct wb_validate_result result;
@@ -166,7 +166,8 @@ static void perfect_model_is_beyond_its_bound_in_one_of_twenty(void **state)
         print_message("  %s: found %.4g, bound %.4g\n", wb_validate_part_name(i), mean[i][0],
                       mean[i][1]);
     assert_true(beyond <= MOST_BEYOND);
-    /* The bound is not kept by being wide: what is expected is what is found. */
+    /* The bounds are kept without being too wide: the expected error is close to the error
+     * found. */
     assert_true(sqrt(squares / expected) > 0.75 && sqrt(squares / expected) < 1.35);
     assert_true(fabs(left) < 0.5 * WB_MM);
     assert_true(fabs(energy) < 0.02);
@@ -179,8 +180,8 @@ struct campaign {
     bool is_exceeded[WB_VALIDATE_PARTS + 1];
 };
 
-/* The law of three specimens with its file's scatter and misfit. Of the candidates the wire's own,
- * and that from which its search starts, as the others take ten times as long. */
+/* The law of three specimens with its file's scatter and misfit. Candidates are the wire's own law
+ * and the law from which its search starts; the others take ten times as long. */
 static bool calibrate(struct wb_properties *properties, int campaign)
 {
     struct wb_cycle_calibrate_settings settings;
@@ -254,8 +255,8 @@ static void a_right_law_exceeds_a_bound_in_one_of_twenty(void **state)
     assert_true(part >= 0.03 && part <= 0.07);
 }
 
-/* The same virgin curve with another hardening rule, against three specimens. */
-static void a_wrong_hardening_rule_is_found(void **state)
+/* The same virgin curve with another hardening rule, compared with three specimens. */
+static void a_wrong_hardening_rule_is_detected(void **state)
 {
     (void)state;
     struct wb_properties properties;
@@ -279,9 +280,9 @@ static void a_wrong_hardening_rule_is_found(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(perfect_model_is_beyond_its_bound_in_one_of_twenty),
+        cmocka_unit_test(a_perfect_model_exceeds_its_bound_in_one_of_twenty),
         cmocka_unit_test(a_right_law_exceeds_a_bound_in_one_of_twenty),
-        cmocka_unit_test(a_wrong_hardening_rule_is_found),
+        cmocka_unit_test(a_wrong_hardening_rule_is_detected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,7 +54,7 @@ static enum wb_status validate(const struct wb_properties *properties, int n, st
 static const struct three_point_made plain = {
     .modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3};
 
-static void true_law_predicts_loading_and_way_back(void **state)
+static void true_law_predicts_loading_and_unloading(void **state)
 {
     (void)state;
     struct three_point_made made = plain;
@@ -67,22 +67,22 @@ static void true_law_predicts_loading_and_way_back(void **state)
     three_point_make(&datasets[0], &made, "");
     assert_int_equal(validate(&properties, 1, NULL), WB_OK);
     print_message("loading %.2g, unloading %.2g, left %.3f of %.3f mm, elastic %.2g\n",
-                  result.loading.rms, result.unloading.rms, result.left_computed / WB_MM,
-                  result.left_measured / WB_MM, result.elastic_rms);
+                  result.loading.rms, result.unloading.rms, result.residual_computed / WB_MM,
+                  result.residual_measured / WB_MM, result.elastic_rms);
     assert_true(result.loading.rms < 2e-3);
     assert_true(result.unloading.rms < 5e-3);
     assert_true(result.unloading_rms_of_tests < 5e-3);
-    assert_close(result.left_computed, result.left_measured, 0.02e-3);
-    assert_true(result.left_measured > 0.5e-3);
+    assert_close(result.residual_computed, result.residual_measured, 0.02e-3);
+    assert_true(result.residual_measured > 0.5e-3);
     assert_close(result.tests[0].first_contact, made.contact, 0.01e-3);
     assert_true(result.elastic_rms > 0.3);
     assert_false(result.is_rule_untested);
-    assert_true(isnan(result.bench_rms[0]) && isnan(result.bench_rms[2])); /* known */
-    assert_true(isnan(result.expected.rms));                               /* of one test */
+    assert_true(isnan(result.bench_rms[0]) && isnan(result.bench_rms[2])); /* known exactly */
+    assert_true(isnan(result.expected.rms));                               /* of a single test */
     wb_validate_three_point_release(&result);
 }
 
-static void wrong_law_is_told_on_each_part(void **state)
+static void wrong_law_is_detected_on_each_part(void **state)
 {
     (void)state;
     struct three_point_made made = plain, soft = plain;
@@ -101,9 +101,9 @@ static void wrong_law_is_told_on_each_part(void **state)
     wb_validate_three_point_release(&result);
 }
 
-/* Stiffnesses of 0.9, 1 and 1.1. A law of 1 is not off by more than that explains, one of 1.6 is.
- */
-static void scatter_lets_expect_an_error(void **state)
+/* Stiffnesses of 0.9, 1 and 1.1. The error of a law of 1 is explained by this scatter, that of a
+ * law of 1.6 is not. */
+static void expected_error_follows_from_the_scatter(void **state)
 {
     (void)state;
     for (int wrong = 0; wrong < 2; wrong++) {
@@ -125,7 +125,7 @@ static void scatter_lets_expect_an_error(void **state)
     }
 }
 
-static void series_count_by_their_means(void **state)
+static void with_several_series_their_means_are_the_unit(void **state)
 {
     (void)state;
     struct three_point_made made = plain;
@@ -139,7 +139,8 @@ static void series_count_by_their_means(void **state)
     assert_int_equal(result.expected.degrees, 1);
     assert_close(result.expected.deviation, 0.2 / sqrt(2.0), 0.01);
     wb_validate_three_point_release(&result);
-    /* A calibration of several series makes the unit of one series' tests the series. */
+    /* If the calibration has several series, the series is the unit, even for tests of one
+     * series. */
     properties.n_samples = 6;
     properties.n_series = 3;
     properties.stiffness_deviation = 0.2;
@@ -151,7 +152,7 @@ static void series_count_by_their_means(void **state)
     wb_validate_three_point_release(&result);
 }
 
-static void bench_that_is_not_known_is_varied(void **state)
+static void an_unknown_bench_is_varied(void **state)
 {
     (void)state;
     struct wb_properties properties = properties_of(&plain);
@@ -165,8 +166,8 @@ static void bench_that_is_not_known_is_varied(void **state)
     wb_validate_three_point_release(&result);
 }
 
-/* Of two wires that are bowed up and down; the curve of a straight one is another. */
-static void bows_of_the_specimens_are_taken(void **state)
+/* Two wires, bowed up and down; a straight wire has another curve. */
+static void bows_of_the_specimens_are_used(void **state)
 {
     (void)state;
     const struct wb_properties properties = properties_of(&plain);
@@ -216,7 +217,7 @@ static void bow_with_a_range_is_found(void **state)
     }
 }
 
-static void settings_of_the_calibration_count(void **state)
+static void settings_of_the_calibration_are_used(void **state)
 {
     (void)state;
     const struct wb_properties properties = properties_of(&plain);
@@ -229,7 +230,7 @@ static void settings_of_the_calibration_count(void **state)
     wb_validate_three_point_release(&result);
 }
 
-static void what_cannot_be_validated_is_refused(void **state)
+static void tests_that_cannot_be_validated_are_rejected(void **state)
 {
     (void)state;
     struct wb_properties properties = properties_of(&plain);
@@ -299,15 +300,15 @@ static void expected_error_is_of_both_groups(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(true_law_predicts_loading_and_way_back),
-        TEST(wrong_law_is_told_on_each_part),
-        TEST(scatter_lets_expect_an_error),
-        TEST(series_count_by_their_means),
-        TEST(bench_that_is_not_known_is_varied),
-        TEST(bows_of_the_specimens_are_taken),
+        TEST(true_law_predicts_loading_and_unloading),
+        TEST(wrong_law_is_detected_on_each_part),
+        TEST(expected_error_follows_from_the_scatter),
+        TEST(with_several_series_their_means_are_the_unit),
+        TEST(an_unknown_bench_is_varied),
+        TEST(bows_of_the_specimens_are_used),
         TEST(bow_with_a_range_is_found),
-        TEST(settings_of_the_calibration_count),
-        TEST(what_cannot_be_validated_is_refused),
+        TEST(settings_of_the_calibration_are_used),
+        TEST(tests_that_cannot_be_validated_are_rejected),
         TEST(tables_and_numbers_are_those_of_the_result),
         TEST(expected_error_is_of_both_groups),
     };
