@@ -18,14 +18,14 @@
 
 enum {
     RUNS = 500,
-    LEAST_RUNS = 20, /* the outer 5 % are one run */
-    CURVE = 18       /* points of a run's M over kappa at most */
+    LEAST_RUNS = 20, /* the outer 5 % are then one run */
+    CURVE = 18       /* most points of a run's M over kappa */
 };
 
 static const double model_error = 0.02;
 static const double ninety = 1.6448536269514722; /* normal quantile of 95 % */
 static const double tail = 0.05;
-static const double reached = 0.95; /* of the runs must have a place */
+static const double reached = 0.95; /* part of the runs that must reach a place */
 
 double wb_bands_model_error(void)
 {
@@ -43,7 +43,7 @@ struct curve {
 struct runs {
     const struct wb_inputs *inputs;
     const struct wb_bands_settings *settings;
-    struct wb_bundle_model model; /* as every run begins */
+    struct wb_bundle_model model; /* the model before a run's inputs are applied */
     int n, n_rows;
     const double *u;    /* (n x dimensions) */
     double *values;     /* (n x columns) */
@@ -120,7 +120,7 @@ static int compare_numbers(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* Of n numbers, which it sorts; without the model's error. */
+/* Median and 90 % band of n numbers, which are sorted in place; without the model's error. */
 static struct wb_bands_interval find_band(double *numbers, int n)
 {
     const size_t size = (size_t)n;
@@ -167,7 +167,7 @@ static void find_forces(struct runs *runs, struct wb_bands_case *out)
     widen_all(out->force, out->n_force);
 }
 
-/* On straight lines between the points; NaN beyond the last one. */
+/* Linear between the points; NaN beyond the last one. */
 static double find_moment(const struct curve *curve, double curvature)
 {
     int i = 1;
@@ -180,7 +180,7 @@ static double find_moment(const struct curve *curve, double curvature)
     return curve->moment[i - 1] + part * (curve->moment[i] - curve->moment[i - 1]);
 }
 
-/* Up to the curvature that at least 95 % of the runs reach. */
+/* Bands up to the curvature that at least 95 % of the runs reach. */
 static void find_moments(struct runs *runs, struct wb_bands_case *out)
 {
     for (int i = 0; i < runs->n; i++)
@@ -218,7 +218,7 @@ static void find_springback(struct runs *runs, struct wb_bands_case *out)
 
 /* --- rankings --- */
 
-/* Of a result of each run (NaN: it has none), `stride` apart. */
+/* Ranking of one result per run (NaN: none), `stride` values apart. */
 static enum wb_status add_ranking(struct runs *runs, const char *of, double at,
                                   const double *result, size_t stride, struct wb_bands_case *out)
 {
@@ -273,8 +273,8 @@ static enum wb_status prepare_model(struct wb_bundle_model *model, const char *p
     const double shortest = model->length * (1.0 - model->uncertainty.length);
     if (!(model->run.deflection < shortest))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "%s: run: deflection_mm: %g mm cannot be reached by a bundle that may be as "
-                       "short as %g mm (uncertainty: length_percent)",
+                       "%s: run: deflection_mm: %g mm exceeds the shortest length of the bundle, "
+                       "%g mm (uncertainty: length_percent)",
                        path, model->run.deflection / WB_MM, shortest / WB_MM);
     model->run.cycles = 1;
     if (model->run.rows > WB_BANDS_ROWS)
@@ -294,7 +294,7 @@ static void take_memory(struct runs *runs, struct wb_memory *memory)
     runs->sorted = wb_memory_take(memory, n, sizeof(double));
 }
 
-/* Once by itself first: what the model refuses is said once. */
+/* The first run is computed alone, so that an error of the model is reported once. */
 static enum wb_status run_all(struct runs *runs, const char *name, bool *stopped)
 {
     const struct wb_workers workers = {
@@ -398,8 +398,8 @@ static enum wb_status init(struct wb_bands *bands, const char *path,
     if (bands->runs < LEAST_RUNS || bands->runs < bands->inputs.n_dimensions + 4 ||
         settings->n_variants >= WB_BANDS_CASES)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "%d runs of %d cases: expected at least %d runs and four more than the %d "
-                       "numbers of a run, and at most %d cases",
+                       "%d runs of %d cases: expected at least %d runs, at least four more than "
+                       "the %d inputs of a run, and at most %d cases",
                        bands->runs, settings->n_variants + 1, LEAST_RUNS, bands->inputs.n_columns,
                        WB_BANDS_CASES);
     bands->cases = wb_memory_new(WB_BANDS_CASES, sizeof *bands->cases);

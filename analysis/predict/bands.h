@@ -1,14 +1,15 @@
 /* Bands of a bundle's prediction: the section model (fe/section/section_run.h) run over a Latin
- * hypercube of what is uncertain (analysis/predict/inputs.h).
+ * hypercube of the uncertain inputs (analysis/predict/inputs.h).
  *
- * Of force over deflection, of moment over curvature of the homogenised beam, and of the part of
- * the largest deflection that springs back, at each place by itself: median and 90 % of the runs,
- * and the same widened by the model's own error. That is 2 % (standard deviation, from 19 explicit
- * curves) of the largest force or moment of the median, or of the springback itself, added in
- * quadrature to both halves of the band with the 1.645 of 90 %.
+ * Bands are given for force over deflection, for moment over curvature of the homogenised beam, and
+ * for the springback (the part of the largest deflection that springs back), at each place
+ * separately: median and 90 % of the runs, and the same widened by the model's own error. That
+ * error is 2 % (standard deviation, from 19 explicit curves) of the largest median force or moment,
+ * or of the springback itself; 1.645 times it is added in quadrature to both halves of the 90 %
+ * band.
  *
- * What is chosen and not measured (packing, outline, layers) is not drawn but compared: a case for
- * each, over the same hypercube, so that cases differ by the choice alone. The same file, seed and
+ * Choices of the design (packing, outline, layers) are compared, not drawn: each is a case of its
+ * own over the same hypercube, so that cases differ by the choice alone. The same file, seed and
  * number of runs give the same numbers on any number of threads.
  */
 #ifndef WB_ANALYSIS_PREDICT_BANDS_H
@@ -25,13 +26,13 @@
 
 enum {
     WB_BANDS_CASES = 64,
-    WB_BANDS_ROWS = 26,    /* of a loading at most, and row 0 */
-    WB_BANDS_MOMENTS = 16, /* of M over kappa */
+    WB_BANDS_ROWS = 26,    /* most rows of a loading, without row 0 */
+    WB_BANDS_MOMENTS = 16, /* most points of M over kappa */
     WB_BANDS_RANKINGS = 3
 };
 
 struct wb_bands_interval {
-    double median, low, high;   /* of the runs, 5 and 95 % */
+    double median, low, high;   /* of the runs: median, 5 and 95 % */
     double wide_low, wide_high; /* with the model's error */
 };
 
@@ -47,19 +48,19 @@ struct wb_bands_ranking {
 };
 
 struct wb_bands_case {
-    struct wb_bundle_variant variant; /* name "file": the file as it is */
+    struct wb_bundle_variant variant; /* named "file": the file as it is */
     int n_wires;
     char packing[16];
-    double layers; /* of tape, with overlap; 0: there is none */
+    double layers; /* of tape, with overlap; 0: no tape */
     bool is_round; /* the tape */
     int n_runs;
-    int n_lost;    /* of them not computed to the end */
-    int n_limited; /* with a draw that makes no law, see analysis/predict/specimens.h */
+    int n_lost;    /* runs that were not computed to the end */
+    int n_limited; /* runs with a limited law, see analysis/predict/specimens.h */
     int n_force;   /* rows that at least 95 % of the runs reach */
     struct wb_bands_place force[WB_BANDS_ROWS + 1]; /* N over m */
     int n_moment;
     struct wb_bands_place moment[WB_BANDS_MOMENTS]; /* N m over 1/m */
-    struct wb_bands_interval springback; /* of the deflection, 1; NaN: no run springs back */
+    struct wb_bands_interval springback; /* of the deflection, 1; NaN: not computed in any run */
     int n_rankings;
     struct wb_bands_ranking ranking[WB_BANDS_RANKINGS];
 };
@@ -68,10 +69,10 @@ struct wb_bands_settings {
     int runs;                                  /* of each case; 0: 500 */
     uint64_t seed;                             /* of the hypercube and of resampling */
     const struct wb_bundle_override *override; /* NULL: nothing */
-    int n_variants;                            /* in place of the file's scenarios; 0: these */
+    int n_variants; /* that replace the file's scenarios; 0: the file's */
     const struct wb_bundle_variant *variants;
     int n_threads;               /* 0: as many as processors */
-    bool (*stop)(void *context); /* asked after each run, by one thread at a time; NULL: never */
+    bool (*stop)(void *context); /* called after each run, by one thread at a time; NULL: never */
     void *context;
 };
 
@@ -79,18 +80,17 @@ struct wb_bands {
     struct wb_inputs inputs;
     int runs;
     uint64_t seed;
-    bool stopped; /* the last case is missing */
+    bool stopped; /* stopped before the last case was complete */
     int n_cases;
-    struct wb_bands_case *cases; /* (n_cases) owned; the file first */
+    struct wb_bands_case *cases; /* (n_cases) owned; that of the file first */
 };
 
-/* Reads the bundle of the path, as often as there are cases, and computes them all. */
+/* Reads the bundle of the path, once per case, and computes all cases. */
 WB_MUST_CHECK enum wb_status wb_bands_create(struct wb_bands **out, const char *path,
                                              const struct wb_bands_settings *settings);
 void wb_bands_destroy(struct wb_bands *bands); /* accepts NULL */
 
-/* How far, as a part of the largest value, the model is from the explicit one: 0.02, a standard
- * deviation. */
+/* Standard deviation of the model from the explicit one, as a part of the largest value: 0.02. */
 double wb_bands_model_error(void);
 
 #endif

@@ -14,7 +14,7 @@
 #define WB_LOG_DOMAIN "bands"
 
 enum {
-    DRAWN = 4 /* cases in a panel at most */
+    DRAWN = 4 /* most cases in a panel */
 };
 
 static const double width = 560.0, height = 250.0; /* points */
@@ -194,7 +194,7 @@ static void set_band(struct wb_json *object, const char *key, const struct wb_ba
     wb_json_set_number(member, "runs_high", band->high);
 }
 
-/* Below R2 = 0.9 there are no shares, but R2 itself says so. */
+/* Below R2 = 0.9 no shares are written; R2 itself shows why. */
 static void append_ranking(struct wb_json *array, const struct wb_bands *bands,
                            const struct wb_bands_ranking *of)
 {
@@ -257,7 +257,7 @@ void wb_bands_output_describe(const struct wb_bands *bands, struct wb_json *obje
 
 /* --- text --- */
 
-static void tell_case(struct wb_text *text, const struct wb_bands_case *c, int name_width)
+static void append_case_row(struct wb_text *text, const struct wb_bands_case *c, int name_width)
 {
     const struct wb_bands_place *const last = last_force(c);
     const struct wb_bands_interval *const s = &c->springback;
@@ -274,15 +274,16 @@ static void tell_case(struct wb_text *text, const struct wb_bands_case *c, int n
     wb_text_append(text, "\n");
 }
 
-static void tell_ranking(struct wb_text *text, const struct wb_bands *bands,
-                         const struct wb_bands_ranking *of)
+static void append_ranking_text(struct wb_text *text, const struct wb_bands *bands,
+                                const struct wb_bands_ranking *of)
 {
     const struct wb_ranking *const ranking = &of->ranking;
-    wb_text_append(text, "\n%s at %.3g mm depends on (R2 %.3f, %.3f to %.3f)%s\n", of->of,
-                   of->at / WB_MM, ranking->r2, ranking->low, ranking->high,
-                   ranking->is_valid ? ":"
-                                     : ": no ranking, ranks of the inputs do not explain it (R2 "
-                                       "below 0.9)");
+    wb_text_append(
+        text, "\n%s at %.3g mm depends on (R2 %.3f, %.3f to %.3f)%s\n", of->of, of->at / WB_MM,
+        ranking->r2, ranking->low, ranking->high,
+        ranking->is_valid
+            ? ":"
+            : ": no ranking, because ranks of the inputs do not explain it (R2 below 0.9)");
     for (int g = 0; ranking->is_valid && g < ranking->n_groups; g++) {
         const struct wb_ranking_share *const share = &ranking->group[g];
         wb_text_append(text, "    %5.1f %%  (%.1f to %.1f)  %s\n", share->share / WB_PERCENT,
@@ -305,7 +306,7 @@ void wb_bands_output_summarise(const struct wb_bands *bands, struct wb_text *tex
                    "springback of the deflection (low to high)\n",
                    name_width, "case");
     for (int i = 0; i < bands->n_cases; i++)
-        tell_case(text, &bands->cases[i], name_width);
+        append_case_row(text, &bands->cases[i], name_width);
     for (int i = 0; bands->n_cases > 0 && i < bands->cases[0].n_rankings; i++)
-        tell_ranking(text, bands, &bands->cases[0].ranking[i]);
+        append_ranking_text(text, bands, &bands->cases[0].ranking[i]);
 }

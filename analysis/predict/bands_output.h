@@ -14,7 +14,7 @@
 #include "base/status.h"
 #include "base/text.h"
 
-/* Writes the files; of `bands` NULL it removes those of an earlier run. */
+/* Writes the files. With `bands` NULL, removes those of an earlier run. */
 WB_MUST_CHECK enum wb_status wb_bands_output_write(const struct wb_bands *bands,
                                                    const char *folder);
 
@@ -22,15 +22,15 @@ enum {
     WB_BANDS_OUTPUT_PANELS = 2 /* force over deflection, moment over curvature */
 };
 
-/* Adds the two panels to a figure, with the first cases: lines of medians, in the bands with the
- * model's error. */
+/* Adds the two panels to a figure, with the first cases: medians as lines, and the bands that
+ * include the model's error. */
 void wb_bands_output_draw(const struct wb_bands *bands, struct wb_figure *figure,
                           struct wb_panel *panels[WB_BANDS_OUTPUT_PANELS]);
 
-/* Sets `uncertainty` in an object. */
+/* Sets the member `uncertainty` of an object. */
 void wb_bands_output_describe(const struct wb_bands *bands, struct wb_json *object);
 
-/* Tables for a terminal. */
+/* Appends tables for a terminal. */
 void wb_bands_output_summarise(const struct wb_bands *bands, struct wb_text *text);
 
 #endif

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 
-/* A run with the stratum that it is to have in a dimension. */
+/* A run and its score in a dimension, which determines its stratum. */
 struct place {
     double score;
     int run;
@@ -20,7 +20,7 @@ static int compare_places(const void *a, const void *b)
                                  : (p->run > q->run) - (p->run < q->run);
 }
 
-/* Strata in random order (Fisher and Yates), less their mean. */
+/* Strata in random order (Fisher and Yates), relative to their mean. */
 static void shuffle(uint64_t seed, int dimension, int n, double *strata)
 {
     for (int i = 0; i < n; i++)
@@ -34,7 +34,7 @@ static void shuffle(uint64_t seed, int dimension, int n, double *strata)
     }
 }
 
-/* Takes out of a dimension's strata what they have in common with another one's. */
+/* Removes the correlation of a dimension's strata with those of another dimension. */
 static void separate(int n, const double *other, double *strata)
 {
     double product = 0.0, square = 0.0;
@@ -46,7 +46,7 @@ static void separate(int n, const double *other, double *strata)
         strata[i] -= product / square * other[i];
 }
 
-/* Whole strata again, in the same order. */
+/* Replaces scores by whole strata in the same order. */
 static void rank(int n, struct place *places, double *strata)
 {
     for (int i = 0; i < n; i++)

@@ -13,21 +13,22 @@
 #define WB_LOG_DOMAIN "bands"
 
 enum {
-    TOLERANCES = 3 /* of a law without specimens */
+    TOLERANCES = 3 /* inputs of a law without specimens */
 };
 
-static const double most_exponent = 2.0;     /* as properties have it */
-static const double straight_exponent = 1.0; /* of Ludwik's law with a kinematic share */
+/* Largest hardening exponent, as in properties files, and with a kinematic share of hardening. */
+static const double most_exponent = 2.0, straight_exponent = 1.0;
+/* Relative difference up to which diameters are equal. */
 static const double same_diameter = 1e-6;
 
 /* --- wires --- */
 
-/* Largest strain that bending tests of wires reach, about. */
+/* Typical largest strain of wires in bending tests. */
 static const double tested_strain = 0.02;
 
-/* The wires are drawn with the Ludwik equivalent of a law of another form, and with its hardening
+/* Keeps the hardening rule of a law. Wires are drawn with the law's Ludwik equivalent and this
  * rule. Combined hardening of parallel parts becomes mixed hardening: its isotropic share is the
- * share of the stress at the tested strain that comes from growing limits. */
+ * part of the stress at the tested strain that comes from the growth of the yield limits. */
 static void keep_rule(struct wb_inputs_wires *wires, const struct wb_law *law)
 {
     wires->isotropic_share = law->isotropic_share;
@@ -56,19 +57,18 @@ static enum wb_status check_properties(const struct wb_properties *p,
 {
     if (fabs(p->outer_diameter - wire->outer_diameter) > same_diameter * wire->outer_diameter)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "%s:%d: properties: %s is of a wire of %g mm, and %s has %g mm: give the "
-                       "calibrated wire's outer_diameter_mm in its file",
+                       "%s:%d: properties: %s is of a wire of %g mm, but %s has %g mm: set "
+                       "outer_diameter_mm in its file to that of the calibrated wire",
                        path, spread->line, spread->properties, p->outer_diameter / WB_MM,
                        wire->name, wire->outer_diameter / WB_MM);
     if (p->n_specimens >= WB_SPECIMENS_LEAST && spread->has_tolerances)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "%s:%d: wire %s: %s has %d specimens, whose scatter is taken: leave the "
-                       "tolerances youngs_modulus_percent, yield_stress_percent and "
-                       "stress_percent out",
+                       "%s:%d: wire %s: %s has %d specimens, whose scatter is used: remove the "
+                       "tolerances youngs_modulus_percent, yield_stress_percent and stress_percent",
                        path, spread->line, wire->name, spread->properties, p->n_specimens);
     if (p->n_specimens < WB_SPECIMENS_LEAST && !spread->has_tolerances)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "%s:%d: wire %s: %s has %d specimens, and their scatter needs at least %d: "
+                       "%s:%d: wire %s: %s has %d specimens, but their scatter needs at least %d: "
                        "add youngs_modulus_percent, yield_stress_percent and stress_percent, or "
                        "calibrate on more specimens by whole cycles",
                        path, spread->line, wire->name, spread->properties, p->n_specimens,
@@ -150,7 +150,7 @@ static enum wb_status check_names(const struct wb_bundle_model *model)
     return WB_OK;
 }
 
-/* --- the list of inputs --- */
+/* --- the list_groups of inputs --- */
 
 static void add_group(struct wb_inputs *inputs, const char *name, int n_columns, int n_dimensions)
 {
@@ -161,7 +161,7 @@ static void add_group(struct wb_inputs *inputs, const char *name, int n_columns,
     inputs->n_groups++;
 }
 
-static void list(struct wb_inputs *inputs, const struct wb_bundle_model *model)
+static void list_groups(struct wb_inputs *inputs, const struct wb_bundle_model *model)
 {
     for (int i = 0; i < inputs->n_types; i++) {
         const struct wb_inputs_wires *const wires = &inputs->wires[i];
@@ -199,10 +199,10 @@ static enum wb_status check_stated(const struct wb_bundle_model *model)
     if (!model->has_uncertainty) {
         char text[sizeof example + sizeof model->type[0].name];
         snprintf(text, sizeof text, example, model->type[0].name);
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "%s: uncertainty: this section is missing: how well is the bundle known? "
-                       "Add, with what holds for yours:\n%s",
-                       model->path, text);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "%s: uncertainty: this section is missing. Add it, with the values of your bundle:\n%s",
+            model->path, text);
     }
     if (model->has_tape && !u->has_tape)
         missing = "tape: {thickness_percent: ..., youngs_modulus_percent: ..., "
@@ -224,7 +224,7 @@ enum wb_status wb_inputs_init(struct wb_inputs *inputs, const struct wb_bundle_m
     WB_TRY(check_names(model));
     for (int i = 0; i < model->n_types; i++)
         WB_TRY(take_wires(inputs, model, i));
-    list(inputs, model);
+    list_groups(inputs, model);
     if (inputs->n_columns > WB_RANKING_COLUMNS || inputs->n_groups > WB_RANKING_GROUPS)
         return wb_fail(WB_ERR_UNSUPPORTED, "%s: %d inputs in %d groups: at most %d in %d",
                        model->path, inputs->n_columns, inputs->n_groups, WB_RANKING_COLUMNS,
@@ -234,48 +234,48 @@ enum wb_status wb_inputs_init(struct wb_inputs *inputs, const struct wb_bundle_m
 
 /* --- a run --- */
 
-/* The numbers of a run, taken one by one, and the inputs that come of them. */
-struct hand {
+/* The numbers of a run, read in order, and the inputs made from them. */
+struct reader {
     const double *u;
     double *values; /* or NULL */
 };
 
-static void note(struct hand *hand, double value)
+static void store(struct reader *reader, double value)
 {
-    if (hand->values)
-        *hand->values++ = value;
+    if (reader->values)
+        *reader->values++ = value;
 }
 
-/* Even between 1 - tolerance and 1 + tolerance. */
-static double take_factor(struct hand *hand, double tolerance)
+/* Uniform between 1 - tolerance and 1 + tolerance. */
+static double read_factor(struct reader *reader, double tolerance)
 {
-    const double factor = 1.0 + tolerance * (2.0 * *hand->u++ - 1.0);
-    note(hand, factor);
+    const double factor = 1.0 + tolerance * (2.0 * *reader->u++ - 1.0);
+    store(reader, factor);
     return factor;
 }
 
-static double take_from_range(struct hand *hand, const double range[2])
+static double read_from_range(struct reader *reader, const double range[2])
 {
-    const double u = *hand->u++;
+    const double u = *reader->u++;
     const double value = range[0] == range[1] ? range[0] : range[0] * pow(range[1] / range[0], u);
-    note(hand, value);
+    store(reader, value);
     return value;
 }
 
-static bool take_law(const struct wb_inputs_wires *wires, int count, struct hand *hand,
+static bool read_law(const struct wb_inputs_wires *wires, int count, struct reader *reader,
                      struct wb_wire *wire)
 {
     double q[WB_SPECIMENS_QUANTITIES];
     if (wires->from_specimens) {
-        wb_specimens_draw(&wires->specimens, count, hand->u, q);
-        hand->u += wb_specimens_dimensions(&wires->specimens);
+        wb_specimens_draw(&wires->specimens, count, reader->u, q);
+        reader->u += wb_specimens_dimensions(&wires->specimens);
         for (int k = 0; k < WB_SPECIMENS_QUANTITIES; k++)
-            note(hand, q[k]);
+            store(reader, q[k]);
     } else {
         memcpy(q, wires->mean, sizeof q);
-        q[0] += log(take_factor(hand, wires->tolerance[0]));
-        q[1] += log(take_factor(hand, wires->tolerance[1]));
-        const double stress = log(take_factor(hand, wires->tolerance[2]));
+        q[0] += log(read_factor(reader, wires->tolerance[0]));
+        q[1] += log(read_factor(reader, wires->tolerance[1]));
+        const double stress = log(read_factor(reader, wires->tolerance[2]));
         q[2] += stress;
         q[3] += stress;
     }
@@ -288,13 +288,13 @@ static bool take_law(const struct wb_inputs_wires *wires, int count, struct hand
     return is_law;
 }
 
-static void take_tape(const struct wb_bundle_uncertainty *u, struct hand *hand,
+static void read_tape(const struct wb_bundle_uncertainty *u, struct reader *reader,
                       struct wb_bundle_tape *tape, double *thickness)
 {
     struct wb_material *const m = &tape->material.material;
-    *thickness = take_factor(hand, u->tape_thickness);
-    m->youngs_modulus *= take_factor(hand, u->tape_modulus);
-    m->yield_stress *= take_factor(hand, u->tape_yield_stress);
+    *thickness = read_factor(reader, u->tape_thickness);
+    m->youngs_modulus *= read_factor(reader, u->tape_modulus);
+    m->yield_stress *= read_factor(reader, u->tape_yield_stress);
 }
 
 bool wb_inputs_apply(const struct wb_inputs *inputs, const double *numbers,
@@ -302,25 +302,25 @@ bool wb_inputs_apply(const struct wb_inputs *inputs, const double *numbers,
 {
     const struct wb_bundle_uncertainty *const u = &inputs->uncertainty;
     struct wb_bundle_interface *const interface = &model->interface;
-    struct hand hand = {numbers, values};
+    struct reader reader = {numbers, values};
     struct wb_bundle_scales scales;
     bool are_laws = true;
 
     for (int i = 0; i < inputs->n_types; i++) {
         const int count = wb_bundle_model_count(model, i);
-        are_laws &= take_law(&inputs->wires[i], count, &hand, &model->type[i]);
+        are_laws &= read_law(&inputs->wires[i], count, &reader, &model->type[i]);
     }
-    scales.diameter = take_factor(&hand, u->diameter);
-    scales.pitch = take_factor(&hand, u->pitch);
-    model->length *= take_factor(&hand, u->length);
-    take_tape(u, &hand, &model->tape, &scales.thickness);
+    scales.diameter = read_factor(&reader, u->diameter);
+    scales.pitch = read_factor(&reader, u->pitch);
+    model->length *= read_factor(&reader, u->length);
+    read_tape(u, &reader, &model->tape, &scales.thickness);
     wb_bundle_model_scale(model, &scales);
-    const double stiffness = take_from_range(&hand, u->cohesion);
+    const double stiffness = read_from_range(&reader, u->cohesion);
     if (u->has_cohesion) {
         interface->shear_stiffness *= stiffness / interface->normal_stiffness;
         interface->normal_stiffness = stiffness;
     }
-    const double friction = take_from_range(&hand, u->friction);
+    const double friction = read_from_range(&reader, u->friction);
     if (u->has_friction)
         interface->friction = (struct wb_friction){friction, friction, 0.0};
     return are_laws;

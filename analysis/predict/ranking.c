@@ -11,15 +11,16 @@
 
 enum {
     RESAMPLES = 1000,
-    ROWS = WB_RANKING_COLUMNS + 1, /* of products: the inputs, then the result */
+    ROWS = WB_RANKING_COLUMNS + 1, /* rows of products: the inputs, then the result */
     RESULT = WB_RANKING_COLUMNS
 };
 
 static const double least_r2 = 0.9;
-static const double dependent = 1e-6; /* of a column's squares: the rest follows from others */
+static const double dependent =
+    1e-6; /* of a column's squares: below, the column depends linearly on others */
 static const double tail = 0.05;
 
-/* Products of all columns less their means; the result is the last. */
+/* Products of all columns less their means; the result is the last column. */
 struct products {
     double of[ROWS][ROWS];
 };
@@ -48,7 +49,7 @@ static int compare_pairs(const void *a, const void *b)
                                  : (p->index > q->index) - (p->index < q->index);
 }
 
-/* Of n values `stride` apart; equal ones share their mean rank. */
+/* Ranks of n values `stride` apart; equal values share their mean rank. */
 static void take_ranks(int n, const double *values, int stride, struct pair *pairs, double *ranks,
                        int rank_stride)
 {
@@ -74,7 +75,7 @@ static void rank_all(struct work *work)
 
 /* --- regression --- */
 
-/* Place of a column among the products. */
+/* Index of a column among the products. */
 static int place(const struct work *work, int column)
 {
     return column == work->data->n_columns ? RESULT : column;
@@ -98,14 +99,16 @@ static void multiply(struct work *work)
     }
 }
 
-/* Whether its ranks differ; those of a constant differ from their mean by round-off. */
+/* Whether a column's ranks differ; those of a constant differ from their mean by round-off
+ * alone. */
 static bool varies(const struct work *work, int column)
 {
     return work->products.of[column][column] > dependent * work->data->n;
 }
 
-/* Takes a column out of what is left of the columns listed (Gauss; lower triangle by place). A
- * column of which next to nothing is left follows from those before it, and explains nothing. */
+/* Removes a column's contribution from the remaining columns (Gauss; lower triangle in order of
+ * places). A column with almost no remainder depends linearly on those before it, and explains
+ * nothing. */
 static void eliminate(struct products *left, int column, const struct products *all)
 {
     const double pivot = left->of[column][column];
@@ -119,7 +122,7 @@ static void eliminate(struct products *left, int column, const struct products *
             left->of[a][b] -= factor[a] * factor[b] * pivot;
 }
 
-/* R2 of all columns but those of a group; -1: of all. */
+/* R2 of all columns except those of a group; -1: of all columns. */
 static double explain(struct work *work, int without)
 {
     const struct wb_ranking_data *const d = work->data;
@@ -134,7 +137,7 @@ static double explain(struct work *work, int without)
     return 1.0 - work->left.of[RESULT][RESULT] / all;
 }
 
-/* --- the whole --- */
+/* --- ranking --- */
 
 static bool group_varies(const struct work *work, int group)
 {

@@ -1,9 +1,11 @@
-/* Which inputs a result of many runs hangs on: linear regression of its ranks on the inputs' ranks
- * (Iman and Conover, Technometrics 21:499, 1979), which any monotonic dependence is to.
+/* Sensitivity of the result of many runs to their inputs: linear regression of its ranks on the
+ * ranks of the inputs (Iman and Conover, Technometrics 21:499, 1979), which describes any monotonic
+ * dependence.
  *
- * A group's share is what R2 loses without the group's inputs. Groups are drawn independently, so
- * that shares add up to R2 nearly; inputs within a group may depend on each other, also linearly.
- * Intervals come from resampled runs (Efron's bootstrap, percentiles of 5 and 95 %).
+ * The share of a group is the decrease of R2 without the group's inputs. Groups are drawn
+ * independently, so that shares nearly add up to R2; inputs within a group may depend on each
+ * other, also linearly. Intervals come from resampled runs (Efron's bootstrap, percentiles of 5 and
+ * 95 %).
  */
 #ifndef WB_ANALYSIS_PREDICT_RANKING_H
 #define WB_ANALYSIS_PREDICT_RANKING_H
@@ -25,12 +27,12 @@ struct wb_ranking_share {
 
 struct wb_ranking {
     double r2, low, high; /* of all inputs */
-    bool is_valid;        /* R2 is 0.9 or more: below, shares say little */
-    int n_groups;         /* that vary, the largest share first */
+    bool is_valid;        /* R2 is at least 0.9; below, shares mean little */
+    int n_groups;         /* groups that vary, in descending order of their shares */
     struct wb_ranking_share group[WB_RANKING_GROUPS];
 };
 
-/* n runs (at least four more than columns), each with its inputs. */
+/* n runs (at least four more than columns) with their inputs. */
 struct wb_ranking_data {
     int n, n_columns, n_groups;
     const double *columns; /* (n x n_columns) */
@@ -39,7 +41,7 @@ struct wb_ranking_data {
     uint64_t seed;         /* of the resampling */
 };
 
-/* Fails where there are too few runs or too many inputs. */
+/* Fails if there are too few runs or too many inputs. */
 WB_MUST_CHECK enum wb_status wb_ranking_compute(struct wb_ranking *ranking,
                                                 const struct wb_ranking_data *data);
 

@@ -8,9 +8,9 @@ enum {
     QUANTITIES = WB_SPECIMENS_QUANTITIES
 };
 
-static const double strain[2] = {1e-3, 1e-2}; /* plastic, of the two stresses */
+static const double strain[2] = {1e-3, 1e-2}; /* plastic strains of the two stresses */
 static const double least_exponent = 1e-3;
-static const double nothing = 1e-9; /* of sigma_Y: so small an overstress is none */
+static const double nothing = 1e-9; /* of sigma_Y: a smaller overstress counts as zero */
 
 void wb_specimens_quantities(const struct wb_material *law, double q[QUANTITIES])
 {
@@ -35,7 +35,7 @@ bool wb_specimens_law(const double q[QUANTITIES], double most_exponent, struct w
     }
     const double n = log(over[1] / fmax(over[0], least)) / log(strain[1] / strain[0]);
     law->hardening_exponent = fmin(fmax(n, least_exponent), most_exponent);
-    /* The larger strain keeps its stress. */
+    /* The stress at the larger strain is kept. */
     law->strength_coefficient = over[1] / pow(strain[1], law->hardening_exponent);
     return law->hardening_exponent == n;
 }

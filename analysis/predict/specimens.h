@@ -1,18 +1,18 @@
-/* The mean law of N further wires of a product, drawn from the laws of n specimens.
+/* Draws the mean law of N further wires of a product from the laws of n specimens.
  *
  * A law is four numbers q: ln E, ln sigma_Y, and the logarithms of the stress at plastic strains of
- * 1e-3 and 1e-2, of a specimen's Ludwik equivalent. K and n by themselves compensate each other and
- * scatter widely; stresses do not. With the mean m and the n x 4 deviations D of the specimens,
+ * 1e-3 and 1e-2, of a specimen's Ludwik equivalent. K and n are strongly correlated and scatter
+ * widely; stresses do not. With the mean m and the n x 4 deviations D of the specimens,
  *
- *     q = m + D' z sqrt((1/n + 1/N) / c),
+ *   q = m + D' z sqrt((1/n + 1/N) / c),
  *
  * z of n independent normal numbers and c of chi-squared with n - 1 degrees of freedom. So q - m is
  * multivariate t with the specimens' covariance: the predictive distribution of the mean of N wires
- * of a normal population that is known by n specimens (Geisser, Predictive Inference, 1993). The
- * correlations between the four are the specimens' own, also where n is less than five.
+ * of a normal population of which n specimens are known (Geisser, Predictive Inference, 1993). The
+ * correlations between the four numbers are those of the specimens, also if n is below five.
  *
- * N is the number of wires that the draw stands for: all wires of a kind in a bundle share one
- * draw, the mean of theirs, because the bundle's force is nearly linear in the law of each wire.
+ * All N wires of one type in a bundle share one draw, of their mean, because the bundle's force is
+ * nearly linear in the law of each wire.
  */
 #ifndef WB_ANALYSIS_PREDICT_SPECIMENS_H
 #define WB_ANALYSIS_PREDICT_SPECIMENS_H
@@ -23,7 +23,8 @@
 
 enum {
     WB_SPECIMENS_QUANTITIES = 4,
-    WB_SPECIMENS_LEAST = 3, /* of two, one in ten draws is beyond six times their difference */
+    WB_SPECIMENS_LEAST =
+        3, /* with two, one in ten draws is farther away than six times their difference */
     WB_SPECIMENS_MOST = 100
 };
 
@@ -33,18 +34,18 @@ struct wb_specimens {
     double deviation[WB_SPECIMENS_MOST][WB_SPECIMENS_QUANTITIES];
 };
 
-/* Of n laws, WB_SPECIMENS_LEAST to WB_SPECIMENS_MOST. */
+/* Initialises from n laws, WB_SPECIMENS_LEAST to WB_SPECIMENS_MOST. */
 void wb_specimens_init(struct wb_specimens *specimens, int n, const struct wb_material *const *law);
 
-/* Numbers that a draw takes: n + 1. */
+/* Numbers needed for a draw: n + 1. */
 int wb_specimens_dimensions(const struct wb_specimens *specimens);
 
-/* A draw from numbers u between 0 and 1 (exclusive) for `wires` (N, at least 1) wires. */
+/* Makes a draw for `wires` (N, at least 1) wires from numbers u between 0 and 1 (exclusive). */
 void wb_specimens_draw(const struct wb_specimens *specimens, int wires, const double *u,
                        double q[WB_SPECIMENS_QUANTITIES]);
 
-/* q of a law, and E, sigma_Y, K and n of a law with q, whose other members stay. False where no
- * such law has these stresses: the nearest n between 0.001 and `most_exponent` was taken. */
+/* q of a law; and E, sigma_Y, K and n of a law with q, whose other members stay. False if no such
+ * law has these stresses: then the nearest n between 0.001 and `most_exponent` is used. */
 void wb_specimens_quantities(const struct wb_material *law, double q[WB_SPECIMENS_QUANTITIES]);
 bool wb_specimens_law(const double q[WB_SPECIMENS_QUANTITIES], double most_exponent,
                       struct wb_material *law);

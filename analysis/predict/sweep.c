@@ -21,13 +21,13 @@ static const struct kind {
 } kinds[AXES] = {
     {"layers", 1.0, 20.0, true}, {"overlap", 0.0, 95.0, false}, {"wires", 1.0, 128.0, true}};
 
-/* A key with its values. */
+/* A key and its values. */
 struct axis {
     int kind, n;
     double value[VALUES];
 };
 
-static enum wb_status refuse(const char *text, const char *at)
+static enum wb_status report_syntax(const char *text, const char *at)
 {
     return wb_fail(
         WB_ERR_ARGUMENT,
@@ -51,7 +51,7 @@ static enum wb_status parse_axis(const char *text, const char **at, struct axis 
     const size_t length = strcspn(begin, "=");
     *axis = (struct axis){.kind = find_kind(begin, length)};
     if (axis->kind < 0 || begin[length] != '=')
-        return refuse(text, begin);
+        return report_syntax(text, begin);
     const struct kind *const kind = &kinds[axis->kind];
     const char *next = begin + length;
     do {
@@ -60,12 +60,12 @@ static enum wb_status parse_axis(const char *text, const char **at, struct axis 
         const bool is_in_range = value >= kind->least && value <= kind->largest;
         if (end == next + 1 || !is_in_range || axis->n == VALUES || strchr(" \t+-", next[1]) ||
             (kind->is_whole && value != (int)value))
-            return refuse(text, next + 1);
+            return report_syntax(text, next + 1);
         axis->value[axis->n++] = value;
         next = end;
     } while (*next == ',');
     *at = next;
-    return *next == ':' || *next == '\0' ? WB_OK : refuse(text, next);
+    return *next == ':' || *next == '\0' ? WB_OK : report_syntax(text, next);
 }
 
 static void vary(struct wb_bundle_variant *variant, const struct axis *axis, double value)
@@ -88,10 +88,10 @@ static enum wb_status parse_axes(const char *text, struct axis axis[AXES], int *
     *n = 0;
     for (;; at++) {
         if (*n == AXES)
-            return refuse(text, at);
+            return report_syntax(text, at);
         WB_TRY(parse_axis(text, &at, &axis[*n]));
         if (is_used[axis[*n].kind])
-            return refuse(text, kinds[axis[*n].kind].name);
+            return report_syntax(text, kinds[axis[*n].kind].name);
         is_used[axis[(*n)++].kind] = true;
         if (*at == '\0')
             return WB_OK;

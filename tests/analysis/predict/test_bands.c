@@ -54,8 +54,8 @@ static void compute(const char *path, const struct wb_bands_settings *settings)
     assert_int_equal(wb_bands_create(&bands, path, settings), WB_OK);
 }
 
-/* Force at the largest deflection, of a run by itself. */
-static double direct(const char *path, double cohesion, double length)
+/* Force at the largest deflection of a single run. */
+static double single_run_force(const char *path, double cohesion, double length)
 {
     struct wb_bundle_model *const model = calloc(1, sizeof *model);
     struct wb_section_run run;
@@ -88,13 +88,14 @@ static void quantiles_of_one_input_are_runs_at_its_quantiles(void **unused)
     assert_int_equal(c->n_force, 11);
     const struct wb_bands_interval *const band = &c->force[10].band;
     const double n_mm3 = WB_N_PER_MM3;
-    /* 60 strata: quantiles are known to half of one, 1/120. */
-    assert_close(band->median, direct(path, 30.0 * n_mm3, 0.114), 0.004 * band->median);
-    assert_close(band->low, direct(path, 3.0 * pow(100.0, 0.05) * n_mm3, 0.114), 0.02 * band->low);
-    assert_close(band->high, direct(path, 3.0 * pow(100.0, 0.95) * n_mm3, 0.114),
+    /* 60 strata: quantiles are accurate to half a stratum, 1/120. */
+    assert_close(band->median, single_run_force(path, 30.0 * n_mm3, 0.114), 0.004 * band->median);
+    assert_close(band->low, single_run_force(path, 3.0 * pow(100.0, 0.05) * n_mm3, 0.114),
+                 0.02 * band->low);
+    assert_close(band->high, single_run_force(path, 3.0 * pow(100.0, 0.95) * n_mm3, 0.114),
                  0.004 * band->high);
     assert_true(band->low < 0.85 * band->median);
-    /* Widened by 1.645 times 2 % of the largest force, in quadrature. */
+    /* The model's error, 1.645 times 2 % of the largest force, is added in quadrature. */
     const double error = 1.6449 * 0.02 * band->median;
     assert_close(band->wide_low, band->median - hypot(band->median - band->low, error), 1e-6);
     assert_close(band->wide_high, band->median + hypot(band->high - band->median, error), 1e-6);
@@ -104,8 +105,8 @@ static void quantiles_of_one_input_are_runs_at_its_quantiles(void **unused)
     assert_close(ranking->group[0].share, 1.0, 1e-3);
 }
 
-/* An exact bundle has no band but the model's. */
-static void what_is_exact_has_the_models_band_alone(void **unused)
+/* A bundle without uncertainty has only the model's band. */
+static void without_uncertainty_the_band_is_the_models(void **unused)
 {
     (void)unused;
     char path[WB_PATH];
@@ -115,14 +116,15 @@ static void what_is_exact_has_the_models_band_alone(void **unused)
                path);
     compute(path, &(struct wb_bands_settings){.runs = 25});
     const struct wb_bands_interval *const band = &bands->cases[0].force[10].band;
-    assert_close(band->median, direct(path, 30.0 * WB_N_PER_MM3, 0.114), 2e-4 * band->median);
+    assert_close(band->median, single_run_force(path, 30.0 * WB_N_PER_MM3, 0.114),
+                 2e-4 * band->median);
     assert_close(band->low, band->high, 1e-12);
     assert_close_relative(band->wide_high, 1.0329 * band->median, 1e-4);
     assert_int_equal(bands->cases[0].ranking[0].ranking.n_groups, 0);
 }
 
-/* A strand leans, and the weight sags the bundle: the force is a little another one. */
-static void what_a_command_overrides_holds_for_every_run(void **unused)
+/* A leaning strand and the sag under weight change the force a little. */
+static void overrides_of_the_command_apply_to_every_run(void **unused)
 {
     (void)unused;
     static const struct wb_bundle_override override = {.dead_force = true, .no_weight = true};
@@ -222,7 +224,7 @@ static void threads_do_not_change_a_byte_and_scenarios_are_cases(void **unused)
     assert_same_files("first", "second");
 }
 
-static void a_sweep_is_in_place_of_scenarios(void **unused)
+static void a_sweep_replaces_the_scenarios(void **unused)
 {
     (void)unused;
     static const struct wb_bundle_variant variants[] = {
@@ -291,19 +293,20 @@ static void laws_come_from_the_specimens_of_a_calibration(void **unused)
     const struct wb_bands_case *const c = &bands->cases[0];
     assert_string_equal(bands->inputs.wires[0].source, "5 specimens of properties.yaml");
     assert_int_equal(bands->inputs.n_dimensions, 6 + 8);
-    assert_close(c->force[10].band.median, direct(path, 30.0 * WB_N_PER_MM3, 0.114),
+    assert_close(c->force[10].band.median, single_run_force(path, 30.0 * WB_N_PER_MM3, 0.114),
                  0.02 * c->force[10].band.median);
     const double width = c->force[10].band.high / c->force[10].band.low - 1.0;
     print_message("force %.4f N, band %.1f %% wide\n", c->force[10].band.median, 100.0 * width);
-    /* The force goes with E^0.29 and the rest: specimens differ by 7 % of E in step with K. */
+    /* Force is proportional to E^0.29 and other inputs: the specimens differ by 7 % of E,
+     * correlated with K. */
     assert_true(width > 0.03 && width < 0.15);
     assert_int_equal(c->ranking[1].ranking.n_groups, 1);
     assert_true(c->ranking[1].ranking.is_valid);
 }
 
-/* --- refusals --- */
+/* --- errors --- */
 
-static void assert_refused(const char *const *parts, const char *message)
+static void assert_rejected(const char *const *parts, const char *message)
 {
     char path[WB_PATH];
     const struct wb_bands_settings settings = {.runs = 30};
@@ -315,57 +318,58 @@ static void assert_refused(const char *const *parts, const char *message)
     assert_message(message);
 }
 
-static void what_is_not_stated_is_asked_for(void **unused)
+static void missing_uncertainties_are_reported(void **unused)
 {
     (void)unused;
     static const char by_file[] = "uncertainty:\n  wires: [{wire: type3, properties: "
                                   "properties.yaml}]\n";
     static const char start[] = "uncertainty:\n";
     write_properties(1.4, 2);
-    assert_refused((const char *[]){head, NULL}, "uncertainty: this section is missing");
-    assert_refused((const char *[]){head, NULL}, "wires: [{wire: type3, properties: FILE}]");
-    assert_refused((const char *[]){head, by_file, exact_lengths, exact_tape, exact_rest, NULL},
-                   "has 2 specimens, and their scatter needs at least 3");
-    assert_refused((const char *[]){head, start, exact_wires, exact_lengths, exact_rest, NULL},
-                   "this key is missing: tape");
-    assert_refused((const char *[]){head, start, exact_wires, exact_lengths, exact_tape,
-                                    "  friction: [0.2, 0.2]\n", NULL},
-                   "this key is missing: cohesive_stiffness_N_mm3");
-    assert_refused((const char *[]){head, start, exact_wires, exact_lengths, exact_tape,
-                                    "  cohesive_stiffness_N_mm3: [30, 30]\n", NULL},
-                   "this key is missing: friction");
-    assert_refused((const char *[]){head, start, exact_wires, exact_tape, exact_rest,
-                                    "  pitch_percent: 0\n  length_percent: 0\n", NULL},
-                   "diameter_percent");
-    assert_refused((const char *[]){head, start, exact_wires, exact_lengths, exact_tape,
-                                    "  cohesive_stiffness_N_mm3: [40, 30]\n", NULL},
-                   "expected [least, largest]");
-    assert_refused((const char *[]){head, start, "  wires: [{wire: type3}]\n", exact_lengths, NULL},
-                   "expected properties: FILE");
-    assert_refused((const char *[]){head, start,
-                                    "  wires: [{wire: type3, youngs_modulus_percent: 1}]\n",
-                                    exact_lengths, NULL},
-                   "all three are needed");
-    assert_refused((const char *[]){head, start,
-                                    "  wires: [{wire: type2, youngs_modulus_percent: 1, "
-                                    "yield_stress_percent: 1, stress_percent: 1}]\n",
-                                    exact_lengths, exact_tape, exact_rest, NULL},
-                   "the bundle has no wire type2");
+    assert_rejected((const char *[]){head, NULL}, "uncertainty: this section is missing");
+    assert_rejected((const char *[]){head, NULL}, "wires: [{wire: type3, properties: FILE}]");
+    assert_rejected((const char *[]){head, by_file, exact_lengths, exact_tape, exact_rest, NULL},
+                    "has 2 specimens");
+    assert_rejected((const char *[]){head, start, exact_wires, exact_lengths, exact_rest, NULL},
+                    "this key is missing: tape");
+    assert_rejected((const char *[]){head, start, exact_wires, exact_lengths, exact_tape,
+                                     "  friction: [0.2, 0.2]\n", NULL},
+                    "this key is missing: cohesive_stiffness_N_mm3");
+    assert_rejected((const char *[]){head, start, exact_wires, exact_lengths, exact_tape,
+                                     "  cohesive_stiffness_N_mm3: [30, 30]\n", NULL},
+                    "this key is missing: friction");
+    assert_rejected((const char *[]){head, start, exact_wires, exact_tape, exact_rest,
+                                     "  pitch_percent: 0\n  length_percent: 0\n", NULL},
+                    "diameter_percent");
+    assert_rejected((const char *[]){head, start, exact_wires, exact_lengths, exact_tape,
+                                     "  cohesive_stiffness_N_mm3: [40, 30]\n", NULL},
+                    "expected [least, largest]");
+    assert_rejected(
+        (const char *[]){head, start, "  wires: [{wire: type3}]\n", exact_lengths, NULL},
+        "expected properties: FILE");
+    assert_rejected((const char *[]){head, start,
+                                     "  wires: [{wire: type3, youngs_modulus_percent: 1}]\n",
+                                     exact_lengths, NULL},
+                    "all three are needed");
+    assert_rejected((const char *[]){head, start,
+                                     "  wires: [{wire: type2, youngs_modulus_percent: 1, "
+                                     "yield_stress_percent: 1, stress_percent: 1}]\n",
+                                     exact_lengths, exact_tape, exact_rest, NULL},
+                    "the bundle has no wire type2");
     write_properties(1.5, 5);
-    assert_refused((const char *[]){head, by_file, exact_lengths, exact_tape, exact_rest, NULL},
-                   "is of a wire of 1.5 mm, and type3 has 1.4 mm");
+    assert_rejected((const char *[]){head, by_file, exact_lengths, exact_tape, exact_rest, NULL},
+                    "is of a wire of 1.5 mm");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(quantiles_of_one_input_are_runs_at_its_quantiles, release),
-        cmocka_unit_test_teardown(what_is_exact_has_the_models_band_alone, release),
-        cmocka_unit_test_teardown(what_a_command_overrides_holds_for_every_run, release),
+        cmocka_unit_test_teardown(without_uncertainty_the_band_is_the_models, release),
+        cmocka_unit_test_teardown(overrides_of_the_command_apply_to_every_run, release),
         cmocka_unit_test_teardown(threads_do_not_change_a_byte_and_scenarios_are_cases, release),
-        cmocka_unit_test_teardown(a_sweep_is_in_place_of_scenarios, release),
+        cmocka_unit_test_teardown(a_sweep_replaces_the_scenarios, release),
         cmocka_unit_test_teardown(laws_come_from_the_specimens_of_a_calibration, release),
-        cmocka_unit_test_teardown(what_is_not_stated_is_asked_for, release),
+        cmocka_unit_test_teardown(missing_uncertainties_are_reported, release),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

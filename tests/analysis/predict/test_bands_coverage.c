@@ -1,5 +1,5 @@
-/* Whether bands hold the truth: bundles of seven wires drawn one by one from a product, and bands
- * that know the product by five specimens. */
+/* Coverage of the bands: bundles of seven wires drawn individually from a product, and bands from
+ * five specimens of that product. */
 #include <stdlib.h>
 
 #include "analysis/predict/bands.h"
@@ -27,7 +27,7 @@ static const char bundle[] =
     "  tape: {thickness_percent: 0, youngs_modulus_percent: 0, yield_stress_percent: 0}\n"
     "  cohesive_stiffness_N_mm3: [30, 30]\n  friction: [0.2, 0.2]\n";
 
-/* The i-th wire of a product: E and stresses scatter by 8 %, half of it in common. */
+/* The i-th wire of a product: E and stresses scatter by 8 %, half of it correlated. */
 static void draw_wire(uint64_t truth, uint64_t i, struct wb_material *law)
 {
     const double common = wb_random_normal(truth, 10, i);
@@ -66,7 +66,7 @@ static void write_specimens(uint64_t truth)
     wb_text_release(&text);
 }
 
-/* Force at the largest deflection of a bundle in which each wire has a law of its own. */
+/* Force at the largest deflection of a bundle in which each wire has its own law. */
 static double true_force(const char *path, uint64_t truth)
 {
     static struct wb_bundle_model model;
@@ -87,7 +87,8 @@ static double true_force(const char *path, uint64_t truth)
     return force;
 }
 
-/* 60 truths: nine of ten, with a standard deviation of 3.9 %; within 2.6 of them. */
+/* 60 truths: nine of ten are expected, with a standard deviation of 3.9 %; the limit is 2.6 of
+ * them. */
 static void nine_of_ten_bundles_lie_in_the_band_of_their_product(void **unused)
 {
     (void)unused;

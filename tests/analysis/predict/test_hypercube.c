@@ -27,7 +27,8 @@ static void each_stratum_of_each_dimension_has_one_point(void **state)
     }
 }
 
-/* Not all in the middle of their stratum: a mean square of 1/12 of its width about it. */
+/* Points are not all at the middle of their stratum: their mean square about it is 1/12 of its
+ * width squared. */
 static void points_lie_anywhere_in_their_stratum(void **state)
 {
     (void)state;
@@ -40,7 +41,7 @@ static void points_lie_anywhere_in_their_stratum(void **state)
     assert_close_relative(square, 1.0 / 12.0, 0.05);
 }
 
-/* By chance alone the largest of these 66 correlations would be about 0.18. */
+/* In random order the largest of these 66 correlations would be about 0.18. */
 static void dimensions_are_not_correlated(void **state)
 {
     (void)state;

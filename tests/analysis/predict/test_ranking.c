@@ -35,8 +35,8 @@ static enum wb_status compute(int n)
     return wb_ranking_compute(&ranking, &data);
 }
 
-/* y = 3 a + 2 b1 + b2 + 2 c of even numbers: shares of the variance 9, 5 and 4 of 18. Ranks of a
- * sum are not the sum of ranks: they miss by a few per cent. */
+/* y = 3 a + 2 b1 + b2 + 2 c of uniform numbers: shares of the variance are 9, 5 and 4 of 18. Ranks
+ * of a sum are not the sum of ranks, which changes shares by a few per cent. */
 static void shares_of_a_linear_function_are_those_of_its_variance(void **state)
 {
     (void)state;
@@ -77,13 +77,13 @@ static void a_steep_monotonic_function_has_the_same_ranks(void **state)
     assert_memory_equal(&ranking, &linear, sizeof ranking);
 }
 
-static void columns_that_follow_from_each_other_share_once(void **state)
+static void dependent_columns_are_counted_once(void **state)
 {
     (void)state;
     make_columns();
     for (int i = 0; i < N; i++) {
         double *const x = columns + (size_t)i * COLUMNS;
-        x[2] = -x[1]; /* the same ranks, from the other end */
+        x[2] = -x[1]; /* the same ranks in reverse */
         result[i] = x[0] + x[1];
     }
     assert_int_equal(compute(N), WB_OK);
@@ -93,8 +93,8 @@ static void columns_that_follow_from_each_other_share_once(void **state)
     assert_close(ranking.group[2].share, 0.0, 0.01);
 }
 
-/* Half of the variance is of no input: R2 is about 0.5, with an interval that holds it. */
-static void what_inputs_do_not_explain_is_not_ranked(void **state)
+/* Half of the variance comes from none of the inputs: R2 is about 0.5, within its interval. */
+static void results_that_inputs_do_not_explain_are_not_ranked(void **state)
 {
     (void)state;
     make_columns();
@@ -106,9 +106,9 @@ static void what_inputs_do_not_explain_is_not_ranked(void **state)
     assert_true(ranking.low < ranking.r2 && ranking.r2 < ranking.high);
 }
 
-/* Of 100 samples of a function with noise, the interval holds the share of a very large sample in
- * about nine of ten. */
-static void the_interval_holds_the_share_in_nine_of_ten_samples(void **state)
+/* Over 100 samples of a function with noise, the interval contains the share of a very large sample
+ * in about nine of ten. */
+static void the_interval_contains_the_share_in_nine_of_ten_samples(void **state)
 {
     (void)state;
     enum {
@@ -133,8 +133,8 @@ static void the_interval_holds_the_share_in_nine_of_ten_samples(void **state)
     assert_true(within >= 80 && within <= 98);
 }
 
-/* Of u even on 0 to 1, cut to nothing below 0.8: tied ranks are 0.4, their mean, and R2 is 0.4880
- * (with the least of them, 0, it would be 0.4865). */
+/* u is uniform on 0 to 1 and set to zero below 0.8: tied ranks are 0.4, their mean, and R2 is
+ * 0.4880 (with the smallest of the tied ranks, 0, it would be 0.4865). */
 static void equal_results_share_their_mean_rank(void **state)
 {
     (void)state;
@@ -149,7 +149,7 @@ static void equal_results_share_their_mean_rank(void **state)
     assert_close(ranking.r2, 0.4880, 4e-4);
 }
 
-static void too_few_runs_are_refused(void **state)
+static void too_few_runs_are_rejected(void **state)
 {
     (void)state;
     wb_log_set_sink(discard_message, NULL);
@@ -162,11 +162,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shares_of_a_linear_function_are_those_of_its_variance),
         cmocka_unit_test(a_steep_monotonic_function_has_the_same_ranks),
-        cmocka_unit_test(columns_that_follow_from_each_other_share_once),
-        cmocka_unit_test(what_inputs_do_not_explain_is_not_ranked),
-        cmocka_unit_test(the_interval_holds_the_share_in_nine_of_ten_samples),
+        cmocka_unit_test(dependent_columns_are_counted_once),
+        cmocka_unit_test(results_that_inputs_do_not_explain_are_not_ranked),
+        cmocka_unit_test(the_interval_contains_the_share_in_nine_of_ten_samples),
         cmocka_unit_test(equal_results_share_their_mean_rank),
-        cmocka_unit_test(too_few_runs_are_refused),
+        cmocka_unit_test(too_few_runs_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,7 +48,7 @@ static void draw_all(int wires)
     free(u);
 }
 
-/* s of a quantity of the specimens themselves. */
+/* Standard deviation s of a quantity over the specimens. */
 static double spread(int k)
 {
     double square = 0.0;
@@ -57,7 +57,7 @@ static double spread(int k)
     return sqrt(square / (specimens.n - 1));
 }
 
-static void a_law_has_its_quantities_and_they_give_it_back(void **state)
+static void a_law_is_recovered_from_its_quantities(void **state)
 {
     (void)state;
     const struct wb_material law = {.youngs_modulus = 4528e6,
@@ -77,8 +77,8 @@ static void a_law_has_its_quantities_and_they_give_it_back(void **state)
     assert_close(back.poissons_ratio, 0.3, 0.0);
 }
 
-/* The stress at 1e-2 is kept, whatever happens to the other. */
-static void what_no_law_has_becomes_the_nearest_law(void **state)
+/* The stress at 1e-2 is kept; the other one is changed if necessary. */
+static void quantities_without_a_law_give_the_nearest_law(void **state)
 {
     (void)state;
     struct wb_material law = {.poissons_ratio = 0.3};
@@ -98,7 +98,7 @@ static void what_no_law_has_becomes_the_nearest_law(void **state)
 
 /* Each quantity is t-distributed with n - 1 degrees of freedom and the scale
  * s sqrt(1/n + 1/N), in closed form. */
-static void draws_have_the_t_distribution_of_a_mean_to_come(void **state)
+static void draws_have_the_predictive_t_distribution(void **state)
 {
     (void)state;
     static const struct {
@@ -125,7 +125,8 @@ static void draws_have_the_t_distribution_of_a_mean_to_come(void **state)
     }
 }
 
-/* q - m over its common scale has the specimens' covariance; ranks do not mind the scale. */
+/* q - m over its common scale has the specimens' covariance; rank correlations do not depend on the
+ * scale. */
 static void draws_keep_the_correlations_of_the_specimens(void **state)
 {
     (void)state;
@@ -150,15 +151,15 @@ static void draws_keep_the_correlations_of_the_specimens(void **state)
         }
 }
 
-/* Of three specimens two directions are seen, and draws stay in them: the draws' covariance has no
- * more than the specimens'. */
+/* Three specimens span two directions, and draws stay in them: the draws' covariance has the same
+ * rank. */
 static void directions_in_which_specimens_do_not_differ_stay_exact(void **state)
 {
     (void)state;
     struct wb_material law[WB_SPECIMENS_MOST];
     make(5, 3, law);
-    /* A vector of q space across all deviations: of the first three quantities, by the product of
-     * two deviations. */
+    /* A vector of q space normal to all deviations: in the first three quantities, the vector
+     * product of two deviations. */
     const double *const a = specimens.deviation[0], *const b = specimens.deviation[1];
     const double across[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                               a[0] * b[1] - a[1] * b[0]};
@@ -175,9 +176,9 @@ static void directions_in_which_specimens_do_not_differ_stay_exact(void **state)
     }
 }
 
-/* Truths drawn anew, n specimens of each, and the mean of N further wires: the 90 % interval of the
- * draws holds it in 90 % of the cases. 2000 cases: a standard deviation of 0.7 %. */
-static void nine_in_ten_means_of_further_wires_lie_in_the_interval(void **state)
+/* Many truths, n specimens of each, and the mean of N further wires: the 90 % interval of the draws
+ * contains it in 90 % of the cases. With 2000 cases the standard deviation is 0.7 %. */
+static void nine_of_ten_means_of_further_wires_are_in_the_interval(void **state)
 {
     (void)state;
     enum {
@@ -215,12 +216,12 @@ static void nine_in_ten_means_of_further_wires_lie_in_the_interval(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_law_has_its_quantities_and_they_give_it_back),
-        cmocka_unit_test(what_no_law_has_becomes_the_nearest_law),
-        cmocka_unit_test(draws_have_the_t_distribution_of_a_mean_to_come),
+        cmocka_unit_test(a_law_is_recovered_from_its_quantities),
+        cmocka_unit_test(quantities_without_a_law_give_the_nearest_law),
+        cmocka_unit_test(draws_have_the_predictive_t_distribution),
         cmocka_unit_test(draws_keep_the_correlations_of_the_specimens),
         cmocka_unit_test(directions_in_which_specimens_do_not_differ_stay_exact),
-        cmocka_unit_test(nine_in_ten_means_of_further_wires_lie_in_the_interval),
+        cmocka_unit_test(nine_of_ten_means_of_further_wires_are_in_the_interval),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

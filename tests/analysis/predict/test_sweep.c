@@ -30,7 +30,7 @@ static void one_key_alone(void **state)
     assert_string_equal(variants[0].name, "overlap=33.3");
 }
 
-static void what_is_no_sweep_is_refused(void **state)
+static void invalid_sweeps_are_rejected(void **state)
 {
     (void)state;
     static const char *const wrong[] = {"",
@@ -57,7 +57,7 @@ static void what_is_no_sweep_is_refused(void **state)
     wb_log_set_sink(discard_message, NULL);
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
         if (wb_sweep_parse(wrong[i], 8, variants, &n) != WB_ERR_ARGUMENT)
-            fail_msg("'%s' is taken", wrong[i]);
+            fail_msg("'%s' is accepted", wrong[i]);
     wb_log_set_sink(NULL, NULL);
 }
 
@@ -66,7 +66,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_combinations_with_the_last_key_fastest),
         cmocka_unit_test(one_key_alone),
-        cmocka_unit_test(what_is_no_sweep_is_refused),
+        cmocka_unit_test(invalid_sweeps_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
