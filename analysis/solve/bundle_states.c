@@ -10,8 +10,8 @@
 
 #define WB_LOG_DOMAIN "solve"
 
-/* A new attempt of the run discards what the attempt before it left. */
-static enum wb_status begin_anew(struct wb_bundle_states *states, int attempt)
+/* A new attempt of the run discards the states of the previous attempt. */
+static enum wb_status start_attempt(struct wb_bundle_states *states, int attempt)
 {
     states->attempt = attempt;
     states->deflection = 0.0;
@@ -58,7 +58,7 @@ enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
     enum wb_status status = WB_OK;
 
     if (result->attempts != states->attempt)
-        status = begin_anew(states, result->attempts);
+        status = start_attempt(states, result->attempts);
     if (status == WB_OK)
         status = take(states, result->n_rows, row, bundle);
     wb_solve_time_add(&states->spent, &start);
@@ -113,11 +113,11 @@ static void visit_series(struct wb_vtk_file_series *series, struct wb_checkpoint
     free(bytes);
 }
 
-/* Which states are written, and where. A resumed run must want the same: a series split over two
- * folders would be of no use. */
+/* The states that are written, and where. A resumed run must write the same: a series split over
+ * two folders would be useless. */
 struct purpose {
     int wants_surface, wants_vtk, every;
-    char folder[PATH_MAX]; /* path without symbolic links; "": no files are written */
+    char folder[PATH_MAX]; /* path without symbolic links; "": no files */
 };
 
 static void find_purpose(struct purpose *purpose, const struct wb_bundle_states *states)

@@ -30,9 +30,9 @@ static const struct wb_solve_kind *find_kind(const struct wb_solve_settings *set
                                          : &wb_solve_wire;
 }
 
-/* --- before --- */
+/* --- preparation --- */
 
-/* Called before the computation, so that an output that cannot be written is found out at once. */
+/* Called before the computation, so that an output that cannot be written is reported at once. */
 static enum wb_status prepare_folder(const char *folder, bool force, bool *made)
 {
     const bool was_there = wb_file_exists(folder);
@@ -60,15 +60,15 @@ static bool is_first(void)
     return wb_team_rank() == 0;
 }
 
-/* What would be ignored, so that nobody takes one run for bands of many. */
-static enum wb_status refuse_ignored(const struct wb_solve_settings *settings)
+/* Options without effect are rejected, so that a single run is not mistaken for bands of many. */
+static enum wb_status reject_ignored_options(const struct wb_solve_settings *settings)
 {
     struct wb_solve_settings defaults = {0};
     wb_setting_fill(&wb_solve_settings_table, &defaults);
     const bool is_default = settings->runs == defaults.runs && settings->seed == defaults.seed;
     if (settings->uncertain || settings->runs == 0 /* never filled */ || is_default)
         return WB_OK;
-    return wb_fail(WB_ERR_ARGUMENT, "--runs and --seed are for --uncertain");
+    return wb_fail(WB_ERR_ARGUMENT, "--runs and --seed apply only with --uncertain");
 }
 
 static enum wb_status prepare(struct wb_solve *solve)
@@ -76,7 +76,7 @@ static enum wb_status prepare(struct wb_solve *solve)
     const struct wb_solve_settings *const s = solve->settings;
 
     WB_TRY(solve->kind->prepare(solve));
-    WB_TRY(refuse_ignored(solve->settings));
+    WB_TRY(reject_ignored_options(solve->settings));
     if (!is_first())
         return WB_OK;
     if (s->checkpoint)
@@ -85,8 +85,8 @@ static enum wb_status prepare(struct wb_solve *solve)
         WB_TRY(prepare_folder(s->output, s->force, &solve->made_output));
     if (!s->vtk)
         return WB_OK;
-    /* VTK files in the folder of a resumed run are its own; its dataset is written at the end only.
-     */
+    /* VTK files in the folder of a resumed run are its own; its dataset is written only at the
+     * end. */
     const bool force = s->force || (s->checkpoint && wb_file_exists(s->checkpoint));
     WB_TRY(prepare_folder(s->vtk, force, &solve->made_vtk));
     return wb_vtk_file_series_init(&solve->series, s->vtk, solve->name);
@@ -111,7 +111,7 @@ static enum wb_status write_dataset(const struct wb_solve *solve)
 
     wb_dataset_init(&dataset);
     solve->kind->fill(solve, &dataset);
-    /* That the folder may be overwritten was checked before the computation. */
+    /* Whether the folder may be overwritten was checked before the computation. */
     enum wb_status status = wb_dataset_begin(folder, true);
     if (status == WB_OK && solve->kind->write)
         status = solve->kind->write(solve, &dataset, folder);
@@ -139,7 +139,7 @@ static enum wb_status deliver(const struct wb_solve *solve, wb_solve_show *show,
     if (s->checkpoint && !solve->stopped)
         (void)unlink(s->checkpoint);
     if (!solve->converged)
-        solve->kind->tell_lost(solve);
+        solve->kind->warn_not_converged(solve);
     if (solve->stopped)
         wb_warn("stopped after %d %s", solve->n_rows, rows);
     if (solve->kind->warn)
@@ -169,7 +169,7 @@ bool wb_solve_summarise(const struct wb_solve *solve, struct wb_text *text)
 
 /* --- a run --- */
 
-/* How it went, on all ranks as on the first. */
+/* Result of a run, the same on all ranks. */
 struct outcome {
     enum wb_status status;
     bool complete;
@@ -212,8 +212,8 @@ enum wb_status wb_solve_run(const struct wb_solve_settings *settings, wb_solve_s
                             void *context, bool *complete)
 {
     *complete = false;
-    /* Ranks share the work of an explicit bundle; of other kinds each computes all, as if it were
-     * alone. */
+    /* Ranks share the work of an explicit bundle; other kinds are computed completely by each
+     * rank. */
     if (!is_explicit_bundle(settings))
         return run_in_team(settings, show, context, complete);
     WB_TRY(wb_team_start());

@@ -20,7 +20,7 @@ enum {
 };
 
 static const double allowed_imbalance = 0.01;
-static const double usual_interval = 600.0; /* s, between checkpoints */
+static const double usual_interval = 600.0; /* s, default time between checkpoints */
 
 /* Inputs and results of a run. */
 struct run {
@@ -28,7 +28,7 @@ struct run {
     struct wb_bundle_model model;
     const struct wb_bundle_mesh *mesh;
     struct wb_bundle_result result;
-    int attempt; /* shown by the live line */
+    int attempt; /* shown on the progress line */
     struct wb_bundle_states states;
 };
 
@@ -48,7 +48,7 @@ static enum wb_status prepare(void *context)
     WB_TRY(wb_bundle_override_read(&run->model, path, &s->override, NULL));
     run->solve.name = run->model.name;
     for (int i = 0; i < run->model.n_types && is_first(); i++)
-        WB_TRY(wb_solve_law_tell(&run->model.type[i]));
+        WB_TRY(wb_solve_law_report(&run->model.type[i]));
     run->mesh = wb_bundle_model_mesh(&run->model, run->model.run.mesh);
     run->states = (struct wb_bundle_states){
         .wants_surface = is_first() && s->output,
@@ -60,7 +60,7 @@ static enum wb_status prepare(void *context)
     return wb_bundle_result_init(&run->result, &run->model, MARKERS);
 }
 
-/* --- while it runs --- */
+/* --- progress --- */
 
 static bool report_progress(void *context, const struct wb_bundle_progress *now)
 {
@@ -132,8 +132,7 @@ static enum wb_status compute(void *context)
 
 /* --- results --- */
 
-/* Its times are those of all calls that computed it; time spent on fields and files is not the
- * solver's. */
+/* The times include all calls that computed it, without the time spent on fields and files. */
 static struct wb_simulated_bundle simulated(const struct run *run)
 {
     return (struct wb_simulated_bundle){
@@ -185,10 +184,10 @@ static void describe(const void *context, struct wb_json *object)
     wb_simulated_bundle_describe(object, &bundle);
 }
 
-static void tell_lost(const void *context)
+static void warn_not_converged(const void *context)
 {
     const struct run *const run = context;
-    wb_warn("%s: the run was lost: %s; %d of %d rows were computed", run->model.name,
+    wb_warn("%s: the run failed: %s; %d of %d rows were computed", run->model.name,
             run->result.reason.text, run->result.n_rows, run->result.capacity);
 }
 
@@ -203,10 +202,10 @@ static void warn(const void *context)
                 "the limit of %.3g: the curve is not quasi-static",
                 name, h->largest.kinetic, h->duration, run->model.run.kinetic_limit);
     if (h->largest.imbalance > allowed_imbalance)
-        wb_warn("%s: the energy balance is off by up to %.3g of the external work", name,
+        wb_warn("%s: the energy balance has an error of up to %.3g of the external work", name,
                 h->largest.imbalance);
     if (h->largest.beyond)
-        wb_warn("%s: strains reach %.3g, beyond what the elements are made for", name,
+        wb_warn("%s: strains reach %.3g, above the range of validity of the elements", name,
                 h->largest.strain);
 }
 
@@ -225,7 +224,7 @@ const struct wb_solve_kind wb_solve_bundle = {
     .write = write,
     .row = take_row,
     .describe = describe,
-    .tell_lost = tell_lost,
+    .warn_not_converged = warn_not_converged,
     .warn = warn,
     .release = release,
 };

@@ -20,7 +20,7 @@ enum {
 struct run {
     struct wb_solve solve;
     struct wb_wire wire;
-    struct wb_law law; /* as computed with: the wire's, or elastic */
+    struct wb_law law; /* used in the computation: the wire's, or elastic */
     struct wb_section section;
     struct wb_cantilever *cantilever;
     struct wb_loading_steps loading;
@@ -140,7 +140,7 @@ static void describe(const void *context, struct wb_json *object)
     wb_json_set_number(object, "cpu_s", run->solve.spent.cpu);
 }
 
-static void tell_lost(const void *context)
+static void warn_not_converged(const void *context)
 {
     const struct run *const run = context;
     wb_warn("the solver did not converge beyond a deflection of %.4g mm; the curve ends at row %d",
@@ -162,6 +162,6 @@ const struct wb_solve_kind wb_solve_cantilever = {
     .fill = fill,
     .row = take_row,
     .describe = describe,
-    .tell_lost = tell_lost,
+    .warn_not_converged = warn_not_converged,
     .release = release,
 };

@@ -23,12 +23,12 @@ struct run {
     struct wb_solve solve;
     struct wb_bundle_model model;
     struct wb_section_run result;
-    struct wb_bands *bands; /* NULL: not wanted */
+    struct wb_bands *bands; /* NULL: not requested */
 };
 
-/* --- before --- */
+/* --- preparation --- */
 
-/* The option of a mesh or a run in time that was given; NULL: none. */
+/* A given option that applies only to a mesh or to explicit dynamics; NULL: none. */
 static const char *find_explicit(const struct wb_bundle_override *override)
 {
     static const int tables[] = {WB_BUNDLE_OVERRIDE_MESH, WB_BUNDLE_OVERRIDE_RUN};
@@ -42,8 +42,8 @@ static const char *find_explicit(const struct wb_bundle_override *override)
     return NULL;
 }
 
-/* What only the explicit model takes. */
-static enum wb_status refuse_explicit(const struct wb_solve_settings *s)
+/* Rejects options of the explicit model. */
+static enum wb_status reject_explicit_options(const struct wb_solve_settings *s)
 {
     const char *const option = s->vtk           ? "vtk"
                                : s->checkpoint  ? "checkpoint"
@@ -52,11 +52,12 @@ static enum wb_status refuse_explicit(const struct wb_solve_settings *s)
     if (!option)
         return WB_OK;
     return wb_fail(WB_ERR_ARGUMENT,
-                   "--%s is of the explicit model: leave it out, or take --model explicit", option);
+                   "--%s applies only to --model explicit: remove it, or use --model explicit",
+                   option);
 }
 
-/* What bands take from the ranges that the file states. */
-static enum wb_status refuse_stated(const struct wb_bundle_interface *given)
+/* Rejects options whose values bands take from the ranges in the file. */
+static enum wb_status reject_ranged_options(const struct wb_bundle_interface *given)
 {
     const char *const option = given->has_friction             ? "friction"
                                : given->normal_stiffness > 0.0 ? "cohesive-stiffness"
@@ -64,7 +65,7 @@ static enum wb_status refuse_stated(const struct wb_bundle_interface *given)
     if (!option)
         return WB_OK;
     return wb_fail(WB_ERR_ARGUMENT,
-                   "--%s: bands take it from its range in the file: leave it out, or change "
+                   "--%s: bands use the range in the file: remove the option, or change "
                    "uncertainty: %s: [least, largest]",
                    option, given->has_friction ? "friction" : "cohesive_stiffness_N_mm3");
 }
@@ -76,9 +77,9 @@ static enum wb_status prepare(void *context)
     char path[WB_PATH];
 
     WB_TRY(wb_file_find_fixture(path, "bundles", s->model, NULL));
-    WB_TRY(refuse_explicit(s));
+    WB_TRY(reject_explicit_options(s));
     if (s->uncertain)
-        WB_TRY(refuse_stated(&s->override.interface));
+        WB_TRY(reject_ranged_options(&s->override.interface));
     WB_TRY(wb_bundle_override_read(&run->model, path, &s->override, NULL));
     run->solve.name = run->model.name;
     return wb_section_run_init(&run->result, &run->model, MARKERS);
@@ -181,7 +182,7 @@ static bool summarise(const void *context, struct wb_text *text)
     return run->bands != NULL;
 }
 
-static void tell_lost(const void *context)
+static void warn_not_converged(const void *context)
 {
     const struct run *const run = context;
     const struct wb_section_solver_point *const lost = &run->result.lost;
@@ -190,13 +191,13 @@ static void tell_lost(const void *context)
     if (isfinite(lost->residual))
         snprintf(why, sizeof why, "residual %.2g of the largest force", lost->residual);
     else
-        snprintf(why, sizeof why, "forces are no numbers there%s",
+        snprintf(why, sizeof why, "forces are not finite there%s",
                  run->model.loads.strand_length > 0.0 ? ": the strand may be too short to reach"
                                                       : "");
-    wb_warn(
-        "%s: no equilibrium was found beyond %.4g mm (%s); %d of %d rows were computed; compute "
-        "it with --model explicit",
-        run->model.name, lost->deflection / WB_MM, why, run->result.n_rows, run->result.capacity);
+    wb_warn("%s: no equilibrium was found beyond %.4g mm (%s); %d of %d rows were computed; use "
+            "--model explicit",
+            run->model.name, lost->deflection / WB_MM, why, run->result.n_rows,
+            run->result.capacity);
 }
 
 static void warn(const void *context)
@@ -208,22 +209,22 @@ static void warn(const void *context)
     const double folds = wb_section_run_folds(r);
 
     if (r->is_mean && run->model.packing.n > 1)
-        wb_warn("%s: friction decays with the slip rate, which a static model does not know: mu = "
-                "%.4g, the geometric mean of both, is taken; --friction sets another one",
+        wb_warn("%s: friction decays with the slip rate, which the static section model does not "
+                "support: mu = %.4g, the geometric mean of both coefficients, is used; set another "
+                "with --friction",
                 name, r->friction);
     if (isfinite(loosens))
-        wb_warn(
-            "%s: from %.3g mm on the tape on its circle has a plastic strain beyond 0.01, where "
-            "its outline lets go of the wires: the section model is too stiff there; compute "
-            "it with --model explicit",
-            name, loosens / WB_MM);
+        wb_warn("%s: from %.3g mm on the circular tape has a plastic strain above 0.01, and its "
+                "outline separates from the wires: the section model is too stiff there; use "
+                "--model explicit",
+                name, loosens / WB_MM);
     if (isfinite(folds))
         wb_warn("%s: from %.3g mm on the bundle bends to a radius below its own depth, where the "
-                "section model means nothing: take a smaller deflection, or a longer bundle",
+                "section model is not valid: use a smaller deflection, or a longer bundle",
                 name, folds / WB_MM);
     if (r->imbalance > allowed_imbalance)
-        wb_warn("%s: energies differ from the work by up to %.3g of it: more rows (run: rows) make "
-                "the increments smaller",
+        wb_warn("%s: energies differ from the work by up to %.3g of it: use more rows (run: rows) "
+                "for smaller increments",
                 name, r->imbalance);
 }
 
@@ -243,7 +244,7 @@ const struct wb_solve_kind wb_solve_section = {
     .row = take_row,
     .describe = describe,
     .summarise = summarise,
-    .tell_lost = tell_lost,
+    .warn_not_converged = warn_not_converged,
     .warn = warn,
     .release = release,
 };

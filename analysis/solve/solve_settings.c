@@ -124,9 +124,9 @@ const char *wb_solve_settings_kind(const struct wb_solve_settings *settings)
     return wb_solve_settings_kinds[i];
 }
 
-/* --- as a command --- */
+/* --- settings as a command --- */
 
-/* Words one after the other, a NUL after each. */
+/* Words one after the other, each followed by a NUL. */
 struct words {
     struct wb_text texts;
     size_t n;
@@ -145,7 +145,7 @@ static void add_option(struct words *words, const struct wb_setting *row, const 
     add_word(words, "--", row->option);
     if (row->type == WB_SETTING_BOOLEAN)
         return;
-    /* Texts may be longer than values are: paths. */
+    /* Texts, such as paths, may be longer than the buffer for other values. */
     if (row->type == WB_SETTING_TEXT && row->size == 0) {
         add_word(words, "", *(const char *const *)((const char *)settings + row->offset));
         return;
@@ -154,8 +154,8 @@ static void add_option(struct words *words, const struct wb_setting *row, const 
     add_word(words, "", value);
 }
 
-/* The tables of the override in the order of their options, and the row each begins with; those
- * before it come last. */
+/* The override's tables in the order of the options, and the first row of each; rows before it come
+ * last. */
 static const struct {
     int table, first;
 } order[] = {{WB_BUNDLE_OVERRIDE_PIECE, 0},
@@ -164,10 +164,10 @@ static const struct {
              {WB_BUNDLE_OVERRIDE_FRICTION, 0},
              {WB_BUNDLE_OVERRIDE_COHESION, 0},
              {WB_BUNDLE_OVERRIDE_MESH, 0},
-             {WB_BUNDLE_OVERRIDE_RUN, 1 /* the duration is its last */}};
+             {WB_BUNDLE_OVERRIDE_RUN, 1 /* the duration is its last row */}};
 _Static_assert(WB_COUNT(order) == WB_BUNDLE_OVERRIDE_TABLES, "each table has its place");
 
-/* What is given, as it replaces what the bundle file says. */
+/* Adds the given options that override the bundle file. */
 static void add_override(struct words *words, const struct wb_bundle_override *override)
 {
     for (size_t k = 0; k < WB_COUNT(order); k++) {
@@ -182,7 +182,7 @@ static void add_override(struct words *words, const struct wb_bundle_override *o
     }
 }
 
-/* Pointers to the words, then the words. */
+/* One block: pointers to the words, then the words. */
 static char **pack(const struct words *words)
 {
     const size_t pointers = (words->n + 1) * sizeof(char *);

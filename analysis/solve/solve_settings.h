@@ -1,5 +1,5 @@
-/* What a simulated test is asked for: the options of `wirebench solve`, and what a campaign asks
- * for. */
+/* Settings of a simulated test: the options of `wirebench solve`, and the requests of a
+ * campaign. */
 #ifndef WB_ANALYSIS_SOLVE_SOLVE_SETTINGS_H
 #define WB_ANALYSIS_SOLVE_SOLVE_SETTINGS_H
 
@@ -15,14 +15,14 @@ enum {
     WB_SOLVE_WIRE1D = 4,
     WB_SOLVE_BUNDLE = 8,
     WB_SOLVE_THREE_POINT = 16,
-    WB_SOLVE_KINDS = 5 /* how many */
+    WB_SOLVE_KINDS = 5 /* number of kinds */
 };
 
 /* Their names by bit, NULL-terminated: "cantilever", "wire3d", "wire1d", "bundle",
  * "bending3p". */
 extern const char *const wb_solve_settings_kinds[WB_SOLVE_KINDS + 1];
 
-/* How a bundle is computed. */
+/* Models of a bundle. */
 enum {
     WB_SOLVE_EXPLICIT, /* in explicit dynamics */
     WB_SOLVE_SECTION   /* by fe/section/section_run.h */
@@ -35,44 +35,44 @@ enum {
 
 /* Rows: wb_solve_settings_table, and those of the override. Texts are borrowed. */
 struct wb_solve_settings {
-    unsigned kind;      /* its bit */
-    const char *output; /* folder of the dataset; NULL: none is written */
+    unsigned kind;      /* one bit of the kinds */
+    const char *output; /* folder of the dataset; NULL: not written */
     bool force;         /* overwrite it, and VTK files */
-    /* Of the cantilever. */
+    /* Settings of the cantilever. */
     const char *wire;                  /* name or file */
     double length, deflection, strand; /* m; strand 0: a vertical force */
     int law;                           /* WB_SOLVE_ELASTOPLASTIC or WB_SOLVE_ELASTIC */
     int cycles, points;
     bool weight;
-    /* Of three-point bending, beside some of the cantilever's. */
+    /* Settings of three-point bending, in addition to some of the cantilever's. */
     double span, overhang;             /* m; overhang 0: 0.3 span */
     double roller_radius, nose_radius; /* m */
     double friction, compliance;       /* 1; m/N */
     double bow;                        /* m: rise of the natural shape's arc over the span */
     bool whole;                        /* compute both halves */
-    /* Of the wires, of bundles, and of three-point bending: a wire's. */
+    /* Settings of wires, of bundles, and of the wire in three-point bending. */
     const char *model; /* name or file */
     const char *vtk;   /* folder; NULL: none; not of wire1d */
-    /* Of bundles. */
+    /* Settings of bundles. */
     int bundle_model; /* WB_SOLVE_EXPLICIT or WB_SOLVE_SECTION */
     struct wb_bundle_override override;
     int vtk_every; /* rows; 0: 1 */
     int threads;
     const char *checkpoint;     /* file; NULL: none */
     double checkpoint_interval; /* s; 0: 10 minutes */
-    /* Of the section model. */
+    /* Settings of the section model. */
     bool uncertain;    /* bands, by analysis/predict/bands.h */
-    int runs, seed;    /* of them */
+    int runs, seed;    /* of the bands */
     const char *sweep; /* cases in place of the file's scenarios; NULL: none */
 };
 
 extern const struct wb_setting_table wb_solve_settings_table;
 
-const char *wb_solve_settings_kind(const struct wb_solve_settings *settings); /* its name */
+const char *wb_solve_settings_kind(const struct wb_solve_settings *settings); /* name of the kind */
 
-/* The words of the command that asks for the same, without program and output: "solve", "bundle",
- * the model, then the options of what is not as the rows have it. NULL-terminated, and one block
- * for free(). */
+/* The words of the command with these settings, without program and output: "solve", "bundle",
+ * the model, then the options that differ from the defaults. NULL-terminated, in one block for
+ * free(). */
 char **wb_solve_settings_command(const struct wb_solve_settings *settings);
 
 #endif

@@ -18,11 +18,11 @@
 struct run {
     struct wb_solve solve;
     struct wb_wire wire;
-    struct wb_law law; /* as computed with: the wire's, or elastic */
+    struct wb_law law; /* used in the computation: the wire's, or elastic */
     struct wb_section section;
     struct wb_three_point_bending *bending;
-    double curvature; /* natural, 1/m */
-    int planned;      /* rows, at most */
+    double curvature; /* natural curvature, 1/m */
+    int planned;      /* largest number of rows */
     struct wb_simulated_bending_row *rows;
     enum wb_three_point_bending_end end;
 };
@@ -43,12 +43,13 @@ static enum wb_status prepare(void *context)
                                 &run->section));
     run->solve.name = run->wire.name;
     if (fabs(o->bow) > 0.5 * o->span)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "--bow-mm: %g mm: an arc over a span of %g mm rises by at most half of it",
-                       o->bow / WB_MM, o->span / WB_MM);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "--bow-mm: %g mm: the rise of an arc over a span of %g mm is at most half of the span",
+            o->bow / WB_MM, o->span / WB_MM);
     run->planned = 1 + o->points * (o->cycles > 0 ? 2 * o->cycles : 1);
     run->rows = wb_memory_new((size_t)run->planned, sizeof *run->rows);
-    /* Of the arc that rises by the bow over the span. */
+    /* Curvature of the arc whose rise over the span is the bow. */
     run->curvature = 8.0 * o->bow / (o->span * o->span + 4.0 * o->bow * o->bow);
     const struct wb_three_point_bending_model model = {
         .section = &run->section,
@@ -66,7 +67,7 @@ static enum wb_status prepare(void *context)
     return wb_three_point_bending_create(&run->bending, &model);
 }
 
-/* One row; false when the test ends with it. */
+/* Adds one row; false if the test ends with it. */
 static bool add_row(struct run *run, int cycle, enum wb_phase phase, double deflection,
                     enum wb_status *status)
 {
@@ -195,14 +196,14 @@ static void describe(const void *context, struct wb_json *object)
     wb_json_set_number(object, "cpu_s", run->solve.spent.cpu);
 }
 
-static void tell_lost(const void *context)
+static void warn_not_converged(const void *context)
 {
     const struct run *const run = context;
-    /* The point that was not reached lies behind the last row. */
+    /* The point that was not reached follows the last row. */
     const double at = run->rows[run->solve.n_rows].point.deflection / WB_MM;
     if (run->end == WB_THREE_POINT_BENDING_RAN_OFF)
-        wb_warn("the wire's end comes to a roller at a deflection of %.4g mm: a longer overhang "
-                "reaches farther; the curve ends at row %d",
+        wb_warn("the wire's end reaches a roller at a deflection of %.4g mm: use a longer "
+                "overhang; the curve ends at row %d",
                 at, run->solve.n_rows);
     else if (run->end == WB_THREE_POINT_BENDING_PINCHED)
         wb_warn("the wire is pinched between nose and rollers at a deflection of %.4g mm; the "
@@ -229,6 +230,6 @@ const struct wb_solve_kind wb_solve_three_point = {
     .fill = fill,
     .row = take_row,
     .describe = describe,
-    .tell_lost = tell_lost,
+    .warn_not_converged = warn_not_converged,
     .release = release,
 };

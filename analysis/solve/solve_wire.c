@@ -42,13 +42,13 @@ static enum wb_status prepare(void *context)
     WB_TRY(wb_wire_model_read(&run->model, path));
     run->solve.name = run->model.name;
     if (run->model.is_homogenised)
-        WB_TRY(wb_solve_law_tell(&run->model.wire));
+        WB_TRY(wb_solve_law_report(&run->model.wire));
     return wb_wire_run_init(&run->run, &run->model, MARKERS);
 }
 
-/* --- while it runs --- */
+/* --- progress --- */
 
-/* The load at the last row, for the live line. */
+/* The load at the last row, for the progress line. */
 static void describe_load(const struct run *run, char *text, size_t size)
 {
     text[0] = '\0';
@@ -81,7 +81,7 @@ static bool report_increment(void *context, const struct wb_wire_run *wire_run, 
     return !wb_interrupted();
 }
 
-/* Stress fields are kept at the end of the last step and of the steps that ask for them. */
+/* Stress fields are kept at the end of the last step and of the steps that request them. */
 static bool keeps_fields(const struct run *run, bool last)
 {
     const int step = run->run.rows[run->run.n_rows - 1].step;
@@ -147,7 +147,7 @@ static enum wb_status compute(void *context)
 
 /* --- results --- */
 
-/* Largest memory of the process, bytes; 0 where the system does not say. */
+/* Peak memory of the process, bytes; 0 if the system does not report it. */
 static double peak_memory(void)
 {
     struct rusage usage;
@@ -215,7 +215,7 @@ static void describe(const void *context, struct wb_json *object)
         wb_json_set_text(object, "problem", run->run.problem);
 }
 
-static void tell_lost(const void *context)
+static void warn_not_converged(const void *context)
 {
     const struct run *const run = context;
     wb_warn("%s: did not converge: %s; %d of %d rows were computed", run->model.name,
@@ -230,8 +230,8 @@ static void warn_of_sliding(const void *context)
         return;
     wb_wire3d_balance(run->solid, &balance);
     if (balance.sliding > balance.slip_limit)
-        wb_warn("%s: core and jacket slide by %.3g mm; contact is computed for small sliding, up "
-                "to %.3g mm with this mesh: do not trust what depends on the interface",
+        wb_warn("%s: core and jacket slide by %.3g mm, but contact assumes small sliding, up to "
+                "%.3g mm with this mesh: results that depend on the interface are not reliable",
                 run->model.name, balance.sliding / WB_MM, balance.slip_limit / WB_MM);
 }
 
@@ -252,7 +252,7 @@ const struct wb_solve_kind wb_solve_wire = {
     .write = write,
     .row = take_row,
     .describe = describe,
-    .tell_lost = tell_lost,
+    .warn_not_converged = warn_not_converged,
     .warn = warn_of_sliding,
     .release = release,
 };

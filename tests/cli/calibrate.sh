@@ -261,7 +261,7 @@ properties:
     parts: [{modulus_MPa: 2900, yield_strain: 0.001}, {modulus_MPa: 1600}]
 END
 sed -i 's/^wire: .*/wire: .\/parts.yaml/; s/follower_N: .*, rows: 40/deflection_mm: 5, rows: 5/' rod.yaml
-expect 0 'the four numbers are the Ludwik equivalent of a law of parallel parts; loading within' \
+expect 0 'Ludwik equivalent of its law of parallel parts, the four numbers; loading is the same within' \
     "$wirebench" solve wire1d ./rod.yaml
 
 # Three-point bending: properties of a test predict both ways of another.

