@@ -23,8 +23,8 @@ void wb_jobs_options_release(struct wb_jobs_options *options)
 
 /* --- running --- */
 
-/* What unfinished runs left goes before they are begun again; not under a task that is at it. */
-static void make_ready(struct wb_jobs_plan *plan)
+/* Removes what unfinished runs left, except for runs that Slurm still executes. */
+static void clean_up(struct wb_jobs_plan *plan)
 {
     for (int i = 0; i < plan->n; i++) {
         struct wb_jobs_plan_item *const item = &plan->items[i];
@@ -39,7 +39,7 @@ static enum wb_status run(struct wb_jobs_plan *plan)
     enum wb_status status = wb_jobs_slurm_find_queued(plan);
     if (status != WB_OK)
         return status;
-    make_ready(plan);
+    clean_up(plan);
     if (plan->options->where == WB_JOBS_SLURM)
         status = wb_jobs_slurm_run(plan);
     else
@@ -68,7 +68,7 @@ static enum wb_status run_locked(struct wb_jobs_outcome *outcome, struct wb_jobs
     WB_TRY(wb_file_join(path, plan->folder, "lock"));
     enum wb_status status = wb_file_lock(&lock, path, &holder);
     if (status == WB_ERR_BUSY)
-        return wb_fail(WB_ERR_BUSY, "the runs of '%s' are in the hands of process %ld already",
+        return wb_fail(WB_ERR_BUSY, "the runs of '%s' are already in progress in process %ld",
                        plan->folder, holder);
     if (status != WB_OK)
         return status;

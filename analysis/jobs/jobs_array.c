@@ -15,8 +15,8 @@
 
 static const double submit_time = 120.0; /* s */
 
-/* Runs in the folder of the list; its argument is the folder of the runs. A line: log, output, what
- * to do with an output that exists, command line; quoted for a shell by whoever wrote it. */
+/* Runs in the folder of the list; its argument is the folder of the runs. A line contains log,
+ * output, what to do with an existing output, and the command line, all quoted for a shell. */
 /* clang-format off */
 static const char script[] =
     "#!/bin/sh\n"
@@ -28,13 +28,13 @@ static const char script[] =
     "log=$1 output=$2 old=$3\n"
     "shift 3\n"
     "exec >\"$log\" 2>&1 </dev/null\n"
-    "[ \"$old\" = replace ] || [ ! -e \"$output/dataset.json\" ] || { echo \"$output is there already\"; exit 0; }\n"
+    "[ \"$old\" = replace ] || [ ! -e \"$output/dataset.json\" ] || { echo \"$output exists already\"; exit 0; }\n"
     "export OMP_NUM_THREADS=\"${SLURM_CPUS_PER_TASK:-1}\"\n"
     "export OPENBLAS_NUM_THREADS=\"$OMP_NUM_THREADS\"\n"
     "echo \"$* -o $output.partial\"\n"
     "rm -rf -- \"$output.partial\"\n"
-    /* It stays as long as its run does: Slurm loses sight of an orphan, and may begin the run anew
-       while that still writes. */
+    /* The script stays until its run ends: Slurm does not track an orphan, and might start the run
+     * again while the orphan still writes. */
     "\"$@\" -o \"$output.partial\" &\n"
     "run=$!\n"
     "trap 'kill $run' TERM\n"
@@ -57,7 +57,7 @@ static enum wb_status find_self(char program[WB_PATH])
     static const char gone[] = " (deleted)";
     const ssize_t n = readlink("/proc/self/exe", program, WB_PATH - 1);
     if (n < 0)
-        return wb_fail(WB_ERR_IO, "cannot tell where wirebench is: %s", strerror(errno));
+        return wb_fail(WB_ERR_IO, "cannot determine the path of wirebench: %s", strerror(errno));
     program[n] = '\0';
     const size_t length = (size_t)n, ending = sizeof gone - 1;
     if (length > ending && strcmp(program + length - ending, gone) == 0)
@@ -65,7 +65,7 @@ static enum wb_status find_self(char program[WB_PATH])
     return WB_OK;
 }
 
-/* For a shell, with a space behind each. */
+/* Appends the words, quoted for a shell, each followed by a space. */
 static void append_words(struct wb_text *text, const char *const *words)
 {
     for (; *words; words++) {
@@ -83,7 +83,7 @@ static enum wb_status write_file(const char *folder, const char *name, const str
     return wb_file_write(path, wb_text_string(text), text->length);
 }
 
-/* A line for each item, in their order. */
+/* Writes one line per item, in their order. */
 static enum wb_status write_list(const struct wb_jobs_plan *plan, const char *folder,
                                  struct wb_jobs_plan_item *const *items, int n)
 {
@@ -106,7 +106,7 @@ static enum wb_status write_list(const struct wb_jobs_plan *plan, const char *fo
     return status;
 }
 
-/* The next free folder slurm-N, with the script. */
+/* Creates the next free folder slurm-N, with the script. */
 static enum wb_status make_folder(const struct wb_jobs_plan *plan, char list[32],
                                   char folder[WB_PATH])
 {
@@ -127,7 +127,7 @@ static enum wb_status make_folder(const struct wb_jobs_plan *plan, char list[32]
     return status;
 }
 
-/* "12" or "12;cluster". */
+/* Parses "12" or "12;cluster". */
 static enum wb_status read_id(const char *said, char array[32], char cluster[64])
 {
     if (sscanf(said, "%31[0-9];%63[^\n]", array, cluster) < 1)
@@ -141,18 +141,16 @@ static enum wb_status ask_sbatch(const char *const *words, char array[32], char 
     struct wb_program_answer answer;
     enum wb_status status = wb_program_run(&answer, words, submit_time);
     if (status == WB_ERR_NOT_FOUND)
-        return wb_fail(
-            WB_ERR_NOT_FOUND,
-            "there is no sbatch in PATH: --slurm needs Slurm's commands on this machine; "
-            "--solve computes here, on all cores");
+        return wb_fail(WB_ERR_NOT_FOUND, "no sbatch in PATH: --slurm needs Slurm's commands on "
+                                         "this machine; --solve computes on this machine's cores");
     if (status == WB_ERR_TIMEOUT)
-        return wb_fail(WB_ERR_TIMEOUT, "it is not known whether the array was submitted: look "
+        return wb_fail(WB_ERR_TIMEOUT, "cannot determine whether the array was submitted: check "
                                        "with squeue before trying again");
     if (status != WB_OK)
         return status;
     const char *const said = wb_text_string(&answer.err);
     if (answer.code != 0)
-        status = wb_fail(WB_ERR_IO, "sbatch refused the array (exit code %d): %.*s", answer.code,
+        status = wb_fail(WB_ERR_IO, "sbatch rejected the array (exit code %d): %.*s", answer.code,
                          (int)strcspn(said, "\n"), said);
     else
         status = read_id(wb_text_string(&answer.out), array, cluster);
@@ -164,7 +162,7 @@ static void show(const char *const *words, int n)
 {
     struct wb_text text = {0};
     append_words(&text, words);
-    wb_info("%d %s not submitted; to do that:\n    %s", n, n == 1 ? "run" : "runs",
+    wb_info("%d %s not submitted; to submit:\n    %s", n, n == 1 ? "run" : "runs",
             wb_text_string(&text));
     wb_text_release(&text);
 }
@@ -177,7 +175,7 @@ static enum wb_status submit(const struct wb_jobs_plan *plan, const char *folder
     WB_TRY(wb_file_join(path, folder, "array.sh"));
     snprintf(cores, sizeof cores, "%d", plan->cores_per_job);
     snprintf(tasks, sizeof tasks, o->workers > 0 ? "1-%d%%%d" : "1-%d", n, o->workers);
-    /* An option and its value; without a value it is left out. */
+    /* An option and its value; options without a value are left out. */
     const char *const options[][2] = {{"--array", tasks},
                                       {"--job-name", o->title ? o->title : "wirebench"},
                                       {"--chdir", folder},
@@ -218,7 +216,7 @@ enum wb_status wb_jobs_array_submit(const struct wb_jobs_plan *plan,
     char list[32], folder[WB_PATH], array[32] = "", cluster[64] = "";
     WB_TRY(make_folder(plan, list, folder));
     WB_TRY(write_list(plan, folder, items, n));
-    /* An old log would be taken for the new one's. */
+    /* An old log would be mistaken for the new one. */
     for (int k = 0; k < n && !plan->options->dry_run; k++)
         unlink(items[k]->log);
     WB_TRY(submit(plan, folder, n, array, cluster));

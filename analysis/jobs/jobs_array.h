@@ -1,4 +1,4 @@
-/* A Slurm array: its script, its list of command lines, its submission. */
+/* A Slurm job array: its script, its list of command lines, its submission. */
 #ifndef WB_ANALYSIS_JOBS_JOBS_ARRAY_H
 #define WB_ANALYSIS_JOBS_JOBS_ARRAY_H
 

@@ -19,11 +19,11 @@
 #define WB_LOG_DOMAIN "jobs"
 
 enum {
-    LOOK_MS = 50,           /* between looks at the children */
-    PATIENCE_MS = 10 * 1000 /* for a child to end after SIGTERM */
+    LOOK_MS = 50,           /* between checks of the children */
+    PATIENCE_MS = 10 * 1000 /* time for a child to end after SIGTERM */
 };
 
-/* Runs at once: as asked for, else cores that this process may use over cores of a run. */
+/* Runs at once: as requested, else the cores available to this process over the cores of a run. */
 static int count_workers(const struct wb_jobs_plan *plan)
 {
     cpu_set_t cores;
@@ -36,7 +36,7 @@ static int count_workers(const struct wb_jobs_plan *plan)
 
 /* --- one child --- */
 
-/* Opens the log; its first line is the command that makes the same. */
+/* Opens the log; its first line is the equivalent command. */
 static int open_log(const struct wb_jobs_plan_item *item, const char *partial)
 {
     struct wb_text line = {0};
@@ -60,19 +60,19 @@ static int open_log(const struct wb_jobs_plan_item *item, const char *partial)
     return -1;
 }
 
-/* In the child. */
-__attribute__((noreturn)) static void become(const struct wb_job *job, const char *partial,
-                                             int cores, pid_t parent, int log)
+/* Executed in the child. */
+__attribute__((noreturn)) static void run_child(const struct wb_job *job, const char *partial,
+                                                int cores, pid_t parent, int log)
 {
     static const char lost[] = "cannot start the run\n";
-    /* A group of its own: Ctrl-C reaches this program first, which ends its children in order. */
+    /* Its own process group: Ctrl-C reaches only this program, which ends its children in order. */
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int nothing = open("/dev/null", O_RDONLY);
     if (getppid() != parent || nothing < 0 || dup2(nothing, STDIN_FILENO) < 0 ||
         dup2(log, STDOUT_FILENO) < 0 || dup2(log, STDERR_FILENO) < 0)
         _exit(write(log, lost, sizeof lost - 1) < 0 ? 126 : 127);
-    /* The parent's files, its lock among them, are not the child's to keep open. */
+    /* The child must not keep the parent's files open, above all its lock. */
     close_range(STDERR_FILENO + 1, ~0U, 0);
     wb_log_set_sink(NULL, NULL);
     const int code = job->run(job->context, partial, cores);
@@ -87,15 +87,15 @@ static enum wb_status start_child(struct wb_jobs_plan *plan, struct wb_jobs_plan
     const int log = open_log(item, partial);
     if (log < 0)
         return wb_fail(WB_ERR_IO, "cannot write '%s': %s", item->log, strerror(errno));
-    fflush(NULL); /* what is not written yet would be written by both */
+    fflush(NULL); /* otherwise both processes would write the buffered output */
     const pid_t parent = getpid(), child = fork();
     if (child == 0)
-        become(item->job, partial, plan->cores_per_job, parent, log);
+        run_child(item->job, partial, plan->cores_per_job, parent, log);
     const int error = errno;
     close(log);
     if (child < 0)
         return wb_fail(WB_ERR_IO, "cannot start a process: %s", strerror(error));
-    setpgid(child, child); /* either of the two is first */
+    setpgid(child, child); /* set in both processes, as either may run first */
     item->pid = child;
     item->state = WB_JOBS_PLAN_RUNNING;
     item->started_ns = wb_time_now_ns();
@@ -122,7 +122,7 @@ static bool is_success(const struct wb_jobs_plan_item *item, int status)
     return WIFEXITED(status) && WEXITSTATUS(status) == 0 && wb_jobs_plan_is_partial_whole(item);
 }
 
-static void settle(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item, int status)
+static void finish_item(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item, int status)
 {
     char how[128];
     item->pid = 0;
@@ -138,17 +138,17 @@ static void settle(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item, in
     wb_jobs_plan_fail(plan, item, how, NULL);
 }
 
-/* Settles those that ended; how many still run. */
-static int look(struct wb_jobs_plan *plan)
+/* Collects the children that ended. Returns the number still running. */
+static int collect_ended(struct wb_jobs_plan *plan)
 {
     int running = 0;
     for (int i = 0; i < plan->n; i++) {
         struct wb_jobs_plan_item *const item = &plan->items[i];
         int status = 0;
-        if (item->pid <= 0) /* what runs without one is a task of Slurm */
+        if (item->pid <= 0) /* a running item without a process is a Slurm task */
             continue;
         if (waitpid(item->pid, &status, WNOHANG) == item->pid)
-            settle(plan, item, status);
+            finish_item(plan, item, status);
         running += item->pid > 0;
     }
     return running;
@@ -157,7 +157,7 @@ static int look(struct wb_jobs_plan *plan)
 static void pause_ms(int ms)
 {
     const struct timespec time = {.tv_sec = ms / 1000, .tv_nsec = (ms % 1000) * 1000000L};
-    nanosleep(&time, NULL); /* a signal ends it sooner */
+    nanosleep(&time, NULL); /* returns early on a signal */
 }
 
 static void signal_all(const struct wb_jobs_plan *plan, int signal_number)
@@ -167,8 +167,8 @@ static void signal_all(const struct wb_jobs_plan *plan, int signal_number)
             kill(-plan->items[i].pid, signal_number);
 }
 
-/* Those that ended before they were through are as if they had not been begun. */
-static int bury(struct wb_jobs_plan *plan)
+/* Runs that were ended before they were complete count as not started. */
+static int discard_interrupted(struct wb_jobs_plan *plan)
 {
     int running = 0;
     for (int i = 0; i < plan->n; i++) {
@@ -181,7 +181,7 @@ static int bury(struct wb_jobs_plan *plan)
             continue;
         }
         if (is_success(item, status)) {
-            settle(plan, item, status);
+            finish_item(plan, item, status);
             continue;
         }
         item->pid = 0;
@@ -196,7 +196,7 @@ static void end_all(struct wb_jobs_plan *plan)
     const int64_t until_ns = wb_time_now_ns() + PATIENCE_MS * WB_NS_PER_MS;
     bool killed = false;
     signal_all(plan, SIGTERM);
-    while (bury(plan) > 0) {
+    while (discard_interrupted(plan) > 0) {
         if (!killed && wb_time_now_ns() > until_ns) {
             signal_all(plan, SIGKILL);
             killed = true;
@@ -218,7 +218,7 @@ static void run_all(struct wb_jobs_plan *plan)
     const int workers = count_workers(plan);
     int64_t drawn_ns = 0;
     for (;;) {
-        int running = look(plan);
+        int running = collect_ended(plan);
         struct wb_jobs_plan_item *item;
         while (!wb_interrupted() && running < workers && (item = next(plan))) {
             if (start_child(plan, item) != WB_OK)
@@ -238,7 +238,7 @@ static void run_all(struct wb_jobs_plan *plan)
 enum wb_status wb_jobs_local_run(struct wb_jobs_plan *plan)
 {
     signal(SIGCHLD,
-           SIG_DFL); /* ignored, as some callers leave it, it would hide how children end */
+           SIG_DFL); /* callers may ignore it, which would hide the exit status of children */
     run_all(plan);
     if (wb_interrupted())
         end_all(plan);

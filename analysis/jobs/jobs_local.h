@@ -1,11 +1,11 @@
-/* Runs on this machine: worker processes, as many as cores. */
+/* Runs on this machine, in worker processes. */
 #ifndef WB_ANALYSIS_JOBS_JOBS_LOCAL_H
 #define WB_ANALYSIS_JOBS_JOBS_LOCAL_H
 
 #include "analysis/jobs/jobs_plan.h"
 
-/* Runs what is to do and not queued elsewhere, and waits. On an interrupt all children are ended
- * and what they had begun is removed. */
+/* Runs the items that are to do and not queued in Slurm, and waits. On an interrupt all children
+ * are ended and their incomplete outputs removed. */
 WB_MUST_CHECK enum wb_status wb_jobs_local_run(struct wb_jobs_plan *plan);
 
 #endif

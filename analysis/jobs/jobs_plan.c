@@ -18,7 +18,7 @@
 enum {
     TAIL_LINES = 5,
     TAIL_BYTES = 8192,
-    LINE_BYTES = 160 /* of a line that is shown; messages are short */
+    LINE_BYTES = 160 /* longest line of a log that is shown */
 };
 
 /* --- checks --- */
@@ -35,7 +35,7 @@ static enum wb_status check_job(const struct wb_job *job, enum wb_jobs_where whe
 {
     if (!job->name || !is_name(job->name))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "'%s' cannot name a run: expected letters, digits, '.', '_' and '-'",
+                       "invalid name of a run '%s': expected letters, digits, '.', '_' and '-'",
                        job->name ? job->name : "");
     if (!job->output || !job->output[0] || !job->arguments || !job->arguments[0])
         return wb_fail(WB_ERR_ARGUMENT, "'%s' has no command or no output folder", job->name);
@@ -45,7 +45,7 @@ static enum wb_status check_job(const struct wb_job *job, enum wb_jobs_where whe
     for (const char *const *argument = job->arguments; *argument; argument++)
         has_newline = has_newline || strchr(*argument, '\n');
     if (has_newline)
-        return wb_fail(WB_ERR_ARGUMENT, "'%s': its command or output holds a line break",
+        return wb_fail(WB_ERR_ARGUMENT, "'%s': the command or output contains a line break",
                        job->name);
     return WB_OK;
 }
@@ -85,7 +85,7 @@ static enum wb_status check_unique(const struct wb_jobs_plan *plan)
 
 /* --- begin and end --- */
 
-/* In a sort that keeps equals in their order: by cost, then by place in the caller's list. */
+/* Stable order: by cost, then by position in the caller's list. */
 static int by_cost(const void *a, const void *b)
 {
     const struct wb_jobs_plan_item *const one = a, *const other = b;
@@ -94,7 +94,7 @@ static int by_cost(const void *a, const void *b)
     return one->job < other->job ? -1 : one->job > other->job;
 }
 
-/* Notes the outdated folder, so that it is not taken for the new one. */
+/* Records the outdated folder, to distinguish it from the new one. */
 static void note_old(struct wb_jobs_plan_item *item)
 {
     struct stat old;
@@ -105,13 +105,13 @@ static void note_old(struct wb_jobs_plan_item *item)
     item->old_inode = old.st_ino;
 }
 
-/* The absolute path without links, by which a later call knows the same file again; what lies above
- * its last part is made. */
+/* The absolute path without links, so that later calls recognise the same file; missing parent
+ * folders are created. */
 static enum wb_status resolve(char path[WB_PATH], const char *directory, const char *name)
 {
     char whole[WB_PATH], parent[WB_PATH];
     WB_TRY(wb_file_join(whole, directory, name));
-    /* A '/' at the end would put the unfinished folder into the finished one. */
+    /* With a '/' at the end the unfinished folder would be inside the finished one. */
     for (size_t n = strlen(whole); n > 1 && whole[n - 1] == '/'; n--)
         whole[n - 1] = '\0';
     wb_file_folder(parent, whole);
@@ -139,7 +139,7 @@ static enum wb_status init_item(struct wb_jobs_plan *plan, struct wb_jobs_plan_i
 static enum wb_status fill(struct wb_jobs_plan *plan, const struct wb_job *jobs)
 {
     if (!getcwd(plan->directory, sizeof plan->directory))
-        return wb_fail(WB_ERR_IO, "cannot tell the current folder: %s", strerror(errno));
+        return wb_fail(WB_ERR_IO, "cannot determine the current folder: %s", strerror(errno));
     WB_TRY(resolve(plan->folder, plan->directory, plan->options->folder));
     WB_TRY(wb_file_make_folder(plan->folder));
     for (int i = 0; i < plan->n; i++) {
@@ -187,7 +187,7 @@ int wb_jobs_plan_count(const struct wb_jobs_plan *plan, enum wb_jobs_plan_state 
 
 /* --- outputs --- */
 
-static bool holds_dataset(const char *folder)
+static bool has_dataset(const char *folder)
 {
     char path[WB_PATH];
     return wb_file_join(path, folder, "dataset.json") == WB_OK && wb_file_exists(path);
@@ -196,7 +196,7 @@ static bool holds_dataset(const char *folder)
 bool wb_jobs_plan_is_made(const struct wb_jobs_plan_item *item)
 {
     struct stat now;
-    if (stat(item->output, &now) != 0 || !holds_dataset(item->output))
+    if (stat(item->output, &now) != 0 || !has_dataset(item->output))
         return false;
     return !item->was_there || now.st_dev != item->old_device || now.st_ino != item->old_inode;
 }
@@ -219,7 +219,7 @@ bool wb_jobs_plan_is_blocked(struct wb_jobs_plan *plan, struct wb_jobs_plan_item
         return false;
     wb_jobs_plan_clear(plan);
     item->state = WB_JOBS_PLAN_FAILED;
-    wb_error("run '%s' is not begun: '%s' is there and holds no dataset.json; move it away",
+    wb_error("run '%s' not started: '%s' exists but has no dataset.json; move it away",
              item->job->name, item->output);
     return true;
 }
@@ -227,7 +227,7 @@ bool wb_jobs_plan_is_blocked(struct wb_jobs_plan *plan, struct wb_jobs_plan_item
 static enum wb_status with_ending(char path[WB_PATH], const char *output, const char *ending)
 {
     if (snprintf(path, WB_PATH, "%s%s", output, ending) >= WB_PATH)
-        return wb_fail(WB_ERR_ARGUMENT, "'%s%s' is too long for a path", output, ending);
+        return wb_fail(WB_ERR_ARGUMENT, "'%s%s': the path is too long", output, ending);
     return WB_OK;
 }
 
@@ -239,7 +239,7 @@ enum wb_status wb_jobs_plan_partial(const struct wb_jobs_plan_item *item, char p
 bool wb_jobs_plan_is_partial_whole(const struct wb_jobs_plan_item *item)
 {
     char path[WB_PATH];
-    return wb_jobs_plan_partial(item, path) == WB_OK && holds_dataset(path);
+    return wb_jobs_plan_partial(item, path) == WB_OK && has_dataset(path);
 }
 
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *walk)
@@ -250,7 +250,7 @@ static int remove_one(const char *path, const struct stat *info, int kind, struc
     return remove(path);
 }
 
-/* A folder with all it holds; links are removed, not followed. */
+/* Removes a folder with its contents; links are removed, not followed. */
 static void remove_folder(const char *path)
 {
     if (wb_file_exists(path) && nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS) != 0)
@@ -275,7 +275,8 @@ enum wb_status wb_jobs_plan_accept(const struct wb_jobs_plan_item *item)
     if (item->job->replace && wb_file_exists(item->output)) {
         remove_folder(outdated);
         if (rename(item->output, outdated) != 0)
-            return wb_fail(WB_ERR_IO, "cannot put '%s' aside: %s", item->output, strerror(errno));
+            return wb_fail(WB_ERR_IO, "cannot rename the outdated '%s': %s", item->output,
+                           strerror(errno));
     }
     if (rename(partial, item->output) != 0)
         return wb_fail(WB_ERR_IO, "cannot rename '%s' to '%s': %s", partial, item->output,
@@ -285,13 +286,13 @@ enum wb_status wb_jobs_plan_accept(const struct wb_jobs_plan_item *item)
     return WB_OK;
 }
 
-/* --- talk --- */
+/* --- messages --- */
 
 static void append_line(struct wb_text *text, const char *line, size_t n)
 {
     wb_text_append(text, "\n    ");
     for (size_t i = 0; i < n && i < LINE_BYTES; i++) {
-        /* What a live line or a terminal's codes left must not act here. */
+        /* Control characters of a progress line or a terminal are replaced. */
         const unsigned char c = (unsigned char)line[i];
         const char shown = c < ' ' || c == 0x7f ? ' ' : (char)c;
         wb_text_append_bytes(text, &shown, 1);
@@ -300,7 +301,7 @@ static void append_line(struct wb_text *text, const char *line, size_t n)
         wb_text_append(text, "...");
 }
 
-/* The last lines of a file. */
+/* Appends the last lines of a file. */
 static void append_tail(struct wb_text *text, const char *path)
 {
     char bytes[TAIL_BYTES];
@@ -340,7 +341,7 @@ void wb_jobs_plan_fail(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item
              wb_text_string(&text));
     wb_text_release(&text);
     if (wb_jobs_plan_clean(item, true) && wb_jobs_plan_partial(item, partial) == WB_OK)
-        wb_info("what '%s' computed until then is in '%s'", item->job->name, partial);
+        wb_info("the incomplete output of '%s' is in '%s'", item->job->name, partial);
 }
 
 void wb_jobs_plan_duration(char text[32], double seconds)
@@ -356,7 +357,7 @@ void wb_jobs_plan_duration(char text[32], double seconds)
         snprintf(text, 32, "%.0f days", minutes / 1440.0);
 }
 
-/* Time left, s, from what the finished ones took for their costs; negative when it is not known. */
+/* Remaining time, s, from the duration and cost of the finished runs; negative if unknown. */
 static double time_left(const struct wb_jobs_plan *plan, int at_once)
 {
     double cost = 0.0, took = 0.0, left = 0.0, longest = 0.0;

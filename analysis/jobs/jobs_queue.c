@@ -7,13 +7,13 @@
 
 #define WB_LOG_DOMAIN "jobs"
 
-static const double answer_time = 60.0; /* s; a busy controller takes its time */
+static const double answer_time = 60.0; /* s; a busy controller may be slow */
 
-/* Each word between spaces. */
+/* Final states of a task, each between spaces. */
 static const char endings[] =
     " COMPLETED FAILED CANCELLED TIMEOUT NODE_FAIL BOOT_FAIL OUT_OF_MEMORY "
     "DEADLINE REVOKED PREEMPTED STOPPED SPECIAL_EXIT LAUNCH_FAILED ";
-/* Why a task waits that only needs its turn. */
+/* Reasons of tasks that only wait for their turn. */
 static const char usual_reasons[] = " None Resources Priority JobArrayTaskLimit BeginTime Cleaning "
                                     "Prolog ";
 
@@ -24,7 +24,7 @@ static bool is_one_of(const char *word, const char *list)
     return strstr(list, padded) != NULL;
 }
 
-/* Clusters number their arrays each for itself. */
+/* Each cluster numbers its arrays separately. */
 static bool are_of_one_array(const struct wb_jobs_plan_item *a, const struct wb_jobs_plan_item *b)
 {
     return a->queued && b->queued && strcmp(a->array, b->array) == 0 &&
@@ -36,7 +36,7 @@ void wb_jobs_queue_task(const struct wb_jobs_plan_item *item, char task[64])
     snprintf(task, 64, "%s_%d", item->array, item->task);
 }
 
-static void note_ended(struct wb_jobs_plan_item *item, const char *state)
+static void set_ended(struct wb_jobs_plan_item *item, const char *state)
 {
     if (item->ended_ns == 0)
         item->ended_ns = wb_time_now_ns();
@@ -44,23 +44,23 @@ static void note_ended(struct wb_jobs_plan_item *item, const char *state)
         snprintf(item->ending, sizeof item->ending, "%s", state);
 }
 
-static void note_live(struct wb_jobs_plan_item *item, bool waits)
+static void set_live(struct wb_jobs_plan_item *item, bool waits)
 {
-    item->ended_ns = 0; /* one that was put into the queue again */
+    item->ended_ns = 0; /* may be a task that was requeued */
     item->ending[0] = '\0';
     if (!waits && item->state != WB_JOBS_PLAN_RUNNING)
         item->started_ns = wb_time_now_ns();
     item->state = waits ? WB_JOBS_PLAN_TODO : WB_JOBS_PLAN_RUNNING;
 }
 
-/* One line, "12_3|PENDING|Resources|/path/of/the/script". */
-static void take_line(struct wb_jobs_plan *plan, const struct wb_jobs_plan_item *one, char *line,
+/* Parses one line, "12_3|PENDING|Resources|/path/of/the/script". */
+static void read_line(struct wb_jobs_plan *plan, const struct wb_jobs_plan_item *one, char *line,
                       struct wb_jobs_queue_look *look)
 {
     char task[64];
     const char *const id = strsep(&line, "|"), *const state = strsep(&line, "|"),
                       *const reason = strsep(&line, "|");
-    /* Numbers begin anew when a cluster is set up again: then the task is somebody else's. */
+    /* Numbers restart when a cluster is set up again: then the task belongs to another array. */
     if (!line || strncmp(line, plan->folder, strlen(plan->folder)) != 0)
         return;
     for (int i = 0; i < plan->n; i++) {
@@ -71,15 +71,15 @@ static void take_line(struct wb_jobs_plan *plan, const struct wb_jobs_plan_item 
         const bool waits = strcmp(state, "PENDING") == 0;
         item->seen = true;
         if (is_one_of(state, endings))
-            note_ended(item, state);
+            set_ended(item, state);
         else
-            note_live(item, waits);
+            set_live(item, waits);
         if (waits && !is_one_of(reason, usual_reasons))
             snprintf(look->reason, sizeof look->reason, "%s", reason);
     }
 }
 
-/* Runs squeue or sacct for a job of the cluster of an item. */
+/* Runs squeue or sacct for the job of an item, on its cluster. */
 static enum wb_status ask(struct wb_program_answer *answer, const char *const program[4],
                           const char *job, const struct wb_jobs_plan_item *item)
 {
@@ -90,7 +90,7 @@ static enum wb_status ask(struct wb_program_answer *answer, const char *const pr
     return wb_program_run(answer, words, answer_time);
 }
 
-static void note_lost(struct wb_jobs_queue_look *look, const char *said)
+static void set_lost(struct wb_jobs_queue_look *look, const char *said)
 {
     look->lost = true;
     snprintf(look->problem, sizeof look->problem, "%.*s", (int)strcspn(said, "\n"), said);
@@ -104,23 +104,23 @@ static enum wb_status look_at(struct wb_jobs_plan *plan, const struct wb_jobs_pl
     struct wb_program_answer answer;
     const enum wb_status status = ask(&answer, squeue, one->array, one);
     if (status == WB_ERR_NOT_FOUND)
-        note_lost(look, "there is no squeue in PATH");
+        set_lost(look, "no squeue in PATH");
     else if (status == WB_ERR_TIMEOUT)
-        note_lost(look, "squeue did not end");
+        set_lost(look, "squeue did not end");
     if (status != WB_OK)
         return look->lost ? WB_OK : status;
     const char *const said = wb_text_string(&answer.err);
     if (answer.out.failed)
-        note_lost(look, "out of memory");
+        set_lost(look, "out of memory");
     else if (answer.code != 0 && !strstr(said, "Invalid job id"))
-        note_lost(look, said);
+        set_lost(look, said);
     char *rest = answer.out.bytes, *line;
     while (!look->lost && (line = strsep(&rest, "\n")))
-        take_line(plan, one, line, look);
+        read_line(plan, one, line, look);
     for (int i = 0; i < plan->n && !look->lost; i++) {
         struct wb_jobs_plan_item *const item = &plan->items[i];
         if (are_of_one_array(item, one) && !item->seen)
-            note_ended(item, "");
+            set_ended(item, "");
         item->seen = item->seen || are_of_one_array(item, one);
     }
     wb_program_answer_release(&answer);
@@ -132,7 +132,7 @@ enum wb_status wb_jobs_queue_look(struct wb_jobs_plan *plan, struct wb_jobs_queu
     *look = (struct wb_jobs_queue_look){0};
     for (int i = 0; i < plan->n; i++)
         plan->items[i].seen = false;
-    /* One question for an array. */
+    /* One request for each array. */
     for (int i = 0; i < plan->n && !look->lost; i++)
         if (plan->items[i].queued && !plan->items[i].seen)
             WB_TRY(look_at(plan, &plan->items[i], look));

@@ -1,7 +1,8 @@
-/* What Slurm knows about the tasks of an array: its commands, and what they print.
+/* State of an array's tasks from Slurm's commands.
  *
- * Works without an accounting database: squeue tells about tasks that wait and run and, for some
- * minutes (MinJobAge), about those that ended. Of older ones only their outputs tell. */
+ * Works without an accounting database: squeue reports tasks that wait and run and, for some
+ * minutes (MinJobAge), tasks that ended. The result of older ones is known only from their
+ * outputs. */
 #ifndef WB_ANALYSIS_JOBS_JOBS_QUEUE_H
 #define WB_ANALYSIS_JOBS_JOBS_QUEUE_H
 
@@ -9,24 +10,25 @@
 #include "base/program.h"
 #include "base/status.h"
 
-/* How a question about the queue went. */
+/* Result of a request to the queue. */
 struct wb_jobs_queue_look {
-    bool lost;         /* Slurm did not answer; nothing was changed */
-    char problem[200]; /* what its command said then */
-    char reason[64];   /* why a task waits that may wait forever; "" */
+    bool lost;         /* Slurm did not answer; no item was changed */
+    char problem[200]; /* the message of its command then */
+    char reason[64];   /* why a task waits, if it may wait forever; else "" */
 };
 
-/* Brings the queued items up to date: begun, waiting, ended and how. */
+/* Updates the queued items: started, waiting, ended and with which state. */
 WB_MUST_CHECK enum wb_status wb_jobs_queue_look(struct wb_jobs_plan *plan,
                                                 struct wb_jobs_queue_look *look);
 
-/* The task as Slurm names it, "12_3". */
+/* The name of the task in Slurm, "12_3". */
 void wb_jobs_queue_task(const struct wb_jobs_plan_item *item, char task[64]);
 
-/* Asks the accounting, if there is any, how a task ended that squeue has forgotten. */
+/* Asks the accounting database, if there is one, for the final state of a task that squeue no
+ * longer lists. */
 void wb_jobs_queue_ask_ending(struct wb_jobs_plan_item *item);
 
-/* Array indexes that Slurm allows, from 1 to this. */
+/* Largest array index that Slurm allows; indexes start at 1. */
 int wb_jobs_queue_largest_task(void);
 
 #endif

@@ -15,8 +15,8 @@
 
 #define WB_LOG_DOMAIN "jobs"
 
-static const double usual_interval = 10.0; /* s */
-static const double first_interval = 1.0;  /* s: a short array is not made to wait */
+static const double usual_interval = 10.0; /* s, between requests to the queue */
+static const double first_interval = 1.0;  /* s: avoids a long wait for a short array */
 
 static int count_queued(const struct wb_jobs_plan *plan)
 {
@@ -26,38 +26,38 @@ static int count_queued(const struct wb_jobs_plan *plan)
     return n;
 }
 
-/* --- what was submitted: a file NAME.slurm for each run that was not collected --- */
+/* --- submitted runs: one file NAME.slurm for each run that was not collected --- */
 
-static void memory_path(const struct wb_jobs_plan_item *item, char path[WB_PATH + 8])
+static void submission_path(const struct wb_jobs_plan_item *item, char path[WB_PATH + 8])
 {
     const char *const ending = strrchr(item->log, '.');
     snprintf(path, WB_PATH + 8, "%.*s.slurm", (int)(ending - item->log), item->log);
 }
 
-static enum wb_status remember(const struct wb_jobs_plan_item *item)
+static enum wb_status save_submission(const struct wb_jobs_plan_item *item)
 {
     char path[WB_PATH + 8], text[WB_PATH + 160];
-    memory_path(item, path);
+    submission_path(item, path);
     const int n = snprintf(text, sizeof text, "%s %d %s %s\n%s\n", item->array, item->task,
                            item->list, item->cluster[0] ? item->cluster : "-", item->output);
     return wb_file_write(path, text, (size_t)n);
 }
 
-static void forget(struct wb_jobs_plan_item *item)
+static void remove_submission(struct wb_jobs_plan_item *item)
 {
     char path[WB_PATH + 8];
-    memory_path(item, path);
+    submission_path(item, path);
     unlink(path);
     item->queued = false;
 }
 
-/* An item of that name and output is queued as its file says. */
-static void recall(struct wb_jobs_plan_item *item)
+/* Marks an item as queued if there is a file of its name and output. */
+static void load_submission(struct wb_jobs_plan_item *item)
 {
     char path[WB_PATH + 8], output[WB_PATH] = "";
-    memory_path(item, path);
+    submission_path(item, path);
     if (item->state != WB_JOBS_PLAN_TODO)
-        forget(item);
+        remove_submission(item);
     FILE *const file = fopen(path, "r");
     if (!file)
         return;
@@ -75,19 +75,20 @@ enum wb_status wb_jobs_slurm_find_queued(struct wb_jobs_plan *plan)
 {
     struct wb_jobs_queue_look look;
     for (int i = 0; i < plan->n; i++)
-        recall(&plan->items[i]);
+        load_submission(&plan->items[i]);
     WB_TRY(wb_jobs_queue_look(plan, &look));
     if (look.lost)
         return wb_fail(WB_ERR_BUSY,
-                       "runs were given to Slurm, and it cannot be asked for them: %s; try again, "
-                       "or remove '%s/*.slurm' when they have surely ended",
+                       "runs were submitted to Slurm, but their state cannot be determined: %s; "
+                       "try again, or remove '%s/*.slurm' once they have certainly ended",
                        look.problem, plan->folder);
     for (int i = 0; i < plan->n; i++)
         if (plan->items[i].ended_ns != 0)
-            forget(&plan->items[i]);
+            remove_submission(&plan->items[i]);
     const int n = count_queued(plan);
     if (n > 0)
-        wb_info("%d %s still with Slurm from an earlier call", n, n == 1 ? "run is" : "runs are");
+        wb_info("%d %s still in Slurm's queue from an earlier call", n,
+                n == 1 ? "run is" : "runs are");
     return WB_OK;
 }
 
@@ -101,13 +102,13 @@ static enum wb_status submit_missing(const struct wb_jobs_plan *plan)
     for (int i = 0; i < plan->n; i++)
         if (plan->items[i].state == WB_JOBS_PLAN_TODO && !plan->items[i].queued)
             missing[n++] = &plan->items[i];
-    /* Asked for even in a dry run, where there may be none. */
+    /* Checked even in a dry run, for which Slurm may be missing. */
     const int size = n > 0 ? wb_jobs_queue_largest_task() : 1;
     for (int first = 0; first < n && status == WB_OK; first += size) {
         const int end = n - first < size ? n : first + size;
         status = wb_jobs_array_submit(plan, missing + first, end - first);
         for (int k = first; k < end && status == WB_OK && !plan->options->dry_run; k++)
-            status = remember(missing[k]);
+            status = save_submission(missing[k]);
     }
     free(missing);
     return status;
@@ -116,9 +117,9 @@ static enum wb_status submit_missing(const struct wb_jobs_plan *plan)
 /* --- waiting and collecting --- */
 
 struct waiting {
-    double interval; /* s, now; grows to the one that was asked for */
-    bool lost;       /* and that was said */
-    char reason[64]; /* that was said */
+    double interval; /* s, current; grows to the requested one */
+    bool lost;       /* Slurm does not answer, and that was reported */
+    char reason[64]; /* last reported one */
 };
 
 static double longest_interval(const struct wb_jobs_plan *plan)
@@ -126,15 +127,15 @@ static double longest_interval(const struct wb_jobs_plan *plan)
     return plan->options->poll_interval > 0.0 ? plan->options->poll_interval : usual_interval;
 }
 
-static void take(struct wb_jobs_plan_item *item)
+static void collect_output(struct wb_jobs_plan_item *item)
 {
     if (item->state == WB_JOBS_PLAN_RUNNING)
         item->took_ns = wb_time_now_ns() - item->started_ns;
     item->state = WB_JOBS_PLAN_DONE;
-    forget(item);
+    remove_submission(item);
 }
 
-static void give_up(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
+static void fail_lost(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
 {
     char how[192], task[64], out[2 * WB_PATH];
     wb_jobs_queue_task(item, task);
@@ -142,20 +143,20 @@ static void give_up(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
         wb_jobs_queue_ask_ending(item);
     if (!item->ending[0])
         snprintf(how, sizeof how,
-                 "Slurm's task %s is gone and left no output, as when it is cancelled before it "
-                 "begins",
+                 "Slurm's task %s is gone and has no output: it may have been cancelled before it "
+                 "started",
                  task);
     else
         snprintf(how, sizeof how, "Slurm's task %s is %s%s", task, item->ending,
-                 strcmp(item->ending, "COMPLETED") == 0 ? ", but its output is not there" : "");
+                 strcmp(item->ending, "COMPLETED") == 0 ? ", but its output is missing" : "");
     snprintf(out, sizeof out, "%s/%s/%s.out", plan->folder, item->list, task);
-    forget(item);
+    remove_submission(item);
     wb_jobs_plan_fail(plan, item, how, out);
 }
 
-/* Files of another machine may take some time to be seen here; what Slurm says of a task that it
- * ended also comes a little later. */
-static bool is_hopeless(const struct wb_jobs_plan *plan, const struct wb_jobs_plan_item *item)
+/* Files of another machine may appear here with a delay, and so does the reason that Slurm gives
+ * for ending a task. */
+static bool is_lost(const struct wb_jobs_plan *plan, const struct wb_jobs_plan_item *item)
 {
     const bool may_come = !item->ending[0] || strcmp(item->ending, "COMPLETED") == 0;
     const double patience = (may_come ? 3.0 : 1.0) * longest_interval(plan);
@@ -169,15 +170,15 @@ static void collect(struct wb_jobs_plan *plan)
         if (!item->queued)
             continue;
         if (wb_jobs_plan_is_made(item))
-            take(item);
-        else if (is_hopeless(plan, item))
-            give_up(plan, item);
+            collect_output(item);
+        else if (is_lost(plan, item))
+            fail_lost(plan, item);
     }
 }
 
-/* What has to be known while waiting, each once. */
-static void tell(struct wb_jobs_plan *plan, struct waiting *waiting,
-                 const struct wb_jobs_queue_look *look)
+/* Reports events of the wait, each once. */
+static void report_events(struct wb_jobs_plan *plan, struct waiting *waiting,
+                          const struct wb_jobs_queue_look *look)
 {
     if (look->lost != waiting->lost) {
         wb_jobs_plan_clear(plan);
@@ -194,8 +195,8 @@ static void tell(struct wb_jobs_plan *plan, struct waiting *waiting,
     }
 }
 
-/* In parts, as a signal may come just before the sleep. */
-static void rest(double seconds)
+/* Sleeps in short intervals, as a signal may arrive just before a sleep. */
+static void wait_interruptibly(double seconds)
 {
     const int64_t until_ns = wb_time_now_ns() + wb_ns_from_seconds(seconds);
     for (int64_t left_ns; !wb_interrupted() && (left_ns = until_ns - wb_time_now_ns()) > 0;) {
@@ -204,7 +205,7 @@ static void rest(double seconds)
     }
 }
 
-static void say_who_goes_on(struct wb_jobs_plan *plan)
+static void report_remaining(struct wb_jobs_plan *plan)
 {
     struct wb_text arrays = {0};
     const char *last = "";
@@ -231,16 +232,16 @@ enum wb_status wb_jobs_slurm_run(struct wb_jobs_plan *plan)
     while (count_queued(plan) > 0 && !wb_interrupted()) {
         struct wb_jobs_queue_look look;
         WB_TRY(wb_jobs_queue_look(plan, &look));
-        tell(plan, &waiting, &look);
+        report_events(plan, &waiting, &look);
         collect(plan);
         if (count_queued(plan) == 0)
             break;
         wb_jobs_plan_draw(plan, wb_jobs_plan_count(plan, WB_JOBS_PLAN_RUNNING),
                           look.lost ? "Slurm does not answer" : NULL);
-        rest(waiting.interval);
+        wait_interruptibly(waiting.interval);
         waiting.interval = 1.5 * waiting.interval < longest ? 1.5 * waiting.interval : longest;
     }
     if (count_queued(plan) > 0)
-        say_who_goes_on(plan);
+        report_remaining(plan);
     return WB_OK;
 }

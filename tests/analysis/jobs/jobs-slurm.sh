@@ -1,8 +1,8 @@
 #!/bin/bash
-# `wirebench report --slurm` in a real Slurm of one node, which this test starts for itself: munged with a
-# key of its own, slurmctld and slurmd, on free ports, with all their files in a temporary folder. It
-# needs root (slurmd does) and the programs; without them it is skipped and says why. In a PID
-# namespace, where that is allowed, the kernel ends all of it with this script.
+# `wirebench report --slurm` in a real Slurm of one node, which this test starts itself: munged with
+# its own key, slurmctld and slurmd, on free ports, with all their files in a temporary folder. It
+# needs root (for slurmd) and the programs; without them it is skipped and prints the reason. In a
+# PID namespace, if permitted, the kernel ends all processes with this script.
 # Usage: jobs-slurm.sh WIREBENCH
 PATH=$PATH:/usr/sbin:/sbin
 [ "$(id -u)" -eq 0 ] || { echo 'skipped: slurmd needs root'; exit 77; }
@@ -64,7 +64,7 @@ SlurmdParameters=config_overrides
 NodeName=$(hostname -s) NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000 State=UNKNOWN
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 CONF
-# Nothing is put into a cgroup; the plugin is loaded all the same.
+# Cgroups are not used, but the plugin is loaded.
 version=v1
 [ -e /sys/fs/cgroup/cgroup.controllers ] && version=v2
 printf '%s\n' CgroupPlugin=cgroup/$version CgroupAutomount=no IgnoreSystemd=yes >"$folder/cgroup.conf"
@@ -112,15 +112,15 @@ YAML
 report() { # EXIT CODE OPTIONS...
     run "$1" c.yaml -o r --force --slurm --slurm-partition=main "${@:2}"
 }
-says() { # FILE TEXT
-    grep -qF -- "$2" "$folder/$1" || fail "it is not told: $2; but: $(cat "$folder/$1")"
+assert_contains() { # FILE TEXT
+    grep -qF -- "$2" "$folder/$1" || fail "missing: $2; but: $(cat "$folder/$1")"
 }
 task() { # NAME: as Slurm calls it
     sed -n '1s/^\([0-9]*\) \([0-9]*\) .*/\1_\2/p' "r.jobs/$1.slurm"
 }
 is_running() { [ "$(squeue -h -r -j "$(task "$1")" -o %T)" = RUNNING ]; }
 
-# One is cancelled before it begins, one while it runs, one cannot write its log, one is made.
+# One task is cancelled before it starts, one while it runs, one cannot write its log, one succeeds.
 mkdir -p r.jobs/one.log
 {
     soon '[ -e r.jobs/one.slurm -a -e r.jobs/one-0.2.slurm -a -e r.jobs/one-1d.slurm -a -e r.jobs/slow.slurm ]'
@@ -130,41 +130,41 @@ mkdir -p r.jobs/one.log
     soon 'is_running slow' && scancel "$(task slow)"
 } >/dev/null 2>&1 &
 report 3 --slurm-option=--hold --slurm-time=10 --slurm-memory=100M
-says err "tasks wait in Slurm's queue: JobHeld"
-grep -q "run 'one-0.2' failed: Slurm's task [0-9_]* is gone and left no output" "$folder/err" ||
+assert_contains err "tasks wait in Slurm's queue: JobHeld"
+grep -q "run 'one-0.2' failed: Slurm's task [0-9_]* is gone and has no output" "$folder/err" ||
     fail 'a task that was cancelled before it began is not named'
 grep -q "run 'slow' failed: Slurm's task [0-9_]* is CANCELLED" "$folder/err" || fail 'a cancelled task is not named'
-says err 'CANCELLED AT ' # Slurm's own words
+assert_contains err 'CANCELLED AT ' # Slurm's own words
 grep -q "run 'one' failed: Slurm's task [0-9_]* is FAILED" "$folder/err" || fail 'a failed task is not named'
-says out '1 of 4 datasets used'
+assert_contains out '1 of 4 datasets used'
 [ -e r/report.pdf ] && [ -e sim/one-1d/dataset.json ] && [ ! -e sim/slow ] || fail 'the first array'
 
-# An interrupted call leaves its array to the next, which submits nothing.
+# An interrupted call leaves its array to the next call, which submits nothing.
 rmdir r.jobs/one.log
 "$wirebench" report c.yaml -o r --force --slurm --slurm-option=--hold 2>"$folder/err" >/dev/null &
 waiting=$!
 soon '[ -e r.jobs/one.slurm -a -e r.jobs/one-0.2.slurm -a -e r.jobs/slow.slurm ]' || fail 'nothing is submitted again'
 kill -TERM $waiting
 wait $waiting
-says err 'Slurm continues 3 of the runs'
+assert_contains err 'Slurm continues 3 of the runs'
 {
-    soon 'grep -q "still with Slurm" "$folder/err"'
+    soon 'grep -q "in Slurm.s queue from an earlier call" "$folder/err"'
     scontrol release "$(task slow | sed 's/_.*//')"
     soon 'is_running slow' && scancel "$(task slow)"
 } >/dev/null 2>&1 &
 report 3
-says err '3 runs are still with Slurm from an earlier call'
-says out '3 of 4 datasets used'
+assert_contains err '3 runs are still in Slurm'
+assert_contains out '3 of 4 datasets used'
 [ "$(wc -l <sim/one/force_deflection.csv)" -eq 22 ] || fail 'a dataset of 21 rows is not whole'
 [ "$(wc -l <r.jobs/slurm-2/jobs.txt)" -eq 3 ] && [ ! -e r.jobs/slurm-3 ] || fail 'runs are submitted twice'
 
-# What Slurm refuses, and what needs no Slurm.
+# An error of Slurm, and a call that needs no Slurm.
 run 1 c.yaml -o r --force --slurm --slurm-partition=nowhere
-says err 'sbatch refused the array'
-says err artition
+assert_contains err 'sbatch rejected the array'
+assert_contains err artition
 sed -i '/name: slow/d' c.yaml
 report 0
-says out '3 of 3 datasets used'
+assert_contains out '3 of 3 datasets used'
 ls r.jobs/*.slurm sim/*.partial 2>/dev/null && fail 'something is left'
 
 finish 'jobs of a real Slurm'

@@ -40,7 +40,7 @@ static void sleep_ms(long ms)
     nanosleep(&time, NULL);
 }
 
-static int hang(const char *folder, const char *note)
+static int run_until_killed(const char *folder, const char *note)
 {
     char path[4096], pid[32];
     mkdir(folder, 0777);
@@ -69,7 +69,7 @@ static int work(const char *const *words, const char *folder, const char *thread
         return make(folder, "");
     }
     if (strcmp(mode, "hang") == 0) /* FILE */
-        return hang(folder, word);
+        return run_until_killed(folder, word);
     if (strcmp(mode, "threads") == 0)
         return make(folder, threads);
     if (strcmp(mode, "nothing") == 0)
@@ -123,7 +123,7 @@ int jobs_fixture_remove_folder(void **state)
     snprintf(command, sizeof command, "rm -rf \"%s\" 2>/dev/null", jobs_fixture_folder);
     if (chdir("/") != 0)
         return -1;
-    /* A process that was killed may still write its last file. */
+    /* A killed process may still be writing its last file. */
     for (int i = 0; i < 20 && system(command) != 0; i++)
         sleep_ms(200);
     return jobs_fixture_is_there(jobs_fixture_folder) ? -1 : 0;

@@ -1,5 +1,5 @@
-/* Slurm job arrays with commands in the place of Slurm's: what is submitted, what a task's script
- * does, and how answers of the queue are understood. jobs-slurm.sh has a real Slurm. */
+/* Slurm job arrays with stand-ins for Slurm's commands: submission, the script of a task, and the
+ * parsing of the queue's answers. jobs-slurm.sh uses a real Slurm. */
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -12,9 +12,9 @@
 
 static const struct wb_jobs_options slurm = {.where = WB_JOBS_SLURM, .poll_interval = 0.05};
 
-/* Notes its arguments; runs the tasks of the list at once unless there is a file `hold`. Of the
- * clusters that a file of this name lists, each takes one array, the number of all is 12. With a
- * file `forget` squeue is told nothing. */
+/* Records its arguments; runs the tasks of the list at once unless there is a file `hold`. If a
+ * file `clusters` lists clusters, each gets one array, all with the number 12. With a file
+ * `forget`, squeue gets no entries. */
 static const char sbatch[] =
     "#!/bin/sh\n"
     "cd \"$FAKE\" || exit 1\n"
@@ -38,8 +38,8 @@ static const char sbatch[] =
     "done\n"
     "echo \"$id${cluster:+;$cluster}\"\n";
 
-/* Answers from the file that sbatch wrote, or as long as the file `mute` is not empty takes a line
- * of it and fails. */
+/* Answers from the file that sbatch wrote; while the file `mute` has lines, removes one and
+ * fails. */
 static const char squeue[] =
     "#!/bin/sh\n"
     "cd \"$FAKE\" || exit 1\n"
@@ -167,9 +167,9 @@ static void dry_run_writes_and_submits_nothing(void **unused)
     const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 3, &options, WB_OK);
     jobs_fixture_expect(&outcome, 0, 0, 0, 3);
     assert_false(jobs_fixture_is_there("fake/sbatch.said"));
-    assert_non_null(strstr(jobs_fixture_said, "3 runs not submitted; to do that:\n    sbatch "));
+    assert_non_null(strstr(jobs_fixture_said, "3 runs not submitted; to submit:\n    sbatch "));
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("logs/slurm-1/jobs.txt"), "\n"), 3);
-    /* The command it says does it. */
+    /* The printed command submits it. */
     const char *const said = strstr(jobs_fixture_said, "    sbatch ");
     char command[4096];
     assert_non_null(said);
@@ -205,28 +205,28 @@ static void outdated_output_is_replaced_by_a_task(void **unused)
     jobs_fixture_replace(&slurm);
 }
 
-static void without_slurm_the_message_says_what_to_do(void **unused)
+static void a_missing_sbatch_is_reported(void **unused)
 {
     (void)unused;
     setenv("PATH", "/nowhere", 1);
     jobs_fixture_run(five, 2, &slurm, WB_ERR_NOT_FOUND);
     setenv("PATH", old_path, 1);
-    assert_non_null(strstr(jobs_fixture_said, "there is no sbatch in PATH"));
+    assert_non_null(strstr(jobs_fixture_said, "no sbatch in PATH"));
     assert_non_null(strstr(jobs_fixture_said, "--solve"));
     assert_int_equal(jobs_fixture_count(jobs_fixture_said, "\n"), 1);
 }
 
-static void refused_submission_says_why(void **unused)
+static void a_rejected_submission_is_reported_with_the_reason(void **unused)
 {
     (void)unused;
     jobs_fixture_write("fake/refuse", "");
     jobs_fixture_run(five, 2, &slurm, WB_ERR_IO);
-    assert_non_null(strstr(jobs_fixture_said, "sbatch refused the array (exit code 1): sbatch: "
+    assert_non_null(strstr(jobs_fixture_said, "sbatch rejected the array (exit code 1): sbatch: "
                                               "error: invalid partition: nowhere\n"));
     assert_false(jobs_fixture_is_there("logs/a.slurm"));
 }
 
-static void silent_queue_is_waited_for(void **unused)
+static void a_queue_without_answer_is_asked_again(void **unused)
 {
     (void)unused;
     jobs_fixture_write("fake/mute", "1\n2\n3\n");
@@ -238,7 +238,7 @@ static void silent_queue_is_waited_for(void **unused)
     assert_string_equal(jobs_fixture_text("fake/mute"), "");
 }
 
-/* Interrupts the waiting once the tasks are submitted. */
+/* Interrupts the wait after the tasks were submitted. */
 static void interrupt_a_call(const struct jobs_fixture_run *runs, int n)
 {
     char last[32];
@@ -259,12 +259,12 @@ static void interrupt_a_call(const struct jobs_fixture_run *runs, int n)
     assert_non_null(strstr(jobs_fixture_said, "`scancel 12`"));
 }
 
-static void next_call_waits_for_what_an_interrupted_one_submitted(void **unused)
+static void the_next_call_waits_for_tasks_of_an_interrupted_call(void **unused)
 {
     (void)unused;
     jobs_fixture_write("fake/hold", "");
     interrupt_a_call(five, 3);
-    /* Meanwhile two of three end, one of them well. */
+    /* Meanwhile two of three end, one of them successfully. */
     char queue[1024];
     snprintf(queue, sizeof queue,
              "12_1|COMPLETED|None|%s/logs/slurm-1/array.sh\n"
@@ -275,15 +275,15 @@ static void next_call_waits_for_what_an_interrupted_one_submitted(void **unused)
     assert_int_equal(mkdir("a", 0777), 0);
     jobs_fixture_write("a/dataset.json", "by Slurm");
 
-    /* Computing here leaves the one that runs there alone. */
+    /* A local run does not touch the one that runs in Slurm. */
     const struct wb_jobs_options local = {.where = WB_JOBS_LOCAL};
     struct jobs_fixture_run runs[3];
     memcpy(runs, five, sizeof runs);
     struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 2, &local, WB_OK);
     jobs_fixture_expect(&outcome, 1, 0, 0, 1);
-    assert_non_null(strstr(jobs_fixture_said, "1 run is still with Slurm from an earlier call"));
+    assert_non_null(strstr(jobs_fixture_said, "1 run is still in Slurm's queue"));
 
-    /* The one that ended badly is submitted again, the other one ends in the queue. */
+    /* The failed one is submitted again, the other one ends in the queue. */
     unlink("fake/hold");
     snprintf(queue, sizeof queue,
              "(sleep 0.5; mkdir b; echo x >b/dataset.json; sed -i s/RUNNING/COMPLETED/ "
@@ -296,12 +296,12 @@ static void next_call_waits_for_what_an_interrupted_one_submitted(void **unused)
     assert_false(jobs_fixture_is_there("logs/a.slurm"));
 }
 
-static void forgotten_tasks_are_judged_by_their_outputs(void **unused)
+static void tasks_missing_in_the_queue_are_judged_by_their_outputs(void **unused)
 {
     (void)unused;
     jobs_fixture_write("fake/hold", "");
     interrupt_a_call(five, 2);
-    /* In the time between two looks one is made, and then Slurm knows neither. */
+    /* Between two looks one is made, and then Slurm lists neither. */
     assert_int_equal(system("(sleep 0.4; mkdir a; echo x >a/dataset.json; rm fake/queue.12) &"), 0);
     jobs_fixture_write("fake/accounting", "CANCELLED by 1000\n");
     const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 2, &slurm, WB_OK);
@@ -309,7 +309,7 @@ static void forgotten_tasks_are_judged_by_their_outputs(void **unused)
     assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task 12_2 is CANCELLED"));
 }
 
-static void number_of_somebody_elses_job_is_not_ours(void **unused)
+static void a_reused_job_number_is_recognised(void **unused)
 {
     (void)unused;
     jobs_fixture_write("fake/hold", "");
@@ -327,7 +327,7 @@ static void arrays_of_two_clusters_may_have_one_number(void **unused)
     struct jobs_fixture_run runs[4] = {five[0], five[2], five[3], five[1]};
     jobs_fixture_write("fake/largest", "3");
     jobs_fixture_write("fake/clusters", "east\nwest\n");
-    /* The east ends long after the west. */
+    /* The array of the east ends long after that of the west. */
     jobs_fixture_write("fake/holdeast", "");
     assert_int_equal(system("(sleep 1; mkdir a; echo x >a/dataset.json; "
                             "sed -i 's/_2|PENDING/_2|TIMEOUT/' fake/queue.12east) &"),
@@ -338,8 +338,8 @@ static void arrays_of_two_clusters_may_have_one_number(void **unused)
     assert_non_null(strstr(jobs_fixture_said, "run 'c' failed: Slurm's task 12_2 is TIMEOUT"));
 }
 
-/* Nothing is known of the second array but what accounting says. */
-static void how_an_earlier_task_ended_is_not_told_of_the_next(void **unused)
+/* The second array is known from the accounting database only. */
+static void the_state_of_an_earlier_task_is_not_reported_for_the_next(void **unused)
 {
     (void)unused;
     char queue[256];
@@ -356,7 +356,7 @@ static void how_an_earlier_task_ended_is_not_told_of_the_next(void **unused)
     assert_non_null(strstr(jobs_fixture_said, "Slurm's task 13_1 is OUT_OF_MEMORY"));
 }
 
-static void reason_that_may_last_for_ever_is_told_once(void **unused)
+static void a_reason_that_may_last_forever_is_reported_once(void **unused)
 {
     (void)unused;
     jobs_fixture_write("fake/hold", "");
@@ -372,7 +372,7 @@ static void reason_that_may_last_for_ever_is_told_once(void **unused)
         1);
 }
 
-static void queue_that_cannot_be_asked_about_earlier_runs_stops_the_call(void **unused)
+static void unknown_state_of_earlier_runs_is_an_error(void **unused)
 {
     (void)unused;
     const struct wb_jobs_options local = {.where = WB_JOBS_LOCAL};
@@ -390,7 +390,7 @@ int main(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "worker") == 0)
         return jobs_fixture_worker(argc, argv);
-    alarm(50); /* a signal that only sets a flag does not end a test that waits for ever */
+    alarm(50); /* a signal that only sets a flag does not end a test that hangs */
 #define WITH_SLURM(fact) cmocka_unit_test_setup_teardown(fact, make_slurm, remove_slurm)
     const struct CMUnitTest tests[] = {
         WITH_SLURM(only_what_is_missing_is_submitted),
@@ -398,16 +398,16 @@ int main(int argc, char **argv)
         WITH_SLURM(dry_run_writes_and_submits_nothing),
         WITH_SLURM(large_lists_become_several_arrays),
         WITH_SLURM(outdated_output_is_replaced_by_a_task),
-        WITH_SLURM(without_slurm_the_message_says_what_to_do),
-        WITH_SLURM(refused_submission_says_why),
-        WITH_SLURM(silent_queue_is_waited_for),
-        WITH_SLURM(next_call_waits_for_what_an_interrupted_one_submitted),
-        WITH_SLURM(forgotten_tasks_are_judged_by_their_outputs),
-        WITH_SLURM(number_of_somebody_elses_job_is_not_ours),
+        WITH_SLURM(a_missing_sbatch_is_reported),
+        WITH_SLURM(a_rejected_submission_is_reported_with_the_reason),
+        WITH_SLURM(a_queue_without_answer_is_asked_again),
+        WITH_SLURM(the_next_call_waits_for_tasks_of_an_interrupted_call),
+        WITH_SLURM(tasks_missing_in_the_queue_are_judged_by_their_outputs),
+        WITH_SLURM(a_reused_job_number_is_recognised),
         WITH_SLURM(arrays_of_two_clusters_may_have_one_number),
-        WITH_SLURM(how_an_earlier_task_ended_is_not_told_of_the_next),
-        WITH_SLURM(reason_that_may_last_for_ever_is_told_once),
-        WITH_SLURM(queue_that_cannot_be_asked_about_earlier_runs_stops_the_call),
+        WITH_SLURM(the_state_of_an_earlier_task_is_not_reported_for_the_next),
+        WITH_SLURM(a_reason_that_may_last_forever_is_reported_once),
+        WITH_SLURM(unknown_state_of_earlier_runs_is_an_error),
     };
     return cmocka_run_group_tests_name("jobs_array", tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Many runs on this machine: all are made, in as many processes as asked for, and nothing
- * half-written stays. */
+/* Many runs on this machine: all are made, in as many processes as requested, and no incomplete
+ * output remains. */
 #include <fcntl.h>
 #include <pty.h>
 #include <signal.h>
@@ -62,10 +62,10 @@ static void wirebench_itself_makes_datasets(void **unused)
     assert_false(jobs_fixture_is_there("logs/lock"));
 }
 
-static void what_is_there_is_not_run_again(void **unused)
+static void existing_outputs_are_not_run_again(void **unused)
 {
     (void)unused;
-    /* The first time one fails: there is no such folder for its notes. */
+    /* The first time one fails: the folder of its notes is missing. */
     struct jobs_fixture_run first[] = {{.name = "a", .words = {"note", "nowhere/notes", "a"}},
                                        {.name = "b", .words = {"note", "notes", "b"}}};
     struct wb_jobs_outcome outcome = jobs_fixture_run(first, 2, &local, WB_OK);
@@ -79,7 +79,7 @@ static void what_is_there_is_not_run_again(void **unused)
     assert_string_equal(jobs_fixture_text("notes"), "ba");
 }
 
-static void failure_is_named_with_the_end_of_its_log_and_stops_nobody(void **unused)
+static void a_failure_is_reported_with_the_end_of_its_log_and_does_not_stop_others(void **unused)
 {
     (void)unused;
     const struct jobs_fixture_run runs[] = {{.name = "bad", .words = {"fail"}},
@@ -100,7 +100,7 @@ static void failure_is_named_with_the_end_of_its_log_and_stops_nobody(void **unu
     assert_false(jobs_fixture_is_there("bad.partial"));
 }
 
-static void curve_cut_short_is_no_output_but_kept_aside(void **unused)
+static void an_incomplete_curve_is_kept_in_the_partial_folder(void **unused)
 {
     (void)unused;
     struct jobs_fixture_run run = {.name = "a", .words = {"short"}};
@@ -110,7 +110,7 @@ static void curve_cut_short_is_no_output_but_kept_aside(void **unused)
     assert_non_null(strstr(jobs_fixture_said, "/a.partial'"));
     assert_string_equal(jobs_fixture_text("a.partial/dataset.json"), "cut short");
     assert_false(jobs_fixture_is_there("a"));
-    /* The next try begins with an empty folder. */
+    /* The next attempt begins with an empty folder. */
     run.words[0] = "make";
     run.words[1] = "whole";
     outcome = jobs_fixture_run(&run, 1, &local, WB_OK);
@@ -119,7 +119,7 @@ static void curve_cut_short_is_no_output_but_kept_aside(void **unused)
     assert_false(jobs_fixture_is_there("a.partial"));
 }
 
-static void as_many_run_at_once_as_asked_for(void **unused)
+static void the_requested_number_of_runs_is_executed_at_once(void **unused)
 {
     (void)unused;
     struct jobs_fixture_run runs[7];
@@ -137,7 +137,7 @@ static void as_many_run_at_once_as_asked_for(void **unused)
     assert_int_equal(most, 3);
 }
 
-static void costly_ones_go_first(void **unused)
+static void costly_runs_start_first(void **unused)
 {
     (void)unused;
     const struct jobs_fixture_run runs[] = {
@@ -169,7 +169,7 @@ static void outdated_output_stays_until_the_new_one_is_whole(void **unused)
     jobs_fixture_replace(&local);
 }
 
-static void folder_that_is_no_dataset_is_left_alone(void **unused)
+static void a_folder_without_dataset_is_not_replaced(void **unused)
 {
     (void)unused;
     const struct jobs_fixture_run runs[] = {{.name = "a", .words = {"make", "x"}},
@@ -179,12 +179,12 @@ static void folder_that_is_no_dataset_is_left_alone(void **unused)
     jobs_fixture_write("a/letters", "dear");
     const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 2, &local, WB_OK);
     jobs_fixture_expect(&outcome, 0, 1, 1, 0);
-    assert_non_null(strstr(jobs_fixture_said, "/a' is there and holds no dataset.json"));
+    assert_non_null(strstr(jobs_fixture_said, "/a' exists but has no dataset.json"));
     assert_string_equal(jobs_fixture_text("a/letters"), "dear");
     assert_true(jobs_fixture_is_there("empty/dataset.json"));
 }
 
-/* Sends a signal to this process once the file has as many lines. */
+/* Sends a signal to this process once the file has this number of lines. */
 static pid_t send_when(int signal_number, const char *path, int lines)
 {
     const pid_t parent = getpid(), child = fork();
@@ -196,7 +196,7 @@ static pid_t send_when(int signal_number, const char *path, int lines)
     _exit(0);
 }
 
-/* Whether the processes of the file's lines are gone; they have 5 s. */
+/* Whether the processes listed in the file have ended; waits up to 5 s. */
 static bool are_gone(const char *path)
 {
     char text[256];
@@ -204,7 +204,7 @@ static bool are_gone(const char *path)
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
         int i = 0;
         while (kill((pid_t)atol(line), 0) == 0 && i < 500) {
-            while (waitpid(-1, NULL, WNOHANG) > 0) /* an orphan that was given to us */
+            while (waitpid(-1, NULL, WNOHANG) > 0) /* orphans become our children */
                 ;
             usleep(10000);
             i++;
@@ -215,7 +215,7 @@ static bool are_gone(const char *path)
     return true;
 }
 
-static void interrupt_ends_the_children_and_leaves_nothing_half_written(void **unused)
+static void an_interrupt_ends_the_children_and_removes_incomplete_outputs(void **unused)
 {
     (void)unused;
     const struct jobs_fixture_run runs[] = {{.name = "a", .words = {"make", "x"}, .cost = 9.0},
@@ -235,7 +235,7 @@ static void interrupt_ends_the_children_and_leaves_nothing_half_written(void **u
     assert_true(are_gone("pids"));
     assert_false(jobs_fixture_is_there("b") || jobs_fixture_is_there("b.partial"));
     assert_true(jobs_fixture_is_there("a/dataset.json"));
-    /* Again, from there on. */
+    /* The next call continues. */
     outcome = jobs_fixture_run(&runs[4], 1, &local, WB_OK);
     jobs_fixture_expect(&outcome, 0, 1, 0, 0);
 }
@@ -257,7 +257,7 @@ static void children_do_not_outlive_a_killed_parent(void **unused)
     waitpid(child, NULL, 0);
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("pids"), "\n"), 2);
     assert_true(are_gone("pids"));
-    /* What was left lying and the lock are in nobody's way. */
+    /* Incomplete outputs and the lock do not block the next call. */
     const struct jobs_fixture_run again[] = {{.name = "a", .words = {"make", "x"}}};
     const struct wb_jobs_outcome outcome = jobs_fixture_run(again, 1, &local, WB_OK);
     jobs_fixture_expect(&outcome, 0, 1, 0, 0);
@@ -274,12 +274,12 @@ static void one_call_at_a_time(void **unused)
     assert_int_equal(mkdir("logs", 0777), 0);
     assert_int_equal(wb_file_lock(&lock, "logs/lock", &holder), WB_OK);
     jobs_fixture_run(runs, 1, &local, WB_ERR_BUSY);
-    assert_non_null(strstr(jobs_fixture_said, "in the hands of process"));
+    assert_non_null(strstr(jobs_fixture_said, "in progress in process"));
     wb_file_unlock(&lock);
     assert_false(jobs_fixture_is_there("a"));
 }
 
-static void bad_lists_are_refused(void **unused)
+static void invalid_lists_are_rejected(void **unused)
 {
     (void)unused;
     static const char *const words[] = {"worker", "make", "x", NULL}, *const broken[] = {"a\nb",
@@ -295,10 +295,13 @@ static void bad_lists_are_refused(void **unused)
          {.name = "b", .arguments = words, .output = "./x/"}},
         {{.name = "a", .arguments = words, .output = "x"}},
     };
-    static const char *const messages[] = {
-        "'a/b' cannot name a run", "'' cannot name a run",   "line break",
-        "no output folder",        "two runs are named 'a'", "'a' and 'b' would both write",
-        "no function to run"};
+    static const char *const messages[] = {"'a/b'",
+                                           "''",
+                                           "line break",
+                                           "no output folder",
+                                           "two runs are named 'a'",
+                                           "'a' and 'b' would both write",
+                                           "no function to run"};
     const struct wb_jobs_options options = {.where = WB_JOBS_LOCAL, .folder = "logs"};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         struct wb_jobs_outcome outcome;
@@ -313,7 +316,7 @@ static void bad_lists_are_refused(void **unused)
     }
 }
 
-static void terminal_shows_how_far_it_is(void **unused)
+static void the_terminal_shows_the_progress(void **unused)
 {
     (void)unused;
     const struct jobs_fixture_run runs[] = {{.name = "a", .words = {"make", "x"}, .cost = 2.0},
@@ -346,24 +349,24 @@ int main(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "worker") == 0)
         return jobs_fixture_worker(argc, argv);
-    alarm(50); /* a signal that only sets a flag does not end a test that waits for ever */
+    alarm(50); /* a signal that only sets a flag does not end a test that hangs */
 #define WITH_FOLDER(fact)                                                                          \
     cmocka_unit_test_setup_teardown(fact, jobs_fixture_make_folder, jobs_fixture_remove_folder)
     const struct CMUnitTest tests[] = {
         WITH_FOLDER(wirebench_itself_makes_datasets),
-        WITH_FOLDER(what_is_there_is_not_run_again),
-        WITH_FOLDER(failure_is_named_with_the_end_of_its_log_and_stops_nobody),
-        WITH_FOLDER(curve_cut_short_is_no_output_but_kept_aside),
-        WITH_FOLDER(as_many_run_at_once_as_asked_for),
-        WITH_FOLDER(costly_ones_go_first),
+        WITH_FOLDER(existing_outputs_are_not_run_again),
+        WITH_FOLDER(a_failure_is_reported_with_the_end_of_its_log_and_does_not_stop_others),
+        WITH_FOLDER(an_incomplete_curve_is_kept_in_the_partial_folder),
+        WITH_FOLDER(the_requested_number_of_runs_is_executed_at_once),
+        WITH_FOLDER(costly_runs_start_first),
         WITH_FOLDER(threads_of_a_run_are_limited),
         WITH_FOLDER(outdated_output_stays_until_the_new_one_is_whole),
-        WITH_FOLDER(folder_that_is_no_dataset_is_left_alone),
-        WITH_FOLDER(interrupt_ends_the_children_and_leaves_nothing_half_written),
+        WITH_FOLDER(a_folder_without_dataset_is_not_replaced),
+        WITH_FOLDER(an_interrupt_ends_the_children_and_removes_incomplete_outputs),
         WITH_FOLDER(children_do_not_outlive_a_killed_parent),
         WITH_FOLDER(one_call_at_a_time),
-        WITH_FOLDER(bad_lists_are_refused),
-        WITH_FOLDER(terminal_shows_how_far_it_is),
+        WITH_FOLDER(invalid_lists_are_rejected),
+        WITH_FOLDER(the_terminal_shows_the_progress),
     };
     return cmocka_run_group_tests_name("jobs_local", tests, NULL, NULL);
 }
