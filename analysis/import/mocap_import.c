@@ -22,19 +22,21 @@
 
 #define WB_LOG_DOMAIN "import"
 
-/* The tare is taken from this many readings over this time, s, at the least. */
+/* The tare needs at least this many readings over at least this time, s. */
 #define LEAST_TARE_READINGS 5
 #define LEAST_TARE_TIME 0.3
-/* The motion begins where the tip leaves its rest by this, m, or this many deviations. */
+/* The motion begins when the tip leaves its rest by this, m, or by this number of standard
+ * deviations. */
 #define LEAST_MOTION (0.2 * WB_MM)
 #define MOTION_DEVIATIONS 6.0
-/* Part of the whole deflection that is surely motion, and no tap. */
+/* Part of the whole deflection that is certainly motion, and not a tap. */
 #define SURE_MOTION 0.15
-/* Means over so long, s, show its beginning where single places do not: until they are off the rest
- * by no more than this many of their deviations. */
+/* Window (s) of means that show the beginning where single positions do not, and their largest
+ * difference from the rest, in standard deviations. */
 #define REST_WINDOW 0.2
 #define REST_DEVIATIONS 3.0
-/* So much of the rest, s, and half of it at most, belongs to the test, as a bench records it. */
+/* Part of the rest before the motion that belongs to the test, s, and at most half of the rest;
+ * recordings of a bench begin likewise. */
 #define REST_BEFORE 1.0
 
 static const struct wb_setting setting_rows[] = {
@@ -49,7 +51,7 @@ static const struct wb_setting setting_rows[] = {
 
 const struct wb_setting_table wb_mocap_import_table = {WB_SETTING_ROWS(setting_rows)};
 
-/* A file as it was read. */
+/* A file and its contents. */
 struct source {
     struct wb_foreign foreign;
     char *bytes;
@@ -65,7 +67,7 @@ struct import {
     struct wb_force_table force;
     struct wb_point_cloud cloud;
     struct wb_marker_tracks tracks;
-    /* The tip as seen from the clamp, where both are seen. */
+    /* The tip relative to the clamp, in frames in which both are seen. */
     size_t n_motion;
     double *t, *motion, *shake; /* (n_motion) owned */
 };
@@ -109,11 +111,10 @@ static enum wb_status read_take(struct import *import)
     for (size_t i = 0; i < take->n_points; i++)
         result->n_points += wb_take_is_measured(take->points[i].kind);
     if (result->n_points == 0)
-        return wb_fail(
-            WB_ERR_DATA,
-            "%s: rigid bodies only: their markers are solved, not measured; export again "
-            "with 'Markers' on",
-            path);
+        return wb_fail(WB_ERR_DATA,
+                       "%s: rigid bodies only: their markers are solved, not measured; export "
+                       "again with 'Markers' enabled",
+                       path);
     return WB_OK;
 }
 
@@ -162,8 +163,8 @@ static void fill_cloud(struct import *import)
     free(frame);
 }
 
-/* Which columns of the file were our markers at some time. The cloud holds the measured places of
- * the frames in the file's order. */
+/* Finds the columns of the file that were our markers at some time. The cloud contains the measured
+ * positions in the file's order. */
 static void count_stitched(struct import *import)
 {
     const struct wb_take *const take = &import->take;
@@ -211,7 +212,7 @@ static enum wb_status find_markers(struct import *import)
 
 /* --- motion --- */
 
-/* Vector from the first marker to the last; false when one is not seen. */
+/* Vector from the first marker to the last; false if one of them is not seen. */
 static bool tip_from_clamp(const struct import *import, size_t frame, double tip[3])
 {
     const double *const first = wb_markers_position(&import->tracks, frame, 0);
@@ -224,8 +225,8 @@ static bool tip_from_clamp(const struct import *import, size_t frame, double tip
     return true;
 }
 
-/* The motion along the line between the two places of the tip that are farthest apart, seen from
- * its place at the start. */
+/* Motion along the line between the two positions of the tip that are farthest apart, relative to
+ * its position at the start. */
 static enum wb_status find_motion(struct import *import)
 {
     const size_t n = import->take.n_frames;
@@ -249,7 +250,7 @@ static enum wb_status find_motion(struct import *import)
         }
     }
     if (!(farthest > LEAST_MOTION * LEAST_MOTION))
-        return wb_fail(WB_ERR_DATA, "%s: the tip does not move against the clamp",
+        return wb_fail(WB_ERR_DATA, "%s: the tip does not move relative to the clamp",
                        import->request->take_path);
     const double distance = sqrt(farthest);
     for (size_t i = 0; i < n; i++) {
@@ -266,7 +267,7 @@ static enum wb_status find_motion(struct import *import)
     return WB_OK;
 }
 
-/* The first sample of the last window, with or before `last`, in which the tip still rests. */
+/* The first sample of the last window, at or before `last`, in which the tip is still at rest. */
 static size_t last_rest(const struct wb_signal *motion, double rest, double noise, size_t last)
 {
     size_t from = last;
@@ -281,9 +282,9 @@ static size_t last_rest(const struct wb_signal *motion, double rest, double nois
     }
 }
 
-/* Where the tip last rested before it surely moved, and a little before: the strand becomes taut
- * while the tip hardly moves, and the force's zero is read where the wire comes by its level, a
- * millimetre from its rest or less. */
+/* Finds the beginning: slightly before the last rest that precedes certain motion. The strand
+ * becomes taut while the tip hardly moves, and the force's zero is read where the wire passes its
+ * level, within a millimetre of its rest. */
 static void find_start(struct import *import)
 {
     const struct wb_signal motion = {import->t, import->motion, import->n_motion};
@@ -292,7 +293,7 @@ static void find_start(struct import *import)
     for (size_t i = 0; i < import->n_motion; i++)
         most = fmax(most, fabs(import->motion[i]));
     const double band = fmax(LEAST_MOTION, MOTION_DEVIATIONS * noise);
-    /* A tap passes what is surely motion, but returns. */
+    /* A tap exceeds the level of certain motion, but returns. */
     size_t sure = 0, last = 0;
     for (size_t i = 0; i < import->n_motion && sure == 0; i++)
         if (import->motion[i] > SURE_MOTION * most + band &&
@@ -313,9 +314,9 @@ static void find_start(struct import *import)
 
 /* --- the two clocks --- */
 
-/* A lag that events show holds the delay of the load cell's filter, which the alignment takes off
- * again: so it is put on. */
-static enum wb_status bring_together(struct import *import)
+/* Brings both files to one clock. A lag found from events includes the delay of the load cell's
+ * filter, which the alignment subtracts again; so it is added here. */
+static enum wb_status synchronize_clocks(struct import *import)
 {
     const struct wb_mocap_import_request *const request = import->request;
     struct wb_mocap_import *const result = import->result;
@@ -343,12 +344,12 @@ static enum wb_status bring_together(struct import *import)
     const struct wb_signal force = {import->force.t, import->force.force, import->force.n};
     wb_sync_find(&result->sync, &motion, &shake, &force, &settings);
     if (result->sync.method == WB_SYNC_NONE)
-        return wb_fail(WB_ERR_DATA,
-                       "the lag between '%s' and '%s' is not identifiable: %s. Tap the bench once "
-                       "before the test, or let the motion go back a part of its way, so that both "
-                       "files show it; or give the lag, --offset-s S (time of the take less that "
-                       "of the force)",
-                       import->take_file.foreign.name, foreign->name, result->sync.reason);
+        return wb_fail(
+            WB_ERR_DATA,
+            "the lag between '%s' and '%s' is not identifiable: %s. Tap the bench once before the "
+            "test, or reverse the motion for a part of its travel, so that both files show it; or "
+            "give the lag, --offset-s S (time of the take less that of the force)",
+            import->take_file.foreign.name, foreign->name, result->sync.reason);
     result->offset = foreign->offset = result->sync.lag + delay;
     foreign->uncertainty = result->sync.uncertainty;
     return WB_OK;
@@ -374,12 +375,12 @@ static enum wb_status find_tare(struct import *import)
     if (n < LEAST_TARE_READINGS || span < LEAST_TARE_TIME) {
         free(values);
         return wb_fail(WB_ERR_DATA,
-                       "no tare: only %zu readings (%.2f s) of the force come before the motion "
-                       "begins at %.2f s of the take, expected %d over %.1f s; give the force of "
-                       "the unloaded cell, --tare-mN F",
+                       "no tare: only %zu readings (%.2f s) of the force precede the beginning of "
+                       "the motion at %.2f s of the take, expected %d over %.1f s; give the force "
+                       "of the unloaded cell, --tare-mN F",
                        n, span, result->motion_start, LEAST_TARE_READINGS, LEAST_TARE_TIME);
     }
-    /* Robust: a tap is among them. */
+    /* Readings far from the median are left out: a tap may be among them. */
     memcpy(values, force->force, n * sizeof *values);
     const double middle = wb_fit_median(values, n);
     for (size_t i = 0; i < n; i++)
@@ -422,7 +423,7 @@ static enum wb_status add_file(struct wb_recording *recording, enum wb_role role
                                        wb_ns_from_seconds(last + source->foreign.offset));
 }
 
-/* What was found and what is missing, for whoever asks the recording. */
+/* Writes results of the import and missing parts into the recording's meta data. */
 static enum wb_status add_report(const struct import *import, struct wb_recording *recording)
 {
     const struct wb_mocap_import *const r = import->result;
@@ -477,7 +478,7 @@ static enum wb_status add_events(const struct import *import, struct wb_recordin
         WB_TRY(wb_recording_append_event(recording, start_ns, "tare", text));
     }
     if (!r->complete) {
-        /* Short: warnings of the alignment quote its beginning. */
+        /* Short, because warnings of the alignment quote its beginning. */
         snprintf(text, sizeof text,
                  "import: %zu frames missing, %zu rows and %zu of force left out",
                  r->missing_frames + r->jumped, r->skipped_rows, r->force_skipped);
@@ -522,7 +523,7 @@ static enum wb_status write_recording(struct import *import)
     return status != WB_OK ? status : closed;
 }
 
-/* --- all --- */
+/* --- import --- */
 
 static enum wb_status run(struct import *import)
 {
@@ -535,7 +536,7 @@ static enum wb_status run(struct import *import)
     if (result->has_force) {
         WB_TRY(find_motion(import));
         find_start(import);
-        WB_TRY(bring_together(import));
+        WB_TRY(synchronize_clocks(import));
         WB_TRY(find_tare(import));
     }
     result->complete = result->missing_frames == 0 && result->skipped_rows == 0 &&
@@ -547,7 +548,7 @@ enum wb_status wb_mocap_import_run(struct wb_mocap_import *result,
                                    const struct wb_mocap_import_request *request)
 {
     memset(result, 0, sizeof *result);
-    /* GSL's own handler aborts; results of fits are looked at. */
+    /* GSL's default handler aborts; results of fits are checked instead. */
     gsl_set_error_handler_off();
     if (access(request->output, F_OK) == 0)
         return wb_fail(WB_ERR_EXISTS,

@@ -6,24 +6,24 @@
 #include "analysis/dataset/least_squares.h"
 #include "base/memory.h"
 
-/* Windows on each side, s, or the time in which the signal moves by so many deviations of its
- * noise; at most this part of a way, and of a rest. */
+/* Windows on each side: s, or the time in which the signal moves by this number of standard
+ * deviations of its noise; at most these parts of a branch and of a rest. */
 #define MOTION_WINDOW 6.0
 #define FORCE_WINDOW 3.0
 #define WINDOW_NOISES 25.0
 #define WINDOW_PART 0.4
 #define REST_PART 0.9
 #define SHORTER 0.6
-/* s of the force left out before the turn, and the filter's delays behind it. */
+/* s of the force left out before the turn, and delays of the filter left out after it. */
 #define GUARD 0.05
 #define FILTER_TIMES 3.0
-/* Samples that each signal must have on each side. */
+/* Fewest samples of each signal on each side. */
 #define LEAST 12
 #define MOST_ITERATIONS 100
-#define MOST_LAG 2.5 /* s: a search that ends farther off went astray */
-#define TIMES 10.0   /* free numbers in 1 s */
-/* Lengths of the rest that are tried, s apart; those less probable than this part of the best are
- * left out. */
+#define MOST_LAG 2.5 /* s: largest change of the lag; beyond, the search has diverged */
+#define TIMES 10.0   /* free parameters are in units of 0.1 s */
+/* Number of lengths of the rest that are tried, their spacing in s, and the smallest probability,
+ * relative to the best one, of lengths that are used. */
 #define N_RESTS 51
 #define REST_STEP 0.02
 #define LEAST_WEIGHT 0.01
@@ -43,12 +43,12 @@ enum {
     N_ALL
 };
 
-/* Samples of one signal in the window, about the turn and the signal's value there. */
+/* The samples of one signal in the window, the turn, and the signal's value there. */
 struct part {
     const struct wb_signal *signal;
-    size_t first, last;           /* last is behind the end */
-    double skip_from, skip_until; /* s: left out between */
-    double zero, scale;           /* of the values: the noise is 1 in scaled ones */
+    size_t first, last;           /* last is one past the end */
+    double skip_from, skip_until; /* s: range that is left out */
+    double zero, scale;           /* of the values: scaled values have a noise of 1 */
 };
 
 struct problem {
@@ -73,7 +73,7 @@ static struct part take_part(const struct wb_signal *signal, double from, double
     return part;
 }
 
-/* Length of the window between the turn and the way's other end, s. */
+/* Length of the window between the turn and the other end of the branch, s. */
 static double window_of(const struct wb_signal *signal, double at, double end, double least,
                         double most)
 {
@@ -90,7 +90,7 @@ static bool is_left_out(const struct part *part, double t)
     return t > part->skip_from && t < part->skip_until;
 }
 
-/* Whether both sides have samples enough. */
+/* Whether both sides have enough samples. */
 static bool is_enough(const struct part *part)
 {
     size_t before = 0, behind = 0;
@@ -101,7 +101,7 @@ static bool is_enough(const struct part *part)
     return part->scale > 0.0 && before >= LEAST && behind >= LEAST;
 }
 
-/* Times of the free numbers are in tenths of a second, to be of the size of the others. */
+/* Times are free parameters in tenths of a second, so that all parameters are of similar size. */
 static double seconds_of(double free_number)
 {
     return free_number / TIMES;
@@ -144,8 +144,8 @@ static size_t count(const struct problem *p)
     return p->motion.last - p->motion.first + (p->with_force ? p->force.last - p->force.first : 0);
 }
 
-/* Finds the free numbers from where they are, with the sum of squares; `deviations` are standard
- * (NULL: not wanted). */
+/* Minimises the sum of squares, starting from the given free parameters; `deviations` receives
+ * standard deviations (may be NULL). */
 static bool solve(struct problem *p, double free_numbers[N_ALL], double *deviations,
                   double *squares)
 {
@@ -177,8 +177,8 @@ static bool solve(struct problem *p, double free_numbers[N_ALL], double *deviati
     return found;
 }
 
-/* How probable each length of the rest is, by the motion alone, relative to the most probable one;
- * where the way there ends with it, in s after the turn. */
+/* Probability of each length of the rest from the motion alone, relative to the most probable one,
+ * and the end of the first branch for it, in s after the turn. */
 struct rests {
     double weight[N_RESTS], begins[N_RESTS];
 };
@@ -206,7 +206,7 @@ static bool find_rests(struct problem *p, int n_rests, struct rests *rests)
     return isfinite(least);
 }
 
-/* The lag with one length of the rest. */
+/* The lag for one length of the rest. */
 static bool find_with_rest(struct problem *p, int index, const struct rests *rests,
                            double filter_delay, struct wb_reversal_lag *result)
 {
@@ -226,8 +226,8 @@ static bool find_with_rest(struct problem *p, int index, const struct rests *res
     return fabs(result->lag) < MOST_LAG && result->uncertainty < MOST_LAG;
 }
 
-/* Both signals with windows of this part of the whole ones; the mean over all lengths of the rest,
- * each by its probability. */
+/* Fits both signals with windows of this part of the full ones: the mean over all lengths of the
+ * rest, weighted by their probability. */
 static bool find_with(struct wb_reversal_lag *result, const struct wb_signal *motion,
                       const struct wb_signal *force, const struct wb_reversal *reversal,
                       double filter_delay, double window)
@@ -278,7 +278,8 @@ bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_signal
     if (!find_with(result, motion, force, reversal, filter_delay, 1.0) ||
         !find_with(&shorter, motion, force, reversal, filter_delay, SHORTER))
         return false;
-    /* A shorter window also has more noise: what that explains is no fault of the model. */
+    /* A shorter window also has more noise; the difference that this explains is not an error of
+     * the model. */
     const double noise = sqrt(fmax(0.0, shorter.uncertainty * shorter.uncertainty -
                                             result->uncertainty * result->uncertainty));
     const double moved = fabs(shorter.lag - result->lag);

@@ -7,7 +7,7 @@
 #include "analysis/dataset/fit.h"
 #include "base/memory.h"
 
-/* s on each side of a sample that shakes. */
+/* s before and after a sample that are compared with it. */
 #define SHAKE_HALF 0.2
 
 size_t wb_signal_index(const struct wb_signal *s, double t)
@@ -15,7 +15,7 @@ size_t wb_signal_index(const struct wb_signal *s, double t)
     return wb_fit_first_at(s->t, sizeof *s->t, s->n, t);
 }
 
-/* Straight between samples; the ends go on. */
+/* Linear between samples, constant beyond the ends. */
 static double value_at(const struct wb_signal *s, double t)
 {
     const size_t next = wb_signal_index(s, t);

@@ -1,5 +1,4 @@
-/* What an instrument showed over time on a clock of its own, and what is seen in it at once: its
- * noise, and what shakes in it. */
+/* Samples of an instrument over time on its own clock; their noise, and their fast part. */
 #ifndef WB_ANALYSIS_IMPORT_SIGNAL_H
 #define WB_ANALYSIS_IMPORT_SIGNAL_H
 
@@ -11,13 +10,14 @@ struct wb_signal {
     size_t n;
 };
 
-/* First sample at time t or later; n where there is none. */
+/* First sample at time t or later; n if there is none. */
 size_t wb_signal_index(const struct wb_signal *signal, double t);
 
 /* Standard deviation of a sample's noise, from second differences. */
 double wb_signal_noise(const struct wb_signal *signal);
 
-/* How far each sample is from the middle of those 0.2 s before and after it, into out[n]. */
+/* Difference of each sample from the mean of the values 0.2 s before and 0.2 s after it, into
+ * out[n]; 0 near the ends. */
 void wb_signal_shake(const struct wb_signal *signal, double *out);
 
 #endif

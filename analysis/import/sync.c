@@ -11,39 +11,39 @@
 
 #define WB_LOG_DOMAIN "sync"
 
-/* A tap is over within this time, s, on each side of its middle: half of that of
- * wb_signal_shake(), which shows it again, turned over, on either side. */
+/* Duration (s) of a tap on each side of its middle: half of that of wb_signal_shake(), which shows
+ * the tap again, inverted, on either side. */
 #define TAP_HALF 0.1
-/* A tap rises above the noise of its signal by this factor, and over this part of the largest. */
+/* A tap exceeds the noise of its signal by this factor, and this part of the largest value. */
 #define TAP_NOISE 10.0
 #define TAP_PART 0.3
-/* Of a tap counts what is above so many times the noise: little of that far from it would move its
- * middle. */
+/* Only values above this multiple of the noise contribute to the middle of a tap; otherwise small
+ * values far away would shift it. */
 #define FLOOR_NOISE 4.0
-/* Events nearer than this, s, are one. */
+/* Events closer together than this, s, are one event. */
 #define SAME_TAP 0.6
-/* A turn is a return by this part of the whole way. */
+/* Smallest return that counts as a turn, as part of the whole range. */
 #define TURN_PART 0.15
-/* Lines to the top of a turn see so much time, s, and this part of a branch at most. */
+/* Lines to the top of a turn are fitted over at most this time, s, and this part of a branch. */
 #define SIDE_WINDOW 2.5
 #define SIDE_PART 0.4
-/* A motion that stays for longer than this, s, is looked at where it comes to rest and where it
- * leaves it; wb_reversal_lag_find() sees through shorter rests. */
+/* s: a rest that is longer is evaluated separately at its beginning and end; wb_reversal_lag_find()
+ * handles shorter ones. */
 #define LONG_REST 0.7
-/* Pairs of events may be apart by this, s, once the lag is taken off. */
+/* Largest time between paired events after subtracting the lag, s. */
 #define TAP_GATE 0.12
 #define TURN_GATE 1.0
-/* A lag is brought nearer so many times, until it moves by less than this, s. */
+/* Number of iterations of the lag, which end when it changes by less than this, s. */
 #define ROUNDS 6
 #define ARRIVED 0.01
-/* A lag is given only if it is known to this, s. */
+/* Largest uncertainty with which a lag is accepted, s. */
 #define MOST_UNCERTAINTY 0.25
 #define MOST_EVENTS 64
 
 struct event {
     double t, deviation; /* s */
-    /* Of a turn, s: where its way there begins, where the next way there begins, and how long it
-     * rests; about. */
+    /* Of a turn, s, approximate: beginning of its branch, beginning of the next branch, and
+     * duration of its rest. */
     double from, until, rest;
 };
 
@@ -65,7 +65,7 @@ static double median_period(const struct wb_signal *s)
 
 /* --- taps --- */
 
-/* Middle of what stands out around sample i. */
+/* Middle of the tap around sample i. */
 static struct event tap_at(const struct wb_signal *shake, size_t i, double floor)
 {
     const double middle = shake->t[i];
@@ -114,7 +114,7 @@ struct turn {
     size_t before, peak, after;
 };
 
-/* Walks up and down; a turn counts when the return is long enough. */
+/* Follows the signal up and down; an extremum is a turn if the signal returns far enough. */
 static int find_turns(const double *y, size_t n, double least, struct turn *turns)
 {
     size_t low = 0, high = 0;
@@ -144,7 +144,8 @@ static int find_turns(const double *y, size_t n, double least, struct turn *turn
     return count;
 }
 
-/* Where a side of a turn, from the sample `far` to `near`, reaches the value `top` by its line. */
+/* Finds where a line through a side of a turn, from the sample `far` to `near`, reaches the value
+ * `top`. */
 static bool reaches(const struct wb_signal *s, const double *y, size_t far, size_t near, double top,
                     double *t)
 {
@@ -164,7 +165,7 @@ static bool reaches(const struct wb_signal *s, const double *y, size_t far, size
     return found && fabs(*t - s->t[near]) < 2.0 * SIDE_WINDOW;
 }
 
-/* The turn as it seems: its middle is reached and left on straight lines. */
+/* Approximate turn: the middle between the straight lines that reach and leave it. */
 static bool place(const struct wb_signal *s, const double *y, const struct turn *turn, double noise,
                   struct event *event)
 {
@@ -175,7 +176,7 @@ static bool place(const struct wb_signal *s, const double *y, const struct turn 
         first++;
     while (last > turn->peak && y[last] < y[turn->peak] - near)
         last--;
-    /* The largest of many samples stands out by its noise. */
+    /* The largest of many samples is biased by noise. */
     for (size_t i = turn->peak < 10 ? 0 : turn->peak - 10; i < s->n && i <= turn->peak + 10; i++) {
         if (y[i] >= y[turn->peak] - near) {
             top += y[i];
@@ -193,7 +194,7 @@ static bool place(const struct wb_signal *s, const double *y, const struct turn 
     return true;
 }
 
-/* Turns of |x - x(0)|, about. */
+/* Finds the approximate turns of |x - x(0)|. */
 static void find_reversals(const struct wb_signal *s, struct events *events)
 {
     struct turn turns[MOST_EVENTS];
@@ -224,7 +225,7 @@ struct pairing {
     double lag, deviation, first;
 };
 
-/* Which of `b` is the event of `a` behind a lag; -1: none. */
+/* The event of `b` that is paired with the event of `a` at this lag; -1: none. */
 static int partner_of(const struct event *a, const struct events *b, double lag, double gate)
 {
     int best = -1;
@@ -255,7 +256,7 @@ static struct pairing pair_at(const struct events *a, const struct events *b, do
     return pairing;
 }
 
-/* The lag that pairs the most events; false where another pairs as many. */
+/* The lag that pairs the most events; false if another lag pairs as many. */
 static bool pair(const struct events *a, const struct events *b, double gate, struct pairing *best)
 {
     int rival = 0;
@@ -284,7 +285,7 @@ struct lag_search {
     struct wb_reversal_mean mean;
 };
 
-/* Adds the lag at one turn, from the lag that it seems to have. */
+/* Adds the lag at one turn, starting from an approximate lag. */
 static void add_turn(struct lag_search *s, const struct wb_reversal *reversal, double lag)
 {
     const struct wb_signal force = {s->shifted, s->force->x, s->force->n};
@@ -301,7 +302,7 @@ static void add_turn(struct lag_search *s, const struct wb_reversal *reversal, d
                              fmax(found.uncertainty, 0.1 * median_period(s->motion)));
 }
 
-/* A long rest is two turns: the force may fall in it, as a wire relaxes. */
+/* A long rest is two turns, because the force may decrease in it as a wire relaxes. */
 static void add_event(struct lag_search *s, const struct event *motion, double lag)
 {
     const double comes = motion->t, leaves = motion->t + motion->rest;
@@ -336,9 +337,9 @@ static void find_lags(const struct wb_signal *motion, const struct wb_signal *fo
         wb_reversal_mean_find(&s.mean, &pairing->lag, &pairing->deviation);
 }
 
-/* --- all --- */
+/* --- methods --- */
 
-/* Whether the events of both fit together in one way. */
+/* Whether the events of both signals can be paired in exactly one way. */
 static bool match(struct pairing *pairing, enum wb_sync_method method, const struct events *a,
                   const struct events *b, char reason[120])
 {
@@ -355,13 +356,12 @@ static bool match(struct pairing *pairing, enum wb_sync_method method, const str
     return false;
 }
 
-static void take(struct wb_sync *sync, enum wb_sync_method method, const struct pairing *pairing,
-                 double extra, char reason[120])
+static void set_lag(struct wb_sync *sync, enum wb_sync_method method, const struct pairing *pairing,
+                    double extra, char reason[120])
 {
     const double uncertainty = hypot(pairing->deviation, extra);
     if (!(uncertainty < HUGE_VAL)) {
-        snprintf(reason, 120, "the force has no corner that stands out at the %s",
-                 wb_sync_name(method));
+        snprintf(reason, 120, "the force has no distinct corner at the %s", wb_sync_name(method));
         return;
     }
     if (!(uncertainty < MOST_UNCERTAINTY)) {
@@ -389,9 +389,9 @@ static void find_by_tap(struct wb_sync *sync, const struct wb_signal *shake,
     find_taps(shake, &a);
     find_taps(&shaken, &b);
     free(out);
-    /* A filter delays a short event by less than a ramp. */
+    /* A filter delays a short event less than a ramp. */
     if (match(&pairing, WB_SYNC_TAP, &a, &b, reason))
-        take(sync, WB_SYNC_TAP, &pairing, 0.5 * filter_delay, reason);
+        set_lag(sync, WB_SYNC_TAP, &pairing, 0.5 * filter_delay, reason);
 }
 
 static void find_by_reversal(struct wb_sync *sync, const struct wb_signal *motion,
@@ -404,7 +404,7 @@ static void find_by_reversal(struct wb_sync *sync, const struct wb_signal *motio
     if (!match(&pairing, WB_SYNC_REVERSAL, &a, &b, reason))
         return;
     find_lags(motion, force, &a, &b, filter_delay, &pairing);
-    take(sync, WB_SYNC_REVERSAL, &pairing, 0.0, reason);
+    set_lag(sync, WB_SYNC_REVERSAL, &pairing, 0.0, reason);
 }
 
 void wb_sync_find(struct wb_sync *sync, const struct wb_signal *motion,

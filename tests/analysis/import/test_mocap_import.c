@@ -1,5 +1,5 @@
-/* A shipped recording, written out as a laboratory's files would have it, comes back through the
- * import as the same test; and where files do not tell enough, nothing is written. */
+/* A stored recording, written in the file formats of a laboratory, is imported as the same test;
+ * and nothing is written if the files do not suffice. */
 #include "analysis/import/mocap_import.h"
 
 #include <stdlib.h>
@@ -25,14 +25,14 @@
 /* s: the force's clock less the take's. */
 #define CLOCKS 62.75
 
-/* What the recording's instruments said. */
+/* The samples of the recording's instruments. */
 static struct {
     int n_frames, n_readings, n_ids;
     struct wb_mocap_frame *frames;
     struct wb_load_sample readings[MOST];
     int32_t ids[MOST_IDS];
     double host_less_device; /* s */
-} said;
+} sent;
 
 static char take_path[64], force_path[64], output[64], original[WB_PATH];
 static char specimen_path[WB_PATH], rig_path[WB_PATH];
@@ -41,27 +41,27 @@ static struct wb_dataset reference;
 static void take_frame(void *context, const struct wb_mocap_frame *frame)
 {
     (void)context;
-    if (said.n_frames < MOST)
-        said.frames[said.n_frames++] = *frame;
+    if (sent.n_frames < MOST)
+        sent.frames[sent.n_frames++] = *frame;
     for (int i = 0; i < frame->n_markers; i++) {
         int k = 0;
-        while (k < said.n_ids && said.ids[k] != frame->markers[i].id)
+        while (k < sent.n_ids && sent.ids[k] != frame->markers[i].id)
             k++;
-        if (k == said.n_ids && k < MOST_IDS)
-            said.ids[said.n_ids++] = frame->markers[i].id;
+        if (k == sent.n_ids && k < MOST_IDS)
+            sent.ids[sent.n_ids++] = frame->markers[i].id;
     }
 }
 
 static void take_reading(void *context, const struct wb_load_sample *sample)
 {
     (void)context;
-    if (said.n_readings < MOST && sample->valid)
-        said.readings[said.n_readings++] = *sample;
+    if (sent.n_readings < MOST && sample->valid)
+        sent.readings[sent.n_readings++] = *sample;
 }
 
 static double frame_time(int i)
 {
-    return (said.frames[i].frame_number - said.frames[0].frame_number) / RATE;
+    return (sent.frames[i].frame_number - sent.frames[0].frame_number) / RATE;
 }
 
 /* --- files --- */
@@ -71,7 +71,7 @@ static bool is_measured(const struct wb_marker *marker)
     return !(marker->params & (WB_MARKER_OCCLUDED | WB_MARKER_MODEL_FILLED));
 }
 
-/* A column for each id: one for each time that a marker was found again. */
+/* One column for each id, and a marker has a new id each time it is found again. */
 static void write_motive(int first, int last)
 {
     struct wb_text text = {0};
@@ -83,9 +83,9 @@ static void write_motive(int first, int last)
     static const char *const rows[] = {",Type", ",Name", ",ID", ",", "Frame,Time (Seconds)"};
     for (int r = 0; r < 5; r++) {
         wb_text_append(&text, "%s", rows[r]);
-        for (int i = 0; i < 3 * said.n_ids; i++) {
+        for (int i = 0; i < 3 * sent.n_ids; i++) {
             if (r == 1)
-                wb_text_append(&text, ",Unlabeled %d", said.ids[i / 3]);
+                wb_text_append(&text, ",Unlabeled %d", sent.ids[i / 3]);
             else
                 wb_text_append(&text, ",%s",
                                r == 0       ? "Marker"
@@ -98,13 +98,13 @@ static void write_motive(int first, int last)
         wb_text_append(&text, "\n");
     }
     for (int f = first; f < last; f++) {
-        const struct wb_mocap_frame *const frame = &said.frames[f];
-        wb_text_append(&text, "%d,%.6f", frame->frame_number - said.frames[0].frame_number,
+        const struct wb_mocap_frame *const frame = &sent.frames[f];
+        wb_text_append(&text, "%d,%.6f", frame->frame_number - sent.frames[0].frame_number,
                        frame_time(f));
-        for (int i = 0; i < said.n_ids; i++) {
+        for (int i = 0; i < sent.n_ids; i++) {
             const struct wb_marker *found = NULL;
             for (int k = 0; k < frame->n_markers; k++)
-                if (frame->markers[k].id == said.ids[i] && is_measured(&frame->markers[k]))
+                if (frame->markers[k].id == sent.ids[i] && is_measured(&frame->markers[k]))
                     found = &frame->markers[k];
             for (int k = 0; k < 3; k++) {
                 if (found)
@@ -119,34 +119,34 @@ static void write_motive(int first, int last)
     wb_text_release(&text);
 }
 
-/* Readings' times on the clock of the take, at an even rate. */
+/* Times of the readings on the clock of the take, at a constant rate. */
 static void reading_times(double *t)
 {
     static double number[MOST];
     static int64_t host_ns[MOST];
     struct wb_clock_line line;
-    for (int i = 0; i < said.n_readings; i++) {
+    for (int i = 0; i < sent.n_readings; i++) {
         number[i] = (double)i;
-        host_ns[i] = said.readings[i].t_ns;
+        host_ns[i] = sent.readings[i].t_ns;
     }
     assert_int_equal(
-        wb_clock_fit_envelope(&line, number, host_ns, (size_t)said.n_readings, 1.0 / 80.0, 32.0),
+        wb_clock_fit_envelope(&line, number, host_ns, (size_t)sent.n_readings, 1.0 / 80.0, 32.0),
         WB_OK);
-    for (int i = 0; i < said.n_readings; i++)
-        t[i] = wb_seconds_from_ns(wb_clock_line_host_ns(&line, number[i])) - said.host_less_device -
-               said.frames[0].t_device;
+    for (int i = 0; i < sent.n_readings; i++)
+        t[i] = wb_seconds_from_ns(wb_clock_line_host_ns(&line, number[i])) - sent.host_less_device -
+               sent.frames[0].t_device;
 }
 
-/* As a logger of another country writes it. */
+/* In the format of a logger with another locale. */
 static void write_force(double until)
 {
     static double t[MOST];
     struct wb_text text = {0};
     reading_times(t);
     wb_text_append(&text, "Zeit (s);Kraft (mN)\r\n");
-    for (int i = 0; i < said.n_readings && t[i] <= until; i++) {
+    for (int i = 0; i < sent.n_readings && t[i] <= until; i++) {
         char row[80];
-        snprintf(row, sizeof row, "%.4f;%.5f\r\n", t[i] + CLOCKS, said.readings[i].force / WB_MN);
+        snprintf(row, sizeof row, "%.4f;%.5f\r\n", t[i] + CLOCKS, sent.readings[i].force / WB_MN);
         for (char *at = row; *at; at++)
             *at = *at == '.' ? ',' : *at;
         wb_text_append(&text, "%s", row);
@@ -155,23 +155,23 @@ static void write_force(double until)
     wb_text_release(&text);
 }
 
-/* A C3D with a point for each id and the force as its channel, two readings a frame. */
+/* A C3D with a point for each id and the force as a channel, two readings per frame. */
 static void write_c3d(const char *path)
 {
     static double t[MOST];
     static struct example_bytes head;
-    const int first = said.frames[0].frame_number;
-    const int n = said.frames[said.n_frames - 1].frame_number - first + 1;
+    const int first = sent.frames[0].frame_number;
+    const int n = sent.frames[sent.n_frames - 1].frame_number - first + 1;
     char labels[4 * MOST_IDS];
     FILE *const file = fopen(path, "wb");
     assert_non_null(file);
-    for (int i = 0; i < said.n_ids; i++)
+    for (int i = 0; i < sent.n_ids; i++)
         memcpy(labels + (size_t)4 * i,
                (char[]){'M', (char)('0' + i / 10), (char)('0' + i % 10), ' '}, 4);
     head = (struct example_bytes){.processor = 84};
     example_byte(&head, 2);
     example_byte(&head, 0x50);
-    const long words[] = {said.n_ids, 2, 1, n, 10};
+    const long words[] = {sent.n_ids, 2, 1, n, 10};
     for (int i = 0; i < 5; i++)
         example_word(&head, words[i]);
     example_float(&head, -1.0);
@@ -184,12 +184,12 @@ static void write_c3d(const char *path)
     example_byte(&head, 3);
     example_byte(&head, head.processor);
     example_group(&head, 1, "POINT");
-    example_int(&head, 1, "USED", said.n_ids);
+    example_int(&head, 1, "USED", sent.n_ids);
     example_int(&head, 1, "FRAMES", n);
     example_int(&head, 1, "DATA_START", 5);
     example_real(&head, 1, "SCALE", -1.0);
     example_real(&head, 1, "RATE", RATE);
-    example_texts(&head, 1, "LABELS", labels, said.n_ids);
+    example_texts(&head, 1, "LABELS", labels, sent.n_ids);
     example_texts(&head, 1, "UNITS", "mm\0\0", 1);
     example_group(&head, 2, "ANALOG");
     example_int(&head, 2, "USED", 1);
@@ -202,16 +202,16 @@ static void write_c3d(const char *path)
         example_byte(&head, 0);
     assert_int_equal(fwrite(head.bytes, 1, head.n, file), head.n);
     reading_times(t);
-    const struct wb_mocap_frame *frame = said.frames;
+    const struct wb_mocap_frame *frame = sent.frames;
     for (int f = 0, at = 1; f < n; f++) {
         float row[4 * MOST_IDS + 2] = {0.0f};
-        for (int i = 0; i < said.n_ids; i++)
+        for (int i = 0; i < sent.n_ids; i++)
             row[4 * i + 3] = -1.0f;
-        while (frame < said.frames + said.n_frames && frame->frame_number - first < f)
+        while (frame < sent.frames + sent.n_frames && frame->frame_number - first < f)
             frame++;
         for (int k = 0; frame->frame_number - first == f && k < frame->n_markers; k++) {
             int i = 0;
-            while (said.ids[i] != frame->markers[k].id)
+            while (sent.ids[i] != frame->markers[k].id)
                 i++;
             for (int j = 0; j < 3; j++)
                 row[4 * i + j] = 1e3f * frame->markers[k].position[j];
@@ -219,20 +219,20 @@ static void write_c3d(const char *path)
         }
         for (int r = 0; r < 2; r++) {
             const double now = (f + 0.5 * r) / RATE;
-            while (at + 1 < said.n_readings && t[at] < now)
+            while (at + 1 < sent.n_readings && t[at] < now)
                 at++;
             const double part = (now - t[at - 1]) / (t[at] - t[at - 1]);
-            row[4 * said.n_ids + r] = (float)(((1.0 - part) * said.readings[at - 1].force +
-                                               part * said.readings[at].force) /
+            row[4 * sent.n_ids + r] = (float)(((1.0 - part) * sent.readings[at - 1].force +
+                                               part * sent.readings[at].force) /
                                               WB_MN);
         }
-        assert_int_equal(fwrite(row, sizeof *row, (size_t)(4 * said.n_ids + 2), file),
-                         4 * said.n_ids + 2);
+        assert_int_equal(fwrite(row, sizeof *row, (size_t)(4 * sent.n_ids + 2), file),
+                         4 * sent.n_ids + 2);
     }
     fclose(file);
 }
 
-/* --- all --- */
+/* --- import --- */
 
 static struct wb_mocap_import_request request_of(void)
 {
@@ -261,9 +261,9 @@ static int start(void **state)
     snprintf(take_path, sizeof take_path, "%s/take.csv", folder);
     snprintf(force_path, sizeof force_path, "%s/force.csv", folder);
     snprintf(output, sizeof output, "%s/r.wbr", folder);
-    said.frames = calloc(MOST, sizeof *said.frames);
+    sent.frames = calloc(MOST, sizeof *sent.frames);
     wb_align_default_settings(&settings);
-    if (!said.frames || wb_file_find_data(original, "recordings/type1-L100-1.wbr.zst") != WB_OK ||
+    if (!sent.frames || wb_file_find_data(original, "recordings/type1-L100-1.wbr.zst") != WB_OK ||
         wb_file_find_data(specimen_path, "fixtures/specimens/type1-L100-1.yaml") != WB_OK ||
         wb_file_find_data(rig_path, "fixtures/rigs/paper.yaml") != WB_OK ||
         wb_recording_open(&recording, original) != WB_OK ||
@@ -272,12 +272,12 @@ static int start(void **state)
         wb_recording_close(recording) != WB_OK ||
         wb_align_run(&reference, original, &settings, NULL) != WB_OK)
         return -1;
-    said.host_less_device = HUGE_VAL;
-    for (int i = 0; i < said.n_frames; i++)
-        said.host_less_device =
-            fmin(said.host_less_device,
-                 wb_seconds_from_ns(said.frames[i].t_ns) - said.frames[i].t_device);
-    write_motive(0, said.n_frames);
+    sent.host_less_device = HUGE_VAL;
+    for (int i = 0; i < sent.n_frames; i++)
+        sent.host_less_device =
+            fmin(sent.host_less_device,
+                 wb_seconds_from_ns(sent.frames[i].t_ns) - sent.frames[i].t_device);
+    write_motive(0, sent.n_frames);
     write_force(1e9);
     return 0;
 }
@@ -285,7 +285,7 @@ static int start(void **state)
 static int end(void **state)
 {
     wb_dataset_release(&reference);
-    free(said.frames);
+    free(sent.frames);
     release_messages();
     return remove_folder(state);
 }
@@ -302,9 +302,8 @@ static double force_at(const struct wb_dataset *dataset, double deflection)
     return (double)NAN;
 }
 
-/* Deflection where the force comes to zero during unloading, by a line through the rows about it.
- */
-static double left_of(const struct wb_dataset *dataset)
+/* Residual deflection: zero force during unloading, by a line through the rows around it. */
+static double residual_deflection(const struct wb_dataset *dataset)
 {
     double x[200], y[200];
     struct wb_fit_line line;
@@ -335,14 +334,14 @@ static void a_test_in_files_is_the_same_test(void **state)
     const struct wb_mocap_import_request request = request_of();
     assert_int_equal(wb_mocap_import_run(&result, &request), WB_OK);
     assert_true(result.complete);
-    assert_int_equal(result.n_frames, said.n_frames);
-    assert_int_equal(result.n_points, said.n_ids);
-    /* Seven markers, in one column for each time that one was found again. */
+    assert_int_equal(result.n_frames, sent.n_frames);
+    assert_int_equal(result.n_points, sent.n_ids);
+    /* Seven markers, with one column each time one was found again. */
     assert_int_equal(result.n_markers, 7);
     assert_true(result.n_stitched > 15);
     assert_int_equal(result.sync.method, WB_SYNC_REVERSAL);
     assert_true(result.sync.uncertainty < 0.03);
-    /* The readings carry the filter's delay of 50 ms, and arrivals up to some ms more. */
+    /* The readings have the filter's delay of 50 ms, and arrivals some ms more. */
     assert_close(result.sync.lag, -CLOCKS - 0.05, 3.0 * result.sync.uncertainty);
     assert_close(result.offset, result.sync.lag + 0.05, 1e-12);
     align_output(&dataset);
@@ -350,14 +349,14 @@ static void a_test_in_files_is_the_same_test(void **state)
         "lag off by %.1f ms, stated %.1f ms; residual deflection %.2f mm, by the recording "
         "%.2f mm\n",
         1e3 * (result.sync.lag + CLOCKS + 0.05), 1e3 * result.sync.uncertainty,
-        left_of(&dataset) / WB_MM, left_of(&reference) / WB_MM);
+        residual_deflection(&dataset) / WB_MM, residual_deflection(&reference) / WB_MM);
     for (double at = 5.0; at < 51.0; at += 5.0)
         assert_close(force_at(&dataset, at * WB_MM), force_at(&reference, at * WB_MM), 0.3 * WB_MN);
     assert_true(wb_dataset_is_complete(&dataset));
     wb_dataset_release(&dataset);
 }
 
-static void a_given_lag_is_taken_and_a_tare_as_well(void **state)
+static void a_given_lag_and_tare_are_used(void **state)
 {
     (void)state;
     struct wb_mocap_import result;
@@ -405,7 +404,7 @@ static void replay_output(struct counted *counted, struct wb_replay_counts *coun
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-/* Samples come from the files' bytes in the recording, the files themselves are gone. */
+/* Samples come from the files' bytes in the recording; the files themselves were deleted. */
 static void a_replay_reads_the_files_in_the_recording(void **state)
 {
     (void)state;
@@ -417,17 +416,17 @@ static void a_replay_reads_the_files_in_the_recording(void **state)
     unlink(take_path);
     unlink(force_path);
     replay_output(&counted, &counts);
-    assert_int_equal(counted.n_frames, said.n_frames);
-    assert_int_equal(counted.n_readings, said.n_readings);
-    assert_close(counted.last_force, said.readings[said.n_readings - 1].force, 1e-8);
-    assert_int_equal(counted.last_ns, (int64_t)llround(frame_time(said.n_frames - 1) * 1e9));
+    assert_int_equal(counted.n_frames, sent.n_frames);
+    assert_int_equal(counted.n_readings, sent.n_readings);
+    assert_close(counted.last_force, sent.readings[sent.n_readings - 1].force, 1e-8);
+    assert_int_equal(counted.last_ns, (int64_t)llround(frame_time(sent.n_frames - 1) * 1e9));
     assert_int_equal(counts.damaged_chunks, 0);
-    write_motive(0, said.n_frames);
+    write_motive(0, sent.n_frames);
     write_force(1e9);
 }
 
 /* Overwrites bytes in the middle of the recording, within a page of the database. */
-static void a_damaged_piece_loses_its_file_and_says_so(void **state)
+static void a_damaged_block_is_reported_and_loses_its_file(void **state)
 {
     (void)state;
     struct wb_mocap_import result;
@@ -449,11 +448,11 @@ static void a_damaged_piece_loses_its_file_and_says_so(void **state)
     assert_message("cannot be read: a piece of it is damaged");
 }
 
-static void a_ramp_without_an_event_is_refused_and_says_what_to_do(void **state)
+static void a_ramp_without_an_event_is_rejected(void **state)
 {
     (void)state;
     struct wb_mocap_import result;
-    /* The motion goes up until 56 s: nothing is reversed in either file. */
+    /* The motion goes up until 56 s: neither file has a reversal. */
     write_motive(0, (int)(50.0 * RATE));
     write_force(50.0);
     const struct wb_mocap_import_request request = request_of();
@@ -461,7 +460,7 @@ static void a_ramp_without_an_event_is_refused_and_says_what_to_do(void **state)
     assert_message("not identifiable");
     assert_message("--offset-s");
     assert_int_not_equal(access(output, F_OK), 0);
-    write_motive(0, said.n_frames);
+    write_motive(0, sent.n_frames);
     write_force(1e9);
 }
 
@@ -469,12 +468,12 @@ static void without_a_rest_there_is_no_tare(void **state)
 {
     (void)state;
     struct wb_mocap_import result;
-    write_motive((int)(10.0 * RATE), said.n_frames);
+    write_motive((int)(10.0 * RATE), sent.n_frames);
     const struct wb_mocap_import_request request = request_of();
     struct wb_mocap_import_request given = request;
     given.offset = -CLOCKS;
     given.tare = (double)NAN;
-    /* The force's file begins before; so is cut as well. */
+    /* The force file begins earlier and is cut as well. */
     assert_int_equal(wb_mocap_import_run(&result, &given), WB_OK);
     assert_true(result.motion_start > 9.9);
     unlink(output);
@@ -485,30 +484,30 @@ static void without_a_rest_there_is_no_tare(void **state)
     wb_text_release(&text);
     assert_int_equal(wb_mocap_import_run(&result, &given), WB_ERR_DATA);
     assert_message("--tare-mN");
-    write_motive(0, said.n_frames);
+    write_motive(0, sent.n_frames);
     write_force(1e9);
 }
 
-static void what_is_left_out_is_counted_and_the_dataset_is_incomplete(void **state)
+static void omitted_rows_are_counted_and_make_the_dataset_incomplete(void **state)
 {
     (void)state;
     struct wb_mocap_import result;
     char *text;
     size_t size;
     assert_int_equal(wb_file_read(take_path, &text, &size), WB_OK);
-    /* A file that was cut off in its last tenth. */
+    /* A file that was truncated in its last tenth. */
     assert_int_equal(wb_file_write(take_path, text, size - size / 50), WB_OK);
     free(text);
     const struct wb_mocap_import_request request = request_of();
     assert_int_equal(wb_mocap_import_run(&result, &request), WB_OK);
     assert_false(result.complete);
     assert_int_equal(result.skipped_rows, 1);
-    assert_int_equal(result.missing_frames + 1 + result.n_frames, said.n_frames);
+    assert_int_equal(result.missing_frames + 1 + result.n_frames, sent.n_frames);
     struct wb_dataset dataset;
     align_output(&dataset);
     assert_false(wb_dataset_is_complete(&dataset));
     wb_dataset_release(&dataset);
-    write_motive(0, said.n_frames);
+    write_motive(0, sent.n_frames);
 }
 
 static void an_existing_recording_is_not_overwritten(void **state)
@@ -520,7 +519,7 @@ static void an_existing_recording_is_not_overwritten(void **state)
     assert_int_equal(wb_mocap_import_run(&result, &request), WB_ERR_EXISTS);
 }
 
-static void rigid_bodies_alone_are_refused(void **state)
+static void rigid_bodies_alone_are_rejected(void **state)
 {
     (void)state;
     struct wb_mocap_import result;
@@ -532,10 +531,10 @@ static void rigid_bodies_alone_are_refused(void **state)
     const struct wb_mocap_import_request request = request_of();
     assert_int_equal(wb_mocap_import_run(&result, &request), WB_ERR_DATA);
     assert_message("rigid bodies only");
-    write_motive(0, said.n_frames);
+    write_motive(0, sent.n_frames);
 }
 
-/* Of a take with its force in it nothing says when the test began: it is found early enough, so
+/* Nothing marks the beginning of the test in a take with its own force: it is found early enough
  * that the zero of the force is that of the recording. */
 static void a_take_with_its_force_in_it_is_the_same_test(void **state)
 {
@@ -552,9 +551,9 @@ static void a_take_with_its_force_in_it_is_the_same_test(void **state)
     assert_int_equal(result.sync.method, WB_SYNC_SAME);
     assert_string_equal(result.channel, "Fz");
     align_output(&dataset);
-    print_message("residual deflection %.2f mm, by the recording %.2f\n", left_of(&dataset) / WB_MM,
-                  left_of(&reference) / WB_MM);
-    assert_close(left_of(&dataset), left_of(&reference), 0.05 * WB_MM);
+    print_message("residual deflection %.2f mm, by the recording %.2f\n",
+                  residual_deflection(&dataset) / WB_MM, residual_deflection(&reference) / WB_MM);
+    assert_close(residual_deflection(&dataset), residual_deflection(&reference), 0.05 * WB_MM);
     for (size_t i = 0; i < 12; i++)
         assert_true(dataset.rows[i].force < force_at(&reference, 5.0 * WB_MM) - 20.0 * WB_MN);
     for (double at = 5.0; at < 51.0; at += 5.0)
@@ -563,7 +562,7 @@ static void a_take_with_its_force_in_it_is_the_same_test(void **state)
     unlink(path);
 }
 
-/* The force of a C3D is a channel of it, on the same clock. */
+/* The force of a C3D is one of its channels, on the same clock. */
 static void a_channel_of_a_take_is_its_force(void **state)
 {
     (void)state;
@@ -594,14 +593,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_test_in_files_is_the_same_test),
-        cmocka_unit_test(a_given_lag_is_taken_and_a_tare_as_well),
+        cmocka_unit_test(a_given_lag_and_tare_are_used),
         cmocka_unit_test(a_replay_reads_the_files_in_the_recording),
-        cmocka_unit_test(a_damaged_piece_loses_its_file_and_says_so),
-        cmocka_unit_test(a_ramp_without_an_event_is_refused_and_says_what_to_do),
+        cmocka_unit_test(a_damaged_block_is_reported_and_loses_its_file),
+        cmocka_unit_test(a_ramp_without_an_event_is_rejected),
         cmocka_unit_test(without_a_rest_there_is_no_tare),
-        cmocka_unit_test(what_is_left_out_is_counted_and_the_dataset_is_incomplete),
+        cmocka_unit_test(omitted_rows_are_counted_and_make_the_dataset_incomplete),
         cmocka_unit_test(an_existing_recording_is_not_overwritten),
-        cmocka_unit_test(rigid_bodies_alone_are_refused),
+        cmocka_unit_test(rigid_bodies_alone_are_rejected),
         cmocka_unit_test(a_take_with_its_force_in_it_is_the_same_test),
         cmocka_unit_test(a_channel_of_a_take_is_its_force),
     };

@@ -1,5 +1,5 @@
-/* Two clocks brought together: lags that were put in come out again, and where nothing shows a lag
- * none is given. */
+/* Synchronization of two clocks: known lags are found, and no lag is given if the signals do not
+ * show one. */
 #include "analysis/import/sync.h"
 
 #include <stdlib.h>
@@ -13,14 +13,14 @@
 
 static double motion_t[MOST], motion_x[MOST], shake_x[MOST], force_t[MOST], force_x[MOST];
 
-/* What the bench does at time t of the motion's clock. */
+/* State of the bench at time t of the motion's clock. */
 struct bench {
     double (*deflection)(double t); /* m */
     double (*tap)(double t);        /* m, for a moment; NULL: none */
     double noise, force_noise;      /* m, N */
     double filter;                  /* s: first order */
     double end;                     /* s */
-    double relaxes;                 /* part of the force by which a wire that rests gives way */
+    double relaxes;                 /* part of the force that relaxes while the wire is at rest */
     uint64_t seed;
 };
 
@@ -36,7 +36,8 @@ static double noise(void)
     return sum;
 }
 
-/* A wire that softens: force over deflection, with a stiffer unloading; `highest` it was so far. */
+/* A wire that softens: force over deflection, with stiffer unloading; `highest` is the largest
+ * deflection so far. */
 static double force_of(const struct bench *bench, double t, double highest)
 {
     const double u = bench->deflection(t);
@@ -56,7 +57,7 @@ static void run(const struct bench *bench, const struct wb_sync_settings *settin
         motion_x[n] =
             bench->deflection(t) + (bench->tap ? bench->tap(t) : 0.0) + bench->noise * noise();
     }
-    /* The force's clock: 80 readings a second, through the filter. */
+    /* The force's clock: 80 readings a second, filtered. */
     const int fine = 50;
     const double step = 1.0 / 80.0 / fine;
     const double part = bench->filter > 0.0 ? 1.0 - exp(-step / bench->filter) : 1.0;
@@ -89,7 +90,7 @@ static double with_a_rest(double t)
     return 1e-3 * fmax(0.0, t < 33.0 ? t - 3.0 : t < 36.0 ? 30.0 : 66.0 - t);
 }
 
-/* As a stage waits for its next command. */
+/* As if the stage waits for its next command. */
 static double with_a_moment(double t)
 {
     return 1e-3 * fmax(0.0, t < 33.0 ? t - 3.0 : t < 33.12 ? 30.0 : 63.12 - t);
@@ -140,8 +141,8 @@ static void a_reversal_after_a_rest_gives_the_lag(void **state)
     assert_close(sync.first_event, 33.0, 0.1);
 }
 
-/* The force relaxes by a tenth of what it has while the motion rests. */
-static void a_wire_that_relaxes_in_its_rest_gives_the_lag(void **state)
+/* The force relaxes by a tenth while the motion rests. */
+static void a_wire_that_relaxes_at_rest_gives_the_lag(void **state)
 {
     (void)state;
     struct wb_sync sync;
@@ -152,8 +153,8 @@ static void a_wire_that_relaxes_in_its_rest_gives_the_lag(void **state)
     assert_true(sync.uncertainty < 0.1);
 }
 
-/* The unloading is steeper, so that the force has its corner nearer to the end of the rest. */
-static void a_stage_that_waits_before_it_turns_does_not_bias_the_lag(void **state)
+/* Unloading is steeper, so that the force has its corner nearer to the end of the rest. */
+static void a_stage_that_waits_before_turning_does_not_bias_the_lag(void **state)
 {
     (void)state;
     struct wb_sync_settings settings = both;
@@ -174,7 +175,7 @@ static void a_stage_that_waits_before_it_turns_does_not_bias_the_lag(void **stat
     assert_true(covered >= n - 1);
 }
 
-static void a_slow_reversal_gives_the_lag_with_more_doubt(void **state)
+static void a_slow_reversal_gives_a_larger_uncertainty(void **state)
 {
     (void)state;
     struct wb_sync sync;
@@ -184,8 +185,8 @@ static void a_slow_reversal_gives_the_lag_with_more_doubt(void **state)
     assert_close(sync.lag, LAG, 3.0 * sync.uncertainty);
 }
 
-/* The lag that events show is that of the filter as well. */
-static void a_filter_is_part_of_the_lag(void **state)
+/* The lag from events includes the filter's delay. */
+static void the_lag_includes_the_filters_delay(void **state)
 {
     (void)state;
     struct wb_sync sync;
@@ -208,7 +209,7 @@ static void a_tap_gives_the_lag_of_a_ramp(void **state)
     assert_true(sync.uncertainty < 0.012);
 }
 
-static void a_ramp_alone_gives_none(void **state)
+static void a_ramp_alone_gives_no_lag(void **state)
 {
     (void)state;
     struct wb_sync sync;
@@ -219,7 +220,7 @@ static void a_ramp_alone_gives_none(void **state)
     assert_non_null(strstr(sync.reason, "no reversal"));
 }
 
-static void equal_cycles_pair_by_their_number(void **state)
+static void equal_cycles_are_paired_in_order(void **state)
 {
     (void)state;
     struct wb_sync sync;
@@ -230,8 +231,8 @@ static void equal_cycles_pair_by_their_number(void **state)
     assert_close(sync.lag, LAG, 3.0 * sync.uncertainty + 0.01);
 }
 
-/* Of three equal cycles the force has two: they fit in two ways. */
-static void a_missing_cycle_gives_none(void **state)
+/* The force has two of three equal cycles: they can be paired in two ways. */
+static void a_missing_cycle_gives_no_lag(void **state)
 {
     (void)state;
     struct wb_sync sync;
@@ -256,14 +257,14 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_reversal_gives_the_lag),
         cmocka_unit_test(a_reversal_after_a_rest_gives_the_lag),
-        cmocka_unit_test(a_wire_that_relaxes_in_its_rest_gives_the_lag),
-        cmocka_unit_test(a_stage_that_waits_before_it_turns_does_not_bias_the_lag),
-        cmocka_unit_test(a_slow_reversal_gives_the_lag_with_more_doubt),
-        cmocka_unit_test(a_filter_is_part_of_the_lag),
+        cmocka_unit_test(a_wire_that_relaxes_at_rest_gives_the_lag),
+        cmocka_unit_test(a_stage_that_waits_before_turning_does_not_bias_the_lag),
+        cmocka_unit_test(a_slow_reversal_gives_a_larger_uncertainty),
+        cmocka_unit_test(the_lag_includes_the_filters_delay),
         cmocka_unit_test(a_tap_gives_the_lag_of_a_ramp),
-        cmocka_unit_test(a_ramp_alone_gives_none),
-        cmocka_unit_test(equal_cycles_pair_by_their_number),
-        cmocka_unit_test(a_missing_cycle_gives_none),
+        cmocka_unit_test(a_ramp_alone_gives_no_lag),
+        cmocka_unit_test(equal_cycles_are_paired_in_order),
+        cmocka_unit_test(a_missing_cycle_gives_no_lag),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
