@@ -22,8 +22,8 @@ struct wb_card_chain_segment wb_card_chain_segment(const struct wb_card_chain *c
     return segment;
 }
 
-/* Kinetic energy in the rates of the joints' angles: a segment moves by the angles of all joints
- * before it. In torsion only its own inertia counts, about the wire. */
+/* Kinetic energy in the rates of the joints' angles: a segment moves with the angles of all joints
+ * before it. In torsion it has only its own inertia about the wire. */
 static void fill_mass(const struct wb_card_chain *chain, bool is_torsion, gsl_matrix *mass)
 {
     const double h = chain->length / chain->n;
@@ -41,7 +41,7 @@ static void fill_mass(const struct wb_card_chain *chain, bool is_torsion, gsl_ma
     }
 }
 
-/* Lowest and highest frequency of K x = omega^2 M x with one stiffness of all joints. */
+/* Lowest and highest frequency of K x = omega^2 M x with the same stiffness of all joints. */
 static enum wb_status solve(const struct wb_card_chain *chain, bool is_torsion, double *lowest,
                             double *highest)
 {
@@ -64,8 +64,8 @@ static enum wb_status solve(const struct wb_card_chain *chain, bool is_torsion, 
     gsl_matrix_free(stiffness);
     gsl_vector_free(values);
     gsl_eigen_gensymm_free(work);
-    return failed ? wb_fail(WB_ERR_ARGUMENT,
-                            "the modes of the chain of %d segments cannot be found", chain->n)
+    return failed ? wb_fail(WB_ERR_ARGUMENT, "cannot compute the modes of the chain of %d segments",
+                            chain->n)
                   : WB_OK;
 }
 

@@ -4,7 +4,7 @@
 
 #include "analysis/calibration/law/bending.h"
 
-/* Limits of a number over its value. */
+/* Limits of an interval over its value. */
 struct ratios {
     double low, high, candidates_low, candidates_high;
 };
@@ -16,7 +16,7 @@ static struct ratios ratios_of(const struct wb_estimate *e)
     return ratios;
 }
 
-/* Unlike with wb_interpolate() an infinite bound stays infinite. */
+/* Unlike wb_interpolate(), keeps an infinite bound infinite. */
 static double between(double from, double to, double share)
 {
     return share <= 0.0 ? from : share >= 1.0 ? to : (1.0 - share) * from + share * to;

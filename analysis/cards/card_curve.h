@@ -1,9 +1,9 @@
-/* Moment over curvature of a wire as cards give it: the law's first loading, with the band of the
+/* Moment over curvature of a wire for cards: the law's first loading, with the band of the
  * calibration.
  *
- * The band is that of the moments in the properties file: the ratios of their limits to their
- * values, between two of their curvatures in proportion, below the first towards the ratios of EI
- * at curvature 0, and beyond the last as there.
+ * The band has the relative limits of the moments in the properties file: interpolated linearly
+ * between two of their curvatures, below the first curvature towards the relative limits of EI at
+ * curvature 0, and beyond the last constant.
  */
 #ifndef WB_ANALYSIS_CARDS_CARD_CURVE_H
 #define WB_ANALYSIS_CARDS_CARD_CURVE_H
@@ -23,12 +23,12 @@ struct wb_card_curve {
     double candidates_low[WB_CARD_CURVE], candidates_high[WB_CARD_CURVE];
 };
 
-/* Fails only without memory. */
+/* Fails only if out of memory. */
 WB_MUST_CHECK enum wb_status wb_card_curve_init(struct wb_card_curve *curve,
                                                 const struct wb_card_source *source);
 
-/* Secant of the section at a curvature, M / kappa, N m2; at 0 the virgin section's EI, both as
- * wb_card_source_rigidity() has it. *low and *high are its interval of 95 %; NaN: unknown. */
+/* Secant stiffness of the section at a curvature, M / kappa, N m2; at 0 the virgin section's EI as
+ * in wb_card_source_rigidity(). *low and *high are its interval of 95 %; NaN: unknown. */
 WB_MUST_CHECK enum wb_status wb_card_curve_secant(const struct wb_card_source *source,
                                                   double curvature, double *secant, double *low,
                                                   double *high);

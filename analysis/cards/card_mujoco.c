@@ -8,11 +8,11 @@
 
 #define WB_LOG_DOMAIN "card"
 
-/* m: of a wire whose file names no length. */
+/* m: length of a wire whose file gives none. */
 static const double assumed_length = 0.1;
-/* The card's time step over the largest stable one. */
+/* Time step of the card as part of the largest stable one. */
 static const double safe_share = 0.5;
-/* kg m2: mjMINVAL of the engine, below which it refuses mass and inertia. */
+/* kg m2: mjMINVAL of the engine, which rejects a smaller mass or inertia. */
 static const double least_inertia = 1e-15;
 
 struct model {
@@ -49,8 +49,8 @@ static enum wb_status make_model(struct model *model, const struct wb_card_sourc
         wb_card_chain_segment(&model->chain, model->chain.n - 1);
     if (!(last.along > least_inertia))
         return wb_fail_to(why, WB_ERR_UNSUPPORTED,
-                          "%s: the last segment's moment of inertia is %.2g kg m2 and the engine "
-                          "refuses less than %g: ask for fewer --segments or a longer wire",
+                          "%s: the last segment's moment of inertia is %.2g kg m2, but the engine "
+                          "needs at least %g: use fewer --segments or a longer wire",
                           source->file, last.along, least_inertia);
     WB_TRY(wb_card_chain_modes(&model->chain, &model->modes));
     model->relaxation = 2.0 * settings->damping_ratio / model->modes.lowest_bending;
@@ -60,9 +60,9 @@ static enum wb_status make_model(struct model *model, const struct wb_card_sourc
 
 static void put_stiffness_words(struct wb_text *text, const struct model *model)
 {
-    wb_text_append(text,
-                   "  LOADING ONLY: the joints are linear springs. They do not yield, and spring "
-                   "back to where they were.\n");
+    wb_text_append(
+        text,
+        "  LOADING ONLY: the joints are linear springs, without yielding or residual curvature.\n");
     if (model->curvature > 0.0)
         wb_text_append(text, "  Stiffness: secant M / kappa at a curvature of %.6g 1/m, %.6g N m2",
                        model->curvature, model->secant);
@@ -71,7 +71,7 @@ static void put_stiffness_words(struct wb_text *text, const struct model *model)
     if (isfinite(model->low) && isfinite(model->high))
         wb_text_append(text, ", interval of 95 %% %.6g to %.6g.\n", model->low, model->high);
     else
-        wb_text_append(text, ", its interval is not known.\n");
+        wb_text_append(text, ", its interval is unknown.\n");
 }
 
 static void put_words(struct wb_text *text, const struct model *model,
@@ -80,28 +80,28 @@ static void put_words(struct wb_text *text, const struct model *model,
     const struct wb_card_chain *const chain = &model->chain;
     put_stiffness_words(text, model);
     wb_text_append(text,
-                   "  Chain: %d joints at the middles of stretches of %.6g m, each with the "
-                   "stiffness of its stretch, EI / h;\n"
-                   "  the first half stretch is clamped. The tip under a force across falls short "
-                   "by 1 / (4 n^2): %.2g.\n",
+                   "  Chain: %d joints at the middles of parts of %.6g m, each with the stiffness "
+                   "of its part, EI / h;\n"
+                   "  the first half part is clamped. The tip deflection "
+                   "under a transverse force is too small by 1 / (4 n^2): %.2g.\n",
                    chain->n, chain->length / chain->n, 0.25 / (chain->n * chain->n));
+    wb_text_append(
+        text,
+        "  ASSUMED, not measured: torsion GJ = EI / (1 + nu) = %.6g N m2, of a solid circle of one "
+        "material with nu %g.\n"
+        "  ASSUMED, not measured: damping proportional to stiffness, with a "
+        "damping ratio of %g in the first bending mode (%.4g rad/s).\n",
+        chain->torsion, source->properties.law.material.poissons_ratio, settings->damping_ratio,
+        model->modes.lowest_bending);
     wb_text_append(text,
-                   "  ASSUMED, not measured: torsion GJ = EI / (1 + nu) = %.6g N m2, of a solid "
-                   "circle of one material with nu %g.\n"
-                   "  ASSUMED, not measured: damping in proportion to stiffness, %g of the "
-                   "critical one in the first bending mode (%.4g rad/s).\n",
-                   chain->torsion, source->properties.law.material.poissons_ratio,
-                   settings->damping_ratio, model->modes.lowest_bending);
-    wb_text_append(text,
-                   "  Largest stable time step (Euler, without damping): %.4g s, by %s; bending "
-                   "alone %.4g s. The option below is half of it.\n",
+                   "  Largest stable time step (Euler, without damping): %.4g s, due to %s; for "
+                   "bending alone %.4g s. The option below is half of it.\n",
                    model->largest_step,
                    model->modes.highest_torsion > model->modes.highest_bending ? "torsion"
                                                                                : "bending",
                    2.0 / model->modes.highest_bending);
-    wb_text_append(
-        text, "  Segments touch other bodies, not each other. Written for MuJoCo 2.2.2; angles "
-              "in rad, the wire along x.\n");
+    wb_text_append(text, "  Segments collide with other bodies, but not with each other. Written "
+                         "for MuJoCo 2.2.2; angles in rad, the wire along x.\n");
 }
 
 static void put_defaults(struct wb_text *text, const struct model *model)

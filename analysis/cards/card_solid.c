@@ -9,26 +9,26 @@
 #define WB_LOG_DOMAIN "card"
 
 enum {
-    MOST_POINTS = 120, /* of a table; CalculiX takes 200 */
-    NAME = 72          /* bytes of a material's name, both programs take 80 characters */
+    MOST_POINTS = 120, /* of a table; CalculiX permits 200 */
+    NAME = 72          /* bytes of a material's name; both programs permit 80 characters */
 };
 
-/* Total strain at which tables end; overlaid parts' Poisson's ratio; the largest that elements of
- * displacements alone bear. */
+/* Total strain at which tables end; Poisson's ratio of overlaid parts; largest Poisson's ratio for
+ * displacement elements. */
 static const double last_strain = 0.1, overlay_poisson = 0.49, largest_poisson = 0.499;
 
 struct dialect {
     const char *kind, *density, *elastic, *plastic;
-    bool has_combined;  /* hardening with saturating back stresses */
+    bool has_combined;  /* the program has combined hardening with saturating back stresses */
     const char *advice; /* on elements, after the common one */
 };
 
-/* Plastic table of a virgin curve; n 0: elastic. */
+/* Plastic table of a virgin curve; n = 0: elastic. */
 struct table {
     int n;
     double stress[MOST_POINTS]; /* Pa */
     double strain[MOST_POINTS]; /* plastic, 1 */
-    double error;               /* of its chords, over the stress */
+    double error;               /* of its chords, relative to the stress */
 };
 
 struct material {
@@ -40,9 +40,9 @@ struct material {
 
 /* --- tables --- */
 
-/* sigma_Y + K p^n at plastic strains whose neighbours' chord leaves the curve by `error` of the
- * stress at most: in terms of x = ln p the power's chord errs by n |1 - n| dx^2 / 8 of it. False
- * where that takes too many points. */
+/* Tabulates sigma_Y + K p^n at plastic strains such that the chords deviate from the curve by at
+ * most `error` of the stress: in terms of x = ln p the chord of the power law has a relative error
+ * of n |1 - n| dx^2 / 8. False if that needs too many points. */
 static bool try_ludwik(const struct wb_material *m, double error, struct table *table)
 {
     const double n = m->hardening_exponent, K = m->strength_coefficient;
@@ -70,7 +70,8 @@ static void tabulate_ludwik(const struct wb_material *m, struct table *table)
     }
 }
 
-/* The curve of parallel parts has corners where they yield, and chords between: it is its table. */
+/* The curve of parallel parts is piecewise linear with corners where they yield, so the table is
+ * exact. */
 static void tabulate_parallel(const struct wb_law *law, struct table *table)
 {
     const double E = law->material.youngs_modulus;
@@ -88,8 +89,8 @@ static void tabulate_parallel(const struct wb_law *law, struct table *table)
     }
 }
 
-/* Chaboche's virgin curve, at plastic strains that grow by a factor from a thousandth of the yield
- * strain on. */
+/* Chaboche's virgin curve, at plastic strains that increase by a factor, starting at a thousandth
+ * of the yield strain. */
 static void tabulate_chaboche(const struct wb_law *law, struct table *table)
 {
     const double E = law->material.youngs_modulus;
@@ -97,7 +98,7 @@ static void tabulate_chaboche(const struct wb_law *law, struct table *table)
     *table = (struct table){.n = 1, .stress = {law->material.yield_stress}};
     for (int i = 0; i < MOST_POINTS - 1; i++) {
         const double wanted = first * pow(last_strain / first, (double)i / (MOST_POINTS - 2));
-        /* The total strain at this plastic strain: the stress grows with both. */
+        /* The total strain at this plastic strain; the stress increases with both. */
         double strain = wanted;
         for (int pass = 0; pass < 100; pass++) {
             double tangent;
@@ -129,7 +130,7 @@ static void tabulate(const struct wb_law *law, struct table *table)
 static void put_material(struct wb_text *text, const struct dialect *dialect,
                          const struct material *m)
 {
-    /* CalculiX reads 20 characters of a number. */
+    /* CalculiX reads at most 20 characters of a number. */
     wb_text_append(text, "*MATERIAL, NAME=%s\n", m->name);
     if (m->density > 0.0)
         wb_text_append(text, "%s\n%.8e\n", dialect->density, m->density);
@@ -140,7 +141,8 @@ static void put_material(struct wb_text *text, const struct dialect *dialect,
         wb_text_append(text, "%.10e, %.10e\n", m->share * m->table->stress[i], m->table->strain[i]);
 }
 
-/* The wire's name as a material's: letters, digits and underscores, behind a letter. */
+/* The name of the material from that of the wire: letters, digits and underscores, after a
+ * letter. */
 static void make_name(char name[NAME], const char *wire)
 {
     snprintf(name, NAME, "WIRE_%.60s", wire);
@@ -167,9 +169,10 @@ static void put_overlay(struct wb_text *text, const struct dialect *dialect,
     wb_text_append(text,
                    "** %d coincident sets of elements: copy the wire's elements %d times, on the "
                    "same nodes,\n"
-                   "** and give each copy one of the %d materials below; their stresses add. "
-                   "Poisson's ratio is %g,\n"
-                   "** not that of the law, so that the parts do not press upon each other.\n",
+                   "** and give each copy one of the %d materials below; their "
+                   "stresses add up. Poisson's ratio is %g,\n"
+                   "** not that of the law, so that the "
+                   "parts do not constrain each other transversely.\n",
                    n, n, n, overlay_poisson);
     for (int i = 0; i < overlay.n && kinematic > 0.0; i++) {
         const double E = kinematic * overlay.modulus[i], e = overlay.yield_strain[i];
@@ -205,18 +208,20 @@ static void put_plain(struct wb_text *text, const struct dialect *dialect, const
     snprintf(m.name, sizeof m.name, "%s", name);
     if (law->form == WB_LAW_CHABOCHE ? law->n_backs > 0
                                      : law->is_combined && law->isotropic_share < 1.0)
-        wb_text_append(text, "** The law hardens in part kinematically, in a way that this program "
-                             "does not have. The table is\n"
-                             "** isotropic: right for a first loading, not for unloading.\n");
+        wb_text_append(
+            text,
+            "** The law's hardening is partly kinematic, in a form that this program does not "
+            "support. The table is\n"
+            "** isotropic: valid for a first loading, not for unloading.\n");
     if (table.error > 0.0)
-        wb_text_append(text,
-                       "** Chords of the table lie at most %.2g of the stress beside the "
-                       "curve.\n",
-                       table.error);
+        wb_text_append(
+            text,
+            "** The chords of the table deviate by at most %.2g of the stress from the curve.\n",
+            table.error);
     put_material(text, dialect, &m);
 }
 
-/* Back stresses and growth as the program has them. */
+/* Back stresses and growth of the yield stress in the program's form. */
 static void put_chaboche(struct wb_text *text, const struct dialect *dialect,
                          const struct wb_law *law, const char *name, double density)
 {
@@ -245,26 +250,26 @@ static enum wb_status write(const struct dialect *dialect, const struct wb_card_
     const double area = wb_circle_area(p->outer_diameter);
     char name[NAME];
     if (p->law.material.poissons_ratio > largest_poisson)
-        return wb_fail_to(
-            why, WB_ERR_UNSUPPORTED,
-            "%s: poissons_ratio is %g, expected at most %g: solid elements lock on what "
-            "is as good as incompressible",
-            source->file, p->law.material.poissons_ratio, largest_poisson);
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED,
+                          "%s: poissons_ratio is %g, expected at most %g: solid elements lock with "
+                          "nearly incompressible materials",
+                          source->file, p->law.material.poissons_ratio, largest_poisson);
     make_name(name, p->wire);
     wb_card_source_append(source, dialect->kind, "** ", text);
     const bool is_native =
         p->law.form == WB_LAW_CHABOCHE && dialect->has_combined && p->law.n_backs > 0;
     if (!is_native)
-        wb_text_append(text,
-                       "** Plastic tables: true stress, logarithmic plastic strain; the first at "
-                       "zero plastic strain. They end\n"
-                       "** at a strain of %g, beyond which the stress stays.",
-                       last_strain);
+        wb_text_append(
+            text,
+            "** Plastic tables: true stress, logarithmic plastic strain; the first at zero plastic "
+            "strain. They end\n"
+            "** at a strain of %g, beyond which the stress is constant.",
+            last_strain);
     wb_text_append(text, "%s Use steps with NLGEOM.\n** %s\n", is_native ? "**" : "",
                    dialect->advice);
     if (!(p->mass_per_length > 0.0))
-        wb_text_append(text, "** The wire's mass is not known: without density, for static steps "
-                             "alone.\n");
+        wb_text_append(text,
+                       "** The wire's mass is unknown: without density, for static steps only.\n");
     if (is_native)
         put_chaboche(text, dialect, &p->law, name, p->mass_per_length / area);
     else if (!wb_law_is_overlay(&p->law) || p->law.isotropic_share >= 1.0)
@@ -294,13 +299,13 @@ enum wb_status wb_card_solid_abaqus(const struct wb_card_source *source,
                                     struct wb_reason *why)
 {
     static const struct dialect dialect = {
-        .kind = "Abaqus card (NOT RUN: written by the manual's keywords and never tried in Abaqus)",
+        .kind = "Abaqus card (NOT RUN: written from the manual's keywords and never run in Abaqus)",
         .density = "*DENSITY",
         .elastic = "*ELASTIC, TYPE=ISOTROPIC",
         .plastic = "*PLASTIC, HARDENING=ISOTROPIC",
         .has_combined = true,
-        .advice = "Elements: C3D20R, or C3D20RH where Poisson's ratio is close to 0.5. Include "
-                  "with *INCLUDE, INPUT=FILE.",
+        .advice = "Elements: C3D20R, or C3D20RH if Poisson's ratio is close to 0.5. Include with "
+                  "*INCLUDE, INPUT=FILE.",
     };
     (void)settings;
     return write(&dialect, source, text, why);

@@ -30,8 +30,8 @@ static enum wb_status parse_wire(struct wb_card_source *source, const char *text
     WB_TRY(wb_wire_parse(text, origin, &wire, why));
     if (!wire.has_properties)
         return wb_fail_to(why, WB_ERR_FORMAT,
-                          "%s: properties: wire %s has none, and they are what is exported; "
-                          "'wirebench calibrate' makes them from tests",
+                          "%s: properties: wire %s has none, and a card is made from them; "
+                          "calibrate tests with 'wirebench calibrate'",
                           origin, wire.name);
     wb_properties_from_wire(&wire, &source->properties);
     source->is_wire_file = true;
@@ -39,7 +39,7 @@ static enum wb_status parse_wire(struct wb_card_source *source, const char *text
     return WB_OK;
 }
 
-/* Which of the two files it is. */
+/* Determines which of the two files it is. */
 static enum wb_status recognise(const char *text, const char *origin, bool *is_wire_file,
                                 struct wb_reason *why)
 {
@@ -50,11 +50,10 @@ static enum wb_status recognise(const char *text, const char *origin, bool *is_w
     *is_wire_file = wb_config_find(root, "name") && wb_config_find(root, "conductor_diameter_mm");
     wb_config_destroy(config);
     if (is_properties == *is_wire_file)
-        return wb_fail_to(
-            why, WB_ERR_FORMAT,
-            "%s: expected a wire file (it has 'name' and 'conductor_diameter_mm') or a "
-            "properties file that 'wirebench calibrate' wrote (it has 'wire')",
-            origin);
+        return wb_fail_to(why, WB_ERR_FORMAT,
+                          "%s: expected a wire file (with 'name' and 'conductor_diameter_mm') or a "
+                          "properties file from 'wirebench calibrate' (with 'wire')",
+                          origin);
     return WB_OK;
 }
 
@@ -80,18 +79,17 @@ enum wb_status wb_card_source_read(struct wb_card_source *source, const char *pa
     char *text;
     size_t size;
     WB_TRY(wb_file_read(path, &text, &size));
-    const enum wb_status status =
-        strlen(text) == size
-            ? wb_card_source_parse(source, text, path, NULL)
-            : wb_fail(WB_ERR_FORMAT,
-                      "%s: expected a wire or properties file, and it is no text; a recording is "
-                      "exported without --to",
-                      path);
+    const enum wb_status status = strlen(text) == size
+                                      ? wb_card_source_parse(source, text, path, NULL)
+                                      : wb_fail(WB_ERR_FORMAT,
+                                                "%s: expected a wire or properties file, but it is "
+                                                "not text; export a recording without --to",
+                                                path);
     free(text);
     return status;
 }
 
-/* --- what follows from it --- */
+/* --- derived quantities --- */
 
 struct wb_estimate wb_card_source_rigidity(const struct wb_card_source *source)
 {
@@ -118,7 +116,7 @@ double wb_card_source_curvature(const struct wb_card_source *source)
     return isfinite(known) ? known : assumed_strain / (0.5 * source->properties.outer_diameter);
 }
 
-bool wb_card_source_has_way_back(const struct wb_card_source *source)
+bool wb_card_source_has_unloading(const struct wb_card_source *source)
 {
     return source->properties.is_rule_tested && source->properties.is_rule_supported;
 }
@@ -126,21 +124,20 @@ bool wb_card_source_has_way_back(const struct wb_card_source *source)
 const char *wb_card_source_warning(const struct wb_card_source *source)
 {
     if (source->properties.is_virtual)
-        return "MADE OF VIRTUAL DATA: the tests behind it were made on a virtual rig, not on a "
-               "wire.";
+        return "MADE OF VIRTUAL DATA: the tests were made on a virtual rig, not on a wire.";
     if (source->properties.is_simulation)
-        return "MADE OF SIMULATED DATA: the tests behind it were computed, not measured.";
+        return "MADE OF SIMULATED DATA: the tests were computed, not measured.";
     return NULL;
 }
 
-/* --- words --- */
+/* --- header of a card --- */
 
-/* Characters of a line, at which it is broken; input files of some programs end at 256. */
+/* Length at which a line is broken; input files of some programs permit 256 characters. */
 enum {
     LINE = 110
 };
 
-/* Appends a sentence in lines behind the prefix; "--" becomes "- -". */
+/* Appends a sentence, broken into lines that begin with the prefix; "--" becomes "- -". */
 static void put(struct wb_text *text, const char *prefix, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static void put(struct wb_text *text, const char *prefix, const char *format, ...)
@@ -176,7 +173,7 @@ static void put_interval(struct wb_text *text, const char *prefix,
     if (isfinite(e.low) && isfinite(e.high))
         put(text, prefix, "Interval of 95 %% of EI: %.6g to %.6g N m2.", e.low, e.high);
     else
-        put(text, prefix, "Interval of EI: not known.");
+        put(text, prefix, "Interval of EI: unknown.");
     if (isfinite(e.candidates_low) && isfinite(e.candidates_high))
         put(text, prefix,
             "Range of EI over the laws that the data do not exclude: %.6g to %.6g "
@@ -190,8 +187,8 @@ static void put_range(struct wb_text *text, const char *prefix, const struct wb_
     const double strain = 0.5 * curvature * source->properties.outer_diameter;
     if (isfinite(source->properties.largest_curvature))
         put(text, prefix,
-            "Curvature range: 0 to %.6g 1/m as tested (%.3g of strain at the outer fibre); beyond "
-            "it the law is extrapolated.",
+            "Curvature range: 0 to %.6g 1/m as tested (%.3g of strain at the outer fibre); the law "
+            "is extrapolated beyond it.",
             curvature, strain);
     else
         put(text, prefix,
@@ -203,13 +200,13 @@ static void put_range(struct wb_text *text, const char *prefix, const struct wb_
 static void put_rule(struct wb_text *text, const char *prefix, const struct wb_card_source *source)
 {
     const struct wb_properties *const p = &source->properties;
-    if (wb_card_source_has_way_back(source))
+    if (wb_card_source_has_unloading(source))
         put(text, prefix, "Hardening rule: %s, supported by loading and unloading.",
             wb_law_rule_name(&p->law));
     else
         put(text, prefix, "LOADING ONLY: the hardening rule (%s) %s.", wb_law_rule_name(&p->law),
-            p->is_rule_tested      ? "is not supported by the unloading that was measured"
-            : source->is_wire_file ? "is the wire file's, which names no test of it"
+            p->is_rule_tested      ? "is not supported by the measured unloading"
+            : source->is_wire_file ? "is that of the wire file, which names no test of it"
                                    : "was not tested by an unloading");
 }
 
@@ -245,7 +242,7 @@ static void put_checksums(struct wb_text *text, const char *prefix,
     put(text, prefix, "%s: %s, sha256 %s", source->is_wire_file ? "Wire file" : "Properties",
         source->file, source->sha256);
     if (source->stated[0])
-        put(text, prefix, "Source of its numbers, as it says: %s", source->stated);
+        put(text, prefix, "Source of the values, as stated in the file: %s", source->stated);
     if (p->tool[0])
         put(text, prefix, "Calibrated by: %s", p->tool);
     if (kept == 0)
@@ -256,7 +253,7 @@ static void put_checksums(struct wb_text *text, const char *prefix,
             d->is_recording ? "" : "force_deflection.csv ", d->sha256[0] ? d->sha256 : "unknown");
     }
     if (kept < p->n_datasets)
-        put(text, prefix, "and %d more, as the properties file lists.", p->n_datasets - kept);
+        put(text, prefix, "and %d more, listed in the properties file.", p->n_datasets - kept);
 }
 
 void wb_card_source_append(const struct wb_card_source *source, const char *kind,
@@ -286,8 +283,8 @@ void wb_card_source_append(const struct wb_card_source *source, const char *kind
     wb_text_release(&numbers);
     if (p->law.n_maxwell > 0)
         put(text, prefix,
-            "The wire relaxes: moments below are at the tests' strain rate, a "
-            "material's stresses those after a long rest.");
+            "The wire relaxes: moments below are at the strain rate of the tests, the stresses of "
+            "a material those of the relaxed law.");
     put_interval(text, prefix, source);
     put_range(text, prefix, source);
     put_rule(text, prefix, source);

@@ -13,9 +13,7 @@
 
 #define WB_LOG_DOMAIN "card"
 
-/* Residual curvature ratio as calibrated; where that is unknown, what the law says, which then has
- * no interval.
- */
+/* The calibrated residual curvature ratio; if that is unknown, the law's, without an interval. */
 static enum wb_status find_residual_curvature_ratio(const struct wb_card_source *source,
                                                     struct wb_estimate *residual_curvature_ratio)
 {
@@ -124,7 +122,7 @@ static struct wb_json *make_json(const struct wb_card_source *source,
     wb_json_set_number(root, "outer_diameter_m", p->outer_diameter);
     wb_json_set_number(root, "mass_per_length_kg_m", p->mass_per_length);
     set_law(root, &p->law);
-    wb_json_set_boolean(root, "loading_only", !wb_card_source_has_way_back(source));
+    wb_json_set_boolean(root, "loading_only", !wb_card_source_has_unloading(source));
     set_estimate(root, "flexural_rigidity_N_m2", &rigidity);
     set_estimate(root, "residual_curvature_ratio", residual_curvature_ratio);
     wb_json_set_number(root, "largest_curvature_1_m", wb_card_source_curvature(source));
@@ -148,7 +146,7 @@ enum wb_status wb_card_table_json(const struct wb_card_source *source,
     const enum wb_status status = wb_json_format(root, &formatted);
     wb_json_destroy(root);
     WB_TRY(status);
-    /* What it is made of stands in the first line, behind the bracket. */
+    /* The origin is on the first line, after the bracket. */
     const char *const first = strchr(formatted, '"');
     wb_text_append(text, "{ %s", first ? first : "");
     free(formatted);

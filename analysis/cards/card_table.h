@@ -1,5 +1,5 @@
-/* Cards as tables for programs of one's own: what is known of a wire under bending, as JSON and as
- * CSV. docs/file-formats.md has the schema. */
+/* Cards as tables for the user's own programs: bending properties of a wire as JSON and as CSV. The
+ * schema is in docs/file-formats.md. */
 #ifndef WB_ANALYSIS_CARDS_CARD_TABLE_H
 #define WB_ANALYSIS_CARDS_CARD_TABLE_H
 

@@ -87,7 +87,7 @@ static struct wb_cards_law *add_law(struct wb_cards *cards, const char *stem,
     struct wb_cards_law *const law = &cards->laws[cards->n_laws++];
     *law = (struct wb_cards_law){
         .curvature = wb_card_source_curvature(source),
-        .has_way_back = wb_card_source_has_way_back(source),
+        .has_way_back = wb_card_source_has_unloading(source),
     };
     snprintf(law->stem, sizeof law->stem, "%s", stem);
     return law;

@@ -1,5 +1,5 @@
-/* CalculiX bends a solid cylinder with our card, and our beam bends the same wire: the tip is
- * raised and let down again, without weight. CALCULIX names the program. */
+/* CalculiX bends a solid cylinder with our card, compared with our beam of the same wire: the tip
+ * is raised and lowered again, without weight. CALCULIX is the path of the program. */
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -13,7 +13,7 @@
 #define TOP 0.03 /* m */
 
 enum {
-    WAY = 5, /* rows of each way */
+    WAY = 5, /* rows of each branch */
     ROWS = 2 * WAY,
     MOST_SETS = 40
 };
@@ -43,13 +43,14 @@ static void put_nodes(struct wb_text *deck, const struct wb_solid_mesh *mesh)
     for (int i = 0; i < mesh->n_nodes; i++)
         wb_text_append(deck, "%d, %.10e, %.10e, %.10e\n", i + 1, mesh->node[i][0], mesh->node[i][1],
                        mesh->node[i][2]);
-    /* The clamped section stays plane and may contract, as a beam's does. */
+    /* The clamped section stays plane but may contract, as in the beam. */
     wb_text_append(deck, "*NSET, NSET=CLAMP\n");
     for (int i = 0; i < mesh->n_clamp; i++)
         wb_text_append(deck, "%d,\n", mesh->clamp[i] + 1);
     put_clamp_line(deck, mesh, 1, "LEVEL");
     put_clamp_line(deck, mesh, 2, "MIDDLE");
-    /* The tip's line across the plane of bending: its height does not change when the tip turns. */
+    /* Line through the tip normal to the plane of bending: its height does not change when the tip
+     * rotates. */
     wb_text_append(deck, "*NSET, NSET=TIP\n");
     for (int i = 0; i < mesh->n_nodes; i++) {
         if (fabs(mesh->node[i][0] - LENGTH) < 1e-9 && fabs(mesh->node[i][1]) < 1e-9)
@@ -100,7 +101,7 @@ static void write_deck(const char *path, const struct wb_card_source *source, co
                    "*BOUNDARY\nCLAMP, 1, 1\nLEVEL, 2, 2\nMIDDLE, 3, 3\n"
                    "*TIME POINTS, NAME=ROWS, GENERATE\n%g, 1., %g\n",
                    1.0 / WAY, 1.0 / WAY);
-    /* Each step begins slowly: its first increment has no slope to go by. */
+    /* Each step begins with a small increment, which has no tangent of a previous one. */
     for (int way = 1; way <= 2; way++)
         wb_text_append(&deck,
                        "*STEP, NLGEOM, INC=1000\n*STATIC\n0.01, 1., 1e-5, 0.05\n*BOUNDARY\n"
@@ -112,7 +113,7 @@ static void write_deck(const char *path, const struct wb_card_source *source, co
     wb_solid_mesh_release(&mesh);
 }
 
-/* The forces of the rows, N, out of the program's print file. */
+/* Reads the forces of the rows, N, from the program's print file. */
 static void read_forces(const char *path, double forces[ROWS])
 {
     char *text;
@@ -174,7 +175,7 @@ static void run_beam(const struct wb_card_source *source, double forces[ROWS])
     wb_section_release(&section);
 }
 
-/* Both within a part of the largest force; the wire has yielded, or the test proves nothing. */
+/* The difference must be within a part of the largest force, and the wire must have yielded. */
 static void compare(const char *properties, double tolerance)
 {
     const struct wb_card_source source = source_of(properties);
@@ -194,30 +195,37 @@ static void compare(const char *properties, double tolerance)
     assert_close(worst, 0.0, tolerance);
 }
 
-static void ludwiks_law_bends_as_our_beam(void **state)
+static void ludwiks_law_agrees_with_the_beam(void **state)
 {
     (void)state;
     compare(PROPERTIES, 0.02);
 }
 
-static void kinematic_parallel_parts_bend_as_our_beam(void **state)
+static void kinematic_parallel_parts_agree_with_the_beam(void **state)
 {
     (void)state;
     compare(PROPERTIES KINEMATIC, 0.02);
 }
 
-static void mixed_parallel_parts_bend_as_our_beam(void **state)
+static void mixed_parallel_parts_agree_with_the_beam(void **state)
 {
     (void)state;
     compare(PROPERTIES MIXED, 0.02);
 }
 
+static void combined_parallel_parts_agree_with_the_beam(void **state)
+{
+    (void)state;
+    compare(PROPERTIES GROWING, 0.02);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ludwiks_law_bends_as_our_beam),
-        cmocka_unit_test(kinematic_parallel_parts_bend_as_our_beam),
-        cmocka_unit_test(mixed_parallel_parts_bend_as_our_beam),
+        cmocka_unit_test(ludwiks_law_agrees_with_the_beam),
+        cmocka_unit_test(kinematic_parallel_parts_agree_with_the_beam),
+        cmocka_unit_test(mixed_parallel_parts_agree_with_the_beam),
+        cmocka_unit_test(combined_parallel_parts_agree_with_the_beam),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,4 +1,4 @@
-/* The chain of segments against closed forms of the wire that it stands for. */
+/* The chain of segments compared with closed forms of the wire that it represents. */
 #include "analysis/cards/card_chain.h"
 #include "tests/check.h"
 
@@ -16,7 +16,7 @@ static struct wb_card_chain_modes modes_of(const struct wb_card_chain *chain)
     return modes;
 }
 
-static void segments_have_the_mass_behind_the_clamped_half(void **state)
+static void segments_have_the_mass_beyond_the_clamped_half(void **state)
 {
     (void)state;
     double mass = 0.0, length = 0.0;
@@ -32,7 +32,7 @@ static void segments_have_the_mass_behind_the_clamped_half(void **state)
 }
 
 /* Euler and Bernoulli: 1.8751^2 / L^2 sqrt(EI / m). */
-static void the_lowest_bending_mode_comes_to_that_of_a_cantilever(void **state)
+static void the_lowest_bending_mode_converges_to_that_of_a_cantilever(void **state)
 {
     (void)state;
     const double exact = 1.875104068711961 * 1.875104068711961 / (0.1 * 0.1) * sqrt(4e-4 / 4e-3);
@@ -48,8 +48,8 @@ static void the_lowest_bending_mode_comes_to_that_of_a_cantilever(void **state)
     }
 }
 
-/* Equal discs on equal springs, the last half a disc: omega_k = 2 sqrt(k / I) sin(odd pi / (4 n)),
- * a chain fixed at one end and reflected at the other; the highest odd is 2 n - 1. */
+/* Equal discs on equal springs, the last one half a disc: omega_k = 2 sqrt(k / I) sin(odd pi / (4
+ * n)), a chain fixed at one end and reflected at the other; the highest odd number is 2 n - 1. */
 static void the_highest_torsion_mode_is_that_of_discs_on_springs(void **state)
 {
     (void)state;
@@ -62,7 +62,7 @@ static void the_highest_torsion_mode_is_that_of_discs_on_springs(void **state)
     }
 }
 
-/* Two joints: the pencil's characteristic polynomial by hand. */
+/* Two joints: the characteristic polynomial by hand. */
 static void two_joints_have_the_modes_of_a_double_pendulum_on_springs(void **state)
 {
     (void)state;
@@ -81,7 +81,7 @@ static void two_joints_have_the_modes_of_a_double_pendulum_on_springs(void **sta
     assert_close_relative(modes.highest_bending, sqrt((-B + root) / (2.0 * A)), 1e-9);
 }
 
-static void numbers_that_make_no_chain_are_refused(void **state)
+static void invalid_chains_are_rejected(void **state)
 {
     (void)state;
     struct wb_card_chain chain = wire;
@@ -95,11 +95,11 @@ static void numbers_that_make_no_chain_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(segments_have_the_mass_behind_the_clamped_half),
-        cmocka_unit_test(the_lowest_bending_mode_comes_to_that_of_a_cantilever),
+        cmocka_unit_test(segments_have_the_mass_beyond_the_clamped_half),
+        cmocka_unit_test(the_lowest_bending_mode_converges_to_that_of_a_cantilever),
         cmocka_unit_test(the_highest_torsion_mode_is_that_of_discs_on_springs),
         cmocka_unit_test(two_joints_have_the_modes_of_a_double_pendulum_on_springs),
-        cmocka_unit_test(numbers_that_make_no_chain_are_refused),
+        cmocka_unit_test(invalid_chains_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The engine reads our card: its chain under a force hangs as our elastic beam does, with the order
- * of the midpoint rule, and is stable up to the time step that the card states. */
+/* The engine reads our card: its chain under a force agrees with our elastic beam, with the order
+ * of the midpoint rule, and is stable up to the time step stated in the card. */
 #include <mujoco/mujoco.h>
 #include <stdlib.h>
 
@@ -11,13 +11,13 @@
 #define LENGTH 0.085
 
 enum {
-    MOST = 64 /* joints that Newton's method solves for */
+    MOST = 64 /* most joints for Newton's method */
 };
 
 struct engine {
     mjModel *model;
     mjData *data;
-    double largest_step; /* s, as the card states */
+    double largest_step; /* s, as stated in the card */
 };
 
 static struct engine start(const struct wb_card_settings *settings)
@@ -56,7 +56,7 @@ static struct wb_card_settings settings_of(int segments)
 
 /* --- at rest --- */
 
-/* Forces of the springs and of a force at the tip, on the joints' angles. */
+/* Residual of the springs and of a force at the tip, for the joints' angles. */
 static void find_residual(const struct engine *engine, const double force[3], double *residual)
 {
     const mjModel *const m = engine->model;
@@ -71,7 +71,7 @@ static void find_residual(const struct engine *engine, const double force[3], do
     }
 }
 
-/* Gauss without pivots' search is enough: stiffness dominates. */
+/* Gauss without pivoting suffices, because stiffness dominates. */
 static void eliminate(int n, double *matrix, double *right)
 {
     for (int p = 0; p < n; p++) {
@@ -90,7 +90,7 @@ static void eliminate(int n, double *matrix, double *right)
 }
 
 /* Newton's method with differences of the engine's own forces. */
-static void settle(const struct engine *engine, const double force[3])
+static void solve_equilibrium(const struct engine *engine, const double force[3])
 {
     const int n = engine->model->nv;
     static double matrix[9 * MOST * MOST], residual[3 * MOST], moved[3 * MOST];
@@ -117,7 +117,7 @@ static void settle(const struct engine *engine, const double force[3])
     mj_forward(engine->model, engine->data);
 }
 
-/* The tip, m, of the engine's chain under a force across, along an axis. */
+/* The tip, m, of the engine's chain under a transverse force along an axis. */
 static void engine_tip(int segments, double force, int axis, double tip[3])
 {
     const struct wb_card_settings settings = settings_of(segments);
@@ -130,7 +130,7 @@ static void engine_tip(int segments, double force, int axis, double tip[3])
     for (int step = 1; step <= 4; step++) {
         const double part[3] = {0.25 * step * vector[0], 0.25 * step * vector[1],
                                 0.25 * step * vector[2]};
-        settle(&engine, part);
+        solve_equilibrium(&engine, part);
     }
     for (int k = 0; k < 3; k++)
         tip[k] = engine.data->site_xpos[k];
@@ -161,10 +161,10 @@ static void beam_tip(double force, double *x, double *y)
     wb_section_release(&section);
 }
 
-/* Forces that bend the wire a little, and by half its length. */
+/* Forces for a small deflection, and for half the wire's length. */
 static const double forces[] = {0.02, 0.15};
 
-static void ten_segments_bend_as_our_beam_within_half_a_percent(void **state)
+static void ten_segments_agree_with_the_beam_within_half_a_percent(void **state)
 {
     (void)state;
     for (size_t i = 0; i < WB_COUNT(forces); i++) {
@@ -186,7 +186,7 @@ static void ten_segments_bend_as_our_beam_within_half_a_percent(void **state)
     assert_true(y > 0.4 * LENGTH);
 }
 
-/* The beam is sheared a little and the chain is not, so the tips of chains are compared. */
+/* The beam has a little shear and the chain has none, so the tips of chains are compared. */
 static void the_error_falls_with_the_square_of_the_segments(void **state)
 {
     (void)state;
@@ -221,10 +221,10 @@ static void a_twist_hinge_turns_by_the_stated_torsion(void **state)
 
 /* --- in motion --- */
 
-/* rad: far above what the chain began with, and before the engine starts again by itself. */
-#define LOST 1e-2
+/* rad: far above the initial angle, and below the angle at which the engine resets itself. */
+#define UNSTABLE 1e-2
 
-/* Largest angle in steps of the undamped chain that began bent, and twisted, a little. */
+/* Largest angle during the steps of the undamped chain with a small initial bend and twist. */
 static double run(struct engine *engine, double step, int steps)
 {
     mjModel *const m = engine->model;
@@ -238,7 +238,7 @@ static double run(struct engine *engine, double step, int steps)
         m->dof_damping[i] = 0.0;
         d->qpos[i] = (i % 2 ? 1e-6 : -1e-6) * (1 + i % 5);
     }
-    for (int k = 0; k < steps && largest < LOST; k++) {
+    for (int k = 0; k < steps && largest < UNSTABLE; k++) {
         mj_step(m, d);
         for (int i = 0; i < m->nv; i++)
             largest = fmax(largest, fabs(d->qpos[i]));
@@ -258,11 +258,11 @@ static void the_stated_time_step_is_the_largest_stable_one(void **state)
                   engine.largest_step, below, beyond);
     assert_close_relative(chosen, 0.5 * engine.largest_step, 1e-3);
     assert_true(below < 1e-4);
-    assert_true(beyond >= LOST);
+    assert_true(beyond >= UNSTABLE);
     stop(&engine);
 }
 
-static void the_lowest_mode_dies_down_by_the_damping_ratio(void **state)
+static void the_lowest_mode_decays_with_the_damping_ratio(void **state)
 {
     (void)state;
     struct wb_card_settings settings = settings_of(4);
@@ -274,7 +274,7 @@ static void the_lowest_mode_dies_down_by_the_damping_ratio(void **state)
     for (int i = 0; i < 3; i++)
         m->opt.gravity[i] = 0.0;
     for (int i = 0; i < m->nv; i++) {
-        /* Close to the first mode: bent most at the clamp. */
+        /* Close to the first mode: the largest bend is at the clamp. */
         if (m->jnt_axis[3 * i + 2] == 1.0)
             d->qpos[i] = 1e-3 * (1.0 - (double)i / m->nv);
     }
@@ -299,11 +299,11 @@ static void the_lowest_mode_dies_down_by_the_damping_ratio(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ten_segments_bend_as_our_beam_within_half_a_percent),
+        cmocka_unit_test(ten_segments_agree_with_the_beam_within_half_a_percent),
         cmocka_unit_test(the_error_falls_with_the_square_of_the_segments),
         cmocka_unit_test(a_twist_hinge_turns_by_the_stated_torsion),
         cmocka_unit_test(the_stated_time_step_is_the_largest_stable_one),
-        cmocka_unit_test(the_lowest_mode_dies_down_by_the_damping_ratio),
+        cmocka_unit_test(the_lowest_mode_decays_with_the_damping_ratio),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

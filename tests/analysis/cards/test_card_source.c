@@ -1,4 +1,4 @@
-/* What a card is made of: files recognised by their content, and what the card says of them. */
+/* Source of a card: files are recognised by their content, and the card describes them. */
 #include <stdlib.h>
 
 #include "base/file.h"
@@ -14,8 +14,8 @@
     "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff\n"
 #define SUPPORTED "hardening_rule: {chosen: parts, tested: true, supported: true}\n"
 
-/* All that every card says, in one text. */
-static struct wb_text words_of(const struct wb_card_source *source)
+/* The header of every card, in one text. */
+static struct wb_text header_of(const struct wb_card_source *source)
 {
     struct wb_text text = {0};
     wb_card_source_append(source, "Some card", "## ", &text);
@@ -24,13 +24,13 @@ static struct wb_text words_of(const struct wb_card_source *source)
 
 #define assert_says(source, part)                                                                  \
     do {                                                                                           \
-        struct wb_text words_ = words_of(source);                                                  \
+        struct wb_text words_ = header_of(source);                                                 \
         if (!strstr(wb_text_string(&words_), (part)))                                              \
             fail_msg("'%s' does not say '%s'", wb_text_string(&words_), (part));                   \
         wb_text_release(&words_);                                                                  \
     } while (0)
 
-static void a_wire_file_and_a_properties_file_are_told_apart(void **state)
+static void wire_files_and_properties_files_are_recognised(void **state)
 {
     (void)state;
     const struct wb_card_source wire = source_of(
@@ -62,7 +62,7 @@ static void the_checksum_is_that_of_the_file(void **state)
     assert_says(&source, hex);
 }
 
-static void what_is_neither_is_refused_with_what_is_expected(void **state)
+static void other_files_are_rejected_with_the_expected_ones(void **state)
 {
     (void)state;
     struct wb_card_source source;
@@ -91,7 +91,7 @@ static void what_is_neither_is_refused_with_what_is_expected(void **state)
     release_messages();
 }
 
-static void virtual_and_simulated_data_stand_in_the_first_line(void **state)
+static void virtual_and_simulated_data_are_stated_in_the_first_line(void **state)
 {
     (void)state;
     const struct wb_card_settings settings = card_defaults();
@@ -115,13 +115,13 @@ static void virtual_and_simulated_data_stand_in_the_first_line(void **state)
     }
 }
 
-static void a_card_says_tests_datasets_and_range(void **state)
+static void a_card_states_tests_datasets_and_range(void **state)
 {
     (void)state;
     const struct wb_card_source source =
         source_of(PROPERTIES KINEMATIC
                   "method: cycle\nlargest_curvature_1_m: 25\n" SUPPORTED CALIBRATION DATASET);
-    assert_true(wb_card_source_has_way_back(&source));
+    assert_true(wb_card_source_has_unloading(&source));
     assert_close(wb_card_source_curvature(&source), 25.0, 1e-12);
     assert_says(&source, "whole cycles, free length 85 mm, 4 samples");
     assert_says(&source, "0 to 25 1/m as tested (0.015 of strain at the outer fibre)");
@@ -136,7 +136,7 @@ static void no_line_ends_a_comment_of_xml(void **state)
     const struct wb_card_source source =
         source_of("wire: a--->b---\nouter_diameter_mm: 1.2\n"
                   "mass_per_length_kg_m: 0.004\n" LUDWIK_NUMBERS CALIBRATION DATASET);
-    struct wb_text words = words_of(&source);
+    struct wb_text words = header_of(&source);
     assert_null(strstr(wb_text_string(&words), "--"));
     assert_non_null(strstr(wb_text_string(&words), "a- - ->b- - -"));
     wb_text_release(&words);
@@ -146,7 +146,7 @@ static void every_line_has_the_prefix_and_fits(void **state)
 {
     (void)state;
     const struct wb_card_source source = source_of(PROPERTIES MIXED CALIBRATION DATASET);
-    struct wb_text words = words_of(&source);
+    struct wb_text words = header_of(&source);
     for (const char *line = words.bytes; *line; line = strchr(line, '\n') + 1) {
         assert_int_equal(strncmp(line, "## ", 3), 0);
         assert_true(strcspn(line, "\n") < 200);
@@ -175,11 +175,11 @@ static void the_interval_of_ei_is_students(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_wire_file_and_a_properties_file_are_told_apart),
+        cmocka_unit_test(wire_files_and_properties_files_are_recognised),
         cmocka_unit_test(the_checksum_is_that_of_the_file),
-        cmocka_unit_test(what_is_neither_is_refused_with_what_is_expected),
-        cmocka_unit_test(virtual_and_simulated_data_stand_in_the_first_line),
-        cmocka_unit_test(a_card_says_tests_datasets_and_range),
+        cmocka_unit_test(other_files_are_rejected_with_the_expected_ones),
+        cmocka_unit_test(virtual_and_simulated_data_are_stated_in_the_first_line),
+        cmocka_unit_test(a_card_states_tests_datasets_and_range),
         cmocka_unit_test(no_line_ends_a_comment_of_xml),
         cmocka_unit_test(every_line_has_the_prefix_and_fits),
         cmocka_unit_test(the_interval_of_ei_is_students),

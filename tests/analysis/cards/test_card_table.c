@@ -1,4 +1,4 @@
-/* Tables read back: JSON and CSV hold the same numbers, and those of the properties. */
+/* Tables are parsed: JSON and CSV have the same numbers, equal to those of the properties. */
 #include <stdlib.h>
 
 #include "analysis/calibration/law/bending.h"
@@ -6,8 +6,8 @@
 #include "base/json.h"
 #include "tests/analysis/cards/wires.h"
 
-/* EI of the parts is 5000 MPa times I; moments below are not the law's own, so that the band is
- * seen to be in proportion. */
+/* EI of the parts is 5000 MPa times I. The moments below differ from those of the law, to test that
+ * the band is relative. */
 #define MEASURED                                                                                   \
     PROPERTIES KINEMATIC                                                                           \
         "method: cycle\nlargest_curvature_1_m: 20\n"                                               \
@@ -44,7 +44,7 @@ static double item_at(const struct wb_json *object, const char *key, int k)
     return value;
 }
 
-static void json_gives_the_properties_back(void **state)
+static void json_has_the_values_of_the_properties(void **state)
 {
     (void)state;
     const struct wb_card_source source = source_of(MEASURED);
@@ -76,7 +76,7 @@ static void json_gives_the_properties_back(void **state)
     wb_json_destroy(root);
 }
 
-static void moments_are_the_laws_and_the_band_is_the_calibrations(void **state)
+static void moments_come_from_the_law_and_the_band_from_the_calibration(void **state)
 {
     (void)state;
     const struct wb_card_source source = source_of(MEASURED);
@@ -99,7 +99,7 @@ static void moments_are_the_laws_and_the_band_is_the_calibrations(void **state)
     wb_json_destroy(root);
 }
 
-static void csv_holds_the_numbers_of_json(void **state)
+static void csv_has_the_numbers_of_json(void **state)
 {
     (void)state;
     static const char *const texts[] = {MEASURED, PROPERTIES};
@@ -168,9 +168,9 @@ static void the_same_file_gives_the_same_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(json_gives_the_properties_back),
-        cmocka_unit_test(moments_are_the_laws_and_the_band_is_the_calibrations),
-        cmocka_unit_test(csv_holds_the_numbers_of_json),
+        cmocka_unit_test(json_has_the_values_of_the_properties),
+        cmocka_unit_test(moments_come_from_the_law_and_the_band_from_the_calibration),
+        cmocka_unit_test(csv_has_the_numbers_of_json),
         cmocka_unit_test(the_secant_falls_from_ei_and_has_its_band),
         cmocka_unit_test(the_same_file_gives_the_same_bytes),
     };

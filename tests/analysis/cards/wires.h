@@ -1,4 +1,4 @@
-/* Wires of the cards' tests: sources as from a file. */
+/* Wires for the tests of cards, as contents of files. */
 #ifndef WB_TESTS_ANALYSIS_CARDS_WIRES_H
 #define WB_TESTS_ANALYSIS_CARDS_WIRES_H
 
@@ -10,7 +10,7 @@
     "youngs_modulus_MPa: 5000\nyield_stress_MPa: 5\nstrength_coefficient_MPa: 900\n"               \
     "hardening_exponent: 0.8\npoissons_ratio: 0.39\n"
 
-/* A properties file's head; a law and a calibration may follow. */
+/* The head of a properties file, to which a law and a calibration can be added. */
 #define PROPERTIES                                                                                 \
     "wire: test\nouter_diameter_mm: 1.2\nmass_per_length_kg_m: 0.004\n" LUDWIK_NUMBERS
 
