@@ -19,16 +19,16 @@ const char *wb_compare_word(enum wb_verdict_of_groups verdict)
     return words[verdict];
 }
 
-/* --- what a file says --- */
+/* --- values of a properties file --- */
 
-/* Degrees of freedom of its intervals. */
+/* Degrees of freedom of the intervals. */
 static int degrees_of(const struct wb_properties *p)
 {
     return p->pooled_degrees > 0 ? p->pooled_degrees : wb_properties_units(p) - 1;
 }
 
-/* The group that a number is the mean of, its value times `factor`; false where the file does not
- * say how specimens scatter. */
+/* The group of specimens whose mean the estimate is, with its value times `factor`; false if the
+ * file does not give the scatter of the specimens. */
 static bool find_group(const struct wb_properties *p, const struct wb_estimate *estimate,
                        double factor, struct wb_welch_group *group)
 {
@@ -43,8 +43,9 @@ static bool find_group(const struct wb_properties *p, const struct wb_estimate *
     return true;
 }
 
-/* The moment at a curvature: of the two that the file has around it, value over the law's and
- * interval over value, both by the logarithm of the curvature. Beyond the first or last its. */
+/* The moment at a curvature, from the two of the file around it: value relative to the law's and
+ * interval relative to the value, both interpolated over the logarithm of the curvature. Constant
+ * beyond the first or last. */
 static enum wb_status find_moment(const struct wb_properties *p, double curvature,
                                   struct wb_estimate *moment)
 {
@@ -68,7 +69,8 @@ static enum wb_status find_moment(const struct wb_properties *p, double curvatur
     return WB_OK;
 }
 
-/* The law's residual curvature ratio from `curvature`, over that from the file's largest. */
+/* Ratio of the law's residual curvature ratios from `curvature` and from the file's largest
+ * curvature. */
 static enum wb_status scale_to_curvature(const struct wb_properties *p, double curvature,
                                          double *ratio)
 {
@@ -101,7 +103,8 @@ static enum wb_status take_rigidity(struct wb_compare_quantity *q,
     return WB_OK;
 }
 
-/* At the curvature that both have, by what the law says of it over that from the file's largest. */
+/* Stiffness on unloading from the curvature that both reach: the value of the file, times the ratio
+ * of the values of its law from that curvature and from its largest. */
 static enum wb_status take_unloading(struct wb_compare_quantity *q,
                                      const struct wb_properties *const *p, double largest)
 {
@@ -111,7 +114,7 @@ static enum wb_status take_unloading(struct wb_compare_quantity *q,
         const struct wb_estimate *const e = wb_cycle_stiffness_at(&p[i]->unloading, change);
         double here, there;
         if (!e || largest < change || p[i]->unloading.resolved > change) {
-            q->reason = "a file does not know it";
+            q->reason = "a file has no value of it";
             continue;
         }
         WB_TRY(wb_bending_stiffness(&p[i]->law, p[i]->outer_diameter, largest, 0, NULL, NULL, 1,
@@ -163,7 +166,7 @@ static void decide(struct wb_compare_quantity *q, double within)
         q->more = wb_welch_more(&q->groups[0], &q->groups[1], WB_COMPARE_ALPHA, within);
 }
 
-/* Different where any is; equivalent where all are. */
+/* Different if any quantity is; equivalent if all are. */
 static void decide_all(struct wb_compare *compare)
 {
     bool is_open = false;
@@ -195,7 +198,7 @@ static enum wb_status check(const struct wb_properties *p, const char *name)
                        name);
     if (wb_properties_units(p) < 2)
         return wb_fail(WB_ERR_DATA,
-                       "%s: %d specimen or series; a comparison needs two, whose scatter it takes",
+                       "%s: %d specimen or series; a comparison needs the scatter of at least two",
                        name, wb_properties_units(p));
     return WB_OK;
 }
@@ -219,13 +222,13 @@ enum wb_status wb_compare_run(struct wb_compare *compare,
         decide(&c.quantities[k], within);
     decide_all(&c);
     if (c.n_compared == 0)
-        return wb_fail(WB_ERR_DATA, "%s and %s have no number with an interval in common", names[0],
-                       names[1]);
+        return wb_fail(WB_ERR_DATA, "%s and %s have no quantity with an interval in common",
+                       names[0], names[1]);
     *compare = c;
     return WB_OK;
 }
 
-/* --- numbers --- */
+/* --- JSON --- */
 
 static void put_group(struct wb_json *of, const char *key, const struct wb_compare_quantity *q,
                       int side)

@@ -4,7 +4,7 @@
 
 #include <gsl/gsl_cdf.h>
 
-/* Part of the comparisons that are to decide. */
+/* Share of the comparisons that shall be decided. */
 static const double wanted_power = 0.8;
 
 static double variance_of_mean(const struct wb_welch_group *group)
@@ -34,7 +34,7 @@ enum wb_verdict_of_groups wb_welch_decide(const struct wb_welch *welch, double l
     return WB_GROUPS_UNDECIDED;
 }
 
-/* The group with more specimens that are like it. */
+/* A group with more specimens and the same mean and scatter. */
 static struct wb_welch_group larger(const struct wb_welch_group *group, int more)
 {
     struct wb_welch_group with = *group;
@@ -43,7 +43,7 @@ static struct wb_welch_group larger(const struct wb_welch_group *group, int more
     return with;
 }
 
-/* How often the interval decides, if the true difference is the one found. */
+/* Probability that the interval decides if the true difference is the one found. */
 static double power(const struct wb_welch *welch, double limit)
 {
     const double d = fabs(welch->difference);

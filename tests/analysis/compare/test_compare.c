@@ -1,4 +1,4 @@
-/* Two properties files side by side. */
+/* Comparison of two properties files. */
 #include "tests/messages.h"
 
 #include <gsl/gsl_cdf.h>
@@ -24,7 +24,7 @@ enum {
     RIGIDITY
 };
 
-/* An interval as calibrate makes it: of n specimens whose logarithms scatter by s. */
+/* An interval as in calibrations: of n specimens whose logarithms scatter by s. */
 static struct wb_estimate estimate(double value, double s, int n)
 {
     const double half = gsl_cdf_tdist_Qinv(0.025, n - 1) * s / sqrt(n);
@@ -32,7 +32,7 @@ static struct wb_estimate estimate(double value, double s, int n)
         .value = value, .low = value * exp(-half), .high = value * exp(half)};
 }
 
-/* Properties of an elastoplastic wire up to a curvature, all of its numbers times `factor`. */
+/* Properties of an elastoplastic wire up to a curvature, all values times `factor`. */
 static void make(struct wb_properties *p, double largest, double factor, double s, int n)
 {
     const struct wb_material material = {.hardening = WB_HARDENING_ISOTROPIC_POWER,
@@ -73,8 +73,9 @@ static enum wb_status run(struct wb_compare *compare, const struct wb_properties
     return wb_compare_run(compare, both, names, within);
 }
 
-/* Mean, scatter and number are taken back out of the intervals, and the difference is the ratio. */
-static void groups_are_those_that_the_intervals_were_made_of(void **state)
+/* Mean, scatter and number of specimens are recovered from the intervals, and the difference is the
+ * ratio. */
+static void groups_are_recovered_from_the_intervals(void **state)
 {
     (void)state;
     static struct wb_properties a, b;
@@ -104,8 +105,8 @@ static void groups_are_those_that_the_intervals_were_made_of(void **state)
     assert_int_equal(c.verdict, WB_GROUPS_EQUIVALENT);
 }
 
-/* One wire, measured up to 30 and to 18 1/m: the same numbers at the same curvatures. */
-static void numbers_are_compared_at_the_same_curvatures(void **state)
+/* One wire, measured up to 30 and up to 18 1/m: the same values at the same curvatures. */
+static void values_are_compared_at_the_same_curvatures(void **state)
 {
     (void)state;
     static struct wb_properties a, b;
@@ -139,8 +140,8 @@ static void one_quantity_that_differs_makes_batches_different(void **state)
     assert_true(c.more > 0 && c.more == c.quantities[RESIDUAL_CURVATURE].more);
 }
 
-/* Where the data do not support the hardening rule there is no residual curvature ratio. */
-static void what_a_file_does_not_say_is_not_compared(void **state)
+/* If the data do not support the hardening rule there is no residual curvature ratio. */
+static void missing_values_are_not_compared(void **state)
 {
     (void)state;
     static struct wb_properties a, b;
@@ -160,8 +161,8 @@ static void what_a_file_does_not_say_is_not_compared(void **state)
     assert_int_equal(c.n_compared, WB_COMPARE_QUANTITIES - 2);
 }
 
-/* A deviation that was pooled over several wires has their degrees of freedom. */
-static void pooled_intervals_have_the_pools_degrees(void **state)
+/* A deviation pooled over several wires has their degrees of freedom. */
+static void pooled_intervals_have_the_degrees_of_the_pool(void **state)
 {
     (void)state;
     static struct wb_properties a, b;
@@ -177,8 +178,8 @@ static void pooled_intervals_have_the_pools_degrees(void **state)
     assert_close(c.quantities[RIGIDITY].groups[0].deviation, 0.03, 1e-12);
 }
 
-/* What both benches share is in the intervals, and not in how specimens differ. */
-static void a_stated_scatter_is_taken_and_not_the_interval(void **state)
+/* Errors common to both benches are in the intervals, but not in the scatter of the specimens. */
+static void a_stated_scatter_is_used_instead_of_the_interval(void **state)
 {
     (void)state;
     static struct wb_properties a, b;
@@ -199,7 +200,7 @@ static void a_stated_scatter_is_taken_and_not_the_interval(void **state)
     assert_close(last->groups[1].deviation, 0.03, 1e-12);
 }
 
-static void files_without_intervals_are_refused(void **state)
+static void files_without_intervals_are_rejected(void **state)
 {
     (void)state;
     static struct wb_properties a, b;
@@ -217,13 +218,13 @@ static void files_without_intervals_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(groups_are_those_that_the_intervals_were_made_of),
-        cmocka_unit_test(numbers_are_compared_at_the_same_curvatures),
+        cmocka_unit_test(groups_are_recovered_from_the_intervals),
+        cmocka_unit_test(values_are_compared_at_the_same_curvatures),
         cmocka_unit_test(one_quantity_that_differs_makes_batches_different),
-        cmocka_unit_test(what_a_file_does_not_say_is_not_compared),
-        cmocka_unit_test(pooled_intervals_have_the_pools_degrees),
-        cmocka_unit_test(a_stated_scatter_is_taken_and_not_the_interval),
-        cmocka_unit_test(files_without_intervals_are_refused),
+        cmocka_unit_test(missing_values_are_not_compared),
+        cmocka_unit_test(pooled_intervals_have_the_degrees_of_the_pool),
+        cmocka_unit_test(a_stated_scatter_is_used_instead_of_the_interval),
+        cmocka_unit_test(files_without_intervals_are_rejected),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }

@@ -1,5 +1,5 @@
-/* Welch's interval against published and closed-form numbers, and how often its verdicts are wrong
- * on made-up specimens. */
+/* Welch's interval compared with published and closed-form values, and the error rate of its
+ * verdicts on synthetic specimens. */
 #include "tests/check.h"
 
 #include "analysis/compare/welch.h"
@@ -17,8 +17,8 @@ static struct wb_welch_group group_of(const double *x, int n)
         .mean = sum / n, .deviation = sqrt(squares / (n - 1)), .n = n, .degrees = n - 1};
 }
 
-/* Student's sleep data, of which R's t.test(extra ~ group) says: t = -1.8608, df = 17.776, 95
- * percent confidence interval -3.3654832 to 0.2054832 of the first less the second. */
+/* Student's sleep data. R's t.test(extra ~ group) gives: t = -1.8608, df = 17.776, 95 percent
+ * confidence interval -3.3654832 to 0.2054832 of the first less the second. */
 static void the_interval_is_that_of_r(void **state)
 {
     (void)state;
@@ -32,9 +32,9 @@ static void the_interval_is_that_of_r(void **state)
     assert_close(w.high, 3.3654832, 5e-8);
 }
 
-/* Alike groups of n have 2 (n - 1) degrees of freedom. For two of them the quantile of Student's t
+/* Equal groups of n have 2 (n - 1) degrees of freedom. With two degrees the quantile of Student's t
  * is (2 p - 1) / sqrt(2 p (1 - p)) in closed form. */
-static void alike_groups_have_the_degrees_of_both(void **state)
+static void equal_groups_have_the_degrees_of_both(void **state)
 {
     (void)state;
     const struct wb_welch_group a = {.mean = 1.0, .deviation = 0.3, .n = 2, .degrees = 1};
@@ -77,13 +77,13 @@ static void the_interval_decides(void **state)
     }
 }
 
-/* --- made-up batches --- */
+/* --- synthetic batches --- */
 
 enum {
     TRIALS = 20000
 };
 
-/* Two batches of specimens that differ by `difference` on average. */
+/* Two batches of specimens whose means differ by `difference`. */
 struct batches {
     double difference, deviation[2];
     int n[2];
@@ -99,8 +99,8 @@ static struct wb_welch_group draw(const struct batches *of, int side, int trial)
 }
 
 struct rates {
-    double verdict[3]; /* part of the trials */
-    double covered;    /* interval holds the true difference */
+    double verdict[3]; /* share of the trials */
+    double covered;    /* share of the intervals that contain the true difference */
 };
 
 static struct rates try_out(const struct batches *of, double limit)
@@ -116,7 +116,7 @@ static struct rates try_out(const struct batches *of, double limit)
 }
 
 /* Three standard errors of 20,000 trials are 0.005 at 5 %, 0.0064 at 10 %. Welch's approximation
- * itself is off by up to a percent for groups this small and this unlike. */
+ * itself has an error of up to a percent for groups this small and this different. */
 static void verdicts_are_wrong_in_one_of_twenty_at_most(void **state)
 {
     (void)state;
@@ -125,7 +125,7 @@ static void verdicts_are_wrong_in_one_of_twenty_at_most(void **state)
         {0.1, {0.04, 0.01}, {3, 8}}, {-0.1, {0.03, 0.03}, {5, 10}},
     };
     for (size_t i = 0; i < WB_COUNT(cases); i++) {
-        /* The true difference is the limit: either verdict is an error just not made. */
+        /* The true difference is the limit: either verdict is a borderline error. */
         const struct rates rates = try_out(&cases[i], 0.1);
         assert_true(rates.verdict[WB_GROUPS_EQUIVALENT] <= 0.065);
         assert_true(rates.verdict[WB_GROUPS_DIFFERENT] <= 0.065);
@@ -133,7 +133,7 @@ static void verdicts_are_wrong_in_one_of_twenty_at_most(void **state)
     }
 }
 
-static void batches_with_little_scatter_are_told_apart(void **state)
+static void batches_with_little_scatter_are_distinguished(void **state)
 {
     (void)state;
     const struct batches alike = {0.0, {0.02, 0.02}, {5, 5}}, unlike = {0.2, {0.02, 0.02}, {5, 5}};
@@ -141,9 +141,9 @@ static void batches_with_little_scatter_are_told_apart(void **state)
     assert_true(try_out(&unlike, 0.1).verdict[WB_GROUPS_DIFFERENT] > 0.99);
 }
 
-/* So many specimens more let four of five comparisons decide, if the groups are as found; some
- * fewer do not. */
-static void as_many_specimens_as_said_decide_in_four_of_five(void **state)
+/* With this number of additional specimens four of five comparisons decide, if the groups are as
+ * found; with a few less they do not. */
+static void the_stated_number_of_specimens_decides_in_four_of_five(void **state)
 {
     (void)state;
     static const struct {
@@ -167,7 +167,7 @@ static void as_many_specimens_as_said_decide_in_four_of_five(void **state)
     }
 }
 
-static void a_ratio_at_the_limit_is_decided_by_no_number(void **state)
+static void no_number_of_specimens_decides_a_ratio_at_the_limit(void **state)
 {
     (void)state;
     const struct wb_welch_group a = {.mean = 0.0, .deviation = 0.1, .n = 3, .degrees = 2};
@@ -179,13 +179,13 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_interval_is_that_of_r),
-        cmocka_unit_test(alike_groups_have_the_degrees_of_both),
+        cmocka_unit_test(equal_groups_have_the_degrees_of_both),
         cmocka_unit_test(a_group_without_scatter_adds_no_degrees),
         cmocka_unit_test(the_interval_decides),
         cmocka_unit_test(verdicts_are_wrong_in_one_of_twenty_at_most),
-        cmocka_unit_test(batches_with_little_scatter_are_told_apart),
-        cmocka_unit_test(as_many_specimens_as_said_decide_in_four_of_five),
-        cmocka_unit_test(a_ratio_at_the_limit_is_decided_by_no_number),
+        cmocka_unit_test(batches_with_little_scatter_are_distinguished),
+        cmocka_unit_test(the_stated_number_of_specimens_decides_in_four_of_five),
+        cmocka_unit_test(no_number_of_specimens_decides_a_ratio_at_the_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
