@@ -22,24 +22,24 @@ enum {
     EQUIVALENT_FREE = 4
 };
 
-/* The first of the curvatures of the equivalent, over the largest. */
+/* Smallest curvature for the Ludwik equivalent, as part of the largest. */
 static const double first_of_equivalent = 0.01;
-/* Of numbers that make no law: far above any other. */
+/* Residual of parameters that are not a valid law: far above any other. */
 static const double lost_residual = 1e3;
-/* Plastic strain at which its hardening stress is a free number; its exponents. */
+/* Plastic strain at which the hardening stress is the free parameter; limits of the exponent. */
 static const double middle_plastic_strain = 3e-3, least_exponent = 1e-3, largest_exponent = 1.5;
-/* Its least yield strain, over the outer fibre's at the first curvature: of a wire that yields from
- * the start the best one would be none. */
+/* Smallest yield strain of the equivalent, as part of the outer fibre's strain at the first
+ * curvature: for a wire that yields from the start the best one would be zero. */
 static const double least_yield_strain = 0.1;
 
-/* A section point with its history. */
+/* A section point and its history. */
 struct point {
     struct wb_section section;
     struct wb_fibres *fibres;
     double *before, *after;
     size_t size;
     double rate;      /* 1/(m s), of the curvature */
-    double curvature; /* 1/m, that was kept last */
+    double curvature; /* 1/m, of the last stored state */
 };
 
 static enum wb_status make_point(struct point *p, const struct wb_law *law, double diameter)
@@ -64,7 +64,7 @@ static void release_point(struct point *p)
     free(p->after);
 }
 
-/* Moment at a curvature from the last one that was kept. */
+/* Moment at a curvature, starting from the last stored state. */
 static double moment_at(struct point *p, double curvature)
 {
     struct wb_fibres_response r;
@@ -84,7 +84,7 @@ static double keep_moment(struct point *p, double curvature)
     return M;
 }
 
-/* Where the moment is gone during unloading from the largest curvature. */
+/* Curvature at which the moment is zero on unloading from the largest curvature. */
 static double residual_curvature(struct point *p, double largest)
 {
     double low = 0.0, high = largest;
@@ -98,7 +98,7 @@ static double residual_curvature(struct point *p, double largest)
     return 0.5 * (low + high);
 }
 
-/* Work of a way in equal steps, by the trapezoidal rule. */
+/* Work over a range of curvature in equal steps, by the trapezoidal rule. */
 static double work_of(struct point *p, double from, double to, double *M)
 {
     double work = 0.0;
@@ -200,14 +200,14 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
                                       double *misfit)
 {
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-    /* K and n lie in a valley so flat that the noise of one-sided differences shows in them. */
+    /* K and n are so strongly correlated that the error of one-sided differences would matter. */
     parameters.fdtype = GSL_MULTIFIT_NLINEAR_CTRDIFF;
     parameters.h_df = 1e-4;
     gsl_multifit_nlinear_workspace *const w = wb_memory_need(gsl_multifit_nlinear_alloc(
         gsl_multifit_nlinear_trust, &parameters, EQUIVALENT_POINTS, EQUIVALENT_FREE));
     gsl_multifit_nlinear_fdf fdf = {
         .f = equivalent_residuals, .n = EQUIVALENT_POINTS, .p = EQUIVALENT_FREE, .params = e};
-    /* It starts with the stiffness of a small bend and yields where a first loading has lost a
+    /* Initial guess: the stiffness of a small bend, and yield where a first loading has lost a
      * tenth of it. */
     const double R = 0.5 * e->diameter;
     const double E = law->material.youngs_modulus;
@@ -225,7 +225,7 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
     if (code == GSL_SUCCESS)
         code = gsl_multifit_nlinear_driver(200, 1e-7, 1e-15, 0.0, NULL, NULL, &info, w);
     if (e->status == WB_OK) {
-        /* The last evaluation need not have been the best. */
+        /* The last evaluation is not necessarily that of the best point. */
         (void)equivalent_residuals(w->x, e, w->f);
         double sum = 0.0;
         for (size_t i = 0; i < EQUIVALENT_POINTS; i++)

@@ -19,11 +19,10 @@ static enum wb_status add_sample(double *mean, double *value, const struct wb_bo
         wb_computed_curve(computed, material, curve->n, curve->step, value, &reached);
     wb_computed_destroy(computed);
     if (status == WB_OK && reached < curve->n)
-        status =
-            wb_fail_to(why, WB_ERR_CONVERGENCE,
-                       "wire '%s', sample %d: the beam stops converging at %.3g of its way, so "
-                       "the effect of its bow on E is not known",
-                       info->wire, info->sample, (double)reached / curve->n);
+        status = wb_fail_to(why, WB_ERR_CONVERGENCE,
+                            "wire '%s', sample %d: the beam converges only up to %.3g of the "
+                            "curve, so the effect of its bow on E cannot be determined",
+                            info->wire, info->sample, (double)reached / curve->n);
     for (int i = 0; status == WB_OK && i < curve->n; i++)
         mean[i] += value[i] / samples->n;
     return status;

@@ -24,35 +24,35 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-/* Edges of the paper's simplex: 5 % of K0 and of n0. */
+/* Edges of the paper's initial simplex: 5 % of K0 and of n0. */
 #define SIMPLEX_STEP 0.05
-/* Where a material may lie; outside the error is a penalty. */
+/* Domain of the search; outside, the error is a penalty. */
 #define SMALLEST_EXPONENT 0.01
 #define LARGEST_EXPONENT 1.5
 #define SMALLEST_STRENGTH_RATIO 1e-6 /* K over K0 */
 #define LARGEST_STRENGTH_RATIO 1e6
-/* Error of a point outside, or that a beam could not compute: far above any error of a curve. */
+/* Error of a point outside the domain, or one that a beam could not compute: far above the error of
+ * any curve. */
 #define PENALTY 10.0
-/* A test whose largest force is above this part of the linear elastic prediction has not yielded.
- */
+/* Force over the linear elastic prediction above which a test counts as not yielded. */
 #define ELASTIC_SHARE 0.95
 
-/* Bows beyond this part of the length bias eqs. 10 and 11 by more than a few percent. */
+/* Bow over length above which the bias of eqs. 10 and 11 exceeds a few percent. */
 #define LARGE_BOW 0.01
-/* So near to a bound of the search the optimum lies at it. */
+/* Relative distance within which an optimum counts as being at a bound of the search. */
 #define AT_BOUND 1e-3
-/* Passes of the correction for the bows. */
+/* Number of iterations of the correction for bows. */
 #define BOW_PASSES 2
 
-/* What one evaluation of the error needs. */
+/* Data of one evaluation of the error. */
 struct objective {
     struct wb_computed *computed;
     const struct wb_curve *curve;
-    int n;                       /* points of it that are compared */
+    int n;                       /* points of the curve that are compared */
     struct wb_material material; /* with K and n of the last evaluation */
     double first_strength, first_exponent;
     double *value;         /* (curve->n) */
-    enum wb_status status; /* of the last evaluation that failed other than by convergence */
+    enum wb_status status; /* last failure other than non-convergence */
     struct wb_reason *why; /* NULL: failures are logged */
     int evaluations, failed;
 };
@@ -166,7 +166,7 @@ static void silence_gsl(void)
     gsl_set_error_handler_off();
 }
 
-/* The grid on which these settings compare. */
+/* The grid of these settings. */
 static struct wb_curve_grid grid_of(const struct wb_calibrate_settings *settings)
 {
     return (struct wb_curve_grid){.step = settings->step,
@@ -186,7 +186,7 @@ static struct wb_computed_settings computed_settings(const struct wb_calibrate_s
                                          settings->n_fibres, why};
 }
 
-/* How far outside the domain a point lies, 0 inside. */
+/* Distance of a point from the domain, 0 inside. */
 static double violation(double strength_ratio, double exponent)
 {
     double outside = 0.0;
@@ -197,9 +197,9 @@ static double violation(double strength_ratio, double exponent)
     return outside;
 }
 
-/* E_L2 over F_max sqrt(delta_max), or its like, at (K/K0, n/n0). Always finite: a penalty grows
- * with the distance to the domain, and with the part of the curve that a beam did not reach, so
- * that the simplex returns to the domain. */
+/* E_L2 over F_max sqrt(delta_max), or its equivalent for follower tests, at (K/K0, n/n0). Always
+ * finite: a penalty grows with the distance from the domain, and with the part of the curve that a
+ * beam did not reach, so that the simplex returns to the domain. */
 static double evaluate(const gsl_vector *at, void *parameters)
 {
     struct objective *const objective = parameters;
@@ -239,8 +239,8 @@ static void add_step(struct wb_calibrate_result *result, const struct objective 
     };
 }
 
-/* Iterates one simplex until it is small, the error is, or the iterations or the caller's patience
- * run out. */
+/* Iterates one simplex until its size or the error is small, the iterations are exhausted, or the
+ * caller stops it. */
 static enum wb_status iterate(struct wb_calibrate_result *result, struct objective *objective,
                               gsl_multimin_fminimizer *minimizer, double first_error,
                               const struct wb_calibrate_settings *settings)
@@ -248,7 +248,7 @@ static enum wb_status iterate(struct wb_calibrate_result *result, struct objecti
     const gsl_vector *const best = gsl_multimin_fminimizer_x(minimizer);
     for (int i = 0;; i++) {
         const double size = gsl_multimin_fminimizer_size(minimizer);
-        /* GSL knows no minimum before the first iteration. */
+        /* GSL has no minimum before the first iteration. */
         const double error = i == 0 ? first_error : gsl_multimin_fminimizer_minimum(minimizer);
         if (objective->status != WB_OK)
             return objective->status;
@@ -270,15 +270,15 @@ static enum wb_status iterate(struct wb_calibrate_result *result, struct objecti
             result->end = WB_CALIBRATE_ITERATIONS;
             return WB_OK;
         }
-        /* The only failure is a contraction that hits a non-finite value, which evaluate() never
+        /* GSL fails only for a contraction to a non-finite value, which evaluate() never
          * returns. */
         if (gsl_multimin_fminimizer_iterate(minimizer) != GSL_SUCCESS)
             return wb_fail_to(objective->why, WB_ERR_CONVERGENCE, "the simplex could not continue");
     }
 }
 
-/* One simplex from (K/K0, n/n0) = `at`, with edges of 5 % of each; the optimum goes back into
- * `at`. */
+/* Runs one simplex from (K/K0, n/n0) = `at`, with edges of 5 % of each; `at` receives the
+ * optimum. */
 static enum wb_status minimise(struct wb_calibrate_result *result, struct objective *objective,
                                double at[2], const struct wb_calibrate_settings *settings)
 {
@@ -303,8 +303,8 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
         if (result->path[result->n_path - 1].error >= PENALTY &&
             result->end != WB_CALIBRATE_STOPPED)
             status = wb_fail_to(objective->why, WB_ERR_CONVERGENCE,
-                                "wire '%s': the beam converges nowhere around the first guess "
-                                "(K0 = %.4g MPa, n0 = %.4g)",
+                                "wire '%s': the beam does not converge anywhere near the first "
+                                "guess (K0 = %.4g MPa, n0 = %.4g)",
                                 result->info.wire, objective->first_strength / WB_MPA,
                                 objective->first_exponent);
     }
@@ -312,7 +312,7 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
     return status;
 }
 
-/* The force at the end falls short of the elastic one. */
+/* Checks that the force at the end is below the elastic one. */
 static enum wb_status check_share(const struct objective *objective,
                                   const struct wb_test_info *info)
 {
@@ -328,26 +328,26 @@ static enum wb_status check_share(const struct objective *objective,
     return WB_OK;
 }
 
-/* The deflection under a follower force leaves the elastic one somewhere; at the end it may meet it
- * again, curled up. */
+/* Checks that the deflection under a follower force differs from the elastic one somewhere; at the
+ * end, curled up, the two may be equal again. */
 static enum wb_status check_leaves(const struct objective *objective,
                                    const struct wb_test_info *info)
 {
     const struct wb_curve *const curve = objective->curve;
-    double apart = 0.0, highest = 0.0;
+    double separation = 0.0, highest = 0.0;
     for (int i = 0; i < curve->n; i++) {
-        apart = fmax(apart, fabs(curve->deflection[i] - objective->value[i]));
+        separation = fmax(separation, fabs(curve->deflection[i] - objective->value[i]));
         highest = fmax(highest, fabs(objective->value[i]));
     }
-    if (apart < (1.0 - ELASTIC_SHARE) * highest)
+    if (separation < (1.0 - ELASTIC_SHARE) * highest)
         return wb_fail_to(objective->why, WB_ERR_DATA,
                           "wire '%s': yield is not reached: up to %.4g N the deflection is within "
                           "%.2f mm of the linear elastic prediction's",
-                          info->wire, curve->max_force, apart / WB_MM);
+                          info->wire, curve->max_force, separation / WB_MM);
     return WB_OK;
 }
 
-/* Refuses a test that follows the linear elastic prediction to its end. */
+/* Rejects a test that follows the linear elastic prediction to its end. */
 static enum wb_status check_yielded(struct objective *objective, const struct wb_test_info *info)
 {
     struct wb_material elastic = objective->material;
@@ -382,9 +382,10 @@ static int rising_points(const struct wb_curve *curve)
 }
 
 /* Gauss-Newton steps from (K/K0, n/n0) = `at`, with a tenth of the beam runs of a simplex. `at`
- * does not change unless they settle. */
-static enum wb_status refine(struct wb_calibrate_result *result, struct objective *objective,
-                             double at[2], bool *settled)
+ * changes only if they converge. */
+static enum wb_status refine_by_gauss_newton(struct wb_calibrate_result *result,
+                                             struct objective *objective, double at[2],
+                                             bool *settled)
 {
     struct wb_material material = objective->material;
     material.strength_coefficient = at[0] * objective->first_strength;
@@ -410,9 +411,9 @@ static enum wb_status refine(struct wb_calibrate_result *result, struct objectiv
     return WB_OK;
 }
 
-/* Nelder-Mead, then once more from the optimum. Where a follower test goes beyond its largest
- * deflection, it is first sought up to there: a curled wire's tip comes down again to where a far
- * stiffer one's still goes up, and between them the error has a ridge. */
+/* Nelder-Mead, then again from the optimum. If a follower test goes beyond its largest deflection,
+ * the first search ends there: the tip of a curled wire comes down to where that of a much stiffer
+ * wire is still going up, and the error has a ridge between the two. */
 static enum wb_status optimise(struct wb_calibrate_result *result, struct objective *objective,
                                const struct wb_calibrate_settings *settings)
 {
@@ -428,7 +429,7 @@ static enum wb_status optimise(struct wb_calibrate_result *result, struct object
         result->end != WB_CALIBRATE_ERROR) {
         const double before[2] = {at[0], at[1]};
         bool settled;
-        WB_TRY(refine(result, objective, at, &settled));
+        WB_TRY(refine_by_gauss_newton(result, objective, at, &settled));
         if (!settled)
             WB_TRY(minimise(result, objective, at, settings));
         result->restarted = true;
@@ -438,7 +439,7 @@ static enum wb_status optimise(struct wb_calibrate_result *result, struct object
     return WB_OK;
 }
 
-/* Multiplies E and sigma_Y, where they are not given, by the ratio of two closed forms. */
+/* Multiplies E and sigma_Y, unless given, by the ratio of two closed forms. */
 static void scale_closed_forms(struct wb_material *material, const struct wb_first_guess *measured,
                                const struct wb_first_guess *computed,
                                const struct wb_calibrate_settings *settings)
@@ -449,8 +450,8 @@ static void scale_closed_forms(struct wb_material *material, const struct wb_fir
         material->yield_stress *= measured->yield_stress / computed->yield_stress;
 }
 
-/* Takes what the bows make of eqs. 10 and 11 out of E and sigma_Y, by the ratio of measured to
- * computed, and seeks K and n again from where they are. */
+/* Removes the bias of eqs. 10 and 11 by the bows from E and sigma_Y, by the ratio of measured to
+ * computed values, and fits K and n again from their current values. */
 static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
                                        struct objective *objective,
                                        const struct wb_bow_samples *samples,
@@ -467,7 +468,7 @@ static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
         objective->first_strength = result->material.strength_coefficient;
         objective->first_exponent = result->material.hardening_exponent;
         bool settled;
-        WB_TRY(refine(result, objective, at, &settled));
+        WB_TRY(refine_by_gauss_newton(result, objective, at, &settled));
         if (!settled)
             WB_TRY(minimise(result, objective, at, settings));
         take_optimum(result, objective, at);
@@ -476,8 +477,9 @@ static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
     return WB_OK;
 }
 
-/* The final law on every point of the grid: eqs. 18 and 19. */
-static enum wb_status judge(struct wb_calibrate_result *result, struct objective *objective)
+/* Errors of the final law on every point of the grid: eqs. 18 and 19. */
+static enum wb_status compute_errors(struct wb_calibrate_result *result,
+                                     struct objective *objective)
 {
     const struct wb_curve *const curve = objective->curve;
     int reached = 0;
@@ -520,15 +522,16 @@ int wb_calibrate_remarks(const struct wb_calibrate_result *result,
     const double large = LARGE_BOW * result->info.length;
     if (!result->bow_corrected &&
         (fabs(wb_dataset_bow(&result->info)) > large || result->bow_spread > large))
-        remarks[n++] = "+- does not hold the bias of eqs. 10 and 11 from the samples' bows";
+        remarks[n++] =
+            "the uncertainty excludes the bias that specimen bow causes in eqs. 10 and 11";
     if (m->hardening_exponent > 1.0)
-        remarks[n++] = "n is above 1: the stress rises ever faster with the strain, which no metal "
-                       "does; K and n are numbers of a fit";
+        remarks[n++] = "n is above 1: the stress increases progressively with the strain, unlike "
+                       "in any metal; K and n are only fit parameters";
     if (m->hardening_exponent < SMALLEST_EXPONENT * (1.0 + AT_BOUND) ||
         m->hardening_exponent > LARGEST_EXPONENT * (1.0 - AT_BOUND) ||
         ratio < SMALLEST_STRENGTH_RATIO * (1.0 + AT_BOUND) ||
         ratio > LARGEST_STRENGTH_RATIO * (1.0 - AT_BOUND))
-        remarks[n++] = "K or n ended at a bound of the search: no optimum was found";
+        remarks[n++] = "K or n is at a bound of the search: no optimum was found";
     return n;
 }
 
@@ -539,8 +542,8 @@ struct leaving_out {
     int *evaluations;
 };
 
-/* E and sigma_Y from eqs. 10 and 11 of the samples' own curve as ever; K and n from those of
- * `material` on. */
+/* E and sigma_Y from eqs. 10 and 11 of the samples' own curve; K and n are fitted starting from
+ * those of `material`. */
 static enum wb_status refit_curve(const struct leaving_out *how,
                                   const struct wb_bow_samples *samples,
                                   struct wb_material *material, bool *settled,
@@ -592,7 +595,7 @@ enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
     return wb_jackknife_run(result->deviation, datasets, n, &result->material, &refit, why);
 }
 
-/* --- all --- */
+/* --- calibration --- */
 
 static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
                                       const struct wb_curve *curve,
@@ -638,7 +641,7 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
         status = correct_for_bows(result, &objective, &samples, &guess, settings);
     }
     if (status == WB_OK)
-        status = judge(result, &objective);
+        status = compute_errors(result, &objective);
     if (status == WB_OK)
         status = wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve,
                                      &result->material, &how);

@@ -1,4 +1,4 @@
-/* A part of calibrate.c that tests call by itself. */
+/* Declarations for the tests of calibrate.c. */
 #ifndef WB_ANALYSIS_CALIBRATION_PAPER_CALIBRATE_PRIVATE_H
 #define WB_ANALYSIS_CALIBRATION_PAPER_CALIBRATE_PRIVATE_H
 
@@ -7,7 +7,8 @@
 #include "base/reason.h"
 #include "base/status.h"
 
-/* Fills in result->deviation, from the calibrated result->material on, and counts the beam runs. */
+/* Fills in result->deviation, starting from the calibrated result->material, and counts the beam
+ * runs. */
 WB_MUST_CHECK enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
                                                      const struct wb_dataset *const *datasets,
                                                      int n,

@@ -11,13 +11,13 @@
 #define WB_LOG_DOMAIN "computed"
 
 struct wb_computed {
-    struct wb_test_info info; /* the natural curvature's context: outlives the cantilever */
+    struct wb_test_info info; /* data of the natural curvature; outlives the cantilever */
     struct wb_section section;
     struct wb_cantilever *cantilever;
     double zero;  /* N, vertical force at zero deflection; 0 of a follower test */
     double speed; /* m/s; 0: infinitely slow */
     double at;    /* m: deflection of the last move */
-    double begin; /* what a curve begins with: no force, or a follower test's deflection, m */
+    double begin; /* first value of a curve: zero force, or a follower test's deflection, m */
     struct wb_reason *why;
     const struct wb_law *law; /* NULL: the runs' materials */
 };
@@ -83,7 +83,7 @@ void wb_computed_destroy(struct wb_computed *computed)
     free(computed);
 }
 
-/* One move; *force is what the control found or was given, not zeroed. */
+/* One move; *force is the controlled or resulting force, not zeroed. */
 static enum wb_status move(struct wb_computed *computed, enum wb_cantilever_control control,
                            double target, struct wb_cantilever_point *point, double *force,
                            bool *reached)
@@ -111,12 +111,11 @@ enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_m
                 &force, reached));
     computed->at = 0.0;
     if (*reached && point.slack)
-        return wb_fail_to(computed->why, WB_ERR_DATA,
-                          "wire '%s', sample %d: with its bow of %.2f mm the computed wire carries "
-                          "the counterweight above zero deflection, where the strand hangs slack: "
-                          "there is no force to zero on",
-                          computed->info.wire, computed->info.sample,
-                          wb_dataset_bow(&computed->info) / WB_MM);
+        return wb_fail_to(
+            computed->why, WB_ERR_DATA,
+            "wire '%s', sample %d: with its bow of %.2f mm the computed wire carries the "
+            "counterweight above zero deflection, where the strand is slack: the force has no zero",
+            computed->info.wire, computed->info.sample, wb_dataset_bow(&computed->info) / WB_MM);
     computed->zero = *reached && !follows ? force : 0.0;
     computed->begin = follows ? point.deflection : 0.0;
     return WB_OK;

@@ -8,16 +8,16 @@
 
 #define WB_LOG_DOMAIN "first guess"
 
-/* Deflection over length on either side of a point in which its force is fitted: wide enough to
- * hold noise down, narrow enough for a curve that bends at yield (0.5 % of the force). */
+/* Range of deflection over length, on either side of a point, in which its force is fitted: wide
+ * enough to reduce noise, narrow enough for the curvature at yield (0.5 % of the force). */
 #define FORCE_RANGE 0.0125
-/* Deflection over length in which the slope past yield is taken: the paper's 'small range'. Shorter
- * and the cell's noise rules, longer and the curve bends. */
+/* Range of deflection over length for the slope beyond yield: the paper's 'small range'. A shorter
+ * range is dominated by the cell's noise, a longer one by the curvature. */
 #define SLOPE_RANGE 0.03
 #define FEWEST_SLOPE_POINTS 3
-/* Deflection over length between the points that a follower test's curve is turned into. */
+/* Step of deflection over length of a follower test's curve after its conversion. */
 #define TURNED_STEP 0.005
-/* Limits within which n0 is kept. */
+/* Limits of n0. */
 #define SMALLEST_EXPONENT 0.05
 #define LARGEST_EXPONENT 1.2
 
@@ -49,7 +49,7 @@ double wb_first_guess_tangent(double modulus, double yield_stress, double expone
 
 double wb_first_guess_strength(double modulus, double yield_stress, double exponent)
 {
-    /* E^n / sigma_Y^(n-1) without leaving the range of doubles. */
+    /* Written so that E^n / sigma_Y^(n-1) does not overflow. */
     return yield_stress * pow(modulus / yield_stress, exponent);
 }
 
@@ -70,7 +70,7 @@ static void fit_line(const struct wb_curve *curve, int first, int last, double d
     *value = mean + *slope * (deflection - middle);
 }
 
-/* Force at a deflection from a straight line through the grid points around it, at least one on
+/* Force at a deflection from a straight line fitted to the grid points around it, at least one on
  * either side. */
 static double force_at(const struct wb_curve *curve, double deflection, double length)
 {
@@ -95,20 +95,19 @@ static enum wb_status check_reach(const struct wb_curve *curve, const struct wb_
     if (curve->max_deflection < needed)
         return wb_fail_to(
             why, WB_ERR_DATA,
-            "wire '%s': yield is not reached: the first loading ends at %.2f mm, at "
-            "least %.2f mm is needed (the yield point at %g of the length and %g more "
-            "to see the slope past it)",
+            "wire '%s': yield is not reached: the first loading ends at %.2f mm, expected at least "
+            "%.2f mm (the yield point at %g of the length, and %g more for the slope beyond it)",
             info->wire, curve->max_deflection / WB_MM, needed / WB_MM, yield_point, SLOPE_RANGE);
     if (fmin(elastic_zone, yield_point) * info->length < 2.0 * curve->step)
         return wb_fail_to(why, WB_ERR_DATA,
                           "wire '%s': too few points below the yield point: %.2f mm with steps of "
-                          "%g mm; take a smaller step",
+                          "%g mm; use a smaller step",
                           info->wire, fmin(elastic_zone, yield_point) * info->length / WB_MM,
                           curve->step / WB_MM);
     return WB_OK;
 }
 
-/* The curve as a whole must rise. */
+/* Checks that the curve as a whole rises. */
 static enum wb_status check_shape(const struct wb_curve *curve, const struct wb_test_info *info,
                                   struct wb_reason *why)
 {
@@ -124,20 +123,19 @@ static enum wb_status check_shape(const struct wb_curve *curve, const struct wb_
     }
     const double start = curve->force[0];
     if (!(high > low) || variation > 3.0 * (high - low))
-        return wb_fail_to(
-            why, WB_ERR_DATA,
-            "wire '%s': the force does not rise steadily with the deflection (it goes "
-            "up and down by %.4g N in all, between %.4g and %.4g N)",
-            info->wire, variation, low, high);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s': the force does not rise steadily with the deflection (its "
+                          "changes add up to %.4g N, between %.4g and %.4g N)",
+                          info->wire, variation, low, high);
     if (start - low > 0.5 * (high - low))
         return wb_fail_to(why, WB_ERR_DATA,
                           "wire '%s': the force falls as the deflection grows (from %.4g to %.4g "
-                          "N); is its sign reversed?",
+                          "N): check its sign",
                           info->wire, start, low);
     return WB_OK;
 }
 
-/* From force over deflection. */
+/* The first guess from a curve of force over deflection. */
 static enum wb_status run(struct wb_first_guess *guess, const struct wb_curve *curve,
                           const struct wb_test_info *info, double elastic_zone, double yield_point,
                           struct wb_reason *why)
@@ -164,7 +162,7 @@ static enum wb_status run(struct wb_first_guess *guess, const struct wb_curve *c
     if (last < first + FEWEST_SLOPE_POINTS - 1)
         last = first + FEWEST_SLOPE_POINTS - 1;
     if (last > curve->n - 1)
-        return wb_fail_to(why, WB_ERR_DATA, "wire '%s': too few points past the yield point",
+        return wb_fail_to(why, WB_ERR_DATA, "wire '%s': too few points beyond the yield point",
                           info->wire);
     double value, slope;
     fit_line(curve, first, last, first * curve->step, &value, &slope);
@@ -173,8 +171,8 @@ static enum wb_status run(struct wb_first_guess *guess, const struct wb_curve *c
                              wb_first_guess_strain(1.0, length, diameter);
     if (!(result.tangent_modulus > 0.0))
         return wb_fail_to(why, WB_ERR_DATA,
-                          "wire '%s': the force falls just past the yield point (slope %.4g N/m); "
-                          "no hardening law can follow",
+                          "wire '%s': the force falls just past the yield point (slope %.4g N/m): "
+                          "no hardening law fits",
                           info->wire, slope);
     result.hardening_exponent = fmin(
         fmax(result.tangent_modulus / result.youngs_modulus, SMALLEST_EXPONENT), LARGEST_EXPONENT);

@@ -1,10 +1,10 @@
 /* Closed forms of section 4.1: E and sigma_Y from the elastic zone, and the first guess of K and n
- * from which the optimiser starts (eqs. 10 to 16 of the paper).
+ * for the optimiser (eqs. 10 to 16 of the paper).
  *
- * Eqs. 10 and 11 hold for a straight, weightless cantilever under a vertical tip force and small
- * deflection; they are used as written, on the zeroed force. Eqs. 12 to 16 are Hollomon's form
- * (sigma = K eps^n in the total strain) and serve for the first guess only: the law that is
- * calibrated is Ludwik's (plastic strain only).
+ * Eqs. 10 and 11 assume a straight, weightless cantilever under a vertical tip force and small
+ * deflection; they are applied as printed to the zeroed force. Eqs. 12 to 16 are Hollomon's form
+ * (sigma = K eps^n in the total strain) and serve only for the first guess: the calibrated law is
+ * Ludwik's (plastic strain only).
  */
 #ifndef WB_ANALYSIS_CALIBRATION_PAPER_FIRST_GUESS_H
 #define WB_ANALYSIS_CALIBRATION_PAPER_FIRST_GUESS_H
@@ -16,17 +16,18 @@
 struct wb_first_guess {
     double youngs_modulus;       /* eq. 10 at elastic_zone * L, Pa */
     double yield_stress;         /* eq. 11 at yield_point * L, Pa */
-    double tangent_modulus;      /* slope of the sigma-eps curve just past yield, Pa */
+    double tangent_modulus;      /* slope of the sigma-eps curve just beyond yield, Pa */
     double strength_coefficient; /* K0, Pa */
-    double hardening_exponent;   /* n0; kept within 0.05..1.2, where eq. 16 makes sense */
+    double hardening_exponent;   /* n0; kept within 0.05..1.2, where eq. 16 is meaningful */
 };
 
-/* Finds all of it from an averaged curve of a wire with `info`'s length and diameter. A follower
- * test's curve is turned into force over deflection first: at small deflection a follower force
- * differs from a vertical one by the square of the slope. The force at a deflection is that of a
- * straight line fitted within 1.25 % of L around it; the slope past yield is fitted over the 3 % of
- * L behind the yield point. A curve that cannot serve is WB_ERR_DATA: too short to yield, reversed
- * sign, not rising, falling behind the yield point. `why` receives which; NULL: that is logged. */
+/* Finds all values from an averaged curve of a wire with the length and diameter of `info`. A
+ * follower test's curve is first converted to force over deflection: at small deflection a follower
+ * force differs from a vertical one by the square of the slope. The force at a deflection is that
+ * of a straight line fitted within 1.25 % of L around it; the slope beyond yield is fitted over the
+ * 3 % of L after the yield point. WB_ERR_DATA for an unusable curve: too short to yield, reversed
+ * sign, not rising, decreasing after the yield point. `why` receives the reason; NULL: it is
+ * logged. */
 WB_MUST_CHECK enum wb_status wb_first_guess_run(struct wb_first_guess *guess,
                                                 const struct wb_curve *curve,
                                                 const struct wb_test_info *info,

@@ -1,4 +1,4 @@
-/* The single formulas of first_guess.c, for the start of other fits and for tests. */
+/* The formulas of first_guess.c, for the initial guess of other fits and for tests. */
 #ifndef WB_ANALYSIS_CALIBRATION_PAPER_FIRST_GUESS_PRIVATE_H
 #define WB_ANALYSIS_CALIBRATION_PAPER_FIRST_GUESS_PRIVATE_H
 

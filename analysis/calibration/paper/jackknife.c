@@ -57,16 +57,17 @@ enum wb_status wb_jackknife_run(double deviation[4], const struct wb_dataset *co
         deviation[k] = (double)NAN;
     if (n < 2)
         return WB_OK;
-    /* What is refused here is refused of a part of the samples: the calibration stands. */
-    struct wb_reason refusal = {.text = ""};
-    const enum wb_status status = leave_each_out(deviation, datasets, n, optimum, refit, &refusal);
-    if (refusal.text[0])
-        wb_warn("%s", refusal.text);
+    /* An error here concerns a subset of the samples: the calibration of all remains valid. */
+    struct wb_reason unusable = {.text = ""};
+    const enum wb_status status = leave_each_out(deviation, datasets, n, optimum, refit, &unusable);
+    if (unusable.text[0])
+        wb_warn("%s", unusable.text);
     if (status != WB_OK && status != WB_ERR_DATA)
         return wb_fail_to(why, status, "wire '%s': the uncertainties could not be computed: %s",
                           datasets[0]->info.wire, wb_status_text(status));
     if (status == WB_ERR_DATA)
-        wb_warn("wire '%s': no uncertainties, because a sample left out makes the rest unusable",
+        wb_warn("wire '%s': no uncertainties, because the samples are unusable when one of them is "
+                "left out",
                 datasets[0]->info.wire);
     return WB_OK;
 }

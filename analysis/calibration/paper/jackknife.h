@@ -1,7 +1,7 @@
 /* Standard uncertainties of calibrated properties from the scatter between samples.
  *
- * Jackknife: each sample is left out once and the others are calibrated again, from the optimum of
- * all; the deviation is sqrt((n - 1)/n sum (theta_i - mean)^2).
+ * Jackknife: each sample is left out once and the others are calibrated again, starting from the
+ * optimum of all; the deviation is sqrt((n - 1)/n sum (theta_i - mean)^2).
  */
 #ifndef WB_ANALYSIS_CALIBRATION_PAPER_JACKKNIFE_H
 #define WB_ANALYSIS_CALIBRATION_PAPER_JACKKNIFE_H
@@ -13,18 +13,18 @@
 #include "base/status.h"
 #include "fe/material/material.h"
 
-/* How samples are calibrated again. */
+/* Calibration of a subset of the samples. */
 struct wb_jackknife_refit {
-    /* Takes the law of all samples and gives that of these `n`. *settled: K and n were found.
-     * WB_ERR_DATA: these samples cannot be calibrated. */
+    /* `material` is the law of all samples on entry, and that of these `n` on return. *settled: K
+     * and n converged. WB_ERR_DATA: these samples cannot be calibrated. */
     enum wb_status (*run)(void *context, const struct wb_dataset *const *datasets, int n,
                           struct wb_material *material, bool *settled, struct wb_reason *why);
     void *context;
 };
 
-/* deviation: of E, sigma_Y, ln K, n in SI; NaN where it is not known: with one sample, or when
- * the others without one are unusable, or (K and n) when a refit did not settle. `optimum` is the
- * calibrated law of all. `why` receives why it failed; NULL: that is logged. */
+/* deviation: of E, sigma_Y, ln K, n in SI; NaN if unknown: with one sample, if a subset is
+ * unusable, or (K and n) if a refit did not converge. `optimum` is the calibrated law of all
+ * samples. `why` receives the reason; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_jackknife_run(double deviation[4],
                                               const struct wb_dataset *const *datasets, int n,
                                               const struct wb_material *optimum,

@@ -9,18 +9,18 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-/* Steps of ln K and n for the slopes. */
+/* Steps of ln K and n for their derivatives. */
 #define SLOPE_STEP 0.01
-/* A refit is settled when ln K and n move less than this, or when the Gauss-Newton step was
- * expected to lower the sum of squares by less than this part. */
+/* Convergence: change of ln K and n below this, or expected relative decrease of the sum of squares
+ * below this. */
 #define SETTLED 1e-3
 #define SETTLED_SQUARES 1e-5
 #define MOST_STEPS 12
-/* So much of Levenberg's damping leaves the step as good as Gauss and Newton's. */
+/* Levenberg's initial damping, with which a step is nearly that of Gauss-Newton. */
 #define FIRST_DAMPING 1e-3
 /* Largest change of ln K and n in one step. */
 #define LARGEST_STEP 0.5
-/* Where n may lie; K only needs to be positive, which its logarithm sees to. */
+/* Range of n; K is positive by its logarithm. */
 #define SMALLEST_EXPONENT 0.01
 #define LARGEST_EXPONENT 1.5
 
@@ -28,8 +28,8 @@ struct refit {
     struct wb_computed *computed;
     const struct wb_curve *curve;
     struct wb_material material;
-    /* (curve->n) computed values, their slopes by ln K and by n, workspace; one block, owned by
-     * value */
+    /* (curve->n) computed values, their derivatives with respect to ln K and n, workspace; one
+     * block, owned by value */
     double *value, *by_strength, *by_exponent, *previous;
     int *evaluations;
 };
@@ -48,7 +48,8 @@ static enum wb_status run(struct refit *refit, double log_strength, double expon
     return WB_OK;
 }
 
-/* Slopes by ln K and n at refit->material by forward differences; refit->value is there already. */
+/* Derivatives with respect to ln K and n at refit->material by forward differences; refit->value is
+ * already computed. */
 static enum wb_status find_slopes(struct refit *refit, bool *complete)
 {
     WB_TRY(run(refit, SLOPE_STEP, 0.0, refit->by_strength, complete));
@@ -61,9 +62,9 @@ static enum wb_status find_slopes(struct refit *refit, bool *complete)
     return WB_OK;
 }
 
-/* Gauss-Newton step of (ln K, n) with Levenberg's `damping`, and the part of the sum of squares
- * that it promises; false when a change of one has the effect of a change of the other. */
-static bool newton_step(const struct refit *refit, double damping, double step[2], double *promised)
+/* Gauss-Newton step of (ln K, n) with Levenberg's `damping`, and the expected relative decrease of
+ * the sum of squares; false if ln K and n have the same effect. */
+static bool newton_step(const struct refit *refit, double damping, double step[2], double *expected)
 {
     double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0, rr = 0.0;
     for (int i = 0; i < refit->curve->n; i++) {
@@ -86,7 +87,7 @@ static bool newton_step(const struct refit *refit, double damping, double step[2
     const double largest = fmax(fabs(step[0]), fabs(step[1]));
     if (!isfinite(largest))
         return false;
-    *promised = rr > 0.0 ? (ar * step[0] + br * step[1]) / rr : 0.0;
+    *expected = rr > 0.0 ? (ar * step[0] + br * step[1]) / rr : 0.0;
     if (largest > LARGEST_STEP) {
         step[0] *= LARGEST_STEP / largest;
         step[1] *= LARGEST_STEP / largest;
@@ -103,10 +104,10 @@ static double curve_error(const struct refit *refit, bool complete)
                     : HUGE_VAL;
 }
 
-/* Refits K and n of refit->material; *settled: they were found. */
+/* Fits K and n of refit->material; *settled: they converged. */
 static enum wb_status refit_hardening(struct refit *refit, bool *settled)
 {
-    double damping = FIRST_DAMPING, step[2], promised;
+    double damping = FIRST_DAMPING, step[2], expected;
     bool complete;
     *settled = false;
     WB_TRY(run(refit, 0.0, 0.0, refit->value, &complete));
@@ -117,17 +118,16 @@ static enum wb_status refit_hardening(struct refit *refit, bool *settled)
         return WB_OK;
     for (int i = 0; i < MOST_STEPS && !*settled; i++) {
         double *const previous = refit->previous;
-        if (!newton_step(refit, damping, step, &promised))
+        if (!newton_step(refit, damping, step, &expected))
             return WB_OK;
-        /* The curve of the last accepted point is kept until the trial proves better. */
+        /* The curve of the last accepted point is kept until the trial is better. */
         memcpy(previous, refit->value, (size_t)refit->curve->n * sizeof *previous);
         WB_TRY(run(refit, step[0], step[1], refit->value, &complete));
         const double error = curve_error(refit, complete);
-        /* A step is small by damping too; only an undamped one shows that the search has arrived.
-         */
+        /* A damped step is small anyway; only an undamped one shows convergence. */
         const bool is_last =
             damping <= FIRST_DAMPING &&
-            (fmax(fabs(step[0]), fabs(step[1])) < SETTLED || promised < SETTLED_SQUARES);
+            (fmax(fabs(step[0]), fabs(step[1])) < SETTLED || expected < SETTLED_SQUARES);
         if (!(error < best)) {
             *settled = is_last;
             memcpy(refit->value, previous, (size_t)refit->curve->n * sizeof *previous);

@@ -1,7 +1,7 @@
-/* K and n of a calibrated law fitted again, to a curve that differs little from the first.
+/* Fits K and n of a calibrated law again to a curve that differs little from the first.
  *
- * Gauss-Newton steps with Levenberg's damping need some fifteen runs, where a simplex would need
- * dozens and, with a looser tolerance, stop early in the narrow valley that K and n share.
+ * Gauss-Newton steps with Levenberg's damping need about fifteen runs. A simplex would need dozens
+ * and, with a looser tolerance, stop early, because K and n are strongly correlated.
  */
 #ifndef WB_ANALYSIS_CALIBRATION_PAPER_REFIT_H
 #define WB_ANALYSIS_CALIBRATION_PAPER_REFIT_H
@@ -13,9 +13,9 @@
 #include "base/status.h"
 #include "fe/material/material.h"
 
-/* Changes K and n of `material`, from which the search starts. *settled is false when the beam did
- * not reach the end of the curve, K and n change the curve in the same way, or the steps ran out; K
- * and n are then of no use. *evaluations is increased by the beam runs made. */
+/* Changes K and n of `material`, the initial guess. *settled is false if the beam did not reach the
+ * end of the curve, K and n have the same effect on the curve, or the steps were exhausted; K and n
+ * are then invalid. *evaluations is increased by the number of beam runs. */
 WB_MUST_CHECK enum wb_status wb_refit_run(struct wb_material *material, bool *settled,
                                           struct wb_computed *computed,
                                           const struct wb_curve *curve, int *evaluations);

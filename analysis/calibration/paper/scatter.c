@@ -7,7 +7,7 @@
 
 #define WB_LOG_DOMAIN "scatter"
 
-/* Measured less computed values of one sample on the grid of the average, into `difference`. */
+/* Measured less computed values of one sample on the grid of the average. */
 static enum wb_status sample_difference(double *difference, bool *complete,
                                         const struct wb_dataset *dataset,
                                         const struct wb_curve *grid,
@@ -19,7 +19,7 @@ static enum wb_status sample_difference(double *difference, bool *complete,
     int reached = 0;
     const struct wb_curve_grid steps = {.step = grid->step, .force_step = grid->step};
     WB_TRY(wb_curve_average_on(&one, &dataset, 1, &steps, settings->why));
-    /* The average ends where the shortest sample does. */
+    /* The average ends at the end of the shortest sample. */
     *complete = one.n >= grid->n;
     enum wb_status status = wb_computed_create(&computed, &dataset->info, material, settings);
     if (status == WB_OK) {

@@ -1,6 +1,6 @@
-/* The part of the scatter between samples that their bows do not explain. For each sample the curve
- * predicted with its own natural shape is subtracted from the measured one; the scatter of these
- * differences is what is left. */
+/* Residual scatter between samples: the part that their bows do not explain. The curve predicted
+ * with a sample's own natural shape is subtracted from its measured one, and the scatter of these
+ * differences remains. */
 #ifndef WB_ANALYSIS_CALIBRATION_PAPER_SCATTER_H
 #define WB_ANALYSIS_CALIBRATION_PAPER_SCATTER_H
 
@@ -11,8 +11,8 @@
 
 /* At each point of the grid the standard deviation of these differences is taken over the samples
  * (n - 1); *rms receives its root mean square over the grid, divided by wb_curve_scale() of
- * `curve`, the average of all samples. 0 with one sample; NaN when a prediction does not converge
- * over the whole of `curve`. */
+ * `curve`, the average of all samples. 0 with one sample; NaN if a prediction does not converge
+ * over the whole `curve`. */
 WB_MUST_CHECK enum wb_status wb_scatter_residual(double *rms,
                                                  const struct wb_dataset *const *datasets, int n,
                                                  const struct wb_curve *curve,
