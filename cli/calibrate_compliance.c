@@ -57,10 +57,10 @@ static void print_text(const struct wb_machine_compliance *c, const struct wb_te
     printf("of the interval's half: readings %.2g, the bar's rigidity %.2g, friction %.2g mm/N\n",
            c->of_readings / WB_MM, c->of_rigidity / WB_MM, c->of_friction / WB_MM);
     printf("readings are %.2g mm off their line\n", c->misfit / WB_MM);
-    if (c->has_way_back)
-        printf("during unloading %.3g mm/N; %.2g of %.3g mm are left\n", c->value_back / WB_MM,
-               c->left / WB_MM, c->most_travel / WB_MM);
-    if (c->is_told)
+    if (c->has_unloading)
+        printf("during unloading %.3g mm/N; %.2g of %.3g mm are left\n", c->value_unloading / WB_MM,
+               c->residual / WB_MM, c->most_travel / WB_MM);
+    if (c->is_identifiable)
         printf("in the machine file:\ncompliance_mm_N: %.3g\n", c->value / WB_MM);
 }
 
@@ -72,12 +72,12 @@ static int print_json(const struct wb_machine_compliance *c, const struct wb_tes
     wb_json_set_number(root, "compliance_mm_N", c->value / WB_MM);
     wb_json_set_number(root, "low", c->low / WB_MM);
     wb_json_set_number(root, "high", c->high / WB_MM);
-    wb_json_set_boolean(root, "told", c->is_told);
+    wb_json_set_boolean(root, "told", c->is_identifiable);
     wb_json_set_boolean(root, "straight", c->is_straight);
-    wb_json_set_boolean(root, "has_way_back", c->has_way_back);
-    wb_json_set_boolean(root, "comes_back", c->comes_back);
-    wb_json_set_number(root, "way_back_mm_N", c->value_back / WB_MM);
-    wb_json_set_number(root, "left_mm", c->left / WB_MM);
+    wb_json_set_boolean(root, "has_way_back", c->has_unloading);
+    wb_json_set_boolean(root, "comes_back", c->is_reversible);
+    wb_json_set_number(root, "way_back_mm_N", c->value_unloading / WB_MM);
+    wb_json_set_number(root, "left_mm", c->residual / WB_MM);
     wb_json_set_number(root, "largest_travel_mm", c->most_travel / WB_MM);
     wb_json_set_number(root, "strain", c->strain);
     wb_json_set_number(root, "of_the_bar_mm_N", c->of_bar / WB_MM);
@@ -104,20 +104,21 @@ static int deliver(const struct options *o, const struct wb_machine_compliance *
     } else {
         print_text(c, info);
     }
-    if (!c->has_way_back)
+    if (!c->has_unloading)
         wb_warn(
             "no unloading was measured: a bar that yields early looks as straight, and makes the "
             "machine too soft; its outer fibre was strained by %.2g %%, so its steel must not "
             "yield below %.0f MPa",
             100.0 * c->strain, c->strain * youngs_modulus(&o->settings, info) / WB_MPA);
-    if (c->is_told)
+    if (c->is_identifiable)
         return WB_EXIT_OK;
-    if (!c->comes_back)
+    if (!c->is_reversible)
         wb_warn(
             "the bar does not come back: %.2g of %.3g mm are left, and it gives way %.3g mm/N on "
             "the way up, %.3g mm/N back: it yields, or slips; take less force, or a thicker bar "
             "of harder steel",
-            c->left / WB_MM, c->most_travel / WB_MM, c->value / WB_MM, c->value_back / WB_MM);
+            c->residual / WB_MM, c->most_travel / WB_MM, c->value / WB_MM,
+            c->value_unloading / WB_MM);
     else if (!c->is_straight && c->low > 0.0)
         wb_warn("the readings are no line: the bar yields or slips, or the machine has play; take "
                 "less force, or a thicker bar");

@@ -40,8 +40,8 @@ static void print_member(const struct wb_three_point_member *m)
                m->fit.bow / WB_MM, 2.0 * m->fit.bow_error / WB_MM,
                fabs(m->fit.bow_off) > 2.0
                    ? "far off its prior: it takes up what the law cannot follow"
-               : m->fit.is_bow_told ? "determined by the curve"
-                                    : "not determined by the curve: its prior",
+               : m->fit.is_bow_identifiable ? "determined by the curve"
+                                            : "not determined by the curve: its prior",
                m->fit.bow_contact_correlation);
     else if (m->fit.bow != 0.0)
         printf("    natural bow %+.3f mm, given\n", m->fit.bow / WB_MM);
@@ -123,7 +123,7 @@ static int print_json(const struct wb_three_point_calibration *c,
         wb_json_set_number(item, "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
         wb_json_set_number(item, "natural_bow_mm", m->fit.bow / WB_MM);
         wb_json_set_number(item, "natural_bow_error_mm", m->fit.bow_error / WB_MM);
-        wb_json_set_boolean(item, "natural_bow_told", m->fit.is_bow_told);
+        wb_json_set_boolean(item, "natural_bow_told", m->fit.is_bow_identifiable);
         wb_json_set_number(item, "natural_bow_off_prior", m->fit.bow_off);
         wb_json_set_number(item, "bow_contact_correlation", m->fit.bow_contact_correlation);
         wb_json_set_number(item, "usable_mm", m->data.usable / WB_MM);

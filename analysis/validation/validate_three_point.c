@@ -272,7 +272,7 @@ static enum wb_status run_unloading(const struct group *g,
                    2);
     test->unloading_rms = sqrt(sum / (data->n_points - loading)) / data->max_force;
     test->residual_measured = zero_of(test);
-    test->residual_computed = run.left;
+    test->residual_computed = run.residual;
     return WB_OK;
 }
 

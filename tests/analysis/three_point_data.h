@@ -17,7 +17,7 @@ struct three_point_made {
     double zero;    /* N */
     double noise;   /* N, alternating */
     double slip;    /* m of deflection at which the force drops by a tenth; 0: none */
-    bool with_way_back;
+    bool with_unloading;
     double seating; /* m of travel that the wire takes to settle on its rollers, half of it before
                        it bends as much; 0: none */
     double bow;     /* m, see struct wb_three_point_fit */
@@ -113,7 +113,7 @@ static inline void three_point_make(struct wb_dataset *dataset, const struct thr
     for (int i = 0; i < 20 && made->contact > 0.0; i++)
         three_point_add_row(dataset, made, made->contact * i / 20.0, 0.0, WB_PHASE_LOAD);
     const int n = 200;
-    for (int i = 0; i <= (made->with_way_back ? 2 * n : n); i++) {
+    for (int i = 0; i <= (made->with_unloading ? 2 * n : n); i++) {
         struct wb_three_point_bending_point point;
         const double w = three_point_deepest * (i <= n ? i : 2 * n - i) / n;
         assert_int_equal(wb_three_point_bending_move(bending, w, &point), WB_OK);

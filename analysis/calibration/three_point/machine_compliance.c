@@ -38,20 +38,21 @@ enum {
 };
 
 static const double coverage = 0.95;
-/* Part of a line's rise over either half of its forces by which it may be curved; the unloading may
- * be off by as much in slope, and in travel. */
+/* Largest curvature of a line: deviation over its rise in either half of the forces. The unloading
+ * may deviate from it by as much in slope, and in travel. */
 static const double most_curved = 0.03;
-/* Part of the largest force above which the unloading does not count: friction turns there. */
+/* Part of the largest force above which the unloading is ignored, because friction reverses
+ * there. */
 static const double below_turn = 0.9;
-/* Standard deviations that are no difference. */
+/* Number of standard deviations below which a difference is not significant. */
 static const double noises = 3.0;
 static const double poissons_ratio = 0.3; /* of a metal: shear of a bar on a short span */
 
-/* The readings of one way whose force counts, and what lies between their travel and the bar's
+/* The readings of one branch above the smallest force, and their travel less the bar's
  * deflection. */
 struct readings {
     int n;
-    double *travel, *force, *rest;
+    double *travel, *force, *remainder;
 };
 
 struct test {
@@ -59,7 +60,7 @@ struct test {
     struct readings up, back;
 };
 
-static void take(struct readings *r, const struct wb_row *row, double force)
+static void add_reading(struct readings *r, const struct wb_row *row, double force)
 {
     r->travel[r->n] = row->deflection;
     r->force[r->n++] = force;
@@ -73,10 +74,10 @@ static void collect(struct test *test, const struct wb_dataset *dataset, double 
     double *const room = wb_memory_new(6 * n, sizeof *room);
     *test = (struct test){
         .zero = HUGE_VAL,
-        .up = {.travel = room, .force = room + n, .rest = room + 2 * n},
-        .back = {.travel = room + 3 * n, .force = room + 4 * n, .rest = room + 5 * n}};
-    /* The way up ends at the largest force, not at the largest travel: a bar that slips forward at
-     * the turn goes on, and its readings there would pass for noise of the way up. */
+        .up = {.travel = room, .force = room + n, .remainder = room + 2 * n},
+        .back = {.travel = room + 3 * n, .force = room + 4 * n, .remainder = room + 5 * n}};
+    /* The loading ends at the largest force, not at the largest travel: a bar that slips forward at
+     * the turn moves on, and its readings there would count as noise of the loading. */
     for (size_t i = 0; i < n; i++) {
         if (dataset->rows[i].force > dataset->rows[top].force)
             top = i;
@@ -91,9 +92,9 @@ static void collect(struct test *test, const struct wb_dataset *dataset, double 
         if (!(force >= from_force * test->largest) || !isfinite(row->deflection))
             continue;
         if (i <= top)
-            take(&test->up, row, force);
+            add_reading(&test->up, row, force);
         else if (force <= below_turn * test->largest)
-            take(&test->back, row, force);
+            add_reading(&test->back, row, force);
     }
 }
 
@@ -111,8 +112,8 @@ static double deflection_of(const struct wb_three_point_model *model, double for
     return 0.5 * (low + high);
 }
 
-/* How much the parabola through the readings bends over half their forces, over what the line rises
- * there. */
+/* Curvature of the readings: deviation of their parabola over half the forces, over the rise of the
+ * line there. */
 static double curved_part(const struct readings *r, double mean, double slope)
 {
     double c[3], deviation, reach = 0.0;
@@ -121,15 +122,15 @@ static double curved_part(const struct readings *r, double mean, double slope)
         x[i] = r->force[i] - mean;
         reach = fmax(reach, fabs(x[i]));
     }
-    const bool found = wb_fit_parabola(x, r->rest, (size_t)r->n, c, &deviation);
+    const bool found = wb_fit_parabola(x, r->remainder, (size_t)r->n, c, &deviation);
     free(x);
     return found ? fabs(c[2] * reach / slope) : 0.0;
 }
 
-/* The line of one way. */
+/* The line of one branch. */
 struct slope {
     double value, error, misfit, curved;
-    double at_zero; /* m, of travel */
+    double at_zero; /* m of travel, at zero force */
 };
 
 static enum wb_status find_slope(struct slope *slope, const struct readings *r,
@@ -139,15 +140,15 @@ static enum wb_status find_slope(struct slope *slope, const struct readings *r,
     double mean = 0.0, spread = 0.0;
     int signs = 1;
     for (int i = 0; i < r->n; i++) {
-        r->rest[i] = r->travel[i] - deflection_of(model, r->force[i], most);
+        r->remainder[i] = r->travel[i] - deflection_of(model, r->force[i], most);
         mean += r->force[i] / r->n;
     }
-    if (!wb_fit_line(r->force, r->rest, (size_t)r->n, &line))
+    if (!wb_fit_line(r->force, r->remainder, (size_t)r->n, &line))
         return WB_ERR_DATA;
     for (int i = 0; i < r->n; i++) {
-        const double off = r->rest[i] - line.value - line.slope * r->force[i];
+        const double off = r->remainder[i] - line.value - line.slope * r->force[i];
         const double before =
-            i > 0 ? r->rest[i - 1] - line.value - line.slope * r->force[i - 1] : off;
+            i > 0 ? r->remainder[i - 1] - line.value - line.slope * r->force[i - 1] : off;
         signs += (off < 0.0) != (before < 0.0);
         spread += pow(r->force[i] - mean, 2);
     }
@@ -166,11 +167,11 @@ static enum wb_status check(const struct wb_dataset *const *datasets, int n,
     if (!(s->rigidity > 0.0))
         return wb_fail_to(why, WB_ERR_ARGUMENT,
                           "the bar's flexural rigidity is missing: --rigidity-n-mm2 (E pi d^4 / 64 "
-                          "of a round one)");
+                          "of a round bar)");
     for (int i = 0; i < n; i++) {
         const struct wb_test_info *const b = &datasets[i]->info;
         if (b->kind != WB_TEST_THREE_POINT)
-            return wb_fail_to(why, WB_ERR_DATA, "'%s' is no three-point bending test", b->wire);
+            return wb_fail_to(why, WB_ERR_DATA, "'%s' is not a three-point bending test", b->wire);
         if (strcmp(a->wire, b->wire) != 0 || a->outer_diameter != b->outer_diameter ||
             a->length != b->length || a->machine.roller_radius != b->machine.roller_radius)
             return wb_fail_to(why, WB_ERR_DATA,
@@ -183,16 +184,16 @@ static enum wb_status check(const struct wb_dataset *const *datasets, int n,
 /* Mean over the tests with the bench's friction. */
 struct mean {
     double slope, deviation, error, misfit, of_bar, curved;
-    /* Of the unloadings: their mean slope and its error, what is left at the least force, the
-     * largest travel from zero force. NaN: not all tests have one. */
-    double back, back_error, left, most_travel;
-    double strain; /* of the bar, largest */
+    /* Of the unloadings: mean slope and its error, residual travel at the smallest force, largest
+     * travel from zero force. NaN: not all tests have an unloading. */
+    double back, back_error, residual, most_travel;
+    double strain; /* largest strain of the bar */
 };
 
 /* Adds the unloading of one test to the sums. */
-static enum wb_status add_back(struct mean *mean, const struct test *test, int n,
-                               const struct slope *up, const struct wb_three_point_model *model,
-                               double most)
+static enum wb_status add_unloading(struct mean *mean, const struct test *test, int n,
+                                    const struct slope *up,
+                                    const struct wb_three_point_model *model, double most)
 {
     struct slope back;
     if (test->back.n < LEAST_READINGS)
@@ -203,7 +204,7 @@ static enum wb_status add_back(struct mean *mean, const struct test *test, int n
     const double least = test->up.force[0];
     mean->back += back.value / n;
     mean->back_error = hypot(mean->back_error, hypot(back.error, up->error) / n);
-    mean->left += (back.at_zero - up->at_zero + (back.value - up->value) * least) / n;
+    mean->residual += (back.at_zero - up->at_zero + (back.value - up->value) * least) / n;
     return WB_OK;
 }
 
@@ -226,18 +227,17 @@ static enum wb_status find_mean(struct mean *mean, const struct test *all, int n
     WB_TRY(wb_three_point_model_create(&model, info, bench, &law, ELEMENTS));
     enum wb_status status = wb_three_point_model_run(model, &law, 0.0, most, false, &run);
     if (status == WB_OK && !run.reached)
-        status = wb_fail_to(why, WB_ERR_DATA,
-                            "a bar of %.4g N mm2 under %.4g N bends beyond %.3g mm (%s): it is no "
-                            "stiff one",
-                            rigidity / 1e-6, largest, run.travel / WB_MM,
-                            wb_three_point_bending_end_name(run.end));
+        status = wb_fail_to(
+            why, WB_ERR_DATA,
+            "a bar of %.4g N mm2 under %.4g N bends beyond %.3g mm (%s): the bar is too compliant",
+            rigidity / 1e-6, largest, run.travel / WB_MM, wb_three_point_bending_end_name(run.end));
     for (int i = 0; i < n && status == WB_OK; i++) {
         struct slope slope;
         status = find_slope(&slope, &all[i].up, model, 1.5 * most);
         if (status == WB_OK)
-            status = add_back(mean, &all[i], n, &slope, model, 1.5 * most);
+            status = add_unloading(mean, &all[i], n, &slope, model, 1.5 * most);
         if (status != WB_OK) {
-            (void)wb_fail_to(why, status, "test %d of '%s': its force does not vary", i + 1,
+            (void)wb_fail_to(why, status, "test %d of '%s': its force is constant", i + 1,
                              info->wire);
             break;
         }
@@ -250,7 +250,8 @@ static enum wb_status find_mean(struct mean *mean, const struct test *all, int n
             fmax(mean->most_travel,
                  deflection_of(model, all[i].largest, 1.5 * most) + slope.value * all[i].largest);
     }
-    mean->strain = 0.5 * d * run.largest_curvature / 1.1; /* computed up to 1.1 of its deflection */
+    /* The run goes to 1.1 times the bar's deflection. */
+    mean->strain = 0.5 * d * run.largest_curvature / 1.1;
     wb_three_point_model_destroy(model);
     mean->slope = sum / n;
     mean->misfit = sqrt(misfits / n);
@@ -259,22 +260,23 @@ static enum wb_status find_mean(struct mean *mean, const struct test *all, int n
     return status;
 }
 
-/* Friction holds the bar back either way, so that the ways differ by twice what it does to one. */
-static void judge_back(struct wb_machine_compliance *result, const struct mean *mean)
+/* Compares unloading and loading. Friction acts on the bar in both directions, so that the two
+ * branches differ by twice its effect on one. */
+static void judge_unloading(struct wb_machine_compliance *result, const struct mean *mean)
 {
-    result->has_way_back = isfinite(mean->back);
-    result->comes_back = true;
-    result->value_back = mean->back;
-    result->left = result->has_way_back ? mean->left : (double)NAN;
+    result->has_unloading = isfinite(mean->back);
+    result->is_reversible = true;
+    result->value_unloading = mean->back;
+    result->residual = result->has_unloading ? mean->residual : (double)NAN;
     result->most_travel = mean->most_travel;
     result->strain = mean->strain;
-    if (!result->has_way_back)
+    if (!result->has_unloading)
         return;
     const double of_slope = most_curved * (mean->of_bar + mean->slope) + 2.0 * result->of_friction +
                             noises * mean->back_error;
     const double of_travel = most_curved * mean->most_travel + noises * mean->misfit;
-    result->comes_back =
-        fabs(mean->back - mean->slope) <= of_slope && fabs(mean->left) <= of_travel;
+    result->is_reversible =
+        fabs(mean->back - mean->slope) <= of_slope && fabs(mean->residual) <= of_travel;
 }
 
 static enum wb_status find(struct wb_machine_compliance *result, const struct test *all, int n,
@@ -307,8 +309,8 @@ static enum wb_status find(struct wb_machine_compliance *result, const struct te
     result->low = result->value - half;
     result->high = result->value + half;
     result->is_straight = mean.curved <= most_curved;
-    judge_back(result, &mean);
-    result->is_told = result->low > 0.0 && result->is_straight && result->comes_back;
+    judge_unloading(result, &mean);
+    result->is_identifiable = result->low > 0.0 && result->is_straight && result->is_reversible;
     return WB_OK;
 }
 

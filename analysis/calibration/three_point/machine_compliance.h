@@ -1,21 +1,21 @@
-/* How much a three-point bending machine gives way, from tests of a stiff elastic bar.
+/* Compliance of a three-point bending machine, from tests of a stiff elastic bar.
  *
  * The travel is contact + w(F) + C F, where w is the deflection of a bar of known flexural rigidity
  * on this bench (fe/trial/three_point_bending.h, with shear, rollers and large deflections). So
- * travel - w(F) over F is a line of slope C; where the bar was first touched is in its height. The
- * smallest reading is the zero of the force. Only readings above a part of the largest force count,
- * past the seating.
+ * travel - w(F) over F is a line of slope C; the first contact affects only its intercept. The
+ * smallest reading is the zero of the force. Only readings above a part of the largest force are
+ * used, after the bar is seated.
  *
- * That holds of a bar which does not yield. One that yields early, far below the first reading that
- * counts, bends along a line, too: so the unloading, where it was measured, must be along the same
- * line, or nothing is told. Without unloading the strain of the bar's outer fibre is what is left
- * to judge by.
+ * This assumes that the bar does not yield. A bar that yields early, far below the first reading
+ * used, also gives a line. Therefore the unloading, if it was measured, must follow the same line;
+ * otherwise the compliance is not identifiable. Without unloading only the strain of the bar's
+ * outer fibre shows whether it stayed elastic.
  *
- * What is known of C: the scatter of the slope over several tests (Student's t, 95 %), or of one
- * alone two standard errors, with neighbouring residuals of one sign counted once; and joined with
- * it in quadrature the error of the bar's rigidity, which counts by as much as the bar gives way
- * itself. Friction, where the machine file leaves it open, is varied over its band, and its half
- * range joins likewise. */
+ * Uncertainty of C: the scatter of the slope over several tests (Student's t, 95 %), or two
+ * standard errors of a single test, corrected for correlated residuals; and in quadrature the error
+ * of the bar's rigidity, times the bar's own compliance. If the machine file gives a range of
+ * friction, friction is varied over it, and half the range of C is added in quadrature.
+ */
 #ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_MACHINE_COMPLIANCE_H
 #define WB_ANALYSIS_CALIBRATION_THREE_POINT_MACHINE_COMPLIANCE_H
 
@@ -28,33 +28,34 @@
 
 struct wb_machine_compliance_settings {
     double rigidity;       /* N m2, of the bar */
-    double rigidity_error; /* 1: half width of its interval of 95 % */
-    double from_force;     /* of the largest force: readings below serve not */
+    double rigidity_error; /* 1: relative half width of its interval of 95 % */
+    double from_force;     /* part of the largest force: readings below are not used */
 };
 extern const struct wb_setting_table wb_machine_compliance_table;
 
 struct wb_machine_compliance {
-    double value, low, high;                      /* m/N; low may be below zero */
-    double of_bar;                                /* m/N: what the bar gives way itself */
-    double of_readings, of_rigidity, of_friction; /* half widths of the interval's parts, m/N */
-    bool is_straight;  /* else the lines are curved by more than 3 %: the bar yields, or
-                          slips, or the machine has play */
-    bool has_way_back; /* of all tests: at least ten readings, too */
-    bool comes_back;   /* it is the way up; else the bar yields, or slips: by 3 % in slope or in
-                          travel, beyond noise and friction. True without unloading */
-    double value_back; /* m/N, of the unloading; NaN: none */
-    double
-        left; /* m of travel that is left during unloading, mean, at the least force that counts */
-    double most_travel; /* m, largest way from zero force */
-    double strain;      /* 1, of the bar's outer fibre, largest, if it is elastic */
-    bool is_told;       /* they are straight, come back, and the interval is above zero */
-    double misfit;      /* RMS distance of the readings from their lines, m of travel */
+    double value, low, high; /* m/N; low may be below zero */
+    double of_bar;           /* m/N: compliance of the bar itself */
+    /* m/N: contributions to the half width of the interval. */
+    double of_readings, of_rigidity, of_friction;
+    bool is_straight; /* else the lines are curved by more than 3 %: the bar yields or slips, or the
+                         machine has play */
+    bool has_unloading;     /* all tests have one, of at least ten readings */
+    bool is_reversible;     /* the unloading follows the loading; else the bar yields or slips: the
+                               deviation in slope or in travel exceeds 3 %, noise and friction. True
+                               without unloading */
+    double value_unloading; /* m/N, of the unloading; NaN: none */
+    double residual;    /* m of residual travel after unloading, mean, at the smallest force used */
+    double most_travel; /* m, largest travel from zero force */
+    double strain;      /* 1, largest of the bar's outer fibre, if it is elastic */
+    bool is_identifiable; /* straight, reversible, and the interval is above zero */
+    double misfit;        /* RMS distance of the readings from their lines, m of travel */
     int n_tests;
 };
 
 /* WB_ERR_DATA for datasets of several bars or benches, or with too few readings; WB_ERR_ARGUMENT
- * without a rigidity. A bar that is not stiff enough to tell is a result. The reason goes to `why`
- * (NULL: logged). */
+ * without a rigidity. A bar that is too compliant to identify the machine's compliance is a result.
+ * `why` receives the reason (NULL: logged). */
 WB_MUST_CHECK enum wb_status wb_machine_compliance_find(
     struct wb_machine_compliance *result, const struct wb_dataset *const *datasets, int n,
     const struct wb_machine_compliance_settings *settings, struct wb_reason *why);

@@ -27,7 +27,7 @@ const struct wb_setting_table wb_three_point_calibrate_tables[WB_THREE_POINT_CAL
 static const double coverage = 0.95;
 /* Parts of the largest curvature at which the moment is reported. */
 static const double parts[WB_THREE_POINT_MOMENTS] = {0.05, 0.1, 0.2, 0.5, 1.0};
-/* Bands where the machine says nothing: friction; nose radius over that of the rollers. */
+/* Ranges if the machine file gives none: friction; nose radius over that of the rollers. */
 static const double least_friction = 0.0, most_friction = 0.6;
 static const double least_nose = 0.5, most_nose = 2.5;
 
@@ -76,7 +76,7 @@ void wb_three_point_calibrate_bench(const struct wb_machine *machine,
             .name = i < 2 ? "friction" : "nose radius", .value = values[i], .is_possible = true};
 }
 
-/* Rigidity and moments of a law; errors by its moved companions. */
+/* Rigidity and moments of a law; their errors from the moved laws of the fit. */
 static enum wb_status describe(struct wb_three_point_member *m,
                                const struct wb_three_point_calibration *c)
 {
@@ -101,7 +101,7 @@ static enum wb_status describe(struct wb_three_point_member *m,
     return WB_OK;
 }
 
-/* Index of the member with which a member's series begins. */
+/* Index of the first member of a member's series. */
 static int series_of(const struct wb_three_point_calibration *c, int i)
 {
     for (int k = 0; k < i; k++) {
@@ -118,7 +118,7 @@ static void estimate(const struct wb_three_point_calibration *c, const double *v
 {
     double sum = 0.0, own = 0.0, squares = 0.0;
     int n = 0;
-    /* Over the series' means, or where all are of one, over the members. */
+    /* Over the means of the series, or with a single series over its members. */
     for (int i = 0; i < c->n_members; i++) {
         if (!c->members[i].is_fitted || (c->n_series > 1 && series_of(c, i) != i))
             continue;
@@ -186,7 +186,7 @@ void wb_three_point_calibrate_law(const struct wb_three_point_calibration *c, in
     wb_law_init_parallel(law, mean, WB_THREE_POINT_PARTS, share, any->material.poissons_ratio);
 }
 
-/* --- fits side by side --- */
+/* --- parallel fits --- */
 
 struct work {
     struct wb_three_point_calibration *calibration;
@@ -194,7 +194,7 @@ struct work {
     struct variant_fit *fits; /* (n_members x WB_THREE_POINT_VARIANTS); NULL: the members' own */
     int done, all;
     bool stopped;
-    enum wb_status status; /* the last failure of a job: no memory */
+    enum wb_status status; /* last failure of a job: out of memory */
 };
 
 /* A member's fit with another bench. */
@@ -229,7 +229,7 @@ static enum wb_status run_side_by_side(struct work *work, int n, enum wb_status 
     return work->stopped ? wb_fail_to(why, WB_ERR_TIMEOUT, "stopped") : WB_OK;
 }
 
-/* That a member cannot be fitted is its own affair. */
+/* A member that cannot be fitted does not affect the others. */
 static enum wb_status fit_member(void *context, int index)
 {
     struct work *const work = context;
@@ -276,7 +276,7 @@ static enum wb_status fit_members(struct work *work, struct wb_reason *why)
 
 /* --- another bench --- */
 
-/* The bench with one number at an end of its band; false where it is known: nothing to vary. */
+/* The bench with one value at an end of its range; false if the value is known exactly. */
 static bool variant_bench(const struct wb_three_point_calibration *c, int variant,
                           struct wb_three_point_bench *bench)
 {
@@ -288,7 +288,7 @@ static bool variant_bench(const struct wb_three_point_calibration *c, int varian
     return true;
 }
 
-/* A member's fit again, from where it ended. */
+/* Fits a member again, starting from its result. */
 static enum wb_status fit_variant(void *context, int index)
 {
     struct work *const work = context;

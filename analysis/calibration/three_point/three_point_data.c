@@ -26,31 +26,32 @@ const struct wb_setting wb_three_point_data_rows[WB_THREE_POINT_DATA_ROWS] = {
 
 enum {
     LEAST_POINTS = 10,
-    LEAST_BEFORE = 5, /* readings before the contact that make a zero */
+    LEAST_BEFORE = 5, /* fewest readings before the contact that give a zero */
     MOST_POINTS = 1000
 };
 
-/* Parts of the largest force between which a line leads back to the first contact; of means over so
- * many readings, an odd number up to the most, that their noise is less than the first of them. */
+/* Parts of the largest force between which a line is extrapolated back to the first contact; of
+ * means over an odd number of readings, up to the limit, such that their noise is below the first
+ * of them. */
 static const double line_from = 0.02, line_to = 0.08;
 enum {
     MOST_MEAN = 21
 };
-/* The zero is that of the readings which lie before the contact by this part of the span, or by
- * this part of the way to it where that is short. */
+/* The zero comes from readings before the contact by this part of the span, or by this part of the
+ * distance to it if that is short. */
 static const double zero_distance = 0.01, zero_part = 0.5;
-/* A kink: the force, as a mean over a quarter of this part of the span, falls by more than this
- * part of its largest so far (and several times its noise) within the part. Not where the force is
- * below so much of its largest: there a soft wire's noise is as large. */
+/* A kink: the force, as a mean over a quarter of this part of the span, decreases by more than this
+ * part of its largest value so far (and several times its noise) within the part. Not where the
+ * force is below this part of its largest value, where the noise of a soft wire is as large. */
 static const double kink_drop = 0.03, kink_reach = 0.03, kink_noises = 6.0, kink_from = 0.2;
 enum {
     KINK_MEANS = 4
 };
-/* Part of the span below the turn where the unloading begins, and of the unloading at most:
- * friction turns there. */
+/* Distance from the turn to the beginning of the unloading, as part of the span and at most of the
+ * unloading: friction reverses there. */
 static const double turn_distance = 0.02, turn_part = 0.25;
-/* Part of the largest force at which it ends; a wire that springs back little has as many points.
- */
+/* Part of the largest force at which the unloading ends; a wire with little springback has as many
+ * points. */
 static const double last_force = 0.03;
 enum {
     LEAST_BACK = 12
@@ -64,9 +65,9 @@ const char *wb_three_point_limit_name(enum wb_three_point_limit limit)
     return names[limit];
 }
 
-/* The readings of the first loading, by growing travel, and of the unloading. */
+/* The readings of the first loading, by increasing travel, and of the unloading. */
 struct readings {
-    size_t n, top; /* all; index of the largest travel */
+    size_t n, top; /* number of readings; index of the largest travel */
     double *travel, *force;
 };
 
@@ -93,7 +94,7 @@ static void collect(const struct wb_dataset *dataset, struct readings *r)
     }
 }
 
-/* Of the readings with up to `half` others on each side, as many on both. */
+/* Mean of a reading with up to `half` others on each side, the same number on both. */
 static double mean_about(const struct readings *r, size_t i, size_t half)
 {
     const size_t room = i < r->top - i ? i : r->top - i, reach = half < room ? half : room;
@@ -103,7 +104,7 @@ static double mean_about(const struct readings *r, size_t i, size_t half)
     return sum / (double)(2 * reach + 1);
 }
 
-/* Where the line through the first rise of the force comes from zero. */
+/* Finds where the line through the first rise of the force is zero. */
 static bool find_contact(const struct readings *r, double zero, double largest, double noise,
                          size_t last, double *contact)
 {
@@ -116,7 +117,7 @@ static bool find_contact(const struct readings *r, double zero, double largest, 
         if (mean_about(r, i, half) - zero < line_from * largest)
             from = i + 1;
     }
-    /* A coarse curve has few readings there: then the first two. */
+    /* A coarse curve has few readings there: then the first two are used. */
     if (to < from + 3) {
         to = from + 3;
         if (to > last)
@@ -132,7 +133,7 @@ static bool find_contact(const struct readings *r, double zero, double largest, 
     return found;
 }
 
-/* Median of the readings that lie before the contact by more than `distance`. */
+/* Median of the readings before the contact by more than `distance`. */
 static bool find_zero(const struct readings *r, double contact, double distance, double *zero)
 {
     size_t n = 0;
@@ -160,7 +161,7 @@ static double find_noise(const struct readings *r, size_t last)
     return noise;
 }
 
-/* Index of the last reading before the force breaks down. */
+/* Index of the last reading before the force drops. */
 static size_t find_kink(const struct readings *r, double reach, double noise)
 {
     double lowest = r->force[0], most = r->force[0], highest = -HUGE_VAL, highest_at = 0.0;
@@ -191,7 +192,7 @@ static size_t find_kink(const struct readings *r, double reach, double noise)
     return r->top;
 }
 
-/* Force at a travel: of a line through the readings about it, or between two. */
+/* Force at a travel, from a line through the readings around it, or between two of them. */
 static double force_at(const struct readings *r, size_t from, size_t to, double travel,
                        double half_step)
 {
@@ -234,9 +235,9 @@ static void add_point(struct wb_three_point_data *data, double travel, double fo
     data->max_force = fmax(data->max_force, force);
 }
 
-/* The unloading counts where the wire came to it within its usable range. */
-static void add_way_back(struct wb_three_point_data *data, const struct readings *r, double span,
-                         double step)
+/* The unloading is used if the wire was loaded within its usable range. */
+static void add_unloading(struct wb_three_point_data *data, const struct readings *r, double span,
+                          double step)
 {
     const double first = data->points[0].travel, top = r->travel[r->top], largest = data->max_force;
     size_t end = r->top;
@@ -245,8 +246,8 @@ static void add_way_back(struct wb_three_point_data *data, const struct readings
     while (end + 1 < r->n && r->travel[end] > first &&
            r->force[end] - data->zero_force > last_force * largest)
         end++;
-    const double way = top - r->travel[end];
-    const double from = top - fmin(turn_distance * span, turn_part * way);
+    const double distance = top - r->travel[end];
+    const double from = top - fmin(turn_distance * span, turn_part * distance);
     step = fmin(step, (from - r->travel[end]) / LEAST_BACK);
     for (double at = from; step > 0.0 && at > first; at -= step) {
         const double force = force_at(r, r->top, end - 1, at, 0.5 * step) - data->zero_force;
@@ -268,23 +269,23 @@ static void add_points(struct wb_three_point_data *data, const struct readings *
         add_point(data, at, force_at(r, 0, last, at, 0.5 * step) - data->zero_force, false);
     }
     if (data->n_points > 0)
-        add_way_back(data, r, span, step);
+        add_unloading(data, r, span, step);
 }
 
-static enum wb_status refuse_contact(const struct wb_three_point_data *data, double largest,
-                                     struct wb_reason *why)
+static enum wb_status fail_without_contact(const struct wb_three_point_data *data, double largest,
+                                           struct wb_reason *why)
 {
     char noise[80] = "";
     if (data->noise > line_from * largest)
         snprintf(noise, sizeof noise, "; its readings scatter by %.2g N, which may hide it",
                  data->noise);
-    return wb_fail_to(why, WB_ERR_DATA,
-                      "wire '%s', sample %d: no first contact: the force does not rise from zero "
-                      "to %.3g N at %.3g mm (%s)%s: is the sign of the force right, and does the "
-                      "test begin before the contact? Else say how far it serves "
-                      "(usable_travel_mm, --usable-mm)",
-                      data->info.wire, data->info.sample, largest, data->usable / WB_MM,
-                      wb_three_point_limit_name(data->limit), noise);
+    return wb_fail_to(
+        why, WB_ERR_DATA,
+        "wire '%s', sample %d: no first contact: the force does not rise from zero to %.3g N at "
+        "%.3g mm (%s)%s: check the sign of the force, and that the test begins before the contact; "
+        "or give the usable part of the test (usable_travel_mm, --usable-mm)",
+        data->info.wire, data->info.sample, largest, data->usable / WB_MM,
+        wb_three_point_limit_name(data->limit), noise);
 }
 
 static enum wb_status make(struct wb_three_point_data *data, const struct readings *r,
@@ -322,7 +323,7 @@ static enum wb_status make(struct wb_three_point_data *data, const struct readin
         found = find_contact(r, data->zero_force, largest - data->zero_force, data->noise, last,
                              &data->first_contact);
     if (!found)
-        return refuse_contact(data, largest, why);
+        return fail_without_contact(data, largest, why);
     if (data->usable > data->first_contact + largest_part * span) {
         data->usable = data->first_contact + largest_part * span;
         data->limit = WB_THREE_POINT_LIMIT_THIRD;
@@ -331,9 +332,9 @@ static enum wb_status make(struct wb_three_point_data *data, const struct readin
     add_points(data, r, span, s, r->top);
     if (data->n_points < LEAST_POINTS)
         return wb_fail_to(why, WB_ERR_DATA,
-                          "wire '%s', sample %d: %d points from %.3g to %.3g mm of travel (%s): "
-                          "expected at least %d: say how far the test serves (usable_travel_mm, "
-                          "--usable-mm), or take less seating (--seating)",
+                          "wire '%s', sample %d: %d points from %.3g to %.3g mm of travel (%s), "
+                          "expected at least %d: give the usable part of the test "
+                          "(usable_travel_mm, --usable-mm), or use less seating (--seating)",
                           info->wire, info->sample, data->n_points,
                           (data->first_contact + s->seating * span) / WB_MM, data->usable / WB_MM,
                           wb_three_point_limit_name(data->limit), LEAST_POINTS);

@@ -21,26 +21,29 @@
 
 #define WB_LOG_DOMAIN "three-point"
 
-static const double difference = 1e-3; /* of the free numbers, for slopes */
-static const double arrived = 5e-4;    /* largest step of a free number at the end */
+static const double difference = 1e-3;     /* of the free parameters, for derivatives */
+static const double converged_step = 5e-4; /* largest step of a free parameter at convergence */
 static const double settled_sum = 1e-4;
-/* Of the modulus that a part starts with: less is nothing, and the search for it would go on. */
+/* Smallest modulus of a part over its initial value: without it the search would continue towards
+ * zero. */
 static const double least_modulus = 3e-3;
 static const double lost_residual = 1e4;
-static const double contact_scale = 2e-3; /* of the span: unit of the first contact's number, */
+static const double contact_scale = 2e-3; /* of the span: unit of the first contact's parameter, */
 static const double bow_scale = 1e-2;     /* and of the natural bow's */
-/* A bow is told by the readings where they leave less than this part of its prior. */
-static const double told_part = 0.5;
-/* The isotropic share: its prior about a half, and the step of its slope at the end, taken inwards.
- * Its number may go beyond where shares are, 0 to 1, against a wall this steep: many wires are at
- * an end, and a number that comes there ever more slowly would hold up the others. */
+/* A bow is identifiable if its error is below this part of its prior. */
+static const double identifiable_part = 0.5;
+/* The isotropic share: standard deviation of its prior about one half, and the step of its
+ * derivative at the end, taken inwards. Its parameter may leave the range 0 to 1, at a residual of
+ * one for every share_wall beyond it: many wires are at an end of the range, and slow convergence
+ * towards it would delay the other parameters. */
 static const double share_spread = 0.5, share_step = 0.02, share_wall = 0.02;
-/* What no reading and no prior tells stays finite by a prior of this weight; a law is moved by this
- * many standard errors, and no number by more than that. Units of the free numbers. */
-static const double know_nothing = 1e-6, moved_by = 0.1, farthest = 1.0;
-/* Parts may yield before the first point, down to this part of its strain; with unloading, which
- * tells the stiffness before them, from earlier on: what yields there and has no part is taken for
- * a later contact. */
+/* Weight of the prior that keeps a parameter finite when neither readings nor another prior
+ * determine it; number of standard errors by which a law is moved, and largest change of a
+ * parameter. In units of the free parameters. */
+static const double weak_prior = 1e-6, moved_by = 0.1, farthest = 1.0;
+/* Smallest yield strain of the parts, as part of the strain at the first point; smaller with
+ * unloading, which determines the stiffness before the first point: yielding below the smallest
+ * yield strain would be fitted as a later contact. */
 static const double before_first = 0.25, before_first_back = 0.1;
 
 const struct wb_setting wb_three_point_fit_rows[WB_THREE_POINT_FIT_ROWS] = {
@@ -67,7 +70,7 @@ const struct wb_setting wb_three_point_fit_rows[WB_THREE_POINT_FIT_ROWS] = {
 };
 
 enum {
-    SHARE = WB_THREE_POINT_PARTS /* place of the isotropic share among the free numbers */
+    SHARE = WB_THREE_POINT_PARTS /* index of the isotropic share among the free parameters */
 };
 
 struct problem {
@@ -75,18 +78,19 @@ struct problem {
     const struct wb_three_point_strains *strains;
     const struct wb_three_point_fit_settings *settings;
     struct wb_three_point_model *model;
-    /* The law's numbers (moduli, and share), the bow where it is free, and last the contact. */
-    int n_law, n_curve, n_free, n_residuals; /* n_curve: those that change the curve; the contact
-                                                where there is unloading, which begins at the turn,
-                                                so much further from the contact */
-    double bow, bow_deviation;               /* m: where it is looked for, and its prior; 0: held */
+    /* Parameters of the law (moduli, and share), then the bow if it is free, and last the
+     * contact. */
+    int n_law, n_curve, n_free, n_residuals; /* n_curve: parameters that change the curve; including
+                                                the contact if there is unloading, which begins at
+                                                the turn, whose distance from the contact changes */
+    double bow, bow_deviation; /* m: middle and standard deviation of its prior; 0: fixed */
     double start_bow;
     double start_modulus[WB_THREE_POINT_PARTS], yield_strain[WB_THREE_POINT_PARTS];
     double start_share;
     double contact, force_scale;
-    double end; /* m of travel less what the machine gives way: the last that is computed */
+    double end; /* m of travel less the machine's deformation: the last one that is computed */
 
-    /* The law last computed: what a nose does, whenever it came. */
+    /* The law that was computed last. */
     double of[WB_THREE_POINT_MOST_FREE];
     bool is_computed;
     struct wb_three_point_run run;
@@ -99,7 +103,8 @@ static double contact_of(const struct problem *p, const double *x)
     return p->contact + contact_scale * p->data->info.length * x[p->n_free - 1];
 }
 
-/* The largest deflection. A loading beyond it goes on straight, and need not be computed anew. */
+/* The largest deflection. A loading beyond it is extrapolated linearly, and need not be computed
+ * again. */
 static double deepest_of(const struct problem *p, const double *x)
 {
     return p->end - (p->data->has_unloading ? contact_of(p, x) : p->data->first_contact);
@@ -111,7 +116,7 @@ static double bow_of(const struct problem *p, const double *x)
            (p->bow_deviation > 0.0 ? bow_scale * p->data->info.length * x[p->n_law] : 0.0);
 }
 
-/* The isotropic share comes last of the law's numbers. */
+/* The isotropic share is the last parameter of the law. */
 static double share_of(const struct problem *p, const double *x)
 {
     return p->n_law > SHARE ? fmin(fmax(0.5 + x[SHARE], 0.0), 1.0) : 0.0;
@@ -138,11 +143,13 @@ static double strain_at(const struct wb_three_point_data *data, double deflectio
 
 struct wb_three_point_strains wb_three_point_fit_strains(const struct wb_three_point_data *data)
 {
-    const double way = fmax(data->points[0].travel - data->first_contact, 1e-3 * data->info.length);
-    /* A wire that yields bends more sharply in the middle. */
+    const double distance =
+        fmax(data->points[0].travel - data->first_contact, 1e-3 * data->info.length);
+    /* A wire that yields has a larger curvature at midspan. */
     const double before = data->has_unloading ? before_first_back : before_first;
-    return (struct wb_three_point_strains){
-        before * strain_at(data, way), 1.5 * strain_at(data, data->usable - data->first_contact)};
+    return (struct wb_three_point_strains){before * strain_at(data, distance),
+                                           1.5 *
+                                               strain_at(data, data->usable - data->first_contact)};
 }
 
 static void start_law(struct problem *p, const struct wb_three_point_fit *start)
@@ -150,8 +157,8 @@ static void start_law(struct problem *p, const struct wb_three_point_fit *start)
     const struct wb_three_point_data *const data = p->data;
     const struct wb_three_point_point *const first = &data->points[0];
     const double span = data->info.length, d = data->info.outer_diameter;
-    const double way = fmax(first->travel - data->first_contact, 1e-3 * span);
-    const double EI = fmax(first->force, 1e-3 * data->max_force) * pow(span, 3) / (48.0 * way);
+    const double distance = fmax(first->travel - data->first_contact, 1e-3 * span);
+    const double EI = fmax(first->force, 1e-3 * data->max_force) * pow(span, 3) / (48.0 * distance);
     const double E = EI / wb_circle_second_moment(d);
     const struct wb_three_point_strains strains =
         p->strains ? *p->strains : wb_three_point_fit_strains(data);
@@ -178,7 +185,7 @@ static void start_law(struct problem *p, const struct wb_three_point_fit *start)
     p->start_share = start->law.isotropic_share - 0.5;
 }
 
-/* The whole curve of a law; `reached` of the run says whether it came to its end. */
+/* The whole curve of a law; run.reached: it was computed to its end. */
 static void compute(struct problem *p, const double *x)
 {
     const size_t size = (size_t)p->n_curve * sizeof *x;
@@ -239,7 +246,7 @@ static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
     return residuals(context, x->data, f->data);
 }
 
-/* Differences; that of the first contact needs no run. */
+/* Difference quotients; that of the first contact needs no run. */
 static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
 {
     struct problem *const p = context;
@@ -249,7 +256,7 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     double *const other = base + n;
     int status = residuals(p, x->data, base);
     for (int step = 0; step < p->n_free && status == GSL_SUCCESS; step++) {
-        const int k = p->n_free - 1 - step; /* the contact first, while the curve is there */
+        const int k = p->n_free - 1 - step; /* the contact first, while the curve is available */
         memcpy(moved, x->data, (size_t)p->n_free * sizeof *moved);
         const double by = k >= p->n_law ? 10.0 * difference : difference;
         moved[k] += by;
@@ -261,8 +268,9 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     return status;
 }
 
-/* Neighbouring residuals of one sign tell the same: how many in a row, over the two of noise. */
-static double alike_in_a_row(const gsl_vector *f, int n)
+/* Correction for correlated residuals: mean number of neighbours with the same sign, over the two
+ * of white noise. */
+static double residual_correlation(const gsl_vector *f, int n)
 {
     int rows = 1;
     for (int i = 1; i < n; i++)
@@ -270,8 +278,8 @@ static double alike_in_a_row(const gsl_vector *f, int n)
     return fmax(1.0, 0.5 * n / rows);
 }
 
-/* What the numbers owe to the readings, whose variance is `variance`, and to the priors, which are
- * as far off as their standard deviations say: H^-1 (variance Jr'Jr + Jp'Jp) H^-1. */
+/* Covariance of the parameters from the readings, with variance `variance`, and from the priors,
+ * with their standard deviations: H^-1 (variance Jr'Jr + Jp'Jp) H^-1. */
 static bool find_covariance(const gsl_matrix *J, size_t n_readings, double variance,
                             gsl_matrix *covariance)
 {
@@ -283,9 +291,9 @@ static bool find_covariance(const gsl_matrix *J, size_t n_readings, double varia
     gsl_matrix *const M = wb_memory_need(gsl_matrix_alloc(n, n));
     gsl_matrix *const HM = wb_memory_need(gsl_matrix_alloc(n, n));
     gsl_matrix_set_identity(H);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, H);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, weak_prior, H);
     gsl_matrix_set_identity(M);
-    gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &priors.matrix, &priors.matrix, know_nothing, M);
+    gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &priors.matrix, &priors.matrix, weak_prior, M);
     gsl_blas_dgemm(CblasTrans, CblasNoTrans, variance, &readings.matrix, &readings.matrix, 1.0, M);
     const bool good = gsl_linalg_cholesky_decomp1(H) == GSL_SUCCESS &&
                       gsl_linalg_cholesky_invert(H) == GSL_SUCCESS;
@@ -299,8 +307,8 @@ static bool find_covariance(const gsl_matrix *J, size_t n_readings, double varia
     return good;
 }
 
-/* Slopes by the isotropic share itself in place of those by its number, which end where the share
- * is 0 or 1. */
+/* Derivatives with respect to the isotropic share, instead of its parameter, for which they are
+ * zero outside 0 to 1. */
 static bool slope_of_share(struct problem *p, const gsl_vector *x, const gsl_vector *f,
                            gsl_matrix *J)
 {
@@ -318,8 +326,8 @@ static bool slope_of_share(struct problem *p, const gsl_vector *x, const gsl_vec
     return good;
 }
 
-/* The law moved along the columns of the covariance's triangular factor, which the covariance is
- * destroyed for; a share, to where shares are. */
+/* Moves the law along the columns of the covariance's triangular factor, which overwrites the
+ * covariance; a share is kept within 0 to 1. */
 static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *covariance,
                      struct wb_three_point_fit *fit)
 {
@@ -359,8 +367,8 @@ static void find_errors(struct problem *p, gsl_multifit_nlinear_workspace *w,
     double sum = 0.0;
     for (size_t i = 0; i < (size_t)p->data->n_points; i++)
         sum += pow(gsl_vector_get(w->f, i), 2);
-    const double variance =
-        sum / fmax(1.0, p->data->n_points - p->n_free) * alike_in_a_row(w->f, p->data->n_points);
+    const double variance = sum / fmax(1.0, p->data->n_points - p->n_free) *
+                            residual_correlation(w->f, p->data->n_points);
     if ((p->n_law <= SHARE || slope_of_share(p, w->x, w->f, w->J)) &&
         find_covariance(w->J, (size_t)p->data->n_points, variance, covariance)) {
         const double of_contact = sqrt(gsl_matrix_get(covariance, contact, contact));
@@ -371,7 +379,7 @@ static void find_errors(struct problem *p, gsl_multifit_nlinear_workspace *w,
             fit->bow_contact_correlation =
                 gsl_matrix_get(covariance, bow, contact) / (of_bow * of_contact);
             fit->bow_off = (fit->bow - p->bow) / p->bow_deviation;
-            fit->is_bow_told = fit->bow_error < told_part * p->bow_deviation;
+            fit->is_bow_identifiable = fit->bow_error < identifiable_part * p->bow_deviation;
         }
         move_law(p, w->x, covariance, fit);
     }
@@ -397,15 +405,15 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
         return p->status;
     if (started != GSL_SUCCESS || !p->run.reached)
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
-                          "wire '%s', sample %d: the beam comes to %.3g of %.3g mm of deflection "
-                          "(%s) with a nose of %.3g mm and friction %.2g from the first guess: use "
+                          "wire '%s', sample %d: the beam reaches %.3g of %.3g mm of deflection "
+                          "(%s) with a nose of %.3g mm and friction %.2g at the initial guess: use "
                           "less of the test (usable_travel_mm, --usable-mm)",
                           p->data->info.wire, p->data->info.sample, p->run.travel / WB_MM,
                           deepest_of(p, zero) / WB_MM, wb_three_point_bending_end_name(p->run.end),
                           bench->nose_radius / WB_MM, bench->friction);
     const struct wb_least_squares_search how = {
         .max_iterations = p->settings->max_iterations,
-        .smallest_step = arrived,
+        .smallest_step = converged_step,
         .smallest_gain = settled_sum,
         .patience = 1,
         .status = &p->status,
@@ -413,7 +421,7 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
     fit->is_converged = wb_least_squares_iterate(w, &how, NULL);
     if (p->status != WB_OK)
         return p->status;
-    /* The curve of the answer itself, not of the last trial. */
+    /* The curve of the result, not of the last trial. */
     double *const r = wb_memory_new((size_t)p->n_residuals, sizeof *r);
     const int status = residuals(p, w->x->data, r);
     double sum = 0.0;
@@ -421,7 +429,7 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
         sum += r[i] * r[i];
     free(r);
     if (status != GSL_SUCCESS || !p->run.reached)
-        return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: the fit was lost",
+        return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: the fit diverged",
                           p->data->info.wire, p->data->info.sample);
     fit->misfit = sqrt(sum / p->data->n_points) * p->force_scale / p->data->max_force;
     law_of(p, w->x->data, &fit->law);
@@ -452,9 +460,10 @@ enum wb_status wb_three_point_fit_run(struct wb_three_point_fit *fit,
     *fit = (struct wb_three_point_fit){.is_converged = false};
     p.end = data->usable - bench->compliance * last_force;
     if (!(p.end > data->first_contact))
-        return wb_fail_to(why, WB_ERR_DATA,
-                          "wire '%s', sample %d: a compliance of %.3g mm/N takes all of the travel",
-                          data->info.wire, data->info.sample, bench->compliance / WB_MM);
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "wire '%s', sample %d: a compliance of %.3g mm/N accounts for all of the travel",
+            data->info.wire, data->info.sample, bench->compliance / WB_MM);
     p.n_law = WB_THREE_POINT_PARTS + data->has_unloading;
     wb_three_point_place_bow(&data->info, settings, &p.bow, &p.bow_deviation);
     const int is_bow_free = p.bow_deviation > 0.0;

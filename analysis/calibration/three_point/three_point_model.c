@@ -12,19 +12,21 @@
 #define WB_LOG_DOMAIN "three-point"
 
 enum {
-    STEPS = 36, /* of the way up, */
-    BACK = 24   /* and of the unloading, at most */
+    STEPS = 36, /* most steps of the loading, */
+    BACK = 24   /* and of the unloading */
 };
 
-/* The first step of the unloading, as a part of the deflection; and for how much of the steps that
- * are left the rest of it would do, going on as it falls: it falls ever more slowly. */
+/* The first step of the unloading, as part of the deflection; and the part of the remaining steps
+ * in which a linear extrapolation of the force would reach zero, because the force decreases ever
+ * more slowly. */
 static const double first_back = 0.01, slower = 0.6;
 
-/* Bent by nature beyond this over the span, rad, a wire does not lie on rollers. */
+/* rad: largest natural bend of a wire over the span, above which it does not rest on the
+ * rollers. */
 static const double most_bent = 1.0;
 
-/* One way by growing travel, with a curve through its points that does not overshoot. */
-struct way {
+/* One branch by increasing travel, with a monotonic interpolation of its points. */
+struct branch {
     int n;
     double travel[STEPS + 1], force[STEPS + 1];
     gsl_spline *spline;
@@ -35,20 +37,20 @@ struct wb_three_point_model {
     struct wb_test_info info;
     struct wb_three_point_bending *bending;
     double natural_curvature;
-    struct way up, back;
+    struct branch up, back;
 };
 
-static void take_way(struct way *way, int n)
+static void create_branch(struct branch *branch, int n)
 {
-    way->n = n;
-    way->spline = wb_memory_need(gsl_spline_alloc(gsl_interp_steffen, (size_t)n));
-    way->accel = wb_memory_need(gsl_interp_accel_alloc());
+    branch->n = n;
+    branch->spline = wb_memory_need(gsl_spline_alloc(gsl_interp_steffen, (size_t)n));
+    branch->accel = wb_memory_need(gsl_interp_accel_alloc());
 }
 
-static void release_way(struct way *way)
+static void release_branch(struct branch *branch)
 {
-    gsl_spline_free(way->spline);
-    gsl_interp_accel_free(way->accel);
+    gsl_spline_free(branch->spline);
+    gsl_interp_accel_free(branch->accel);
 }
 
 enum wb_status wb_three_point_model_create(struct wb_three_point_model **out,
@@ -59,8 +61,8 @@ enum wb_status wb_three_point_model_create(struct wb_three_point_model **out,
     struct wb_section section = {0};
     *out = NULL;
     struct wb_three_point_model *const model = wb_memory_new(1, sizeof *model);
-    take_way(&model->up, STEPS + 1);
-    take_way(&model->back, BACK + 1);
+    create_branch(&model->up, STEPS + 1);
+    create_branch(&model->back, BACK + 1);
     model->info = *info;
     enum wb_status status = wb_section_init_law(&section, info->outer_diameter, law, 0);
     if (status == WB_OK) {
@@ -90,8 +92,8 @@ void wb_three_point_model_destroy(struct wb_three_point_model *model)
     if (!model)
         return;
     wb_three_point_bending_destroy(model->bending);
-    release_way(&model->up);
-    release_way(&model->back);
+    release_branch(&model->up);
+    release_branch(&model->back);
     free(model);
 }
 
@@ -100,15 +102,15 @@ double wb_three_point_model_curvature(const struct wb_test_info *info, double bo
     return 8.0 * bow / (info->length * info->length);
 }
 
-static double evenly(void *context, double from_middle)
+static double uniform_curvature(void *context, double from_middle)
 {
     const struct wb_three_point_model *const model = context;
     (void)from_middle;
     return model->natural_curvature;
 }
 
-/* One equilibrium; false when it is not reached. */
-static enum wb_status add(struct wb_three_point_model *model, struct way *way, int at,
+/* Computes one equilibrium; *reached is false if it was not found. */
+static enum wb_status add(struct wb_three_point_model *model, struct branch *branch, int at,
                           double deflection, struct wb_three_point_run *run, bool *reached)
 {
     struct wb_three_point_bending_point point;
@@ -117,24 +119,24 @@ static enum wb_status add(struct wb_three_point_model *model, struct way *way, i
     *reached = point.end == WB_THREE_POINT_BENDING_CONVERGED;
     if (!*reached)
         return WB_OK;
-    way->travel[at] = point.travel;
-    way->force[at] = point.force;
+    branch->travel[at] = point.travel;
+    branch->force[at] = point.force;
     run->travel = fmax(run->travel, point.travel);
     run->largest_curvature = fmax(run->largest_curvature, point.middle_curvature);
     run->wrapped = fmax(run->wrapped, point.wrapped);
     return WB_OK;
 }
 
-static enum wb_status go_up(struct wb_three_point_model *model, double deflection,
-                            struct wb_three_point_run *run, bool *reached)
+static enum wb_status run_loading(struct wb_three_point_model *model, double deflection,
+                                  struct wb_three_point_run *run, bool *reached)
 {
-    struct way *const up = &model->up;
+    struct branch *const up = &model->up;
     up->travel[0] = up->force[0] = 0.0;
     for (int i = 1; i <= STEPS; i++) {
-        /* Denser at the start, where the curve bends most. */
+        /* Smaller steps at the start, where the curvature of the curve is largest. */
         const double part = (double)i / STEPS;
         WB_TRY(add(model, up, i, deflection * part * (0.35 + 0.65 * part), run, reached));
-        /* A machine that gives way more than the wire bends would snap. */
+        /* A machine that is more compliant than the wire would snap through. */
         *reached = *reached && up->travel[i] > up->travel[i - 1];
         if (!*reached)
             return WB_OK;
@@ -143,8 +145,9 @@ static enum wb_status go_up(struct wb_three_point_model *model, double deflectio
     return WB_OK;
 }
 
-/* Whether a curve goes through the points of the unloading, which come as the nose moves. */
-static bool draw_back(struct way *back)
+/* Interpolates the unloading, whose points are in the order of the test; false if they do not allow
+ * it. */
+static bool interpolate_unloading(struct branch *back)
 {
     for (int i = 0, k = back->n - 1; i < k; i++, k--) {
         const double travel = back->travel[i], force = back->force[i];
@@ -160,11 +163,11 @@ static bool draw_back(struct way *back)
     return gsl_spline_init(back->spline, back->travel, back->force, (size_t)back->n) == GSL_SUCCESS;
 }
 
-/* Steps that come to where the nose leaves the wire, which is a kink: the curve ends there. */
-static enum wb_status go_back(struct wb_three_point_model *model, double deflection,
-                              struct wb_three_point_run *run, bool *reached)
+/* Steps to where the nose leaves the wire, at which the curve has a kink and ends. */
+static enum wb_status run_unloading(struct wb_three_point_model *model, double deflection,
+                                    struct wb_three_point_run *run, bool *reached)
 {
-    struct way *const back = &model->back;
+    struct branch *const back = &model->back;
     double at = deflection, step = first_back * deflection;
     bool has_left = false;
     WB_TRY(add(model, back, 0, at, run, reached));
@@ -181,31 +184,31 @@ static enum wb_status go_back(struct wb_three_point_model *model, double deflect
         if (fallen > 0.0 && i < BACK)
             step = force / fallen * (back->travel[i - 1] - back->travel[i]) / (slower * (BACK - i));
     }
-    run->left = wb_three_point_bending_contact_level(model->bending);
-    *reached = *reached && draw_back(back);
+    run->residual = wb_three_point_bending_contact_level(model->bending);
+    *reached = *reached && interpolate_unloading(back);
     return WB_OK;
 }
 
 enum wb_status wb_three_point_model_run(struct wb_three_point_model *model,
                                         const struct wb_law *law, double natural_curvature,
-                                        double deflection, bool with_way_back,
+                                        double deflection, bool with_unloading,
                                         struct wb_three_point_run *run)
 {
     bool reached = false;
     *run = (struct wb_three_point_run){.end = WB_THREE_POINT_BENDING_NOT_CONVERGED,
-                                       .left = (double)NAN};
+                                       .residual = (double)NAN};
     if (!(fabs(natural_curvature) * model->info.length < most_bent))
         return WB_OK;
     if (natural_curvature != model->natural_curvature) {
         model->natural_curvature = natural_curvature;
-        WB_TRY(wb_three_point_bending_set_curvature(model->bending, evenly, model));
+        WB_TRY(wb_three_point_bending_set_curvature(model->bending, uniform_curvature, model));
     }
     WB_TRY(wb_three_point_bending_set_law(model->bending, law));
     gsl_interp_accel_reset(model->up.accel);
     gsl_interp_accel_reset(model->back.accel);
-    WB_TRY(go_up(model, deflection, run, &reached));
-    if (reached && with_way_back)
-        WB_TRY(go_back(model, deflection, run, &reached));
+    WB_TRY(run_loading(model, deflection, run, &reached));
+    if (reached && with_unloading)
+        WB_TRY(run_unloading(model, deflection, run, &reached));
     run->reached = reached;
     return WB_OK;
 }
@@ -213,26 +216,26 @@ enum wb_status wb_three_point_model_run(struct wb_three_point_model *model,
 double wb_three_point_model_stiffness(const struct wb_three_point_model *model, double travel,
                                       bool is_unloading)
 {
-    const struct way *const way = is_unloading ? &model->back : &model->up;
-    const double *const x = way->travel, *const y = way->force;
-    const int last = way->n - 1;
+    const struct branch *const branch = is_unloading ? &model->back : &model->up;
+    const double *const x = branch->travel, *const y = branch->force;
+    const int last = branch->n - 1;
     if (travel <= x[0])
         return 0.0;
     if (travel >= x[last])
         return (y[last] - y[last - 1]) / (x[last] - x[last - 1]);
-    return gsl_spline_eval_deriv(way->spline, travel, way->accel);
+    return gsl_spline_eval_deriv(branch->spline, travel, branch->accel);
 }
 
 double wb_three_point_model_force(const struct wb_three_point_model *model, double travel,
                                   bool is_unloading)
 {
-    const struct way *const way = is_unloading ? &model->back : &model->up;
-    const double *const x = way->travel, *const y = way->force;
-    const int last = way->n - 1;
+    const struct branch *const branch = is_unloading ? &model->back : &model->up;
+    const double *const x = branch->travel, *const y = branch->force;
+    const int last = branch->n - 1;
     if (travel <= x[0])
         return y[0];
     if (travel >= x[last])
         return y[last] +
                (travel - x[last]) * wb_three_point_model_stiffness(model, travel, is_unloading);
-    return gsl_spline_eval(way->spline, travel, way->accel);
+    return gsl_spline_eval(branch->spline, travel, branch->accel);
 }

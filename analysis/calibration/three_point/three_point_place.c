@@ -3,12 +3,12 @@
 #include <math.h>
 
 enum {
-    CONTACT_SECTIONS = 48, /* golden ones of a contact's range, */
-    BOW_SECTIONS = 16      /* and of a bow's, each of which computes the curve */
+    CONTACT_SECTIONS = 48, /* golden-section steps for a contact's range, */
+    BOW_SECTIONS = 16      /* and for a bow's, each of which computes the curve */
 };
 
 static const double golden = 0.6180339887498949;
-/* Standard deviations of a prior within which the number is looked for. */
+/* Range of the search, in standard deviations of a prior. */
 static const double reach = 3.0;
 
 void wb_three_point_place_bow(const struct wb_test_info *info,
@@ -27,19 +27,19 @@ double wb_three_point_place_error(const struct wb_three_point_data *data,
     return fmax(data->noise, settings->force_share * data->max_force);
 }
 
-/* What is looked for, and with what. */
+/* Input and state of the search. */
 struct search {
     struct wb_three_point_model *model;
     const struct wb_law *law;
     const struct wb_three_point_data *data;
     const struct wb_three_point_fit_settings *settings;
     double deepest, bow, bow_deviation;
-    double first_contact; /* the last that was found */
+    double first_contact; /* the last one found */
     struct wb_three_point_run run;
     enum wb_status status;
 };
 
-/* Golden section for a valley; every trial costs. */
+/* Golden-section search of a minimum, without derivatives. */
 static double find_valley(struct search *s, double (*height)(struct search *s, double x),
                           double low, double high, int sections)
 {
@@ -63,7 +63,7 @@ static double find_valley(struct search *s, double (*height)(struct search *s, d
     return 0.5 * (low + high);
 }
 
-/* Sum of squares of a wire that is so much stiffer than the law's as fits best. */
+/* Sum of squares of a wire whose stiffness relative to the law is fitted. */
 static double misfit_of_contact(struct search *s, double contact)
 {
     const struct wb_three_point_data *const data = s->data;
@@ -81,7 +81,7 @@ static double misfit_of_contact(struct search *s, double contact)
     return (mm - (ff > 0.0 ? mf * mf / ff : 0.0)) / (error * error) + off * off;
 }
 
-/* The same of a bow, with the contact that suits it best. It has one valley, as curves are shifted
+/* The same of a bow, with its best contact. It has a single minimum, because curves are shifted
  * along a rise. */
 static double misfit_of_bow(struct search *s, double bow)
 {

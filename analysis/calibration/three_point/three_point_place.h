@@ -1,7 +1,5 @@
-/* Where a three-point bending test of a wire whose law is known begins: its first contact, and the
- * natural bow of its wire. The same priors hold where the law is fitted with them
- * (analysis/calibration/three_point/three_point_fit.h).
- */
+/* First contact and natural bow of a three-point bending test of a wire with a known law. The
+ * priors are those of fits of the law (analysis/calibration/three_point/three_point_fit.h). */
 #ifndef WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_PLACE_H
 #define WB_ANALYSIS_CALIBRATION_THREE_POINT_THREE_POINT_PLACE_H
 
@@ -15,9 +13,9 @@ struct wb_three_point_place {
     double bow;           /* m, see struct wb_three_point_fit */
 };
 
-/* The natural bow's prior: its middle, m, and standard deviation, m, 0 where it is held. A number
- * in the specimen's file holds it, a band is two deviations on either side; without either the wire
- * counts as straight, or as the settings' bow_prior says. */
+/* The natural bow's prior: its middle, m, and standard deviation, m, 0 if it is fixed. A value in
+ * the specimen file fixes it, a range is two standard deviations on either side; without either the
+ * wire is straight, or has the settings' bow_prior. */
 void wb_three_point_place_bow(const struct wb_test_info *info,
                               const struct wb_three_point_fit_settings *settings, double *middle,
                               double *deviation);
@@ -26,10 +24,10 @@ void wb_three_point_place_bow(const struct wb_test_info *info,
 double wb_three_point_place_error(const struct wb_three_point_data *data,
                                   const struct wb_three_point_fit_settings *settings);
 
-/* Finds both on the loading, computed up to `deepest` (m of deflection), with the law's stiffness
- * left free: specimens differ, and a contact should not make up for that. A bow that the priors
- * hold is not looked for. The model is left with the run at the bow that was found; `run` is that
- * run, and where it did not come to its end, nothing was found. */
+/* Finds both from the loading, computed up to `deepest` (m of deflection), with a free factor of
+ * the law's stiffness: otherwise the contact would compensate differences between specimens. A
+ * fixed bow is not searched. The model keeps the run at the bow found; `run` is that run, and if it
+ * did not reach its end, nothing was found. */
 WB_MUST_CHECK enum wb_status
 wb_three_point_place_find(struct wb_three_point_place *place, struct wb_three_point_model *model,
                           const struct wb_law *law, const struct wb_three_point_data *data,

@@ -22,7 +22,7 @@ struct bar {
     double scatter;  /* of the compliance between tests */
     double yield;    /* Pa; 0: elastic */
     double exponent; /* of its hardening; 0: one half */
-    bool with_way_back;
+    bool with_unloading;
     double slip;   /* m, at the turn */
     double softer; /* m/N, during unloading, from a fifth of the largest force on */
 };
@@ -75,7 +75,7 @@ static void make(struct wb_dataset *dataset, const struct bar *bar, int index)
     };
     assert_int_equal(wb_three_point_bending_create(&bending, &model), WB_OK);
     wb_section_release(&section);
-    for (int i = 0; i <= (bar->with_way_back ? 2 : 1) * READINGS; i++) {
+    for (int i = 0; i <= (bar->with_unloading ? 2 : 1) * READINGS; i++) {
         struct wb_three_point_bending_point point;
         const double part = (double)(i <= READINGS ? i : 2 * READINGS - i) / READINGS;
         assert_int_equal(wb_three_point_bending_move(bending, 0.1e-3 * part, &point), WB_OK);
@@ -127,7 +127,7 @@ static void compliance_is_found_within_its_interval(void **unused)
         struct wb_machine_compliance c;
         assert_int_equal(find(&c, &bars[i], 1, 0.02, NULL), WB_OK);
         print(&c);
-        assert_true(c.is_straight && c.is_told);
+        assert_true(c.is_straight && c.is_identifiable);
         assert_true(c.low < true_compliance && true_compliance < c.high);
         assert_close_relative(c.value, true_compliance, i == 0 ? 2e-3 : 0.02);
         assert_close_relative(c.of_rigidity,
@@ -142,7 +142,7 @@ static void soft_bar_does_not_tell(void **unused)
     struct wb_machine_compliance c;
     assert_int_equal(find(&c, &bar, 1, 0.02, NULL), WB_OK);
     print(&c);
-    assert_false(c.is_told);
+    assert_false(c.is_identifiable);
     assert_true(c.low < 0.0 && c.high > true_compliance);
     assert_true(c.of_rigidity > c.of_readings);
 }
@@ -154,7 +154,7 @@ static void bar_that_yields_does_not_tell(void **unused)
     struct wb_machine_compliance c;
     assert_int_equal(find(&c, &bar, 1, 0.02, NULL), WB_OK);
     print(&c);
-    assert_true(!c.is_straight && !c.is_told && c.low > 0.0);
+    assert_true(!c.is_straight && !c.is_identifiable && c.low > 0.0);
 }
 
 /* It yields at a fiftieth of its largest force, and hardens evenly: its way up is a line. */
@@ -165,45 +165,45 @@ static void bar_that_yields_early_does_not_come_back(void **unused)
     struct wb_machine_compliance c;
     assert_int_equal(find(&c, &bar, 1, 0.02, NULL), WB_OK);
     print(&c);
-    assert_true(c.is_straight && !c.has_way_back && c.is_told);
+    assert_true(c.is_straight && !c.has_unloading && c.is_identifiable);
     assert_false(c.low < true_compliance);
-    bar.with_way_back = true;
+    bar.with_unloading = true;
     assert_int_equal(find(&c, &bar, 1, 0.02, NULL), WB_OK);
-    print_message("back %.3g mm/N, left %.3g of %.3g mm\n", 1e3 * c.value_back, 1e3 * c.left,
-                  1e3 * c.most_travel);
-    assert_true(c.is_straight && c.has_way_back && !c.comes_back && !c.is_told);
-    assert_close_relative(c.value_back, true_compliance, 0.1);
-    assert_true(c.left > 0.1 * c.most_travel);
+    print_message("back %.3g mm/N, left %.3g of %.3g mm\n", 1e3 * c.value_unloading,
+                  1e3 * c.residual, 1e3 * c.most_travel);
+    assert_true(c.is_straight && c.has_unloading && !c.is_reversible && !c.is_identifiable);
+    assert_close_relative(c.value_unloading, true_compliance, 0.1);
+    assert_true(c.residual > 0.1 * c.most_travel);
 }
 
 static void slip_and_another_slope_are_told(void **unused)
 {
     (void)unused;
-    const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .slip = -0.08e-3},
-                               {6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .slip = 0.08e-3},
-                               {6e-3, 0.0, 0.0, 0.0, .with_way_back = true, .softer = -0.1e-6}};
+    const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_unloading = true, .slip = -0.08e-3},
+                               {6e-3, 0.0, 0.0, 0.0, .with_unloading = true, .slip = 0.08e-3},
+                               {6e-3, 0.0, 0.0, 0.0, .with_unloading = true, .softer = -0.1e-6}};
     for (size_t i = 0; i < sizeof bars / sizeof *bars; i++) {
         struct wb_machine_compliance c;
         assert_int_equal(find(&c, &bars[i], 1, 0.02, NULL), WB_OK);
-        assert_true(c.is_straight && !c.comes_back && !c.is_told);
-        assert_close_relative(c.value_back, true_compliance + bars[i].softer, 0.01);
-        assert_close(c.left, bars[i].slip, 0.01e-3);
+        assert_true(c.is_straight && !c.is_reversible && !c.is_identifiable);
+        assert_close_relative(c.value_unloading, true_compliance + bars[i].softer, 0.01);
+        assert_close(c.residual, bars[i].slip, 0.01e-3);
     }
 }
 
 static void elastic_bar_comes_back(void **unused)
 {
     (void)unused;
-    const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_way_back = true},
-                               {6e-3, 2e-6, 0.0, 0.0, .with_way_back = true},
-                               {4e-3, 1e-6, 0.0, 0.0, .with_way_back = true}};
+    const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_unloading = true},
+                               {6e-3, 2e-6, 0.0, 0.0, .with_unloading = true},
+                               {4e-3, 1e-6, 0.0, 0.0, .with_unloading = true}};
     for (size_t i = 0; i < sizeof bars / sizeof *bars; i++) {
         struct wb_machine_compliance c;
         assert_int_equal(find(&c, &bars[i], 1, 0.02, NULL), WB_OK);
-        print_message("back %.3g mm/N, left %.3g of %.3g mm\n", 1e3 * c.value_back, 1e3 * c.left,
-                      1e3 * c.most_travel);
-        assert_true(c.has_way_back && c.comes_back && c.is_told);
-        assert_close_relative(c.value_back, true_compliance, 0.03);
+        print_message("back %.3g mm/N, left %.3g of %.3g mm\n", 1e3 * c.value_unloading,
+                      1e3 * c.residual, 1e3 * c.most_travel);
+        assert_true(c.has_unloading && c.is_reversible && c.is_identifiable);
+        assert_close_relative(c.value_unloading, true_compliance, 0.03);
         assert_close_relative(c.strain, 6.0 * bars[i].diameter * 0.1e-3 / (span * span), 0.05);
     }
 }
@@ -211,7 +211,7 @@ static void elastic_bar_comes_back(void **unused)
 static void first_cycle_counts(void **unused)
 {
     (void)unused;
-    const struct bar bar = {6e-3, 0.0, 0.0, 0.0, .with_way_back = true};
+    const struct bar bar = {6e-3, 0.0, 0.0, 0.0, .with_unloading = true};
     const struct wb_machine_compliance_settings settings = {
         .rigidity = rigidity_of(bar.diameter), .rigidity_error = 0.02, .from_force = 0.2};
     const struct wb_dataset *const pointer = &datasets[0];
@@ -226,7 +226,7 @@ static void first_cycle_counts(void **unused)
         wb_dataset_add_row(&datasets[0], &row);
     }
     assert_int_equal(wb_machine_compliance_find(&c, &pointer, 1, &settings, NULL), WB_OK);
-    assert_true(c.has_way_back && c.comes_back && c.is_told);
+    assert_true(c.has_unloading && c.is_reversible && c.is_identifiable);
     assert_close_relative(c.value, true_compliance, 2e-3);
     wb_dataset_release(&datasets[0]);
 }

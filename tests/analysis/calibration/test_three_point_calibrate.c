@@ -82,7 +82,7 @@ static void way_back_tells_the_hardening_rule(void **unused)
 {
     (void)unused;
     const struct three_point_made made = {
-        .modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3, .with_way_back = true};
+        .modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3, .with_unloading = true};
     struct wb_dataset dataset;
     three_point_make(&dataset, &made, "");
     struct wb_three_point_calibration c = calibrate(&dataset, 1);
@@ -151,7 +151,7 @@ static void bow_of_the_specimen_is_taken_into_account(void **unused)
         print_message("bow %+.3f +- %.3f mm (prior %+.3f +- %.3f), told: %d, correlation with the "
                       "contact %+.2f, misfit %.2g\n",
                       1e3 * fit->bow, 1e3 * fit->bow_error, 1e3 * says[i].value,
-                      250.0 * (says[i].most - says[i].least), fit->is_bow_told,
+                      250.0 * (says[i].most - says[i].least), fit->is_bow_identifiable,
                       fit->bow_contact_correlation, fit->misfit);
         const double truth = moment_of(&made, c.largest_curvature);
         print_message("    M at the largest curvature %+.2f %%, interval %.3g to %.3g of it\n",
@@ -162,7 +162,7 @@ static void bow_of_the_specimen_is_taken_into_account(void **unused)
         if (i == 1)
             compare_with_truth(&c, &made);
         if (i < 2)
-            assert_true(fit->bow_error == 0.0 && !fit->is_bow_told);
+            assert_true(fit->bow_error == 0.0 && !fit->is_bow_identifiable);
         else
             assert_close(fit->bow, made.bow, 2.5 * fit->bow_error);
         assert_close(fit->bow, i == 0 ? 0.0 : made.bow, i < 2 ? 1e-12 : 0.3e-3);

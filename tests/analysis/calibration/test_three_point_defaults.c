@@ -130,19 +130,19 @@ static void run(struct sums *sums, const struct alternative *a, const struct thr
     if (wb_three_point_calibrate_run(&c, &pointer, 1, &settings, &why) != WB_OK)
         fail_msg("%s: %s", a->name, why.text);
     add(sums, &c, made);
-    if (made->with_way_back)
+    if (made->with_unloading)
         predict(sums, &c, made);
     wb_three_point_calibrate_release(&c);
     wb_dataset_release(&dataset);
 }
 
-static void run_all(struct sums *sums, int n, int n_alternatives, bool with_way_back)
+static void run_all(struct sums *sums, int n, int n_alternatives, bool with_unloading)
 {
     static const char *const names[NUMBERS] = {"EI", "M at 0.05", "0.1", "0.2", "0.5", "1 kappa"};
     uint64_t random = 20261123;
     for (int i = 0; i < n; i++) {
         struct three_point_made made = draw(&random);
-        made.with_way_back = with_way_back;
+        made.with_unloading = with_unloading;
         for (int a = 0; a < n_alternatives; a++)
             run(&sums[a], &alternatives[a], &made);
     }

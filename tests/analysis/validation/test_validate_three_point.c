@@ -62,7 +62,7 @@ static void true_law_predicts_loading_and_unloading(void **state)
     made.contact = 0.4e-3;
     made.zero = 0.02;
     made.noise = 2e-3;
-    made.with_way_back = true;
+    made.with_unloading = true;
     const struct wb_properties properties = properties_of(&made);
     three_point_make(&datasets[0], &made, "");
     assert_int_equal(validate(&properties, 1, NULL), WB_OK);
@@ -86,7 +86,7 @@ static void wrong_law_is_detected_on_each_part(void **state)
 {
     (void)state;
     struct three_point_made made = plain, soft = plain;
-    made.with_way_back = true;
+    made.with_unloading = true;
     soft.modulus_factor = 0.8;
     struct wb_properties properties = properties_of(&soft);
     properties.is_rule_tested = false;
@@ -176,7 +176,7 @@ static void bows_of_the_specimens_are_used(void **state)
         for (int i = 0; i < 2; i++) {
             struct three_point_made made = plain;
             made.bow = i == 0 ? 0.8e-3 : 0.3e-3;
-            made.with_way_back = true;
+            made.with_unloading = true;
             three_point_make(&datasets[i], &made, "");
             datasets[i].info.piece.natural_bow =
                 (struct wb_band){known == 1, made.bow, made.bow, made.bow};
@@ -254,7 +254,7 @@ static void tables_and_numbers_are_those_of_the_result(void **state)
     struct wb_text scores = {0};
     char path[WB_PATH], *text;
     size_t size;
-    made.with_way_back = true;
+    made.with_unloading = true;
     const struct wb_properties properties = properties_of(&plain);
     three_point_make(&datasets[0], &made, "");
     assert_int_equal(validate(&properties, 1, NULL), WB_OK);
