@@ -13,8 +13,8 @@ enum {
     ORIENTATIONS = 128 /* over a quarter of a turn */
 };
 
-/* Curvatures of the section, over the largest nominal one: first, each over the one before, last.
- */
+/* Curvatures of the section relative to the largest nominal one: first, ratio of successive ones,
+ * last. */
 static const double first = 1e-3, growth = 1.003, last = 1e4;
 
 static const double coverage = 0.95;
@@ -45,7 +45,7 @@ static double stress(const struct wb_material *material, double strain)
     return material->yield_stress + (1.0 - wb_hardening_ratio(material, over)) * over;
 }
 
-/* Of the ring at a curvature of the section, over its orientation. */
+/* Axial moment of the ring at a curvature of the section, averaged over its orientation. */
 static double axial_moment(const struct wb_cable_ring *ring, double curvature)
 {
     double sum = 0.0;
@@ -61,7 +61,7 @@ enum wb_status wb_cable_axial_moments(const struct wb_cable_ring *ring, const do
 {
     double largest = 0.0;
     if (!(ring->n_wires > 0 && ring->radius > 0.0 && ring->area > 0.0))
-        return wb_fail_to(why, WB_ERR_ARGUMENT, "a ring has wires, a radius and an area");
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "a ring needs wires, a radius and an area");
     if (wb_hardening_law(&ring->conductor)->moves)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
                           "the conductor's hardening is kinematic: expected isotropic");
@@ -69,13 +69,13 @@ enum wb_status wb_cable_axial_moments(const struct wb_cable_ring *ring, const do
         largest = fmax(largest, curvature[i]);
         moment[i] = 0.0;
     }
-    /* With kappa(M) the curvature of the section, the nominal one is 3 / M^2 int kappa m dm from 0
-     * to M. It lags behind that of the section, without end where a hinge forms. */
+    /* With kappa(M) the curvature of the section, the nominal curvature is 3 / M^2 int kappa m dm
+     * from 0 to M. It lags behind that of the section, without limit where a hinge forms. */
     double k0 = 0.0, m0 = 0.0, nominal0 = 0.0, integral = 0.0;
     for (double k = first * largest; largest > 0.0 && nominal0 < largest && k < last * largest;
          k *= growth) {
         const double m = axial_moment(ring, k), dm = m - m0, dk = k - k0;
-        /* Exact for a straight piece. */
+        /* Exact for a straight segment. */
         integral += dm * (k0 * m0 + 0.5 * (k0 * dm + dk * m0) + dk * dm / 3.0);
         const double nominal = 3.0 * integral / (m * m);
         for (int i = 0; i < n; i++) {
@@ -91,7 +91,7 @@ enum wb_status wb_cable_axial_moments(const struct wb_cable_ring *ring, const do
     return WB_OK;
 }
 
-/* --- means and places --- */
+/* --- means and position between the bounds --- */
 
 static struct wb_cable_mean finish(double sum, double squares, int n, int n_series)
 {

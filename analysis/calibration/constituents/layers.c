@@ -11,7 +11,7 @@
 
 #define WB_LOG_DOMAIN "layers"
 
-/* Strips over a diameter: the moment of a plastic section is then good to 1e-3. */
+/* Strips over a diameter; the moment of a plastic section is then accurate to 1e-3. */
 #define STRIPS 200
 
 static const struct wb_setting rows[] = {
@@ -41,12 +41,13 @@ static enum wb_status check(const struct wb_layers *layers, struct wb_reason *wh
 {
     if (!(layers->conductor_diameter > 0.0) ||
         !(layers->outer_diameter >= layers->conductor_diameter))
-        return wb_fail_to(why, WB_ERR_ARGUMENT,
-                          "the outer diameter (%g mm) must be no less than the conductor's (%g mm)",
-                          layers->outer_diameter / WB_MM, layers->conductor_diameter / WB_MM);
+        return wb_fail_to(
+            why, WB_ERR_ARGUMENT,
+            "the outer diameter (%g mm) must not be less than the conductor's (%g mm)",
+            layers->outer_diameter / WB_MM, layers->conductor_diameter / WB_MM);
     if (layers->strands < 0 || (layers->strands > 0) != (layers->strand_diameter > 0.0))
         return wb_fail_to(why, WB_ERR_ARGUMENT,
-                          "strands and their diameter go together: expected both or none");
+                          "strands and their diameter go together: expected both or neither");
     if (layers->strands > 0 && wb_layers_fill(layers) > 1.0)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
                           "%d strands of %g mm do not fit into a circle of %g mm", layers->strands,
@@ -89,8 +90,9 @@ double wb_layers_poissons_ratio(const struct wb_layers *layers)
 
 /* --- moments --- */
 
-/* Adds `times` the moments of a section. Its fibres lie symmetrically and the first loading is the
- * same to both sides, so that the axis does not move: no axial strain is to be found. */
+/* Adds `times` the moments of a section. The fibres are symmetric and the first loading is the same
+ * in both directions, so that the neutral axis does not move and there is no axial strain to solve
+ * for. */
 static enum wb_status add_moments(const struct wb_section *section, double times,
                                   const double *curvature, int n, double *moment)
 {

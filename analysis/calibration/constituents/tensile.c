@@ -18,12 +18,13 @@ enum {
     EXPONENTS = 400
 };
 
-/* Exponents that are tried. */
+/* Range of the exponents. */
 #define LEAST_EXPONENT 0.02
 #define MOST_EXPONENT 2.0
-/* Eq. 7 takes ln(sigma - sigma_Y), which is endless at the proof stress. */
+/* Smallest plastic strain for eq. 7, in proof offsets: ln(sigma - sigma_Y) is infinite at the proof
+ * stress. */
 #define BEYOND_PROOF 5.0
-/* n counts as known where all that fit alike are within this factor. */
+/* n is identifiable if all laws that fit alike are within this factor. */
 #define KNOWN_WITHIN 1.25
 
 const double wb_tensile_plastic_strains[WB_TENSILE_STRESSES] = {0.002, 0.01, 0.05};
@@ -51,8 +52,8 @@ void wb_tensile_default_settings(struct wb_tensile_settings *settings)
 
 /* --- one curve --- */
 
-/* Engineering stress over strain of the first loading up to the largest force, later true stress
- * over plastic strain. */
+/* Engineering stress over strain of the first loading up to the largest force, then converted to
+ * true stress over plastic strain. */
 struct curve {
     size_t n;
     double *strain, *stress; /* (n), owned */
@@ -65,13 +66,14 @@ static void release(struct curve *curve)
     *curve = (struct curve){0, NULL, NULL};
 }
 
-/* The rows up to the largest force, in bins of equally many so that no more than MOST_POINTS come
- * out. The zero of force and travel is the first row's where the travel begins. */
+/* Reads the rows up to the largest force, averaged in equal bins so that there are at most
+ * MOST_POINTS. Force and travel are zeroed at the first row. */
 static enum wb_status take_curve(struct curve *curve, const struct wb_dataset *dataset,
                                  struct wb_reason *why)
 {
     const struct wb_test_info *const info = &dataset->info;
-    /* What the machine gives way is in the crosshead's travel; an extensometer does not see it. */
+    /* The crosshead's travel includes the machine's deformation; an extensometer does not measure
+     * it. */
     const double compliance = info->machine.compliance.known && !info->machine.own_elongation
                                   ? info->machine.compliance.value
                                   : 0.0;
@@ -110,13 +112,13 @@ struct sums {
     double x, y, xx, xy;
 };
 
-/* The steepest line by least squares through a stretch of neighbouring points that spans enough
- * stress, and where it meets S = 0. */
+/* Finds the steepest least-squares line through a stretch of neighbouring points that spans enough
+ * stress, and its intersection with S = 0. */
 static bool find_start(const struct curve *curve, double stretch,
                        struct wb_tensile_specimen *specimen)
 {
     const double span = stretch * specimen->strength;
-    /* Sums from the first point's strain, which keeps their digits. */
+    /* Relative to the first point's strain, to keep the digits of the sums. */
     const double shift = curve->strain[0];
     double best = 0.0;
     for (size_t i = 0; i + LEAST_WINDOW <= curve->n; i++) {
@@ -150,7 +152,8 @@ static bool find_start(const struct curve *curve, double stretch,
     return best > 0.0;
 }
 
-/* The first stress at which `over` reaches `value`, from its last point below; NaN: it does not. */
+/* The first stress at which `over` reaches `value`, interpolated from the last point below; NaN:
+ * not reached. */
 static double stress_at(const double *over, const double *stress, size_t n, double value)
 {
     for (size_t i = 1; i < n; i++) {
@@ -161,20 +164,20 @@ static double stress_at(const double *over, const double *stress, size_t n, doub
     return (double)NAN;
 }
 
-/* How far a point lies to the right of the line of the start, in strain. */
-static double beyond_line(const struct curve *curve, const struct wb_tensile_specimen *specimen,
-                          size_t i)
+/* Distance of a point to the right of the initial line, in strain. */
+static double distance_to_line(const struct curve *curve,
+                               const struct wb_tensile_specimen *specimen, size_t i)
 {
     return curve->strain[i] - specimen->slack - curve->stress[i] / specimen->slope;
 }
 
-/* S meets the line E (e - slack - offset) where the curve lies beyond the line by the offset. */
+/* The stress at which the curve crosses the line E (e - slack - offset). */
 static double proof_stress(const struct curve *curve, const struct wb_tensile_specimen *specimen,
                            double offset)
 {
     double before = -HUGE_VAL;
     for (size_t i = 0; i < curve->n; i++) {
-        const double beyond = beyond_line(curve, specimen, i);
+        const double beyond = distance_to_line(curve, specimen, i);
         if (beyond > offset && before <= offset && isfinite(before))
             return curve->stress[i - 1] + (offset - before) / (beyond - before) *
                                               (curve->stress[i] - curve->stress[i - 1]);
@@ -183,9 +186,9 @@ static double proof_stress(const struct curve *curve, const struct wb_tensile_sp
     return (double)NAN;
 }
 
-/* With a crosshead most of what is not plastic is the machine's, which does not thin the specimen:
- * all of it is taken off first. What is neglected then is the specimen's own elastic strain beside
- * one, some 0.1 %. */
+/* Converts to true stress and plastic strain. With a crosshead most of the strain that is not
+ * plastic is the machine's, which does not reduce the specimen's section: all of it is subtracted
+ * first. This neglects the specimen's own elastic strain against one, about 0.1 %. */
 static void make_true(struct curve *curve, bool own_elongation,
                       const struct wb_tensile_specimen *specimen)
 {
@@ -200,8 +203,8 @@ static void make_true(struct curve *curve, bool own_elongation,
 
 /* --- laws --- */
 
-/* sigma_Y and K by least squares for an exponent; sigma_Y is not below zero. Returns the root mean
- * square of what is left. */
+/* sigma_Y and K by least squares for an exponent, with sigma_Y >= 0. Returns the root mean square
+ * of the residuals. */
 static double fit_linear(const double *strain, const double *stress, size_t n, double exponent,
                          struct wb_tensile_law *law)
 {
@@ -235,7 +238,7 @@ static double exponent_of(int i)
     return LEAST_EXPONENT * pow(MOST_EXPONENT / LEAST_EXPONENT, (double)i / (EXPONENTS - 1));
 }
 
-/* The best exponent by trial and golden sections, and the range in which laws fit alike. */
+/* The best exponent by trials and golden sections, and the range in which laws fit alike. */
 static void fit_direct(const double *strain, const double *stress, size_t n, double alike,
                        struct wb_tensile_specimen *specimen)
 {
@@ -321,21 +324,20 @@ static enum wb_status run_specimen(struct wb_tensile_specimen *specimen, struct 
     WB_TRY(take_curve(curve, dataset, why));
     specimen->strength = curve->stress[curve->n - 1];
     if (!(specimen->strength > 0.0) || !find_start(curve, settings->stretch, specimen))
-        return wb_fail_to(
-            why, WB_ERR_DATA,
-            "sample %d: no stretch of at least %d points rises by %.3g of the largest "
-            "force: this is no tensile curve",
-            specimen->sample, LEAST_WINDOW, settings->stretch);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "sample %d: no stretch of at least %d points rises by %.3g of the "
+                          "largest force: not a tensile curve",
+                          specimen->sample, LEAST_WINDOW, settings->stretch);
     specimen->uniform_strain = curve->strain[curve->n - 1] - specimen->slack;
-    specimen->start_is_straight = beyond_line(curve, specimen, 0) <= settings->proof_offset;
+    specimen->start_is_straight = distance_to_line(curve, specimen, 0) <= settings->proof_offset;
     if (!specimen->start_is_straight)
-        return WB_OK; /* a plastic strain over such a line would be none */
+        return WB_OK; /* plastic strain over such a line is not defined */
     specimen->proof_stress = proof_stress(curve, specimen, settings->proof_offset);
     make_true(curve, dataset->info.machine.own_elongation, specimen);
     for (int k = 0; k < WB_TENSILE_STRESSES; k++)
         specimen->stress[k] =
             stress_at(curve->strain, curve->stress, curve->n, wb_tensile_plastic_strains[k]);
-    /* The points of the laws: plastic strain grows along the curve but for noise. */
+    /* The points for the laws: plastic strain increases along the curve except for noise. */
     size_t first = curve->n, end = curve->n;
     const double to = settings->fit_to > 0.0 ? settings->fit_to : HUGE_VAL;
     for (size_t i = curve->n;
@@ -431,8 +433,8 @@ static enum wb_status check_same(const struct wb_dataset *const *datasets, int n
         const struct wb_test_info *const info = &datasets[i]->info;
         if (info->kind != WB_TEST_TENSILE)
             return wb_fail_to(why, WB_ERR_UNSUPPORTED,
-                              "%s, sample %d is a %s test: a tensile test is expected here",
-                              info->wire, info->sample, wb_machine_kind_name(info->kind));
+                              "%s, sample %d is a %s test: expected a tensile test", info->wire,
+                              info->sample, wb_machine_kind_name(info->kind));
         if (!(info->piece.area > 0.0) || !(info->length > 0.0))
             return wb_fail_to(why, WB_ERR_DATA, "%s, sample %d: area or gauge length is missing",
                               info->wire, info->sample);
@@ -440,13 +442,13 @@ static enum wb_status check_same(const struct wb_dataset *const *datasets, int n
             info->piece.constituent != first->piece.constituent)
             return wb_fail_to(why, WB_ERR_DATA,
                               "%s of %s and %s of %s are not specimens of one constituent: "
-                              "calibrate them apart",
+                              "calibrate them separately",
                               wb_test_piece_constituent_name(first->piece.constituent), first->wire,
                               wb_test_piece_constituent_name(info->piece.constituent), info->wire);
         if (info->machine.own_elongation != first->machine.own_elongation)
             return wb_fail_to(why, WB_ERR_DATA,
-                              "sample %d: elongation by %s, of the first by %s: calibrate them "
-                              "apart",
+                              "sample %d: elongation by %s, but of the first sample by %s: "
+                              "calibrate them separately",
                               info->sample,
                               info->machine.own_elongation ? "extensometer" : "crosshead",
                               first->machine.own_elongation ? "extensometer" : "crosshead");
@@ -454,13 +456,13 @@ static enum wb_status check_same(const struct wb_dataset *const *datasets, int n
     return WB_OK;
 }
 
-/* True stress at a plastic strain that lies within the curve. */
+/* True stress at a plastic strain within the curve. */
 static double true_stress(const struct curve *curve, double plastic)
 {
     return stress_at(curve->strain, curve->stress, curve->n, plastic);
 }
 
-/* The mean of the true curves as far as all of them go, and its least squares. */
+/* The mean of the true curves over their common range, and its least-squares law. */
 static void fit_mean(struct wb_tensile_result *result, const struct curve *curves,
                      const struct wb_tensile_settings *settings)
 {
@@ -511,7 +513,7 @@ enum wb_status wb_tensile_run(struct wb_tensile_result *result,
     struct wb_tensile_result made;
     memset(&made, 0, sizeof made);
     if (n < 1)
-        return wb_fail_to(why, WB_ERR_ARGUMENT, "no tensile test is given");
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "no tensile test given");
     WB_TRY(wb_setting_check(&wb_tensile_table, settings, why));
     WB_TRY(check_same(datasets, n, why));
     const struct wb_test_info *const info = &datasets[0]->info;

@@ -37,7 +37,7 @@ static void put_interval(struct wb_text *text, const char *key,
         wb_text_append(text, "  %s: [%.4g, %.4g]\n", key, number->low / unit, number->high / unit);
 }
 
-/* YAML in double quotes takes any name. */
+/* Double-quoted YAML, which permits any name. */
 static void put_text(struct wb_text *text, const char *key, const char *value)
 {
     wb_text_append(text, "%s: \"", key);
@@ -52,24 +52,26 @@ static enum wb_status check(const struct wb_tensile_result *result,
 {
     for (int i = 0; i < result->n_specimens; i++) {
         if (!result->specimens[i].start_is_straight)
-            return wb_fail_to(why, WB_ERR_DATA,
-                              "sample %d: the start is not straight but bends over: there is no "
-                              "plastic strain, and no law for a material file",
-                              result->specimens[i].sample);
+            return wb_fail_to(
+                why, WB_ERR_DATA,
+                "sample %d: the start of the curve is not straight: there is no plastic "
+                "strain, and no law for a material file",
+                result->specimens[i].sample);
     }
     if (!isfinite(result->of_mean.rms))
-        return wb_fail_to(why, WB_ERR_DATA,
-                          "no law is fitted: too few points behind the yield point for a material");
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "no law fitted: too few points beyond the yield point for a material file");
     if (!(settings->youngs_modulus > 0.0) && !result->own_elongation)
         return wb_fail_to(why, WB_ERR_DATA,
-                          "crosshead travel: no E: a material file needs --youngs-modulus-mpa, "
-                          "known from elsewhere");
+                          "a material file needs E, which crosshead travel does not give: add "
+                          "--youngs-modulus-mpa");
     if (!(settings->density > 0.0))
         return wb_fail_to(why, WB_ERR_DATA, "a material file needs --density-g-cm3");
     if (!(result->of_mean.yield_stress > 0.0))
         return wb_fail_to(why, WB_ERR_DATA,
-                          "the least squares have no yield stress above zero: begin them earlier "
-                          "with --fit-from");
+                          "the least squares give no yield stress above zero: begin them at a "
+                          "smaller --fit-from");
     return WB_OK;
 }
 
@@ -82,11 +84,11 @@ static void append(struct wb_text *text, const struct wb_tensile_result *result,
              wb_test_piece_constituent_name(result->constituent));
     if (result->n_followed > 0)
         snprintf(alike, sizeof alike,
-                 "the law meets %d of the curves; n from %.3g to %.3g fits alike%s",
+                 "the law fits %d of the curves; n from %.3g to %.3g fits alike%s",
                  result->n_followed, result->n_low, result->n_high,
-                 result->identifiable ? "" : ": sigma_Y, K and n hold together only");
+                 result->identifiable ? "" : ": sigma_Y, K and n are strongly correlated");
     else
-        snprintf(alike, sizeof alike, "the law meets none of the curves");
+        snprintf(alike, sizeof alike, "the law fits no curve");
     snprintf(source, sizeof source, "%d tensile test%s of %s, elongation by %s; E %s; %s",
              result->n_specimens, result->n_specimens == 1 ? "" : "s", own,
              result->own_elongation ? "extensometer" : "crosshead",

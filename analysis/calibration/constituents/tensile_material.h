@@ -6,7 +6,7 @@
 #include "base/reason.h"
 #include "base/setting.h"
 
-/* What tensile tests do not say. 0: not given. */
+/* Values that tensile tests do not give. 0: not given. */
 struct wb_tensile_material_settings {
     double youngs_modulus; /* Pa; must be given where the elongation is a crosshead's */
     double density;        /* kg/m3; must be given */
@@ -15,8 +15,8 @@ struct wb_tensile_material_settings {
 extern const struct wb_setting_table wb_tensile_material_table;
 
 /* Writes the file: sigma_Y, K and n of the least squares on the specimens' mean curve, E of the
- * tests or as given. `name` NULL: the wire's and the constituent's. WB_ERR_DATA where something is
- * missing, and for specimens without a fitted law. */
+ * tests or as given. `name` NULL: that of wire and constituent. WB_ERR_DATA if a value is missing,
+ * and for specimens without a fitted law. */
 WB_MUST_CHECK enum wb_status
 wb_tensile_material_write(const struct wb_tensile_result *result, const char *name,
                           const struct wb_tensile_material_settings *settings, const char *path,

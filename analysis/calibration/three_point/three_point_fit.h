@@ -58,7 +58,7 @@ struct wb_three_point_fit {
     bool is_converged;              /* else the iterations were exhausted */
     double misfit;                  /* RMS of the force residuals over F_max */
     double largest_curvature;       /* 1/m, at midspan */
-    double wrapped;                 /* largest wrap angle on a roller or the nose, rad */
+    double wrapped;                 /* largest wrap angle of the nose, rad */
     /* Laws moved by moved_by[i] standard errors in independent directions, which include the first
      * contact's error: see struct wb_cycle_fit. */
     int n_moved;

@@ -22,7 +22,7 @@ struct wb_three_point_run {
     enum wb_three_point_bending_end end; /* and only travels below `travel` were computed */
     double travel;                       /* m, largest */
     double largest_curvature;            /* 1/m, at midspan, in excess of the natural one */
-    double wrapped;                      /* largest wrap angle, rad */
+    double wrapped;                      /* largest wrap angle of the nose, rad */
     double residual; /* m of travel where the nose leaves the wire; NaN: no unloading */
 };
 
