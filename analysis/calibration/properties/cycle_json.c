@@ -48,13 +48,13 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
         wb_json_set_number(item, "flexural_rigidity_N_mm2", rank->rigidity.value / WB_NMM2);
         wb_json_set_number(item, "residual_curvature_ratio",
                            c->has_unloading ? rank->residual_curvature_ratio.value : (double)NAN);
-        /* The parameters of a law that does not follow depend on where its search ended. */
+        /* The parameters of a law that does not fit depend on where its search ended. */
         if (rank->counts)
             put_law(wb_json_set_object(item, "parameters"), &rank->law);
     }
 }
 
-/* The numbers' names, and their correlations row by row. */
+/* The names of the parameters, and their correlations row by row. */
 static void put_correlation(struct wb_json *item, const struct wb_cycle_fit *fit)
 {
     struct wb_json *const object = wb_json_set_object(item, "law_correlation");

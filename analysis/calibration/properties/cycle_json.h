@@ -1,4 +1,4 @@
-/* A calibration on whole cycles as JSON: the same in `calibrate --json` and report.json. */
+/* A calibration on whole cycles as JSON, for `calibrate --json` and report.json. */
 #ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_CYCLE_JSON_H
 #define WB_ANALYSIS_CALIBRATION_PROPERTIES_CYCLE_JSON_H
 
@@ -6,7 +6,7 @@
 #include "base/json.h"
 
 /* Sets the quantities (quantity.h), the hardening rule, the law, the specimens and the budget as
- * members of `object`. Unknown numbers are null. */
+ * members of `object`. Unknown values are null. */
 void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration *calibration);
 
 #endif

@@ -16,10 +16,9 @@ enum wb_status wb_method_choose(enum wb_method *method, const struct wb_dataset 
     for (int i = 0; i < n; i++) {
         const struct wb_test_info *const info = &datasets[i]->info;
         if (info->kind != kind)
-            return wb_fail_to(why, WB_ERR_DATA,
-                              "'%s' is a %s test and '%s' a %s test: calibrate them by themselves",
-                              names[0], wb_machine_kind_name(kind), names[i],
-                              wb_machine_kind_name(info->kind));
+            return wb_fail_to(
+                why, WB_ERR_DATA, "'%s' is a %s test and '%s' a %s test: calibrate them separately",
+                names[0], wb_machine_kind_name(kind), names[i], wb_machine_kind_name(info->kind));
         if (kind == WB_TEST_CANTILEVER && info->is_follower)
             *method = WB_METHOD_PAPER;
     }

@@ -1,4 +1,4 @@
-/* Which method calibrates datasets where nobody names one: for the command and the library. */
+/* The default calibration method for datasets, for the command and the library. */
 #ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_METHOD_H
 #define WB_ANALYSIS_CALIBRATION_PROPERTIES_METHOD_H
 
@@ -16,10 +16,10 @@ enum wb_method {
 /* "cycle", "paper", "three-point". */
 const char *wb_method_name(enum wb_method method);
 
-/* Datasets of three-point bending have one method, a follower force among cantilevers asks for the
- * paper's, all others are calibrated on whole cycles. WB_ERR_DATA where tests of both kinds are
- * together; `names` are those of the n datasets, at least one, in the message, which `why` receives
- * (NULL: logged). */
+/* Chooses the method: datasets of three-point bending have only one, cantilever tests with a
+ * follower force need the paper's, all others are calibrated on whole cycles. WB_ERR_DATA for a
+ * mixture of kinds; `names` of the n datasets (at least one) are for the message, which `why`
+ * receives (NULL: logged). */
 WB_MUST_CHECK enum wb_status wb_method_choose(enum wb_method *method,
                                               const struct wb_dataset *const *datasets,
                                               const char *const *names, int n,

@@ -67,7 +67,7 @@ void wb_properties_from_wire(const struct wb_wire *wire, struct wb_properties *p
     properties->law = wire->law;
 }
 
-/* Where no law follows the wire, only the range over the candidates is known. */
+/* If no law fits the wire, only the range over the candidates is known. */
 static struct wb_estimate known(const struct wb_cycle_calibration *calibration,
                                 const struct wb_estimate *estimate)
 {
@@ -86,7 +86,7 @@ static struct wb_cycle_stiffness known_stiffness(const struct wb_cycle_calibrati
     return known_ones;
 }
 
-/* By unloading, and to the end. */
+/* Tested by a complete unloading. */
 static bool is_rule_tested(const struct wb_cycle_calibration *calibration)
 {
     return calibration->has_unloading && !calibration->is_stopped;
@@ -180,7 +180,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
         keep_specimen(calibration, &calibration->members[i], &properties->specimens[i]);
 }
 
-/* All tests have unloading, and the law follows both ways. */
+/* All tests have an unloading, and the law fits loading and unloading. */
 static bool has_tested_rule(const struct wb_three_point_calibration *c)
 {
     return c->is_rigidity_identifiable;

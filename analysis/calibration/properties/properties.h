@@ -8,7 +8,7 @@
  *     strength_coefficient_MPa: 3222
  *     hardening_exponent: 0.99
  *     poissons_ratio: 0.39
- *     deviations: {...}           # standard uncertainties, as far as known
+ *     deviations: {...}           # known standard uncertainties
  *     calibration: {...}          # length, elastic zone, yield point, RMS, stop reason, datasets
  *                                 # with sha256, tool revision, whether on a virtual rig
  *
@@ -44,22 +44,22 @@ enum {
     WB_PROPERTIES_MOST_DATASETS = 100
 };
 
-/* A dataset or a recording that a calibration was made of. */
+/* A dataset or recording from which a calibration was made. */
 struct wb_properties_dataset {
     char name[96];               /* last part of its folder or path */
     char sha256[WB_SHA256_TEXT]; /* of its force_deflection.csv, or of the recording; "": unknown */
-    bool is_recording;           /* or file of a machine, read in memory, as reports do */
+    bool is_recording; /* or a machine's file; read without a dataset folder, as reports do */
 };
 
-/* A specimen by itself. */
+/* Results of one specimen. */
 struct wb_properties_specimen {
     int sample;
     double length;             /* m */
     double bow, bow_deviation; /* m, natural offset of the tip; NaN unknown */
-    double uneven_bow;         /* m, of the middle off that of an even curvature; NaN unknown */
-    double level;              /* m, of zero deflection */
-    double misfit;             /* RMS of the force residuals over F_max */
-    struct wb_material ludwik; /* bends alike on a first loading */
+    double uneven_bow; /* m, of the middle relative to that of a uniform curvature; NaN unknown */
+    double level;      /* m, of zero deflection */
+    double misfit;     /* RMS of the force residuals over F_max */
+    struct wb_material ludwik; /* equivalent on a first loading */
     double ludwik_misfit;      /* RMS of the relative differences of M */
 };
 
@@ -69,7 +69,7 @@ struct wb_properties {
     double mass_per_length; /* kg/m */
     struct wb_material material;
     double deviation[4];       /* of E, sigma_Y, ln K, n in SI; NaN unknown */
-    double calibration_length; /* m; NaN when not from calibrate */
+    double calibration_length; /* m; NaN unless from a calibration */
     double rms;                /* of the calibration, 1; NaN unknown */
     double scatter_rms,
         residual_scatter_rms;   /* of the calibration's samples, over F_max (a follower
@@ -77,24 +77,24 @@ struct wb_properties {
     double stiffness_deviation; /* standard deviation of ln(M) over the calibration's samples; NaN
                                    unknown */
     int n_samples;              /* of the calibration; 0 unknown */
-    int n_series;               /* that they belong to, of three-point tests; 0 unknown */
-    int pooled_degrees;         /* of freedom, of a deviation pooled over several wires that all
-                                   intervals have; 0: their own specimens' */
-    bool is_virtual;            /* from the virtual rig */
-    bool is_simulation;         /* from a computation */
-    char method[16];            /* "cycle", "paper", "three-point"; "" of a file by hand */
-    char tool[96];              /* that calibrated; "" unknown */
-    int n_datasets;             /* all of them */
+    int n_series;               /* number of series of three-point tests; 0 unknown */
+    int pooled_degrees; /* degrees of freedom of a deviation pooled over several wires, for all
+                           intervals; 0: the deviation is that of this wire's specimens */
+    bool is_virtual;    /* from the virtual rig */
+    bool is_simulation; /* from a computation */
+    char method[16];    /* "cycle", "paper", "three-point"; "" for a file written by hand */
+    char tool[96];      /* that made the calibration; "" unknown */
+    int n_datasets;     /* total number */
     struct wb_properties_dataset datasets[WB_PROPERTIES_MOST_DATASETS]; /* the first ones */
-    /* The law, of which `material` is the Ludwik equivalent; of files without one Ludwik's,
-     * isotropic, of `material`. */
+    /* The law, whose Ludwik equivalent is `material`; for files without a law Ludwik's with
+     * isotropic hardening, of `material`. */
     struct wb_law law;
     double ludwik_misfit;                                  /* of `material`, of M; NaN unknown */
     double largest_curvature;                              /* 1/m, of the data; NaN unknown */
     struct wb_estimate rigidity, residual_curvature_ratio; /* N m2, 1; NaN unknown */
     struct wb_cycle_stiffness secant, unloading;           /* without entries unknown */
     struct wb_estimate loop_energy; /* J/m, of a loop to the largest curvature; NaN unknown */
-    bool is_rule_tested, is_rule_supported;       /* false unknown */
+    bool is_rule_tested, is_rule_supported;       /* false if unknown */
     int n_moments;                                /* points of the measured law; 0 unknown */
     double curvature[WB_PROPERTIES_MOST_MOMENTS]; /* 1/m */
     struct wb_estimate moment[WB_PROPERTIES_MOST_MOMENTS]; /* N m */
@@ -102,35 +102,36 @@ struct wb_properties {
     struct wb_properties_specimen specimens[WB_PROPERTIES_MOST_SPECIMENS];
 };
 
-/* Standard deviation of the logarithm of a number between specimens: as the file gives it, or of
- * older files, whose interval of 95 % was Student's of the mean of n, with its degrees of freedom.
- */
+/* Standard deviation of the logarithm of a value between specimens: as given in the file, or for
+ * older files, whose interval of 95 % was Student's of the mean of n, from its degrees of
+ * freedom. */
 double wb_properties_scatter(const struct wb_estimate *estimate, int n, int degrees);
 
-/* How many means the calibration's intervals are made of: series where there are several, else
- * samples; 0 unknown. */
+/* Number of means from which the calibration's intervals are made: series if there are several,
+ * else samples; 0 unknown. */
 int wb_properties_units(const struct wb_properties *properties);
 
-/* Reads a properties file; errors name file, line and key. */
+/* Reads a properties file; messages name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_properties_read(const char *path, struct wb_properties *properties);
-/* `names` are the datasets' folders as given. WB_ERR_EXISTS unless `force`. */
+/* Writes a properties file. `names` are the datasets' folders as given. WB_ERR_EXISTS unless
+ * `force`. */
 WB_MUST_CHECK enum wb_status wb_properties_write(const char *path,
                                                  const struct wb_calibrate_result *result,
                                                  const struct wb_calibrate_settings *settings,
                                                  const char *const *names, int n_names, bool force);
-/* The same of a calibration on whole cycles. Of more than WB_PROPERTIES_MOST_SPECIMENS specimens
- * the first are kept. */
+/* The same for a calibration on whole cycles. Only the first WB_PROPERTIES_MOST_SPECIMENS specimens
+ * are kept. */
 WB_MUST_CHECK enum wb_status
 wb_properties_write_cycle(const char *path, const struct wb_cycle_calibration *calibration,
                           const struct wb_cycle_calibrate_settings *settings,
                           const char *const *names, int n_names, bool force);
-/* The same of a calibration on three-point bending tests: method `three-point`. */
+/* The same for a calibration on three-point bending tests: method `three-point`. */
 WB_MUST_CHECK enum wb_status
 wb_properties_write_three_point(const char *path,
                                 const struct wb_three_point_calibration *calibration,
                                 const char *const *names, int n_names, bool force);
-/* What a report writes: the text of the same file, of datasets whose names and checksums the caller
- * knows. */
+/* Appends the text of the same file for a report, whose datasets the caller names with their
+ * checksums. */
 void wb_properties_format(struct wb_text *text, const struct wb_calibrate_result *result,
                           const struct wb_calibrate_settings *settings,
                           const struct wb_properties_dataset *datasets, int n_datasets);
@@ -141,20 +142,21 @@ void wb_properties_format_cycle(struct wb_text *text,
 void wb_properties_format_three_point(struct wb_text *text,
                                       const struct wb_three_point_calibration *calibration,
                                       const struct wb_properties_dataset *datasets, int n_datasets);
-/* Reads such a text; `origin` stands for the file in messages. `why` receives the reason; NULL: it
+/* Reads such a text; `origin` is the file's name in messages. `why` receives the reason; NULL: it
  * is logged. */
 WB_MUST_CHECK enum wb_status wb_properties_parse(const char *text, const char *origin,
                                                  struct wb_properties *properties,
                                                  struct wb_reason *why);
-/* The same properties without a file in between. */
+/* The same properties without a file. */
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties);
-/* Those of a calibration on three-point bending tests, without their specimens. */
+/* Properties of a calibration on three-point bending tests, without their specimens. */
 void wb_properties_from_three_point(const struct wb_three_point_calibration *calibration,
                                     struct wb_properties *properties);
-/* Those of a wire's own file, of which nothing but the law is known. The wire has properties. */
+/* Properties from a wire's own file, of which only the law is known. The wire must have
+ * properties. */
 void wb_properties_from_wire(const struct wb_wire *wire, struct wb_properties *properties);
 
 #endif

@@ -1,4 +1,4 @@
-/* Between the values of properties, and their reading and writing. */
+/* Shared by properties.c and by reading and writing. */
 #ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_PROPERTIES_PRIVATE_H
 #define WB_ANALYSIS_CALIBRATION_PROPERTIES_PROPERTIES_PRIVATE_H
 
@@ -9,15 +9,15 @@ enum wb_properties_method {
     WB_PROPERTIES_METHOD_PAPER,
     WB_PROPERTIES_METHOD_THREE_POINT
 };
-/* As the key `method` has them; NULL ends them. */
+/* Names in the key `method`, NULL-terminated. */
 extern const char *const wb_properties_methods[];
 
 extern const struct wb_estimate wb_properties_unknown_estimate;
 
-/* All that no source of properties needs to know. */
+/* Sets all members that a source of properties may lack to unknown. */
 void wb_properties_make_unknown(struct wb_properties *properties);
-/* How far specimens differ, from the interval of a moment well within the data: EI carries more of
- * the fits' own noise. */
+/* Finds the scatter of the specimens from the interval of a moment well within the data: that of EI
+ * contains more of the fits' noise. */
 void wb_properties_find_deviation(struct wb_properties *properties);
 
 #endif

@@ -13,7 +13,7 @@
 
 #define WB_LOG_DOMAIN "properties"
 
-/* Limits of the file's numbers, in its units. */
+/* Limits of the file's values, in its units. */
 #define LARGEST_MPA 1e7
 
 static enum wb_status read_deviations(const struct wb_config_node *node, double deviation[4])
@@ -22,7 +22,7 @@ static enum wb_status read_deviations(const struct wb_config_node *node, double 
         WB_CONFIG_OPTIONAL_NUMBER("youngs_modulus_MPa", &deviation[0], WB_MPA, 0.0, LARGEST_MPA),
         WB_CONFIG_OPTIONAL_NUMBER("yield_stress_MPa", &deviation[1], WB_MPA, 0.0, LARGEST_MPA),
         WB_CONFIG_OPTIONAL_NUMBER("strength_coefficient_factor", &deviation[2], 1.0, 1.0, 1e300),
-        WB_CONFIG_IGNORED("strength_coefficient_MPa"), /* as older files have it */
+        WB_CONFIG_IGNORED("strength_coefficient_MPa"), /* key of older files */
         WB_CONFIG_OPTIONAL_NUMBER("hardening_exponent", &deviation[3], 1.0, 0.0, 100.0),
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
@@ -30,7 +30,7 @@ static enum wb_status read_deviations(const struct wb_config_node *node, double 
     return WB_OK;
 }
 
-/* A scalar of a map as text; "" where there is none. What is too long is cut. */
+/* A scalar of a map as text, truncated to `size`; "" if missing. */
 static void keep_scalar(const struct wb_config_node *map, const char *key, char *text, size_t size)
 {
     const struct wb_config_node *const node = wb_config_find(map, key);
@@ -38,7 +38,7 @@ static void keep_scalar(const struct wb_config_node *map, const char *key, char 
     snprintf(text, size, "%s", scalar ? scalar : "");
 }
 
-/* Names and checksums, for those who cite them; a file by hand may have them in any shape. */
+/* Reads names and checksums, for citations; a file written by hand may have any structure here. */
 static void read_datasets(const struct wb_config_node *node, struct wb_properties *properties)
 {
     const int n = node ? wb_config_length(node) : 0;
@@ -101,7 +101,7 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
     return given ? wb_config_value(given, &pooled) : WB_OK;
 }
 
-/* Of a quantity that has no curvatures `curvature` is NULL. */
+/* For a quantity without curvatures `curvature` is NULL. */
 static enum wb_status read_estimate(const struct wb_config_node *node,
                                     const struct wb_quantity *row, double *curvature,
                                     struct wb_estimate *e)

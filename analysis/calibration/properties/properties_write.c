@@ -17,7 +17,7 @@
 
 #define WB_LOG_DOMAIN "properties"
 
-/* "  key: value" with a number that reads back the same; nothing when it is not known. */
+/* Appends "  key: value" with a number that is read back unchanged; nothing if it is unknown. */
 static void put_number(struct wb_text *text, const char *indent, const char *key, double value)
 {
     char number[WB_NUMBER_TEXT];
@@ -54,7 +54,7 @@ static void put_datasets(struct wb_text *text, const char *const *names, int n)
     }
 }
 
-/* Of datasets that are in no folder of their own. */
+/* Datasets that have no folder. */
 static void put_known_datasets(struct wb_text *text, const struct wb_properties_dataset *datasets,
                                int n)
 {
@@ -71,7 +71,7 @@ static void put_known_datasets(struct wb_text *text, const struct wb_properties_
     }
 }
 
-/* Whether the tests were real ones, and what calibrated them. */
+/* Whether the tests were real, and the tool that calibrated them. */
 static void put_origin(struct wb_text *text, const struct wb_test_info *info)
 {
     wb_text_append(text, "  virtual_rig: %s\n", info->is_virtual ? "true" : "false");
@@ -148,7 +148,7 @@ static void format(struct wb_text *text, const struct wb_calibrate_result *resul
                              "deviations:\n");
         put_number(text, "  ", "youngs_modulus_MPa", result->deviation[0] / WB_MPA);
         put_number(text, "  ", "yield_stress_MPa", result->deviation[1] / WB_MPA);
-        wb_text_append(text, "  # K lies within it times and over this factor\n");
+        wb_text_append(text, "  # standard uncertainty of K, as a factor\n");
         put_number(text, "  ", "strength_coefficient_factor", exp(result->deviation[2]));
         put_number(text, "  ", "hardening_exponent", result->deviation[3]);
     }
@@ -165,7 +165,7 @@ void wb_properties_format(struct wb_text *text, const struct wb_calibrate_result
 
 /* --- calibrations on whole cycles --- */
 
-/* "{curvature_1_m: 1, value: 2, ...}" with the numbers that are known. */
+/* Appends "{curvature_1_m: 1, value: 2, ...}" with the known values. */
 static void append_estimate(struct wb_text *text, const struct wb_quantity *row,
                             const double *curvature, const struct wb_estimate *estimate)
 {
@@ -192,7 +192,7 @@ static void append_estimate(struct wb_text *text, const struct wb_quantity *row,
     wb_text_append(text, n > 0 ? "}\n" : "{}\n");
 }
 
-/* The quantities that are known. */
+/* Appends the known quantities. */
 static void put_quantities(struct wb_text *text, const struct wb_properties *p)
 {
     for (enum wb_quantity_id id = 0; id < WB_QUANTITIES; id++) {
@@ -218,7 +218,7 @@ static void put_rule(struct wb_text *text, const struct wb_cycle_calibration *ca
                      const struct wb_properties *p)
 {
     wb_text_append(text,
-                   "# supported: the law follows loading and unloading within %g %% of F_max\n"
+                   "# supported: the law fits loading and unloading within %g %% of F_max\n"
                    "hardening_rule:\n",
                    100.0 * WB_CYCLE_LARGEST_FOLLOWED);
     wb_text_append(text, "  chosen: \"%s\"\n", wb_candidate_name(calibration->chosen));
@@ -236,7 +236,7 @@ static void put_rule(struct wb_text *text, const struct wb_cycle_calibration *ca
 
 static void put_specimens(struct wb_text *text, const struct wb_properties *p)
 {
-    wb_text_append(text, "# Each specimen by itself; the four numbers are its Ludwik equivalent.\n"
+    wb_text_append(text, "# Each specimen separately; the four numbers are its Ludwik equivalent.\n"
                          "specimens:\n");
     for (int i = 0; i < p->n_specimens; i++) {
         const struct wb_properties_specimen *const specimen = &p->specimens[i];
@@ -277,14 +277,14 @@ static void put_law(struct wb_text *text, const struct wb_cycle_calibration *cal
         return;
     }
     if (p->law.form == WB_LAW_LUDWIK)
-        wb_text_append(text, "# The law is Ludwik's of these four numbers with the hardening rule "
-                             "below; models that know\n"
-                             "# isotropic hardening alone bend alike on a first loading and not on "
-                             "the unloading.\n");
+        wb_text_append(text,
+                       "# The law is Ludwik's with these four numbers and the hardening rule "
+                       "below; with isotropic\n"
+                       "# hardening they give the same first loading, but another unloading.\n");
     else
-        wb_text_append(text, "# These four numbers are derived from the law below: Ludwik's, "
-                             "isotropic, that bends alike on a\n"
-                             "# first loading; EI and the unloading are the law's, not theirs.\n");
+        wb_text_append(text, "# These four numbers are derived from the law below: Ludwik's law "
+                             "with isotropic hardening and the\n"
+                             "# same first loading; EI and the unloading are those of the law.\n");
     put_material(text, "", &p->material);
     put_number(text, "", "poissons_ratio", p->law.material.poissons_ratio);
     put_number(text, "", "ludwik_misfit", p->ludwik_misfit);
@@ -296,13 +296,13 @@ static void put_law(struct wb_text *text, const struct wb_cycle_calibration *cal
     wb_law_file_append(text, &p->law);
 }
 
-/* What the intervals know of what all specimens share. */
-static void put_what_is_in(struct wb_text *text, const struct wb_cycle_calibration *calibration)
+/* States which errors common to all specimens the intervals include. */
+static void put_common_errors(struct wb_text *text, const struct wb_cycle_calibration *calibration)
 {
     const double *const u = calibration->budget[WB_CYCLE_FIRST_MOMENT].uncertainty;
     for (int known = 0; known < 2; known++) {
-        const char *between = known ? "# The intervals hold what the files state of "
-                                    : "# Not stated, and in no interval: ";
+        const char *between = known ? "# The intervals include the stated uncertainty of "
+                                    : "# Not stated, and not included in the intervals: ";
         for (int i = 0; i < WB_SHARED; i++) {
             if (isfinite(u[WB_FROM_SHARED + i]) != known ||
                 !wb_cycle_budget_has(calibration, WB_FROM_SHARED + i))
@@ -314,7 +314,8 @@ static void put_what_is_in(struct wb_text *text, const struct wb_cycle_calibrati
             wb_text_append(text, "\n");
     }
     if (!isfinite(calibration->rigidity.deviation))
-        wb_text_append(text, "# One specimen: how specimens scatter is not known, and in none.\n");
+        wb_text_append(
+            text, "# One specimen: the scatter between specimens is unknown and not included.\n");
 }
 
 static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration *calibration,
@@ -330,7 +331,7 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
                          "# Means over the specimens with an interval of 95 %%, and their range "
                          "over the laws that the data\n"
                          "# do not exclude.\n");
-    put_what_is_in(text, calibration);
+    put_common_errors(text, calibration);
     wb_text_append(text,
                    "# moment_curvature: first loading. Stiffness: change of the moment over the "
                    "change of the curvature, unloading "
@@ -342,7 +343,7 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
                        ? ""
                        : ", which the data do not resolve: use a stiffness instead");
     put_quantities(text, p);
-    wb_text_append(text, "# the law is not measured beyond it\n");
+    wb_text_append(text, "# largest measured curvature of the law\n");
     put_number(text, "", "largest_curvature_1_m", p->largest_curvature);
     put_rule(text, calibration, p);
     put_specimens(text, p);
@@ -351,14 +352,14 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
     if (calibration->is_stopped)
         wb_text_append(text,
                        "  stopped: interrupted before all laws were fitted to all specimens\n");
-    wb_text_append(text, "  # over F_max of each specimen, both ways\n");
+    wb_text_append(text, "  # over F_max of each specimen, loading and unloading\n");
     put_number(text, "  ", "rms", p->rms);
     wb_text_append(text, "  samples: %d\n", p->n_samples);
     put_origin(text, info);
     put_settings(text, settings);
 }
 
-/* Nothing is written that could not be read again. */
+/* Writes the file only if it can be read again. */
 static enum wb_status write_readable(const char *path, struct wb_text *text)
 {
     struct wb_properties read;
@@ -367,8 +368,8 @@ static enum wb_status write_readable(const char *path, struct wb_text *text)
     if (status == WB_OK)
         status = wb_file_write_text(path, text);
     else
-        status = wb_fail(status, "'%s' is not written, because it could not be read again: %s",
-                         path, why.text);
+        status = wb_fail(status, "'%s' not written, because it could not be read again: %s", path,
+                         why.text);
     wb_text_release(text);
     return status;
 }
@@ -428,8 +429,8 @@ static void put_bench(struct wb_text *text, const struct wb_three_point_calibrat
     wb_text_append(text, "  compliance_known: %s\n", c->is_compliance_known ? "true" : "false");
     wb_text_append(text, "  series: %d\n", c->n_series);
     put_number(text, "  ", "series_deviation", c->series_deviation);
-    wb_text_append(text, "  # the fits again with what the curves do not tell; EI over that above\n"
-                         "  bands:\n");
+    wb_text_append(text, "  # fits repeated with parameters that the curves do not determine; EI "
+                         "over that above\n  bands:\n");
     for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
         const struct wb_three_point_variant *const v = &c->variants[i];
         wb_text_append(text, "    - of: \"%s\"\n", v->name);
@@ -471,10 +472,10 @@ static void format_three_point(struct wb_text *text, const struct wb_three_point
     struct wb_properties p;
     wb_properties_from_three_point(c, &p);
     put_wire(text, info);
-    wb_text_append(text,
-                   "# These four numbers are derived from the law below: Ludwik's, isotropic, "
-                   "that bends alike on a\n"
-                   "# first loading.\n");
+    wb_text_append(
+        text, "# These four numbers are derived from the law below: Ludwik's law with isotropic "
+              "hardening and the\n"
+              "# same first loading.\n");
     put_material(text, "", &c->ludwik);
     put_number(text, "", "poissons_ratio", c->law.material.poissons_ratio);
     put_number(text, "", "ludwik_misfit", c->ludwik_misfit);
@@ -482,17 +483,18 @@ static void format_three_point(struct wb_text *text, const struct wb_three_point
     wb_text_append(text, "method: three-point\n"
                          "# Means with an interval of 95 %%; candidates: over friction and nose "
                          "radius, which the curves do\n"
-                         "# not tell.\n");
+                         "# not determine.\n");
     put_quantities(text, &p);
     if (!c->is_rigidity_identifiable)
         wb_text_append(text, "# flexural_rigidity_N_mm2: not identifiable from loading alone\n");
     put_number(text, "", "largest_curvature_1_m", c->largest_curvature);
-    wb_text_append(text,
-                   "# tested where all tests have unloading, supported where the law then follows "
-                   "within 0.5 %% of F_max\n"
-                   "hardening_rule:\n  chosen: \"%s\"\n  tested: %s\n  supported: %s\n",
-                   wb_candidate_name(WB_CANDIDATE_PARALLEL_MIXED),
-                   p.is_rule_tested ? "true" : "false", p.is_rule_supported ? "true" : "false");
+    wb_text_append(
+        text,
+        "# tested: all tests have an unloading; supported: the law fits it within 0.5 %% of "
+        "F_max\n"
+        "hardening_rule:\n  chosen: \"%s\"\n  tested: %s\n  supported: %s\n",
+        wb_candidate_name(WB_CANDIDATE_PARALLEL_MIXED), p.is_rule_tested ? "true" : "false",
+        p.is_rule_supported ? "true" : "false");
     put_bench(text, c);
     wb_text_append(text, "calibration:\n");
     put_number(text, "  ", "rms", c->misfit);

@@ -1,7 +1,7 @@
-/* The quantities that a calibration of bending states, each with its value, its interval of 95 %
- * and its range over the laws that the data do not exclude.
+/* The quantities that a calibration of bending gives, each with its value, its interval of 95 % and
+ * its range over the laws that the data do not exclude.
  *
- * One row describes a quantity. Properties files, JSON, the terminal and comparisons walk the rows,
+ * One row describes a quantity. Properties files, JSON, the terminal and comparisons use the rows,
  * so that a quantity has one key, one name and one unit everywhere.
  */
 #ifndef WB_ANALYSIS_CALIBRATION_PROPERTIES_QUANTITY_H
@@ -27,26 +27,26 @@ enum wb_quantity_id {
 };
 
 struct wb_quantity {
-    const char *key;       /* in files, with the unit */
-    const char *value_key; /* of its value in files, beside "low", "high" and so on */
-    const char *name;      /* in text; a curvature follows where the quantity has one */
-    const char *unit;      /* in text; "" of a ratio */
-    double scale;          /* one unit in SI */
-    double largest;        /* that a file may state, in the unit */
-    /* Where struct wb_properties has it. */
-    size_t estimate;  /* one, or at most `most` of them */
-    int most;         /* curvatures; 0: the quantity has none */
-    size_t n;         /* how many there are, and */
-    size_t curvature; /* where, 1/m */
-    size_t resolved;  /* the smallest curvature that the data resolve, 1/m; 0: not stated */
+    const char *key;       /* in files, including the unit */
+    const char *value_key; /* of its value in files, next to "low", "high" and so on */
+    const char *name;      /* in text; followed by the curvature if the quantity has one */
+    const char *unit;      /* in text; "" for a ratio */
+    double scale;          /* SI value of one unit */
+    double largest;        /* largest value accepted in a file, in the unit */
+    /* Offsets in struct wb_properties. */
+    size_t estimate;  /* of one estimate, or of at most `most` */
+    int most;         /* largest number of curvatures; 0: the quantity has none */
+    size_t n;         /* of their number, and */
+    size_t curvature; /* of their curvatures, 1/m */
+    size_t resolved;  /* of the smallest curvature that the data resolve, 1/m; 0: not stated */
 };
 
 extern const struct wb_quantity wb_quantity_rows[WB_QUANTITIES];
 
-/* What properties state of a quantity; borrowed. An estimate that is unknown is NaN. */
+/* Values of a quantity from properties; borrowed. An unknown estimate is NaN. */
 struct wb_quantity_values {
-    int n;                              /* 1 of a quantity without curvatures */
-    const double *curvature;            /* 1/m, (n); NULL: has none */
+    int n;                              /* 1 for a quantity without curvatures */
+    const double *curvature;            /* 1/m, (n); NULL: no curvatures */
     const struct wb_estimate *estimate; /* (n), SI */
     double resolved;                    /* 1/m; NaN: not stated */
 };
@@ -59,12 +59,12 @@ bool wb_quantity_is_known(const struct wb_estimate *estimate);
 enum {
     WB_QUANTITY_LABEL = 64
 };
-/* Its name, with the curvature (1/m) of a quantity that has one: "M at 1.41 1/m". */
+/* Its name, with the curvature (1/m) if it has one: "M at 1.41 1/m". */
 const char *wb_quantity_label(enum wb_quantity_id id, double curvature,
                               char label[WB_QUANTITY_LABEL]);
 
-/* Sets a member for each quantity; unknown numbers are null. Of three-point bending only for those
- * that are known. */
+/* Sets a member for each quantity; unknown values are null. For three-point bending only known ones
+ * are set. */
 void wb_quantity_put(struct wb_json *object, const struct wb_properties *properties);
 
 #endif
