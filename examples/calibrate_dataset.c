@@ -1,5 +1,5 @@
-/* Calibrates a wire on datasets and prints what is known of it, and its bending moments. Recordings
- * are aligned in memory; folders are those that `wirebench align` wrote.
+/* Calibrates a wire on datasets and prints its properties and bending moments. Recordings are
+ * aligned in memory; folders are those written by `wirebench align`.
  *
  *     cc calibrate_dataset.c $(pkg-config --cflags --libs wirebench) -o calibrate_dataset
  *     ./calibrate_dataset recordings/type1-L85-1.wbr.zst

@@ -1,4 +1,5 @@
-/* Reads a recording: whether it is whole, its streams, the range of the load cell's readings.
+/* Reads a recording and prints whether it is complete, its streams, and the range of the load
+ * cell's readings.
  *
  *     cc read_recording.c $(pkg-config --cflags --libs wirebench) -o read_recording
  *     ./read_recording recordings/type1-L85-1.wbr.zst
@@ -44,7 +45,7 @@ static int print_forces(struct wirebench_recording *recording)
         fprintf(stderr, "read_recording: %s\n", wirebench_message());
     double least = (double)INFINITY, largest = -(double)INFINITY;
     for (size_t i = 0; i < force.n; i++) {
-        least = fmin(least, force.reals[i]); /* a reading that is not valid is NaN */
+        least = fmin(least, force.reals[i]); /* an invalid reading is NaN */
         largest = fmax(largest, force.reals[i]);
     }
     printf("load: %zu readings, %.9g to %.9g N\n", force.n, least, largest);

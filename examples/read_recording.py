@@ -1,4 +1,5 @@
-"""Reads a recording: whether it is whole, its streams, the range of the load cell's readings.
+"""Reads a recording and prints whether it is complete, its streams, and the range of the load
+cell's readings.
 
     python3 read_recording.py recordings/type1-L85-1.wbr.zst
 """

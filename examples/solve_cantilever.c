@@ -1,4 +1,4 @@
-/* Solves a cantilever test and prints force over deflection, on the way up and back.
+/* Solves a cantilever test and prints force over deflection, loading and unloading.
  *
  *     cc solve_cantilever.c $(pkg-config --cflags --libs wirebench) -o solve_cantilever
  *     ./solve_cantilever type1 0.085 0.05
@@ -9,7 +9,7 @@
 #include <wirebench.h>
 
 enum {
-    STEPS = 10, /* each way */
+    STEPS = 10, /* of each branch */
     ROWS = 2 * STEPS + 1
 };
 

@@ -1,4 +1,4 @@
-"""Solves a cantilever test and prints force over deflection, on the way up and back.
+"""Solves a cantilever test and prints force over deflection, loading and unloading.
 
     python3 solve_cantilever.py type1 0.085 0.05
 """
@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import wirebench
 
-STEPS = 10  # each way
+STEPS = 10  # of each branch
 
 
 def main(wire, length, largest):

@@ -1,4 +1,4 @@
-/* Solves a three-point bending test and prints force over deflection, on the way down and back.
+/* Solves a three-point bending test and prints force over deflection, loading and unloading.
  *
  *     cc solve_three_point.c $(pkg-config --cflags --libs wirebench) -o solve_three_point
  *     ./solve_three_point type1 0.04 0.008
@@ -9,7 +9,7 @@
 #include <wirebench.h>
 
 enum {
-    STEPS = 10, /* each way */
+    STEPS = 10, /* of each branch */
     ROWS = 2 * STEPS + 1
 };
 

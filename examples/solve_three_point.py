@@ -1,4 +1,4 @@
-"""Solves a three-point bending test and prints force over deflection, on the way down and back.
+"""Solves a three-point bending test and prints force over deflection, loading and unloading.
 
     python3 solve_three_point.py type1 0.04 0.008
 """
@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import wirebench
 
-STEPS = 10  # each way
+STEPS = 10  # of each branch
 
 
 def main(wire, span, largest):

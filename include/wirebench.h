@@ -1,32 +1,32 @@
 /* libwirebench: recordings, datasets, simulated tests and calibration of wirebench, for other
  * programs.
  *
- * Units are SI in every double: m, kg, s, N, Pa, rad. NaN is a number that is not known.
+ * Units are SI in every double: m, kg, s, N, Pa, rad. NaN is an unknown value.
  *
  * Failures. A function that can fail returns an enum wirebench_status: 0, a negative code, or
- * WIREBENCH_INCOMPLETE, with which results were delivered and something of them is missing.
- * wirebench_message() says in words what was wrong in the last call of the same thread and, where a
- * file is at fault, names file, line and key. Nothing is printed, and the library never ends the
- * process.
+ * WIREBENCH_INCOMPLETE, with which results were delivered although something is missing or
+ * doubtful. wirebench_message() describes what was wrong in the last call of the same thread; for
+ * an error in a file it names file, line and key. Nothing is printed, and the library never ends
+ * the process.
  *
- * Handles. A `struct wirebench_...` without members here is a handle: the function with `out` makes
- * it, one of the functions without a status frees it and accepts NULL. Texts, tables and columns
- * are borrowed from the handle they were asked of and live as long as it does. Results are written
- * on success (0 or WIREBENCH_INCOMPLETE) only, unless a function says otherwise.
+ * Handles. A `struct wirebench_...` without members here is a handle: the function with `out`
+ * creates it, one of the functions without a status frees it and accepts NULL. Texts, tables and
+ * columns are borrowed from the handle that returned them and live as long as it does. Results are
+ * written only on success (0 or WIREBENCH_INCOMPLETE), unless a function says otherwise.
  *
  * Threads. Two threads may use two handles at the same time; a handle is used by one thread at a
  * time. Handles that are const in a call may be used by several.
  *
  * Structs. Each begins with its size, so that a program built with this header works with later
- * releases: struct wirebench_law law = {.size = sizeof law}. In structs that the caller fills in,
- * 0 means the default that stands beside the member.
+ * releases: struct wirebench_law law = {.size = sizeof law}. In structs that the caller fills in, 0
+ * means the default given in the member's comment.
  *
  * The process. No locale, signal handler, environment variable or standard stream is changed. GSL's
- * error handler, which belongs to the process, is off during wirebench_dataset_align() and
- * wirebench_calibrate() and put back after the last such call has ended.
+ * error handler, which is global to the process, is switched off during wirebench_dataset_align()
+ * and wirebench_calibrate(), and restored when the last such call has ended.
  *
- * A recording is the bytes of the instruments with their times; a dataset is a test as a table of
- * force over deflection, made of a recording; properties are what is known of a wire.
+ * A recording contains the bytes of the instruments with their times; a dataset, made from a
+ * recording, is a test as a table of force over deflection; properties describe a wire.
  * docs/library.md shows the use from C and Python.
  */
 #ifndef WIREBENCH_H
@@ -44,33 +44,34 @@ extern "C" {
 enum wirebench_status {
     WIREBENCH_INCOMPLETE = 1, /* delivered; wirebench_message() says what is missing or doubtful */
     WIREBENCH_OK = 0,
-    WIREBENCH_ERR_ARGUMENT = -1,  /* the caller misused the function, or a number is out of range */
-    WIREBENCH_ERR_MEMORY = -2,    /* out of memory */
-    WIREBENCH_ERR_IO = -3,        /* a file could not be read */
-    WIREBENCH_ERR_NOT_FOUND = -4, /* a file, key or name does not exist */
-    WIREBENCH_ERR_FORMAT = -5,    /* bytes or text that do not follow their format */
-    WIREBENCH_ERR_BUSY = -6,      /* somebody else holds the file */
+    WIREBENCH_ERR_ARGUMENT = -1,   /* invalid use of the function, or a value out of range */
+    WIREBENCH_ERR_MEMORY = -2,     /* out of memory */
+    WIREBENCH_ERR_IO = -3,         /* a file could not be read */
+    WIREBENCH_ERR_NOT_FOUND = -4,  /* a file, key or name does not exist */
+    WIREBENCH_ERR_FORMAT = -5,     /* bytes or text do not follow their format */
+    WIREBENCH_ERR_BUSY = -6,       /* the file is in use by another process */
     WIREBENCH_ERR_PERMISSION = -7, /* not allowed to open it */
     WIREBENCH_ERR_TIMEOUT = -8, /* stopped by the caller's `progress` before there was a result */
-    WIREBENCH_ERR_UNSUPPORTED = -9, /* of a kind that the function does not serve */
-    WIREBENCH_ERR_EXISTS = -10,     /* it would overwrite something */
-    WIREBENCH_ERR_DATA = -11,       /* the data cannot serve the purpose */
-    WIREBENCH_ERR_CONVERGENCE = -12 /* an iteration did not converge where there is no going on */
+    WIREBENCH_ERR_UNSUPPORTED = -9, /* not supported by the function */
+    WIREBENCH_ERR_EXISTS = -10,     /* would overwrite an existing file */
+    WIREBENCH_ERR_DATA = -11,       /* the data do not suffice for the purpose */
+    WIREBENCH_ERR_CONVERGENCE =
+        -12 /* an iteration did not converge, and there is no partial result */
 };
 
-/* The release, "0.1.0", and the source revision it was built from. */
+/* The release, "0.1.0", and the source revision of its build. */
 const char *wirebench_version(void);
 const char *wirebench_revision(void);
 
 /* Short text of a status, "no such file or name"; never NULL. */
 const char *wirebench_status_text(enum wirebench_status status);
 
-/* What went wrong in this thread's last call that returned a status; "" after a success. Valid
- * until this thread's next such call. */
+/* The message of this thread's last call that returned a status; "" after a success. Valid until
+ * this thread's next such call. */
 const char *wirebench_message(void);
 
-/* Warnings and remarks of this thread's last call that returned a status, one a line; "" none.
- * Valid as the message is. */
+/* Warnings and remarks of this thread's last call that returned a status, one per line; "" if there
+ * are none. Valid as long as the message. */
 const char *wirebench_warnings(void);
 
 /* --- tables --- */
@@ -81,11 +82,11 @@ enum wirebench_column_type {
     WIREBENCH_TEXT
 };
 
-/* A column. Of the three arrays (n) the one of its type is there, the others are NULL. */
+/* A column. Of the three arrays (n) only that of its type is set; the others are NULL. */
 struct wirebench_column {
     size_t size;
     const char *name; /* with its unit: "force_N" */
-    const char *unit; /* "N"; "1" of counts and flags; "" of texts */
+    const char *unit; /* "N"; "1" for counts and flags; "" for texts */
     enum wirebench_column_type type;
     size_t n;
     const double *reals;      /* NaN: no value */
@@ -114,10 +115,10 @@ enum wirebench_role {
     WIREBENCH_STAGE
 };
 
-/* What a recording holds and whether all of it is there. */
+/* Contents of a recording, and whether it is complete. */
 struct wirebench_recording_info {
     size_t size;
-    char sha256[65]; /* of the uncompressed file, in hex; "" unknown */
+    char sha256[65]; /* of the uncompressed file, in hex; "" if unknown */
     int is_virtual;  /* from the virtual rig */
     int is_whole;    /* nothing is missing, damaged, dropped or cut short */
     int n_problems;  /* wirebench_recording_problem() describes each */
@@ -127,7 +128,7 @@ struct wirebench_recording_info {
     uint64_t chunks, damaged_chunks, events;
 };
 
-/* What one instrument sent. */
+/* Data of one instrument. */
 struct wirebench_stream {
     size_t size;
     int id;
@@ -136,33 +137,33 @@ struct wirebench_stream {
     char protocol[32];
     uint64_t chunks, bytes; /* reads or datagrams, and their bytes */
     uint64_t samples;       /* decoded: readings, frames or reports */
-    double rate;            /* 1/s; 0 unknown */
+    double rate;            /* 1/s; 0 if unknown */
     double longest_silence; /* s */
 };
 
-/* Opens a recording, NAME.wbr or NAME.wbr.zst, for reading. A damaged one is opened as far as it
- * can be read. */
+/* Opens a recording, NAME.wbr or NAME.wbr.zst, for reading. The readable part of a damaged
+ * recording can be used. */
 enum wirebench_status wirebench_recording_open(struct wirebench_recording **out, const char *path);
 void wirebench_recording_close(struct wirebench_recording *recording);
 
-/* Verifies the recording as `wirebench verify` does: reads all of it, decodes it, compares the
- * checksums. The first of these calls takes that time. That it is damaged is a result: is_whole. */
+/* Verifies the recording like `wirebench verify`: reads and decodes all of it and compares the
+ * checksums, which takes time in the first of these calls. Damage is a result: is_whole. */
 enum wirebench_status wirebench_recording_describe(struct wirebench_recording *recording,
                                                    struct wirebench_recording_info *info);
 enum wirebench_status wirebench_recording_stream(struct wirebench_recording *recording, int index,
                                                  struct wirebench_stream *stream);
-/* Fault `index` from 0 in a sentence: "mocap stream 1: 12 chunks missing in 2 places". NULL: there
- * are not so many, or the recording was not described. */
+/* Problem `index` from 0 as a sentence: "mocap stream 1: 12 chunks missing in 2 places". NULL: no
+ * such problem, or the recording was not described. */
 const char *wirebench_recording_problem(const struct wirebench_recording *recording, int index);
 
-/* A text that was recorded beside the bytes, by its key: "specimen" and "rig" (YAML), "start_utc",
- * "operator", "notes", ... NULL: there is none. */
+/* A text from the recording's meta data by its key: "specimen" and "rig" (YAML), "start_utc",
+ * "operator", "notes", ... NULL: no such key. */
 const char *wirebench_recording_meta(const struct wirebench_recording *recording, const char *key);
 
-/* The decoded samples as the instruments said them, neither tared nor aligned: table "load",
- * "mocap" (a row for each marker of a frame), "stage", "events" or "clock". docs/library.md has the
+/* The decoded samples as sent by the instruments, neither tared nor aligned: table "load", "mocap"
+ * (a row for each marker of a frame), "stage", "events" or "clock". docs/library.md lists the
  * columns. The first of these calls decodes the recording. WIREBENCH_INCOMPLETE: the table is
- * there, and parts of the recording are missing or damaged and left out. */
+ * complete except for missing or damaged parts of the recording. */
 enum wirebench_status wirebench_recording_table(struct wirebench_recording *recording,
                                                 const char *name,
                                                 const struct wirebench_table **table);
@@ -188,16 +189,17 @@ struct wirebench_dataset_info {
     int sample;             /* 0: an average, or a simulation */
     double length;          /* m: free length; span between rollers; gauge length */
     double outer_diameter;  /* m */
-    double mass_per_length; /* kg/m; 0: not known */
+    double mass_per_length; /* kg/m; 0: unknown */
     double strand_length;   /* m; 0: a vertical force, no strand */
     double counterweight;   /* kg at the tip */
     double gravity;         /* m/s2; 0: no weight in the data */
-    /* The stress-free angle over arc length, rad: theta0(s) = sum_i b_i (s/L)^(i+1). 0: straight */
+    /* Stress-free angle over arc length, rad: theta0(s) = sum_i b_i (s/L)^(i+1). 0 terms:
+     * straight */
     int n_natural_shape;
     double natural_shape[WIREBENCH_MOST_SHAPE];
     int is_follower; /* the tip force stays normal to the wire */
     int is_virtual, is_simulation;
-    int is_complete; /* nothing was missing or cut short */
+    int is_complete; /* no data are missing, and the test was not cut short */
 };
 
 /* Reads the folder of a dataset. */
@@ -205,18 +207,18 @@ enum wirebench_status wirebench_dataset_read(struct wirebench_dataset **out, con
 
 struct wirebench_alignment {
     size_t size;
-    /* Paths of a rig and a specimen file (YAML) that hold in place of the recorded ones, where
-     * those were wrong; NULL: the recorded. */
+    /* Paths of a rig and a specimen file (YAML) to be used in place of the recorded ones, where
+     * those were wrong; NULL: the recorded ones. */
     const char *rig, *specimen;
-    /* Other options of `wirebench align` by their names, "row-rate=50"; NULL or NULL-terminated. */
+    /* Other options of `wirebench align` by name, "row-rate=50"; NULL or NULL-terminated. */
     const char *const *options;
 };
 
-/* Makes the dataset of a recording, NAME.wbr or NAME.wbr.zst, in memory: what
- * wirebench_dataset_read() reads from the folder that `wirebench align` writes. `alignment` may be
- * NULL: the default. wirebench_warnings() has what the tool warns of. WIREBENCH_INCOMPLETE: the
- * dataset can be used, and something of the test is missing (gaps, damaged or lost data, a test
- * that was cut short). WIREBENCH_ERR_DATA: no dataset can be made of the recording. */
+/* Makes the dataset of a recording, NAME.wbr or NAME.wbr.zst, in memory, equal to the one that
+ * `wirebench align` writes into a folder. `alignment` may be NULL: the defaults.
+ * wirebench_warnings() contains the tool's warnings. WIREBENCH_INCOMPLETE: the dataset can be used,
+ * but something of the test is missing (gaps, damaged or lost data, a test that was cut short).
+ * WIREBENCH_ERR_DATA: no dataset can be made from the recording. */
 enum wirebench_status wirebench_dataset_align(struct wirebench_dataset **out,
                                               const char *recording_path,
                                               const struct wirebench_alignment *alignment);
@@ -224,22 +226,21 @@ void wirebench_dataset_close(struct wirebench_dataset *dataset);
 
 enum wirebench_status wirebench_dataset_describe(const struct wirebench_dataset *dataset,
                                                  struct wirebench_dataset_info *info);
-/* Table "force_deflection" or "shape". docs/library.md has the columns. */
+/* Table "force_deflection" or "shape". docs/library.md lists the columns. */
 enum wirebench_status wirebench_dataset_table(const struct wirebench_dataset *dataset,
                                               const char *name,
                                               const struct wirebench_table **table);
-/* The whole dataset.json: where the data come from, what was corrected and by how much. */
+/* The whole dataset.json: origin of the data, and corrections with their sizes. */
 const char *wirebench_dataset_json(const struct wirebench_dataset *dataset);
 
 /* --- properties of a wire --- */
 
 struct wirebench_properties;
 
-/* One of several elastic-plastic parts that share the strain. */
+/* One of several elastic-plastic parts in parallel, which have the same strain. */
 struct wirebench_part {
-    double modulus; /* Pa */
-    double
-        yield_strain; /* 1, ascending from part to part; INFINITY: stays elastic, the last only */
+    double modulus;      /* Pa */
+    double yield_strain; /* 1, ascending; INFINITY: elastic, only the last part */
 };
 
 /* A back stress: dX = modulus dep - recovery X dp. */
@@ -259,7 +260,7 @@ struct wirebench_law {
     double outer_diameter;  /* m */
     double mass_per_length; /* kg/m; 0: no weight */
     double poissons_ratio;  /* 1, of the shear stiffness */
-    /* Ludwik's law, stress = E e up to sigma_Y, then sigma_Y + K ep^n; where n_parts is 0. */
+    /* Ludwik's law, stress = E e up to sigma_Y, then sigma_Y + K ep^n; if n_parts is 0. */
     double youngs_modulus;       /* E, Pa */
     double yield_stress;         /* sigma_Y, Pa; 0: never yields */
     double strength_coefficient; /* K, Pa; 0: perfectly plastic */
@@ -267,12 +268,12 @@ struct wirebench_law {
     /* Or parallel parts. */
     int n_parts;
     struct wirebench_part parts[WIREBENCH_MOST_PARTS];
-    /* Share of kinematic hardening, 0 (isotropic) to 1; how the wire yields during unloading. Of
-     * the area; with `is_combined`, of Ludwik's hardening stress in one law, and of parallel parts
-     * 1 less beta: after yielding a part hardens isotropically with the tangent modulus beta E_i.
-     */
+    /* Share of kinematic hardening, 0 (isotropic) to 1, which determines yielding on unloading. By
+     * default it is the share of the area; with `is_combined`, that of Ludwik's hardening stress in
+     * one law, and for parallel parts 1 less beta: after yielding a part hardens isotropically with
+     * the tangent modulus beta E_i. */
     double kinematic_share;
-    /* Or Chaboche's law, where n_backs or saturation is above 0: E and sigma_Y from above, a yield
+    /* Or Chaboche's law, if n_backs or saturation is above 0: E and sigma_Y from above, a yield
      * stress that grows by saturation (1 - exp(-rate p)), and back stresses. */
     double saturation, rate; /* Q, Pa; b, 1 */
     int n_backs;
@@ -280,7 +281,7 @@ struct wirebench_law {
     struct wirebench_back backs[WIREBENCH_MOST_BACKS];
 };
 
-/* A number with its interval of 95 % over specimens, and its range over the laws that the data do
+/* A value with its interval of 95 % over specimens, and its range over the laws that the data do
  * not exclude. */
 struct wirebench_estimate {
     double value, low, high, candidates_low, candidates_high;
@@ -288,27 +289,27 @@ struct wirebench_estimate {
 
 struct wirebench_properties_info {
     size_t size;
-    const char *wire;                       /* name of the product; "" unknown */
-    const char *method;                     /* "cycle", "paper", "three-point"; "" not calibrated */
+    const char *wire;   /* name of the product; "" if unknown */
+    const char *method; /* "cycle", "paper", "three-point"; "" if not calibrated */
     double outer_diameter, mass_per_length; /* m, kg/m */
     double poissons_ratio;
-    /* E, sigma_Y, K and n of Ludwik's law; where n_parts is not 0, of the isotropic one that bends
-     * alike on a first loading. Standard uncertainties of E, sigma_Y, ln K and n. */
+    /* E, sigma_Y, K and n of Ludwik's law; if n_parts is not 0, of the isotropic Ludwik law with
+     * the same first loading. Standard uncertainties of E, sigma_Y, ln K and n. */
     double youngs_modulus, yield_stress, strength_coefficient, hardening_exponent;
     double deviation[4];
     int n_parts;
     struct wirebench_part parts[WIREBENCH_MOST_PARTS];
     double kinematic_share;
     double rms;               /* misfit of the calibration, over F_max */
-    double largest_curvature; /* 1/m, that the tests reached */
+    double largest_curvature; /* 1/m, reached in the tests */
     struct wirebench_estimate rigidity, residual_curvature_ratio; /* EI, N m2; 1 */
     int n_samples;
     int is_rule_supported; /* the data support the hardening rule */
     int is_virtual, is_simulation;
-    /* As in wirebench_law. Of Chaboche's law of a file E, sigma_Y, K and n above are the isotropic
-     * Ludwik law that bends alike on a first loading, of one that the caller gave its own with K
-     * and n 0; kinematic_share is the part of the hardening that moves the surface, and these are
-     * its own E and sigma_Y. */
+    /* As in wirebench_law. For Chaboche's law from a file, E, sigma_Y, K and n above are those of
+     * the isotropic Ludwik law with the same first loading; for a law created by the caller they
+     * are its own, with K and n 0. kinematic_share is the share of kinematic hardening, and these
+     * are the law's own E and sigma_Y. */
     double saturation, rate;
     int n_backs;
     int is_combined;
@@ -316,7 +317,7 @@ struct wirebench_properties_info {
     double law_youngs_modulus, law_yield_stress;
 };
 
-/* Properties of a law that the caller gives. */
+/* Creates properties from a law. */
 enum wirebench_status wirebench_properties_create(struct wirebench_properties **out,
                                                   const struct wirebench_law *law);
 /* Reads a properties file of `wirebench calibrate`, a wire file, or a shipped wire by its name:
@@ -327,8 +328,8 @@ void wirebench_properties_destroy(struct wirebench_properties *properties);
 
 enum wirebench_status wirebench_properties_describe(const struct wirebench_properties *properties,
                                                     struct wirebench_properties_info *info);
-/* Of calibrated properties, the text of a properties file as `wirebench calibrate -o` writes it;
- * NULL of others. */
+/* The text of calibrated properties as `wirebench calibrate -o` writes it to a file; NULL for
+ * others. */
 const char *wirebench_properties_text(const struct wirebench_properties *properties);
 
 /* Bending moments (N m) of a first loading at n curvatures (1/m, 0 or more). */
@@ -338,12 +339,12 @@ enum wirebench_status wirebench_moments(const struct wirebench_properties *prope
 struct wirebench_bending {
     size_t size;
     double rigidity;                 /* EI of the virgin wire, N m2 */
-    double residual_curvature_ratio; /* residual over largest curvature: bent to the largest and let
-                                        go, 1 */
-    double loop_energy; /* J/m lost each time: from the largest curvature straight and back */
+    double residual_curvature_ratio; /* residual over largest curvature, after bending to the
+                                        largest curvature and unloading, 1 */
+    double loop_energy; /* J/m lost per cycle: from the largest curvature to straight and back */
 };
 
-/* What the law says of bending up to `largest` (1/m, above 0). */
+/* Bending properties of the law up to `largest` (1/m, above 0). */
 enum wirebench_status wirebench_bend(const struct wirebench_properties *properties, double largest,
                                      struct wirebench_bending *bending);
 
@@ -354,7 +355,7 @@ struct wirebench_cantilever {
     size_t size;
     double length;        /* m */
     double strand_length; /* m, of the strand that pulls the tip; 0: a vertical force */
-    double counterweight; /* kg at the tip; has weight where gravity is not 0 */
+    double counterweight; /* kg at the tip; its weight acts if gravity is not 0 */
     double gravity;       /* m/s2 towards -y; 0: no weight */
     int n_natural_shape;  /* of the stress-free angle, as in wirebench_dataset_info */
     double natural_shape[WIREBENCH_MOST_SHAPE];
@@ -364,7 +365,7 @@ struct wirebench_cantilever {
     const double *positions;
 };
 
-/* Arrays of the caller, each (n) for n deflections, or NULL where it is not wanted. */
+/* Arrays of the caller, each (n) for n deflections, or NULL if not needed. */
 struct wirebench_cantilever_result {
     size_t size;
     double *force;       /* N: vertical, less its value at deflection 0 before the first row */
@@ -372,40 +373,40 @@ struct wirebench_cantilever_result {
     double *tip_x;       /* m */
     double *tip_angle;   /* rad */
     double *root_moment; /* N m, at the clamp */
-    int *slack;          /* the strand carries nothing */
+    int *slack;          /* the strand carries no load */
     double *shape_x, *shape_y; /* (n, n_positions), m */
-    size_t n_done;             /* set: rows that were computed; later ones are NaN */
+    size_t n_done;             /* set: number of computed rows; later rows are NaN */
 };
 
-/* Takes a virgin wire through n deflections of its tip (m), in their order. WIREBENCH_INCOMPLETE
- * where the solver does not converge beyond row n_done. */
+/* Moves the tip of a virgin wire through n deflections (m), in order. WIREBENCH_INCOMPLETE if the
+ * solver does not converge after row n_done. */
 enum wirebench_status wirebench_solve_cantilever(const struct wirebench_properties *properties,
                                                  const struct wirebench_cantilever *test, size_t n,
                                                  const double *deflection,
                                                  struct wirebench_cantilever_result *result);
 
-/* Three-point bending: two rollers, a nose between them that presses the wire down. */
+/* Three-point bending: two rollers, and a nose between them that bends the wire downwards. */
 struct wirebench_three_point {
     size_t size;
     double span;                       /* m, between the rollers' axes */
     double overhang;                   /* m, beyond each roller; 0: 0.3 span */
-    double roller_radius, nose_radius; /* m; 0: a knife's edge */
+    double roller_radius, nose_radius; /* m; 0: a knife edge */
     double friction;                   /* on the rollers, 1 */
-    double compliance;                 /* m/N of the machine */
+    double compliance;                 /* of the machine, m/N */
     int n_elements;                    /* of half the wire; 0: 80 */
 };
 
 struct wirebench_three_point_result {
     size_t size;
     double *force;            /* N, of the nose */
-    double *travel;           /* m, deflection and what the machine gives way */
+    double *travel;           /* m, deflection plus the machine's deformation */
     double *middle_moment;    /* N m */
     double *middle_curvature; /* 1/m */
-    int *slack;               /* the nose does not touch */
+    int *slack;               /* the nose does not touch the wire */
     size_t n_done;
 };
 
-/* The same for deflections of the nose since it touched the straight wire. */
+/* The same for deflections of the nose after its first contact with the straight wire. */
 enum wirebench_status wirebench_solve_three_point(const struct wirebench_properties *properties,
                                                   const struct wirebench_three_point *test,
                                                   size_t n, const double *deflection,
@@ -415,28 +416,27 @@ enum wirebench_status wirebench_solve_three_point(const struct wirebench_propert
 
 enum wirebench_method {
     WIREBENCH_METHOD_DEFAULT, /* as `wirebench calibrate` without --method */
-    WIREBENCH_METHOD_CYCLE,   /* a law and its hardening rule on loading and unloading */
-    WIREBENCH_METHOD_PAPER    /* E, sigma_Y, K and n on the averaged first loading */
+    WIREBENCH_METHOD_CYCLE,   /* a law and its hardening rule, from loading and unloading */
+    WIREBENCH_METHOD_PAPER    /* E, sigma_Y, K and n, from the averaged first loading */
 };
 
 struct wirebench_calibration {
     size_t size;
     enum wirebench_method method;
-    int threads; /* 0: as many as there are processors */
-    /* Options of `wirebench calibrate` by their names, "data-step-mm=2"; NULL or NULL-terminated.
-     */
+    int threads; /* 0: number of processors */
+    /* Options of `wirebench calibrate` by name, "data-step-mm=2"; NULL or NULL-terminated. */
     const char *const *options;
-    /* Called now and then, not always by the calling thread, one call at a time; 0 stops. `all` is
-     * 0 where it is not known. NULL: none. */
+    /* Called repeatedly, not always by the calling thread, one call at a time; returning 0 stops.
+     * `all` is 0 if unknown. NULL: none. */
     int (*progress)(void *context, int done, int all);
     void *context;
 };
 
-/* Calibrates on n datasets of one wire. `calibration` may be NULL: the default. Datasets of
- * three-point bending have a method of their own. One whose test was excluded from its series is
- * refused (WIREBENCH_ERR_DATA), with who did it and why. wirebench_warnings() has the remarks on
- * data and result. WIREBENCH_INCOMPLETE: the data do not support the hardening rule, a search did
- * not come to its end, or progress stopped it; the properties are there. */
+/* Calibrates on n datasets of one wire. `calibration` may be NULL: the defaults. Datasets of
+ * three-point bending have their own method. A dataset whose test was excluded from its series is
+ * rejected (WIREBENCH_ERR_DATA); the message says by whom and why. wirebench_warnings() contains
+ * the remarks on data and result. WIREBENCH_INCOMPLETE: the data do not support the hardening rule,
+ * a search did not converge, or progress stopped it; the properties are valid. */
 enum wirebench_status wirebench_calibrate(struct wirebench_properties **out,
                                           const struct wirebench_dataset *const *datasets, size_t n,
                                           const struct wirebench_calibration *calibration);

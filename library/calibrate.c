@@ -1,6 +1,6 @@
-/* Calibration of the library: the methods of `wirebench calibrate`. Whatever the method, its result
- * is written as a properties file in memory and read again, so that a caller gets the same as one
- * who reads the command's file. */
+/* Calibration of the library: the methods of `wirebench calibrate`. The result of any method is
+ * written as a properties file in memory and parsed, so that it equals that of reading the
+ * command's file. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,19 +16,19 @@
 
 #define WB_LOG_DOMAIN "library"
 
-/* --- what is asked for --- */
+/* --- settings --- */
 
 struct job {
     struct wirebench_calibration given;
     enum wb_method method;
     int n;
-    const struct wb_dataset **datasets;    /* (n) owned, the datasets themselves borrowed */
+    const struct wb_dataset **datasets;    /* (n) owned; the datasets themselves are borrowed */
     struct wb_properties_dataset *origins; /* (n) owned */
     const char **names;                    /* (n) owned */
     struct wb_calibrate_settings paper;
     struct wb_cycle_calibrate_settings cycle;
     struct wb_three_point_calibrate_settings three_point;
-    char missing[256]; /* what the result lacks; "" nothing */
+    char missing[256]; /* what is missing in the result; "" */
 };
 
 static bool report(void *context, int done, int all)
@@ -98,9 +98,9 @@ static enum wb_status prepare(struct job *job)
     return WB_OK;
 }
 
-/* --- the methods --- */
+/* --- methods --- */
 
-static void lack(struct job *job, const char *text)
+static void set_missing(struct job *job, const char *text)
 {
     snprintf(job->missing, sizeof job->missing, "%s", text);
 }
@@ -115,7 +115,7 @@ static enum wb_status run_paper(struct job *job, struct wb_text *text)
     for (int i = 0; i < n; i++)
         wb_call_warn(remarks[i]);
     if (!wb_calibrate_is_complete(result.end))
-        lack(job, wb_calibrate_end_text(result.end));
+        set_missing(job, wb_calibrate_end_text(result.end));
     wb_calibrate_result_release(&result);
     return WB_OK;
 }
@@ -134,16 +134,17 @@ static enum wb_status run_cycle(struct job *job, struct wb_text *text)
     if (status == WB_OK) {
         wb_properties_format_cycle(text, &calibration, &job->cycle, job->origins, job->n);
         if (calibration.is_stopped)
-            lack(job, "stopped before all laws were fitted: the hardening rule is undecided");
+            set_missing(job,
+                        "stopped before all laws were fitted: the hardening rule is undecided");
         else if (!wb_cycle_calibrate_is_converged(&calibration))
-            lack(job, "the iterations ran out for a specimen (option fit-iterations)");
+            set_missing(job,
+                        "the iterations were exhausted for a specimen (option fit-iterations)");
         else if (calibration.has_unloading && !calibration.is_followed)
-            lack(job,
-                 "no law follows loading and unloading (hardening_rule in the properties has the "
-                 "misfits)");
+            set_missing(job, "no law fits loading and unloading (hardening_rule in the properties "
+                             "has the misfits)");
         else if (job->cycle.at_most > 0.0 &&
                  !wb_cycle_budget_is_within(&calibration, job->cycle.at_most, worst, &known))
-            lack(job, "a number is not known as well as wanted (option at-most)");
+            set_missing(job, "the uncertainty of a value exceeds the limit (option at-most)");
     }
     wb_cycle_calibrate_release(&calibration);
     return status;
@@ -158,9 +159,10 @@ static enum wb_status run_three_point(struct job *job, struct wb_text *text)
         wb_properties_format_three_point(text, &calibration, job->origins, job->n);
         for (int i = 0; i < calibration.n_members; i++) {
             if (!calibration.members[i].is_fitted)
-                lack(job, "not every test could be fitted");
+                set_missing(job, "not every test could be fitted");
             else if (!calibration.members[i].fit.is_converged)
-                lack(job, "the iterations ran out for a test (option curve-iterations)");
+                set_missing(job,
+                            "the iterations were exhausted for a test (option curve-iterations)");
         }
     }
     wb_three_point_calibrate_release(&calibration);
@@ -181,12 +183,12 @@ static enum wb_status calibrate(struct job *job, struct wirebench_properties *pr
     wb_call_end_gsl();
     WB_TRY(status);
     if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the properties");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the properties");
     return wb_card_source_parse(&properties->source, wb_text_string(text),
                                 "the calibrated properties", NULL);
 }
 
-/* --- the function --- */
+/* --- calibration --- */
 
 static enum wb_status take_datasets(struct job *job,
                                     const struct wirebench_dataset *const *datasets, size_t n)

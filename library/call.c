@@ -18,7 +18,8 @@ enum {
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 static _Thread_local char message[MESSAGE_SIZE];
 static _Thread_local char warnings[WARNINGS_SIZE];
-static _Thread_local int mine_without_handler; /* of n_without_handler, this thread's */
+static _Thread_local int
+    mine_without_handler; /* part of n_without_handler that belongs to this thread */
 
 static void append(char *text, size_t size, const char *separator, const char *more)
 {
@@ -26,7 +27,7 @@ static void append(char *text, size_t size, const char *separator, const char *m
     snprintf(text + length, size - length, "%s%s", length > 0 ? separator : "", more);
 }
 
-/* A job on another thread has that thread's texts: its failures come back as values. */
+/* Messages of other threads go to those threads; their failures are returned as values. */
 static void keep(void *context, enum wb_log_level level, const char *domain, const char *text)
 {
     (void)context, (void)domain;
@@ -66,7 +67,7 @@ enum wirebench_status wb_call_end(enum wb_status status)
     wb_memory_guard_end();
     if (status != WB_OK && !message[0])
         append(message, sizeof message, "", wb_status_text(status));
-    /* What failed on the way to a success is worth a remark. */
+    /* A failure that was handled becomes a remark. */
     if (status == WB_OK && message[0]) {
         wb_call_warn(message);
         message[0] = '\0';
@@ -111,8 +112,8 @@ enum wb_status wb_call_take(void *mine, size_t n, const void *given, const char 
     for (size_t i = n; i < size; i++) {
         if (bytes[i])
             return wb_fail(WB_ERR_ARGUMENT,
-                           "%s: has members that this release of the library, %s, does not know: "
-                           "they must be 0",
+                           "%s: contains members that are unknown to this release of the library, "
+                           "%s: they must be 0",
                            name, wb_version());
     }
     memset(mine, 0, n);
@@ -140,7 +141,7 @@ enum wb_status wb_call_need(const void *pointer, const char *name)
 /* --- GSL's error handler --- */
 
 static pthread_mutex_t handler_lock = PTHREAD_MUTEX_INITIALIZER;
-static gsl_error_handler_t *handler; /* the caller's, while it is off */
+static gsl_error_handler_t *handler; /* the caller's, while it is switched off */
 static int n_without_handler;
 
 void wb_call_begin_gsl(void)
@@ -161,7 +162,7 @@ void wb_call_end_gsl(void)
     pthread_mutex_unlock(&handler_lock);
 }
 
-/* --- what the library says of itself --- */
+/* --- versions and messages --- */
 
 const char *wirebench_version(void)
 {

@@ -1,6 +1,5 @@
-/* What every function of the library begins and ends with: messages go to the calling thread's
- * texts instead of a stream, and structs of other releases are read and written as far as both
- * sides know them.
+/* Prologue and epilogue of every function of the library: messages go to the calling thread's texts
+ * instead of a stream, and structs of other releases are converted.
  *
  *     wb_call_begin();
  *     ...
@@ -21,14 +20,14 @@ struct wirebench_table {
     struct wb_columns columns;
 };
 
-/* A call under way, in its function's frame. */
+/* A call in progress, on the stack of its function. */
 struct wb_call {
     struct wb_memory_guard guard;
-    int n_without_handler; /* of this thread, when it began */
+    int n_without_handler; /* of this thread, at its beginning */
 };
 
-/* Forgets this thread's message and warnings. Where an allocation fails from here to the end, the
- * function returns WIREBENCH_ERR_MEMORY from this line; what it owned then is lost. */
+/* Clears this thread's message and warnings. If an allocation fails before the end, the function
+ * returns WIREBENCH_ERR_MEMORY from this line; what it owned is leaked. */
 #define wb_call_begin()                                                                            \
     struct wb_call wb_call_;                                                                       \
     wb_call_start(&wb_call_);                                                                      \
@@ -37,32 +36,33 @@ struct wb_call {
 void wb_call_start(struct wb_call *call);
 enum wirebench_status wb_call_abandon(const struct wb_call *call);
 
-/* The public status; sees to it that a failure has a message. */
+/* The public status; ensures that a failure has a message. */
 enum wirebench_status wb_call_end(enum wb_status status);
-/* The same of a success that lacks something, which the message says. */
+/* The same for a success with missing results, which the message describes. */
 enum wirebench_status wb_call_end_incomplete(const char *format, ...)
     __attribute__((format(printf, 1, 2)));
 
 /* Appends a line to this thread's warnings. */
 void wb_call_warn(const char *text);
 
-/* Copies a struct that the caller filled in, whose first member is its size, to `mine` (n bytes),
- * and zeroes what it does not have. WB_ERR_ARGUMENT where the size was not set, or where members
- * that this release does not know are not 0. `name` is the struct's. */
+/* Copies a struct from the caller, whose first member is its size, to `mine` (n bytes), and zeroes
+ * members that it lacks. WB_ERR_ARGUMENT if the size was not set, or if members unknown to this
+ * release are not 0. `name` is the struct's. */
 WB_MUST_CHECK enum wb_status wb_call_take(void *mine, size_t n, const void *given,
                                           const char *name);
 
-/* Copies a result (n bytes) to the caller's struct as far as that reaches, whose size stays;
- * zeroes what lies beyond. WB_ERR_ARGUMENT where the size was not set. */
+/* Copies a result (n bytes) to the caller's struct up to that struct's size, which stays; zeroes
+ * its further members. WB_ERR_ARGUMENT if the size was not set. */
 WB_MUST_CHECK enum wb_status wb_call_give(void *given, const void *mine, size_t n,
                                           const char *name);
 
-/* Between the two, GSL's error handler, which belongs to the process and aborts it by default, is
- * off. Any thread may be between them; the caller's handler is back when the last has left. */
+/* GSL's error handler, which is global to the process and aborts it by default, is switched off
+ * between these calls. Any number of threads may be between them; the last to leave restores the
+ * caller's handler. */
 void wb_call_begin_gsl(void);
 void wb_call_end_gsl(void);
 
-/* WB_ERR_ARGUMENT with a message where a pointer is NULL that must not be. */
+/* WB_ERR_ARGUMENT with a message if a required pointer is NULL. */
 WB_MUST_CHECK enum wb_status wb_call_need(const void *pointer, const char *name);
 
 #endif

@@ -10,7 +10,7 @@
 
 #define WB_LOG_DOMAIN "library"
 
-/* The public kinds have the numbers of ours. */
+/* The public kinds have the values of the internal ones. */
 _Static_assert((int)WB_TEST_CANTILEVER == (int)WIREBENCH_CANTILEVER, "cantilever");
 _Static_assert((int)WB_TEST_THREE_POINT == (int)WIREBENCH_THREE_POINT, "three-point");
 _Static_assert((int)WB_TEST_TENSILE == (int)WIREBENCH_TENSILE, "tensile");
@@ -18,7 +18,7 @@ _Static_assert(sizeof((struct wb_test_info){0}.natural_shape) ==
                    sizeof((struct wirebench_dataset_info){0}.natural_shape),
                "natural shape");
 
-/* What callers look at, of a dataset that was read or made. */
+/* Makes the tables and the text of a dataset that was read or made. */
 static enum wb_status show(struct wirebench_dataset *dataset)
 {
     struct wb_columns tables[WB_DATASET_COLUMNS_TABLES];
@@ -54,9 +54,9 @@ enum wirebench_status wirebench_dataset_read(struct wirebench_dataset **out, con
     return wb_call_end(status);
 }
 
-/* --- of a recording --- */
+/* --- from a recording --- */
 
-/* Calibrated properties name the recording, as those of a report do. */
+/* Calibrated properties name the recording, as in reports. */
 static void set_origin(struct wirebench_dataset *dataset)
 {
     const struct wb_json *const recording =
@@ -87,7 +87,7 @@ static enum wb_status align_dataset(struct wirebench_dataset *dataset, const cha
     return show(dataset);
 }
 
-/* A dataset that is not complete lists why among its warnings. */
+/* The warnings of an incomplete dataset contain the reasons. */
 static enum wirebench_status end_incomplete(const struct wirebench_dataset *dataset)
 {
     const struct wb_json *const warnings = wb_json_get(dataset->dataset.document, "warnings");
@@ -98,7 +98,7 @@ static enum wirebench_status end_incomplete(const struct wirebench_dataset *data
             wb_text_append(&text, "%s%s", i > 0 ? "; " : "", warning);
     }
     const enum wirebench_status status = wb_call_end_incomplete(
-        "%s: the test is not all there: %s", dataset->origin.name, wb_text_string(&text));
+        "%s: the test is incomplete: %s", dataset->origin.name, wb_text_string(&text));
     wb_text_release(&text);
     return status;
 }

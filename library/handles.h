@@ -1,4 +1,4 @@
-/* What is behind the handles that more than one file of the library looks into. */
+/* The handles that more than one file of the library accesses. */
 #ifndef WB_LIBRARY_HANDLES_H
 #define WB_LIBRARY_HANDLES_H
 
@@ -10,14 +10,14 @@
 
 struct wirebench_dataset {
     struct wb_dataset dataset;
-    struct wb_properties_dataset origin; /* as a properties file names it */
+    struct wb_properties_dataset origin; /* its name in a properties file */
     struct wirebench_table tables[WB_DATASET_COLUMNS_TABLES];
     char *json; /* owned */
 };
 
 struct wirebench_properties {
-    struct wb_card_source source; /* a wire's or a properties file's, or as if read from one */
-    struct wb_text text;          /* of the file, where it was calibrated; else empty */
+    struct wb_card_source source; /* from a wire or properties file, or equivalent */
+    struct wb_text text;          /* of the file, if calibrated; else empty */
 };
 
 #endif

@@ -4,7 +4,7 @@
 
 #define WB_LOG_DOMAIN "library"
 
-/* The row of that option and the struct that its field lies in; NULL: there is none. */
+/* The row of the option, and the struct of its field; NULL: unknown option. */
 static const struct wb_setting *find(const struct wb_setting_table *tables, int n, void *settings,
                                      const char *name, size_t length, void **of)
 {
@@ -31,9 +31,8 @@ enum wb_status wb_options_set(const struct wb_setting_table *tables, int n, void
         void *of;
         const struct wb_setting *const row = find(tables, n, settings, option, length, &of);
         if (!row)
-            return wb_fail(WB_ERR_NOT_FOUND,
-                           "option '%s': `wirebench %s --help` has those it takes", option,
-                           command);
+            return wb_fail(WB_ERR_NOT_FOUND, "unknown option '%s': see `wirebench %s --help`",
+                           option, command);
         if (row->type != WB_SETTING_BOOLEAN && !equals)
             return wb_fail(WB_ERR_ARGUMENT, "option '%s': expected %s=%s", option, option,
                            row->argument);

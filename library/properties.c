@@ -1,4 +1,4 @@
-/* Properties of the library: what a law says of bending. */
+/* Properties of the library, and bending by their law. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,7 +21,7 @@ static enum wb_status make_chaboche(const struct wirebench_law *given,
                        WB_LAW_MOST_BACKS);
     if (given->n_parts > 0)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "n_parts: %d: expected 0 beside n_backs or saturation: one law",
+                       "n_parts: %d: expected 0 with n_backs or saturation: a wire has one law",
                        given->n_parts);
     for (int i = 0; i < given->n_backs; i++)
         backs[i] = (struct wb_law_back){given->backs[i].modulus, given->backs[i].recovery};
@@ -37,7 +37,7 @@ static enum wb_status make_law(const struct wirebench_law *given, struct wb_law 
         .poissons_ratio = given->poissons_ratio,
         .yield_stress = given->yield_stress,
         .strength_coefficient = given->strength_coefficient,
-        /* A perfectly plastic wire needs none. */
+        /* A perfectly plastic wire needs no exponent. */
         .hardening_exponent = given->strength_coefficient == 0.0 ? 1.0 : given->hardening_exponent,
     };
     struct wb_law_part parts[WB_LAW_MOST_PARTS] = {
@@ -55,13 +55,13 @@ static enum wb_status make_law(const struct wirebench_law *given, struct wb_law 
     if (given->n_backs != 0 || given->saturation != 0.0)
         return make_chaboche(given, &material, law);
     if (given->is_combined && given->n_parts == 0 && given->yield_stress == 0.0)
-        return wb_fail(WB_ERR_ARGUMENT, "is_combined: expected 0 of a wire that never yields");
+        return wb_fail(WB_ERR_ARGUMENT, "is_combined: expected 0 for a wire that never yields");
     if (given->n_parts > 0 || given->yield_stress == 0.0) {
         wb_law_init_parallel(law, parts, given->n_parts > 0 ? given->n_parts : 1, isotropic_share,
                              given->poissons_ratio);
         law->is_combined = given->is_combined;
         if (law->is_combined && isotropic_share == 1.0)
-            return wb_fail(WB_ERR_ARGUMENT, "kinematic_share: 0: expected more of parallel parts "
+            return wb_fail(WB_ERR_ARGUMENT, "kinematic_share: 0: expected more for parallel parts "
                                             "with is_combined, which would never yield");
     } else {
         wb_law_init_ludwik(law, &material);

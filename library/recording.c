@@ -34,7 +34,7 @@ struct wirebench_recording {
     char (*problems)[PROBLEM_SIZE]; /* (n_problems) owned */
     bool is_decoded;
     enum wb_status decoding; /* WB_OK, or WB_ERR_DATA: the recording breaks off */
-    char why[1024];          /* what was left out; "" nothing */
+    char why[1024];          /* what was left out; "" */
     struct wirebench_table tables[WB_SAMPLE_COLUMNS_TABLES];
 };
 
@@ -55,7 +55,8 @@ static enum wb_status open_recording(struct wirebench_recording *recording, cons
     WB_TRY(wb_recording_open(&recording->recording, path));
     const enum wb_status status =
         wb_recording_each_meta(recording->recording, keep_meta, recording);
-    /* A damaged one is read as far as it goes; wirebench_recording_describe() tells. */
+    /* The readable part of a damaged recording is used; wirebench_recording_describe() reports the
+     * damage. */
     return status == WB_ERR_DATA ? WB_OK : status;
 }
 
@@ -77,7 +78,7 @@ void wirebench_recording_close(struct wirebench_recording *recording)
 {
     if (!recording)
         return;
-    /* Opened for reading: nothing can fail. */
+    /* Cannot fail, because it was opened for reading. */
     if (wb_recording_close(recording->recording) != WB_OK)
         wb_warn("'%s' was not closed", recording->path);
     for (int i = 0; i < WB_SAMPLE_COLUMNS_TABLES; i++)
@@ -88,7 +89,7 @@ void wirebench_recording_close(struct wirebench_recording *recording)
     free(recording);
 }
 
-/* --- what it holds --- */
+/* --- contents --- */
 
 static void keep_problems(struct wirebench_recording *recording)
 {
@@ -138,7 +139,7 @@ enum wirebench_status wirebench_recording_describe(struct wirebench_recording *r
     return wb_call_end(wb_call_give(info, &mine, sizeof mine, "wirebench_recording_info"));
 }
 
-/* The public roles have the numbers of ours. */
+/* The public roles have the values of the internal ones. */
 _Static_assert((int)WB_ROLE_LOAD == (int)WIREBENCH_LOAD, "load");
 _Static_assert((int)WB_ROLE_MOCAP == (int)WIREBENCH_MOCAP, "mocap");
 _Static_assert((int)WB_ROLE_STAGE == (int)WIREBENCH_STAGE, "stage");

@@ -78,7 +78,7 @@ static enum wb_status create_cantilever(struct wb_cantilever **out,
     return wb_cantilever_create(out, &model, NULL);
 }
 
-/* Row `row`, or NaN where it was not reached (point NULL). */
+/* Sets row `row`, or NaN if it was not reached (point NULL). */
 static void put_cantilever_row(const struct wirebench_cantilever_result *result, size_t row,
                                const struct wb_cantilever_point *point, double zero)
 {

@@ -1,7 +1,7 @@
 """Recordings, datasets, simulated tests and calibration of wirebench.
 
 A thin module over libwirebench, whose header, wirebench.h, documents each number. Everything is in
-SI units; NaN is a number that is not known. Tables are dictionaries of NumPy arrays:
+SI units; NaN is an unknown value. Tables are dictionaries of NumPy arrays:
 
     import wirebench
     with wirebench.Recording("type1-L85-1.wbr.zst") as recording:
@@ -11,9 +11,9 @@ SI units; NaN is a number that is not known. Tables are dictionaries of NumPy ar
     print(wire.info.rigidity.value, wire.bend(20.0).residual_curvature_ratio)
     frame = dataset.table("shape").frame()   # with pandas
 
-A failure raises wirebench.Error with the library's message. Where results are there but something
-of them is missing or doubtful, wirebench.Incomplete is given as a warning; what the tool prints as
-warnings is a wirebench.Remark.
+A failure raises wirebench.Error with the library's message. wirebench.Incomplete is a warning that
+results were delivered, but something is missing or doubtful; wirebench.Remark is a warning of the
+tool.
 """
 
 import ctypes as _c
@@ -33,7 +33,7 @@ __all__ = ["Dataset", "Error", "Incomplete", "Properties", "Recording", "Remark"
 
 
 class Error(Exception):
-    """What the library refused or could not do; `status` is the code of enum wirebench_status."""
+    """A failure of the library; `status` is the code of enum wirebench_status."""
 
     def __init__(self, status, message):
         super().__init__(message)
@@ -41,14 +41,14 @@ class Error(Exception):
 
 
 class Incomplete(UserWarning):
-    """Results were delivered, and something of them is missing or doubtful."""
+    """Results were delivered, but something is missing or doubtful."""
 
 
 class Remark(UserWarning):
-    """What the tool would have printed as a warning."""
+    """A warning of the tool."""
 
 
-# WIREBENCH_LIBRARY names another file, for one that is not installed.
+# WIREBENCH_LIBRARY names the file of a library that is not installed.
 _lib = _c.CDLL(_os.environ.get("WIREBENCH_LIBRARY", "libwirebench.so.0"))
 _s.declare(_lib)
 
@@ -70,7 +70,7 @@ def _caller():
 
 
 def _check(status):
-    """Raises or warns, as the status of the call before says."""
+    """Raises or warns according to the status of the last call."""
     message = _text(_lib.wirebench_message())
     remarks = _text(_lib.wirebench_warnings())
     if status < 0:
@@ -82,7 +82,7 @@ def _check(status):
 
 
 def _plain(value):
-    """A struct as a namespace, without its size; arrays by how many they hold."""
+    """A struct as a namespace, without its size; arrays are cut to their used length."""
     if isinstance(value, bytes):
         return _text(value)
     if isinstance(value, _c.Array):
@@ -142,7 +142,7 @@ class Table(_Mapping):
 
 
 class _Handle:
-    """What a handle of the library lives in; freed with the object."""
+    """Owner of a handle of the library, which is freed with the object."""
 
     _free = None
 
@@ -187,12 +187,12 @@ class Recording(_Handle):
 
     @property
     def info(self):
-        """What it holds and whether all of it is there: struct wirebench_recording_info."""
+        """Contents and completeness: struct wirebench_recording_info."""
         return _described(_s.RecordingInfo, _lib.wirebench_recording_describe, self._open)
 
     @property
     def streams(self):
-        """Of each instrument, struct wirebench_stream; role is "load", "mocap" or "stage"."""
+        """A struct wirebench_stream for each instrument; role is "load", "mocap" or "stage"."""
         found = []
         for index in range(self.info.n_streams):
             stream = _described(_s.Stream, _lib.wirebench_recording_stream, self._open, index)
@@ -202,12 +202,12 @@ class Recording(_Handle):
 
     @property
     def problems(self):
-        """What is missing or damaged, in sentences; empty where nothing is."""
+        """Missing or damaged parts, as sentences."""
         return [_text(_lib.wirebench_recording_problem(self._open, index))
                 for index in range(self.info.n_problems)]
 
     def meta(self, key):
-        """A text recorded beside the bytes, "specimen" or "rig"; None: there is none."""
+        """A text of the meta data, such as "specimen" or "rig"; None if there is none."""
         return _text(_lib.wirebench_recording_meta(self._open, key.encode()))
 
     def table(self, name):
@@ -218,8 +218,8 @@ class Recording(_Handle):
 
 
 class Dataset(_Handle):
-    """A test as force over deflection and shapes: a folder that `wirebench align` wrote. align()
-    makes one of a recording without a folder."""
+    """A test as force over deflection and shapes: a folder written by `wirebench align`. align()
+    makes one from a recording without a folder."""
 
     _free = _lib.wirebench_dataset_close
 
@@ -241,12 +241,12 @@ class Dataset(_Handle):
 
     @property
     def document(self):
-        """dataset.json: where the data come from, what was corrected and by how much."""
+        """dataset.json: origin of the data, and corrections with their sizes."""
         return _json.loads(_text(_lib.wirebench_dataset_json(self._open)))
 
 
 class Properties(_Handle):
-    """What is known of a wire: made of a law's numbers, read, or calibrated."""
+    """Properties of a wire: from the numbers of a law, from a file, or calibrated."""
 
     _free = _lib.wirebench_properties_destroy
 
@@ -285,7 +285,7 @@ class Properties(_Handle):
 
     @property
     def text(self):
-        """Of calibrated properties, the text of PROPERTIES.yaml; None of others."""
+        """The text of PROPERTIES.yaml of calibrated properties; None for others."""
         return _text(_lib.wirebench_properties_text(self._open))
 
     def moments(self, curvature):
@@ -308,22 +308,22 @@ def version():
 
 
 def revision():
-    """The source revision that the library was built from."""
+    """The source revision of the library's build."""
     return _text(_lib.wirebench_revision())
 
 
 def _options(options):
-    """{"data-step-mm": 2} as the library takes it, "data-step-mm=2"."""
+    """Converts {"data-step-mm": 2} to the library's form, "data-step-mm=2"."""
     given = [name if value is True else "%s=%s" % (name, value)
              for name, value in (options or {}).items()]
     return (_c.c_char_p * (len(given) + 1))(*[text.encode() for text in given], None)
 
 
 def align(path, *, rig=None, specimen=None, options=None):
-    """Makes the dataset of a recording as `wirebench align` does, and gives a Dataset.
+    """Makes the Dataset of a recording like `wirebench align`.
 
-    rig, specimen: paths of files that hold in place of the recorded ones. options: others of the
-    command by their names, {"row-rate": 50}.
+    rig, specimen: paths of files used in place of the recorded ones. options: other options of the
+    command by name, {"row-rate": 50}.
     """
     alignment = _s.Alignment(size=_c.sizeof(_s.Alignment),
                              rig=None if rig is None else _path(rig),
@@ -333,7 +333,7 @@ def align(path, *, rig=None, specimen=None, options=None):
 
 
 def _solve(call, properties, test, deflection, result, shapes=0):
-    """Fills all arrays of the result's struct, and gives them with the deflections."""
+    """Fills all arrays of the result's struct, and returns them with the deflections."""
     deflection = _np.ascontiguousarray(deflection, dtype=_np.float64).ravel()
     arrays = {"deflection": deflection}
     for name, kind in result._fields_:
@@ -351,9 +351,9 @@ def _solve(call, properties, test, deflection, result, shapes=0):
 
 def solve_cantilever(properties, length, deflection, *, strand_length=0.0, counterweight=0.0,
                      gravity=0.0, natural_shape=(), n_elements=0, positions=()):
-    """Takes a virgin wire through deflections of its tip (m), in their order.
+    """Moves the tip of a virgin wire through deflections (m), in order.
 
-    Gives arrays: deflection, force, tension, tip_x, tip_angle, root_moment, slack, and with
+    Returns arrays: deflection, force, tension, tip_x, tip_angle, root_moment, slack, and with
     `positions` (arc lengths, m) shape_x and shape_y, a row for each deflection; n_done rows were
     computed, later ones are NaN. See struct wirebench_cantilever.
     """
@@ -373,9 +373,9 @@ def solve_cantilever(properties, length, deflection, *, strand_length=0.0, count
 
 def solve_three_point(properties, span, deflection, *, overhang=0.0, roller_radius=0.0,
                       nose_radius=0.0, friction=0.0, compliance=0.0, n_elements=0):
-    """The same for three-point bending, by the nose's way since it touched the wire (m).
+    """The same for three-point bending, by the nose's travel after first contact (m).
 
-    Gives arrays: deflection, force, travel, middle_moment, middle_curvature, slack; and n_done. See
+    Returns arrays: deflection, force, travel, middle_moment, middle_curvature, slack; and n_done. See
     struct wirebench_three_point.
     """
     test = _s.ThreePoint(size=_c.sizeof(_s.ThreePoint), span=span, overhang=overhang,
@@ -386,11 +386,11 @@ def solve_three_point(properties, span, deflection, *, overhang=0.0, roller_radi
 
 
 def calibrate(datasets, method=None, *, threads=0, options=None, progress=None):
-    """Calibrates on datasets of one wire, as `wirebench calibrate` does, and gives Properties.
+    """Calibrates on datasets of one wire like `wirebench calibrate`, and returns Properties.
 
-    method: "cycle", "paper" or None, the default. options: those of the command by their names,
-    {"data-step-mm": 2}; True for one without a value. progress(done, all) is called now and then;
-    False stops.
+    method: "cycle", "paper" or None, the default. options: those of the command by name,
+    {"data-step-mm": 2}; True for one without a value. progress(done, all) is called repeatedly;
+    returning False stops.
     """
     methods = {None: 0, "cycle": 1, "paper": 2}
     if method not in methods:
@@ -402,7 +402,7 @@ def calibrate(datasets, method=None, *, threads=0, options=None, progress=None):
     def report(_context, done, all_):
         try:
             return 0 if progress(done, all_) is False else 1
-        except BaseException as exception:  # it cannot pass through C
+        except BaseException as exception:  # exceptions cannot pass through C
             raised.append(exception)
             return 0
 

@@ -1,4 +1,4 @@
-"""The structs and functions of wirebench.h as ctypes sees them.
+"""The structs and functions of wirebench.h for ctypes.
 
 tests/library/test_python.py compares sizes and offsets with a compiler's.
 """
@@ -16,7 +16,7 @@ PROGRESS = c.CFUNCTYPE(c.c_int, c.c_void_p, c.c_int, c.c_int)
 
 
 def pointer(array):
-    """To the numbers of a contiguous NumPy array."""
+    """Pointer to the numbers of a contiguous NumPy array."""
     return array.ctypes.data_as(INTS if array.dtype.kind == "i" else DOUBLES)
 
 
@@ -106,7 +106,7 @@ Calibration = _struct("Calibration", _SIZE, *_ints("method threads"),
                       ("options", c.POINTER(c.c_char_p)), ("progress", PROGRESS),
                       ("context", c.c_void_p))
 
-# The header's name of each.
+# By their names in the header.
 STRUCTS = {"column": Column, "recording_info": RecordingInfo, "stream": Stream,
            "dataset_info": DatasetInfo, "alignment": Alignment, "part": Part, "back": Back, "law": Law,
            "estimate": Estimate, "properties_info": PropertiesInfo, "bending": Bending, "cantilever": Cantilever,
@@ -115,7 +115,7 @@ STRUCTS = {"column": Column, "recording_info": RecordingInfo, "stream": Stream,
 
 _HANDLE, _OUT = c.c_void_p, c.POINTER(c.c_void_p)
 
-# Result, then arguments; what is a pointer to a struct takes byref() of any.
+# Result, then arguments; pointers to structs accept byref() of any struct.
 FUNCTIONS = {
     "version": (c.c_char_p,),
     "revision": (c.c_char_p,),
@@ -155,7 +155,7 @@ FUNCTIONS = {
 
 
 def declare(library):
-    """Gives the library's functions their types."""
+    """Sets the types of the library's functions."""
     for name, (result, *arguments) in FUNCTIONS.items():
         function = getattr(library, "wirebench_" + name)
         function.restype, function.argtypes = result, arguments

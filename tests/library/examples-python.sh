@@ -1,5 +1,5 @@
 #!/bin/sh
-# The examples in Python print what those in C do. Usage:
+# The examples in Python print the same as those in C. Usage:
 #     examples-python.sh PYTHON EXAMPLES_FOLDER SOURCE_ROOT RECORDING DATASET
 set -eu
 python=$1 examples=$2 source=$3 recording=$4 dataset=$5

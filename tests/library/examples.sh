@@ -1,5 +1,5 @@
 #!/bin/sh
-# The examples in C print what the tool prints of the same input. Usage:
+# The examples in C print the same as the tool for the same input. Usage:
 #     examples.sh WIREBENCH EXAMPLES_FOLDER RECORDING PREPARED_FOLDER
 set -eu
 tool=$1 examples=$2 recording=$3 prepared=$4
@@ -34,7 +34,7 @@ ratio=$(sed -n '/"residual_curvature_ratio"/,/}/s/.*"value": *\([0-9.e+-]*\).*/\
     "$prepared/cycle.json")
 close residual_curvature_ratio "$(sed -n 's/^residual curvature ratio \([^ ]*\) .*/\1/p' "$folder/calibrated")" "$ratio"
 
-# Aligned in memory, the same; what the test lacks is said.
+# The same when aligned in memory; missing parts of the test are reported.
 "$examples/calibrate_dataset" "$recording" >"$folder/calibrated-recording" 2>"$folder/err"
 cmp "$folder/calibrated" "$folder/calibrated-recording" || fail "a recording differs from its dataset"
 grep -q '^calibrate_dataset: .*1 gap in the rows' "$folder/err" || fail "$(cat "$folder/err")"

@@ -6,7 +6,7 @@ library=$1 header=$2
 bad=0
 exported=$(nm -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' |
     LC_ALL=C sort)
-# What stands before an opening bracket at the end of a declaration's name.
+# The word before an opening bracket is the name of a declaration.
 declared=$(grep -v '^ \*\|^/\*\|^    ' "$header" | grep -oE '\bwirebench_[a-z_]+\(' | tr -d '(' |
     LC_ALL=C sort -u)
 [ "$(echo "$declared" | wc -l)" -ge 20 ] || { echo "the header was not understood"; exit 1; }

@@ -1,6 +1,6 @@
 #!/bin/bash
-# What `meson install` puts into an empty place is enough for a program that knows the header and
-# pkg-config alone: it builds, runs, and needs libwirebench.so.0. Usage:
+# The files of `meson install` in an empty folder suffice for a program that uses only the header and
+# pkg-config: it builds, runs, and needs libwirebench.so.0. Usage:
 #     package.sh BUILD_ROOT SOURCE_ROOT VERSION COMPILER...
 set -eu
 build=$1 source=$2 version=$3

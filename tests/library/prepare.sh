@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the tool makes of a stored recording, once for all tests that need one: dataset, and
+# Results of the tool for a stored recording, once for all tests that need them: dataset, and
 # properties by both methods. Usage: prepare.sh WIREBENCH RECORDING STAMP
 set -eu
 tool=$(realpath "$1") recording=$(realpath "$2") stamp=$(realpath -m "$3")

@@ -1,6 +1,5 @@
-/* libwirebench as a program uses it: through its header alone. Numbers are held against closed
- * forms, against each other, and against the file's bytes; tests/library/examples.sh compares with
- * the tool. */
+/* libwirebench used by a program through its header. Results are compared with closed forms, with
+ * each other, and with the file's bytes; tests/library/examples.sh compares with the tool. */
 #include <fcntl.h>
 #include <locale.h>
 #include <pthread.h>
@@ -22,8 +21,8 @@ static double rigidity(void)
     return MODULUS * M_PI * pow(DIAMETER, 4) / 64.0;
 }
 
-/* Fails with the library's own words. */
-static void succeed(enum wirebench_status status)
+/* Fails with the library's message. */
+static void assert_success(enum wirebench_status status)
 {
     if (status != WIREBENCH_OK)
         fail_msg("status %d: %s", (int)status, wirebench_message());
@@ -42,7 +41,7 @@ static struct wirebench_properties *elastic_wire(void)
                                       .poissons_ratio = 0.3,
                                       .youngs_modulus = MODULUS};
     struct wirebench_properties *properties = NULL;
-    succeed(wirebench_properties_create(&properties, &law));
+    assert_success(wirebench_properties_create(&properties, &law));
     return properties;
 }
 
@@ -57,7 +56,7 @@ static struct wirebench_properties *plastic_wire(double kinematic_share)
                                       .hardening_exponent = 0.9,
                                       .kinematic_share = kinematic_share};
     struct wirebench_properties *properties = NULL;
-    succeed(wirebench_properties_create(&properties, &law));
+    assert_success(wirebench_properties_create(&properties, &law));
     return properties;
 }
 
@@ -70,10 +69,10 @@ static void an_elastic_wire_bends_by_its_rigidity_and_springs_back(void **state)
     const double curvature[] = {0.0, 3.0, 30.0};
     double moment[3];
     struct wirebench_bending bending = {.size = sizeof bending};
-    succeed(wirebench_moments(wire, 3, curvature, moment));
+    assert_success(wirebench_moments(wire, 3, curvature, moment));
     for (int i = 0; i < 3; i++)
         assert_close(moment[i], rigidity() * curvature[i], 1e-6 * rigidity() * 30.0);
-    succeed(wirebench_bend(wire, 30.0, &bending));
+    assert_success(wirebench_bend(wire, 30.0, &bending));
     assert_close_relative(bending.rigidity, rigidity(), 1e-9);
     assert_close(bending.residual_curvature_ratio, 0.0, 1e-9);
     wirebench_properties_destroy(wire);
@@ -89,7 +88,7 @@ static void an_elastic_cantilever_follows_the_cubic_formula(void **state)
         .size = sizeof test, .length = LENGTH, .n_positions = 3, .positions = positions};
     struct wirebench_cantilever_result result = {
         .size = sizeof result, .force = force, .root_moment = moment, .shape_x = x, .shape_y = y};
-    succeed(wirebench_solve_cantilever(wire, &test, 3, deflection, &result));
+    assert_success(wirebench_solve_cantilever(wire, &test, 3, deflection, &result));
     assert_int_equal(result.n_done, 3);
     const double expected = 3.0 * rigidity() * 1e-4 / pow(LENGTH, 3);
     assert_close(force[0], 0.0, 1e-12);
@@ -114,7 +113,7 @@ static void elastic_three_point_bending_follows_the_cubic_formula(void **state)
         .size = sizeof test, .span = span, .compliance = compliance};
     struct wirebench_three_point_result result = {
         .size = sizeof result, .force = &force, .travel = &travel, .middle_moment = &moment};
-    succeed(wirebench_solve_three_point(wire, &test, 1, deflection, &result));
+    assert_success(wirebench_solve_three_point(wire, &test, 1, deflection, &result));
     assert_int_equal(result.n_done, 1);
     assert_close_relative(force, 48.0 * rigidity() * 5e-5 / pow(span, 3), 5e-3);
     assert_close_relative(moment, force * span / 4.0, 2e-2);
@@ -122,7 +121,7 @@ static void elastic_three_point_bending_follows_the_cubic_formula(void **state)
     wirebench_properties_destroy(wire);
 }
 
-static void kinematic_hardening_springs_back_less_and_loads_alike(void **state)
+static void kinematic_hardening_has_the_same_loading_and_less_springback(void **state)
 {
     (void)state;
     struct wirebench_properties *const isotropic = plastic_wire(0.0), *const kinematic =
@@ -130,18 +129,18 @@ static void kinematic_hardening_springs_back_less_and_loads_alike(void **state)
     struct wirebench_bending one = {.size = sizeof one}, other = {.size = sizeof other};
     const double curvature = 25.0;
     double moments[2];
-    succeed(wirebench_moments(isotropic, 1, &curvature, &moments[0]));
-    succeed(wirebench_moments(kinematic, 1, &curvature, &moments[1]));
+    assert_success(wirebench_moments(isotropic, 1, &curvature, &moments[0]));
+    assert_success(wirebench_moments(kinematic, 1, &curvature, &moments[1]));
     assert_close_relative(moments[0], moments[1], 5e-3);
-    succeed(wirebench_bend(isotropic, curvature, &one));
-    succeed(wirebench_bend(kinematic, curvature, &other));
+    assert_success(wirebench_bend(isotropic, curvature, &one));
+    assert_success(wirebench_bend(kinematic, curvature, &other));
     assert_true(one.residual_curvature_ratio > 1.2 * other.residual_curvature_ratio);
     wirebench_properties_destroy(isotropic);
     wirebench_properties_destroy(kinematic);
 }
 
-/* Parallel parts whose limits grow: beta of each yielded part's modulus remains, and unloading
- * begins from a wider elastic range than with kinematic hardening. */
+/* Parallel parts whose yield limits grow: after yielding each keeps a modulus of beta times its
+ * own, and unloading begins with a wider elastic range than with kinematic hardening. */
 static void combined_hardening_of_parallel_parts_widens_the_elastic_range(void **state)
 {
     (void)state;
@@ -155,24 +154,24 @@ static void combined_hardening_of_parallel_parts_widens_the_elastic_range(void *
                                 .is_combined = 1};
     struct wirebench_properties *combined = NULL, *kinematic = NULL;
     struct wirebench_bending one = {.size = sizeof one}, other = {.size = sizeof other};
-    succeed(wirebench_properties_create(&combined, &law));
-    /* The same virgin curve by kinematic parts: one yields, one stays elastic. */
+    assert_success(wirebench_properties_create(&combined, &law));
+    /* The same virgin curve from kinematic parts: one yields, one stays elastic. */
     law.n_parts = 2;
     law.parts[0].modulus = (1.0 - beta) * MODULUS;
     law.parts[1] = (struct wirebench_part){beta * MODULUS, (double)INFINITY};
     law.kinematic_share = 1.0;
     law.is_combined = 0;
-    succeed(wirebench_properties_create(&kinematic, &law));
+    assert_success(wirebench_properties_create(&kinematic, &law));
     double moments[2];
-    succeed(wirebench_moments(combined, 1, &curvature, &moments[0]));
-    succeed(wirebench_moments(kinematic, 1, &curvature, &moments[1]));
+    assert_success(wirebench_moments(combined, 1, &curvature, &moments[0]));
+    assert_success(wirebench_moments(kinematic, 1, &curvature, &moments[1]));
     assert_close_relative(moments[0], moments[1], 1e-9);
-    succeed(wirebench_bend(combined, curvature, &one));
-    succeed(wirebench_bend(kinematic, curvature, &other));
+    assert_success(wirebench_bend(combined, curvature, &one));
+    assert_success(wirebench_bend(kinematic, curvature, &other));
     assert_true(one.residual_curvature_ratio > other.residual_curvature_ratio);
     wirebench_properties_destroy(combined);
     wirebench_properties_destroy(kinematic);
-    /* All hardening isotropic: the parts would never yield. */
+    /* With all hardening isotropic the parts would never yield. */
     law.kinematic_share = 0.0;
     law.is_combined = 1;
     assert_int_equal(wirebench_properties_create(&combined, &law), WIREBENCH_ERR_ARGUMENT);
@@ -186,7 +185,7 @@ static void a_natural_shape_and_weight_change_the_force_alone(void **state)
                                 .mass_per_length = 4e-3,
                                 .youngs_modulus = MODULUS};
     struct wirebench_properties *wire = NULL;
-    succeed(wirebench_properties_create(&wire, &law));
+    assert_success(wirebench_properties_create(&wire, &law));
     const double deflection[] = {0.0, 0.01};
     double tension[2], force[2];
     const struct wirebench_cantilever heavy = {
@@ -196,11 +195,11 @@ static void a_natural_shape_and_weight_change_the_force_alone(void **state)
     bowed.natural_shape[0] = 0.1;
     struct wirebench_cantilever_result result = {
         .size = sizeof result, .force = force, .tension = tension};
-    succeed(wirebench_solve_cantilever(wire, &heavy, 2, deflection, &result));
-    /* Held level, an end of a clamped and propped beam carries 3/8 of the weight. */
+    assert_success(wirebench_solve_cantilever(wire, &heavy, 2, deflection, &result));
+    /* Held at zero deflection, one end of a clamped and propped beam carries 3/8 of the weight. */
     assert_close_relative(tension[0], 0.375 * 4e-3 * LENGTH * 9.80665, 2e-3);
     assert_close(force[0], 0.0, 1e-12);
-    succeed(wirebench_solve_cantilever(wire, &bowed, 2, deflection, &result));
+    assert_success(wirebench_solve_cantilever(wire, &bowed, 2, deflection, &result));
     /* Held down to y = 0 from its natural offset, 0.1 L / 2. */
     assert_close_relative(tension[0], -3.0 * rigidity() * 0.05 * LENGTH / pow(LENGTH, 3), 2e-2);
     wirebench_properties_destroy(wire);
@@ -208,7 +207,7 @@ static void a_natural_shape_and_weight_change_the_force_alone(void **state)
 
 /* --- structs of other releases, and misuse --- */
 
-static void a_shorter_struct_is_filled_as_far_as_it_reaches(void **state)
+static void a_shorter_struct_is_filled_up_to_its_size(void **state)
 {
     (void)state;
     struct wirebench_properties *const wire = elastic_wire();
@@ -217,14 +216,14 @@ static void a_shorter_struct_is_filled_as_far_as_it_reaches(void **state)
     bending.size = offsetof(struct wirebench_bending, loop_energy);
     double untouched;
     memset(&untouched, 0x5a, sizeof untouched);
-    succeed(wirebench_bend(wire, 30.0, &bending));
+    assert_success(wirebench_bend(wire, 30.0, &bending));
     assert_close(bending.residual_curvature_ratio, 0.0, 1e-9);
     assert_memory_equal(&bending.loop_energy, &untouched, sizeof untouched);
     assert_int_equal(bending.size, offsetof(struct wirebench_bending, loop_energy));
     wirebench_properties_destroy(wire);
 }
 
-static void a_longer_struct_is_taken_where_its_new_members_are_zero(void **state)
+static void a_longer_struct_is_accepted_if_its_new_members_are_zero(void **state)
 {
     (void)state;
     struct {
@@ -232,16 +231,16 @@ static void a_longer_struct_is_taken_where_its_new_members_are_zero(void **state
         double future;
     } longer = {.law = {.size = sizeof longer, .outer_diameter = DIAMETER, .youngs_modulus = 1e9}};
     struct wirebench_properties *wire = NULL;
-    succeed(wirebench_properties_create(&wire, &longer.law));
+    assert_success(wirebench_properties_create(&wire, &longer.law));
     wirebench_properties_destroy(wire);
     wire = NULL;
     longer.future = 1.0;
     assert_int_equal(wirebench_properties_create(&wire, &longer.law), WIREBENCH_ERR_ARGUMENT);
-    assert_says("does not know");
+    assert_says("this release");
     assert_null(wire);
 }
 
-static void misuse_is_refused_with_what_was_expected(void **state)
+static void misuse_is_rejected_with_the_expected_value(void **state)
 {
     (void)state;
     struct wirebench_properties *wire = NULL, *const elastic = elastic_wire();
@@ -273,7 +272,7 @@ static void rows_beyond_the_solvers_reach_are_nan_and_counted(void **state)
 {
     (void)state;
     struct wirebench_properties *const wire = elastic_wire();
-    /* The wire's end comes to the rollers. */
+    /* The wire's end reaches the rollers. */
     const double deflection[] = {1e-3, 0.5};
     double force[2];
     const struct wirebench_three_point test = {.size = sizeof test, .span = 0.04, .overhang = 1e-3};
@@ -294,17 +293,17 @@ static void a_recordings_tables_have_as_many_rows_as_its_streams_samples(void **
     struct wirebench_recording *recording = NULL;
     struct wirebench_recording_info info = {.size = sizeof info};
     const struct wirebench_table *load, *stage, *events;
-    succeed(wirebench_recording_open(&recording, recording_path));
-    succeed(wirebench_recording_describe(recording, &info));
+    assert_success(wirebench_recording_open(&recording, recording_path));
+    assert_success(wirebench_recording_describe(recording, &info));
     assert_true(info.is_whole && info.is_virtual && info.n_problems == 0);
     assert_int_equal(info.n_streams, 3);
-    succeed(wirebench_recording_table(recording, "load", &load));
-    succeed(wirebench_recording_table(recording, "stage", &stage));
-    succeed(wirebench_recording_table(recording, "events", &events));
+    assert_success(wirebench_recording_table(recording, "load", &load));
+    assert_success(wirebench_recording_table(recording, "stage", &stage));
+    assert_success(wirebench_recording_table(recording, "events", &events));
     uint64_t samples[3] = {0};
     for (int i = 0; i < 3; i++) {
         struct wirebench_stream stream = {.size = sizeof stream};
-        succeed(wirebench_recording_stream(recording, i, &stream));
+        assert_success(wirebench_recording_stream(recording, i, &stream));
         samples[stream.role] += stream.samples;
     }
     assert_int_equal(wirebench_table_rows(load), samples[WIREBENCH_LOAD]);
@@ -324,12 +323,12 @@ static void columns_have_one_array_and_times_that_agree(void **state)
     struct wirebench_recording_info info = {.size = sizeof info};
     struct wirebench_column t = {.size = sizeof t}, t_ns = {.size = sizeof t_ns},
                             text = {.size = sizeof text};
-    succeed(wirebench_recording_open(&recording, recording_path));
-    succeed(wirebench_recording_describe(recording, &info));
-    succeed(wirebench_recording_table(recording, "events", &table));
-    succeed(wirebench_table_find(table, "t_s", &t));
-    succeed(wirebench_table_find(table, "t_ns", &t_ns));
-    succeed(wirebench_table_column(table, 3, &text));
+    assert_success(wirebench_recording_open(&recording, recording_path));
+    assert_success(wirebench_recording_describe(recording, &info));
+    assert_success(wirebench_recording_table(recording, "events", &table));
+    assert_success(wirebench_table_find(table, "t_s", &t));
+    assert_success(wirebench_table_find(table, "t_ns", &t_ns));
+    assert_success(wirebench_table_column(table, 3, &text));
     assert_int_equal(wirebench_table_columns(table), 4);
     assert_true(t.reals && !t.integers && !t.texts && t_ns.integers && text.texts);
     assert_string_equal(t.unit, "s");
@@ -344,7 +343,7 @@ static void columns_have_one_array_and_times_that_agree(void **state)
     wirebench_recording_close(recording);
 }
 
-static void a_recording_cut_short_is_incomplete_and_says_so(void **state)
+static void a_truncated_recording_is_reported_as_incomplete(void **state)
 {
     (void)state;
     char command[10000], path[64];
@@ -356,9 +355,9 @@ static void a_recording_cut_short_is_incomplete_and_says_so(void **state)
     struct wirebench_recording_info info = {.size = sizeof info};
     const struct wirebench_table *load;
     enum wirebench_status status = wirebench_recording_open(&recording, path);
-    succeed(status);
+    assert_success(status);
     assert_non_null(strstr(wirebench_warnings(), "short.wbr"));
-    succeed(wirebench_recording_describe(recording, &info));
+    assert_success(wirebench_recording_describe(recording, &info));
     assert_false(info.is_whole);
     assert_true(info.n_problems > 0 && wirebench_recording_problem(recording, 0));
     assert_null(wirebench_recording_problem(recording, info.n_problems));
@@ -372,11 +371,11 @@ static void a_recording_cut_short_is_incomplete_and_says_so(void **state)
 static struct wirebench_dataset *read_dataset(void)
 {
     struct wirebench_dataset *dataset = NULL;
-    succeed(wirebench_dataset_read(&dataset, dataset_folder));
+    assert_success(wirebench_dataset_read(&dataset, dataset_folder));
     return dataset;
 }
 
-/* The first data line of the dataset's CSV, as the C library reads it. */
+/* The first data line of the dataset's CSV, parsed by the C library. */
 static void a_dataset_is_its_csv_in_si(void **state)
 {
     (void)state;
@@ -385,14 +384,14 @@ static void a_dataset_is_its_csv_in_si(void **state)
     struct wirebench_column deflection = {.size = sizeof deflection},
                             force = {.size = sizeof force}, phase = {.size = sizeof phase};
     struct wirebench_dataset_info info = {.size = sizeof info};
-    succeed(wirebench_dataset_describe(dataset, &info));
+    assert_success(wirebench_dataset_describe(dataset, &info));
     assert_string_equal(info.wire, "type1");
     assert_close(info.length, 0.085, 1e-12);
     assert_true(info.kind == WIREBENCH_CANTILEVER && info.is_virtual && info.strand_length > 0.1);
-    succeed(wirebench_dataset_table(dataset, "force_deflection", &rows));
-    succeed(wirebench_table_find(rows, "deflection_m", &deflection));
-    succeed(wirebench_table_find(rows, "force_N", &force));
-    succeed(wirebench_table_find(rows, "phase", &phase));
+    assert_success(wirebench_dataset_table(dataset, "force_deflection", &rows));
+    assert_success(wirebench_table_find(rows, "deflection_m", &deflection));
+    assert_success(wirebench_table_find(rows, "force_N", &force));
+    assert_success(wirebench_table_find(rows, "phase", &phase));
     char path[5000], line[1000], name[16];
     snprintf(path, sizeof path, "%s/force_deflection.csv", dataset_folder);
     FILE *const file = fopen(path, "r");
@@ -415,14 +414,14 @@ static void a_dataset_is_its_csv_in_si(void **state)
     wirebench_dataset_close(dataset);
 }
 
-/* A NaN equals a NaN. */
+/* Two NaN are equal. */
 static void assert_columns_equal(const struct wirebench_table *a, const struct wirebench_table *b)
 {
     assert_int_equal(wirebench_table_columns(a), wirebench_table_columns(b));
     for (int i = 0; i < wirebench_table_columns(a); i++) {
         struct wirebench_column one = {.size = sizeof one}, other = {.size = sizeof other};
-        succeed(wirebench_table_column(a, i, &one));
-        succeed(wirebench_table_column(b, i, &other));
+        assert_success(wirebench_table_column(a, i, &one));
+        assert_success(wirebench_table_column(b, i, &other));
         assert_string_equal(one.name, other.name);
         assert_int_equal(one.n, other.n);
         for (size_t k = 0; k < one.n; k++) {
@@ -438,25 +437,25 @@ static void assert_columns_equal(const struct wirebench_table *a, const struct w
     }
 }
 
-/* The shipped recording has a gap of a second in which the tip's marker is hidden. */
+/* The stored recording has a gap of a second in which the tip's marker is hidden. */
 static void a_recording_is_aligned_to_the_dataset_that_the_tool_writes(void **state)
 {
     (void)state;
     struct wirebench_dataset *aligned = NULL, *const written = read_dataset();
     struct wirebench_dataset_info a = {.size = sizeof a}, b = {.size = sizeof b};
     assert_int_equal(wirebench_dataset_align(&aligned, recording_path, NULL), WIREBENCH_INCOMPLETE);
-    assert_says("type1-L85-1.wbr.zst: the test is not all there: 1 gap in the rows");
+    assert_says("type1-L85-1.wbr.zst: the test is incomplete: 1 gap in the rows");
     assert_non_null(strstr(wirebench_warnings(), "1 gap in the rows"));
     static const char *const names[] = {"force_deflection", "shape"};
     for (int i = 0; i < 2; i++) {
         const struct wirebench_table *one, *other;
-        succeed(wirebench_dataset_table(aligned, names[i], &one));
-        succeed(wirebench_dataset_table(written, names[i], &other));
+        assert_success(wirebench_dataset_table(aligned, names[i], &one));
+        assert_success(wirebench_dataset_table(written, names[i], &other));
         assert_true(wirebench_table_rows(one) > 1000);
         assert_columns_equal(one, other);
     }
-    succeed(wirebench_dataset_describe(aligned, &a));
-    succeed(wirebench_dataset_describe(written, &b));
+    assert_success(wirebench_dataset_describe(aligned, &a));
+    assert_success(wirebench_dataset_describe(written, &b));
     assert_string_equal(a.wire, b.wire);
     a.wire = b.wire = NULL;
     assert_memory_equal(&a, &b, sizeof a);
@@ -465,13 +464,13 @@ static void a_recording_is_aligned_to_the_dataset_that_the_tool_writes(void **st
     wirebench_dataset_close(written);
 }
 
-static void options_and_files_of_an_alignment_hold(void **state)
+static void options_and_files_of_an_alignment_are_used(void **state)
 {
     (void)state;
     char path[64];
     snprintf(path, sizeof path, "%s/specimen.yaml", folder);
     struct wirebench_recording *recording = NULL;
-    succeed(wirebench_recording_open(&recording, recording_path));
+    assert_success(wirebench_recording_open(&recording, recording_path));
     const char *const recorded = wirebench_recording_meta(recording, "specimen");
     const char *const sample = strstr(recorded, "sample: 1");
     assert_non_null(sample);
@@ -486,18 +485,18 @@ static void options_and_files_of_an_alignment_hold(void **state)
     struct wirebench_dataset *aligned = NULL;
     struct wirebench_dataset_info info = {.size = sizeof info};
     const struct wirebench_table *rows;
-    /* What is not farther apart than 5 s is no gap: nothing is missing. */
-    succeed(wirebench_dataset_align(&aligned, recording_path, &alignment));
+    /* With a limit of 5 s it is not a gap, and nothing is missing. */
+    assert_success(wirebench_dataset_align(&aligned, recording_path, &alignment));
     assert_non_null(strstr(wirebench_warnings(), "sample"));
-    succeed(wirebench_dataset_describe(aligned, &info));
+    assert_success(wirebench_dataset_describe(aligned, &info));
     assert_int_equal(info.sample, 7);
     assert_true(info.is_complete);
-    succeed(wirebench_dataset_table(aligned, "force_deflection", &rows));
+    assert_success(wirebench_dataset_table(aligned, "force_deflection", &rows));
     assert_true(wirebench_table_rows(rows) > 500 && wirebench_table_rows(rows) < 700);
     wirebench_dataset_close(aligned);
 }
 
-static void what_cannot_be_aligned_is_said(void **state)
+static void failures_of_the_alignment_are_reported(void **state)
 {
     (void)state;
     static const char *const bad[][2] = {{"row-rate=0", "expected a number"},
@@ -527,7 +526,7 @@ static void what_cannot_be_aligned_is_said(void **state)
     assert_null(dataset);
 }
 
-static void a_missing_file_is_named_and_nothing_is_printed(void **state)
+static void a_missing_file_is_reported_and_nothing_is_printed(void **state)
 {
     (void)state;
     char path[64];
@@ -552,14 +551,14 @@ static void a_missing_file_is_named_and_nothing_is_printed(void **state)
     assert_true(names_it);
     assert_true(other < 0 && !recording && !dataset);
     assert_says("/no/such");
-    succeed(wirebench_dataset_read(&dataset, dataset_folder));
+    assert_success(wirebench_dataset_read(&dataset, dataset_folder));
     assert_string_equal(wirebench_message(), "");
     wirebench_dataset_close(dataset);
 }
 
 /* --- calibration --- */
 
-/* The files are the tool's, of the same dataset. */
+/* The files of the tool, from the same dataset. */
 static void both_methods_give_the_text_that_the_tool_writes(void **state)
 {
     (void)state;
@@ -571,8 +570,8 @@ static void both_methods_give_the_text_that_the_tool_writes(void **state)
         struct wirebench_properties_info a = {.size = sizeof a}, b = {.size = sizeof b};
         const struct wirebench_calibration calibration = {.size = sizeof calibration,
                                                           .method = methods[i]};
-        succeed(wirebench_calibrate(&calibrated, &dataset, 1, &calibration));
-        succeed(wirebench_properties_describe(calibrated, &a));
+        assert_success(wirebench_calibrate(&calibrated, &dataset, 1, &calibration));
+        assert_success(wirebench_properties_describe(calibrated, &a));
         assert_string_equal(a.method, names[i]);
         char path[4096], text[20000];
         snprintf(path, sizeof path, "%s/%s.yaml", prepared_folder, names[i]);
@@ -581,8 +580,8 @@ static void both_methods_give_the_text_that_the_tool_writes(void **state)
         text[fread(text, 1, sizeof text - 1, file)] = '\0';
         fclose(file);
         assert_string_equal(wirebench_properties_text(calibrated), text);
-        succeed(wirebench_properties_read(&again, path));
-        succeed(wirebench_properties_describe(again, &b));
+        assert_success(wirebench_properties_read(&again, path));
+        assert_success(wirebench_properties_describe(again, &b));
         assert_close(a.youngs_modulus, b.youngs_modulus, 0.0);
         assert_close(a.rigidity.value, b.rigidity.value, 0.0);
         assert_int_equal(a.n_parts, b.n_parts);
@@ -594,7 +593,7 @@ static void both_methods_give_the_text_that_the_tool_writes(void **state)
     wirebench_dataset_close((struct wirebench_dataset *)dataset);
 }
 
-static void what_a_person_excluded_is_refused(void **state)
+static void excluded_tests_are_rejected(void **state)
 {
     (void)state;
     char command[6000], path[64];
@@ -607,7 +606,7 @@ static void what_a_person_excluded_is_refused(void **state)
              "\"2026-11-20\"},/' '%s/dataset.json'",
              dataset_folder, path, path);
     assert_int_equal(system(command), 0);
-    succeed(wirebench_dataset_read(&dataset, path));
+    assert_success(wirebench_dataset_read(&dataset, path));
     const struct wirebench_dataset *const given = dataset;
     assert_int_equal(wirebench_calibrate(&calibrated, &given, 1, NULL), WIREBENCH_ERR_DATA);
     assert_null(calibrated);
@@ -651,7 +650,7 @@ static void options_are_those_of_the_command(void **state)
     struct wirebench_properties *properties = NULL;
     struct wirebench_calibration calibration = {
         .size = sizeof calibration, .method = WIREBENCH_METHOD_PAPER, .options = given};
-    succeed(wirebench_calibrate(&properties, &dataset, 1, &calibration));
+    assert_success(wirebench_calibrate(&properties, &dataset, 1, &calibration));
     assert_non_null(strstr(wirebench_properties_text(properties), "elastic_zone: 0.1\n"));
     wirebench_properties_destroy(properties);
     for (int i = 0; i < 3; i++) {
@@ -668,7 +667,7 @@ static void own_handler(const char *reason, const char *file, int line, int numb
     (void)reason, (void)file, (void)line, (void)number;
 }
 
-static void the_process_is_left_as_it_was(void **state)
+static void the_state_of_the_process_is_not_changed(void **state)
 {
     (void)state;
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD, SIGFPE};
@@ -684,7 +683,7 @@ static void the_process_is_left_as_it_was(void **state)
     assert_true(wirebench_dataset_align(&aligned, recording_path, NULL) >= 0);
     wirebench_dataset_close(aligned);
     assert_ptr_equal(gsl_set_error_handler(own_handler), own_handler);
-    succeed(wirebench_calibrate(&properties, &dataset, 1, NULL));
+    assert_success(wirebench_calibrate(&properties, &dataset, 1, NULL));
     wirebench_properties_destroy(properties);
     assert_ptr_equal(gsl_set_error_handler(kept), own_handler);
     assert_string_equal(setlocale(LC_ALL, NULL), locale);
@@ -704,14 +703,14 @@ struct thread {
     int wrong;
 };
 
-static void *fail_and_solve(void *context)
+static void *solve_after_an_error(void *context)
 {
     struct thread *const thread = context;
     char path[32];
     snprintf(path, sizeof path, "/no/such-%d.wbr", thread->number);
     struct wirebench_recording *recording = NULL;
     const enum wirebench_status status = wirebench_recording_open(&recording, path);
-    /* All have failed before any looks at its message. */
+    /* All threads have failed before any reads its message. */
     pthread_barrier_wait(thread->barrier);
     if (status != WIREBENCH_ERR_NOT_FOUND || !strstr(wirebench_message(), path))
         thread->wrong++;
@@ -732,7 +731,7 @@ static void *fail_and_solve(void *context)
     return NULL;
 }
 
-static void threads_have_messages_of_their_own(void **state)
+static void each_thread_has_its_own_messages(void **state)
 {
     (void)state;
     struct thread threads[4];
@@ -740,7 +739,8 @@ static void threads_have_messages_of_their_own(void **state)
     assert_int_equal(pthread_barrier_init(&barrier, NULL, 4), 0);
     for (int i = 0; i < 4; i++) {
         threads[i] = (struct thread){.barrier = &barrier, .number = i};
-        assert_int_equal(pthread_create(&threads[i].id, NULL, fail_and_solve, &threads[i]), 0);
+        assert_int_equal(pthread_create(&threads[i].id, NULL, solve_after_an_error, &threads[i]),
+                         0);
     }
     for (int i = 0; i < 4; i++) {
         pthread_join(threads[i].id, NULL);
@@ -757,27 +757,27 @@ int main(int argc, char **argv)
         FACT(an_elastic_wire_bends_by_its_rigidity_and_springs_back),
         FACT(an_elastic_cantilever_follows_the_cubic_formula),
         FACT(elastic_three_point_bending_follows_the_cubic_formula),
-        FACT(kinematic_hardening_springs_back_less_and_loads_alike),
+        FACT(kinematic_hardening_has_the_same_loading_and_less_springback),
         FACT(combined_hardening_of_parallel_parts_widens_the_elastic_range),
         FACT(a_natural_shape_and_weight_change_the_force_alone),
-        FACT(a_shorter_struct_is_filled_as_far_as_it_reaches),
-        FACT(a_longer_struct_is_taken_where_its_new_members_are_zero),
-        FACT(misuse_is_refused_with_what_was_expected),
+        FACT(a_shorter_struct_is_filled_up_to_its_size),
+        FACT(a_longer_struct_is_accepted_if_its_new_members_are_zero),
+        FACT(misuse_is_rejected_with_the_expected_value),
         FACT(rows_beyond_the_solvers_reach_are_nan_and_counted),
         FACT(a_recordings_tables_have_as_many_rows_as_its_streams_samples),
         FACT(columns_have_one_array_and_times_that_agree),
-        FACT(a_recording_cut_short_is_incomplete_and_says_so),
+        FACT(a_truncated_recording_is_reported_as_incomplete),
         FACT(a_dataset_is_its_csv_in_si),
         FACT(a_recording_is_aligned_to_the_dataset_that_the_tool_writes),
-        FACT(options_and_files_of_an_alignment_hold),
-        FACT(what_cannot_be_aligned_is_said),
-        FACT(a_missing_file_is_named_and_nothing_is_printed),
+        FACT(options_and_files_of_an_alignment_are_used),
+        FACT(failures_of_the_alignment_are_reported),
+        FACT(a_missing_file_is_reported_and_nothing_is_printed),
         FACT(both_methods_give_the_text_that_the_tool_writes),
-        FACT(what_a_person_excluded_is_refused),
+        FACT(excluded_tests_are_rejected),
         FACT(progress_stops_a_calibration),
         FACT(options_are_those_of_the_command),
-        FACT(the_process_is_left_as_it_was),
-        FACT(threads_have_messages_of_their_own),
+        FACT(the_state_of_the_process_is_not_changed),
+        FACT(each_thread_has_its_own_messages),
     };
     if (argc != 3) {
         fprintf(stderr, "usage: test_library RECORDING DATASET\n");

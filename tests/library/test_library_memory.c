@@ -1,5 +1,5 @@
-/* Every allocation of the project that fails ends a call of the library with its status: the
- * process goes on, and so does the next call. The linker sends allocations here (--wrap); those of
+/* Every failing allocation of the project ends a call of the library with its status: the process
+ * continues, and the next call works. The linker redirects allocations here (--wrap); those of
  * other libraries do not fail. */
 #include <gsl/gsl_errno.h>
 
@@ -8,7 +8,7 @@
 #include "tests/check.h"
 #include "tests/fe/allocations.h"
 
-/* Of the leak sanitizer, where there is one: what a call that failed owned is lost. */
+/* Interface of the leak sanitizer, if present: memory owned by a failed call is leaked. */
 void __lsan_disable(void) __attribute__((weak));
 void __lsan_enable(void) __attribute__((weak));
 
@@ -99,7 +99,8 @@ static void each_call_without_memory_returns_its_status(void **state)
     static const struct {
         const char *name;
         enum wirebench_status (*call)(struct things *things);
-        int least, stride; /* failures seen; of many allocations not each is tried */
+        int least, stride; /* fewest failures expected; only every stride-th of many allocations is
+                              tried */
     } cases[] = {
         {"properties", create, 1, 1},       {"bend", bend, 1, 1},
         {"cantilever", solve, 5, 1},        {"three points", solve_three_point, 5, 1},
@@ -139,7 +140,7 @@ static void each_call_without_memory_returns_its_status(void **state)
     wirebench_dataset_close(things.dataset);
 }
 
-static void gsls_handler_is_given_back(void **state)
+static void gsls_handler_is_restored(void **state)
 {
     (void)state;
     struct things things;
@@ -164,7 +165,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_call_without_memory_returns_its_status),
-        cmocka_unit_test(gsls_handler_is_given_back),
+        cmocka_unit_test(gsls_handler_is_restored),
     };
     if (argc != 2)
         return 2;

@@ -1,4 +1,4 @@
-"""The module wirebench: its structs are the compiler's, its arrays are those of the files.
+"""The module wirebench: its structs match the compiler's, its arrays match the files.
 
 Usage: test_python.py SOURCE_ROOT RECORDING DATASET COMPILER...
 """
@@ -30,7 +30,7 @@ def rows_of_csv():
 
 
 class Binding(unittest.TestCase):
-    def test_structs_are_laid_out_as_the_compiler_does(self):
+    def test_structs_have_the_layout_of_the_compiler(self):
         wanted, lines = [], []
         for name, struct in _structs.STRUCTS.items():
             full = "struct wirebench_" + name
@@ -50,7 +50,7 @@ class Binding(unittest.TestCase):
         for (struct, field, offset), number in zip(wanted, found):
             self.assertEqual(offset, int(number), "%s.%s" % (struct, field))
 
-    def test_every_function_and_struct_of_the_header_is_there(self):
+    def test_every_function_and_struct_of_the_header_is_declared(self):
         with open(HEADER) as file:
             text = file.read()
         code = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
@@ -101,7 +101,7 @@ class Files(unittest.TestCase):
         self.assertEqual(aligned.info, written.info)
         self.assertEqual(aligned.document, written.document)
 
-    def test_options_and_files_of_an_alignment_hold(self):
+    def test_options_and_files_of_an_alignment_are_used(self):
         with wirebench.Recording(RECORDING) as recording:
             specimen = recording.meta("specimen").replace("sample: 1", "sample: 7")
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
@@ -139,7 +139,7 @@ class Files(unittest.TestCase):
         self.assertEqual(list(frame.columns), list(table))
         self.assertEqual(len(frame), table.rows)
 
-    def test_failures_are_exceptions_with_the_tools_words(self):
+    def test_failures_are_exceptions_with_the_tools_message(self):
         with self.assertRaisesRegex(wirebench.Error, "/no/such.wbr") as caught:
             wirebench.Recording("/no/such.wbr")
         self.assertEqual(caught.exception.status, -4)
@@ -165,7 +165,7 @@ class Mechanics(unittest.TestCase):
         np.testing.assert_allclose(wire.moments([[1.0, 2.0]]),
                                    [[self.rigidity, 2 * self.rigidity]], rtol=1e-6)
 
-    def test_parallel_parts_arrive_with_their_rule(self):
+    def test_parallel_parts_are_passed_with_their_rule(self):
         parts = [(3e9, 1e-3), (1e9, 4e-3), (0.5e9, math.inf)]
         info = wirebench.Properties(self.diameter, parts=parts, kinematic_share=0.25).info
         self.assertEqual([(p.modulus, p.yield_strain) for p in info.parts], parts)
@@ -173,7 +173,7 @@ class Mechanics(unittest.TestCase):
         with self.assertRaises(ValueError):
             wirebench.Properties(self.diameter, parts=[(1e9, 1e-3)] * 13)
 
-    def test_chaboches_law_arrives_with_its_back_stresses(self):
+    def test_chaboches_law_is_passed_with_its_back_stresses(self):
         backs = [(2.6e9, 900.0), (0.7e9, 60.0)]
         wire = wirebench.Properties(self.diameter, 5.6e9, 2.2e6, saturation=1.4e6, rate=250.0,
                                     backs=backs)
@@ -189,7 +189,7 @@ class Mechanics(unittest.TestCase):
         with self.assertRaises(ValueError):
             wirebench.Properties(self.diameter, 5.6e9, 2.2e6, backs=backs * 2)
 
-    def test_what_is_out_of_reach_is_a_warning(self):
+    def test_unreachable_deflections_are_a_warning(self):
         wire = wirebench.Properties(self.diameter, self.modulus)
         with self.assertWarnsRegex(wirebench.Incomplete, "row 1 of 2"):
             bent = wirebench.solve_three_point(wire, 0.04, [1e-3, 0.5], overhang=1e-3)
@@ -198,7 +198,7 @@ class Mechanics(unittest.TestCase):
 
 
 class Calibration(unittest.TestCase):
-    def test_both_methods_give_properties_that_read_back(self):
+    def test_both_methods_give_properties_that_can_be_read(self):
         dataset = wirebench.Dataset(DATASET)
         for method in ("cycle", "paper"):
             with warnings.catch_warnings():
@@ -211,7 +211,7 @@ class Calibration(unittest.TestCase):
                 again = wirebench.Properties.read(file.name)
             self.assertEqual(again.info.youngs_modulus, made.info.youngs_modulus)
 
-    def test_options_remarks_and_progress_pass(self):
+    def test_options_remarks_and_progress_are_passed(self):
         dataset = wirebench.Dataset(DATASET)
         with self.assertWarns(wirebench.Remark):
             made = wirebench.calibrate([dataset], "paper", options={"elastic-zone": 0.1})
