@@ -1,4 +1,4 @@
-/* Datasets made by the 1D beam itself with the paper's properties, for tests of the calibration. */
+/* Datasets from the 1D beam with the paper's properties, for tests of the calibration. */
 #ifndef WB_TESTS_ANALYSIS_BEAM_DATA_H
 #define WB_TESTS_ANALYSIS_BEAM_DATA_H
 
@@ -119,7 +119,7 @@ static inline void plain_dataset(struct wb_dataset *dataset, double (*force)(dou
     }
 }
 
-/* Of a test or a group: messages are kept. */
+/* Setup of a test or a group: messages are kept. */
 static inline int silence(void **state)
 {
     (void)state;
@@ -127,7 +127,7 @@ static inline int silence(void **state)
     return 0;
 }
 
-/* Of a calibration that is fast. */
+/* Settings of a fast calibration. */
 static inline struct wb_calibrate_settings beam_settings(void)
 {
     struct wb_calibrate_settings settings;

@@ -1,6 +1,6 @@
-/* Datasets as `solve wire3d` and `solve wire1d` write them, of a wire that was never solved in 3D:
- * its axis is that of a homogenised rod, its stresses are those of beam theory. For tests of what
- * reads such datasets. */
+/* Datasets in the form of `solve wire3d` and `solve wire1d`, without a 3D solution: the axis is
+ * that of a homogenised rod, the stresses are those of beam theory. For tests of readers of such
+ * datasets. */
 #ifndef WB_TESTS_ANALYSIS_BENT_WIRE_H
 #define WB_TESTS_ANALYSIS_BENT_WIRE_H
 
@@ -97,7 +97,7 @@ static inline void bent_set_node(const struct bent_wire *bent, struct wb_field_n
         node->axial = -bent->stress_factor * of->material.youngs_modulus *
                       bent_curvature(bent, at[0]) * at[1];
     } else {
-        /* As bending leaves it: zero at the axis, one sign within, the other without. */
+        /* Residual stress after bending: zero at the axis, one sign inside, the other outside. */
         const double r = (at[1] + at[2]) / bent->model->part[0].outer_diameter;
         node->axial = part == 0 ? 4e8 * (r - 2.4 * r * r * r) : 1e5 * r;
     }
@@ -109,7 +109,7 @@ static inline void bent_set_node(const struct bent_wire *bent, struct wb_field_n
 static const double bent_corners[8][2] = {{0, 0},   {1, 0},   {1, 1},   {0, 1},
                                           {0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
 
-/* A cell of a rod has the value of its middle all over. */
+/* A cell of a rod has the value of its centre everywhere. */
 static inline void bent_level(struct wb_field_face *face)
 {
     double axial = 0.0, von_mises = 0.0;
@@ -238,7 +238,7 @@ static inline void bent_run(struct bent_wire *bent, struct wb_wire_run *run,
     wb_section_release(&section);
 }
 
-/* Writes it into a folder, over what is there. */
+/* Writes the dataset into a folder, replacing an existing one. */
 static inline void bent_write(struct bent_wire *bent, const char *folder)
 {
     struct wb_wire_run run = {0};

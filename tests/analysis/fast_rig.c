@@ -18,7 +18,7 @@
 
 static const double tare_time = 2.5, speed = 1.0 * WB_MM, end_pause = 2.0;
 static const int strips = 12;
-/* Steps from one curvature of the truth to the next: a part that relaxes needs small ones. */
+/* Steps between two curvatures of the truth: relaxation needs small ones. */
 enum {
     TRUTH_STEPS = 40,
     RELEASE_STEPS = 100
@@ -93,7 +93,7 @@ static void read_cell(struct bench *bench, struct wb_align *align, uint64_t k, d
     wb_live_wire_set_time(bench->wire, t);
     wb_live_wire_move(bench->wire, travel_at(bench->fast, t), &bench->view);
     wb_sim_cell_read(&bench->cell, k, t, bench->view.tension);
-    bench->cell.out.n = 0; /* nobody listens */
+    bench->cell.out.n = 0; /* the output is not used */
     const double force = bench->cell.reading * (1.0 + bench->fast->off.gain);
     const struct wb_align_reading reading = {.t_ns = stamp(t), .force = force};
     if (t > 0.5 && t < tare_time) {
@@ -235,7 +235,7 @@ static void close_truth(struct truth *truth)
     wb_section_release(&truth->section);
 }
 
-/* Bends it evenly on to a curvature in a time; returns the moment. */
+/* Bends it uniformly to a curvature within a time; returns the moment. */
 static double bend_truth(struct truth *truth, double curvature, double time)
 {
     struct wb_fibres_response response = {.M = 0.0};
@@ -252,7 +252,7 @@ static double bend_truth(struct truth *truth, double curvature, double time)
     return response.M;
 }
 
-/* The clamp's curvature grows about evenly in time. */
+/* The clamp's curvature grows nearly uniformly in time. */
 static double time_of(const struct fast_rig *fast, double change, double largest)
 {
     return fast->travel / speed * change / largest;

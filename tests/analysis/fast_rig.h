@@ -1,6 +1,5 @@
 /* Specimens of the virtual rig without clocks: the same wire, instruments, noise and alignment as
- * a recording of the rig, but computed one after the other as fast as they can be.
- */
+ * in a recording of the rig, but computed sequentially at full speed. */
 #ifndef WB_TESTS_ANALYSIS_FAST_RIG_H
 #define WB_TESTS_ANALYSIS_FAST_RIG_H
 
@@ -27,7 +26,7 @@ struct fast_rig {
     double dwell;    /* s, at the turn; 0.2 */
     int every_frame; /* of the cameras' is taken; 6: as many frames as the dataset has rows */
     double noise;    /* factor on the noise of the cell and of the markers; 1 */
-    /* How far the bench's files, and the cell, are off what is bent. */
+    /* Deviations of the bench's files, and of the cell, from the true specimen. */
     struct wb_test_uncertainty off;
 };
 
@@ -38,13 +37,13 @@ void fast_rig_init(struct fast_rig *fast, int type, double length, uint64_t seed
 WB_MUST_CHECK enum wb_status fast_rig_run(const struct fast_rig *fast, struct wb_dataset *dataset);
 
 /* The true section of the specimen: bending moment of a first loading (N m) at n ascending
- * curvatures (1/m), reached at the speed of the test; the elastic flexural rigidity (N m2); what
- * curvature is left when the moment is taken off from the last, at that speed. Any may be NULL. */
+ * curvatures (1/m), reached at the speed of the test; elastic flexural rigidity (N m2); residual
+ * curvature after unloading from the last curvature, at that speed. Any may be NULL. */
 void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature, double *moment,
                     double *rigidity, double *residual_curvature);
 
-/* Change of its moment during unloading from the largest curvature, over n ascending changes of the
- * curvature, N m2. */
+/* Change of its moment on unloading from the largest curvature, over n ascending changes of
+ * curvature, as stiffness, N m2. */
 void fast_rig_unloading(const struct fast_rig *fast, double largest, int n, const double *change,
                         double *stiffness);
 

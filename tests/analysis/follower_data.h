@@ -1,5 +1,5 @@
-/* Datasets of a stout wire under a follower force: copper core in a PVC jacket as fibres, which the
- * homogenised wire that is calibrated on it can follow closely but not exactly. */
+/* Datasets of a thick wire under a follower force: copper core in a PVC jacket as fibres, which the
+ * calibrated homogenised wire can reproduce closely but not exactly. */
 #ifndef WB_TESTS_ANALYSIS_FOLLOWER_DATA_H
 #define WB_TESTS_ANALYSIS_FOLLOWER_DATA_H
 

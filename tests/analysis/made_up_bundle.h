@@ -1,7 +1,5 @@
-/* Datasets as `solve bundle` writes them, of a bundle that was never solved in 3D: its forces are
- * those of its published beam times a factor, its axis is that beam's. For tests of what reads such
- * datasets.
- */
+/* Datasets in the form of `solve bundle`, without a 3D solution: forces are those of the published
+ * beam times a factor, and the axis is that beam's. For tests of readers of such datasets. */
 #ifndef WB_TESTS_ANALYSIS_MADE_UP_BUNDLE_H
 #define WB_TESTS_ANALYSIS_MADE_UP_BUNDLE_H
 

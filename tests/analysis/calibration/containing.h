@@ -1,12 +1,12 @@
-/* A law fits no worse than a law that it contains. */
+/* Checks that a law fits no worse than a law that it contains. */
 #ifndef WB_TESTS_ANALYSIS_CALIBRATION_CONTAINING_H
 #define WB_TESTS_ANALYSIS_CALIBRATION_CONTAINING_H
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "tests/check.h"
 
-/* How much of the misfit of a contained law the misfit of one that contains it lies above it, at
- * most, over all specimens. */
+/* Largest relative excess of the misfit of a law over that of a law it contains, over all
+ * specimens. */
 static inline double worst_of_containing(const struct wb_cycle_calibration *c)
 {
     static const struct {
@@ -21,7 +21,7 @@ static inline double worst_of_containing(const struct wb_cycle_calibration *c)
     };
     double worst = 0.0;
     for (int i = 0; i < c->n_members; i++) {
-        /* What was taken from a contained law has the form of the one that holds it. */
+        /* A fit that started from a contained law has the form of the containing one. */
         const struct wb_cycle_answer *const all = c->members[i].answers;
         if (all[WB_CANDIDATE_LUDWIK_COMBINED].is_fitted)
             assert_true(all[WB_CANDIDATE_LUDWIK_COMBINED].fit.law.is_combined);

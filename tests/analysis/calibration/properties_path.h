@@ -1,4 +1,4 @@
-/* The properties file of a test, in a folder of its own:
+/* The properties file of a test, in its own folder:
  *
  *     return cmocka_run_group_tests(tests, make_path, remove_folder);
  */

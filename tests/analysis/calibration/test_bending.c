@@ -1,4 +1,4 @@
-/* What a law says of a wire under pure bending, against closed forms of the circle. */
+/* Pure bending of a wire by its law, compared with closed forms of the circle. */
 #include "analysis/calibration/law/bending.h"
 #include "tests/check.h"
 
@@ -22,11 +22,11 @@ static double second_moment(void)
     return M_PI * pow(DIAMETER, 4.0) / 64.0;
 }
 
-static struct wb_law bilinear(double modulus, double yield_strain, double rest)
+static struct wb_law bilinear(double modulus, double yield_strain, double remainder)
 {
-    const struct wb_law_part parts[] = {{modulus, yield_strain}, {rest, (double)INFINITY}};
+    const struct wb_law_part parts[] = {{modulus, yield_strain}, {remainder, (double)INFINITY}};
     struct wb_law law;
-    wb_law_init_parallel(&law, parts, rest > 0.0 ? 2 : 1, 0.0, 0.39);
+    wb_law_init_parallel(&law, parts, remainder > 0.0 ? 2 : 1, 0.0, 0.39);
     return law;
 }
 
@@ -38,7 +38,7 @@ static double bilinear_moment(const struct wb_law *law, double kappa)
     return M;
 }
 
-static void a_perfectly_plastic_circle_springs_back_as_the_closed_form_says(void **unused)
+static void the_springback_of_a_perfectly_plastic_circle_is_the_closed_form(void **unused)
 {
     (void)unused;
     const struct wb_law law = bilinear(5e9, 2e-3, 0.0);
@@ -46,13 +46,13 @@ static void a_perfectly_plastic_circle_springs_back_as_the_closed_form_says(void
     assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
     const double EI = 5e9 * second_moment();
     assert_close_relative(bending.flexural_rigidity, EI, 1e-9);
-    /* It is let go elastically: at most twice the yield moment is taken off. */
+    /* It unloads elastically, because the moment changes by less than twice the yield moment. */
     const double expected = 1.0 - bilinear_moment(&law, largest) / (EI * largest);
     assert_true(expected > 0.5);
     assert_close(bending.residual_curvature_ratio, expected, 2e-4);
 }
 
-/* An elastic circle with a Maxwell element, bent and unloaded at one rate: in closed form. */
+/* Closed form of an elastic circle with a Maxwell element, loaded and unloaded at one rate. */
 static void a_relaxing_circle_follows_its_strain_rate(void **unused)
 {
     (void)unused;
@@ -77,7 +77,7 @@ static void a_relaxing_circle_follows_its_strain_rate(void **unused)
         WB_OK);
     assert_close_relative(secant, M[0] / kappa[0], 1e-12);
     assert_close_relative(unloading, I * (E + (q - back) / change), 1e-6);
-    /* Where the moment has gone, at the same rate. */
+    /* The curvature at which the moment is zero, at the same rate. */
     assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
     assert_close_relative(bending.flexural_rigidity, I * (E + relaxing), 1e-6);
     const double left = bending.residual_curvature_ratio * largest;
@@ -89,7 +89,7 @@ static void a_relaxing_circle_follows_its_strain_rate(void **unused)
     assert_close_relative(M[0], I * E * kappa[0], 1e-6);
 }
 
-static void an_elastic_circle_keeps_nothing(void **unused)
+static void an_elastic_circle_has_no_residual_curvature(void **unused)
 {
     (void)unused;
     const struct wb_law law = bilinear(1e9, 0.5, 2e9);
@@ -99,7 +99,7 @@ static void an_elastic_circle_keeps_nothing(void **unused)
     assert_close(bending.loop_energy, 0.0, 1e-12 * 3e9 * second_moment() * largest * largest);
 }
 
-/* Masing: the unloading is the first loading at twice the size from the turn on. */
+/* Masing's rule: unloading is the first loading at twice the size, from the turn. */
 static void a_hardening_circle_springs_back_by_masings_rule(void **unused)
 {
     (void)unused;
@@ -119,10 +119,9 @@ static void a_hardening_circle_springs_back_by_masings_rule(void **unused)
     assert_close(bending.residual_curvature_ratio, low / largest, 3e-4);
 }
 
-/* The loop between both branches, by integrals of the closed form of a first loading. */
 /* By Masing's rule a branch is the first loading at twice the size; an isotropic wire and an
  * elastic one come back with EI. */
-static void stiffness_on_the_way_back_is_that_of_half_the_curvature_up(void **unused)
+static void unloading_stiffness_is_the_secant_stiffness_at_half_the_curvature(void **unused)
 {
     (void)unused;
     static const double changes[] = {0.5, 1.0, 2.0, 20.0}, halves[] = {0.25, 0.5, 1.0, 10.0};
@@ -141,7 +140,7 @@ static void stiffness_on_the_way_back_is_that_of_half_the_curvature_up(void **un
             assert_true(secant[k] <= EI * (1.0 + 1e-12));
             if (rule == 0)
                 assert_close_relative(unloading[k], secant[k], 1e-9);
-            else if (rule == 2 || k < 3) /* further back the isotropic one yields again */
+            else if (rule == 2 || k < 3) /* at larger changes the isotropic wire yields again */
                 assert_close_relative(unloading[k], EI, 1e-6);
         }
         assert_true(rule == 2 || secant[3] < 0.7 * EI);
@@ -166,7 +165,7 @@ static void the_loops_energy_is_the_integral_between_its_branches(void **unused)
     assert_close_relative(bending.loop_energy, expected, 1e-3);
 }
 
-static void moments_are_those_of_a_first_loading_each(void **unused)
+static void each_moment_is_that_of_a_first_loading(void **unused)
 {
     (void)unused;
     const struct wb_law law = bilinear(4e9, 1e-3, 1e9);
@@ -203,8 +202,8 @@ static void the_equivalent_of_ludwiks_law_is_itself(void **unused)
     }
 }
 
-/* Another form bends alike on a first loading, not exactly. */
-static void the_equivalent_of_parallel_parts_bends_like_them(void **unused)
+/* A law of another form has nearly the same first loading. */
+static void the_equivalent_of_parallel_parts_has_nearly_their_first_loading(void **unused)
 {
     (void)unused;
     static const struct wb_law_part parts[] = {
@@ -224,8 +223,8 @@ static void the_equivalent_of_parallel_parts_bends_like_them(void **unused)
         assert_close_relative(other[i], M[i], 3.0 * misfit);
 }
 
-/* The first part yields before the first curvature that is compared: without a bound the best
- * yield stress would be none at all. */
+/* The first part yields before the first curvature that is compared: without a bound the best yield
+ * stress would be zero. */
 static void the_equivalent_of_a_wire_that_yields_at_once_has_a_yield_stress(void **unused)
 {
     (void)unused;
@@ -249,16 +248,16 @@ static void the_equivalent_of_a_wire_that_yields_at_once_has_a_yield_stress(void
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_perfectly_plastic_circle_springs_back_as_the_closed_form_says),
-        cmocka_unit_test(an_elastic_circle_keeps_nothing),
+        cmocka_unit_test(the_springback_of_a_perfectly_plastic_circle_is_the_closed_form),
+        cmocka_unit_test(an_elastic_circle_has_no_residual_curvature),
         cmocka_unit_test(a_relaxing_circle_follows_its_strain_rate),
         cmocka_unit_test(a_hardening_circle_springs_back_by_masings_rule),
-        cmocka_unit_test(stiffness_on_the_way_back_is_that_of_half_the_curvature_up),
+        cmocka_unit_test(unloading_stiffness_is_the_secant_stiffness_at_half_the_curvature),
         cmocka_unit_test(the_loops_energy_is_the_integral_between_its_branches),
-        cmocka_unit_test(moments_are_those_of_a_first_loading_each),
+        cmocka_unit_test(each_moment_is_that_of_a_first_loading),
         cmocka_unit_test(the_equivalent_of_ludwiks_law_is_itself),
         cmocka_unit_test(the_equivalent_of_a_wire_that_yields_at_once_has_a_yield_stress),
-        cmocka_unit_test(the_equivalent_of_parallel_parts_bends_like_them),
+        cmocka_unit_test(the_equivalent_of_parallel_parts_has_nearly_their_first_loading),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

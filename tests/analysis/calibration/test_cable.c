@@ -1,4 +1,4 @@
-/* A cable between sliding and bonded wires, against closed forms and made-up tests. */
+/* A cable between sliding and bonded wires, compared with closed forms and synthetic tests. */
 #include "analysis/calibration/constituents/cable.h"
 
 #include "base/units.h"
@@ -27,7 +27,7 @@ static void curvature_and_moment_give_the_elastic_beam(void **state)
 }
 
 /* F(d) = (L1/L) (6 F1 + Fc) at d L1^2 / L^2 is the sum of moments at equal curvature. */
-static void adding_moments_is_the_rule_of_forces(void **state)
+static void adding_moments_is_equivalent_to_the_rule_for_forces(void **state)
 {
     (void)state;
     const double L1 = 12.8e-3, L = 40e-3, d = 5e-3, d1 = d * L1 * L1 / (L * L);
@@ -37,7 +37,7 @@ static void adding_moments_is_the_rule_of_forces(void **state)
                           6.0 * wb_cable_moment(F1, L1) + wb_cable_moment(Fc, L1), 1e-12);
 }
 
-static void elastic_bonded_wires_bear_E_A_times_arm_squared(void **state)
+static void elastic_bonded_wires_carry_E_A_times_arm_squared(void **state)
 {
     (void)state;
     const struct wb_cable_ring ring = ring_of(117e9, 0.0, 0.0);
@@ -49,12 +49,12 @@ static void elastic_bonded_wires_bear_E_A_times_arm_squared(void **state)
                               0.5 * 6.0 * 117e9 * 0.05e-6 * 0.85e-3 * 0.85e-3 * curvature[i], 1e-4);
 }
 
-/* A ring that is perfectly plastic bears 6 A sigma_Y r 2/pi, and a hinge bends on under it. */
-static void plastic_bonded_wires_bear_a_hinge(void **state)
+/* A perfectly plastic ring carries 6 A sigma_Y r 2/pi, and a hinge rotates under this moment. */
+static void plastic_bonded_wires_form_a_hinge(void **state)
 {
     (void)state;
     const struct wb_cable_ring ring = ring_of(117e9, 150e6, 0.0);
-    static const double curvature[3] = {1.0, 20.0, 200.0}; /* of yield: 1.5 */
+    static const double curvature[3] = {1.0, 20.0, 200.0}; /* yield curvature: 1.5 */
     const double hinge = 6.0 * 0.05e-6 * 150e6 * 0.85e-3 * 2.0 / M_PI;
     double moment[3];
     assert_int_equal(wb_cable_axial_moments(&ring, curvature, 3, moment, NULL), WB_OK);
@@ -63,9 +63,9 @@ static void plastic_bonded_wires_bear_a_hinge(void **state)
     assert_close_relative(moment[2], hinge, 1e-3);
 }
 
-/* Where stress is K eps^0.5, M goes as kappa^0.5 and the section has 4/3 of the nominal curvature:
- * kappa = (M/C)^2 gives 3 int (M s / C)^2 s ds = 3/4 kappa. */
-static void nominal_curvature_is_that_of_the_deflection(void **state)
+/* If stress is K eps^0.5, M is proportional to kappa^0.5 and the section has 4/3 of the nominal
+ * curvature: kappa = (M/C)^2 gives 3 int (M s / C)^2 s ds = 3/4 kappa. */
+static void nominal_curvature_follows_from_the_deflection(void **state)
 {
     (void)state;
     const struct wb_cable_ring ring = ring_of(1e15, 1.0, 300e6);
@@ -81,7 +81,7 @@ static void nominal_curvature_is_that_of_the_deflection(void **state)
                               2e-3);
 }
 
-static void kinematic_conductors_are_refused(void **state)
+static void kinematic_conductors_are_rejected(void **state)
 {
     (void)state;
     struct wb_cable_ring ring = ring_of(117e9, 150e6, 1e9);
@@ -95,7 +95,7 @@ static void kinematic_conductors_are_refused(void **state)
     assert_int_equal(wb_cable_axial_moments(&ring, &curvature, 1, &moment, &why), WB_ERR_ARGUMENT);
 }
 
-static void series_are_not_averaged_away(void **state)
+static void the_scatter_of_series_does_not_average_out(void **state)
 {
     (void)state;
     static const double values[7] = {1.1, 0.9, 1.0, (double)NAN, 2.1, 1.9, 2.0};
@@ -136,12 +136,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(curvature_and_moment_give_the_elastic_beam),
-        cmocka_unit_test(adding_moments_is_the_rule_of_forces),
-        cmocka_unit_test(elastic_bonded_wires_bear_E_A_times_arm_squared),
-        cmocka_unit_test(plastic_bonded_wires_bear_a_hinge),
-        cmocka_unit_test(nominal_curvature_is_that_of_the_deflection),
-        cmocka_unit_test(kinematic_conductors_are_refused),
-        cmocka_unit_test(series_are_not_averaged_away),
+        cmocka_unit_test(adding_moments_is_equivalent_to_the_rule_for_forces),
+        cmocka_unit_test(elastic_bonded_wires_carry_E_A_times_arm_squared),
+        cmocka_unit_test(plastic_bonded_wires_form_a_hinge),
+        cmocka_unit_test(nominal_curvature_follows_from_the_deflection),
+        cmocka_unit_test(kinematic_conductors_are_rejected),
+        cmocka_unit_test(the_scatter_of_series_does_not_average_out),
         cmocka_unit_test(sliding_wires_are_at_0_and_bonded_ones_at_1),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

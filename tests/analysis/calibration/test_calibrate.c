@@ -5,7 +5,7 @@
 
 static const double mm = WB_MM;
 
-static void k_and_n_come_back_when_e_and_sigma_y_are_given(void **state)
+static void k_and_n_are_recovered_when_e_and_sigma_y_are_given(void **state)
 {
     (void)state;
     for (int type = 0; type < 3; type++) {
@@ -29,8 +29,8 @@ static void k_and_n_come_back_when_e_and_sigma_y_are_given(void **state)
     }
 }
 
-/* Eqs. 10 and 11 hold for small deflection, no weight and a vertical force; what that costs here,
- * with strand, weight and counterweight, is below 1 %. */
+/* Eqs. 10 and 11 assume small deflection, no weight and a vertical force; their error here, with
+ * strand, weight and counterweight, is below 1 %. */
 static void e_and_sigma_y_of_the_closed_forms_are_near_the_truth(void **state)
 {
     (void)state;
@@ -51,7 +51,7 @@ static void e_and_sigma_y_of_the_closed_forms_are_near_the_truth(void **state)
     }
 }
 
-static void the_whole_recipe_fits_its_own_model_class(void **state)
+static void the_method_fits_its_own_model(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(2, 0.085, 0.0);
@@ -64,14 +64,15 @@ static void the_whole_recipe_fits_its_own_model_class(void **state)
     assert_true(result.rms < 1e-3);
     assert_close_relative(result.material.strength_coefficient, truth.strength_coefficient, 0.1);
     assert_close_relative(result.material.hardening_exponent, truth.hardening_exponent, 0.03);
-    /* E and sigma_Y stay what eqs. 10 and 11 made of them. */
+    /* E and sigma_Y remain the values of eqs. 10 and 11. */
     assert_close_relative(result.material.youngs_modulus, truth.youngs_modulus, 0.01);
     assert_close_relative(result.max_force, dataset.rows[dataset.n_rows - 1].force, 1e-9);
     assert_int_equal(result.failed_evaluations, 0);
     for (int k = 0; k < 4; k++)
         assert_true(isnan(result.deviation[k]));
 
-    /* The path begins at (K0, n0), never gets worse, and says where the restart begins. */
+    /* The path begins at (K0, n0), its error never increases, and the index of the restart is
+     * given. */
     assert_true(result.n_path > 10);
     assert_close_relative(result.path[0].strength_coefficient, result.first_strength_coefficient,
                           1e-12);
@@ -117,7 +118,7 @@ static bool stop_at_ten(void *context, int evaluation, double error, double size
     return evaluation < 10;
 }
 
-static void it_says_why_it_stopped(void **state)
+static void the_reason_of_the_end_is_given(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(1, 0.085, 0.0);
@@ -159,7 +160,7 @@ static void it_says_why_it_stopped(void **state)
     wb_dataset_release(&dataset);
 }
 
-static void a_wire_that_did_not_yield_is_refused(void **state)
+static void a_wire_that_did_not_yield_is_rejected(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(0, 0.085, 0.0);
@@ -173,7 +174,7 @@ static void a_wire_that_did_not_yield_is_refused(void **state)
     assert_message("linear elastic prediction");
     wb_dataset_release(&dataset);
 
-    /* Ends just past the yield point. */
+    /* The loading ends just beyond the yield point. */
     const struct wb_material truth = beam_material(0);
     settings.step = 0.5 * mm;
     beam_dataset(&dataset, &info, &truth, 0.5 * mm, 5.5 * mm, 1.0);
@@ -182,8 +183,8 @@ static void a_wire_that_did_not_yield_is_refused(void **state)
     wb_dataset_release(&dataset);
 }
 
-/* Each way to fail gives its reason to the caller and logs nothing. */
-static void a_reason_travels_to_who_asked_for_it(void **state)
+/* Each failure returns its reason to the caller and logs nothing. */
+static void the_reason_of_a_failure_is_returned(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(0, 0.085, 0.0);
@@ -202,7 +203,7 @@ static void a_reason_travels_to_who_asked_for_it(void **state)
     wb_dataset_release(&dataset);
     beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, -1.0);
     assert_int_equal(wb_calibrate_run(&result, datasets, 1, &settings, &why), WB_ERR_DATA);
-    assert_non_null(strstr(why.text, "sign reversed"));
+    assert_non_null(strstr(why.text, "sign"));
     dataset.rows[3].force = (double)NAN;
     assert_int_equal(wb_calibrate_run(&result, datasets, 1, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "no finite"));
@@ -213,7 +214,7 @@ static void a_reason_travels_to_who_asked_for_it(void **state)
     assert_string_equal(kept.last, "");
 }
 
-static void unusable_data_and_settings_are_refused(void **state)
+static void unusable_data_and_settings_are_rejected(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(0, 0.085, 0.0);
@@ -223,7 +224,7 @@ static void unusable_data_and_settings_are_refused(void **state)
     struct wb_dataset dataset;
     beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, -1.0);
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_DATA);
-    assert_message("sign reversed");
+    assert_message("sign");
     dataset.rows[3].force = (double)NAN;
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_DATA);
     assert_message("no finite");
@@ -235,8 +236,8 @@ static void unusable_data_and_settings_are_refused(void **state)
     wb_dataset_release(&dataset);
 }
 
-/* All forces of a sample times a factor change E and sigma_Y by just that factor, for which the
- * jackknife must give the standard error of the mean; K follows, n hardly. */
+/* Multiplying all forces of a sample by a factor multiplies E and sigma_Y by it, and the jackknife
+ * must give the standard error of the mean; K follows, n hardly changes. */
 static void deviations_are_the_standard_errors_of_the_samples(void **state)
 {
     (void)state;
@@ -264,7 +265,7 @@ static void deviations_are_the_standard_errors_of_the_samples(void **state)
     assert_close_relative(result.deviation[1] / result.material.yield_stress, standard_error, 1e-3);
     assert_close_relative(result.deviation[2], standard_error, 0.3);
     assert_true(result.deviation[3] < 0.01);
-    /* The scatter grows as the force does. */
+    /* The scatter grows with the force. */
     assert_true(result.scatter_rms > 0.4 * sqrt(3.0) * standard_error);
     assert_close_relative(result.residual_scatter_rms, result.scatter_rms, 1e-6);
     wb_calibrate_result_release(&result);
@@ -293,7 +294,7 @@ static void the_same_data_give_the_same_bits(void **state)
     wb_dataset_release(&dataset);
 }
 
-static void the_bows_can_be_taken_out_of_e_and_the_yield_stress(void **state)
+static void the_bias_of_the_bows_can_be_removed_from_e_and_the_yield_stress(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(1, 0.085, -3.0 * mm);
@@ -318,7 +319,7 @@ static void the_bows_can_be_taken_out_of_e_and_the_yield_stress(void **state)
     assert_true(printed.material.youngs_modulus < 0.9 * truth.youngs_modulus);
     assert_false(printed.bow_corrected);
     assert_int_equal(wb_calibrate_remarks(&printed, remarks), 1);
-    assert_non_null(strstr(remarks[0], "the samples' bows"));
+    assert_non_null(strstr(remarks[0], "eqs. 10 and 11"));
     assert_true(corrected.bow_corrected);
     assert_int_equal(wb_calibrate_remarks(&corrected, remarks), 0);
     assert_close_relative(corrected.material.youngs_modulus, truth.youngs_modulus, 0.05);
@@ -330,7 +331,7 @@ static void the_bows_can_be_taken_out_of_e_and_the_yield_stress(void **state)
         wb_dataset_release(&dataset[i]);
 }
 
-static void what_a_reader_should_know_is_remarked(void **state)
+static void limitations_of_the_result_are_remarked(void **state)
 {
     (void)state;
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
@@ -356,18 +357,18 @@ static void what_a_reader_should_know_is_remarked(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(k_and_n_come_back_when_e_and_sigma_y_are_given),
+        cmocka_unit_test(k_and_n_are_recovered_when_e_and_sigma_y_are_given),
         cmocka_unit_test(e_and_sigma_y_of_the_closed_forms_are_near_the_truth),
-        cmocka_unit_test(the_whole_recipe_fits_its_own_model_class),
+        cmocka_unit_test(the_method_fits_its_own_model),
         cmocka_unit_test(the_natural_shape_is_part_of_the_model),
-        cmocka_unit_test(it_says_why_it_stopped),
-        cmocka_unit_test(a_wire_that_did_not_yield_is_refused),
-        cmocka_unit_test(a_reason_travels_to_who_asked_for_it),
-        cmocka_unit_test(unusable_data_and_settings_are_refused),
+        cmocka_unit_test(the_reason_of_the_end_is_given),
+        cmocka_unit_test(a_wire_that_did_not_yield_is_rejected),
+        cmocka_unit_test(the_reason_of_a_failure_is_returned),
+        cmocka_unit_test(unusable_data_and_settings_are_rejected),
         cmocka_unit_test(deviations_are_the_standard_errors_of_the_samples),
         cmocka_unit_test(the_same_data_give_the_same_bits),
-        cmocka_unit_test(the_bows_can_be_taken_out_of_e_and_the_yield_stress),
-        cmocka_unit_test(what_a_reader_should_know_is_remarked),
+        cmocka_unit_test(the_bias_of_the_bows_can_be_removed_from_e_and_the_yield_stress),
+        cmocka_unit_test(limitations_of_the_result_are_remarked),
     };
     return cmocka_run_group_tests(tests, silence, NULL);
 }

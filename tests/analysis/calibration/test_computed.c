@@ -6,7 +6,7 @@
 
 static const double mm = WB_MM;
 
-static void it_is_the_cantilever_with_its_force_zeroed(void **state)
+static void the_curve_is_that_of_the_cantilever_with_zeroed_force(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(2, 0.085, 2.0 * mm);
@@ -39,7 +39,7 @@ static void it_is_the_cantilever_with_its_force_zeroed(void **state)
     assert_int_equal(wb_cantilever_move(cantilever, WB_CONTROL_DEFLECTION, 0.0, &zero), WB_OK);
     assert_int_equal(wb_cantilever_move(cantilever, WB_CONTROL_DEFLECTION, 53.0 * mm, &point),
                      WB_OK);
-    /* Counterweight and some of the weight hang on the strand at zero deflection. */
+    /* The strand carries the counterweight and some of the weight at zero deflection. */
     assert_true(zero.vertical_force > 0.5 * info.counterweight * info.gravity);
     assert_close_relative(force[53], point.vertical_force - zero.vertical_force, 1e-6);
     wb_cantilever_destroy(cantilever);
@@ -65,8 +65,8 @@ static void each_run_starts_from_the_virgin_wire(void **state)
     wb_computed_destroy(computed);
 }
 
-/* The bench's weight and strand must be in the curve, or calibration would fit them into K and n.
- */
+/* The curve must include the bench's weight and strand; otherwise calibration would fit them into K
+ * and n. */
 static void loading_of_the_test_is_in_the_curve(void **state)
 {
     (void)state;
@@ -88,8 +88,8 @@ static void loading_of_the_test_is_in_the_curve(void **state)
     assert_true(fabs(change) > 0.005 && fabs(change) < 0.2);
 }
 
-/* A bow that is left out costs several times the RMS that a calibration may have. */
-static void a_bow_of_three_millimetres_moves_the_curve(void **state)
+/* The effect of a bow is several times the RMS error of a calibration. */
+static void a_bow_of_three_millimetres_changes_the_curve(void **state)
 {
     (void)state;
     for (int i = 0; i < 6; i++) {
@@ -123,7 +123,7 @@ static void a_curve_that_does_not_converge_ends_in_nan(void **state)
     double force[54];
     int reached;
     assert_int_equal(wb_computed_create(&computed, &info, &material, &settings), WB_OK);
-    /* The beam is hard to beat with a true material: no number behind yield does it. */
+    /* The beam converges for any real material, so the strength is not a number. */
     material.strength_coefficient = (double)NAN;
     assert_int_equal(wb_computed_curve(computed, &material, 54, mm, force, &reached), WB_OK);
     assert_true(reached > 1 && reached < 10);
@@ -133,7 +133,7 @@ static void a_curve_that_does_not_converge_ends_in_nan(void **state)
     wb_computed_destroy(NULL);
 }
 
-static void a_strand_that_is_slack_at_zero_is_refused(void **state)
+static void a_strand_that_is_slack_at_zero_is_rejected(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(2, 0.085, 12.0 * mm);
@@ -151,12 +151,12 @@ static void a_strand_that_is_slack_at_zero_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_the_cantilever_with_its_force_zeroed),
+        cmocka_unit_test(the_curve_is_that_of_the_cantilever_with_zeroed_force),
         cmocka_unit_test(each_run_starts_from_the_virgin_wire),
         cmocka_unit_test(loading_of_the_test_is_in_the_curve),
-        cmocka_unit_test(a_bow_of_three_millimetres_moves_the_curve),
+        cmocka_unit_test(a_bow_of_three_millimetres_changes_the_curve),
         cmocka_unit_test(a_curve_that_does_not_converge_ends_in_nan),
-        cmocka_unit_test(a_strand_that_is_slack_at_zero_is_refused),
+        cmocka_unit_test(a_strand_that_is_slack_at_zero_is_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

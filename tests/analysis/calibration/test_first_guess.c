@@ -4,9 +4,9 @@
 
 static const double mm = WB_MM, mpa = WB_MPA;
 
-/* Eqs. 10 and 11 at one point force sigma_Y = 1.5 E (delta/L) (d/L); the eight rows of Tables 3
- * and 5 show delta/L = 0.040, not the 0.05 of the text. */
-static void the_tables_of_the_paper_show_a_yield_point_of_four_percent(void **state)
+/* Eqs. 10 and 11 at one point require sigma_Y = 1.5 E (delta/L) (d/L); the eight rows of Tables 3
+ * and 5 give delta/L = 0.040, not the 0.05 of the text. */
+static void the_tables_of_the_paper_have_a_yield_point_of_four_percent(void **state)
 {
     (void)state;
     const struct {
@@ -19,7 +19,7 @@ static void the_tables_of_the_paper_show_a_yield_point_of_four_percent(void **st
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const double L = rows[i].length * mm, d = rows[i].diameter * mm;
         const double modulus = rows[i].modulus * mpa;
-        /* The force that eq. 10 makes of E at 4 % gives sigma_Y by eq. 11. */
+        /* The force for E by eq. 10 at 4 % gives sigma_Y by eq. 11. */
         const double unit = wb_first_guess_modulus(1.0, 0.04 * L, L, d);
         const double force = modulus / unit;
         assert_close_relative(wb_first_guess_stress(force, L, d), rows[i].yield * mpa, 0.011);
@@ -124,16 +124,16 @@ static double wavy(double x)
     return 1e-3 * sin(x / 1.5e-3);
 }
 
-static void curves_that_cannot_serve_are_refused_with_the_reason(void **state)
+static void unusable_curves_are_rejected_with_the_reason(void **state)
 {
     (void)state;
     struct wb_first_guess guess;
     assert_int_equal(guess_of(&guess, bilinear, 6 * mm, 0.05, 0.04), WB_ERR_DATA);
     assert_message("yield is not reached");
     assert_int_equal(guess_of(&guess, reversed, 50 * mm, 0.05, 0.05), WB_ERR_DATA);
-    assert_message("sign reversed");
+    assert_message("sign");
     assert_int_equal(guess_of(&guess, falling, 50 * mm, 0.03, 0.05), WB_ERR_DATA);
-    assert_message("falls just past the yield point");
+    assert_message("yield point (slope");
     assert_int_equal(guess_of(&guess, wavy, 50 * mm, 0.05, 0.05), WB_ERR_DATA);
     assert_message("does not rise steadily");
     assert_int_equal(guess_of(&guess, bilinear, 50 * mm, 0.005, 0.05), WB_ERR_DATA);
@@ -145,7 +145,7 @@ static double stiffening(double x)
     return 2.0 * x + 1e3 * x * x;
 }
 
-static void an_exponent_above_the_limit_is_held(void **state)
+static void the_exponent_is_limited(void **state)
 {
     (void)state;
     struct wb_first_guess guess;
@@ -156,13 +156,13 @@ static void an_exponent_above_the_limit_is_held(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_tables_of_the_paper_show_a_yield_point_of_four_percent),
+        cmocka_unit_test(the_tables_of_the_paper_have_a_yield_point_of_four_percent),
         cmocka_unit_test(equation_10_is_the_elastic_cantilever),
         cmocka_unit_test(stress_is_modulus_times_strain_in_the_elastic_zone),
         cmocka_unit_test(hollomon_continues_the_elastic_line_at_yield),
         cmocka_unit_test(guess_of_a_bilinear_curve_is_exact),
-        cmocka_unit_test(curves_that_cannot_serve_are_refused_with_the_reason),
-        cmocka_unit_test(an_exponent_above_the_limit_is_held),
+        cmocka_unit_test(unusable_curves_are_rejected_with_the_reason),
+        cmocka_unit_test(the_exponent_is_limited),
     };
     return cmocka_run_group_tests(tests, silence, NULL);
 }

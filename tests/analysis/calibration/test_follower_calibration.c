@@ -37,8 +37,8 @@ static int release_composite(void **state)
     return 0;
 }
 
-/* What the homogenised circle of the same outer diameter would need to bend as the bare core does:
- * strains by the ratio of the diameters, stresses by its third power. */
+/* Material of a homogenised circle of the same outer diameter that bends like the bare core:
+ * strains are scaled by the ratio of the diameters, stresses by its third power. */
 static struct wb_material equivalent(void)
 {
     const double ratio = 4.86 / 3.26;
@@ -99,7 +99,7 @@ static void the_curve_is_deflection_at_the_rows_forces(void **state)
     assert_true(isnan(curve_force(&curve, 1.0 * mm)));
     wb_curve_release(&curve);
 
-    /* Other steps are straight between the rows. */
+    /* Other steps are interpolated linearly between the rows. */
     const struct wb_curve_grid grid = {.force_step = 0.25};
     assert_int_equal(wb_curve_average_on(&curve, datasets, 1, &grid, NULL), WB_OK);
     assert_int_equal(curve.n, 2 * STEPS + 1);
@@ -108,7 +108,7 @@ static void the_curve_is_deflection_at_the_rows_forces(void **state)
     wb_curve_release(&curve);
 }
 
-static void what_comes_after_the_largest_force_or_deflection_is_left_out(void **state)
+static void rows_after_the_largest_force_or_deflection_are_left_out(void **state)
 {
     (void)state;
     const struct wb_test_info info = follower_info(0.1);
@@ -137,7 +137,7 @@ static void what_comes_after_the_largest_force_or_deflection_is_left_out(void **
     wb_curve_release(&whole);
     wb_dataset_release(&dataset);
 
-    /* The same setting ends a test of the other kind. */
+    /* The same setting limits a test of the other kind. */
     const struct wb_test_info tip = beam_info(2, 0.085, 0.0);
     const struct wb_material material = beam_material(2);
     beam_dataset(&dataset, &tip, &material, 1.0 * mm, 53.0 * mm, 1.0);
@@ -162,7 +162,7 @@ static void tests_of_both_kinds_are_not_averaged(void **state)
     assert_true(group[0] == 0 && group[1] == 1 && group[2] == 0);
 }
 
-static void turned_around_the_curve_is_what_the_deflection_control_finds(void **state)
+static void the_inverted_curve_agrees_with_deflection_control(void **state)
 {
     (void)state;
     const struct wb_dataset *const datasets[] = {&composite};
@@ -191,7 +191,7 @@ static void turned_around_the_curve_is_what_the_deflection_control_finds(void **
     for (int i = 1; i < turned.n; i++) {
         assert_int_equal(wb_computed_move(computed, i * mm, &force, &reached), WB_OK);
         assert_true(reached);
-        /* Straight between points 0.1 N apart: near its end the curve is bent most. */
+        /* Linear between points 0.1 N apart; the curvature is largest near the end. */
         assert_close(turned.force[i], force, i * mm < 0.08 ? 0.003 : 0.01);
     }
     /* Beyond the largest deflection there is no force. */
@@ -204,11 +204,11 @@ static void turned_around_the_curve_is_what_the_deflection_control_finds(void **
     for (int i = 0; i < curve.n; i++)
         curve.deflection[i] = -curve.deflection[i];
     assert_int_equal(wb_curve_turn(&turned, &curve, 1.0 * mm, NULL), WB_ERR_DATA);
-    assert_message("is its sign reversed?");
+    assert_message("sign");
     wb_curve_release(&curve);
 }
 
-static void only_follower_tests_are_pushed(void **state)
+static void a_force_can_be_set_only_in_follower_tests(void **state)
 {
     (void)state;
     const struct wb_material material = equivalent();
@@ -230,7 +230,7 @@ static void only_follower_tests_are_pushed(void **state)
 
 /* --- calibration --- */
 
-static void k_and_n_come_back_from_the_homogenised_wire(void **state)
+static void k_and_n_of_the_homogenised_wire_are_recovered(void **state)
 {
     (void)state;
     const struct wb_test_info info = follower_info(0.1);
@@ -251,9 +251,9 @@ static void k_and_n_come_back_from_the_homogenised_wire(void **state)
     wb_dataset_release(&dataset);
 }
 
-/* The homogenised wire follows the composite one through its whole curl. The yield point that fits
- * best is where the core yields, 0.0546 of the length; the default is near enough. */
-static void composite_wire_is_followed_to_the_end(void **state)
+/* The homogenised wire reproduces the composite one until it has curled up. The best yield point is
+ * where the core yields, 0.0546 of the length; the default is close enough. */
+static void the_composite_wire_is_reproduced_to_the_end(void **state)
 {
     (void)state;
     static const struct {
@@ -263,7 +263,7 @@ static void composite_wire_is_followed_to_the_end(void **state)
         {0.0, 0.0, 0.0035, 1.0 * WB_MM, 0.8 * M_PI / 180.0},
         {0.0546, 0.0, 0.001, 0.2 * WB_MM, 0.1 * M_PI / 180.0},
         {0.06, 0.0, 0.0035, 1.0 * WB_MM, 0.8 * M_PI / 180.0},
-        /* Fitted to the first three quarters only, the end of the curl is a guess. */
+        /* If only the first three quarters are fitted, the end of the curl is extrapolated. */
         {0.0, 70.0 * WB_MM, 0.003, 20.0 * WB_MM, 15.0 * M_PI / 180.0},
     };
     const struct wb_row *const end = &composite.rows[STEPS];
@@ -291,7 +291,7 @@ static void composite_wire_is_followed_to_the_end(void **state)
             result.material.youngs_modulus / WB_MPA, result.material.yield_stress / WB_MPA,
             result.material.strength_coefficient / WB_MPA, result.material.hardening_exponent,
             result.rms, last_force, away / mm, turned / degree);
-        /* The jacket bends by 0.24 % of the core's stiffness. */
+        /* The jacket adds 0.24 % to the core's stiffness. */
         assert_close_relative(result.material.youngs_modulus, 1.0024 * bare.youngs_modulus, 1e-3);
         assert_true(result.rms < cases[i].rms);
         assert_true(away < cases[i].tip);
@@ -303,7 +303,7 @@ static void composite_wire_is_followed_to_the_end(void **state)
     }
 }
 
-static void a_follower_test_that_did_not_yield_is_refused(void **state)
+static void a_follower_test_that_did_not_yield_is_rejected(void **state)
 {
     (void)state;
     const struct wb_test_info info = follower_info(0.1);
@@ -323,7 +323,8 @@ static void a_follower_test_that_did_not_yield_is_refused(void **state)
     wb_dataset_release(&dataset);
 }
 
-/* Under its weight the wire hangs until the force lifts it: neither E nor the fit must mind. */
+/* The weight bends the wire downwards until the force lifts it; this must not affect E or the
+ * fit. */
 static void weight_is_part_of_the_model(void **state)
 {
     (void)state;
@@ -355,7 +356,7 @@ static void weight_is_part_of_the_model(void **state)
     wb_dataset_release(&dataset);
 }
 
-/* All forces times a factor are those of a wire with all stresses times that factor. */
+/* Multiplying all forces by a factor is equivalent to a wire with all stresses multiplied by it. */
 static void deviations_are_those_of_the_samples(void **state)
 {
     (void)state;
@@ -381,7 +382,7 @@ static void deviations_are_those_of_the_samples(void **state)
     assert_close_relative(result.deviation[2], 0.001, 0.3);
     assert_true(result.deviation[3] < 0.001);
     print_message("deviation of n %.5f, scatter %.5f\n", result.deviation[3], result.scatter_rms);
-    /* The samples differ in nothing that the model knows of. */
+    /* All differences between the samples are in the model. */
     assert_close_relative(result.residual_scatter_rms, result.scatter_rms, 1e-6);
     wb_calibrate_result_release(&result);
     for (int i = 0; i < 3; i++)
@@ -390,7 +391,7 @@ static void deviations_are_those_of_the_samples(void **state)
 
 /* --- validation --- */
 
-/* What calibration finds with the yield point at 0.0546 of the length. */
+/* Result of the calibration with the yield point at 0.0546 of the length. */
 static struct wb_properties fitted_properties(void)
 {
     struct wb_properties properties = {
@@ -423,7 +424,8 @@ static void another_length_is_predicted_with_its_curl(void **state)
     assert_true(result.elastic.rms > 0.3);
     assert_int_equal(result.elastic.n_reached, result.curve.n);
     assert_true(result.elastoplastic.rms_from_5mm > result.elastoplastic.rms);
-    /* Every position but the clamp's, in every row, beyond the largest deflection too. */
+    /* Every position except the clamp's, in every row, including those beyond the largest
+     * deflection. */
     assert_int_equal(result.n_shape_points, 10 * 41);
     assert_true(result.shape_rms < 0.15 * mm);
     assert_true(result.shape_max < 0.5 * mm);
@@ -431,7 +433,7 @@ static void another_length_is_predicted_with_its_curl(void **state)
     wb_dataset_release(&dataset);
 }
 
-static void shapes_of_the_model_itself_have_no_distance(void **state)
+static void the_distance_of_the_models_own_shapes_is_zero(void **state)
 {
     (void)state;
     const struct wb_properties properties = fitted_properties();
@@ -464,7 +466,7 @@ static void shapes_of_the_model_itself_have_no_distance(void **state)
     wb_dataset_release(&dataset);
 }
 
-static void a_shape_by_force_goes_beyond_the_one_by_deflection(void **state)
+static void force_control_reaches_shapes_beyond_deflection_control(void **state)
 {
     (void)state;
     const struct wb_properties properties = fitted_properties();
@@ -483,7 +485,7 @@ static void a_shape_by_force_goes_beyond_the_one_by_deflection(void **state)
                      WB_ERR_ARGUMENT);
 }
 
-static void the_csv_is_of_deflections(void **state)
+static void the_csv_lists_deflections(void **state)
 {
     (void)state;
     const struct wb_properties properties = fitted_properties();
@@ -510,7 +512,7 @@ static void the_csv_is_of_deflections(void **state)
     wb_validate_result_release(&result);
 }
 
-static void properties_say_the_loading(void **state)
+static void properties_state_the_loading(void **state)
 {
     (void)state;
     const struct wb_calibrate_settings settings = quick_settings();
@@ -534,20 +536,20 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_curve_is_deflection_at_the_rows_forces),
-        cmocka_unit_test(what_comes_after_the_largest_force_or_deflection_is_left_out),
+        cmocka_unit_test(rows_after_the_largest_force_or_deflection_are_left_out),
         cmocka_unit_test(tests_of_both_kinds_are_not_averaged),
-        cmocka_unit_test(turned_around_the_curve_is_what_the_deflection_control_finds),
-        cmocka_unit_test(only_follower_tests_are_pushed),
-        cmocka_unit_test(k_and_n_come_back_from_the_homogenised_wire),
-        cmocka_unit_test(composite_wire_is_followed_to_the_end),
-        cmocka_unit_test(a_follower_test_that_did_not_yield_is_refused),
+        cmocka_unit_test(the_inverted_curve_agrees_with_deflection_control),
+        cmocka_unit_test(a_force_can_be_set_only_in_follower_tests),
+        cmocka_unit_test(k_and_n_of_the_homogenised_wire_are_recovered),
+        cmocka_unit_test(the_composite_wire_is_reproduced_to_the_end),
+        cmocka_unit_test(a_follower_test_that_did_not_yield_is_rejected),
         cmocka_unit_test(weight_is_part_of_the_model),
         cmocka_unit_test(deviations_are_those_of_the_samples),
         cmocka_unit_test(another_length_is_predicted_with_its_curl),
-        cmocka_unit_test(shapes_of_the_model_itself_have_no_distance),
-        cmocka_unit_test(a_shape_by_force_goes_beyond_the_one_by_deflection),
-        cmocka_unit_test(the_csv_is_of_deflections),
-        cmocka_unit_test(properties_say_the_loading),
+        cmocka_unit_test(the_distance_of_the_models_own_shapes_is_zero),
+        cmocka_unit_test(force_control_reaches_shapes_beyond_deflection_control),
+        cmocka_unit_test(the_csv_lists_deflections),
+        cmocka_unit_test(properties_state_the_loading),
     };
     return cmocka_run_group_tests(tests, make_composite, release_composite);
 }

@@ -58,7 +58,7 @@ static void equal_samples_have_no_deviation(void **state)
     assert_true(deviation[3] < 1e-6);
 }
 
-static void one_sample_tells_nothing(void **state)
+static void one_sample_gives_no_deviation(void **state)
 {
     (void)state;
     const double strength[MOST] = {1.0, 1.0, 1.0};
@@ -79,7 +79,7 @@ static void count(void *context, enum wb_log_level level, const char *domain, co
     n_warnings += level == WB_LOG_WARNING;
 }
 
-static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
+static void an_unusable_subset_is_a_warning_and_not_an_error(void **state)
 {
     (void)state;
     const struct wb_test_info info = beam_info(2, 0.085, 0.0);
@@ -90,7 +90,7 @@ static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
     struct wb_calibrate_result result = {.material = truth};
     for (int i = 0; i < 2; i++)
         beam_dataset(&dataset[i], &info, &truth, 1.0 * mm, 53 * mm, 1.0);
-    /* Alone the second one pulls the wrong way. */
+    /* Alone, the second sample has a reversed force. */
     for (size_t i = 0; i < dataset[1].n_rows; i++)
         dataset[1].rows[i].force *= -0.2;
     wb_log_set_sink(count, NULL);
@@ -99,7 +99,7 @@ static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
     assert_int_equal(n_warnings, 2);
     for (int k = 0; k < 4; k++)
         assert_true(isnan(result.deviation[k]));
-    /* Afterwards errors are errors again. */
+    /* Afterwards errors are counted as errors again. */
     wb_error("a test");
     assert_int_equal(n_errors, 1);
     keep_messages();
@@ -107,10 +107,10 @@ static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
         wb_dataset_release(&dataset[i]);
 }
 
-static void k_has_a_factor_and_no_negative_interval(void **state)
+static void the_deviation_of_k_is_a_factor(void **state)
 {
     (void)state;
-    /* A half and twice: in K itself the deviation would be as large as K. */
+    /* Half and twice the mean: the deviation in K itself would be as large as K. */
     const double strength[MOST] = {0.3, 1.0, 3.0};
     double deviation[4];
     run(deviation, 3, strength, 53 * mm);
@@ -123,9 +123,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scatter_of_k_alone_is_found_in_k),
         cmocka_unit_test(equal_samples_have_no_deviation),
-        cmocka_unit_test(one_sample_tells_nothing),
-        cmocka_unit_test(a_refusal_of_the_rest_is_a_warning_and_no_error),
-        cmocka_unit_test(k_has_a_factor_and_no_negative_interval),
+        cmocka_unit_test(one_sample_gives_no_deviation),
+        cmocka_unit_test(an_unusable_subset_is_a_warning_and_not_an_error),
+        cmocka_unit_test(the_deviation_of_k_is_a_factor),
     };
     return cmocka_run_group_tests(tests, silence, NULL);
 }

@@ -1,4 +1,4 @@
-/* The compliance of a machine from steel bars that were computed on it. */
+/* The compliance of a machine from computed tests of steel bars. */
 #include "analysis/calibration/three_point/machine_compliance.h"
 
 #include <stdlib.h>
@@ -135,7 +135,7 @@ static void compliance_is_found_within_its_interval(void **unused)
     }
 }
 
-static void soft_bar_does_not_tell(void **unused)
+static void with_a_compliant_bar_the_compliance_is_not_identifiable(void **unused)
 {
     (void)unused;
     const struct bar bar = {1e-3, 0.0, 0.0, 0.0};
@@ -147,7 +147,7 @@ static void soft_bar_does_not_tell(void **unused)
     assert_true(c.of_rigidity > c.of_readings);
 }
 
-static void bar_that_yields_does_not_tell(void **unused)
+static void with_a_yielding_bar_the_compliance_is_not_identifiable(void **unused)
 {
     (void)unused;
     const struct bar bar = {6e-3, 0.0, 0.0, 100e6};
@@ -157,8 +157,8 @@ static void bar_that_yields_does_not_tell(void **unused)
     assert_true(!c.is_straight && !c.is_identifiable && c.low > 0.0);
 }
 
-/* It yields at a fiftieth of its largest force, and hardens evenly: its way up is a line. */
-static void bar_that_yields_early_does_not_come_back(void **unused)
+/* It yields at a fiftieth of its largest force, with linear hardening: its loading is a line. */
+static void a_bar_that_yields_early_is_not_reversible(void **unused)
 {
     (void)unused;
     struct bar bar = {4e-3, 0.2e-6, 0.0, 5e6, .exponent = 1.0};
@@ -176,7 +176,7 @@ static void bar_that_yields_early_does_not_come_back(void **unused)
     assert_true(c.residual > 0.1 * c.most_travel);
 }
 
-static void slip_and_another_slope_are_told(void **unused)
+static void slip_and_another_slope_are_detected(void **unused)
 {
     (void)unused;
     const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_unloading = true, .slip = -0.08e-3},
@@ -191,7 +191,7 @@ static void slip_and_another_slope_are_told(void **unused)
     }
 }
 
-static void elastic_bar_comes_back(void **unused)
+static void an_elastic_bar_is_reversible(void **unused)
 {
     (void)unused;
     const struct bar bars[] = {{6e-3, 0.0, 0.0, 0.0, .with_unloading = true},
@@ -208,7 +208,7 @@ static void elastic_bar_comes_back(void **unused)
     }
 }
 
-static void first_cycle_counts(void **unused)
+static void the_first_cycle_is_used(void **unused)
 {
     (void)unused;
     const struct bar bar = {6e-3, 0.0, 0.0, 0.0, .with_unloading = true};
@@ -217,7 +217,7 @@ static void first_cycle_counts(void **unused)
     const struct wb_dataset *const pointer = &datasets[0];
     struct wb_machine_compliance c;
     make(&datasets[0], &bar, 0);
-    /* Pressed once more, and further, after a slip. */
+    /* A second loading, further, after a slip. */
     for (size_t i = 0, n = datasets[0].n_rows; i < n; i++) {
         struct wb_row row = datasets[0].rows[i];
         row.cycle = 2;
@@ -239,12 +239,12 @@ static void several_tests_scatter(void **unused)
     assert_int_equal(find(&c, &bar, 3, 1e-3, NULL), WB_OK);
     print(&c);
     assert_int_equal(c.n_tests, 3);
-    /* Of 0.9, 1 and 1.1: t of two degrees of freedom, 4.303, over the root of three. */
+    /* For 0.9, 1 and 1.1: t of two degrees of freedom, 4.303, over the root of three. */
     assert_close_relative(c.of_readings, 4.303 * 0.1 * true_compliance / sqrt(3.0), 0.01);
     assert_close_relative(c.value, true_compliance, 0.01);
 }
 
-static void what_tells_nothing_is_refused(void **unused)
+static void unusable_tests_are_rejected(void **unused)
 {
     (void)unused;
     const struct bar bar = {6e-3, 0.0, 0.0, 0.0};
@@ -271,14 +271,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(compliance_is_found_within_its_interval),
-        cmocka_unit_test(soft_bar_does_not_tell),
-        cmocka_unit_test(bar_that_yields_does_not_tell),
-        cmocka_unit_test(bar_that_yields_early_does_not_come_back),
-        cmocka_unit_test(slip_and_another_slope_are_told),
-        cmocka_unit_test(elastic_bar_comes_back),
-        cmocka_unit_test(first_cycle_counts),
+        cmocka_unit_test(with_a_compliant_bar_the_compliance_is_not_identifiable),
+        cmocka_unit_test(with_a_yielding_bar_the_compliance_is_not_identifiable),
+        cmocka_unit_test(a_bar_that_yields_early_is_not_reversible),
+        cmocka_unit_test(slip_and_another_slope_are_detected),
+        cmocka_unit_test(an_elastic_bar_is_reversible),
+        cmocka_unit_test(the_first_cycle_is_used),
         cmocka_unit_test(several_tests_scatter),
-        cmocka_unit_test(what_tells_nothing_is_refused),
+        cmocka_unit_test(unusable_tests_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

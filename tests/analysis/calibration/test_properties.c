@@ -37,7 +37,7 @@ static void write_some(const struct wb_calibrate_result *result)
     assert_int_equal(wb_properties_write(path, result, &settings, names, 2, true), WB_OK);
 }
 
-static void what_was_written_is_read(void **state)
+static void written_properties_are_read_back(void **state)
 {
     (void)state;
     const struct wb_calibrate_result result = some_result();
@@ -73,7 +73,7 @@ static void what_was_written_is_read(void **state)
                           tiny);
 }
 
-static void the_file_says_virtual_rig_and_how_it_was_made(void **state)
+static void the_file_states_the_virtual_rig_and_the_settings(void **state)
 {
     (void)state;
     const struct wb_calibrate_result result = some_result();
@@ -89,7 +89,7 @@ static void the_file_says_virtual_rig_and_how_it_was_made(void **state)
     free(text);
 }
 
-static void what_is_not_known_stays_unknown(void **state)
+static void unknown_values_stay_unknown(void **state)
 {
     (void)state;
     struct wb_calibrate_result result = some_result();
@@ -104,7 +104,7 @@ static void what_is_not_known_stays_unknown(void **state)
     assert_true(isnan(read.residual_scatter_rms));
 }
 
-static void a_file_by_hand_needs_the_properties_only(void **state)
+static void a_file_written_by_hand_needs_only_the_properties(void **state)
 {
     (void)state;
     static const char text[] = "wire: mine\nouter_diameter_mm: 2\nmass_per_length_kg_m: 0.01\n"
@@ -117,7 +117,7 @@ static void a_file_by_hand_needs_the_properties_only(void **state)
     assert_close_relative(read.material.strength_coefficient, 500e6, 1e-15);
     assert_true(isnan(read.rms) && isnan(read.calibration_length));
     assert_false(read.is_virtual);
-    /* Its law is the paper's, and no more is known of it. */
+    /* Its law is the paper's, and nothing else is known. */
     assert_true(wb_law_is_plain(&read.law));
     assert_close_relative(read.law.material.strength_coefficient, 500e6, 1e-15);
     assert_true(isnan(read.largest_curvature) && isnan(read.rigidity.value));
@@ -167,7 +167,7 @@ static void datasets_are_read_with_their_checksums(void **state)
         assert_string_equal(read.datasets[i].sha256, datasets[i].sha256);
         assert_int_equal(read.datasets[i].is_recording, datasets[i].is_recording);
     }
-    /* Of a folder the last part is kept, and a checksum that is not there is unknown. */
+    /* The last part of a folder's path is kept; a missing checksum is unknown. */
     write_some(&result);
     assert_int_equal(wb_properties_read(path, &read), WB_OK);
     assert_int_equal(read.n_datasets, 2);
@@ -206,10 +206,10 @@ static void errors_name_file_line_and_key(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_was_written_is_read),
-        cmocka_unit_test(the_file_says_virtual_rig_and_how_it_was_made),
-        cmocka_unit_test(what_is_not_known_stays_unknown),
-        cmocka_unit_test(a_file_by_hand_needs_the_properties_only),
+        cmocka_unit_test(written_properties_are_read_back),
+        cmocka_unit_test(the_file_states_the_virtual_rig_and_the_settings),
+        cmocka_unit_test(unknown_values_stay_unknown),
+        cmocka_unit_test(a_file_written_by_hand_needs_only_the_properties),
         cmocka_unit_test(energy_of_a_loop_is_read),
         cmocka_unit_test(datasets_are_read_with_their_checksums),
         cmocka_unit_test(an_existing_file_is_kept_without_force),

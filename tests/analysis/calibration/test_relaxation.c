@@ -1,8 +1,8 @@
 /* Wires that relax: the tension falls while the tip is held at the turn, and the calibration fits
- * Maxwell elements beside its law.
+ * Maxwell elements in addition to its law.
  *
  * The truth is the virtual rig's core in a jacket of which a part is a Maxwell element in each
- * fibre (fixtures/virtual/composite.h), scaled until the tension falls by a wanted share.
+ * fibre (fixtures/virtual/composite.h), scaled until the tension falls by the required share.
  */
 #include <gsl/gsl_errno.h>
 
@@ -15,8 +15,8 @@ enum {
     SPECIMENS = 3
 };
 
-/* Jackets of such a modulus over the default's, and the part of the largest force that goes in a
- * dwell of a minute. */
+/* Modulus of the jacket relative to the default, and fall of the tension in a dwell of a minute, as
+ * part of the largest force. */
 static const struct wire {
     double jacket, fall;
     int elements;
@@ -29,7 +29,7 @@ struct found {
     double moment[WB_CYCLE_MOMENTS], residual_curvature_ratio, unloading; /* true */
 };
 
-/* Specimens of one wire, which differ in bow, markers and noise alone. */
+/* Specimens of one wire, which differ only in bow, markers and noise. */
 static void calibrate(struct found *found, double jacket, double dwell, uint64_t seed)
 {
     struct wb_dataset datasets[SPECIMENS] = {{.rows = NULL}};
@@ -106,7 +106,7 @@ static void moments_of_a_relaxing_wire_are_within_two_percent(void **unused)
     }
 }
 
-/* Two seconds show the rate at which the force falls, and less of its time. */
+/* A dwell of two seconds determines the rate of relaxation, but not its time constant as well. */
 static void a_short_dwell_shows_relaxation_too(void **unused)
 {
     (void)unused;
@@ -119,7 +119,7 @@ static void a_short_dwell_shows_relaxation_too(void **unused)
     wb_cycle_calibrate_release(&found.c);
 }
 
-/* Without a dwell the law takes relaxation for its own; the intervals say so. */
+/* Without a dwell the law includes the relaxation, and the intervals allow for it. */
 static void intervals_of_a_test_without_a_dwell_allow_for_relaxation(void **unused)
 {
     (void)unused;
@@ -142,7 +142,7 @@ static void intervals_of_a_test_without_a_dwell_allow_for_relaxation(void **unus
     wb_cycle_calibrate_release(&found.c);
 }
 
-/* A wire that does not relax gets no element, whatever the dwell. */
+/* A wire without relaxation gets no element, whatever the dwell. */
 static void a_wire_that_does_not_relax_gets_no_element(void **unused)
 {
     (void)unused;

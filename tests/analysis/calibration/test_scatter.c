@@ -40,7 +40,7 @@ static void bows_alone_leave_no_residual_scatter(void **state)
     assert_true(residual < 1e-6);
 }
 
-static void stiffness_alone_is_all_residual(void **state)
+static void scatter_of_the_stiffness_is_all_residual(void **state)
 {
     (void)state;
     const double bow[3] = {0.0, 0.0, 0.0}, factor[3] = {0.96, 1.01, 1.03};
@@ -54,7 +54,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bows_alone_leave_no_residual_scatter),
-        cmocka_unit_test(stiffness_alone_is_all_residual),
+        cmocka_unit_test(scatter_of_the_stiffness_is_all_residual),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,7 +30,8 @@ static struct wb_three_point_calibration calibrate(struct wb_dataset *datasets, 
     return c;
 }
 
-/* The calibrated moments and rigidity against the truth, which lies in the intervals too. */
+/* Compares the calibrated moments and rigidity with the truth, which must also be within the
+ * intervals. */
 static void compare_with_truth(const struct wb_three_point_calibration *c,
                                const struct three_point_made *made)
 {
@@ -53,7 +54,7 @@ static void compare_with_truth(const struct wb_three_point_calibration *c,
     }
 }
 
-static void law_and_first_contact_are_found_again(void **unused)
+static void law_and_first_contact_are_recovered(void **unused)
 {
     (void)unused;
     const struct three_point_made made = {.modulus_factor = 1.0,
@@ -78,7 +79,7 @@ static void law_and_first_contact_are_found_again(void **unused)
     wb_three_point_calibrate_release(&c);
 }
 
-static void way_back_tells_the_hardening_rule(void **unused)
+static void unloading_determines_the_hardening_rule(void **unused)
 {
     (void)unused;
     const struct three_point_made made = {
@@ -98,7 +99,7 @@ static void way_back_tells_the_hardening_rule(void **unused)
     wb_three_point_calibrate_release(&c);
 }
 
-/* Its last part has next to no modulus, so that no reading tells how much. */
+/* Its last part has almost no modulus, which the readings cannot determine. */
 static void wire_that_hardly_hardens_is_found_with_its_errors(void **unused)
 {
     (void)unused;
@@ -126,7 +127,7 @@ static double moment_of(const struct three_point_made *made, double curvature)
     return moment;
 }
 
-/* 0.3 mm is 0.015 of the span. The curve hardly tells it, and the moment hangs on it. */
+/* 0.3 mm is 0.015 of the span. The curve hardly determines it, but the moment depends on it. */
 static void bow_of_the_specimen_is_taken_into_account(void **unused)
 {
     (void)unused;
@@ -148,16 +149,17 @@ static void bow_of_the_specimen_is_taken_into_account(void **unused)
         struct wb_three_point_calibration c = calibrate(&dataset, 1);
         const struct wb_three_point_fit *const fit = &c.members[0].fit;
         misfit[i] = fit->misfit;
-        print_message("bow %+.3f +- %.3f mm (prior %+.3f +- %.3f), told: %d, correlation with the "
-                      "contact %+.2f, misfit %.2g\n",
-                      1e3 * fit->bow, 1e3 * fit->bow_error, 1e3 * says[i].value,
-                      250.0 * (says[i].most - says[i].least), fit->is_bow_identifiable,
-                      fit->bow_contact_correlation, fit->misfit);
+        print_message(
+            "bow %+.3f +- %.3f mm (prior %+.3f +- %.3f), identifiable: %d, correlation with the "
+            "contact %+.2f, misfit %.2g\n",
+            1e3 * fit->bow, 1e3 * fit->bow_error, 1e3 * says[i].value,
+            250.0 * (says[i].most - says[i].least), fit->is_bow_identifiable,
+            fit->bow_contact_correlation, fit->misfit);
         const double truth = moment_of(&made, c.largest_curvature);
         print_message("    M at the largest curvature %+.2f %%, interval %.3g to %.3g of it\n",
                       100.0 * (c.moment[4].value / truth - 1.0), c.moment[4].low / truth,
                       c.moment[4].high / truth);
-        /* Straight is wrong; a number and a band hold the truth. */
+        /* A straight wire is wrong; a value and a range include the truth. */
         assert_int_equal(c.moment[4].low < truth && truth<c.moment[4].high, i> 0);
         if (i == 1)
             compare_with_truth(&c, &made);
@@ -195,8 +197,8 @@ static void kink_and_given_travel_end_the_range(void **unused)
     wb_dataset_release(&dataset);
 }
 
-/* A soft wire's force lies low over the noise of the machine. */
-static void noise_is_no_kink_and_hides_no_contact(void **unused)
+/* A soft wire's force is little above the noise of the machine. */
+static void noise_is_not_a_kink_and_does_not_hide_the_contact(void **unused)
 {
     (void)unused;
     struct wb_three_point_calibrate_settings settings = settings_of_defaults();
@@ -221,8 +223,8 @@ static void noise_is_no_kink_and_hides_no_contact(void **unused)
     }
 }
 
-/* A wire that settles with a jerk, and a single reading that is off. */
-static void jerk_at_the_start_and_a_stray_reading_are_no_kinks(void **unused)
+/* A wire that is seated with a jerk, and a single outlier. */
+static void a_jerk_at_the_start_and_an_outlier_are_not_kinks(void **unused)
 {
     (void)unused;
     const struct three_point_made made = {
@@ -246,7 +248,7 @@ static void jerk_at_the_start_and_a_stray_reading_are_no_kinks(void **unused)
     }
 }
 
-static void friction_is_not_told_by_the_curve_but_is_in_the_band(void **unused)
+static void friction_is_not_identifiable_but_is_in_the_range(void **unused)
 {
     (void)unused;
     const struct three_point_made made = {
@@ -270,7 +272,7 @@ static void friction_is_not_told_by_the_curve_but_is_in_the_band(void **unused)
     wb_three_point_calibrate_release(&c);
 }
 
-static void series_are_not_averaged_away(void **unused)
+static void the_scatter_of_series_does_not_average_out(void **unused)
 {
     (void)unused;
     struct wb_dataset datasets[4];
@@ -287,7 +289,7 @@ static void series_are_not_averaged_away(void **unused)
     assert_close(c.series_deviation, log(1.15 / 0.87) / sqrt(2.0), 0.06);
     /* Two means: t of one degree of freedom. */
     assert_true(c.moment[4].high / c.moment[4].low > 2.0);
-    /* The properties keep how far series differ, not how far tests do. */
+    /* The properties contain the scatter of series, not that of tests. */
     struct wb_properties read;
     assert_int_equal(wb_properties_write_three_point(path, &c, NULL, 0, true), WB_OK);
     assert_int_equal(wb_properties_read(path, &read), WB_OK);
@@ -306,7 +308,7 @@ static bool stop_at_the_second(void *context, int done, int all)
     return done < 2;
 }
 
-static void threads_change_nothing_and_a_stop_ends(void **unused)
+static void threads_do_not_change_the_result_and_a_stop_ends_it(void **unused)
 {
     (void)unused;
     struct wb_three_point_calibrate_settings settings = settings_of_defaults();
@@ -344,7 +346,7 @@ static void threads_change_nothing_and_a_stop_ends(void **unused)
     wb_dataset_release(&datasets[1]);
 }
 
-static void other_tests_are_refused(void **unused)
+static void other_tests_are_rejected(void **unused)
 {
     (void)unused;
     const struct three_point_made made = {
@@ -368,7 +370,7 @@ static void other_tests_are_refused(void **unused)
     assert_int_equal(wb_three_point_calibrate_run(&c, pointers, 1, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "first contact"));
     assert_null(strstr(why.text, "scatter"));
-    /* Nothing but noise of 1 N. */
+    /* Only noise of 1 N. */
     uint64_t random = 20261124;
     for (size_t i = 0; i < datasets[0].n_rows; i++)
         datasets[0].rows[i].force = 2.0 * test_random(&random) - 1.0;
@@ -382,17 +384,17 @@ static void other_tests_are_refused(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(law_and_first_contact_are_found_again),
-        cmocka_unit_test(way_back_tells_the_hardening_rule),
+        cmocka_unit_test(law_and_first_contact_are_recovered),
+        cmocka_unit_test(unloading_determines_the_hardening_rule),
         cmocka_unit_test(wire_that_hardly_hardens_is_found_with_its_errors),
         cmocka_unit_test(bow_of_the_specimen_is_taken_into_account),
         cmocka_unit_test(kink_and_given_travel_end_the_range),
-        cmocka_unit_test(noise_is_no_kink_and_hides_no_contact),
-        cmocka_unit_test(jerk_at_the_start_and_a_stray_reading_are_no_kinks),
-        cmocka_unit_test(friction_is_not_told_by_the_curve_but_is_in_the_band),
-        cmocka_unit_test(series_are_not_averaged_away),
-        cmocka_unit_test(threads_change_nothing_and_a_stop_ends),
-        cmocka_unit_test(other_tests_are_refused),
+        cmocka_unit_test(noise_is_not_a_kink_and_does_not_hide_the_contact),
+        cmocka_unit_test(a_jerk_at_the_start_and_an_outlier_are_not_kinks),
+        cmocka_unit_test(friction_is_not_identifiable_but_is_in_the_range),
+        cmocka_unit_test(the_scatter_of_series_does_not_average_out),
+        cmocka_unit_test(threads_do_not_change_the_result_and_a_stop_ends_it),
+        cmocka_unit_test(other_tests_are_rejected),
     };
     return cmocka_run_group_tests(tests, make_path, remove_folder);
 }
