@@ -22,7 +22,7 @@ struct made_up_bundle {
     double factor;                       /* of the published forces */
     double kinetic, imbalance;           /* largest ratios */
     double cpu;                          /* s */
-    int rows;                            /* of the model's that were computed; 0: all */
+    int rows;                            /* computed rows of the model; 0: all */
 };
 
 static inline void made_up_fill_row(struct wb_bundle_result *result, int i,
@@ -89,7 +89,8 @@ enum {
     MADE_UP_AROUND = 12
 };
 
-/* One tube of the bundle's diameter along its last axis, with a stress that falls to the tip. */
+/* A tube with the bundle's diameter along its last axis, with a stress that decreases towards the
+ * tip. */
 static inline void made_up_write_surface(const struct wb_bundle_result *result, double diameter,
                                          const char *folder)
 {
@@ -114,7 +115,7 @@ static inline void made_up_write_surface(const struct wb_bundle_result *result, 
     assert_int_equal(wb_surface_write(&surface, folder), WB_OK);
 }
 
-/* Of a bundle under a dead force without weight. */
+/* Of a bundle under a dead force, without weight. */
 static inline void made_up_write(const struct made_up_bundle *bundle, const char *folder)
 {
     const struct wb_bundle_model *const m = bundle->model;

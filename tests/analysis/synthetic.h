@@ -1,7 +1,7 @@
-/* Made-up recordings with a known truth: a wire of given stiffness, bow and set on a strand, seen
- * by cameras and a load cell with clocks, filter, noise and faults of their own. The bytes are made
- * with the drivers' encoders and go through the whole of replay and alignment. No beam solver is in
- * it: force over deflection is a straight line up and a straight line down.
+/* Synthetic recordings with a known truth: a wire of given stiffness, bow and residual deflection
+ * on a strand, seen by cameras and a load cell with their own clocks, filter, noise and faults. The
+ * bytes come from the drivers' encoders and pass through replay and alignment. Without a beam
+ * solver: loading and unloading are straight lines of force over deflection.
  */
 #ifndef WB_TESTS_ANALYSIS_SYNTHETIC_H
 #define WB_TESTS_ANALYSIS_SYNTHETIC_H
@@ -40,36 +40,36 @@ struct syn {
     int cycles;
     double travel; /* m */
     bool no_events, no_tare;
-    bool loaded_tare; /* the tare is taken with the counterweight on the strand */
+    bool loaded_tare; /* the counterweight is on the strand during the tare */
     /* Faults and noise. */
     double marker_noise, force_noise; /* m, N */
     double drift;                     /* N/s */
     double lost, lost_at;             /* m, m of travel */
     int hidden_marker;                /* occluded from hidden_from to hidden_until (bench s) */
     double hidden_from, hidden_until;
-    bool model_filled; /* the hidden marker is sent, flagged, at a wrong place */
+    bool model_filled; /* the hidden marker is sent with a flag, at a wrong place */
     bool stray, ids_change;
-    double gap_from, gap_until;   /* load cell silent */
-    double busy_from, busy_until; /* the host takes nothing; then all that waited at once */
-    double corrupt;               /* part of the chunks that get wrong bytes */
-    double vanish;                /* part of the frames and lines that never arrive */
-    bool overtaken;               /* each tenth frame comes after the next one, and twice */
-    uint64_t vanished_frames, vanished_lines; /* so many did not */
-    double restart_at;                        /* s: the server's clock restarts then; 0: never */
+    double gap_from, gap_until;   /* load cell sends nothing */
+    double busy_from, busy_until; /* the host reads nothing, then all pending data at once */
+    double corrupt;               /* part of the chunks with wrong bytes */
+    double vanish;                /* part of the frames and lines that are lost */
+    bool overtaken;               /* each tenth frame is sent after the next one, and twice */
+    uint64_t vanished_frames, vanished_lines; /* numbers of lost ones */
+    double restart_at;                        /* s: the server's clock restarts; 0: never */
     double sign;                              /* of the load cell; 0 means 1 */
     /* The bench. */
     double time_scale; /* 0 means 1 */
-    double skew;       /* the cameras' clock runs so much slower */
+    double skew;       /* relative slowness of the cameras' clock */
     int version_major, version_minor;
     double plane_angle; /* rad */
     bool z_up, no_motion;
     bool only_down;   /* the clamp goes down and stays there */
-    double late;      /* s: the force is so much later than its filter makes it */
-    uint64_t another; /* another draw of all noise; 0: the first */
-    bool polled;      /* the load cell is asked for each reading */
-    /* What the recording says wrongly. */
-    double scale;         /* of readings in the rig; 0: none, which is right */
-    const char *specimen; /* NULL: the right one */
+    double late;      /* s: additional delay of the force, besides its filter */
+    uint64_t another; /* another realisation of all noise; 0: the first */
+    bool polled;      /* the load cell is polled for each reading */
+    /* Wrong values in the recording. */
+    double scale;         /* of readings, in the rig file; 0: none, which is correct */
+    const char *specimen; /* NULL: the correct one */
     const char *check;    /* of the load cell, a line of its log; NULL: none */
 
     /* Work. */
@@ -97,7 +97,7 @@ static inline double syn_normal(struct syn *syn)
     return radius * cos(2.0 * M_PI * syn_uniform(syn));
 }
 
-/* Angle of the axis: a tip force's shape of amplitude `a`, and what the bow leaves at zero. */
+/* Angle of the axis: shape under a tip force with amplitude `a`, and the bow at zero. */
 static inline double syn_angle(const struct syn *syn, double a, double u)
 {
     const double bent = u - 0.5 * u * u, b = 2.0 * syn->bow / SYN_LENGTH;
@@ -139,7 +139,7 @@ static inline void syn_prepare(struct syn *syn)
         syn->sign = 1.0;
 }
 
-/* Linear interpolation in a rising column. */
+/* Linear interpolation in an ascending column. */
 static inline double syn_look_up(const double *from, const double *to, double value)
 {
     int low = 0, high = SYN_TABLE - 1;
@@ -180,7 +180,7 @@ static inline double syn_carried(void)
 static inline struct syn_state syn_move(struct syn *syn, double t)
 {
     struct syn_state state = {.travel = syn_commanded(syn, t)};
-    /* Steps lost on the way down stay lost. */
+    /* Steps lost on the way down are not recovered. */
     const double down = syn->travel / SYN_SPEED;
     if (syn->lost > 0.0 && (state.travel > syn->lost_at || t > down))
         state.travel -= syn->lost;
@@ -231,7 +231,7 @@ static inline void syn_chunk(struct syn *syn, struct wb_recording *recording, in
         abort();
 }
 
-/* Whether a frame or line is lost; draws nothing where none is. */
+/* Whether a frame or line is lost; uses no random number if none can be. */
 static inline bool syn_vanishes(struct syn *syn, uint64_t *count)
 {
     const bool gone = syn->vanish > 0.0 && syn_uniform(syn) < syn->vanish;
@@ -263,7 +263,7 @@ static inline void syn_frame(struct syn *syn, struct wb_natnet_frame *frame, int
     frame->mocap.params = 4;
     int n = 0;
     for (int i = 0; i < SYN_MARKERS; i++) {
-        /* Neither order nor ids mean anything. */
+        /* Order and ids are arbitrary. */
         const int marker = (5 * i + number / 50) % SYN_MARKERS;
         double x, y, noise[3];
         for (int k = 0; k < 3; k++)
@@ -318,7 +318,7 @@ static inline void syn_write_mocap(struct syn *syn, struct wb_recording *recordi
         const double u = syn_uniform(syn);
         syn_frame(syn, &frame, i, t, &state);
         size = wb_natnet_encode_frame(bytes, sizeof bytes, version, &frame);
-        /* Those at either end may be on their way: daq/protocol/loss.h. */
+        /* Frames at either end may still be on their way: daq/protocol/loss.h. */
         const bool at_end = i <= 16 || i >= n - 17;
         uint64_t at_ends = 0;
         const bool gone = i > 0 && i < n - 1 &&
@@ -351,7 +351,7 @@ static inline void syn_write_load(struct syn *syn, struct wb_recording *recordin
         const double t = begin + i / 80.0;
         for (int k = 1; k <= sub; k++) {
             const double tension = syn_move(syn, t - syn->late - (sub - k) / (80.0 * sub)).tension;
-            /* First order, the input straight between samples. */
+            /* First-order filter, the input linear between samples. */
             const double decay = exp(-1.0 / (80.0 * sub) / SYN_FILTER);
             filtered = decay * filtered + (1.0 - decay) * 0.5 * (last + tension);
             last = tension;
@@ -364,7 +364,7 @@ static inline void syn_write_load(struct syn *syn, struct wb_recording *recordin
             continue;
         if (i > 0 && i < n - 1 && syn_vanishes(syn, &syn->vanished_lines))
             continue;
-        /* A later one is not read earlier. */
+        /* Arrivals are in order. */
         const int64_t arrival_ns = syn_host(syn, t) + (int64_t)(2e6 * u * u);
         read_ns = arrival_ns > read_ns ? arrival_ns : read_ns;
         syn_chunk(syn, recording, stream, &seq, read_ns, line, (size_t)length);
@@ -425,7 +425,7 @@ static const char syn_specimen[] = "wire: synthetic\n"
                                    "marker_offset_mm: 1.0\n"
                                    "marker_offset_uncertainty_mm: 0.05\n";
 
-/* The rig file of the bench, with that scale of readings (0: none). */
+/* The rig file of the bench, with this scale of readings (0: none). */
 static inline void syn_rig(const struct syn *syn, double scale, char rig[2048])
 {
     char scaled[48] = "";
@@ -504,7 +504,7 @@ static inline void syn_record(struct syn *syn, const char *path)
         abort();
 }
 
-/* A bench without faults: bow 3 mm upwards, 1.8 N/m, a set after unloading. */
+/* A bench without faults: bow 3 mm upwards, 1.8 N/m, a residual deflection after unloading. */
 static inline void syn_default(struct syn *syn)
 {
     memset(syn, 0, sizeof *syn);

@@ -1,5 +1,5 @@
-/* Datasets of three-point bending tests, computed with known laws and disturbed as real ones are.
- */
+/* Datasets of three-point bending tests, computed with known laws and with the disturbances of real
+ * tests. */
 #ifndef WB_TESTS_ANALYSIS_THREE_POINT_DATA_H
 #define WB_TESTS_ANALYSIS_THREE_POINT_DATA_H
 
@@ -8,19 +8,20 @@
 #include "tests/check.h"
 #include "tests/fe/rod/wires.h"
 
-/* A machine's test of a wire of type 2, computed: what the calibration should find again. */
+/* A computed test of a wire of type 2 on a machine; the calibration should recover its values. */
 struct three_point_made {
     double modulus_factor; /* on E, sigma_Y and K */
-    double softness;       /* K over this; 0: 1 */
+    double softness;       /* divisor of K; 0: 1 */
     double friction, nose_radius, compliance;
-    double contact; /* m of travel before the wire is touched */
+    double contact; /* m of travel before first contact */
     double zero;    /* N */
     double noise;   /* N, alternating */
     double slip;    /* m of deflection at which the force drops by a tenth; 0: none */
     bool with_unloading;
-    double seating; /* m of travel that the wire takes to settle on its rollers, half of it before
-                       it bends as much; 0: none */
-    double bow;     /* m, see struct wb_three_point_fit */
+    /* m of travel while the wire is seated on its rollers, of which 1 - exp(-deflection / seating)
+     * is reached at a deflection; 0: none. */
+    double seating;
+    double bow; /* m, see struct wb_three_point_fit */
 };
 
 static const double three_point_span = 20e-3, three_point_deepest = 5e-3;
