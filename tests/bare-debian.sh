@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Proof that ./bootstrap demo and ./bootstrap test are all a newcomer needs: makes a bare Debian with
-# debootstrap (release bookworm, Debian 12, or another), clones this checkout into it, and runs both
-# there, each twice, from another folder. Run by hand as root; takes some minutes and 2 GB below
-# FOLDER. Usage: tests/bare-debian.sh FOLDER [RELEASE [MIRROR]]
+# Checks that ./bootstrap demo and ./bootstrap test work on a new system: makes a bare Debian with
+# debootstrap (release bookworm, Debian 12, by default), clones this checkout into it, and runs each
+# command there twice, from different folders. Run manually as root; takes some minutes and 2 GB
+# below FOLDER. Usage: tests/bare-debian.sh FOLDER [RELEASE [MIRROR]]
 set -euo pipefail
 
 folder=${1:?usage: tests/bare-debian.sh FOLDER [RELEASE [MIRROR]]}
@@ -28,11 +28,11 @@ inside "$system" sh -c 'cd /home/newcomer/wirebench/demo && test -s report.pdf &
     test -s report.json && ls figures/*.svg figures/*.png >/dev/null'
 inside "$system" sh -c 'cd /home/newcomer/wirebench && ./bootstrap test'
 inside "$system" sh -c 'cd / && /home/newcomer/wirebench/bootstrap test'
-# Installed, with the source gone, the tool finds what it ships with.
+# The installed tool must find its shipped files after the source folder has been moved away.
 inside "$system" sh -c 'cd /home/newcomer/wirebench && meson install -C build >/dev/null &&
     mv /home/newcomer/wirebench /home/newcomer/away && cd / && wirebench --version &&
     wirebench solve cantilever --wire type3 --length-mm 85 --deflection-mm 53 --points 2 &&
     rm -rf /tmp/report &&
     (wirebench report fixtures/campaigns/single-wires.yaml -o /tmp/report || [ $? -eq 4 ]) &&
     test -s /tmp/report/report.pdf && test -s /usr/local/share/man/man1/wirebench-record.1'
-echo "bare Debian $release: demo and test both work, twice"
+echo "bare Debian $release: demo and test work, twice each"

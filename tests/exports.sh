@@ -1,8 +1,8 @@
 #!/bin/sh
-# What a file exports, another file of the product uses. What only tests need is declared in a
-# header whose name ends in _private.h, so that nobody takes it for an interface; what nobody needs
-# is static or gone. Usage: exports.sh SOURCE_ROOT ARCHIVE_OR_FOLDER...
-# where archives and folders hold the objects of the product.
+# Every exported function must be used by another file of the product. A function that only tests
+# call is declared in a header *_private.h, which marks it as not part of the interface; any other
+# unused function must be static or removed. Usage: exports.sh SOURCE_ROOT ARCHIVE_OR_FOLDER...
+# where archives and folders contain the object files of the product.
 set -eu
 cd "$1"
 shift
@@ -26,12 +26,12 @@ alone=$(nm -A --extern-only $objects | awk '
 private=$(find base daq fe fixtures analysis live library include cli -name '*_private.h')
 bad=0
 for symbol in $alone; do
-    if ! grep -rqw --include='*.[ch]' "$symbol" tests; then
-        echo "$symbol is exported and used by no other file, nor by a test"
-        bad=1
     # shellcheck disable=SC2086 # the files are words
+    if ! grep -rqw --include='*.[ch]' "$symbol" tests; then
+        echo "$symbol is exported but not used by another file or by a test: make it static or remove it"
+        bad=1
     elif [ -z "$private" ] || ! grep -qw "$symbol" $private; then
-        echo "$symbol is used by tests only: declare it in a _private.h"
+        echo "$symbol is used only by tests: declare it in a header *_private.h"
         bad=1
     fi
 done

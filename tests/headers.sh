@@ -1,6 +1,6 @@
 #!/bin/sh
-# Every header compiles alone, and twice in one file (its guard holds), without a warning. Its guard
-# is its path.
+# Every header must compile alone, and included twice in one file, without a warning. The name of its
+# include guard must be derived from its path.
 # Usage: headers.sh SOURCE_ROOT COMPILER...
 set -eu
 cd "$1"
@@ -10,7 +10,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 bad=0
 find base daq fe fixtures analysis live library include cli tests -name '*.h' >"$folder/headers"
-# A source file for each, named after the header.
+# One source file for each header, named after it.
 awk -v folder="$folder" '{
     name = $0
     gsub("/", "-", name)
@@ -20,9 +20,9 @@ awk -v folder="$folder" '{
     close(source)
 }' "$folder/headers"
 # shellcheck disable=SC2086 # the flags are words
-find "$folder" -name '*.c' | xargs -n 50 "$@" -std=c11 -D_GNU_SOURCE -Wall -Wextra -Wpedantic \
+find "$folder" -name '*.c' -print0 | xargs -0 -n 50 "$@" -std=c11 -D_GNU_SOURCE -Wall -Wextra -Wpedantic \
     -Werror -I. $flags -fsyntax-only || {
-    echo 'a header does not compile alone: its file above is named after it'
+    echo 'a header does not compile alone: the file name in the messages above is its path with - for /'
     bad=1
 }
 # shellcheck disable=SC2046 # the headers are words

@@ -1,11 +1,13 @@
 #!/bin/sh
-# The layering. Includes: base sees nothing of ours; daq and fe see base; the virtual rig sees daq
-# and fe; analysis sees base, daq and fe; live views and the library see those and analysis; the cli
-# sees all but the library; nobody sees the cli; within daq, fe, analysis, its calibration and its
-# report a room sees those before it. Foreign libraries stay behind the files that design says. No files include or call each
-# other in a circle. Usage:
+# Checks the layers of docs/developing.md. Includes: base includes only itself; daq and fe also base;
+# the virtual rig also daq and fe; analysis base, daq and fe; live views and the library these and
+# analysis; the cli all but the library; no layer includes the cli. In daq, fe, analysis, its
+# calibration and its report a room includes only the rooms before it. Each foreign library is
+# included only in the files listed below. Includes and calls between files must not be circular.
+# Usage:
 #     layers.sh SOURCE_ROOT [ARCHIVE_OR_FOLDER...]
-# where archives and folders hold the objects of the product; without them calls are not looked at.
+# where archives and folders contain the object files of the product; without them calls are not
+# checked.
 set -eu
 cd "$1"
 shift
@@ -22,7 +24,7 @@ check() { # FOLDER FORBIDDEN-REGEX
         "$(grep -rnE "^#include \"($2)" --include='*.[ch]' "$1" || true)"
 }
 only() { # HEADER ALLOWED-FILES-REGEX
-    complain "<$1> is included outside its file:" \
+    complain "<$1> is included outside its files:" \
         "$(grep -rlE "^#include <$1>" --include='*.[ch]' base daq fe fixtures analysis live library include cli |
             grep -vE "^($2)\$" || true)"
 }
@@ -52,14 +54,14 @@ only 'curses\.h' 'live/live_(screen|terminal)\.c'
 only 'microhttpd\.h' 'live/live_page\.c'
 only 'argp\.h' 'cli/[a-z_]*\.[ch]'
 
-# Rooms, lowest first: a file sees its own room and those before it.
+# Rooms, lowest first: a file may include its own room and the rooms before it.
 rooms() { # FOLDER ROOM...
     folder=$1
     shift
     for path in "$folder"/*/; do
         case " $* " in
         *" $(basename "$path") "*) ;;
-        *) complain "no place in the order of rooms (tests/layers.sh):" "$path" ;;
+        *) complain "not listed in the order of rooms (tests/layers.sh):" "$path" ;;
         esac
     done
     while [ $# -gt 1 ]; do
@@ -73,7 +75,8 @@ rooms fe team linear material swept solid model rod trial section bundle output
 rooms analysis dataset align import calibration cards validation plot predict compare solve jobs report
 rooms analysis/calibration law paper cycle three_point constituents properties
 rooms analysis/report draw bench wires bundles machines predictions kinds
-# What reports share knows no kind, and no kind knows another: kinds/ alone sees them all.
+# The common files of reports include no kind of report, and no kind includes another kind; only
+# kinds/ includes all of them.
 complain 'analysis/report may not include a kind of report:' \
     "$(grep -nE '^#include "analysis/report/(draw|bench|wires|bundles|machines|predictions|kinds)/' analysis/report/*.[ch])"
 check analysis/report/wires 'analysis/report/bench/'
@@ -82,12 +85,12 @@ check analysis/report/machines 'analysis/report/(bench|wires|bundles)/'
 check analysis/report/predictions 'analysis/report/(bench|wires|bundles|machines)/'
 check analysis/jobs 'analysis/solve/'
 
-# One file, one noun: a subject that needs 900 lines keeps them, none needs more than 1200.
+# A file has one subject; a larger file must be split by subject.
 complain 'longer than 1200 lines:' \
     "$(find base daq fe fixtures analysis live library include cli -name '*.[ch]' -exec wc -l {} + |
         awk '$2 != "total" && $1 > 1200')"
 
-# Pairs "USER USED" on standard input; prints every circle in a line.
+# Reads pairs "USER USED" from standard input; prints each circle in one line.
 circles() {
     tsort 2>&1 >/dev/null | sed -n 's/^tsort: //p' | awk '
         /input contains a loop/ { if (line) print line; line = ""; next }
@@ -98,7 +101,7 @@ complain 'headers include each other in a circle:' \
     "$(grep -rE '^#include "' --include='*.h' base daq fe fixtures analysis live library include cli |
         sed -n 's/^\([^:]*\):#include "\(.*\)".*/\1 \2/p' | circles)"
 
-# Pairs of objects that may call each other, one way of which is let be, with the reason.
+# Permitted calls that would close a circle, with the reason.
 #     USER USED  # why
 allowed=''
 # shellcheck disable=SC2086 # the objects are words

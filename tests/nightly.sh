@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# What takes longer than .ci/run allows: slow tests, all fast tests under sanitizers, process tests
-# beside busy processes, Slurm, packages, bare Debians. Run as root (debootstrap and chroot need
-# it) once before an issue is closed; takes some hours and 12 GB below FOLDER.
-# Steps that passed are noted in build/nightly.txt, with their times, and slow tests one by one in
-# build/nightly-slow.txt: the same command on the same revision continues with the others. Ends with
-# the section of docs/verification.md, to paste there.
-# Usage: tests/nightly.sh FOLDER [STEP...]   (of the names that it prints; all without)
+# The checks that take too long for .ci/run: slow tests, all fast tests under sanitizers, process
+# tests beside busy processes, Slurm, packages, bare Debian systems. Run as root (debootstrap and
+# chroot require it) before an issue is closed; takes some hours and 12 GB below FOLDER.
+# Passed steps are recorded with their times in build/nightly.txt, and passed slow tests in
+# build/nightly-slow.txt: the same command on the same revision continues with the remaining ones.
+# The output ends with the table for docs/verification.md.
+# Usage: tests/nightly.sh FOLDER [STEP...]   (names of steps as printed; default: all)
 set -uo pipefail
 folder=${1:?usage: tests/nightly.sh FOLDER [STEP...]}
 shift
@@ -16,7 +16,7 @@ cd "$(dirname "$0")/.." || exit 1
 . tests/steps.sh
 
 [ -z "$(git status --porcelain)" ] || {
-    echo 'uncommitted changes: the bare Debians and the packages are made of the last commit' >&2
+    echo 'uncommitted changes: commit them first, packages and bare systems use the last commit' >&2
     exit 2
 }
 revision=$(git describe --always --abbrev=12)
@@ -27,7 +27,7 @@ mkdir -p build
     : >$slow
 }
 
-# As step, but a step that passed before is not repeated.
+# Like step, but does not repeat a step that passed before.
 wanted=("$@")
 known=()
 nightly() { # NAME COMMAND...
@@ -44,8 +44,8 @@ build_with_clang() {
     ninja -C build-clang --quiet
 }
 
-# The test runner's lines of earlier runs are kept, unbuffered: a test that passed is not repeated. A
-# time limit stops a test that hangs; it does not measure the machine.
+# The output of earlier runs is kept, unbuffered, so that a passed test is not repeated. The time
+# limit only stops a test that hangs; it must not depend on the speed of the machine.
 test_slow() {
     local all left
     all=$(list_tests build --suite slow)
@@ -61,7 +61,7 @@ test_under_sanitizers() {
         meson test -C build-sanitize --setup sanitize --no-suite slow --no-suite headers --print-errorlogs
 }
 
-# Its tests skip themselves where Slurm is missing.
+# Its tests are skipped without Slurm, so the number of passed tests is checked.
 test_slurm() {
     install_packages slurm-wlm munge &&
         meson test -C build --no-rebuild jobs_slurm --print-errorlogs | tee "$scratch/slurm" &&

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Proof of the Debian packages, on bare Debians 12 that debootstrap makes below FOLDER: the packages
-# of the last commit are built twice (another folder, user mask, time zone, language, number of jobs,
-# and later) with the same bytes, lintian has no errors, a source build computes the same numbers,
-# and on a system that never saw a compiler they are installed, used, and removed with nothing left;
-# then autopkgtest does its part.
-# Run by hand as root; takes half an hour and 5 GB. Usage: tests/packages.sh FOLDER [MIRROR]
-# NOCHECK=1 leaves the tests out that the first build runs.
+# Tests the Debian packages on bare Debian 12 systems that debootstrap makes below FOLDER:
+# - two builds of the last commit (different folder, user mask, time zone, language, number of jobs
+#   and time) give the same bytes;
+# - lintian reports no errors;
+# - a build from source computes the same numbers;
+# - on a system without a compiler the packages are installed, used, and removed without leftovers;
+# - autopkgtest passes.
+# Run manually as root; takes half an hour and 5 GB. Usage: tests/packages.sh FOLDER [MIRROR]
+# NOCHECK=1 skips the tests in the first build.
 set -euo pipefail
 
 folder=${1:?usage: tests/packages.sh FOLDER [MIRROR]}
@@ -23,7 +25,7 @@ close_all() {
     [ ! -d "$clean" ] || close_bare "$clean"
     close_bare "$builder"
 }
-close_all # of a run that was killed
+close_all # mounts of an interrupted run
 open_bare "$builder"
 trap close_all EXIT
 
@@ -60,7 +62,7 @@ echo "=== lintian"
 inside "$builder" sh -c 'cd /home/one && lintian --allow-root --info --fail-on error *.changes'
 
 echo "=== a source build computes the same"
-# The package's program from its folder. CPU times are printed and judge nothing.
+# Runs the package's program from its build folder. CPU times are printed for information only.
 cat >"$builder/home/compare" <<'END'
 set -eu
 cd /home/source/wirebench
@@ -68,7 +70,7 @@ meson setup build -Dtests=disabled -Dmpi=disabled >/dev/null
 ninja -C build --quiet
 export WIREBENCH_DATA=$PWD
 package=/home/one/wirebench/debian/wirebench/usr/bin/wirebench
-seconds() { # PROGRAM ARGUMENTS...: CPU time; what it prints, in `out`
+seconds() { # PROGRAM ARGUMENTS...: prints the CPU time; standard output goes to `out`
     program=$1
     shift
     /usr/bin/env bash -c 'TIMEFORMAT="%U"; time "$@" >out 2>log' - "$program" "$@" 2>&1
@@ -98,7 +100,7 @@ mkdir -p "$builder/srv"
 cp -a "$folder/pristine" "$clean"
 open_bare "$clean"
 cp "$builder"/home/one/*.deb "$clean/root/"
-# What the packages need is there before and after; nothing else may be.
+# Their dependencies are installed first: all other files must be gone after the removal.
 inside "$clean" apt-get update -q
 # shellcheck disable=SC2046 # names are words
 needs=$(for deb in "$clean"/root/*.deb; do dpkg-deb -f "$deb" Depends; done | tr ',' '\n' |
@@ -121,17 +123,19 @@ for part in round-trip library; do
     cp "$source/debian/tests/$part" "$clean/root/"
     inside "$clean" "/root/$part"
 done
-# All the recordings that ship; in the package they are no checkout's.
+# The report uses all shipped recordings, from the installed package.
 inside "$clean" sh -c 'cd /tmp && wirebench report fixtures/campaigns/single-wires.yaml -o report && test -s report/report.pdf'
+# shellcheck disable=SC2016 # expanded inside the system
 inside "$clean" bash -c '. /usr/share/bash-completion/completions/wirebench
     COMP_LINE="wirebench rec" COMP_POINT=13; _wirebench; test "${COMPREPLY[*]}" = "record recover"'
+# shellcheck disable=SC2016 # expanded inside the system
 inside "$clean" sh -c 'for command in $(wirebench --complete "" | sed -n "s/^\([a-z]*\)\t.*/\1/p"); do
     test -s /usr/share/man/man1/wirebench-$command.1.gz || exit 1; done'
 inside "$clean" apt-get purge -qy wirebench libwirebench0 libwirebench-dev python3-wirebench wirebench-examples
 files >"$folder/after"
 diff "$folder/before" "$folder/after"
-echo "installed, used and removed, nothing is left"
+echo "installed, used and removed; no files are left"
 
 echo "=== autopkgtest"
 inside "$builder" sh -c 'autopkgtest --no-built-binaries /home/one/*.deb /home/one/wirebench -- chroot /srv/clean'
-echo "packages: built twice alike, lint-free, installed, used, removed"
+echo "packages: reproducible, free of lintian errors, installed, used, removed"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Tries the promises of the recorder and writes docs/reliability.md: which promise, how often it was
-# tried, what came of it. The slow tests and ten minutes at ten times a bench's rates are among them;
-# all takes half an hour. Usage: reliability.sh BUILD [quick]; quick leaves out the slow ones and
-# writes to standard output.
+# Tests the guarantees of the recorder and writes the table of docs/reliability.md: each guarantee,
+# number of trials, outcome. Includes the slow tests and ten minutes at ten times a bench's rates;
+# takes half an hour. Usage: reliability.sh BUILD [quick]; quick skips the slow tests and writes to
+# standard output.
 set -eu
 build=$(realpath "$1")
 quick=${2:-}
@@ -11,7 +11,7 @@ trials=$(mktemp)
 trap 'rm -f "$trials"' EXIT
 export WIREBENCH_TRIALS=$trials
 
-# The tests that count, by the files that do.
+# Names of the tests that count their trials, from their source files.
 names() {
     (cd "$root" && git grep -l 'count_trials(' -- 'tests/**/test_*.c' 'tests/**/fuzz_*.c') |
         sed 's|.*/||; s|^test_||; s|\.c$||'
@@ -21,7 +21,7 @@ names() {
 }
 
 known=$(meson test -C "$build" --list 2>/dev/null | sed 's/^[^/]*\/ *//' | sort -u)
-# Where a slow test is the same with more trials, only that one.
+# If a slow test repeats a fast test with more trials, only the slow test is run.
 wanted=$(names | sort -u | grep -Fx "$known" || true)
 [ "$quick" = quick ] || wanted=$(printf '%s\n' "$wanted" | grep -vx -e storage -e recording_flips)
 

@@ -1,12 +1,11 @@
 #!/bin/sh
-# Runs tests again and again: none may depend on how busy the machine is. By default the suites daq,
-# live and process ten times on the machine as it is and ten times beside four busy processes per
-# core, and all fast tests three times. Results are kept in BUILD_FOLDER/repeat.txt, so that the same
-# command continues after an interrupt; another revision of the source starts over, as does
-# removing the file. Prints how many runs had no failure and which tests failed; exits with 1 if
-# any did.
-# Usage: repeat.sh BUILD_FOLDER [ALONE BUSY WHOLE [TEST...]]   (10 10 3; of these tests in place of
-# the suites)
+# Repeats tests, to find tests that depend on the load of the machine. By default the suites daq, live
+# and process run ten times on the machine as it is and ten times beside four busy processes per core,
+# and all fast tests run three times. Results are kept in BUILD_FOLDER/repeat.txt, so that the same
+# command continues after an interrupt; a change of the source, or removing the file, starts over.
+# Prints the number of runs without a failure and the failed tests; exits with 1 if any test failed.
+# Usage: repeat.sh BUILD_FOLDER [ALONE BUSY WHOLE [TEST...]]   (default 10 10 3; with TEST..., these
+# tests instead of the suites)
 set -u
 
 build=${1:?usage: repeat.sh BUILD_FOLDER [ALONE BUSY WHOLE [TEST...]]}
@@ -16,16 +15,16 @@ if [ $# -gt 4 ]; then
 else
     set -- --suite daq --suite live --suite process
 fi
-[ -f "$build/build.ninja" ] || { echo "no build folder $build" >&2; exit 2; }
+[ -f "$build/build.ninja" ] || { echo "$build is not a build folder" >&2; exit 2; }
 ninja -C "$build" --quiet || exit 2
 
-# The first line of the file says what was repeated.
+# The first line of the file identifies source and tests.
 state=$build/repeat.txt
 root=$(cd "$(dirname "$0")/.." && pwd)
 subject="$(git -C "$root" describe --always --abbrev=12) $(git -C "$root" diff HEAD | cksum) $*"
 [ "$(sed -n 1p "$state" 2>/dev/null)" = "$subject" ] || echo "$subject" >"$state"
 
-longest_s=3600 # of one run; the busy processes end by themselves at the latest then
+longest_s=3600 # time limit of one run; busy processes also end after it
 busy=
 folder=$(mktemp -d)
 calm_down() {
@@ -45,7 +44,7 @@ run() { # KIND RUN ARGUMENT...
     code=0
     timeout $longest_s meson test -C "$build" --no-rebuild "$@" >"$folder/log" 2>&1 || code=$?
     [ $code -lt 128 ] || exit $code # interrupted
-    # meson is content with a name that it does not know.
+    # meson succeeds without running anything if it does not know the name of a test.
     grep -q '^Ok: *[1-9]' "$folder/log" || code=1
     wrong=
     if [ $code != 0 ]; then
@@ -65,7 +64,7 @@ for number in $(seq "$beside"); do
         timeout $longest_s sh -c 'while :; do :; done' &
         busy="$busy $!"
     done
-    # A time limit stops a test that hangs; it does not measure the machine.
+    # The time limit only stops a test that hangs; it must not depend on the speed of the machine.
     run busy "$number" --timeout-multiplier 20 "$@"
     calm_down
 done
@@ -78,6 +77,6 @@ good=$(sed 1d "$state" | grep -c '^[a-z]* [0-9]* ok ')
 echo "$good of $runs runs without a failure"
 [ "$good" = "$runs" ] || {
     echo "failed: $(sed 1d "$state" | grep -v '^[a-z]* [0-9]* ok ' | cut -d ' ' -f 5- | tr ' ' '\n' | sort | uniq -c | awk 'NF == 2 { printf "%s%s (%d)", separator, $2, $1; separator = ", " }')"
-    echo "their logs: $build/meson-logs/repeat-*.txt"
+    echo "logs: $build/meson-logs/repeat-*.txt"
     exit 1
 }

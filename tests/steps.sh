@@ -1,6 +1,6 @@
 # shellcheck shell=bash
 # Sourced by .ci/run and tests/nightly.sh in the root of the checkout: timed steps, and the builds
-# that both use.
+# that both scripts use.
 
 if [ -z "${WIREBENCH_REAL_DATA:-}" ] && [ -d ../shared/data ]; then
     WIREBENCH_REAL_DATA=$(cd ../shared/data && pwd)
@@ -24,16 +24,16 @@ install_packages() { # PACKAGE...
     }
 }
 
-# Sets `cpu_s` to the CPU time of all children so far. A command substitution would be a process of
-# its own, which has no children yet.
+# Sets `cpu_s` to the CPU time of all child processes so far. A command substitution would measure
+# its own subshell, which has no children.
 measure_cpu() {
     times >"$scratch/times"
     cpu_s=$(awk -F '[ms ]+' 'NR == 2 { printf "%d", 60 * ($1 + $3) + $2 + $4 }' "$scratch/times")
 }
 
 steps=() failed=()
-# Runs the command and notes result and time. The script continues after a failure, so that one run
-# shows all that is wrong.
+# Runs the command and records result and time. The script continues after a failure, so that one
+# run shows all failures.
 step() { # NAME COMMAND...
     local name=$1 start=$SECONDS result=ok before
     shift
@@ -68,7 +68,8 @@ configure() { # FOLDER ARGUMENTS...
     fi
 }
 
-# Variable tracking of the debugger takes gcc three quarters of the time of an instrumented kernel.
+# gcc spends three quarters of the compile time of an instrumented kernel on variable tracking,
+# which only debuggers need.
 configure_sanitizers() { # FOLDER SANITIZERS [ARGUMENT...]
     local folder=$1 sanitizers=$2
     shift 2
@@ -83,12 +84,12 @@ list_tests() { # FOLDER ARGUMENTS...
     meson test -C "$folder" --list "$@" 2>/dev/null | sed -n 's|^wirebench:[^/]*/ *||p' | sort -u
 }
 
-# tests/long.txt, without its comments.
+# Prints tests/long.txt without comments.
 long_tests() {
     sed '/^#/d' tests/long.txt | LC_ALL=C sort
 }
 
-# One closing line over all runs of the test runner.
+# Prints the failed steps and one line with the counts of all test runs.
 print_counts() { # LOG...
     local log passed=0 wrong=0 skipped=0 name
     for log; do

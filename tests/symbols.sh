@@ -1,19 +1,20 @@
 #!/bin/sh
-# Every symbol that an archive of ours exports begins with wb_ and the name of the file that defines
-# it, or of the module the file is a part of: recording_read.c exports wb_recording_... or
-# wb_recording_read_..., report/figures_measured.c exports wb_figures_.... The few other nouns that
-# a file owns are listed below. Usage: symbols.sh ARCHIVE...
+# Every symbol that one of our archives exports must begin with wb_ and the name of the file that
+# defines it, or of the module of this file: recording_read.c exports wb_recording_... or
+# wb_recording_read_..., report/figures_measured.c exports wb_figures_.... The table `others` lists
+# further prefixes of single files. Usage: symbols.sh ARCHIVE...
 set -eu
 bad=0
 for archive in "$@"; do
     [ -f "$archive" ] || { echo "no archive $archive"; exit 1; }
-    # Lines "OBJECT.c.o SYMBOL"; an archive without any would mean that nm was not understood.
+    # Lines "OBJECT.c.o SYMBOL". An archive without symbols means that the output of nm was not
+    # parsed correctly.
     names=$(nm -A --extern-only --defined-only "$archive" 2>/dev/null |
         sed -n -E 's/^[^ ]*[:\/]([^:\/ ]+\.c\.o):[^ ]* [A-Za-z] (.*)$/\1 \2/p')
     [ -n "$names" ] || { echo "$archive exports nothing"; exit 1; }
     foreign=$(echo "$names" | awk '
         BEGIN {
-            # Files that own another noun as well: its symbols are the noun or begin with it.
+            # Further prefixes of a file: its symbols are the prefix or begin with it.
             others["cycle_parameters"] = "candidate"
             others["driver"] = "outbox role"
             others["grbl_decode"] = "grbl"
@@ -44,7 +45,7 @@ for archive in "$@"; do
         {
             stem = $1
             sub(/\.c\.o$/, "", stem)
-            # Meson writes the rooms before the name.
+            # Meson prefixes the object name with the rooms of its folder.
             found = belongs(stem, $2)
             for (rooms = 1; rooms <= 2 && !found; rooms++) {
                 if (!sub(/^(dataset|align|import|calibration|cards|validation|plot|predict|compare|law|paper|cycle|three_point|constituents|properties|stream|protocol|take|recording|acquire|test|doctor)_/, "", stem))
@@ -55,7 +56,7 @@ for archive in "$@"; do
                 print $1 " " $2
         }' | sort -u)
     if [ -n "$foreign" ]; then
-        echo "$archive exports names that do not begin with wb_ and their file's or module's name:"
+        echo "$archive exports names that do not begin with wb_ and the name of their file or module:"
         echo "$foreign" | sed 's/^/    /'
         bad=1
     fi
