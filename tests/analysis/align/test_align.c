@@ -756,7 +756,7 @@ static void unusable_recordings_are_rejected_with_the_reason(void **state)
 {
     (void)state;
     syn.no_tare = true;
-    expect_rejection("no tare");
+    expect_rejection("tare");
     syn.sign = -1.0;
     expect_rejection("sign");
     syn.no_motion = true;
