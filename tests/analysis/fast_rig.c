@@ -7,7 +7,9 @@
 
 #include "analysis/align/align.h"
 #include "analysis/align/align_private.h"
+#include "analysis/dataset/fit.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/rod/fibres.h"
 #include "fixtures/virtual/live_wire.h"
@@ -295,4 +297,27 @@ void fast_rig_unloading(const struct fast_rig *fast, double largest, int n, cons
         stiffness[i] = (top - M) / change[i];
     }
     close_truth(&truth);
+}
+
+void fast_rig_shift_deflection(struct wb_dataset *dataset, double by)
+{
+    double *const x = wb_memory_new(2 * dataset->n_rows, sizeof *x), *const y = x + dataset->n_rows;
+    struct wb_fit_line line = {.value = (double)NAN};
+    size_t n = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        struct wb_row *const row = &dataset->rows[i];
+        row->deflection += by;
+        if (row->cycle == 1 && row->phase == WB_PHASE_LOAD && row->deflection > 1.0 * WB_MM &&
+            row->deflection < 3.0 * WB_MM) {
+            x[n] = row->deflection;
+            y[n++] = row->force;
+        }
+    }
+    if (!wb_fit_line(x, y, n, &line))
+        abort();
+    free(x);
+    for (size_t i = 0; i < dataset->n_rows; i++)
+        dataset->rows[i].force -= line.value;
+    for (size_t i = 0; i < dataset->n_shape_rows; i++)
+        dataset->shape_rows[i].deflection += by;
 }

@@ -47,4 +47,8 @@ void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature,
 void fast_rig_unloading(const struct fast_rig *fast, double largest, int n, const double *change,
                         double *stiffness);
 
+/* Shifts the zero of deflection of a dataset by `by` (m), as an alignment with this error does: the
+ * force is relative to the tension at the shifted zero, from a line through 1 to 3 mm. */
+void fast_rig_shift_deflection(struct wb_dataset *dataset, double by);
+
 #endif

@@ -1,11 +1,11 @@
-/* How often the stated intervals of a calibration hold the truth, over campaigns in which gain,
- * length, counterweight and diameter are off by what the files state.
+/* How often the stated intervals of a calibration contain the truth, over campaigns in which gain,
+ * length, counterweight and diameter are drawn from the uncertainties that the files state.
  *
- * Each campaign is of three specimens of tests/analysis/fast_rig.h, whose wires scatter around the
- * one that is asked for. The wires' laws are of three groups: those that a candidate contains,
- * those that none does, and some whose candidates are left out, so that the best law misses the
- * force by 0.3 or 0.4 %; a zero that is wrong explains that as well as a law that is.
- * docs/verification.md has what is printed. Threads share the work.
+ * Each campaign has three specimens of tests/analysis/fast_rig.h, whose wires scatter around a
+ * mean. The groups of campaigns: laws that a candidate contains; laws that no candidate contains;
+ * laws whose candidates are left out, so that the best law misses the force by 0.3 or 0.4 % of
+ * F_max, which a wrong zero of force explains as well; and benches whose zero of deflection is
+ * 0.5 mm off. docs/verification.md has the printed table. Threads share the campaigns.
  */
 #include <stdlib.h>
 
@@ -20,8 +20,8 @@
 
 enum {
     SPECIMENS = 3,
-    CAMPAIGNS = 34, /* of a truth: 408 of all */
-    UNLOADING = 1,  /* behind the moments */
+    CAMPAIGNS = 34, /* of each row: 476 in all */
+    UNLOADING = 1,  /* after the moments */
     SECANT,
     RESIDUAL_CURVATURE,
     NUMBERS = WB_CYCLE_MOMENTS + RESIDUAL_CURVATURE
@@ -39,21 +39,21 @@ enum group {
     CONTAINED,
     NOT_CONTAINED,
     LEFT_OUT,
+    ZERO_OFF,
     GROUPS
 };
 
 static const struct {
     const char *name;
-    double most_blamed; /* part of the benches, which are all healthy */
-} groups_of_laws[GROUPS] = {
-    {"that a candidate contains", 0.02},
-    {"that no candidate contains", 0.02},
-    {"whose candidates are left out", 0.6},
+    double most_blamed; /* part of the benches */
+} groups_of_campaigns[GROUPS] = {
+    {"laws that a candidate contains", 0.02},
+    {"laws that no candidate contains", 0.02},
+    {"laws whose candidates are left out", 0.6},
+    {"zero of deflection 0.5 mm off", 1.0},
 };
 
-/* A wire's law, of the virtual rig's, and candidates that are not tried. Of a knee from the start
- * that Ludwik's kinematic law follows to 0.2 % of F_max, unloading stiffness and residual curvature
- * are not held: the force hardly knows them, and no other law is near. */
+/* A law of the virtual rig's wires, and the candidates that are not tried. */
 static const struct truth {
     const char *name;
     enum wb_composite_variant variant;
@@ -182,6 +182,8 @@ static void work_on(struct campaign *campaign)
                       &fast.specimen);
         good = fast_rig_run(&fast, &datasets[i]) == WB_OK;
         datasets[i].info.sample = i + 1;
+        if (campaign->truth->group == ZERO_OFF)
+            fast_rig_shift_deflection(&datasets[i], campaign->seed % 2 ? zero_off : -zero_off);
         list[i] = &datasets[i];
     }
     wire.truth.stiffness_factor = wire.truth.yield_factor = 1.0;
@@ -302,9 +304,9 @@ static void intervals_hold_the_truth(void **unused)
     }
     for (int g = 0; g < GROUPS; g++) {
         const double held = groups[g].holds / counts[g], blamed = groups[g].blamed / counts[g];
-        printf("laws %s: %.1f %% hold, %.1f %% of the benches blamed\n", groups_of_laws[g].name,
+        printf("%s: %.1f %% hold, %.1f %% of the benches doubted\n", groups_of_campaigns[g].name,
                100.0 * held, 100.0 * blamed);
-        assert_true(blamed <= groups_of_laws[g].most_blamed);
+        assert_true(blamed <= groups_of_campaigns[g].most_blamed);
         assert_true(held >= 0.90 && held <= 0.98);
     }
 }

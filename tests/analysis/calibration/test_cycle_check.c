@@ -6,7 +6,6 @@
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
 #include "analysis/calibration/cycle/cycle_check_private.h"
-#include "analysis/dataset/fit.h"
 #include "base/units.h"
 #include "tests/analysis/fast_rig.h"
 #include "tests/check.h"
@@ -14,8 +13,7 @@
 #include <cmocka.h>
 
 enum {
-    MOST = 5,
-    MOST_ROWS = 500 /* of a few millimetres */
+    MOST = 5
 };
 
 /* Of the rig's wires; that other wires may choose them is for other tests. */
@@ -175,29 +173,6 @@ static void shift_tension(struct wb_dataset *dataset, double by)
 {
     for (size_t i = 0; i < dataset->n_rows; i++)
         dataset->rows[i].tension += by;
-}
-
-/* As an alignment with this error makes it: force counts from the tension at its zero deflection,
- * found by a line through the first millimetres. */
-static void shift_deflection(struct wb_dataset *dataset, double by)
-{
-    double x[MOST_ROWS], y[MOST_ROWS];
-    struct wb_fit_line line;
-    size_t n = 0;
-    for (size_t i = 0; i < dataset->n_rows; i++) {
-        struct wb_row *const row = &dataset->rows[i];
-        row->deflection += by;
-        if (row->cycle == 1 && row->phase == WB_PHASE_LOAD && row->deflection > 1.0 * WB_MM &&
-            row->deflection < 3.0 * WB_MM && n < MOST_ROWS) {
-            x[n] = row->deflection;
-            y[n++] = row->force;
-        }
-    }
-    assert_true(wb_fit_line(x, y, n, &line));
-    for (size_t i = 0; i < dataset->n_rows; i++)
-        dataset->rows[i].force -= line.value;
-    for (size_t i = 0; i < dataset->n_shape_rows; i++)
-        dataset->shape_rows[i].deflection += by;
 }
 
 static void hit_row(struct wb_row *row, double force)
@@ -372,7 +347,7 @@ static void a_zero_of_deflection_off_is_told(void **state)
     dwell = 2.0;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct bench *const bench = one(1);
-        shift_deflection(&bench->datasets[0], cases[i].offset);
+        fast_rig_shift_deflection(&bench->datasets[0], cases[i].offset);
         bench->datasets[0].info.uncertainty.counterweight = cases[i].counterweight;
         check(bench);
         assert_told(bench, WB_CHECK_DOUBT, 1, "the zero of deflection, or of force, is wrong");
@@ -388,7 +363,7 @@ static void a_common_zero_of_deflection_is_doubted(void **state)
     for (size_t i = 0; i < sizeof offsets / sizeof offsets[0]; i++) {
         struct bench *const bench = three_held();
         for (int k = 0; k < bench->n; k++)
-            shift_deflection(&bench->datasets[k], offsets[i]);
+            fast_rig_shift_deflection(&bench->datasets[k], offsets[i]);
         check(bench);
         assert_non_null(wb_cycle_check_find(&bench->remarks, WB_CHECK_DOUBT));
         release(bench);
