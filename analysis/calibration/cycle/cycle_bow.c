@@ -9,10 +9,12 @@ enum {
     HALVINGS = 20
 };
 
-/* First distance of the ends between which the angle is sought from the alignment's, rad. */
+/* Initial half width of the interval in which the angle is sought, about that of the alignment,
+ * rad. */
 static const double first_reach = 0.02;
 
-/* Whether the alignment saw the cell without load, so that its zero is a true one. */
+/* Whether the alignment took the zero of force from the cell without load, so that tensions are
+ * absolute. */
 static bool is_absolute(const struct wb_dataset *dataset)
 {
     double bow;
@@ -23,7 +25,7 @@ static bool is_absolute(const struct wb_dataset *dataset)
            wb_json_get_number(shape, "bow_from_force_mm", &bow);
 }
 
-/* Computed less measured tension of the only point, N; it falls with the angle. NaN: not reached.
+/* Computed minus measured tension of the only point, N; decreases with the angle. NaN: not reached.
  */
 static enum wb_status miss_of(double *miss, struct wb_cycle_model *model,
                               const struct wb_cycle_data *data, const struct wb_law *law,

@@ -1,9 +1,9 @@
-/* The bow of a specimen whose law is known, from what its strand carries before it is bent.
+/* Bow of a specimen whose law is known, from the tension of its strand at the start of the loading.
  *
- * The alignment knows no law: it extrapolates the loading to the natural tip, over millimetres that
- * a wire bowed downwards has left behind before the first reading. With a law the beam does that:
- * the bow is the one with which it carries, at the first point of the loading, what was measured
- * there. Everything after that point stays a prediction.
+ * The alignment, which has no law, extrapolates the loading to the natural position of the tip; a
+ * wire that is bowed downwards has passed these millimetres before the first reading. With a law,
+ * the bow is the one with which the beam has the measured tension at the first point of the
+ * loading. All later points remain predictions.
  */
 #ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_BOW_H
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_BOW_H
@@ -14,9 +14,9 @@
 #include "base/status.h"
 #include "fe/material/law.h"
 
-/* The natural angle of the tip (rad) of the dataset's specimen, `data` being its first cycle.
- * Tensions have to be absolute: of a dataset whose alignment took no bow from the force, of a
- * simulation, and where no bow explains the tension, it is the alignment's. */
+/* Finds the natural angle of the tip (rad) of the dataset's specimen from `data`, its first cycle.
+ * This needs absolute tensions. The angle is that of the alignment for a dataset whose alignment
+ * took no bow from the force, for a simulation, and if no bow explains the tension. */
 WB_MUST_CHECK enum wb_status wb_cycle_bow_find(double *angle, const struct wb_dataset *dataset,
                                                const struct wb_cycle_data *data,
                                                const struct wb_law *law,

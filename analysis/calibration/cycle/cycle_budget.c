@@ -10,10 +10,10 @@
 #define WB_LOG_DOMAIN "calibrate"
 
 static const double coverage = 0.95;
-/* Standard errors of a fit on either side of a candidate's number. */
+/* Width of a candidate's range on either side, in standard errors of its fit. */
 static const double range_errors = 2.0;
-/* And at most this much of a logarithm, a factor of ten: beyond it nothing is known, and the slopes
- * that errors are made of mean nothing. */
+/* Largest half width of a logarithm, a factor of ten: beyond it the linearised errors are
+ * meaningless. */
 static const double largest_range = 2.3;
 /* Degrees of freedom of an uncertainty that is itself uncertain by 25 % (JCGM 100:2008, G.4.2). */
 static const double known_to_a_quarter = 8.0;
@@ -22,21 +22,23 @@ static const struct own {
     const char *name, *key;
 } own[WB_FROM_SHARED] = {
     [WB_FROM_SPECIMENS] = {"scatter between specimens", "specimens"},
-    [WB_FROM_FIT] = {"what the fits leave open", "fits"},
+    [WB_FROM_FIT] = {"uncertainty of the fits", "fits"},
     [WB_FROM_LAW] = {"form of the law", "law"},
 };
 
-/* What one that is not stated is told for. */
+/* Changes for which the effect of an unstated uncertainty is printed. */
 static const double unit_part = 0.01, unit_distance = 0.1 * WB_MM;
 
-/* Standard uncertainty of what a law adds to a stiffness below the data, over that. */
+/* Standard uncertainty of the extrapolation of a stiffness below the data, over the change by the
+ * extrapolation. */
 static const double unknown_part = 0.5;
 
-/* Laws with a misfit of at most this many times the best fit nearly as well: the weights, which
- * take residuals for noise, would exclude them where all laws miss the test in their own way. */
+/* Laws with a misfit of at most this many times the best fit nearly as well. The weights, which
+ * assume that residuals are noise, would exclude such laws even where every law has a systematic
+ * misfit. */
 static const double as_good = 1.3;
 
-/* A residual curvature is a part of the largest. */
+/* A residual curvature is at most the largest curvature. */
 static double largest_value(enum wb_cycle_number number)
 {
     return number == WB_CYCLE_RESIDUAL_CURVATURE ? 1.0 : (double)INFINITY;
@@ -75,8 +77,8 @@ static double fit_error(const struct wb_cycle_calibration *calibration, enum wb_
     return fmin(sqrt(squares / calibration->n_members), largest_range);
 }
 
-/* The mean's, no smaller than the fits' own errors let specimens scatter: three have agreed within
- * 0.03 % by chance. */
+/* Uncertainty of the mean from the scatter, at least the one that the errors of the fits imply:
+ * three specimens have agreed within 0.03 % by chance. */
 static void add_scatter(const struct wb_cycle_calibration *calibration,
                         const struct wb_cycle_calibrate_settings *settings, double deviation,
                         struct wb_budget *budget)
@@ -104,8 +106,8 @@ static double resolved_mean(const struct wb_cycle_calibration *calibration,
     return mean.value;
 }
 
-/* What a law says below the curvatures that the data resolve, where it speaks alone: how far the
- * logarithm of a stiffness lies from that at the smallest of them. 0 of what the data hold. */
+/* Extrapolation by the law below the smallest curvature that the data resolve: distance of the
+ * logarithm of a stiffness from its value there. 0 within the data. */
 static double beyond_data(const struct wb_cycle_calibration *calibration,
                           enum wb_cycle_number number,
                           const struct wb_cycle_calibrate_settings *settings, double value)
@@ -116,11 +118,11 @@ static double beyond_data(const struct wb_cycle_calibration *calibration,
     const double unloading =
         u->n > 0 ? resolved_mean(calibration, u, WB_CYCLE_FIRST_UNLOADING, settings) : (double)NAN;
     const int moment = (int)number - WB_CYCLE_FIRST_MOMENT;
-    const int k = (int)number - WB_CYCLE_FIRST_SECANT, way_back = k - WB_CYCLE_STIFFNESSES;
+    const int k = (int)number - WB_CYCLE_FIRST_SECANT, unloading_index = k - WB_CYCLE_STIFFNESSES;
     if (number == WB_CYCLE_RIGIDITY)
         return fmin(fabs(log(value / secant)), fabs(log(value / unloading)));
-    if (way_back >= 0)
-        return u->curvature[way_back] < u->resolved ? fabs(log(value / unloading)) : 0.0;
+    if (unloading_index >= 0)
+        return u->curvature[unloading_index] < u->resolved ? fabs(log(value / unloading)) : 0.0;
     if (k >= 0)
         return s->curvature[k] < s->resolved ? fabs(log(value / secant)) : 0.0;
     if (moment >= 0 && calibration->curvature[moment] < s->resolved)
@@ -128,8 +130,8 @@ static double beyond_data(const struct wb_cycle_calibration *calibration,
     return 0.0;
 }
 
-/* What a law misses of the force's change just behind the turn it misses of the stiffness there:
- * root mean square of the specimens. */
+/* Relative error of the force's change just after the turn, which is also that of the stiffness
+ * there: root mean square over the specimens. */
 static double miss_at_turn(const struct wb_cycle_calibration *calibration,
                            enum wb_cycle_number number)
 {
@@ -143,9 +145,10 @@ static double miss_at_turn(const struct wb_cycle_calibration *calibration,
     return n > 0 ? sqrt(squares / n) : 0.0;
 }
 
-/* Three contributions: the distance of the other laws from the chosen one, by their weights, or the
- * width of a rectangular distribution over the laws that fit nearly as well, whichever is larger;
- * what the chosen law misses just behind the turn; and part of what it says beyond the data. */
+/* Adds the uncertainty of the form of the law. Three contributions: the larger of the weighted
+ * distance of the other laws from the chosen one and the width of a rectangular distribution over
+ * the laws that fit nearly as well; the misfit of the chosen law just after the turn; and a part of
+ * its extrapolation below the data. */
 static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
                      const struct wb_cycle_calibrate_settings *settings, double value,
                      struct wb_budget *budget)
@@ -171,8 +174,8 @@ static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cyc
     budget->degrees[WB_FROM_LAW] = known_to_a_quarter;
 }
 
-/* Root mean square over the specimens, which may come from several benches; 0 where one does not
- * state it. */
+/* Root mean square over the specimens, which may come from several benches; 0 if one of them does
+ * not state it. */
 static double stated(const struct wb_cycle_calibration *calibration, enum wb_cycle_shared shared)
 {
     double squares = 0.0;
@@ -205,8 +208,8 @@ static void add_shared(const struct wb_cycle_calibration *calibration, enum wb_c
     }
 }
 
-/* Welch and Satterthwaite's degrees of freedom (JCGM 100:2008, G.2b); what is not known is left
- * out. */
+/* Combines the contributions, with the degrees of freedom by Welch and Satterthwaite (JCGM
+ * 100:2008, G.2b). Unknown contributions are left out. */
 static void combine(struct wb_budget *budget)
 {
     double squares = 0.0, fourths = 0.0;
@@ -255,7 +258,7 @@ void wb_cycle_estimate(const struct wb_cycle_calibration *calibration, enum wb_c
     estimate->candidates_high = fmin(estimate->candidates_high, largest_value(number));
 }
 
-/* --- what is printed of it --- */
+/* --- output --- */
 
 int wb_cycle_budget_columns(const struct wb_cycle_calibration *c,
                             struct wb_budget_column columns[WB_BUDGET_COLUMNS])

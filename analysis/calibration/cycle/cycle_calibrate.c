@@ -23,25 +23,25 @@ const double wb_cycle_moment_parts[WB_CYCLE_MOMENTS] = {0.05, 0.1, 0.3, 0.6, 1.0
 
 const double wb_cycle_stiffness_curvatures[WB_CYCLE_STIFFNESSES - 1] = {0.5, 1.0, 2.0};
 
-/* EI is resolved where a stiffness at the smallest curvature of the data is this near to it. */
+/* EI is resolved if a stiffness at the smallest curvature of the data is within this part of it. */
 static const double resolved_within = 0.02;
-/* Least curvature, 1/m, that is divided by. */
+/* Least curvature, 1/m, of a stiffness. */
 static const double least_curvature = 0.05;
-/* Deflection over length at which eqs. 10 and 11 give the law from which all fits start. */
+/* Deflection over length at which eqs. 10 and 11 give the initial guess of all fits. */
 static const double elastic_zone = 0.05;
-/* Deflection over length from there on in which the slope past yield is taken, and the smallest
- * exponent made of it. */
+/* Range of deflection over length, beyond elastic_zone, of the slope past yield, and the smallest
+ * exponent of the initial guess. */
 static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
-/* Chaboche's laws are fitted where the best of the others leaves more than this, over F_max, and
- * than this many times the repeat noise. */
+/* Chaboche's laws are fitted if the best misfit of the others exceeds this part of F_max and this
+ * many times the repeat noise. */
 static const double follows_up_to = 1e-3, follows_noise = 2.0;
 /* Candidates count in the ranges up to this many times the best misfit. */
 static const double counts_up_to = 2.0;
-/* A smaller weight is none. */
+/* Smaller weights are set to zero. */
 static const double least_weight = 1e-6;
-/* Of the number of specimens that EI needs. */
+/* Confidence of the number of specimens that EI needs. */
 static const double coverage = 0.95;
-/* When K and n get digits. */
+/* Largest standard errors of ln K and n at which K and n are reported. */
 static const double largest_ln_strength_error = 0.10, largest_exponent_error = 0.03;
 static const double wanted_precision = 0.05;
 
@@ -107,8 +107,9 @@ void wb_cycle_calibrate_settings_text(const struct wb_cycle_calibrate_settings *
 
 /* --- one specimen --- */
 
-/* The loading's tension beyond that at zero deflection, by a line through its points from one
- * deflection to another; at least three, or as many as there are. */
+/* Tension of the loading relative to that at zero deflection, in the middle of a range of
+ * deflections: by a line through its points in this range, at least three if the data have them.
+ * *slope: N/m. */
 static double loading_line(const struct wb_cycle_data *data, double from, double to, double *slope)
 {
     int begin = 0, end = data->n_loading;
@@ -130,9 +131,9 @@ static double loading_line(const struct wb_cycle_data *data, double from, double
     return y + *slope * (0.5 * (from + to) - x);
 }
 
-/* The law from which fits start: the closed forms of the paper on the points, from which outliers
- * have gone. It refuses nothing: a poor start is found by the fit. */
-static void first_law(const struct wb_cycle_data *data, struct wb_law *law)
+/* Initial guess of the law: the closed forms of the paper on the points, which contain no outliers.
+ * It is never rejected; the fit improves a poor one. */
+static void initial_law(const struct wb_cycle_data *data, struct wb_law *law)
 {
     const double length = data->info.length, diameter = data->info.outer_diameter;
     const double at = fmin(elastic_zone * length, 0.7 * data->top);
@@ -157,8 +158,8 @@ static void first_law(const struct wb_cycle_data *data, struct wb_law *law)
     wb_law_init_ludwik(law, &material);
 }
 
-/* The curvature that the deflection between the first two points makes of a straight wire, times
- * the radius: what yields before is seen in one point alone. */
+/* Strain of the outer fibre of a straight, elastic wire at the deflection between the first two
+ * points. Parts that yield at smaller strains affect a single point. */
 static double first_strain(const struct wb_cycle_data *data)
 {
     const double length = data->info.length;
@@ -183,7 +184,7 @@ static const struct wb_cycle_fit *fit_of(const struct wb_cycle_member *member,
     return answer->is_fitted ? &answer->fit : NULL;
 }
 
-/* The better of two fits (NULL: none): one that ended, and then the smaller misfit. */
+/* The better of two fits (NULL: none): a converged one, then the one of smaller misfit. */
 static const struct wb_cycle_fit *better(const struct wb_cycle_fit *one,
                                          const struct wb_cycle_fit *other)
 {
@@ -194,8 +195,8 @@ static const struct wb_cycle_fit *better(const struct wb_cycle_fit *one,
     return one->misfit <= other->misfit ? one : other;
 }
 
-/* The same law in the form of a candidate that contains it: one yield surface that does not move,
- * parts whose limits do not grow, or two back stresses, alike, in place of one. */
+/* Rewrites a law in the form of a candidate that contains it: a yield surface that does not move,
+ * parts whose limits do not grow, or two equal backstresses in place of one. */
 static void contain(enum wb_candidate candidate, struct wb_law *law)
 {
     if (candidate == WB_CANDIDATE_LUDWIK_COMBINED || candidate == WB_CANDIDATE_PARALLEL_COMBINED)
@@ -206,9 +207,10 @@ static void contain(enum wb_candidate candidate, struct wb_law *law)
     law->backs[law->n_backs++] = law->backs[0];
 }
 
-/* The fit of a contained law is one of the law that contains it, with a share at its end or two
- * back stresses alike: priors, or a search that stopped early, may have kept that from it. A mixed
- * law has no exponent above 1. The contained fit is final: the answer refers to it. */
+/* Replaces the fit of a candidate by that of a law that it contains, if that is better: with the
+ * share at the end of its range, or with two equal backstresses. Priors, or a search that stopped
+ * early, may have prevented the candidate's own fit from reaching it. A mixed law has no exponent
+ * above 1. The contained fit is final: the answer refers to it. */
 static void take_contained(struct wb_cycle_member *member, enum wb_candidate candidate,
                            const struct wb_cycle_fit *contained,
                            const struct wb_cycle_calibrate_settings *settings)
@@ -236,9 +238,9 @@ static void take_contained(struct wb_cycle_member *member, enum wb_candidate can
     memcpy(answer->fit.tension, contained->tension, n * sizeof(double));
 }
 
-/* Fits a candidate from a law near by, and keeps it where it is better than what there is. `near`
- * is the fit of that law to the same data (NULL: none). That the beam cannot follow it is a result.
- */
+/* Fits a candidate from the initial guess `start`, and keeps the fit if it is better than the
+ * present one. `near` is the fit of that law to the same data (NULL: none). A start that the beam
+ * cannot compute leaves the candidate unfitted and returns WB_OK. */
 static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
                               const struct wb_law *start, const struct wb_cycle_fit *near,
                               const struct wb_cycle_grid *grid,
@@ -267,12 +269,13 @@ static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate 
     return WB_OK;
 }
 
-/* The same from the law of another specimen (NULL: none), which is nearer than the other start. */
-static enum wb_status fit_warmly(struct wb_cycle_member *member,
-                                 const struct wb_cycle_member *first, enum wb_candidate candidate,
-                                 const struct wb_law *start, const struct wb_cycle_fit *near,
-                                 const struct wb_cycle_grid *grid,
-                                 const struct wb_cycle_calibrate_settings *settings)
+/* The same from the law of another specimen (NULL: none), which is a better guess than `start`. */
+static enum wb_status fit_from_specimen(struct wb_cycle_member *member,
+                                        const struct wb_cycle_member *first,
+                                        enum wb_candidate candidate, const struct wb_law *start,
+                                        const struct wb_cycle_fit *near,
+                                        const struct wb_cycle_grid *grid,
+                                        const struct wb_cycle_calibrate_settings *settings)
 {
     const struct wb_cycle_fit *const known = first ? fit_of(first, candidate) : NULL;
     if (known)
@@ -282,8 +285,8 @@ static enum wb_status fit_warmly(struct wb_cycle_member *member,
                                         : fit_one(member, candidate, start, near, grid, settings);
 }
 
-/* The same from the better of two fits (NULL: none); where it comes out worse than the other, also
- * from that. */
+/* The same from the better of two fits (NULL: none); if the result is worse than the other fit,
+ * also from that one. */
 static enum wb_status fit_from(struct wb_cycle_member *member, const struct wb_cycle_member *first,
                                enum wb_candidate candidate, const struct wb_cycle_fit *one,
                                const struct wb_cycle_fit *other, const struct wb_cycle_grid *grid,
@@ -292,7 +295,7 @@ static enum wb_status fit_from(struct wb_cycle_member *member, const struct wb_c
     const struct wb_cycle_fit *const near = better(one, other);
     const struct wb_cycle_fit *const second = near == one ? other : one;
     if (near)
-        WB_TRY(fit_warmly(member, first, candidate, &near->law, near, grid, settings));
+        WB_TRY(fit_from_specimen(member, first, candidate, &near->law, near, grid, settings));
     const bool is_worse = second && better(second, fit_of(member, candidate)) == second;
     return is_worse ? fit_one(member, candidate, &second->law, second, grid, settings) : WB_OK;
 }
@@ -305,14 +308,14 @@ static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *memb
     return better(best, fit_of(member, WB_CANDIDATE_LUDWIK_COMBINED));
 }
 
-/* Ludwik's candidates. Most wires are nearer to the kinematic one, from which the other is found
- * sooner than from the closed forms. */
+/* Fits Ludwik's candidates. Most wires are closer to the kinematic one, which is a better initial
+ * guess of the isotropic one than the closed forms. */
 static enum wb_status fit_ludwiks(struct wb_cycle_member *member,
                                   const struct wb_cycle_calibrate_settings *settings)
 {
     const struct wb_cycle_grid none = {0.0, 0.0};
     struct wb_law start;
-    first_law(&member->data, &start);
+    initial_law(&member->data, &start);
     if (member->data.n_loading == member->data.n_points)
         return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, NULL, &none, settings);
     WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, NULL, &none, settings));
@@ -342,8 +345,8 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     const struct wb_cycle_fit *const near = best_ludwik(member);
     if (!near || member->data.n_loading == member->data.n_points)
         return WB_OK;
-    WB_TRY(fit_warmly(member, first, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, near, grid,
-                      settings));
+    WB_TRY(fit_from_specimen(member, first, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, near, grid,
+                             settings));
     const struct wb_cycle_fit *const pure = fit_of(member, WB_CANDIDATE_PARALLEL_KINEMATIC);
     WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
     take_contained(member, WB_CANDIDATE_PARALLEL_MIXED, pure, settings);
@@ -360,15 +363,16 @@ static enum wb_status fit_chaboches(struct wb_cycle_member *member,
     const struct wb_cycle_fit *const near = best_ludwik(member);
     if (!near)
         return WB_OK;
-    WB_TRY(fit_warmly(member, first, WB_CANDIDATE_CHABOCHE_ONE, &near->law, near, grid, settings));
+    WB_TRY(fit_from_specimen(member, first, WB_CANDIDATE_CHABOCHE_ONE, &near->law, near, grid,
+                             settings));
     const struct wb_cycle_fit *const one = fit_of(member, WB_CANDIDATE_CHABOCHE_ONE);
     WB_TRY(fit_from(member, first, WB_CANDIDATE_CHABOCHE_TWO, one, near, grid, settings));
     take_contained(member, WB_CANDIDATE_CHABOCHE_TWO, one, settings);
     return WB_OK;
 }
 
-/* How a law hangs on what all specimens share. */
-static void find_altered(struct wb_cycle_member *member, enum wb_candidate candidate)
+/* Finds the sensitivity of a law to the quantities that all specimens share. */
+static void find_sensitivity(struct wb_cycle_member *member, enum wb_candidate candidate)
 {
     struct wb_cycle_answer *const answer = &member->answers[candidate];
     const enum wb_candidate origin = answer->origin;
@@ -389,10 +393,10 @@ static void find_altered(struct wb_cycle_member *member, enum wb_candidate candi
 
 enum stage {
     DATA,
-    LUDWIKS,   /* from here on with the Maxwell elements that all specimens ask for */
-    PARALLELS, /* from here on with the scale of all specimens' strains */
-    CHABOCHES, /* where the others leave something */
-    SHARED     /* how the chosen law hangs on what all specimens share */
+    LUDWIKS,   /* from here on with the Maxwell elements that the dwells of all specimens show */
+    PARALLELS, /* from here on with the strains of all specimens */
+    CHABOCHES, /* if the other laws leave a misfit */
+    SHARED     /* sensitivity of the chosen law to the quantities that all specimens share */
 };
 
 struct work {
@@ -401,7 +405,7 @@ struct work {
     const struct wb_cycle_calibrate_settings *settings;
     struct wb_cycle_calibrate_settings with_elements;
     enum stage stage;
-    int begin; /* the first specimen of those at work */
+    int begin; /* first specimen of the present batch */
     struct wb_cycle_grid grid;
     int done, all;
     bool stopped;
@@ -431,7 +435,7 @@ static enum wb_status fit_member(void *context, int index)
         status = fit_chaboches(member, first, &work->grid, work->settings);
         break;
     case SHARED:
-        find_altered(member, work->calibration->chosen);
+        find_sensitivity(member, work->calibration->chosen);
         break;
     }
     member->cpu_s += wb_progress_thread_cpu() - begin;
@@ -452,7 +456,7 @@ static bool finish_member(void *context, int index, enum wb_status status)
     return !work->stopped;
 }
 
-/* Specimens from one on, up to another. */
+/* Computes a stage of the specimens from `begin` up to `end`, exclusive. */
 static void work_on(struct work *work, int begin, int end)
 {
     const struct wb_workers workers = {
@@ -466,8 +470,8 @@ static void work_on(struct work *work, int begin, int end)
     (void)wb_workers_run(&workers);
 }
 
-/* A stage of all specimens: the first goes ahead where the others begin from its laws, those of
- * many numbers. */
+/* Computes a stage of all specimens. In stages of laws with many parameters the first specimen is
+ * fitted alone, because the others start from its laws. */
 static enum wb_status work_side_by_side(struct work *work, enum stage stage)
 {
     const int ahead = stage == PARALLELS || stage == CHABOCHES ? 1 : 0;
@@ -478,7 +482,7 @@ static enum wb_status work_side_by_side(struct work *work, enum stage stage)
     return work->status;
 }
 
-/* Maxwell elements that the specimens ask for; none where unloading was not measured. */
+/* Number of Maxwell elements that the dwells show; 0 if unloading was not measured. */
 static int count_elements(const struct wb_cycle_calibration *calibration)
 {
     const int n = calibration->n_members;
@@ -493,9 +497,9 @@ static int count_elements(const struct wb_cycle_calibration *calibration)
     return elements;
 }
 
-/* The first specimen that failed tells why. */
-static enum wb_status tell_failure(const struct wb_cycle_calibration *calibration,
-                                   enum wb_status status, struct wb_reason *why)
+/* Reports the reason of the first specimen that failed. */
+static enum wb_status report_failure(const struct wb_cycle_calibration *calibration,
+                                     enum wb_status status, struct wb_reason *why)
 {
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_member *const member = &calibration->members[i];
@@ -505,7 +509,7 @@ static enum wb_status tell_failure(const struct wb_cycle_calibration *calibratio
     return wb_fail_to(why, status, "the specimens could not be fitted");
 }
 
-/* --- what comes of them --- */
+/* --- results of all specimens --- */
 
 static double outer_radius(const struct wb_cycle_calibration *calibration)
 {
@@ -523,7 +527,7 @@ static struct wb_cycle_grid find_grid(const struct wb_cycle_calibration *calibra
             grid.last_strain =
                 fmax(grid.last_strain, outer_radius(calibration) * fit->clamp_curvature);
     }
-    /* A short test keeps some distance between the two. */
+    /* A short test keeps a distance between the two. */
     grid.last_strain = fmax(grid.last_strain, 5.0 * grid.first_strain);
     return grid;
 }
@@ -543,7 +547,8 @@ static void find_repeat_noise(struct wb_cycle_calibration *calibration)
     calibration->repeat_noise = sqrt(sum / n);
 }
 
-/* A search whose iterations ran out is no fit, unless that is all there is. */
+/* A search whose iterations ran out counts as a fit only with `unfinished`, if no other fit exists.
+ */
 static void pool_misfit(const struct wb_cycle_calibration *calibration, bool unfinished,
                         struct wb_cycle_rank *rank)
 {
@@ -571,12 +576,12 @@ static int by_misfit(const void *a, const void *b)
         return x->is_fitted ? -1 : 1;
     if (x->misfit != y->misfit)
         return x->misfit > y->misfit ? 1 : -1;
-    return (int)x->candidate - (int)y->candidate; /* of equals the simpler first */
+    return (int)x->candidate - (int)y->candidate; /* the simpler of two equal ones first */
 }
 
-/* How many residuals of a specimen say something of their own: neighbours miss alike, with a
- * correlation r (of one and the next), and count (1 - r) / (1 + r) times. What a law does not
- * follow is the same in all specimens, which do not add to it. */
+/* Number of independent residuals of a specimen: with a lag-1 correlation r, n residuals count as n
+ * (1 - r) / (1 + r). More specimens do not add to it, because the misfit of a law is the same in
+ * all of them. */
 static double count_independent(const struct wb_cycle_calibration *calibration,
                                 enum wb_candidate candidate)
 {
@@ -596,8 +601,7 @@ static double count_independent(const struct wb_cycle_calibration *calibration,
     return fmax(points * (1.0 - r) / (1.0 + r), 2.0);
 }
 
-/* Weights of the candidates by Schwarz's criterion (1978): of the misfit, and what each free number
- * costs. */
+/* Weights the candidates by Schwarz's criterion (1978), from misfit and number of parameters. */
 static void weigh(struct wb_cycle_calibration *calibration)
 {
     const struct wb_cycle_rank *const best = &calibration->ranked[0];
@@ -618,7 +622,7 @@ static void weigh(struct wb_cycle_calibration *calibration)
     calibration->n_independent = n;
 }
 
-/* Ranks the candidates and chooses one: that of the largest weight. */
+/* Ranks the candidates by misfit and chooses the one of the largest weight. */
 static void choose(struct wb_cycle_calibration *calibration)
 {
     find_repeat_noise(calibration);
@@ -650,10 +654,10 @@ static void choose(struct wb_cycle_calibration *calibration)
                                best->misfit <= WB_CYCLE_LARGEST_FOLLOWED;
 }
 
-/* Whether Chaboche's laws are worth their time. A good fit of combined parallel parts does not
- * count: where the others fit less well, both kinds show how much the result depends on the law's
- * form. */
-static bool leaves_something(const struct wb_cycle_calibration *calibration)
+/* Whether Chaboche's laws are worth their time. A good fit of combined parallel parts is ignored:
+ * where all other laws fit less well, Chaboche's laws show how much the results depend on the form
+ * of the law. */
+static bool chaboche_is_needed(const struct wb_cycle_calibration *calibration)
 {
     double best = (double)INFINITY;
     for (int i = 0; i < calibration->n_ranked; i++) {
@@ -671,7 +675,7 @@ static struct wb_law with_rate(const struct wb_law *law, double strain_rate)
     return same;
 }
 
-/* What a law says of bending at the mean strain rate of the specimens: numbers by enum
+/* Results of a law at the mean strain rate of the specimens; `value` is indexed by enum
  * wb_cycle_number. */
 static enum wb_status describe_law(const struct wb_cycle_calibration *calibration,
                                    const struct wb_law *fitted, double diameter, double *value)
@@ -693,7 +697,7 @@ static enum wb_status describe_law(const struct wb_cycle_calibration *calibratio
                                 value + WB_CYCLE_FIRST_UNLOADING);
 }
 
-/* Errors of the logarithms of an answer, of what the moved laws make of its numbers. */
+/* Standard errors of the logarithms of an answer, from the results of the moved laws. */
 static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double diameter,
                                          const struct wb_cycle_calibration *calibration)
 {
@@ -712,8 +716,8 @@ static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double 
     return WB_OK;
 }
 
-/* How the logarithms hang on what all specimens share. The weight goes with the square of the
- * diameter. */
+/* Sensitivities of the logarithms to the quantities that all specimens share. The weight grows with
+ * the square of the diameter, so its sensitivity is twice that to the density. */
 static enum wb_status find_answer_effects(struct wb_cycle_answer *answer,
                                           const struct wb_cycle_data *data,
                                           const struct wb_cycle_calibration *calibration)
@@ -748,7 +752,7 @@ static bool candidate_counts(const struct wb_cycle_calibration *calibration,
     return false;
 }
 
-/* Those that are stated, as far as the data go, and among them the smallest that they resolve. */
+/* Chooses the stated curvatures within the range of the data, and the smallest resolved one. */
 static void choose_curvatures(struct wb_cycle_stiffness *stiffness, double resolved, double largest)
 {
     bool is_in = false;
@@ -862,9 +866,9 @@ static void average_maxwell(const struct wb_cycle_calibration *calibration,
     }
 }
 
-/* The law of the product. Of parallel parts the means: together they carry the mean of what the
- * specimens carry. A part that one specimen has and another nearly not would be gone in the mean of
- * the logarithms. Of Ludwik's law the means of the logarithms of what it is made of. */
+/* Law of the product, without Maxwell elements. Moduli of parallel parts are averaged, so that the
+ * product carries the mean moment of the specimens; the mean of the logarithms would lose a part
+ * that is small in one specimen. Parameters of Ludwik's law are averaged by their logarithms. */
 static void average_relaxed(const struct wb_cycle_calibration *calibration,
                             enum wb_candidate candidate, struct wb_law *average)
 {
@@ -872,7 +876,8 @@ static void average_relaxed(const struct wb_cycle_calibration *calibration,
     const struct wb_law *const first = &calibration->members[0].answers[candidate].fit.law;
     double share = 0.0, E = 0.0, yield = 0.0, hardening = 0.0, exponent = 0.0;
     double moduli[WB_LAW_MOST_PARTS] = {0.0}, yielding = 0.0, kept = 0.0;
-    /* K goes with n; the stress that hardening adds at this plastic strain does not. */
+    /* K and n are strongly correlated; n and the hardening stress at this plastic strain are not.
+     */
     const double plastic = 3e-3;
 
     for (int i = 0; i < n; i++) {
@@ -970,7 +975,7 @@ static void judge_identifiability(struct wb_cycle_calibration *calibration)
         enough && calibration->exponent_error <= largest_exponent_error;
 }
 
-/* How many specimens make the interval of EI as narrow as wanted. */
+/* Number of specimens that makes the interval of EI as narrow as wanted. */
 static int specimens_needed(double deviation)
 {
     if (!(deviation > 0.0))
@@ -1026,7 +1031,7 @@ static enum wb_status conclude(struct wb_cycle_calibration *calibration,
     return WB_OK;
 }
 
-/* --- what is refused --- */
+/* --- checks of the input --- */
 
 static bool is_same_data(const struct wb_dataset *a, const struct wb_dataset *b)
 {
@@ -1084,8 +1089,8 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
         status = work_side_by_side(&work, LUDWIKS);
     }
     if (status != WB_OK)
-        return tell_failure(calibration, status, why);
-    /* Specimens are taken in order, and what was begun was ended. */
+        return report_failure(calibration, status, why);
+    /* Specimens are computed in order; each one that was started is complete. */
     for (int i = work.done; i < calibration->n_members; i++)
         wb_cycle_data_release(&calibration->members[i].data);
     calibration->n_members = work.done;
@@ -1100,17 +1105,17 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
     if (calibration->has_unloading && !work.stopped)
         status = work_side_by_side(&work, PARALLELS);
     choose(calibration);
-    if (status == WB_OK && calibration->has_unloading && leaves_something(calibration)) {
+    if (status == WB_OK && calibration->has_unloading && chaboche_is_needed(calibration)) {
         n_stages = 3;
         if (!work.stopped)
             status = work_side_by_side(&work, CHABOCHES);
     }
     if (status != WB_OK)
-        return tell_failure(calibration, status, why);
+        return report_failure(calibration, status, why);
     calibration->is_stopped = work.done < n_stages * (work.all / (SHARED - LUDWIKS));
     choose(calibration);
     if (calibration->n_ranked == 0)
-        return tell_failure(calibration, WB_ERR_DATA, why);
+        return report_failure(calibration, WB_ERR_DATA, why);
     WB_TRY(work_side_by_side(&work, SHARED));
     return conclude(calibration, settings);
 }
@@ -1121,7 +1126,7 @@ enum wb_status wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
                                       struct wb_reason *why)
 {
     *calibration = (struct wb_cycle_calibration){.n_members = n};
-    /* GSL's own handler aborts; its codes are looked at here. */
+    /* GSL's default handler aborts; this code checks the status codes instead. */
     gsl_set_error_handler_off();
     WB_TRY(check_datasets(datasets, n, why));
     calibration->members = wb_memory_new((size_t)n, sizeof *calibration->members);

@@ -23,73 +23,79 @@ enum {
     MOST_STOPS = 64
 };
 
-/* --- of rows --- */
+/* --- limits of the checks of rows --- */
 
-/* No wire deflects by more than its length; a taut one never reaches it. */
+/* A wire cannot deflect by more than about its length. */
 static const double most_deflection = 1.2;
-/* A travel below this part of the length is no test: the paper reads E at 0.05. */
+/* Least travel over length of a test; the paper takes E at 0.05. */
 static const double least_travel = 0.05;
-/* Metres read as millimetres leave this part of the length at most, where a test leaves more. */
+/* Largest travel over length of deflections in metres that were read as millimetres; that of a test
+ * is larger. */
 static const double metres_travel = 0.005;
-/* The tension at zero deflection is the counterweight's and the wire's weight and what its bow
- * carries, some times as much at most. 1000 times as much are millinewtons, 102 grams. */
+/* The tension at zero deflection is that of the counterweight, the wire's weight and its bow, at
+ * most a few times the weights. Readings in millinewtons are 1000 times too large, in grams 102
+ * times. */
 static const double most_weights = 50.0, millinewtons = 400.0;
-/* The largest tension is at least the weights; this part of them are kilonewtons. */
+/* The largest tension is at least the weights; readings in kilonewtons stay below this part of
+ * them. */
 static const double least_weights = 0.05;
-/* Without weights to compare with: no metal bends like a rod of more than steel's 210 GPa, no
- * conductor with its jacket like one of less than this. */
+/* Limits without weights to compare with: metals have at most the modulus of steel, 210 GPa; a
+ * conductor with its jacket has more than the lower limit. */
 static const double most_modulus = 300e9, least_modulus = 5e6;
-/* At zero deflection a marker lies where its arc length says, but for the bow: within half a per
- * cent. EI goes with the length cubed: 2 % are 6 % of EI, 5 % are 16 %. */
+/* At zero deflection, the distance of a marker from the clamp equals its arc length within half a
+ * per cent, the effect of the bow. EI is proportional to the length cubed: 2 % of length are 6 % of
+ * EI, 5 % are 16 %. */
 static const double doubtful_length = 0.02, unusable_length = 0.05;
-/* Deflection over length up to which that is looked at. */
+/* Largest deflection over length of this check. */
 static const double near_zero = 0.03;
 
-/* --- of fits --- */
+/* --- limits of the checks of fits --- */
 
-/* K and n need 0.35 of the length; the law below 0.2 is little more than EI. */
+/* Travel over length that K and n need; below the second number the law is little more than EI. */
 static const double full_travel = 0.35, short_travel = 0.20;
-/* The level of zero deflection is known to 0.1 mm (two markers) and to what is stated of gain,
- * counterweight and the like. Beyond this many standard uncertainties it is wrong; beside a bow
- * that disagrees, beyond the second number. (With 4 and 2.5, 3 % of healthy benches were doubted.)
- */
+/* Standard uncertainty of the level of zero deflection (two markers), without the stated
+ * uncertainties of gain, counterweight and others; and the limits in standard uncertainties, the
+ * second one for a bow that disagrees as well. (With 4 and 2.5, 3 % of healthy benches were
+ * doubted.) */
 static const double bench_level = 0.1 * WB_MM;
 static const double level_limit = 4.5, level_limit_with_bow = 3.2;
-/* The same of the mean over all specimens: what a law does not follow is common to them, too. */
-static const double common_limit = 5.0;
-/* Where the data determine less of the level than this, its prior says nothing of it. */
-static const double least_level_share = 0.2;
-/* A law with a larger misfit may move level and bow by what it does not follow. */
-static const double largest_followed = 5e-3;
-/* Measured and computed force at zero deflection, over the largest force. */
-static const double zero_share = 0.01;
-/* Where a law misses more than this part of the largest force, a zero is to blame only if a fit
- * with another, which nothing else holds, brings that down to this part of it. */
-static const double least_missed = 2.3e-3, explained_part = 0.6, free_place = 10.0 * WB_MM;
-/* And below this part of the force: what no law follows with any zero, no zero explains. */
-static const double largest_explained = 2e-3;
-/* Below this tension (N) the strand may hang slack and says nothing. */
-static const double slack = 2.5e-3;
-/* Standard deviations between two estimates of the bow; and how well an alignment knows it that
- * does not say. */
-static const double bow_limit = 3.0, bow_doubt = 5.0, bow_deviation = 0.3 * WB_MM;
-/* A wire is bent from this part of the largest force on. */
-static const double bent_share = 0.2;
-/* A fall of the force there counts beyond so many standard errors, from this part of the largest
- * force on; from the second on it is a doubt. */
-static const double fall_noise = 4.0, least_fall = 2e-3, doubted_fall = 5e-3;
-/* A misfit beyond this part of the largest force; or this many times the noise of the readings. */
-static const double misfit_share = 0.01, misfit_noise = 3.0;
-/* Standard deviations of ln(EI) between a specimen and the others. Those are few, and their
- * deviation is known poorly: no smaller one than this counts. Specimens cut from one reel differ
- * by 2 to 7 %. */
-static const double rigidity_limit = 4.0, least_deviation = 0.05;
-/* How often specimens of one kind are called two batches. */
-static const double batches_level = 0.02;
-/* Rows left out as outliers beyond this part are no longer stray ones. */
-static const double outlier_share = 0.02;
-/* Lengths tried, over the labelled one, and what a better one must bring down misfit and level to.
+/* The same for the mean over all specimens, which have the systematic error of the law in common.
  */
+static const double common_limit = 5.0;
+/* Least share of the level that the data must determine for the check. */
+static const double least_level_share = 0.2;
+/* Largest misfit for the check: that of a law can move level and bow. */
+static const double largest_followed = 5e-3;
+/* Difference of measured and computed force at zero deflection, over the largest force. */
+static const double zero_share = 0.01;
+/* A wrong zero explains a misfit beyond `least_missed` if a fit with a free zero, without its
+ * prior, reduces the misfit to this part of it. */
+static const double least_missed = 2.3e-3, explained_part = 0.6, free_place = 10.0 * WB_MM;
+/* And to less than this part of the largest force; otherwise the law is wrong, whatever the zero.
+ */
+static const double largest_explained = 2e-3;
+/* Below this tension (N) the strand may be slack. */
+static const double slack = 2.5e-3;
+/* Limits in standard deviations between two estimates of the bow; and the standard deviation of an
+ * alignment that does not state it. */
+static const double bow_limit = 3.0, bow_doubt = 5.0, bow_deviation = 0.3 * WB_MM;
+/* Least part of the largest force of a bent wire. */
+static const double bent_share = 0.2;
+/* Least fall of the force at rest that is reported, in standard errors and as a part of the largest
+ * force; from the last one on it is a doubt. */
+static const double fall_noise = 4.0, least_fall = 2e-3, doubted_fall = 5e-3;
+/* Largest misfit, as a part of the largest force and in units of the noise of the readings. */
+static const double misfit_share = 0.01, misfit_noise = 3.0;
+/* Largest difference of ln(EI) between a specimen and the others, in standard deviations; and the
+ * least standard deviation, since that of a few specimens is known poorly. Specimens cut from one
+ * reel differ by 2 to 7 %. */
+static const double rigidity_limit = 4.0, least_deviation = 0.05;
+/* False-alarm rate of the test for two batches. */
+static const double batches_level = 0.02;
+/* Largest part of rows left out as outliers. */
+static const double outlier_share = 0.02;
+/* Lengths that are tried, over the labelled one; and the parts to which a better length must reduce
+ * misfit and level. */
 static const double other_lengths[] = {1.08, 1.18, 1.28};
 static const double better_fit = 0.6, better_level = 0.5;
 
@@ -135,10 +141,10 @@ enum wb_status wb_cycle_check_refuse(const struct wb_cycle_remarks *remarks, str
 struct loading {
     const struct wb_dataset *dataset;
     size_t n;
-    double *memory;       /* workspace of as many numbers as there are rows of either kind, owned */
+    double *memory;       /* workspace: as many numbers as rows of either kind; owned */
     double top;           /* m */
     double zero, largest; /* N: tension at zero deflection, and the largest */
-    double stiffness;     /* N/m, of a chord over the first third; NaN: none */
+    double stiffness;     /* N/m: slope of a chord over the first third; NaN: unknown */
 };
 
 static bool is_loading(const struct wb_row *row)
@@ -147,14 +153,14 @@ static bool is_loading(const struct wb_row *row)
            isfinite(row->tension);
 }
 
-/* All but the largest hundredth: single wild readings are not asked. */
+/* The 99th percentile, which ignores single wild readings. */
 static double nearly_largest(double *values, size_t n)
 {
     wb_fit_sort(values, n);
     return n > 0 ? values[n - 1 - n / 100] : (double)NAN;
 }
 
-/* Median tension at deflections between two, and their middle. */
+/* Median tension of the loading's rows in a range of deflections. */
 static double tension_between(const struct loading *loading, double from, double to)
 {
     size_t n = 0;
@@ -187,8 +193,9 @@ static void look_at_loading(struct loading *loading)
                          (0.2 * top);
 }
 
-/* How far from the clamp markers lie over their arc lengths, and the tip over the length: medians
- * near zero deflection, that which is farther from 1; NaN where there are neither. */
+/* Distance of markers from the clamp over their arc lengths, and of the tip over the length:
+ * medians near zero deflection, of which the one farther from 1 is returned; NaN if neither is
+ * known. */
 static double length_seen(const struct loading *loading)
 {
     const struct wb_dataset *const dataset = loading->dataset;
@@ -215,13 +222,13 @@ static double length_seen(const struct loading *loading)
     return fabs(markers - 1.0) > fabs(tip - 1.0) || !isfinite(tip) ? markers : tip;
 }
 
-/* The weights that the strand carries at zero deflection, N. */
+/* Weights that the strand carries at zero deflection, N. */
 static double weights(const struct wb_test_info *info)
 {
     return info->gravity * (info->counterweight + 0.375 * info->mass_per_length * info->length);
 }
 
-/* Each of these says one thing and returns whether it did. */
+/* Each of these functions makes at most one remark and returns whether it did. */
 
 static bool check_deflections(struct wb_cycle_remarks *remarks, const struct loading *loading)
 {
@@ -312,7 +319,7 @@ static bool check_length(struct wb_cycle_remarks *remarks, const struct loading 
     return off > unusable_length;
 }
 
-/* That the points can be taken. */
+/* Checks that the points can be taken. */
 static void check_points(struct wb_cycle_remarks *remarks, const struct wb_dataset *dataset)
 {
     struct wb_reason why = {.text = ""};
@@ -330,7 +337,7 @@ void wb_cycle_check_data(struct wb_cycle_remarks *remarks, const struct wb_datas
         loading.memory =
             wb_memory_new(datasets[i]->n_rows + datasets[i]->n_shape_rows, sizeof *loading.memory);
         look_at_loading(&loading);
-        /* The plainest first: a wrong unit makes everything that follows look wrong. */
+        /* The basic checks first: a wrong unit makes the later ones fail, too. */
         const bool told =
             loading.n > 0 && (check_deflections(remarks, &loading) ||
                               check_forces(remarks, &loading) || check_length(remarks, &loading));
@@ -346,16 +353,16 @@ struct specimen {
     const struct wb_cycle_member *member;
     const struct wb_cycle_data *data;
     const struct wb_dataset *dataset;
-    const struct wb_cycle_fit *fit; /* of the chosen law */
-    /* What the files state of gain, counterweight and the like makes of the level and of the bow
-     * (m): standard uncertainties. */
+    const struct wb_cycle_fit *fit; /* standard errors with the chosen law */
+    /* Standard uncertainties of the level and of the bow (m) due to those that the files state of
+     * gain, counterweight and others. */
     double level_of_shared, bow_of_shared;
     double relaxation_prior;
     const char *wire;
     int sample;
 };
 
-/* Finds them, by what the fit would come to with altered data. */
+/* Finds them from the results of the fit with altered data. */
 static void find_shared(struct specimen *s)
 {
     const struct wb_cycle_fit *const fit = s->fit;
@@ -373,7 +380,7 @@ static void find_shared(struct specimen *s)
     }
 }
 
-/* The bow of the alignment and its standard deviation, m; false where it gave none. */
+/* The bow of the alignment and its standard deviation, m; false if it gave none. */
 static bool aligned_bow(const struct wb_dataset *dataset, double *bow, double *deviation)
 {
     const struct wb_test_info *const info = &dataset->info;
@@ -390,7 +397,7 @@ static bool aligned_bow(const struct wb_dataset *dataset, double *bow, double *d
     return info->n_natural_shape > 0;
 }
 
-/* The tension that the fitted law gives at zero deflection; NaN where the beam does not get there.
+/* Tension of the fitted law at zero deflection; NaN if the beam cannot be computed there.
  */
 static enum wb_status computed_zero(const struct specimen *specimen, double *tension)
 {
@@ -469,8 +476,8 @@ static void check_misfit(struct wb_cycle_remarks *remarks, const struct specimen
         100.0 * s->fit->unloading_misfit, 100.0 * fmax(misfit_share, misfit_noise * noise));
 }
 
-/* A law with one zero that nothing holds: of force, or of deflection and all places. *is_fitted is
- * false where that does not end. */
+/* Fits a law with one free zero without a prior: of force, or of deflection and all places.
+ * *is_fitted is false if the fit does not converge. */
 static enum wb_status fit_law_freely(const struct specimen *s, const struct wb_cycle_fit *fit,
                                      bool frees_force, struct wb_cycle_fit *freed, bool *is_fitted)
 {
@@ -495,8 +502,8 @@ static enum wb_status fit_law_freely(const struct specimen *s, const struct wb_c
     return status == WB_ERR_CONVERGENCE ? WB_OK : status;
 }
 
-/* The chosen law; where it does not follow with that either, parallel parts, which may be the right
- * law that the wrong zero hid. */
+/* The same with the chosen law and, if its misfit stays large, with parallel parts, which may be
+ * the right law that the wrong zero concealed. */
 static enum wb_status fit_freely(const struct specimen *s, bool frees_force,
                                  struct wb_cycle_fit *freed, bool *is_fitted)
 {
@@ -518,7 +525,7 @@ static enum wb_status fit_freely(const struct specimen *s, bool frees_force,
     return WB_OK;
 }
 
-/* Refits with other lengths, longer where the level is too high. Returns the length that fits
+/* Refits with other lengths, longer ones if the level is too high. Returns the length that fits
  * clearly better; 0: none. */
 static double find_length(const struct specimen *s, double level)
 {
@@ -541,7 +548,7 @@ static double find_length(const struct specimen *s, double level)
         struct wb_cycle_fit fit;
         struct wb_reason why;
         data.info.length *= ratio;
-        /* The same stiffness and yield force of the longer wire. */
+        /* Initial guess with the same stiffness and yield force for the longer wire. */
         start.material.youngs_modulus *= pow(ratio, 3);
         start.material.yield_stress *= ratio;
         if (wb_cycle_fit_run(&fit, &data, candidate, &start, NULL, &none, &settings, &why) != WB_OK)
@@ -567,8 +574,8 @@ static bool check_other_length(struct wb_cycle_remarks *remarks, const struct sp
     return better > 0.0;
 }
 
-/* The level that the data alone ask for, and its standard uncertainties: of this specimen, and that
- * which all specimens share. Where the data hardly determine it, as the fit gives it. */
+/* The level without its prior, and its standard uncertainties: of this specimen, and the one that
+ * all specimens share. If the data hardly determine the level, that of the fit. */
 static void find_level(const struct specimen *s, double *level, double *own, double *shared)
 {
     const struct wb_cycle_fit *const fit = s->fit;
@@ -579,8 +586,8 @@ static void find_level(const struct specimen *s, double *level, double *own, dou
     *shared = s->level_of_shared / share;
 }
 
-/* Level, force at zero deflection and bow depend on each other: a wrong zero of force or a wrong
- * counterweight changes all three, a wrong zero of deflection does not change the bow. */
+/* A wrong zero of force or a wrong counterweight changes level, force at zero deflection and bow; a
+ * wrong zero of deflection does not change the bow. */
 static enum wb_status check_zeros_of(struct wb_cycle_remarks *remarks, const struct specimen *s,
                                      bool length_is_seen)
 {
@@ -590,12 +597,12 @@ static enum wb_status check_zeros_of(struct wb_cycle_remarks *remarks, const str
     double zero, bow_before, deviation, level, own, shared;
 
     WB_TRY(computed_zero(s, &zero));
-    /* Behind the first points, where the strand still takes the load over from the rest. */
+    /* After the first points, where the strand takes over the load from the rest. */
     const struct wb_cycle_point *const low = &data->points[3], *const high = &data->points[7];
     const double stiffness = (high->tension - low->tension) / (high->deflection - low->deflection);
     find_level(s, &level, &own, &shared);
     const double level_deviation = hypot(own, shared);
-    /* Nothing is wrong that the level may explain. */
+    /* The level is within its limits, so it does not explain the difference. */
     const double limit =
         fmax(zero_share * data->max_force, level_limit * level_deviation * fmax(stiffness, 0.0));
     const bool has_bow = aligned_bow(s->dataset, &bow_before, &deviation);
@@ -640,8 +647,8 @@ static enum wb_status check_zeros_of(struct wb_cycle_remarks *remarks, const str
     return WB_OK;
 }
 
-/* Of a point by the law, over the largest force, as by a standard deviation; a few points that lie
- * far off, as where the wire still lay on its rest, do not count. */
+/* Typical residual of a point over the largest force, as a robust standard deviation: a few
+ * outliers, such as points at which the wire was still on its rest, have no effect. */
 static double usual_miss(const struct specimen *s)
 {
     const struct wb_cycle_data *const data = s->data;
@@ -653,17 +660,17 @@ static double usual_miss(const struct specimen *s)
     return miss / data->max_force;
 }
 
-/* How far the force's zero may be off by what is stated of the counterweight, N. */
+/* Error of the zero of force by two stated uncertainties of the counterweight, N. */
 static double stated_zero(const struct wb_cycle_data *data)
 {
     return 2.0 * data->info.uncertainty.counterweight * data->info.gravity;
 }
 
-/* An error in all specimens alike, beside its standard uncertainty: the specimens' own errors
- * become smaller with their number, the shared one does not. */
+/* Mean of an error over all specimens, and its standard uncertainty: the contribution of the
+ * specimens' own errors decreases with their number, the shared one does not. */
 struct common_error {
     int n;
-    double sum, own, shared; /* own: sum of squares */
+    double sum, own, shared; /* own: sum of squares of the specimens' own uncertainties */
 };
 
 static void add_error(struct common_error *error, double value, double own, double shared)
@@ -686,8 +693,8 @@ static double deviation_of(const struct common_error *error)
     return hypot(sqrt(error->own), error->shared) / error->n;
 }
 
-/* A zero or a counterweight that is wrong for the bench is wrong for all specimens: together they
- * show an error that is within the limits of one specimen. Only specimens that the law follows. */
+/* A wrong zero or counterweight of the bench affects all specimens: their mean shows an error that
+ * is within the limits of a single specimen. Only specimens that the law describes are used. */
 static void check_zeros_of_all(struct wb_cycle_remarks *remarks, const struct specimen *specimens,
                                int n)
 {
@@ -721,8 +728,8 @@ static void check_zeros_of_all(struct wb_cycle_remarks *remarks, const struct sp
             common_limit * deviation_of(&level) / WB_MM);
 }
 
-/* A law that does not follow may be that of another wire, or a zero is wrong: then it follows with
- * another. */
+/* A law with a large misfit is either wrong for the wire, or a zero is wrong; in the second case it
+ * fits with another zero. */
 static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct specimen *s,
                                   bool length_is_seen)
 {
@@ -743,7 +750,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
     const bool is_level = has_level && level.misfit <= missed;
     const bool is_force = has_force && force.misfit <= missed;
     const bool is_stated = is_force && fabs(force.zero) <= stated_zero(s->data);
-    /* Within the limits of the chosen fit: where nothing holds the level, it would go anywhere. */
+    /* Only within the limits of the chosen fit: without its prior the level can take any value. */
     looked_at.fit = &level;
     if (status == WB_OK && !is_level && !is_force) {
         if (length_is_seen || !has_level || !check_other_length(remarks, s, level.level))
@@ -807,8 +814,8 @@ static void check_others(struct wb_cycle_remarks *remarks,
                 100.0 * expm1(rigidity_limit * M_SQRT2 * least_deviation));
         return;
     }
-    /* Each against all others, without itself: one that is far off hides in a common deviation. The
-     * farthest is told; beside it the others would look odd. */
+    /* Compares each specimen with all others, without itself, because an outlier increases a common
+     * deviation. Only the farthest one is reported; it makes the others look like outliers, too. */
     int farthest = -1;
     double most = rigidity_limit, off = 0.0, allowed = 0.0;
     for (int i = 0; i < n; i++) {
@@ -838,7 +845,7 @@ static void check_others(struct wb_cycle_remarks *remarks,
             off > 0.0 ? "higher" : "lower", 100.0 * expm1(allowed));
 }
 
-/* The moment at the largest curvature is known best. */
+/* Uses the moment at the largest curvature, which is known best. */
 static void check_batches(struct wb_cycle_remarks *remarks,
                           const struct wb_cycle_calibration *calibration)
 {
@@ -871,13 +878,13 @@ static void check_holds(struct wb_cycle_remarks *remarks, const struct specimen 
     if (n > 0)
         say(remarks, WB_CHECK_DOUBT, s->sample,
             "wire '%s', sample %d: the test was held %d time%s, for %.0f s in all, while the wire "
-            "was bent: it relaxed, and no law here knows of that. Leave it out or test it again "
+            "was bent: it relaxed, and no law here includes it. Leave it out or test it again "
             "without a hold",
             s->wire, s->sample, n, n == 1 ? "" : "s", seconds);
 }
 
-/* Mean of the tension of some rows, and the squared standard error of that; NaN of fewer than two
- * that have one. */
+/* Mean tension of some rows, and the square of its standard error; NaN for fewer than two rows with
+ * a tension. */
 static double mean_tension(const struct wb_row *rows, size_t n, double *variance)
 {
     double sum = 0.0, squares = 0.0;
@@ -895,7 +902,7 @@ static double mean_tension(const struct wb_row *rows, size_t n, double *variance
     return mean;
 }
 
-/* A force that falls while nothing moves: by the largest of all stops. */
+/* Reports the largest fall of the force among all stops. */
 static void check_relaxation(struct wb_cycle_remarks *remarks, const struct specimen *s)
 {
     struct wb_stop stops[MOST_STOPS];
@@ -946,7 +953,7 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
     const int n = calibration->n_members;
     struct specimen *const specimens = wb_memory_new((size_t)n, sizeof *specimens);
     enum wb_status status = WB_OK;
-    int n_zeros = 0; /* remarks on the zeros of single specimens */
+    int n_zeros = 0; /* number of remarks on the zeros of single specimens */
     for (int i = 0; i < n && status == WB_OK; i++) {
         const struct wb_cycle_member *const member = &calibration->members[i];
         struct specimen *const specimen = &specimens[i];

@@ -1,11 +1,11 @@
-/* What is wrong with the data of a calibration on whole cycles, or makes its numbers doubtful: told
- * before a user relies on them.
+/* Checks of the data and results of a calibration on whole cycles. Errors, and doubts about
+ * results, are reported before a user relies on them.
  *
- * Rows alone show slips of units, a wrong length and a travel that is of no use; the fits show a
- * zero that is off, a specimen unlike the others, a law that does not follow. Each remark is one
- * sentence or two that name wire and sample, the number, what was expected, and how to mend it.
+ * Rows alone show wrong units, a wrong length and a travel that is too short; the fits show a wrong
+ * zero, a specimen that differs from the others, and a law with a large misfit. Each remark is one
+ * or two sentences with wire and sample, the number, the expected one, and what to do.
  *
- * What all specimens share leaves no trace and is not found: gain of the cell, diameter.
+ * Errors of the cell's gain and of the diameter are the same in all specimens and cannot be found.
  */
 #ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CHECK_H
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_CHECK_H
@@ -17,9 +17,9 @@
 #include "base/status.h"
 
 enum wb_cycle_check_severity {
-    WB_CHECK_NOTE,    /* worth knowing; the numbers stand */
-    WB_CHECK_DOUBT,   /* numbers may be wrong by more than their intervals say */
-    WB_CHECK_UNUSABLE /* no properties may be made of this */
+    WB_CHECK_NOTE,    /* worth knowing; the results are valid */
+    WB_CHECK_DOUBT,   /* results may be wrong by more than their intervals */
+    WB_CHECK_UNUSABLE /* no calibration is possible */
 };
 
 /* "note", "doubt", "unusable" */
@@ -31,18 +31,19 @@ enum {
 
 struct wb_cycle_remark {
     enum wb_cycle_check_severity severity;
-    int sample; /* as in its dataset; 0: all specimens together */
+    int sample; /* as in its dataset; 0: all specimens */
     char text[768];
 };
 
-/* In the order of the checks; zeroed before the first. Those beyond the last are dropped. */
+/* In the order of the checks. The caller zeroes the struct first; remarks beyond the capacity are
+ * dropped. */
 struct wb_cycle_remarks {
     int n;
     struct wb_cycle_remark items[WB_CYCLE_MOST_REMARKS];
 };
 
-/* A calibration between both checks: what is unusable is refused, before it or after it, and leaves
- * no calibration. */
+/* Runs the checks of the rows, the calibration and the checks of the fits. Unusable data:
+ * WB_ERR_DATA, and no calibration. */
 WB_MUST_CHECK enum wb_status
 wb_cycle_check_calibrate(struct wb_cycle_calibration *calibration, struct wb_cycle_remarks *remarks,
                          const struct wb_dataset *const *datasets, int n,

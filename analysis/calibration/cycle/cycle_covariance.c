@@ -11,15 +11,15 @@
 
 #define WB_LOG_DOMAIN "cycle"
 
-/* Where a group of residuals is left out, a number that nothing else tells stays finite by a prior
- * of this weight; and a standard error is at least the root of this. Units of the free numbers. */
+/* Weight of the prior that keeps a parameter finite when the residuals that determine it are left
+ * out; the root of it is also the least standard error. In units of the free parameters. */
 static const double know_nothing = 1e-6, surest = 1e-12;
 
 enum {
-    IS_PRIOR = -1 /* a residual of no group */
+    IS_PRIOR = -1 /* residual that belongs to no group */
 };
 
-/* Begins a new group of residuals at each change of sign. Returns the index behind the last. */
+/* Begins a new group of residuals at each change of sign. Returns the index after the last one. */
 static int group_rows(const gsl_vector *f, int at, int n, int *group, int *n_groups)
 {
     for (int i = at; i < at + n; i++) {
@@ -30,9 +30,8 @@ static int group_rows(const gsl_vector *f, int at, int n, int *group, int *n_gro
     return at + n;
 }
 
-/* Groups residuals that tell the same: those of one sign in a row, of one branch, one marker or
- * the dwell.
- * Returns how many there are. */
+/* Groups correlated residuals: consecutive ones of one sign, of one branch, one marker or the
+ * dwell. Returns the number of groups. */
 static int group_residuals(const struct wb_cycle_data *data, bool has_held, const gsl_vector *f,
                            int *group)
 {
@@ -45,16 +44,15 @@ static int group_residuals(const struct wb_cycle_data *data, bool has_held, cons
         int n = 0;
         for (int i = 0; i < data->n_places; i++)
             n += data->places[i].marker == m;
-        at = group_rows(f, at, n, group, &n_groups) + 1; /* behind its offset's prior */
+        at = group_rows(f, at, n, group, &n_groups) + 1; /* after the prior of its offset */
     }
     if (has_held)
         group_rows(f, at, data->n_held, group, &n_groups);
     return n_groups;
 }
 
-/* Adds to the covariance what the free numbers owe to one group of residuals: how they change, to
- * first order, when it is left out. `squares` are the sums of the slopes' products; `rest` is
- * workspace. */
+/* Adds the contribution of one group of residuals to the covariance: the change of the free
+ * parameters, to first order, when the group is left out. `squares` is J'J; `rest` is workspace. */
 static bool add_group(const gsl_matrix *J, const gsl_vector *f, const int *group, int left_out,
                       const gsl_matrix *squares, gsl_matrix *rest, gsl_matrix *covariance)
 {
@@ -73,7 +71,7 @@ static bool add_group(const gsl_matrix *J, const gsl_vector *f, const int *group
            gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
 }
 
-/* What they owe to the priors, which are as far off as their standard deviations say. */
+/* Adds the contribution of the priors, by their standard deviations. */
 static bool add_priors(const gsl_matrix *J, const int *group, const gsl_matrix *squares,
                        gsl_matrix *rest, gsl_matrix *covariance)
 {

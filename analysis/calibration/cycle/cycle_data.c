@@ -12,7 +12,7 @@
 
 #define WB_LOG_DOMAIN "cycle"
 
-/* How far from the turn deflection and travel are taken to be on a line. */
+/* Distance from the turn over which the deflection is linear in the travel of the stage. */
 static const double turn_reach = 2.0 * WB_MM;
 
 enum {
@@ -24,9 +24,9 @@ enum {
 
 /* Rows farther from the line than this many standard deviations of the others are left out. */
 static const double far_off = 4.5;
-/* A single row can be so far off that it tilts the line and hides behind it. Rows this many
- * standard deviations off a line by medians, which none of them tilts, never enter; the medians of
- * a few rows are rough, hence the wide berth. */
+/* A gross outlier can tilt the line so far that its own residual becomes small. Rows this many
+ * standard deviations off a line by medians, which outliers do not tilt, are left out first. The
+ * medians of a few rows are rough, so the limit is wide. */
 static const double out_of_bounds = 15.0;
 
 const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS] = {
@@ -51,15 +51,15 @@ const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS] = {
      WB_ROW_OPTION("marker-step-mm", "H", "Deflection step of the marker positions")},
 };
 
-/* Rows of a way in their order; room for all of a test's. */
+/* Rows of a branch (loading or unloading) in their order; allocated for all rows of a test. */
 struct rows {
     size_t n;
-    double *x, *y;  /* deflection and tension; or what else is drawn over the deflection */
-    double *t;      /* s; of a way only */
+    double *x, *y;  /* deflection and tension, or another quantity over the deflection */
+    double *t;      /* s; of a branch only */
     double *smooth; /* deflection with less noise, by which rows are put into bins */
     double *sorted; /* workspace */
     size_t n_line;
-    double *line_x, *line_y; /* (n_line) what a line was drawn through last, less the means */
+    double *line_x, *line_y; /* (n_line) points of the last fitted line, less their means */
 };
 
 static void take_memory(struct rows *rows, size_t most)
@@ -74,8 +74,9 @@ static void take_memory(struct rows *rows, size_t most)
                           .t = memory + 6 * most};
 }
 
-/* A line by medians: the slope of rows half the stretch apart, then the height. Returns the median
- * distance of rows from it, as a standard deviation. */
+/* Fits a line by medians: first the slope, from pairs of rows half the range apart, then the
+ * intercept. Returns the standard deviation that corresponds to the median distance of rows from
+ * it. */
 static double rough_line(struct rows *rows, size_t begin, size_t end, struct wb_fit_line *line)
 {
     const size_t n = end - begin, half = n / 2;
@@ -94,9 +95,10 @@ static double rough_line(struct rows *rows, size_t begin, size_t end, struct wb_
     return wb_fit_usual_size(rows->sorted, n);
 }
 
-/* Rows from `begin` to `end` without those far off a straight line of y over x. Their means belong
- * together whatever the noise of x is, which would make a line's value at a given x too flat.
- * Returns how many are left; *error is that of the mean of y for the mean of x. */
+/* Means of x and y of the rows from `begin` to `end`, without outliers from a straight line of y
+ * over x. Noise of x does not bias the pair of means, whereas it makes the slope of a line too
+ * small. Returns the number of rows left; *error is the standard error of the mean of y at the mean
+ * of x. */
 static size_t mean_of(struct rows *rows, size_t begin, size_t end, double *x, double *y,
                       double *error)
 {
@@ -153,7 +155,7 @@ static bool is_on_way(const struct wb_row *row, int cycle, bool unloading)
            isfinite(row->deflection) && isfinite(row->tension);
 }
 
-/* Slope of y over x of the rows that mean_of() left. */
+/* Slope of y over x of the rows that mean_of() used last. */
 static double slope_of(const struct rows *rows)
 {
     double xx = 0.0, xy = 0.0;
@@ -164,13 +166,13 @@ static double slope_of(const struct rows *rows)
     return xx > 0.0 ? xy / xx : 0.0;
 }
 
-/* The tension falls in a dwell, at one deflection. */
+/* Whether a row is in the dwell, where the tension falls at constant deflection. */
 static bool is_in_dwell(const struct wb_cycle_data *data, const struct wb_row *row)
 {
     return data->n_held > 0 && row->t > data->arrival && row->t < data->departure;
 }
 
-/* Takes the rows of a way and smooths their deflection over half a fine step. */
+/* Takes the rows of a branch and smooths their deflection over half a fine step. */
 static void gather(struct rows *rows, const struct wb_cycle_data *data,
                    const struct wb_dataset *dataset, int cycle, bool unloading, double fine_step)
 {
@@ -197,8 +199,8 @@ static void gather(struct rows *rows, const struct wb_cycle_data *data,
     }
 }
 
-/* A point of each bin on a way from `first` to `last`: bins of the fine step at first, where the
- * wire is elastic and its stiffness changes least, then of the step. */
+/* Adds a point for each bin of a branch from deflection `first` to `last`: first bins of the fine
+ * step, where the wire is elastic and its stiffness changes least, then bins of the step. */
 static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dataset,
                         struct rows *rows, const struct wb_cycle_data_settings *s, double first,
                         double last)
@@ -213,7 +215,8 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
         const double left = fabs(last - first) - done;
         step = done < s->fine_reach - 1e-9 ? s->fine_step : s->step;
         if (unloading)
-            step = fmin(step, left); /* the force may come down to that at zero in the last one */
+            step = fmin(step, left); /* the last bin may be shorter: the force reaches that at zero
+                                        deflection in it */
         if (step > left + 1e-9 || step < s->fine_step - 1e-9)
             return;
         while (begin < rows->n && sense * (rows->smooth[begin] - first) < done)
@@ -238,7 +241,7 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
     }
 }
 
-/* The same of a simulation: each row is a point. Without a strand its force may push. */
+/* The same for a simulation: each row is a point. Without a strand the force may be negative. */
 static void take_rows(struct wb_cycle_data *data, const struct wb_dataset *dataset,
                       struct rows *rows, const struct wb_cycle_data_settings *s, double first,
                       double last)
@@ -258,8 +261,8 @@ static void take_rows(struct wb_cycle_data *data, const struct wb_dataset *datas
     }
 }
 
-/* Largest deflection of a loading: by a line of the deflection over the stage's travel next to the
- * turn, where that is known, as the largest of many rows is too large by their noise. */
+/* Deflection of the turn. From a line of the deflection over the travel of the stage near the turn
+ * if the travel is known, because the largest of many rows is biased by their noise. */
 static double turn_of(const struct wb_dataset *dataset, int cycle, struct rows *rows)
 {
     double top = -HUGE_VAL, end = -HUGE_VAL, x, y, error;
@@ -332,8 +335,8 @@ static double residual_of(const struct wb_cycle_data *data)
     return (double)NAN;
 }
 
-/* Places of inner markers at every few points: lines of x and y over the deflection through the
- * frames around. */
+/* Places of the inner markers at every few points: from lines of x and y over the deflection
+ * through the neighbouring frames. */
 static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dataset,
                         struct rows *rows, const struct wb_cycle_data_settings *s)
 {
@@ -354,7 +357,7 @@ static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dat
         markers[n] = row->marker;
         arc[n++] = row->s;
     }
-    /* The time of the turn tells the frames of the unloading. */
+    /* Frames after the time of the turn belong to the unloading. */
     double turn = (double)INFINITY;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         if (is_on_way(&dataset->rows[i], 1, true)) {
@@ -394,7 +397,7 @@ static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dat
                     rows->y[rows->n++] = axis == 0 ? row->x : row->y;
                 }
                 good = mean_of(rows, 0, rows->n, &at, &value[axis], &error) > 0;
-                /* A marker moves a part of what the tip does; over so short a way in a line. */
+                /* A marker moves in proportion to the tip over so short a range. */
                 if (good)
                     value[axis] += slope_of(rows) * (point->deflection - at);
             }
@@ -408,7 +411,7 @@ static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dat
     data->n_markers = n;
 }
 
-/* What is given, and the default of what is 0. */
+/* The given settings, with defaults in place of zeros. */
 static struct wb_cycle_data_settings filled(const struct wb_cycle_data_settings *given)
 {
     const struct wb_setting_table table = {.rows = wb_cycle_data_rows, .n = WB_CYCLE_DATA_ROWS};

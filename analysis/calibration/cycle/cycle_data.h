@@ -1,13 +1,13 @@
-/* What a cycle of a test, the first unless asked otherwise, says of one specimen, as few points
- * without most of the noise: tension over deflection on the way up and back, and the places of the
- * markers between clamp and tip.
+/* Data of one cycle of a test (by default the first), reduced to a few hundred points with little
+ * noise: tension over deflection on loading and unloading, and the places of the markers between
+ * clamp and tip.
  *
- * The tension is as measured, weights included, not zeroed at zero deflection: its absolute size
- * says how the wire is bent by nature. A point is the mean deflection and the mean tension of a
- * bin: a line over the deflection, which has noise too, would be too flat. Rows far off are left
- * out and counted. The loading begins at zero deflection; the unloading begins half a millimetre
- * below the turn, where the change of direction is past, and ends where the strand is about to
- * become slack. Of a simulation, which has no noise, every row is a point.
+ * The tension is as measured, weights included, not zeroed at zero deflection, because its absolute
+ * value depends on the natural shape of the wire. A point is the mean deflection and the mean
+ * tension of a bin; the slope of a line over the deflection, which has noise too, would be too
+ * small. Outliers are left out and counted. The loading begins at zero deflection. The unloading
+ * begins half a millimetre below the turn, after the change of direction, and ends before the
+ * strand becomes slack. Of a simulation, which has no noise, every row is a point.
  */
 #ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_DATA_H
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_DATA_H
@@ -39,7 +39,7 @@ struct wb_cycle_held {
 
 /* A marker's place at the deflection of a point. */
 struct wb_cycle_place {
-    int point;   /* index of it */
+    int point;   /* index of the point */
     int marker;  /* from 0 among the inner markers */
     double s;    /* m, arc length */
     double x, y; /* m */
@@ -52,13 +52,13 @@ struct wb_cycle_data {
     int n_places, n_markers;
     struct wb_cycle_place *places; /* owned; of the first cycle only */
     double top;                    /* m: deflection of the turn */
-    double arrival, departure;     /* s: when the tip came there and left */
-    int n_held;                    /* 0: there was no dwell */
+    double arrival, departure;     /* s: arrival at the turn and departure from it */
+    int n_held;                    /* 0: no dwell */
     struct wb_cycle_held held[WB_CYCLE_MOST_HELD];
-    double max_force;           /* N: largest tension less that at zero deflection */
-    double zero_tension;        /* N: that at zero deflection on the first loading */
-    double residual_deflection; /* m: where the tension of the unloading has come down to that at
-                                   zero deflection; NaN: not reached */
+    double max_force;           /* N: largest tension minus that at zero deflection */
+    double zero_tension;        /* N: tension at zero deflection on the first loading */
+    double residual_deflection; /* m: deflection at which the tension of the unloading equals that
+                                   at zero deflection; NaN: not reached */
     int n_outliers;             /* rows left out */
 };
 
@@ -71,8 +71,8 @@ static inline double wb_cycle_data_loading_time(const struct wb_cycle_data *data
 struct wb_cycle_data_settings {
     int cycle;               /* from 1; 0: 1 */
     double step;             /* m between points; 0: 1 mm */
-    double fine_step;        /* m, of the first points of either way; 0: 0.5 mm */
-    double fine_reach;       /* m: how far they go; 0: 4 mm */
+    double fine_step;        /* m, of the first points of either branch; 0: 0.5 mm */
+    double fine_reach;       /* m: range of the fine step; 0: 4 mm */
     double turn_distance;    /* m below the turn where the unloading begins; 0: 0.5 mm */
     double smallest_tension; /* N: where the unloading ends; 0: 2.5 mN */
     double marker_step;      /* m of deflection between places; 0: 4 mm */
@@ -84,8 +84,8 @@ enum {
 };
 extern const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS];
 
-/* Takes them from a cycle. WB_ERR_DATA for a test whose cycle makes too few points, or with a
- * follower force. Without unloading, n_loading is n_points. `settings` NULL: defaults. `why`
+/* Takes the data of a cycle. WB_ERR_DATA if the cycle gives too few points, or for a test with a
+ * follower force. Without unloading, n_loading equals n_points. `settings` NULL: defaults. `why`
  * receives the reason; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_cycle_data_take(struct wb_cycle_data *data,
                                                 const struct wb_dataset *dataset,

@@ -21,35 +21,34 @@
 
 #define WB_LOG_DOMAIN "cycle"
 
-/* Steps of the differences that give the slopes, in units of the free numbers' scales. */
+/* Steps of the finite differences of the Jacobian, in units of the parameters' scales. */
 static const double difference = 1e-3;
-/* Huber's limit and where a point counts as an outlier, in standard deviations of the residuals. */
+/* Huber's limit, and the limit of an outlier, in standard deviations of the residuals. */
 static const double huber_limit = 2.5;
-/* Largest correlation of neighbouring residuals that is believed, as their number is finite;
- * weights are settled where their scale changes by no more than this part. */
+/* Largest correlation of neighbouring residuals that is used, as their number is finite; and the
+ * relative change of the scale below which weights have converged. */
 static const double largest_correlation = 0.9, settled_scale = 0.3, largest_scale_of_misses = 10.0,
                     first_scale_of_misses = 5.0;
 enum {
     most_passes = 4,
-    points_of_turn = 3 /* on either side of it: some 1.5 mm of deflection behind it */
+    points_of_turn = 3 /* points on either side of the turn: about 1.5 mm of deflection after it */
 };
-/* It has arrived when the next step changes no number by more than this, or the sum of squares by
- * less than this part. */
+/* Convergence: the next step changes no parameter by more than the first number, or the sum of
+ * squares by less than the second, relative. */
 static const double arrived = 2e-4;
 static const double settled_sum = 1e-4;
-/* A number that nothing tells stays finite by a prior of this weight, in units of the free numbers.
+/* Weight of the prior that keeps an undetermined parameter finite, in units of the free parameters.
  */
 static const double know_nothing = 1e-6;
-/* A law is moved by this many standard errors, and no number by more than that: a part that is
- * nearly nothing grows by powers over a whole one, which the errors to first order mean nothing of.
- */
+/* Step of a moved law in standard errors, and the largest change of a parameter, which limits it to
+ * the range where the linearised errors hold. */
 static const double moved_by = 0.01, farthest = 1.0;
-/* Time of the element that stands for relaxation that was not recorded, over that of the loading.
+/* Time of the Maxwell element for relaxation that was not recorded, over the time of the loading.
  */
 static const double unseen_time = 0.25;
-/* What Maxwell elements may miss of a fall. */
+/* Standard deviation of Maxwell elements from the fall, relative to the fall. */
 static const double fall_share = 0.02;
-/* Residual of a run that does not reach its end: far above any other. */
+/* Residual of an incomplete run: far above any other. */
 static const double lost_residual = 1e4;
 
 struct wb_cycle_search {
@@ -57,21 +56,21 @@ struct wb_cycle_search {
     struct wb_cycle_model *model;
     int n_residuals;
     double *tension, *distance, *weight;                    /* weight: (n_points) */
-    struct wb_cycle_neighbour neighbours[WB_FIT_MOST_FREE]; /* (n_free), for the slopes */
-    double last_x[WB_FIT_MOST_FREE]; /* where the residuals were asked for last, */
-    double *last;                    /* and they; (n_residuals) */
+    struct wb_cycle_neighbour neighbours[WB_FIT_MOST_FREE]; /* (n_free), for the Jacobian */
+    double last_x[WB_FIT_MOST_FREE];                        /* parameters of the last residuals, */
+    double *last;                                           /* and these residuals (n_residuals) */
     bool has_last;
-    gsl_matrix *slopes;                /* (n_residuals, n_free), */
-    double slopes_x[WB_FIT_MOST_FREE]; /* there: in the end that of the fit */
-    bool has_slopes, lacks_slopes;     /* they could not be found */
-    double scale_of_misses;            /* larger than 1 where the law does not follow */
+    gsl_matrix *slopes;                /* (n_residuals, n_free): Jacobian, */
+    double slopes_x[WB_FIT_MOST_FREE]; /* there; at the end that of the fit */
+    bool has_slopes, lacks_slopes;     /* the Jacobian could not be computed */
+    double scale_of_misses;            /* larger than 1 for a systematic misfit */
     struct wb_cycle_run run;
     int runs;
     enum wb_status status;
 };
 
-/* Distances of places less each marker's own offset; the offset that makes the sum of squares
- * smallest, its prior included, is known in closed form. Returns the index behind the residuals. */
+/* Residuals of places: distances minus the offset of each marker. The optimal offset, with its
+ * prior, is known in closed form. Returns the index after the residuals. */
 static int place_residuals(const struct wb_cycle_search *p, const double *distance, double *r)
 {
     const struct wb_cycle_data *const data = p->parameters.data;
@@ -98,14 +97,14 @@ static int place_residuals(const struct wb_cycle_search *p, const double *distan
     return at;
 }
 
-/* Periods of the dwell that count: without Maxwell elements they tell nothing. */
+/* Number of periods of the dwell that are used: none without Maxwell elements. */
 static int held_of(const struct wb_cycle_search *p)
 {
     return p->parameters.n_maxwell > 0 ? p->parameters.data->n_held : 0;
 }
 
-/* How the tension falls in the dwell: beyond the mean, which the law may miss. Returns the index
- * behind the residuals. */
+/* Residuals of the tension in the dwell relative to its mean, in which the law may have a
+ * systematic error. Returns the index after the residuals. */
 static int held_residuals(const struct wb_cycle_search *p, const double *held, double *r)
 {
     const struct wb_cycle_data *const data = p->parameters.data;
@@ -122,7 +121,7 @@ static int held_residuals(const struct wb_cycle_search *p, const double *held, d
     return n;
 }
 
-/* Law and specimen of the free numbers x. False where the law is not possible. */
+/* Law and specimen of the free parameters x. False if the law is invalid. */
 static bool take_numbers(const struct wb_cycle_search *p, const double *x, double *free,
                          struct wb_law *law, struct wb_cycle_specimen *specimen)
 {
@@ -149,7 +148,7 @@ static int compare(const struct wb_cycle_search *p, const double *free, const st
     return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
 }
 
-/* Residuals at the free numbers x. */
+/* Residuals at the free parameters x. */
 static int residuals(struct wb_cycle_search *p, const double *x, double *r)
 {
     double free[WB_FIT_MOST_FREE];
@@ -195,7 +194,8 @@ static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
     return status;
 }
 
-/* Differences from the residuals at x, of cycles computed beside that of x. */
+/* Jacobian by differences from the residuals at x, from cycles computed as neighbours of that of x.
+ */
 static int find_slopes(struct wb_cycle_search *p, const double *x)
 {
     double numbers[WB_FIT_MOST_FREE], moved[WB_FIT_MOST_FREE][WB_FIT_MOST_FREE];
@@ -249,7 +249,7 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     return GSL_SUCCESS;
 }
 
-/* What is known of a point's residual is that of another weight. */
+/* Scales the known residual of a point to its new weight. */
 static void weigh_again(struct wb_cycle_search *p, int i, double ratio)
 {
     gsl_vector_view slopes = gsl_matrix_row(p->slopes, (size_t)i);
@@ -257,9 +257,10 @@ static void weigh_again(struct wb_cycle_search *p, int i, double ratio)
     p->last[i] *= ratio;
 }
 
-/* Standard deviation of residuals of which each counts as one, in units of the force's: neighbours
- * miss alike where the law cannot follow, with a correlation r of one and the next, and the sum of
- * n of them varies by (1 + r) / (1 - r) times n variances. `counts` are Huber's weights. */
+/* Standard deviation of equivalent independent residuals, in units of the force noise. Under a
+ * systematic misfit neighbouring residuals are correlated; with the lag-1 correlation r, the
+ * variance of the sum of n residuals is (1 + r) / (1 - r) times n variances. `counts` are Huber's
+ * weights. */
 static double find_discrepancy(const struct wb_cycle_search *p, const double *miss,
                                const double *counts)
 {
@@ -274,8 +275,9 @@ static double find_discrepancy(const struct wb_cycle_search *p, const double *mi
     return sqrt(squares / sum * (1.0 + r) / (1.0 - r));
 }
 
-/* Weights of the points for the next pass, by what this one left: Huber's, and smaller ones where
- * the law does not follow, so that priors keep their weight. Returns whether they changed. */
+/* Sets the weights of the points for the next pass from the residuals of this one: Huber's, and
+ * smaller ones under a systematic misfit, so that priors keep their weight. Returns whether they
+ * changed. */
 static bool set_weights(struct wb_cycle_search *p, const gsl_vector *f, int *n_outliers)
 {
     const int n = p->parameters.data->n_points, outliers_before = *n_outliers;
@@ -304,7 +306,7 @@ static bool set_weights(struct wb_cycle_search *p, const gsl_vector *f, int *n_o
            fabs(log(p->scale_of_misses / scale_before)) > settled_scale;
 }
 
-/* Iterates to the end; false when the iterations ran out. */
+/* Iterates to convergence; false if the iterations ran out. */
 static bool iterate(struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w, int *iterations)
 {
     const struct wb_least_squares_search search = {
@@ -316,8 +318,8 @@ static bool iterate(struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w
     return wb_least_squares_iterate(w, &search, iterations) && !p->lacks_slopes;
 }
 
-/* The law moved along the columns of the covariance's triangular factor, which the covariance is
- * destroyed for. */
+/* Moves the law along the columns of the triangular factor of the covariance, which is overwritten.
+ */
 static void move_law(const struct wb_cycle_search *p, const gsl_vector *x, gsl_matrix *covariance,
                      struct wb_cycle_fit *fit)
 {
@@ -344,7 +346,7 @@ static void move_law(const struct wb_cycle_search *p, const gsl_vector *x, gsl_m
     fit->n_moved = p->parameters.n_law;
 }
 
-/* Standard errors from the curvature of the sum of squares, scaled by what is left of it. */
+/* Standard errors from the covariance. */
 static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_cycle_fit *fit)
 {
@@ -359,7 +361,7 @@ static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_wo
         const size_t bow = (size_t)p->parameters.n_law;
         fit->bow_angle_error =
             p->parameters.scale[bow] * sqrt(variance * gsl_matrix_get(covariance, bow, bow));
-        /* Data and prior share the level by their inverse variances. */
+        /* Data and prior are weighted by their inverse variances. */
         const size_t level = (size_t)(p->parameters.n_law + WB_CYCLE_LEVEL);
         const double prior = p->parameters.settings.level_prior;
         const double both =
@@ -373,7 +375,7 @@ static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_wo
     gsl_matrix_free(covariance);
 }
 
-/* What runs of the beam need, and those of neighbours beside it. */
+/* Allocates the beam, and its neighbours. */
 static void take_buffers(struct wb_cycle_search *p, int n_neighbours)
 {
     p->tension = wb_memory_new((size_t)p->parameters.data->n_points, sizeof *p->tension);
@@ -402,7 +404,7 @@ static void free_buffers(struct wb_cycle_search *p)
     }
 }
 
-/* A Maxwell element that carries a part of the outer fibre's stress at the turn. */
+/* A Maxwell element with a given part of the stress of the outer fibre at the turn. */
 static struct wb_law_maxwell unseen_element(const struct wb_cycle_search *p,
                                             const struct wb_law *law, double part)
 {
@@ -412,7 +414,7 @@ static struct wb_law_maxwell unseen_element(const struct wb_cycle_search *p,
     return (struct wb_law_maxwell){part * secant * x / -expm1(-x), unseen_time * loading};
 }
 
-/* Cholesky's factor of J'J; NULL: it has none. */
+/* Cholesky factor of J'J; NULL: not positive definite. */
 static gsl_matrix *factor_squares(const gsl_matrix *J)
 {
     gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(J->size2, J->size2));
@@ -424,8 +426,8 @@ static gsl_matrix *factor_squares(const gsl_matrix *J)
     return NULL;
 }
 
-/* Gauss and Newton's step from the end of the search, with the residuals of altered data. `squares`
- * are the sums of the slopes' products as Cholesky factors them, `r` the residuals of the data. */
+/* Gauss-Newton step from the end of the search, with the residuals of altered data. `squares` is
+ * the Cholesky factor of J'J, `r` the residuals of the data. */
 static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, const double *r,
                          enum wb_cycle_shared shared, struct wb_cycle_fit *fit)
 {
@@ -481,8 +483,8 @@ void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit)
     free(r);
 }
 
-/* From the mean residual of the last points of the loading to that of the first of the unloading.
- */
+/* Change of the mean residual from the last points of the loading to the first points of the
+ * unloading. */
 static double turn_miss(const struct wb_cycle_fit *fit, const struct wb_cycle_data *data)
 {
     const struct wb_cycle_point *const turn = data->points + data->n_loading;
@@ -529,7 +531,7 @@ static void find_misfits(struct wb_cycle_fit *fit, struct wb_cycle_search *p)
     free(r);
 }
 
-/* The last run, with more elements. */
+/* Final run, with more elements. */
 static enum wb_status run_finely(struct wb_cycle_fit *fit, struct wb_cycle_search *p,
                                  struct wb_reason *why)
 {
@@ -551,8 +553,8 @@ static enum wb_status run_finely(struct wb_cycle_fit *fit, struct wb_cycle_searc
     return status;
 }
 
-/* Where the search's weights begin. Beside a law that follows one of another hardening rule will
- * not, and nothing is asked of how it fails. */
+/* Sets the initial weights of the search. If a law fits well, one of another hardening rule does
+ * not, and the details of its misfit are not needed. */
 static double first_scale(const struct wb_cycle_parameters_candidate *c,
                           const struct wb_cycle_fit *near)
 {
@@ -568,8 +570,8 @@ static double first_scale(const struct wb_cycle_parameters_candidate *c,
                                                          : first_scale_of_misses;
 }
 
-/* Whether the isotropic share, from the optimum of the law without it, would not leave its end:
- * Gauss and Newton's step, with all numbers free, goes there. */
+/* Whether the isotropic share stays at the end of its range, from the optimum of the law without
+ * it: a Gauss-Newton step with all parameters free leads there. */
 static bool is_best_at_end(const struct wb_cycle_search *p, const gsl_multifit_nlinear_workspace *w,
                            const struct wb_law *law)
 {

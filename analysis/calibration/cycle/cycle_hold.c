@@ -8,12 +8,12 @@
 
 #define WB_LOG_DOMAIN "cycle"
 
-/* A fall is seen from so many standard errors and this part of the largest force on. */
+/* Least fall that counts as relaxation, in standard errors and as a part of the largest force. */
 static const double seen_errors = 4.0, seen_share = 1e-3;
-/* One exponential is not enough where it misses by more than this many standard errors and this
+/* One exponential is not enough if its largest residual exceeds this many standard errors and this
  * part of the fall. */
 static const double missed_errors = 3.0, missed_share = 0.03;
-/* Each period of a dwell is longer than the one before by this factor. */
+/* Ratio of the durations of consecutive periods of a dwell. */
 static const double growth = 1.5;
 
 enum {
@@ -64,8 +64,8 @@ void wb_cycle_hold_find(struct wb_cycle_data *data, const struct wb_dataset *dat
     take_periods(data, dataset->rows, &stop);
 }
 
-/* Sum of squares, in standard errors, by which a + b exp(-t / time) misses the periods; *worst is
- * the largest miss, N. */
+/* Sum of squared residuals of a + b exp(-t / time) over the periods, in standard errors; *worst is
+ * the largest residual, N. */
 static double miss_of(const struct wb_cycle_data *data, double time, double *worst)
 {
     double w = 0.0, e = 0.0, y = 0.0, ee = 0.0, ey = 0.0, sum = 0.0;

@@ -1,4 +1,4 @@
-/* The dwell at the turn of a cycle: how the tension falls while nothing moves. */
+/* The dwell at the turn of a cycle: fall of the tension at constant deflection. */
 #ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_HOLD_H
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_HOLD_H
 
@@ -12,17 +12,18 @@ void wb_cycle_hold_find(struct wb_cycle_data *data, const struct wb_dataset *dat
 
 /* Fall of the tension during the dwell. */
 struct wb_cycle_relaxation {
-    double duration;  /* s, of the dwell; 0: there is none */
+    double duration;  /* s, of the dwell; 0: no dwell */
     double fall;      /* N, from the first period to the last */
     double deviation; /* N: standard error of it */
-    double time;      /* s: of the exponential that follows it best */
+    double time;      /* s: of the best exponential */
     bool is_seen;     /* more than noise, and more than 0.1 % of the largest force */
-    bool needs_two;   /* one exponential does not follow it */
+    bool needs_two;   /* one exponential does not describe it */
 };
 void wb_cycle_hold_describe(const struct wb_cycle_data *data,
                             struct wb_cycle_relaxation *relaxation);
 
-/* Maxwell elements that the dwells of n specimens ask for, 0 to 2; 0 where one has no dwell. */
+/* Number of Maxwell elements that the dwells of n specimens show, 0 to 2; 0 if one specimen has no
+ * dwell. */
 int wb_cycle_hold_elements(const struct wb_cycle_data *const *data, int n);
 
 #endif

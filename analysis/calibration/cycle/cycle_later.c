@@ -11,7 +11,7 @@
 
 #define WB_LOG_DOMAIN "cycle"
 
-/* Between the deflections that are compared; below this tension the strand is about to be slack. */
+/* Step between the compared deflections; below this tension the strand is nearly slack. */
 static const double step = 1.0 * WB_MM, smallest_tension = 2.5e-3;
 
 /* Means of the rows of a bin. */
@@ -30,7 +30,7 @@ int wb_cycle_later_count(const struct wb_dataset *dataset)
     return n;
 }
 
-/* Also its time. */
+/* Also the mean time. */
 static double largest_deflection(const struct wb_dataset *dataset, int cycle, double *t)
 {
     double largest = 0.0;
@@ -45,8 +45,8 @@ static double largest_deflection(const struct wb_dataset *dataset, int cycle, do
     return largest;
 }
 
-/* Where the unloading of a cycle ends or the strand becomes slack, by its lowest row; what is read
- * below the rest is noise. */
+/* Deflection at which the unloading of a cycle ends or the strand becomes slack: of the lowest row
+ * with enough tension, and not below the rest, where readings are noise. */
 static double lowest_deflection(const struct wb_dataset *dataset, int cycle, double *t)
 {
     double lowest = largest_deflection(dataset, cycle, t);
@@ -61,7 +61,7 @@ static double lowest_deflection(const struct wb_dataset *dataset, int cycle, dou
     return isfinite(dataset->info.rest_level) ? fmax(lowest, dataset->info.rest_level) : lowest;
 }
 
-/* Appends the points of one way of a cycle in the order of the test. */
+/* Appends the points of one branch of a cycle in the order of the test. */
 static void add_way(struct wb_cycle_later *later, const struct wb_dataset *dataset, int cycle,
                     bool is_unloading, struct bin *bins, int n_bins)
 {
@@ -100,7 +100,7 @@ static void push(struct wb_cycle_data *path, double deflection, double t)
     path->points[path->n_points++] = (struct wb_cycle_point){.deflection = deflection, .t = t};
 }
 
-/* All deflections of the test in order; which of them are points of later cycles. */
+/* All deflections of the test in order, and which of them are points of later cycles. */
 static void make_path(struct wb_cycle_data *path, int *index, const struct wb_cycle_later *later,
                       const struct wb_dataset *dataset, const struct wb_cycle_data *data)
 {
@@ -115,7 +115,8 @@ static void make_path(struct wb_cycle_data *path, int *index, const struct wb_cy
     double t, deflection;
     for (int i = 0; i < later->n; i++) {
         const struct wb_cycle_later_point *const p = &later->points[i];
-        /* Both turns, which no bin's mean reaches: a loop that is turned too early is too small. */
+        /* Both turns are included, because the mean of a bin does not reach them and a loop that
+         * turns too early is too small. */
         if (i == 0 || p->cycle != later->points[i - 1].cycle)
             deflection = lowest_deflection(dataset, p->cycle - 1, &t);
         else if (p->is_unloading && !later->points[i - 1].is_unloading)

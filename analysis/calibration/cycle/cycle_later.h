@@ -1,7 +1,7 @@
 /* Later cycles of a test, predicted by a law that was fitted to its first one.
  *
- * The fit never sees them, so they say whether the hardening rule holds: the beam goes through the
- * first cycle and all that follow, with the specimen's own law, bow and level.
+ * The fit does not use them, so they test the hardening rule: the beam computes the first cycle and
+ * all later ones, with the specimen's own law, bow and level.
  */
 #ifndef WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_LATER_H
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_LATER_H
@@ -15,23 +15,23 @@ struct wb_cycle_later_point {
     int cycle; /* from 2 */
     bool is_unloading;
     double deflection, t;      /* m, s */
-    double measured, computed; /* N, tension; computed is NaN beyond where the beam came to */
+    double measured, computed; /* N, tension; computed: NaN after a failure of the beam */
 };
 
 struct wb_cycle_later {
     int sample;
-    int n_cycles; /* of the test, the first included; below 2: no points */
+    int n_cycles; /* of the test, including the first; below 2: no points */
     int n;
-    struct wb_cycle_later_point *points;     /* (n), owned, in the order of the test */
-    double rms;                              /* of computed less measured, over the largest force */
-    double measured_energy, computed_energy; /* J, lost in a later cycle, their mean */
+    struct wb_cycle_later_point *points; /* (n), owned, in the order of the test */
+    double rms;                          /* of computed minus measured, over the largest force */
+    double measured_energy, computed_energy; /* J: mean energy lost in a later cycle */
 };
 
-/* How many cycles a dataset has. */
+/* Number of cycles of a dataset. */
 int wb_cycle_later_count(const struct wb_dataset *dataset);
 
-/* Of the dataset that `data` was taken from. Rows with less than `data`'s smallest tension are left
- * out. */
+/* Predicts the later cycles of the dataset that `data` was taken from. Rows with a smaller tension
+ * than the smallest of `data` are left out. */
 WB_MUST_CHECK enum wb_status wb_cycle_later_predict(struct wb_cycle_later *later,
                                                     const struct wb_dataset *dataset,
                                                     const struct wb_cycle_data *data,

@@ -11,14 +11,14 @@
 
 struct wb_cycle_model {
     const struct wb_cycle_data *data;
-    struct wb_test_info info; /* the natural curvature's context */
+    struct wb_test_info info; /* context of the natural curvature */
     struct wb_section section;
     struct wb_cantilever *cantilever;
     int n_followers;
     struct wb_cantilever **followers; /* (n_followers), of neighbours, */
     double *offsets;                  /* and of their deflections, m */
     bool relaxes;                     /* the law has Maxwell elements */
-    double t;                         /* s: where the cycle is */
+    double t;                         /* s: present time of the cycle */
     double held[WB_CYCLE_MOST_HELD];  /* N */
 };
 
@@ -75,7 +75,7 @@ static bool is_reached(const struct wb_cantilever_point *point)
     return point->end == WB_CANTILEVER_CONVERGED && isfinite(point->tension);
 }
 
-/* Until a time, s; NaN: sudden. */
+/* Advances the time to a given one, s; NaN: instantaneous. */
 static enum wb_status move(struct wb_cycle_model *model, double deflection, double t,
                            struct wb_cantilever_point *point, bool *reached)
 {
@@ -96,7 +96,7 @@ void wb_cycle_model_bend(const struct wb_cycle_specimen *specimen, struct wb_tes
     info->natural_shape[1] = -3.0 * specimen->uneven_angle;
 }
 
-/* Curvature at the clamp beyond the natural one, from the turn of a short piece. */
+/* Curvature at the clamp relative to the natural one, from the rotation of a short piece. */
 static double clamp_curvature(const struct wb_cycle_model *model)
 {
     const double s[2] = {0.0, model->info.length / 400.0};
@@ -106,7 +106,7 @@ static double clamp_curvature(const struct wb_cycle_model *model)
            wb_dataset_natural_curvature((void *)&model->info, 0.5 * s[1]);
 }
 
-/* How far a place lies above the axis, along its normal. */
+/* Distance of a place above the axis, along its normal. */
 static double distance_of(const struct wb_cantilever *cantilever,
                           const struct wb_cycle_place *place)
 {
@@ -125,7 +125,7 @@ const double *wb_cycle_model_held(const struct wb_cycle_model *model)
     return model->held;
 }
 
-/* Moves to the turn and stays there for the dwell. */
+/* Moves to the turn and holds for the dwell. */
 static enum wb_status turn(struct wb_cycle_model *model, double deflection, double *curvature,
                            int n, struct wb_cycle_neighbour *neighbours, bool *reached)
 {
@@ -144,7 +144,8 @@ static enum wb_status turn(struct wb_cycle_model *model, double deflection, doub
                                       : WB_OK;
 }
 
-/* When the tip was on its rest, at the pace of the first points: it had hung there for long. */
+/* Time at which the tip left its rest, extrapolated from the first points. It had been at rest for
+ * a long time. */
 static double time_at_rest(const struct wb_cycle_data *data, double rest)
 {
     const struct wb_cycle_point *const p = data->points;
@@ -154,7 +155,7 @@ static double time_at_rest(const struct wb_cycle_data *data, double rest)
     return p[0].t - (p[0].deflection - rest) / speed;
 }
 
-/* A law and a specimen, virgin. Leaves the specimen's natural shape in model->info. */
+/* Sets a law and a virgin specimen. Leaves the natural shape of the specimen in model->info. */
 static enum wb_status begin(struct wb_cycle_model *model, struct wb_cantilever *cantilever,
                             const struct wb_law *law, const struct wb_cycle_specimen *specimen)
 {
@@ -198,7 +199,7 @@ enum wb_status wb_cycle_model_run_beside(struct wb_cycle_model *model, const str
     forget(data, tension, distance);
     wb_cantilever_lead(model->cantilever, n, model->followers, model->offsets);
 
-    /* The rest carries the tip before the strand does; to the wire it is the same. */
+    /* The rest carries the tip before the strand does; the load on the wire is the same. */
     const double rest = wb_cycle_model_rest(&data->info);
     model->relaxes = law->n_maxwell > 0;
     model->t = time_at_rest(data, rest);

@@ -9,38 +9,37 @@
 
 #define WB_LOG_DOMAIN "cycle"
 
-/* Plastic strain at which the hardening stress of Ludwik's law is a free number: amidst those of a
- * test, where it is known best. */
+/* Plastic strain at which the hardening stress of Ludwik's law is a free parameter: in the middle
+ * of those of a test, where it is known best. */
 static const double middle_plastic_strain = 3e-3;
 /* Largest exponents. */
 static const double largest_exponent = 1.5;           /* isotropic */
-static const double largest_kinematic_exponent = 1.0; /* beyond, work would come from nowhere */
-/* A search begins with an exponent within this part of the largest. */
+static const double largest_kinematic_exponent = 1.0; /* a larger exponent would generate work */
+/* Largest initial exponent, over the largest exponent. */
 static const double largest_part = 0.95;
-/* A logistic number beyond this is at its bound. */
+/* A logistic parameter beyond this is at its bound. */
 static const double at_bound = 4.6; /* 1 % of the range */
-/* Where the logistic share of mixed hardening starts from a law with a pure rule. Parts that
- * follow a test kinematically lie nearer to those with both rules than Ludwik's isotropic law. */
+/* Initial logistic share of mixed hardening, from a kinematic and from an isotropic law. Parts that
+ * fit a kinematic test are closer to a mixed law than Ludwik's isotropic law is. */
 static const double kinematic_start = -3.0, isotropic_start = 1.5;
-/* Weak prior of logistic numbers, so that one that the data do not know stays finite. */
+/* Weak prior of logistic parameters, which keeps one finite that the data do not determine. */
 static const double logistic_prior = 4.0;
-/* Weak prior of ln(yield stress) beside that of the hardening stress: a step of the search that
- * takes the yield stress to nothing is none that it comes back from, as all slopes are zero there.
- */
+/* Weak prior of ln(yield stress) relative to that of the hardening stress: the search could not
+ * return from a yield stress near zero, where all derivatives vanish. */
 static const double yield_prior = 4.0;
-/* Weak priors of Chaboche's law: of the stresses that it may harden by, about the yield stress, and
- * of the rates, about those over which a test goes. */
+/* Weak priors of Chaboche's law: of the hardening stresses relative to the yield stress, and of the
+ * rates relative to those of the test's strains. */
 static const double stress_prior = 4.0, rate_prior = 2.0;
-/* Where its search starts: rates times the test's largest strain, of one and of two back stresses.
+/* Initial rates times the test's largest strain, of one and of two backstresses.
  */
 static const double one_rate = 4.0, fast_rate = 20.0, slow_rate = 2.0;
-/* And the least share of either kind of hardening. */
+/* Initial least share of either kind of hardening. */
 static const double least_share = 0.1;
-/* Weak priors of a Maxwell element: logarithms of its modulus about where it starts, and of its
- * time between those of the dwell and of the loading. */
+/* Weak priors of a Maxwell element: of ln(modulus) about its initial value, and of ln(time) between
+ * those of the dwell and of the loading. */
 static const double maxwell_modulus_prior = 4.0, maxwell_time_prior = 1.5;
-/* Least fall of the tension, over the largest, that a search starts from; the times of two elements
- * start this many times below and above that of one. */
+/* Least initial fall of the tension, over the largest; and the factor of the initial times of two
+ * elements, below and above that of one. */
 static const double least_fall = 1e-4, apart = 4.0;
 
 static const struct wb_cycle_parameters_candidate candidates[WB_CANDIDATES] = {
@@ -62,8 +61,8 @@ static const struct wb_cycle_parameters_candidate candidates[WB_CANDIDATES] = {
                                         true, 0},
 };
 
-/* Free numbers of Chaboche's law: logarithms of E, sigma_Y, Q and b, then of each back stress where
- * it saturates, C / gamma, and its gamma. */
+/* Free parameters of Chaboche's law: logarithms of E, sigma_Y, Q and b, then for each backstress of
+ * its saturation value, C / gamma, and of gamma. */
 enum {
     MODULUS,
     YIELD,
@@ -116,13 +115,14 @@ static double harden_parts(struct wb_law_part *parts, double share)
     return growth / (1.0 + growth);
 }
 
-/* ln E, ln sigma_Y, ln(hardening stress at the middle), logistic exponent; or moduli over those of
- * the start, see wb_least_squares_positive(); and the logistic share of mixed hardening. */
+/* Ludwik's law: ln E, ln sigma_Y, ln(hardening stress at the plastic strain above), logistic
+ * exponent. Parallel parts: moduli over the initial ones, see wb_least_squares_positive(). Then the
+ * logistic share of mixed hardening. */
 static void relaxed_law_of(const struct wb_cycle_parameters *p, const double *free,
                            struct wb_law *law)
 {
     const struct wb_cycle_parameters_candidate *const c = p->candidate;
-    /* At its end a mixed law would be of another kind. */
+    /* At the end of the range, a mixed law would be another candidate. */
     const double share =
         c->has_share ? fmin(logistic(free[p->n_form - 1]), 1.0 - 1e-9) : c->isotropic_share;
 
@@ -187,7 +187,7 @@ void wb_cycle_parameters_law(const struct wb_cycle_parameters *p, const double *
     law->strain_rate = law->n_maxwell > 0 ? p->strain_rate : 0.0;
 }
 
-/* Of the outer fibre up to the clamp's curvature at the turn, 1/s. */
+/* Strain rate of the outer fibre up to the clamp's curvature at the turn, 1/s. */
 double wb_cycle_parameters_strain_rate(const struct wb_cycle_data *data, double curvature)
 {
     const double t = wb_cycle_data_loading_time(data);
@@ -199,7 +199,8 @@ static double elastic_curvature(const struct wb_cycle_data *data)
     return 3.0 * data->top / (data->info.length * data->info.length);
 }
 
-/* From the elements of a law near by, or from the fall of the tension in the dwell. */
+/* Initial guess of Maxwell elements: from those of the given law, or from the fall of the tension
+ * in the dwell. */
 static void start_maxwell(struct wb_cycle_parameters *p, const struct wb_law *law)
 {
     double *const start = p->start + p->n_form;
@@ -215,7 +216,7 @@ static void start_maxwell(struct wb_cycle_parameters *p, const struct wb_law *la
     const double secant = wb_law_virgin_stress(law, strain, NULL) / strain;
     const double loading = wb_cycle_data_loading_time(p->data), time = seen.time;
     const double share = fmax(seen.fall / p->data->max_force, least_fall);
-    /* What is left of the stress at the turn, and what of that goes in the dwell. */
+    /* Part of the stress that is left at the turn, and part of this that relaxes in the dwell. */
     const double left = time / loading * -expm1(-loading / time);
     const double gone = -expm1(-seen.duration / time);
     for (int i = 0; i < p->n_maxwell; i++) {
@@ -224,7 +225,8 @@ static void start_maxwell(struct wb_cycle_parameters *p, const struct wb_law *la
     }
 }
 
-/* From another of its kind; the second of two back stresses comes of the first. */
+/* Initial guess from another Chaboche law; the second of two backstresses is derived from the
+ * first. */
 static void start_from_chaboche(struct wb_cycle_parameters *p, const struct wb_law *law)
 {
     const int n = p->candidate->n_backs;
@@ -241,8 +243,8 @@ static void start_from_chaboche(struct wb_cycle_parameters *p, const struct wb_l
     }
 }
 
-/* From the virgin curve of another law, which hardens by as much at the test's largest strain and,
- * of two back stresses, at a tenth of it. */
+/* Initial guess from the virgin curve of another law: the same hardening at the test's largest
+ * strain and, for two backstresses, at a tenth of it. */
 static void start_from_curve(struct wb_cycle_parameters *p, const struct wb_law *law)
 {
     const double E = law->material.youngs_modulus, top = p->grid.last_strain;
@@ -268,7 +270,7 @@ static void start_from_curve(struct wb_cycle_parameters *p, const struct wb_law 
     p->start[FIRST_BACK + 3] = log(slow_rate / top);
 }
 
-/* Free numbers of the law nearest to the given one. */
+/* Free parameters of the law closest to the given one. */
 static void start_law(struct wb_cycle_parameters *p, const struct wb_law *law)
 {
     const struct wb_cycle_parameters_candidate *const c = p->candidate;
@@ -288,7 +290,7 @@ static void start_law(struct wb_cycle_parameters *p, const struct wb_law *law)
         else
             start_from_curve(p, law);
     } else {
-        /* Slopes of the given curve's chords between the yield strains. */
+        /* Moduli from the slopes of the curve's chords between the yield strains. */
         const double ratio =
             pow(p->grid.last_strain / p->grid.first_strain, 1.0 / (WB_FIT_PARTS - 1));
         double strain = p->grid.first_strain, stress = wb_law_virgin_stress(law, strain, NULL);
@@ -305,7 +307,7 @@ static void start_law(struct wb_cycle_parameters *p, const struct wb_law *law)
             stress = next_stress;
         }
     }
-    /* On the side of the nearest pure rule; parts harden little. */
+    /* On the side of the closest pure rule; parts harden little. */
     const bool grows = c->form == WB_LAW_PARALLEL && c->is_combined;
     if (c->has_share)
         p->start[p->n_form - 1] = law->isotropic_share == 0.0 || grows ? kinematic_start
@@ -353,7 +355,7 @@ bool wb_cycle_parameters_contains(const struct wb_cycle_parameters_candidate *c,
     const struct wb_cycle_parameters_candidate *const other = &candidates[near->candidate];
     if (!c->has_share || c->form != other->form || other->has_share || !near->is_converged)
         return false;
-    /* Nearer to the ends of its range an exponent is not where a search begins. */
+    /* A search does not begin with an exponent closer to the ends of its range. */
     if (c->form == WB_LAW_LUDWIK &&
         near->law.material.hardening_exponent > largest_part * largest_exponent_of(c))
         return false;
@@ -420,7 +422,7 @@ void wb_cycle_parameters_init(struct wb_cycle_parameters *p, const struct wb_cyc
         .strain_rate = wb_cycle_parameters_strain_rate(data, elastic_curvature(data)),
         .maxwell_time = sqrt((data->departure - data->arrival) * wb_cycle_data_loading_time(data)),
     };
-    /* Forces alone do not tell an unevenly bent wire from one with another law. */
+    /* Forces alone cannot distinguish an uneven natural curvature from another law. */
     const int own = WB_CYCLE_UNEVEN + (data->n_places > 0);
     p->n_law = p->n_form + 2 * p->n_maxwell;
     p->n_free = p->n_law + (settings->zero_prior > 0.0 ? WB_CYCLE_SPECIMEN_PARAMETERS : own);
@@ -475,7 +477,8 @@ void wb_cycle_parameters_correlate(const struct wb_cycle_parameters *p,
     }
     fit->n_numbers = n;
     if (p->candidate->form == WB_LAW_LUDWIK) {
-        fit->ln_strength_error = sqrt(variance * fmax(c[2][2], 0.0)); /* a difference */
+        fit->ln_strength_error =
+            sqrt(variance * fmax(c[2][2], 0.0)); /* a difference of two parameters */
         fit->exponent_error = sqrt(variance * c[3][3]);
     }
 }

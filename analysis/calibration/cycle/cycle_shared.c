@@ -85,7 +85,7 @@ bool wb_cycle_shared_alter(struct wb_cycle_data *altered, const struct wb_cycle_
     for (int i = 0; i < data->n_held && of == WB_SHARED_GAIN; i++)
         altered->held[i].tension *= 1.0 + change;
     altered->top -= lower;
-    /* What is hidden in the clamp: its edge is where places are counted from. */
+    /* A change of length is hidden in the clamp, whose edge is the origin of the places. */
     for (int i = 0; i < data->n_places; i++) {
         altered->places[i] = data->places[i];
         altered->places[i].s += longer;

@@ -13,13 +13,13 @@
 #define WB_LOG_DOMAIN "calibrate"
 
 static const double smallest_exponent = 0.02, largest_exponent = 1.5;
-/* How far the nodes go, in standard errors; and the widest, in ln of the stress and in n. */
+/* Range of the nodes, in standard errors; and its limits, in ln of the stress and in n. */
 static const double reach = 5.0, widest_stress = 0.5, widest_exponent = 0.4;
-/* Step of the differences. */
+/* Step of the finite differences. */
 static const double difference = 1e-3;
 static const double confidence = 0.95;
 
-/* The numbers of a loading; those that are free at each pair come first. */
+/* Parameters of a loading; those that are free at each pair come first. */
 enum {
     MODULUS, /* ln E */
     YIELD,   /* ln sigma_Y */
@@ -37,7 +37,7 @@ struct problem {
     struct wb_cycle_model *model;
     double poissons_ratio;
     double best[NUMBERS], scale[NUMBERS];
-    double bow_prior; /* rad: what the markers leave open */
+    double bow_prior; /* rad: standard error of the bow by the markers */
     double *tension, *residual;
     gsl_matrix *slopes;  /* (n_points + 2 priors, NUMBERS), per scale, over the force noise */
     double noise;        /* N */
@@ -58,7 +58,7 @@ static void law_of(const struct problem *p, const double *numbers, struct wb_law
     wb_law_init_ludwik(law, &material);
 }
 
-/* Residuals of the forces, N; *misfit NaN where the beam does not come to the end. */
+/* Residuals of the forces, N; *misfit is NaN if the beam does not complete the loading. */
 static enum wb_status run(struct problem *p, const double *numbers, double *misfit)
 {
     const struct wb_cycle_specimen specimen = {numbers[BOW], numbers[LEVEL], p->uneven_angle};
@@ -82,7 +82,7 @@ static enum wb_status run(struct problem *p, const double *numbers, double *misf
     return WB_OK;
 }
 
-/* Slopes at the optimum; `base` receives the residuals there (n_points, over the noise). */
+/* Jacobian at the optimum; `base` receives the residuals there (n_points, over the noise). */
 static enum wb_status find_slopes(struct problem *p, gsl_vector *base, double *misfit)
 {
     const size_t n = (size_t)p->loading.n_points;
@@ -105,7 +105,7 @@ static enum wb_status find_slopes(struct problem *p, gsl_vector *base, double *m
     return WB_OK;
 }
 
-/* Standard errors of the stress and of n by the residuals of the loading. */
+/* Standard errors of the stress and of n from the residuals of the loading. */
 static bool find_errors(const struct problem *p, const gsl_vector *base, double *stress,
                         double *exponent)
 {
@@ -127,7 +127,8 @@ static bool find_errors(const struct problem *p, const gsl_vector *base, double 
     return found;
 }
 
-/* Moves what is free so that a step of stress and exponent is made up for, in the linear sense. */
+/* Moves the free parameters so that they compensate a step of stress and exponent, to first order.
+ */
 static bool adapt(const struct problem *p, const gsl_vector *base, double *numbers)
 {
     const size_t rows = p->slopes->size1;
@@ -171,7 +172,7 @@ static enum wb_status fill_nodes(struct wb_cycle_valley *valley, struct problem 
             numbers[EXPONENT] += to_exponent * (k - middle) / middle;
             const double n = numbers[EXPONENT];
             *node = (struct wb_cycle_valley_node){.misfit = (double)NAN};
-            /* The middles of faces of 8 nodes are not looked at. */
+            /* The centres of faces of 8 nodes are not computed. */
             if (!(n >= smallest_exponent && n <= largest_exponent) || (i % 2 == 1 && k % 2 == 1))
                 continue;
             node->exponent = n;
@@ -204,7 +205,7 @@ static double misfit_within(const struct wb_cycle_valley *valley, int i, int k, 
     return sum;
 }
 
-/* Takes the pairs of a face that lie within the limit. */
+/* Widens the ranges by the pairs of a face that lie within the limit. */
 static void take_face(struct wb_cycle_valley *valley, int i, int k)
 {
     const struct wb_cycle_valley_node *const low = &valley->nodes[i][k];
@@ -226,7 +227,7 @@ static void take_face(struct wb_cycle_valley *valley, int i, int k)
     }
 }
 
-/* What lies within the limit. */
+/* Finds the ranges of K and n within the limit. */
 static void find_region(struct wb_cycle_valley *valley, int n_points)
 {
     const int degrees = n_points > NUMBERS ? n_points - NUMBERS : 1;
@@ -261,7 +262,7 @@ static enum wb_status find(struct wb_cycle_valley *valley, struct problem *p, st
     return status;
 }
 
-/* The optimum of the loading alone, from which all else is seen. */
+/* Finds the optimum of the loading alone, the centre of the nodes. */
 static enum wb_status find_best(struct problem *p, const struct wb_law *start,
                                 struct wb_material *best, struct wb_reason *why)
 {

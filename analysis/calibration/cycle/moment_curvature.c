@@ -3,22 +3,22 @@
  * Curvature beyond the natural one, of which g = 1 - s/L falls from 1 at the clamp to 0 at the tip,
  * where no moment acts:
  *
- *     theta'(s) = theta0'(s) + b(s) + a_1 g + a_2 g^2 + a_3 g^3
+ * theta'(s) = theta0'(s) + b(s) + a_1 g + a_2 g^2 + a_3 g^3
  *
  * With b = 0 the angle is a polynomial of four terms. theta, x and y follow by integration. The a_j
  * are found by least squares (Gauss-Newton) on the distances of the markers from the wire, along
  * its normal, and on the height of the tip.
  *
- * Moment of what lies between s and the tip, T (sin p, cos p) the tension, P the counterweight and
- * w the weight per length:
+ * Moment of the loads between s and the tip, with the tension T (sin p, cos p), the counterweight P
+ * and the weight per length w:
  *
- *     M(s) = (x(L) - x(s)) (T cos p - P) - (y(L) - y(s)) T sin p - w int_s^L (x(r) - x(s)) dr
+ * M(s) = (x(L) - x(s)) (T cos p - P) - (y(L) - y(s)) T sin p - w int_s^L (x(r) - x(s)) dr
  *
- * Where the wire yields within a part of its length, four terms are too smooth: the curvature of
- * the clamp comes out 1 or 2 % too large. On a first loading all places follow one curve, which
- * the first pass shows in the mean of all states; later passes take it for b, at the moments of
- * the state, so that the polynomial has only the rest to follow. It stays as free as before, so
- * that each state still speaks for itself. During unloading b is what the turn left.
+ * If only a part of the wire yields, four terms are too smooth: the curvature of the clamp is 1 or
+ * 2 % too large. On a first loading all places follow one curve of moment over curvature; the first
+ * pass finds its mean over all states. Later passes use it for b, at the moments of the state, so
+ * that the polynomial describes only the difference. All terms stay free, so each state is still
+ * determined by its own data. During unloading, b is that at the turn.
  */
 #include "analysis/calibration/cycle/moment_curvature.h"
 
@@ -41,40 +41,40 @@ enum {
     TERMS = 3,
     CURVE_TERMS = 6, /* of the mean curve */
     PASSES = 3,
-    SETTLING = 4, /* iterations until b is taken */
+    SETTLING = 4, /* iterations before b is used */
     MOST_MARKERS = 64,
     FEWEST_MARKERS = 3,
     MOST_ITERATIONS = 50,
     STATIONS = 3,
     TABLE = 801,
-    FEWEST_POINTS = 2 /* of a specimen in a stretch */
+    FEWEST_POINTS = 2 /* of a specimen in a range */
 };
 
-/* Places along the wire, s/L, at which a shape gives a point: beyond the middle the moment is small
- * and the shape's polynomial is held by the tip. */
+/* Places along the wire, s/L, at which a shape gives a point: beyond the middle the moment is
+ * small, and the polynomial is determined by the tip. */
 static const double stations[STATIONS] = {0.0, 0.2, 0.4};
 
 static const double default_step = 3.0 * WB_MM, default_share = 0.12, default_bow = 0.3 * WB_MM;
-/* Standard deviation of a marker's constant distance off the axis, and of the mean of its places in
- * a state from the wire. */
+/* Standard deviation of a marker's constant distance from the axis, and prior standard deviation of
+ * its mean places in a state. */
 static const double offset_deviation = 0.15 * WB_MM, place_deviation = 0.03 * WB_MM;
-/* What is known of the latter counts as much as so many places. */
+/* Weight of this prior, in places. */
 static const double prior_places = 6.0;
-/* States whose tip is off zero deflection by no more than this part of the length show the natural
- * shape. */
+/* Largest deflection over length of states that show the natural shape. */
 static const double near_zero = 0.047;
-/* What the law may change of such a shape, as a part of how far its tip is bent. */
+/* Effect of the law on such a shape, as a part of its deflection. */
 static const double law_share = 0.01;
-/* A state's places come from frames within this distance of its deflection (cycle_data.c). */
+/* Largest distance of a frame from the deflection of its state (cycle_data.c). */
 static const double frame_reach = 1.6 * WB_MM;
-/* How far the polynomial's form is off, as a part of the curvature: see docs/theory.md. */
+/* Relative error of the curvature by the form of the polynomial: see docs/theory.md. */
 static const double form_share = 0.005;
 
-/* Where stretches of the comparison begin and end, over the largest curvature. */
+/* Bounds of the ranges of the comparison, over the largest curvature. */
 static const double edges[WB_MOMENT_STRETCHES + 1] = {0.12, 0.2, 0.32, 0.46, 0.62, 0.8, 1.001};
-/* What no specimen's own deviation has in it: of a moment; of the method in the mean of many. */
+/* Standard uncertainties that the scatter does not include: of a moment; of the method in the mean
+ * of many. */
 static const double least_relative_deviation = 0.005, method_deviation = 0.007;
-/* Standard deviations by which law and cloud part; and by which the next stretch does then. */
+/* Limits in standard deviations: for a range, and for its neighbour. */
 static const double apart = 3.0, backing = 2.0;
 
 struct shape {
@@ -85,7 +85,7 @@ struct shape {
 
 struct fitting {
     const struct wb_cycle_data *data;
-    const struct wb_test_info *info; /* with the natural shape that counts */
+    const struct wb_test_info *info; /* with the natural shape that is used */
     double level;
     double offsets[MOST_MARKERS]; /* m */
     double base[NODES];           /* 1/m: b */
@@ -114,7 +114,7 @@ static double natural_angle(const struct wb_test_info *info, double u)
     return sum;
 }
 
-/* Where small slopes are. */
+/* Place at small slopes. */
 static double natural_height(const struct wb_test_info *info, double u)
 {
     double sum = 0.0, power = u * u;
@@ -123,7 +123,7 @@ static double natural_height(const struct wb_test_info *info, double u)
     return sum;
 }
 
-/* The shape of the numbers a, and its derivatives, by the trapezoidal rule. */
+/* Shape of the parameters a, and its derivatives, by the trapezoidal rule. */
 static void integrate(struct fitting *f)
 {
     struct shape *const q = &f->shape;
@@ -166,7 +166,7 @@ static double between(const double *values, double at)
     return values[k] + (at - k) * (values[k + 1] - values[k]);
 }
 
-/* Replaces a symmetric positive definite matrix (n x n) by its inverse; false where it is none. */
+/* Replaces a symmetric matrix (n x n) by its inverse; false if it is not positive definite. */
 static bool invert(double *matrix, size_t n)
 {
     gsl_matrix_view m = gsl_matrix_view_array(matrix, n, n);
@@ -199,7 +199,7 @@ static double moment_of(const struct fitting *f, double tension, int node)
            rise * tension * sine - info->mass_per_length * info->gravity * q->weight_arm[node];
 }
 
-/* b of a loading: the mean curve at the moments of the present shape. */
+/* Sets b of a loading: the mean curve at the moments of the present shape. */
 static void follow_curve(struct fitting *f, double tension)
 {
     for (int k = 0; k < NODES; k++) {
@@ -211,14 +211,14 @@ static void follow_curve(struct fitting *f, double tension)
     }
 }
 
-/* Curvature beyond the natural one at a node. */
+/* Curvature relative to the natural one at a node. */
 static double curvature_of(const struct fitting *f, int node)
 {
     const double g = falling(node);
     return f->base[node] + g * (f->a[0] + g * (f->a[1] + g * f->a[2]));
 }
 
-/* The shape through places `begin` to `end`, which belong to one state. */
+/* Fits the shape to places `begin` to `end`, which belong to one state. */
 static bool fit_state(struct fitting *f, int begin, int end)
 {
     const struct wb_cycle_data *const data = f->data;
@@ -226,7 +226,7 @@ static bool fit_state(struct fitting *f, int begin, int end)
     const struct wb_cycle_point *const point = &data->points[data->places[begin].point];
     const double height = point->deflection - f->level;
     if (!point->is_unloading) {
-        /* The elastic shape as a start. */
+        /* Initial guess: the elastic shape. */
         memset(f->base, 0, sizeof f->base);
         f->a[0] = 3.0 * height / (length * length);
         f->a[1] = f->a[2] = 0.0;
@@ -275,10 +275,10 @@ static bool fit_state(struct fitting *f, int begin, int end)
     return false;
 }
 
-/* How far each marker is off the axis of a wire with the natural shape, from the states next to
- * zero deflection: the shape there is the natural one, bent by a force at the tip as far as its
- * height says, which depends little on the law. What the natural shape has beside the terms that
- * are known of it goes with this too. A simulation's places are on the axis. */
+/* Finds the distance of each marker from the axis from the states close to zero deflection. Their
+ * shape is the natural one, bent by a force at the tip to the measured height, which depends little
+ * on the law. Errors of the natural shape are included in these distances. Places of a simulation
+ * are on the axis. */
 static void find_offsets(struct fitting *f)
 {
     const struct wb_cycle_data *const data = f->data;
@@ -303,8 +303,8 @@ static void find_offsets(struct fitting *f)
         f->offsets[i] = sum[i] / weights[i];
 }
 
-/* Next to the turn there are frames on one side only, and the places are carried on along a line
- * through them: how much more uncertain that makes them. */
+/* Factor of the uncertainty of places close to the turn, where frames lie on one side only and the
+ * places are extrapolated along a line. */
 static double turn_factor(const struct fitting *f, const struct wb_cycle_point *point)
 {
     const double beyond = fmin(fmax(f->data->top - point->deflection, 0.0), frame_reach);
@@ -312,8 +312,9 @@ static double turn_factor(const struct fitting *f, const struct wb_cycle_point *
     return hypot(1.0, off_middle / ((frame_reach + beyond) / sqrt(12.0)));
 }
 
-/* The points of a fitted state. Along the wire the unloading is another one at each place, so only
- * the clamp's is taken of it. Deviations stand for places that are off by 1 m, see finish(). */
+/* Adds the points of a fitted state. During unloading only that of the clamp is used, because the
+ * curvature at the turn differs along the wire. Deviations are for errors of places of 1 m, see
+ * finish(). */
 static void add_points(struct wb_moment_cloud *cloud, const struct fitting *f,
                        const struct wb_cycle_point *point)
 {
@@ -334,13 +335,13 @@ static void add_points(struct wb_moment_cloud *cloud, const struct fitting *f,
     }
 }
 
-/* Sizes of the deviations and which points are bands. */
+/* Scales the deviations and marks points of the band. */
 static void finish(struct wb_moment_cloud *cloud, const struct fitting *f,
                    const struct wb_moment_settings *settings, double bow_deviation)
 {
     const double share = settings->smallest_share > 0.0 ? settings->smallest_share : default_share;
-    /* What a marker sits off stays in all states: few numbers say how large it is, and what is
-     * known beforehand counts as much as some more of them. */
+    /* Errors of a marker's distance are the same in all states, so few independent numbers
+     * determine their size; the prior counts as additional ones. */
     const double free_places = (double)f->all_degrees / f->n_states;
     const double places =
         sqrt((prior_places * pow(place_deviation, 2) + f->all_square_sum / f->n_states) /
@@ -360,7 +361,7 @@ static void finish(struct wb_moment_cloud *cloud, const struct fitting *f,
     }
 }
 
-/* As `align` states it. */
+/* Stated by `align`. */
 static double stated_bow_deviation(const struct wb_dataset *dataset)
 {
     const struct wb_json *const checks = wb_json_get(dataset->document, "checks");
@@ -371,7 +372,7 @@ static double stated_bow_deviation(const struct wb_dataset *dataset)
     return default_bow;
 }
 
-/* The mean curve of the loading's points by least squares; false where there are too few. */
+/* Fits the mean curve of the points of the loading by least squares; false if there are too few. */
 static bool find_curve(struct fitting *f, const struct wb_moment_cloud *cloud)
 {
     double normal[CURVE_TERMS][CURVE_TERMS] = {{0.0}}, right[CURVE_TERMS] = {0.0};
@@ -404,7 +405,7 @@ static bool find_curve(struct fitting *f, const struct wb_moment_cloud *cloud)
     return true;
 }
 
-/* All states, the loading's first. */
+/* Fits all states, those of the loading first. */
 static void fit_states(struct wb_moment_cloud *cloud, struct fitting *f)
 {
     const struct wb_cycle_data *const data = f->data;
@@ -493,7 +494,7 @@ void wb_moment_curvature_release(struct wb_moment_cloud *cloud)
 
 /* --- against a law --- */
 
-/* Of one specimen in one stretch. */
+/* Mean of one specimen in one range. */
 struct sums {
     double weight, difference, deviation;
     int n;
@@ -532,8 +533,8 @@ static int stretch_of(const struct wb_moment_comparison *c, double curvature)
     return -1;
 }
 
-/* One specimen in one stretch: mean of the relative differences, weighted, and the mean of their
- * deviations, because what makes them is shared. */
+/* Weighted mean of the relative differences of one specimen in one range, and the mean of their
+ * deviations, because their errors are correlated. */
 static void gather(struct sums *sums, const struct wb_moment_cloud *cloud,
                    const struct table *table, const struct wb_moment_comparison *c)
 {
@@ -555,8 +556,7 @@ static void gather(struct sums *sums, const struct wb_moment_cloud *cloud,
     }
 }
 
-/* What stretches say together: whether somewhere two neighbours, or the only one, part in the same
- * direction. */
+/* Judges all ranges: whether two neighbours, or the only range, differ in the same direction. */
 static void judge(struct wb_moment_comparison *c)
 {
     for (int i = 0; i < c->n; i++) {
@@ -623,7 +623,7 @@ enum wb_status wb_moment_curvature_compare(const struct wb_moment_cloud *const *
         if (2 * stretch.n < n || stretch.n == 0)
             continue;
         stretch.difference = sum[k].difference / stretch.n;
-        /* Specimens differ by more than what they are measured with. */
+        /* The scatter of specimens may exceed the measurement uncertainty. */
         const double scatter = stretch.n > 1
                                    ? fmax(sum[k].difference_square -
                                               stretch.n * stretch.difference * stretch.difference,
