@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Tests the guarantees of the recorder and writes the table of docs/reliability.md: each guarantee,
-# number of trials, outcome. Includes the slow tests and ten minutes at ten times a bench's rates;
-# takes half an hour. Usage: reliability.sh BUILD [quick]; quick skips the slow tests and writes to
-# standard output.
+# Tests the guarantees of the recorder and writes docs/reliability.md: each event, its number of
+# trials and the result. Includes the slow tests and ten minutes at ten times a bench's rates; takes
+# half an hour. Usage: reliability.sh BUILD [quick]; quick leaves out the slow ones and
+# writes to standard output.
 set -eu
-build=$(realpath "$1")
+build=$(realpath "${1:?usage: reliability.sh BUILD [quick]}")
 quick=${2:-}
 root=$(cd "$(dirname "$0")/.." && pwd)
 trials=$(mktemp)
