@@ -43,7 +43,7 @@ static enum wb_status load(struct wb_config *config, const char *text)
     enum wb_status status = WB_OK;
     if (!yaml_parser_load(&parser, &config->document)) {
         const char *const what = parser.problem ? parser.problem : "not YAML";
-        /* libyaml's words for the commonest slip, a line without its colon. */
+        /* libyaml's messages for the most frequent mistake, a missing colon. */
         const bool colon = strstr(what, "mapping values are not allowed") ||
                            strstr(what, "could not find expected ':'");
         status = wb_fail_to(config->why, WB_ERR_FORMAT, "%s:%zu: %s%s%s%s", config->origin,
@@ -60,7 +60,7 @@ static enum wb_status load(struct wb_config *config, const char *text)
     return status;
 }
 
-/* Finds the entry of `name`; refuses a second one. */
+/* Finds the entry `name`; rejects a second one. */
 static enum wb_status find_entry(const struct wb_config_node *map, const char *name,
                                  const struct wb_config_node **found)
 {
@@ -139,6 +139,18 @@ enum wb_status wb_config_read(struct wb_config **out, const char *path, struct w
     return status;
 }
 
+enum wb_status wb_config_load(const char *text, const char *origin, struct wb_reason *why,
+                              enum wb_status (*read)(const struct wb_config_node *, void *),
+                              void *into)
+{
+    struct wb_config *config;
+    WB_TRY(text ? wb_config_parse(&config, text, origin, why)
+                : wb_config_read(&config, origin, why));
+    const enum wb_status status = read(wb_config_root(config), into);
+    wb_config_destroy(config);
+    return status;
+}
+
 void wb_config_destroy(struct wb_config *config)
 {
     if (!config)
@@ -190,11 +202,20 @@ enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *k
                       message);
 }
 
+enum wb_status wb_config_refuse_keys(const struct wb_config_node *map, const char *const *keys,
+                                     const char *message)
+{
+    for (; *keys; keys++)
+        if (wb_config_find(map, *keys))
+            return wb_config_refuse(map, *keys, "%s", message);
+    return WB_OK;
+}
+
 const char *wb_config_scalar(const struct wb_config_node *node)
 {
     if (node->yaml->type != YAML_SCALAR_NODE)
         return NULL;
-    /* A scalar with a NUL inside ("\0") would end early: treat it as no scalar. */
+    /* A scalar that contains NUL ("\0") would be cut off: treat it as not a scalar. */
     const char *const text = (const char *)node->yaml->data.scalar.value;
     return strlen(text) == node->yaml->data.scalar.length ? text : NULL;
 }
@@ -228,7 +249,7 @@ const struct wb_config_node *wb_config_item(const struct wb_config_node *sequenc
     return node_of(sequence->config, sequence->yaml->data.sequence.items.start[index]);
 }
 
-/* "85,5": a number but for its comma; then `with_point` is "85.5". */
+/* Whether the text is a number with a decimal comma, "85,5"; `with_point` is then "85.5". */
 static bool is_decimal_comma(const char *text, char *with_point, size_t size)
 {
     double number;
@@ -351,7 +372,7 @@ static enum wb_status refuse_unknown(const struct wb_config_node *value, const c
     return wb_config_refuse(value, name, "unknown key; known here: %s", known);
 }
 
-/* wb_config_parse() has read it. */
+/* wb_config_parse() has read this key. */
 static bool is_schema(const struct wb_config_node *map, const char *name)
 {
     return map == wb_config_root(map->config) && strcmp(name, "schema") == 0;
@@ -376,8 +397,6 @@ enum wb_status wb_config_map(const struct wb_config_node *map, const struct wb_c
     for (size_t k = 0; k < n_keys; k++) {
         const struct wb_config_node *value;
         WB_TRY(find_entry(map, keys[k].name, &value));
-        if (keys[k].present)
-            *keys[k].present = value != NULL;
         if (value)
             WB_TRY(wb_config_value(value, &keys[k]));
         else if (!keys[k].optional)

@@ -10,11 +10,11 @@
  *     status = wb_config_map(wb_config_root(config), keys, WB_COUNT(keys));
  *     wb_config_destroy(config);
  *
- * wb_config_map() refuses unknown keys, double keys, missing required keys, wrong types and values
- * out of range. Numbers are strict decimals: `85 mm`, `nan` and `0x10` are refused.
+ * wb_config_map() rejects unknown, duplicate and missing keys, wrong types and values out of range.
+ * Numbers are strict decimals: `85 mm`, `nan` and `0x10` are rejected.
  *
- * Every file may say at its top which layout it has, `schema: 1`; without the key it has the first.
- * A file of a later layout than WB_CONFIG_SCHEMA is refused when it is parsed.
+ * A file may state its layout by the top-level key `schema: 1`, which is the default. A file of a
+ * later layout than WB_CONFIG_SCHEMA is rejected when it is parsed.
  */
 #ifndef WB_BASE_CONFIG_H
 #define WB_BASE_CONFIG_H
@@ -33,20 +33,26 @@ enum {
 struct wb_config;      /* one document, owned by the caller */
 struct wb_config_node; /* a map, sequence or scalar in it; owned by the document */
 
-/* Reads a file, or parses a text in which `origin` stands for the file in messages. `why` receives
- * why that, or later the reading of a node, is refused, and must live as long as the document;
- * NULL: that is logged. */
+/* Reads a file, or parses a text for which `origin` stands in messages. `why` receives the message
+ * of a failure, now or while nodes are read, and must live as long as the document; NULL: messages
+ * are logged. */
 WB_MUST_CHECK enum wb_status wb_config_read(struct wb_config **out, const char *path,
                                             struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_config_parse(struct wb_config **out, const char *text,
                                              const char *origin, struct wb_reason *why);
 
-/* Reads a file as a text for wb_config_parse(), to be freed. */
+/* Reads a file, or `text` where that is not NULL, and hands its top node to `read`, which fills
+ * `into`: the document lives as long as that call. */
+WB_MUST_CHECK enum wb_status
+wb_config_load(const char *text, const char *origin, struct wb_reason *why,
+               enum wb_status (*read)(const struct wb_config_node *, void *into), void *into);
+
+/* Reads a file as a text for wb_config_parse(); the caller frees it. */
 WB_MUST_CHECK enum wb_status wb_config_read_text(char **out, const char *path,
                                                  struct wb_reason *why);
 void wb_config_destroy(struct wb_config *config); /* accepts NULL */
 
-/* The top node. Its file name, and a node's line (from 1). */
+/* The top node; the file name of a node's document; and a node's line, from 1. */
 const struct wb_config_node *wb_config_root(const struct wb_config *config);
 const char *wb_config_origin(const struct wb_config_node *node);
 int wb_config_line(const struct wb_config_node *node);
@@ -58,7 +64,7 @@ enum wb_config_type {
     WB_CONFIG_TYPE_TEXT,    /* char[size] */
     WB_CONFIG_TYPE_CHOICE,  /* int *: index into `choices`, a NULL-terminated list */
     WB_CONFIG_TYPE_NODE,    /* const struct wb_config_node **: any value, for nested reading */
-    WB_CONFIG_TYPE_IGNORED  /* any value, not looked at */
+    WB_CONFIG_TYPE_IGNORED  /* any value, not read */
 };
 
 struct wb_config_key {
@@ -70,7 +76,6 @@ struct wb_config_key {
     double factor;           /* file unit to SI */
     double minimum, maximum; /* of a number, in the file's unit; of an integer */
     const char *const *choices;
-    bool *present; /* set when the key was given; may be NULL */
 };
 
 #define WB_CONFIG_NUMBER(key, pointer, unit_factor, low, high)                                     \
@@ -151,13 +156,14 @@ WB_MUST_CHECK enum wb_status wb_config_numbers(const struct wb_config_node *sequ
 /* A scalar as text (owned by the document); NULL when the node is not a scalar. */
 const char *wb_config_scalar(const struct wb_config_node *node);
 
-/* Entry of a map that is read without a table: name and value at an index; the number of entries
- * (-1 when the node is not a map). */
+/* Entries of a map that is read without a table: their number (-1 if the node is not a map), and
+ * name and value at an index. */
 int wb_config_entries(const struct wb_config_node *map);
 const struct wb_config_node *wb_config_entry(const struct wb_config_node *map, int index,
                                              const char **name);
 
-/* The value of the first entry `key` of a map; NULL when there is none or the node is not a map. */
+/* The value of the first entry `key` of a map; NULL if the map has no such key, or the node is not
+ * a map. */
 const struct wb_config_node *wb_config_find(const struct wb_config_node *map, const char *key);
 
 /* Fails with "FILE:LINE: KEY: message" and WB_ERR_FORMAT; `key` may be NULL. The line is
@@ -167,8 +173,11 @@ WB_MUST_CHECK enum wb_status wb_config_refuse(const struct wb_config_node *node,
                                               const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Refuses a text that is no date as YYYY-MM-DD, so that every reader understands it alike; "" is
- * taken. */
+/* Rejects the first of the keys (NULL-terminated) that a map has, with the message. */
+WB_MUST_CHECK enum wb_status wb_config_refuse_keys(const struct wb_config_node *map,
+                                                   const char *const *keys, const char *message);
+
+/* Rejects a text that is not a date as YYYY-MM-DD; "" is accepted. */
 WB_MUST_CHECK enum wb_status wb_config_check_date(const struct wb_config_node *map, const char *key,
                                                   const char *date);
 

@@ -47,15 +47,15 @@ bool wb_machine_kind_find(const char *name, enum wb_test_kind *kind)
 #define OF_ALL (OF(WB_TEST_CANTILEVER) | OF(WB_TEST_THREE_POINT) | OF(WB_TEST_TENSILE))
 
 enum form {
-    FORM_NUMBER, /* double, which must be there */
-    FORM_BAND,   /* struct wb_band, which may be left out */
-    FORM_CHOICE  /* int or bool, which must be there */
+    FORM_NUMBER, /* double, required */
+    FORM_BAND,   /* struct wb_band, optional */
+    FORM_CHOICE  /* int or bool, required */
 };
 
 struct key {
     const char *name;
     enum form form;
-    unsigned kinds; /* that have it */
+    unsigned kinds; /* test kinds that have the key */
     size_t offset;
     double unit, least, most; /* file's unit to SI; range in the file's unit */
     const char *const *choices;
@@ -117,23 +117,22 @@ static void clear(struct wb_machine *machine)
 
 /* --- the file --- */
 
-/* A number, or a list of the least and the most that it may be. */
-static enum wb_status read_band(const struct wb_config_node *node, const struct key *key,
-                                struct wb_band *band)
+enum wb_status wb_machine_read_band(const struct wb_config_node *node,
+                                    const struct wb_config_key *key, struct wb_band *band)
 {
     double numbers[2];
-    int n;
-    const struct wb_config_key number =
-        WB_CONFIG_NUMBER(key->name, &numbers[0], key->unit, key->least, key->most);
+    int n = 2;
+    struct wb_config_key number = *key;
+    number.target = numbers;
     if (wb_config_length(node) < 0) {
         WB_TRY(wb_config_value(node, &number));
-        *band = band_of(numbers[0], numbers[0]);
-        return WB_OK;
+        numbers[1] = numbers[0];
+    } else {
+        WB_TRY(wb_config_numbers(node, &number, 2, 2, numbers, &n));
     }
-    WB_TRY(wb_config_numbers(node, &number, 2, 2, numbers, &n));
     if (!(numbers[1] >= numbers[0]))
         return wb_config_refuse(node, key->name, "expected the least first: [%g, %g]",
-                                numbers[1] / key->unit, numbers[0] / key->unit);
+                                numbers[1] / key->factor, numbers[0] / key->factor);
     *band = band_of(numbers[0], numbers[1]);
     return WB_OK;
 }
@@ -150,13 +149,12 @@ static enum wb_status read_key(const struct wb_config_node *root, const struct w
                    ? WB_OK
                    : wb_config_refuse(root, key->name, "this key is missing for a %s test",
                                       wb_machine_kind_name(machine->kind));
+    const struct wb_config_key number = WB_CONFIG_NUMBER(key->name, (double *)member(machine, key),
+                                                         key->unit, key->least, key->most);
     if (key->form == FORM_BAND)
-        return read_band(node, key, member(machine, key));
-    if (key->form == FORM_NUMBER) {
-        const struct wb_config_key number = WB_CONFIG_NUMBER(
-            key->name, (double *)member(machine, key), key->unit, key->least, key->most);
+        return wb_machine_read_band(node, &number, member(machine, key));
+    if (key->form == FORM_NUMBER)
         return wb_config_value(node, &number);
-    }
     int choice = 0;
     const struct wb_config_key list = WB_CONFIG_CHOICE(key->name, &choice, key->choices);
     WB_TRY(wb_config_value(node, &list));
@@ -164,55 +162,40 @@ static enum wb_status read_key(const struct wb_config_node *root, const struct w
     return WB_OK;
 }
 
-static enum wb_status read_root(const struct wb_config_node *root, struct wb_machine *machine)
+static enum wb_status read_root(const struct wb_config_node *root, void *into)
 {
+    struct wb_machine read, *const machine = &read;
     const struct wb_config_node *nodes[KEYS];
     struct wb_config_key table[KEYS + 2] = {
         WB_CONFIG_TEXT("name", machine->name),
+        WB_CONFIG_CHOICE("kind", &machine->kind, kind_names),
     };
-    int kind = 0;
-    const struct wb_config_key choice = WB_CONFIG_CHOICE("kind", &kind, kind_names);
-    table[1] = choice;
+    clear(machine);
     for (int i = 0; i < KEYS; i++) {
         const struct wb_config_key node = WB_CONFIG_OPTIONAL_NODE(keys[i].name, &nodes[i]);
         table[i + 2] = node;
     }
     WB_TRY(wb_config_map(root, table, WB_COUNT(table)));
-    machine->kind = (enum wb_test_kind)kind;
     for (int i = 0; i < KEYS; i++)
         WB_TRY(read_key(root, nodes[i], &keys[i], machine));
+    *(struct wb_machine *)into = read;
     return WB_OK;
-}
-
-static enum wb_status take(struct wb_config *config, struct wb_machine *machine)
-{
-    struct wb_machine read;
-    clear(&read);
-    const enum wb_status status = read_root(wb_config_root(config), &read);
-    wb_config_destroy(config);
-    if (status == WB_OK)
-        *machine = read;
-    return status;
 }
 
 enum wb_status wb_machine_read(const char *path, struct wb_machine *machine, struct wb_reason *why)
 {
-    struct wb_config *config;
-    WB_TRY(wb_config_read(&config, path, why));
-    return take(config, machine);
+    return wb_config_load(NULL, path, why, read_root, machine);
 }
 
 enum wb_status wb_machine_parse(const char *text, const char *origin, struct wb_machine *machine,
                                 struct wb_reason *why)
 {
-    struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, origin, why));
-    return take(config, machine);
+    return wb_config_load(text, origin, why, read_root, machine);
 }
 
 /* --- the document of a dataset --- */
 
-/* 12.8 mm reads 12.8 there, not 12.800000000000001. */
+/* Rounds to 15 digits: 12.8 mm is written as 12.8, not 12.800000000000001. */
 static double in_unit(double value, double unit)
 {
     char text[40];
@@ -249,7 +232,7 @@ void wb_machine_set_json(const struct wb_machine *machine, struct wb_json *objec
     }
 }
 
-/* One number, or a list of two; false when it is neither or out of range. */
+/* Reads one number or a list of two; false for other values or out of range. */
 static bool get_numbers(const struct wb_json *value, const struct key *key, double numbers[2])
 {
     if (wb_json_number(value, &numbers[0])) {

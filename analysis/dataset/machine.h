@@ -23,6 +23,7 @@
 
 #include <stdbool.h>
 
+#include "base/config.h"
 #include "base/json.h"
 #include "base/reason.h"
 
@@ -76,6 +77,12 @@ struct wb_machine {
  * is NULL. */
 WB_MUST_CHECK enum wb_status wb_machine_read(const char *path, struct wb_machine *machine,
                                              struct wb_reason *why);
+
+/* Reads a number, or a list of the least and the most that it may be, as the key says; its target
+ * is not used. */
+WB_MUST_CHECK enum wb_status wb_machine_read_band(const struct wb_config_node *node,
+                                                  const struct wb_config_key *key,
+                                                  struct wb_band *band);
 
 /* Sets the members of a machine in an object, those of its kind, under the keys of the file; a band
  * as a list of two numbers. */

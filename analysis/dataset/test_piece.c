@@ -33,12 +33,11 @@ static void clear(struct wb_test_piece *piece)
     piece->usable_travel = piece->natural_bow = unknown;
 }
 
-/* What a file says before it is made into a piece: NaN and 0 where it says nothing. */
+/* Values of a file from which the piece is derived; NaN and 0: not given. */
 struct said {
     const struct wb_config_node *usable, *bow;
     double area, strand_diameter, inner_diameter, width, thickness;
-    int strands, constituent;
-    bool has_constituent;
+    int strands;
 };
 
 /* --- area --- */
@@ -82,27 +81,7 @@ static enum wb_status take_area(const struct wb_config_node *root, const struct 
 
 /* --- the file --- */
 
-/* A number, or a list of the least and the most. */
-static enum wb_status read_band(const struct wb_config_node *node, const char *name, double least,
-                                struct wb_band *band)
-{
-    double numbers[2];
-    int n = 1;
-    const struct wb_config_key number = WB_CONFIG_NUMBER(name, &numbers[0], WB_MM, least, 1e5);
-    if (wb_config_length(node) < 0)
-        WB_TRY(wb_config_value(node, &number));
-    else
-        WB_TRY(wb_config_numbers(node, &number, 2, 2, numbers, &n));
-    if (n == 1)
-        numbers[1] = numbers[0];
-    if (!(numbers[1] >= numbers[0]))
-        return wb_config_refuse(node, name, "expected the least first");
-    *band = (struct wb_band){true, n == 1 ? numbers[0] : 0.5 * (numbers[0] + numbers[1]),
-                             numbers[0], numbers[1]};
-    return WB_OK;
-}
-
-/* The wire's own file, where the specimen's does not say all itself. */
+/* Takes values that the specimen's file does not give from the wire's file. */
 static enum wb_status take_wire(const struct wb_config_node *root, struct wb_test_piece *piece,
                                 struct wb_reason *why)
 {
@@ -125,31 +104,38 @@ static enum wb_status check_kind(const struct wb_config_node *root, const struct
                                  enum wb_test_kind kind, struct wb_test_piece *piece)
 {
     static const char *const tensile_only[] = {
-        "area_mm2",          "strands",  "strand_diameter_mm",
-        "inner_diameter_mm", "width_mm", "thickness_mm",
+        "area_mm2",     "strands", "strand_diameter_mm", "inner_diameter_mm", "width_mm",
+        "thickness_mm", NULL,
     };
     if (kind == WB_TEST_CANTILEVER && !isfinite(piece->length))
         return wb_config_refuse(root, "length_mm", "this key is missing for a cantilever test");
     if (kind == WB_TEST_TENSILE) {
-        if (!said->has_constituent)
+        if (!wb_config_find(root, "constituent"))
             return wb_config_refuse(root, "constituent",
                                     "this key is missing for a tensile test: conductor, jacket or "
                                     "tape");
-        piece->constituent = (enum wb_constituent)said->constituent;
         return take_area(root, said, piece);
     }
-    for (size_t i = 0; i < WB_COUNT(tensile_only); i++) {
-        if (wb_config_find(root, tensile_only[i]))
-            return wb_config_refuse(root, tensile_only[i], "only a tensile test has this");
-    }
-    return WB_OK;
+    return wb_config_refuse_keys(root, tensile_only, "only a tensile test has this");
 }
 
-static enum wb_status read_root(const struct wb_config_node *root, enum wb_test_kind kind,
-                                struct wb_test_piece *piece, struct wb_reason *why)
+/* Context of read_root(). */
+struct request {
+    enum wb_test_kind kind;
+    struct wb_test_piece *piece;
+    struct wb_reason *why;
+};
+
+static enum wb_status read_root(const struct wb_config_node *root, void *into)
 {
+    const struct request *const request = into;
+    const enum wb_test_kind kind = request->kind;
+    struct wb_test_piece read, *const piece = &read;
     const double none = (double)NAN;
-    struct said said = {NULL, NULL, none, none, none, none, none, 0, 0, false};
+    struct said said = {NULL, NULL, none, none, none, none, none, 0};
+    const struct wb_config_key usable =
+        WB_CONFIG_NUMBER("usable_travel_mm", NULL, WB_MM, 1e-6, 1e5);
+    const struct wb_config_key bow = WB_CONFIG_NUMBER("natural_bow_mm", NULL, WB_MM, -1e5, 1e5);
     const struct wb_config_key table[] = {
         WB_CONFIG_TEXT("wire", piece->wire),
         WB_CONFIG_INTEGER("sample", &piece->sample, 1, 100000),
@@ -160,12 +146,7 @@ static enum wb_status read_root(const struct wb_config_node *root, enum wb_test_
                                   1e-6, 1e6),
         WB_CONFIG_OPTIONAL_NODE("usable_travel_mm", &said.usable),
         WB_CONFIG_OPTIONAL_NODE("natural_bow_mm", &said.bow),
-        {.name = "constituent",
-         .type = WB_CONFIG_TYPE_CHOICE,
-         .optional = true,
-         .target = &said.constituent,
-         .choices = constituent_names,
-         .present = &said.has_constituent},
+        WB_CONFIG_OPTIONAL_CHOICE("constituent", &piece->constituent, constituent_names),
         WB_CONFIG_OPTIONAL_NUMBER("area_mm2", &said.area, SQUARE_MM, 1e-9, 1e6),
         WB_CONFIG_OPTIONAL_INTEGER("strands", &said.strands, 1, 100000),
         WB_CONFIG_OPTIONAL_NUMBER("strand_diameter_mm", &said.strand_diameter, WB_MM, 1e-4, 1000),
@@ -177,48 +158,34 @@ static enum wb_status read_root(const struct wb_config_node *root, enum wb_test_
         WB_CONFIG_IGNORED("marker_offset_mm"),
         WB_CONFIG_IGNORED("marker_offset_uncertainty_mm"),
     };
+    clear(piece);
     WB_TRY(wb_config_map(root, table, WB_COUNT(table)));
     if (piece->wire[0] == '\0')
         return wb_config_refuse(root, "wire", "expected the name of the product");
     if (said.usable)
-        WB_TRY(read_band(said.usable, "usable_travel_mm", 1e-6, &piece->usable_travel));
+        WB_TRY(wb_machine_read_band(said.usable, &usable, &piece->usable_travel));
     if (said.bow && kind != WB_TEST_THREE_POINT)
         return wb_config_refuse(root, "natural_bow_mm",
                                 "only specimens of three-point bending have one");
     if (said.bow)
-        WB_TRY(read_band(said.bow, "natural_bow_mm", -1e5, &piece->natural_bow));
+        WB_TRY(wb_machine_read_band(said.bow, &bow, &piece->natural_bow));
     WB_TRY(check_kind(root, &said, kind, piece));
     if (kind != WB_TEST_TENSILE && !isfinite(piece->outer_diameter))
-        return take_wire(root, piece, why);
+        WB_TRY(take_wire(root, piece, request->why));
+    *request->piece = read;
     return WB_OK;
-}
-
-static enum wb_status take(struct wb_config *config, enum wb_test_kind kind,
-                           struct wb_test_piece *piece, struct wb_reason *why)
-{
-    struct wb_test_piece read;
-    clear(&read);
-    const enum wb_status status = read_root(wb_config_root(config), kind, &read, why);
-    wb_config_destroy(config);
-    if (status == WB_OK)
-        *piece = read;
-    return status;
 }
 
 enum wb_status wb_test_piece_read(const char *path, enum wb_test_kind kind,
                                   struct wb_test_piece *piece, struct wb_reason *why)
 {
-    struct wb_config *config;
-    WB_TRY(wb_config_read(&config, path, why));
-    return take(config, kind, piece, why);
+    return wb_config_load(NULL, path, why, read_root, &(struct request){kind, piece, why});
 }
 
 enum wb_status wb_test_piece_parse(const char *text, const char *origin, enum wb_test_kind kind,
                                    struct wb_test_piece *piece, struct wb_reason *why)
 {
-    struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, origin, why));
-    return take(config, kind, piece, why);
+    return wb_config_load(text, origin, why, read_root, &(struct request){kind, piece, why});
 }
 
 /* --- the document of a dataset --- */
@@ -261,7 +228,7 @@ void wb_test_piece_set_json(const struct wb_test_piece *piece, struct wb_json *o
     }
 }
 
-/* A positive number, or none. */
+/* Reads an optional positive number. */
 static bool get(const struct wb_json *object, const char *key, double unit, double *value)
 {
     double read;
@@ -273,7 +240,7 @@ static bool get(const struct wb_json *object, const char *key, double unit, doub
     return true;
 }
 
-/* A list of two numbers above `limit`, or none. */
+/* Reads an optional list of two numbers above `limit`. */
 static bool get_band(const struct wb_json *object, const char *key, double limit,
                      struct wb_band *band)
 {

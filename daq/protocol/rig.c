@@ -28,7 +28,7 @@ static const char *const axes[] = {"X", "Y", "Z", NULL};
 static const char *const wire_schemes[] = {"serial:", "pty:", "memory:", "sim:", NULL};
 static const char *const network_schemes[] = {"udp:", "memory:", "sim:", NULL};
 
-/* Refuses an address whose scheme the role cannot use; the rest is the stream's to judge. */
+/* Rejects an address whose scheme the role cannot use; the stream checks the rest. */
 static enum wb_status check_address(const struct wb_config_node *map, const char *address,
                                     const char *const *schemes)
 {
@@ -36,7 +36,7 @@ static enum wb_status check_address(const struct wb_config_node *map, const char
     for (int i = 0; schemes[i]; i++) {
         if (strncmp(address, schemes[i], strlen(schemes[i])) == 0)
             return WB_OK;
-        /* For tests and virtual time; nobody writes it into the file of a bench. */
+        /* For tests and virtual time: not offered to users. */
         if (strcmp(schemes[i], "memory:") == 0 || strcmp(schemes[i], "sim:") == 0)
             continue;
         const size_t used = strlen(expected);
@@ -96,7 +96,7 @@ static enum wb_status resolve_escapes(const struct wb_config_node *map, const ch
     return WB_OK;
 }
 
-/* A list of short words, kept as they are. */
+/* Reads a list of short words without changes. */
 static enum wb_status read_tokens(const struct wb_config_node *list, const char *key,
                                   char tokens[WB_RIG_TOKENS][16])
 {
@@ -118,18 +118,16 @@ static enum wb_status read_tokens(const struct wb_config_node *list, const char 
     return WB_OK;
 }
 
-/* The generic line protocol's keys as they stand in the file. */
+/* Keys of the generic line protocol, in the form of the file. */
 struct line_keys {
     char delimiter[8];
     int terminator;
     double poll_period, idle_gap, settle; /* s */
     const struct wb_config_node *unstable, *overload;
-    bool has_decimal_comma, has_scale, has_offset, has_terminator, has_settle;
-    bool has_poll_period, has_start;
 };
 
-/* The preset that the file names, whose settings then stand in `cell` until the file's own keys
- * are read. NULL where it names none. */
+/* Finds the preset that the file names (NULL: none) and writes its settings to `cell`; the file's
+ * own keys, which are read later, replace them. */
 static enum wb_status read_preset(const struct wb_config_node *map,
                                   const struct wb_loadcell_preset **preset,
                                   struct wb_rig_load_cell *cell)
@@ -153,7 +151,8 @@ static enum wb_status read_preset(const struct wb_config_node *map,
     return status;
 }
 
-/* The keys as the preset's settings have them: what the file does not give stays so. */
+/* Initialises the keys from the preset's settings, the defaults of keys that the file does not
+ * give. */
 static void begin_line_keys(const struct wb_rig_load_cell *cell, struct line_keys *keys)
 {
     keys->delimiter[0] = cell->delimiter;
@@ -178,24 +177,20 @@ static enum wb_status read_delimiter(const struct wb_config_node *map, const cha
     return WB_OK;
 }
 
-/* What no single key can tell: keys that need or forbid each other. */
+/* Checks keys that require or exclude each other. */
 static enum wb_status check_line_keys(const struct wb_config_node *map,
-                                      const struct line_keys *keys,
                                       const struct wb_rig_load_cell *cell)
 {
-    if (strcmp(cell->protocol, "generic") != 0) {
-        const bool foreign =
-            cell->column > 0 || keys->has_decimal_comma || keys->has_scale || keys->has_offset ||
-            keys->has_terminator || keys->has_settle || keys->delimiter[0] || cell->unit[0] ||
-            cell->poll_command[0] || cell->start_command[0] || cell->stop_command[0] ||
-            cell->tare_command[0] || cell->preset[0] || keys->unstable || keys->overload;
-        if (foreign)
-            return wb_config_refuse(map, NULL,
-                                    "keys of the generic line protocol are given, but protocol is "
-                                    "%s: remove them or write protocol: generic",
-                                    cell->protocol);
-        return WB_OK;
-    }
+    static const char *const generic_only[] = {
+        "preset",          "delimiter",     "column",       "unit",
+        "scale",           "offset",        "terminator",   "poll_command",
+        "start_command",   "stop_command",  "tare_command", "unstable_tokens",
+        "overload_tokens", "decimal_comma", "settle_ms",    NULL,
+    };
+    if (strcmp(cell->protocol, "generic") != 0)
+        return wb_config_refuse_keys(map, generic_only,
+                                     "only the generic line protocol has this key: remove it or "
+                                     "write protocol: generic");
     if ((cell->column > 0) != (cell->delimiter != 0))
         return wb_config_refuse(
             map, cell->column > 0 ? "column" : "delimiter",
@@ -216,19 +211,22 @@ static enum wb_status check_line_keys(const struct wb_config_node *map,
     return WB_OK;
 }
 
-/* A stream and questions exclude each other: what the file gives goes before the preset's. */
-static void choose_commands(const struct wb_loadcell_preset *preset, struct line_keys *keys,
+/* Streaming and polling exclude each other: the file's choice has precedence over the preset's. */
+static void choose_commands(const struct wb_config_node *map,
+                            const struct wb_loadcell_preset *preset, struct line_keys *keys,
                             struct wb_rig_load_cell *cell)
 {
-    if (keys->has_poll_period && !cell->poll_command[0] && !keys->has_start)
+    const bool has_poll_period = wb_config_find(map, "poll_period_ms");
+    const bool has_start = wb_config_find(map, "start_command");
+    if (has_poll_period && !cell->poll_command[0] && !has_start)
         wb_loadcell_preset_ask(preset, cell);
-    if (keys->has_start && !keys->has_poll_period) {
+    if (has_start && !has_poll_period) {
         cell->poll_command[0] = '\0';
         keys->poll_period = 0.0;
     }
 }
 
-/* What a preset asks of the file, and adds to it. */
+/* Checks that the file gives what the preset requires, and completes the address. */
 static enum wb_status finish_preset(const struct wb_config_node *map,
                                     const struct wb_loadcell_preset *preset,
                                     struct wb_rig_load_cell *cell)
@@ -240,7 +238,7 @@ static enum wb_status finish_preset(const struct wb_config_node *map,
                                 preset->name);
     if (!preset->line && strncmp(cell->address, "serial:", 7) == 0 && !strchr(cell->address, ','))
         return wb_config_refuse(map, "address",
-                                "the preset %s knows no usual baud rate: give the instrument's "
+                                "the preset %s has no default baud rate: give the instrument's "
                                 "own, such as %s,115200,8n1",
                                 preset->name, cell->address);
     if (!wb_loadcell_preset_complete_address(preset, cell->address, sizeof cell->address))
@@ -263,10 +261,10 @@ static enum wb_status finish_line_keys(const struct wb_config_node *map, struct 
     WB_TRY(resolve_escapes(map, "tare_command", cell->tare_command));
     WB_TRY(read_tokens(keys->unstable, "unstable_tokens", cell->unstable_tokens));
     WB_TRY(read_tokens(keys->overload, "overload_tokens", cell->overload_tokens));
-    return check_line_keys(map, keys, cell);
+    return check_line_keys(map, cell);
 }
 
-/* The series of a calibration. */
+/* Reads the masses of a calibration series. */
 static enum wb_status read_check_masses(const struct wb_config_node *list,
                                         struct wb_rig_load_cell *cell)
 {
@@ -285,9 +283,8 @@ static enum wb_status read_check_masses(const struct wb_config_node *list,
 static enum wb_status read_load_cell(const struct wb_config_node *map, double gravity,
                                      struct wb_rig_load_cell *cell)
 {
-    int protocol = 0, tare = 0;
+    int protocol = 0;
     double capacity_mass = 0.0, overload_fraction = 1.0, noise_mass = 0.0;
-    bool has_grams, has_newtons;
     const struct wb_loadcell_preset *preset;
     const struct wb_config_node *masses;
     struct line_keys keys = {0};
@@ -299,10 +296,8 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
     const struct wb_config_key table[] = {
         WB_CONFIG_TEXT("address", cell->address),
         WB_CONFIG_CHOICE("protocol", &protocol, load_protocols),
-        {"capacity_g", WB_CONFIG_TYPE_NUMBER, true, &capacity_mass, 0, WB_G, 0.1, 1e6, NULL,
-         &has_grams},
-        {"capacity_N", WB_CONFIG_TYPE_NUMBER, true, &cell->capacity, 0, 1.0, 1e-3, 1e4, NULL,
-         &has_newtons},
+        WB_CONFIG_OPTIONAL_NUMBER("capacity_g", &capacity_mass, WB_G, 0.1, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("capacity_N", &cell->capacity, 1.0, 1e-3, 1e4),
         WB_CONFIG_OPTIONAL_NUMBER("overload_percent", &overload_fraction, WB_PERCENT, 100.0,
                                   1000.0),
         WB_CONFIG_OPTIONAL_TEXT("serial_number", cell->serial_number),
@@ -318,35 +313,29 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
                                   0.001, 50.0),
         WB_CONFIG_OPTIONAL_NODE("check_masses_g", &masses),
         WB_CONFIG_OPTIONAL_NUMBER("check_due_days", &cell->check_due, WB_DAY, 0.01, 3660.0),
-        WB_CONFIG_OPTIONAL_CHOICE("tare", &tare, tares),
+        WB_CONFIG_OPTIONAL_CHOICE("tare", &cell->tare, tares),
         WB_CONFIG_OPTIONAL_INTEGER("sign", &cell->sign, -1000, 1000),
-        {"poll_period_ms", WB_CONFIG_TYPE_NUMBER, true, &keys.poll_period, 0, 1e-3, 1.0, 10000.0,
-         NULL, &keys.has_poll_period},
+        WB_CONFIG_OPTIONAL_NUMBER("poll_period_ms", &keys.poll_period, 1e-3, 1.0, 10000.0),
         WB_CONFIG_IGNORED("preset"),
         WB_CONFIG_OPTIONAL_TEXT("delimiter", keys.delimiter),
         WB_CONFIG_OPTIONAL_INTEGER("column", &cell->column, 1, 64),
         WB_CONFIG_OPTIONAL_TEXT("unit", cell->unit),
-        {"scale", WB_CONFIG_TYPE_NUMBER, true, &cell->scale, 0, 1.0, -1e12, 1e12, NULL,
-         &keys.has_scale},
-        {"offset", WB_CONFIG_TYPE_NUMBER, true, &cell->offset, 0, 1.0, -1e12, 1e12, NULL,
-         &keys.has_offset},
-        {"terminator", WB_CONFIG_TYPE_CHOICE, true, &keys.terminator, 0, 0.0, 0.0, 0.0, terminators,
-         &keys.has_terminator},
+        WB_CONFIG_OPTIONAL_NUMBER("scale", &cell->scale, 1.0, -1e12, 1e12),
+        WB_CONFIG_OPTIONAL_NUMBER("offset", &cell->offset, 1.0, -1e12, 1e12),
+        WB_CONFIG_OPTIONAL_CHOICE("terminator", &keys.terminator, terminators),
         WB_CONFIG_OPTIONAL_NUMBER("idle_gap_ms", &keys.idle_gap, 1e-3, 1.0, 10000.0),
         WB_CONFIG_OPTIONAL_TEXT("poll_command", cell->poll_command),
-        {"start_command", WB_CONFIG_TYPE_TEXT, true, cell->start_command,
-         sizeof cell->start_command, 0.0, 0.0, 0.0, NULL, &keys.has_start},
+        WB_CONFIG_OPTIONAL_TEXT("start_command", cell->start_command),
         WB_CONFIG_OPTIONAL_TEXT("stop_command", cell->stop_command),
         WB_CONFIG_OPTIONAL_TEXT("tare_command", cell->tare_command),
         WB_CONFIG_OPTIONAL_NODE("unstable_tokens", &keys.unstable),
         WB_CONFIG_OPTIONAL_NODE("overload_tokens", &keys.overload),
-        {"decimal_comma", WB_CONFIG_TYPE_BOOLEAN, true, &cell->decimal_comma, 0, 0.0, 0.0, 0.0,
-         NULL, &keys.has_decimal_comma},
-        {"settle_ms", WB_CONFIG_TYPE_NUMBER, true, &keys.settle, 0, 1e-3, 0.0, 60000.0, NULL,
-         &keys.has_settle},
+        WB_CONFIG_OPTIONAL_BOOLEAN("decimal_comma", &cell->decimal_comma),
+        WB_CONFIG_OPTIONAL_NUMBER("settle_ms", &keys.settle, 1e-3, 0.0, 60000.0),
     };
     WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
-    if (has_grams == has_newtons)
+    const bool has_grams = capacity_mass > 0.0;
+    if (has_grams == (cell->capacity > 0.0))
         return wb_config_refuse(map, has_grams ? "capacity_N" : "capacity_g",
                                 "expected exactly one of capacity_g and capacity_N");
     if (has_grams)
@@ -354,13 +343,12 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
     cell->overload = cell->capacity * overload_fraction;
     cell->noise = noise_mass * gravity;
     strcpy(cell->protocol, load_protocols[protocol]);
-    cell->tare = (enum wb_rig_tare)tare;
     WB_TRY(check_address(map, cell->address, wire_schemes));
     WB_TRY(wb_config_check_date(map, "calibration_date", cell->calibration_date));
     WB_TRY(read_check_masses(masses, cell));
     WB_TRY(check_sign(map, "sign", cell->sign));
     if (preset && strcmp(cell->protocol, "generic") == 0)
-        choose_commands(preset, &keys, cell);
+        choose_commands(map, preset, &keys, cell);
     WB_TRY(finish_line_keys(map, &keys, cell));
     return preset ? finish_preset(map, preset, cell) : WB_OK;
 }
@@ -385,11 +373,10 @@ static enum wb_status read_mocap(const struct wb_config_node *map, struct wb_rig
 static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig_stage *stage)
 {
     int protocol = 0, axis = 0;
-    bool has_axis;
     const struct wb_config_key table[] = {
         WB_CONFIG_TEXT("address", stage->address),
         WB_CONFIG_CHOICE("protocol", &protocol, stage_protocols),
-        {"axis", WB_CONFIG_TYPE_CHOICE, true, &axis, 0, 0.0, 0.0, 0.0, axes, &has_axis},
+        WB_CONFIG_OPTIONAL_CHOICE("axis", &axis, axes),
         WB_CONFIG_INTEGER("down", &stage->down, -1000, 1000),
         WB_CONFIG_NUMBER("travel_mm", &stage->travel, WB_MM, 0.1, 5000.0),
         WB_CONFIG_NUMBER("speed_mm_s", &stage->speed, WB_MM, 0.001, 1000.0),
@@ -399,7 +386,7 @@ static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig
     strcpy(stage->protocol, stage_protocols[protocol]);
     stage->axis = axes[axis][0];
     const bool is_tic = strcmp(stage->protocol, "tic") == 0;
-    if (has_axis == is_tic)
+    if ((wb_config_find(map, "axis") != NULL) == is_tic)
         return wb_config_refuse(map, "axis",
                                 is_tic ? "a Tic has one axis: remove this key"
                                        : "this key is missing: expected X, Y or Z");
@@ -439,7 +426,7 @@ static enum wb_status read_limits(const struct wb_config_node *map, struct wb_ri
                                   100.0),
     };
     WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
-    /* A limit beyond what the instrument can do would never stop anything. */
+    /* A limit beyond the instrument's range would never trigger. */
     if (limits->force > rig->load_cell.overload * (1.0 + 1e-9))
         return wb_config_refuse(map, "force_mN",
                                 "%g mN is more than the load cell reads (capacity times "
@@ -451,8 +438,9 @@ static enum wb_status read_limits(const struct wb_config_node *map, struct wb_ri
     return WB_OK;
 }
 
-static enum wb_status read_root(const struct wb_config_node *root, struct wb_rig *rig)
+static enum wb_status read_root(const struct wb_config_node *root, void *into)
 {
+    struct wb_rig read = {.name = ""}, *const rig = &read;
     const struct wb_config_node *load_cell, *mocap, *stage, *strand, *limits;
     rig->gravity = WB_STANDARD_GRAVITY;
     rig->time_scale = 1.0;
@@ -480,18 +468,9 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_rig
         return wb_config_refuse(load_cell, "tare",
                                 "the strand has no counterweight: give strand.counterweight_g, or "
                                 "take the tare unloaded");
-    return read_limits(limits, rig);
-}
-
-static enum wb_status take(struct wb_config *config, struct wb_rig *rig)
-{
-    struct wb_rig read;
-    memset(&read, 0, sizeof read);
-    const enum wb_status status = read_root(wb_config_root(config), &read);
-    wb_config_destroy(config);
-    if (status == WB_OK)
-        *rig = read;
-    return status;
+    WB_TRY(read_limits(limits, rig));
+    *(struct wb_rig *)into = read;
+    return WB_OK;
 }
 
 double wb_rig_tare_load(const struct wb_rig *rig)
@@ -506,7 +485,7 @@ double wb_rig_noise_allowed(const struct wb_rig_load_cell *cell)
     return cell->noise > 0.0 ? NOISE_TIMES * cell->noise : NOISE_SHARE * cell->capacity;
 }
 
-/* A virtual rig that was killed leaves its file behind, and its ports are gone. */
+/* A virtual rig that was killed leaves its file behind, but its ports no longer exist. */
 static enum wb_status check_virtual_ports(const char *path, const struct wb_rig *rig)
 {
     const char *const addresses[] = {rig->load_cell.address, rig->stage.address};
@@ -526,15 +505,13 @@ static enum wb_status check_virtual_ports(const char *path, const struct wb_rig 
 
 enum wb_status wb_rig_read(const char *path, struct wb_rig *rig)
 {
-    struct wb_config *config;
-    /* The name that the virtual rig gives to its file, which lasts as long as the rig. */
+    struct wb_rig read;
+    /* The virtual rig writes a file of this name and removes it when it stops. */
     if (strcmp(wb_file_name(path), "rig.yaml") == 0 && !wb_file_exists(path))
         return wb_fail(WB_ERR_NOT_FOUND,
                        "no rig file '%s'; is `wirebench rig` running, and has it said ready?",
                        path);
-    struct wb_rig read;
-    WB_TRY(wb_config_read(&config, path, NULL));
-    WB_TRY(take(config, &read));
+    WB_TRY(wb_config_load(NULL, path, NULL, read_root, &read));
     WB_TRY(check_virtual_ports(path, &read));
     *rig = read;
     return WB_OK;
@@ -543,7 +520,5 @@ enum wb_status wb_rig_read(const char *path, struct wb_rig *rig)
 enum wb_status wb_rig_parse(const char *text, const char *origin, struct wb_rig *rig,
                             struct wb_reason *why)
 {
-    struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, origin, why));
-    return take(config, rig);
+    return wb_config_load(text, origin, why, read_root, rig);
 }

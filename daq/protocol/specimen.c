@@ -9,7 +9,7 @@
 
 #define WB_LOG_DOMAIN "specimen"
 
-/* The markers must climb from the clamp to the knot. */
+/* Checks that the markers ascend from the clamp to the knot. */
 static enum wb_status check_markers(const struct wb_config_node *list, struct wb_specimen *specimen)
 {
     const double *const markers = specimen->markers;
@@ -31,9 +31,10 @@ static enum wb_status check_markers(const struct wb_config_node *list, struct wb
     return WB_OK;
 }
 
-static enum wb_status read_root(const struct wb_config_node *root, struct wb_specimen *specimen)
+static enum wb_status read_root(const struct wb_config_node *root, void *into)
 {
     const struct wb_config_node *markers;
+    struct wb_specimen read = {.wire = ""}, *const specimen = &read;
     const struct wb_config_key table[] = {
         WB_CONFIG_TEXT("wire", specimen->wire),
         WB_CONFIG_NUMBER("length_mm", &specimen->length, WB_MM, 1.0, 10000.0),
@@ -53,33 +54,20 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_spe
     const struct wb_config_key marker = WB_CONFIG_NUMBER("markers_mm", NULL, WB_MM, 0.0, 10000.0);
     WB_TRY(wb_config_numbers(markers, &marker, 2, WB_SPECIMEN_MAX_MARKERS, specimen->markers,
                              &specimen->n_markers));
-    return check_markers(markers, specimen);
-}
-
-static enum wb_status take(struct wb_config *config, struct wb_specimen *specimen)
-{
-    struct wb_specimen read;
-    memset(&read, 0, sizeof read);
-    const enum wb_status status = read_root(wb_config_root(config), &read);
-    wb_config_destroy(config);
-    if (status == WB_OK)
-        *specimen = read;
-    return status;
+    WB_TRY(check_markers(markers, specimen));
+    *(struct wb_specimen *)into = read;
+    return WB_OK;
 }
 
 enum wb_status wb_specimen_read(const char *path, struct wb_specimen *specimen)
 {
-    struct wb_config *config;
-    WB_TRY(wb_config_read(&config, path, NULL));
-    return take(config, specimen);
+    return wb_config_load(NULL, path, NULL, read_root, specimen);
 }
 
 enum wb_status wb_specimen_parse(const char *text, const char *origin, struct wb_specimen *specimen,
                                  struct wb_reason *why)
 {
-    struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, origin, why));
-    return take(config, specimen);
+    return wb_config_load(text, origin, why, read_root, specimen);
 }
 
 enum wb_status wb_specimen_find_wire(const struct wb_specimen *specimen, const char *specimen_path,

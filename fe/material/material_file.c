@@ -10,50 +10,45 @@ enum {
     WITHOUT_PARAMETERS = 11 /* keys of a file */
 };
 
-/* Which of the optional keys were given. */
-struct given {
-    bool yield, hardening, parameter[WB_HARDENING_PARAMETERS];
-};
+static bool is_given(const struct wb_config_node *root, int parameter)
+{
+    return wb_config_find(root, wb_hardening_parameters[parameter].key) != NULL;
+}
 
-/* A law has all of its parameters, or none of them if it is perfectly plastic then. */
-static enum wb_status check_parameters(const struct wb_config_node *root, const struct given *given,
+/* A law has all of its parameters, or none if it may be perfectly plastic. */
+static enum wb_status check_parameters(const struct wb_config_node *root,
                                        const struct wb_hardening_law *law)
 {
-    int first_given = -1, first_missing = -1;
+    const char *given = NULL, *missing = NULL; /* the first ones */
 
     for (int i = 0; i < WB_HARDENING_PARAMETERS; i++) {
-        const char *key = wb_hardening_parameters[i].key;
-        if (given->parameter[i] && !law->has[i])
-            return wb_config_refuse(root, key, "%s hardening has no %s", law->name, key);
-        if (law->has[i] && given->parameter[i] && first_given < 0)
-            first_given = i;
-        if (law->has[i] && !given->parameter[i] && first_missing < 0)
-            first_missing = i;
+        const char *const key = wb_hardening_parameters[i].key;
+        if (is_given(root, i) && !law->has[i])
+            return wb_config_refuse(root, key, "%s hardening does not use %s", law->name, key);
+        if (law->has[i] && is_given(root, i) && !given)
+            given = key;
+        if (law->has[i] && !is_given(root, i) && !missing)
+            missing = key;
     }
-    if (first_missing >= 0 && !law->may_be_perfect)
-        return wb_config_refuse(root, "hardening", "%s hardening needs %s", law->name,
-                                wb_hardening_parameters[first_missing].key);
-    if (first_missing >= 0 && first_given >= 0) {
-        const bool in_order = first_given < first_missing;
-        return wb_config_refuse(
-            root, wb_hardening_parameters[first_given].key, "%s and %s go together",
-            wb_hardening_parameters[in_order ? first_given : first_missing].key,
-            wb_hardening_parameters[in_order ? first_missing : first_given].key);
-    }
+    if (missing && !law->may_be_perfect)
+        return wb_config_refuse(root, "hardening", "%s hardening needs %s", law->name, missing);
+    if (missing && given)
+        return wb_config_refuse(root, given, "%s must be given together with %s", given, missing);
     return WB_OK;
 }
 
-static enum wb_status check(const struct wb_config_node *root, const struct given *given,
-                            const struct wb_hardening_law *law)
+static enum wb_status check(const struct wb_config_node *root, const struct wb_hardening_law *law)
 {
-    bool hardens = given->hardening;
+    bool hardens = wb_config_find(root, "hardening");
 
+    if (wb_config_find(root, "yield_stress_MPa"))
+        return check_parameters(root, law);
     for (int i = 0; i < WB_HARDENING_PARAMETERS; i++)
-        hardens = hardens || given->parameter[i];
-    if (!given->yield && hardens)
+        hardens = hardens || is_given(root, i);
+    if (hardens)
         return wb_config_refuse(root, "yield_stress_MPa",
-                                "this key is missing: the material hardens");
-    return given->yield ? check_parameters(root, given, law) : WB_OK;
+                                "this key is missing: a material that hardens needs it");
+    return WB_OK;
 }
 
 /* Intervals of the numbers, each [least, most]. */
@@ -89,11 +84,11 @@ static enum wb_status read_intervals(const struct wb_config_node *map,
     return WB_OK;
 }
 
-static enum wb_status read_root(const struct wb_config_node *root, struct wb_material_file *file)
+static enum wb_status read_root(const struct wb_config_node *root, void *into)
 {
+    struct wb_material_file read = {.name = ""}, *const file = &read;
     struct wb_material *const m = &file->material;
-    struct given given = {0};
-    /* The laws that yield, by name; the first is that of files that name none. */
+    /* The laws that yield, by name; the first is the default. */
     const char *names[WB_HARDENING_LAWS + 1] = {NULL};
     enum wb_hardening laws[WB_HARDENING_LAWS] = {0};
     const struct wb_config_node *intervals = NULL;
@@ -103,7 +98,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_mat
         WB_CONFIG_OPTIONAL_BOOLEAN("substitute", &file->is_substitute),
         WB_CONFIG_TEXT("source", file->source),
         WB_CONFIG_NUMBER("youngs_modulus_MPa", &m->youngs_modulus, WB_MPA, 1e-3, 1e7),
-        /* Beyond this a solid is incompressible. */
+        /* Above this a solid is nearly incompressible. */
         WB_CONFIG_OPTIONAL_NUMBER("poissons_ratio", &m->poissons_ratio, 1.0, -0.99, 0.499),
         WB_CONFIG_NUMBER("density_g_cm3", &file->density, WB_G_PER_CM3, 1e-3, 30.0),
         WB_CONFIG_OPTIONAL_NUMBER("thickness_of_two_layers_mm", &file->thickness, WB_MM, 1e-3,
@@ -121,13 +116,10 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_mat
         names[n_laws] = wb_hardening_laws[i].name;
         laws[n_laws++] = (enum wb_hardening)i;
     }
-    of_parameters[-2].present = &given.yield;
-    of_parameters[-1].present = &given.hardening;
     for (int i = 0; i < WB_HARDENING_PARAMETERS; i++) {
         const struct wb_hardening_parameter *p = &wb_hardening_parameters[i];
         of_parameters[i] = (struct wb_config_key)WB_CONFIG_OPTIONAL_NUMBER(
             p->key, wb_hardening_value(m, i), p->factor, p->low, p->high);
-        of_parameters[i].present = &given.parameter[i];
     }
     m->poissons_ratio = (double)NAN;
     m->hardening_exponent = 1.0;
@@ -137,19 +129,13 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_mat
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
     if (intervals)
         WB_TRY(read_intervals(intervals, file));
-    WB_TRY(check(root, &given, &wb_hardening_laws[laws[hardening]]));
-    m->hardening = given.yield ? laws[hardening] : WB_HARDENING_NONE_ELASTIC;
+    WB_TRY(check(root, &wb_hardening_laws[laws[hardening]]));
+    m->hardening = m->yield_stress > 0.0 ? laws[hardening] : WB_HARDENING_NONE_ELASTIC;
+    *(struct wb_material_file *)into = read;
     return WB_OK;
 }
 
 enum wb_status wb_material_file_read(struct wb_material_file *file, const char *path)
 {
-    struct wb_config *config;
-    struct wb_material_file read = {0};
-    WB_TRY(wb_config_read(&config, path, NULL));
-    const enum wb_status status = read_root(wb_config_root(config), &read);
-    wb_config_destroy(config);
-    if (status == WB_OK)
-        *file = read;
-    return status;
+    return wb_config_load(NULL, path, NULL, read_root, file);
 }

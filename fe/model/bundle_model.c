@@ -13,7 +13,7 @@
 #include "fe/model/packing_touch.h"
 
 static const double pi = 3.14159265358979323846;
-static const double touching = 1e-9; /* m: wires so near to the tape touch it */
+static const double touching = 1e-9; /* m: wires within this distance touch the tape */
 static const double largest_poisson = 0.499;
 
 static const char *const length_sources[] = {"own", "printed", "inferred", NULL};
@@ -58,7 +58,7 @@ static const struct wb_setting friction_rows[] = {
 
 static const struct wb_setting_table friction_table = {WB_SETTING_ROWS(friction_rows)};
 
-/* A coefficient alone is constant. */
+/* A single coefficient means constant friction. */
 static int complete_friction(void *members, int n, char *problem, size_t size)
 {
     struct wb_friction *const friction = members;
@@ -114,8 +114,9 @@ static const struct wb_bundle_mesh own_meshes[2] = {
      .formulation = WB_BUNDLE_ONE_POINT},
 };
 
-/* Of a tape whose material says none. With 0.39 for the wires and voids that count as zero it gives
- * the bundles of Table 4 the 0.3 on average that section 5.5 takes by the rule of mixtures. */
+/* Poisson's ratio of a tape whose material file has none. With 0.39 for the wires and 0 for voids,
+ * the bundles of Table 4 get 0.3 on average, the value that section 5.5 derives by the rule of
+ * mixtures. */
 static const double tape_poisson = 0.35;
 
 static const char *const packings[] = {"hexagon", "triangle", "densest", "places", NULL};
@@ -192,8 +193,8 @@ static void scale_circles(struct wb_packing *packing, double factor)
 
 void wb_bundle_model_scale(struct wb_bundle_model *model, const struct wb_bundle_scales *scales)
 {
-    /* A pitch of its own makes circles as wide as the pitch, with wires of their own diameter in
-     * them: law and area are the wire's, levers and contacts the pitch's. */
+    /* A pitch unlike the diameter makes circles as wide as the pitch, with wires of their own
+     * diameter in them: law and area are the wire's; lever arms and contacts follow the pitch. */
     const double factor = scales->diameter * scales->pitch;
     struct wb_bundle_tape *const tape = &model->tape;
 
@@ -214,14 +215,14 @@ void wb_bundle_model_scale(struct wb_bundle_model *model, const struct wb_bundle
     tape->taping.circumference = wb_hull_length(&tape->hull, middle);
 }
 
-/* A model while it is read. */
+/* State while a model is read. */
 struct reader {
     struct wb_bundle_model *model;
     struct wb_model_file file;
     const struct wb_bundle_variant *variant; /* NULL: none */
 };
 
-/* Values of a file's top level that the section is made of. */
+/* Top-level values of a file that define the section. */
 struct section_nodes {
     const struct wb_config_node *wires, *places, *search, *gaps, *taping;
     bool has_settled;
@@ -250,7 +251,7 @@ static bool are_same(const struct wb_wire *a, const struct wb_wire *b)
            p->hardening_exponent == q->hardening_exponent;
 }
 
-/* The type of that file's wire: one there is, or a new one. */
+/* Finds the type of a wire file's wire, or adds a new type. */
 static enum wb_status take_type(struct reader *reader, const struct wb_config_node *map,
                                 const char *name, int *type)
 {
@@ -261,7 +262,7 @@ static enum wb_status take_type(struct reader *reader, const struct wb_config_no
         if (strcmp(m->type[*type].name, wire.name) != 0)
             continue;
         if (!are_same(&m->type[*type], &wire))
-            return wb_config_refuse(map, "wire", "another, different wire is called %s, too",
+            return wb_config_refuse(map, "wire", "another, different wire has the name %s",
                                     wire.name);
         return WB_OK;
     }
@@ -297,7 +298,7 @@ static enum wb_status read_wires(struct reader *reader, const struct wb_config_n
 
 /* --- variants --- */
 
-/* The packing of so many wires where none is named. */
+/* The default packing of n wires. */
 static enum wb_bundle_packing natural_packing(int n)
 {
     int less;
@@ -306,7 +307,7 @@ static enum wb_bundle_packing natural_packing(int n)
                                                                   : WB_BUNDLE_DENSEST;
 }
 
-/* Another number of wires, another packing. */
+/* Applies the variant's number of wires and packing. */
 static enum wb_status vary_wires(struct reader *reader, struct section_nodes *section)
 {
     const struct wb_bundle_variant *const variant = reader->variant;
@@ -316,10 +317,10 @@ static enum wb_status vary_wires(struct reader *reader, struct section_nodes *se
     if (!is_repacked)
         return WB_OK;
     if (variant->wires > 0 && m->n_types > 1)
-        return wb_config_refuse(reader->file.root, "wires",
-                                "variant %s: %d wires in place of these: of which kind? Only a "
-                                "file with wires of one kind has variants of their number",
-                                variant->name, variant->wires);
+        return wb_config_refuse(
+            reader->file.root, "wires",
+            "variant %s: %d wires: the number can be varied only in a file with one kind of wire",
+            variant->name, variant->wires);
     if (variant->wires > 0)
         m->packing.n = variant->wires;
     for (int i = 0; i < m->packing.n && variant->wires > 0; i++)
@@ -389,10 +390,10 @@ static enum wb_status check_lattice(const struct reader *reader, enum wb_packing
         return WB_OK;
     if (less == 0)
         return wb_config_refuse(reader->file.root, "packing",
-                                "%d wires are no %s; the smallest has %d", n, packings[lattice],
-                                whole);
-    return wb_config_refuse(reader->file.root, "packing", "%d wires are no %s; %d or %d are", n,
-                            packings[lattice], less, whole);
+                                "%d wires do not fill a %s; the smallest has %d", n,
+                                packings[lattice], whole);
+    return wb_config_refuse(reader->file.root, "packing", "%d wires do not fill a %s; %d or %d do",
+                            n, packings[lattice], less, whole);
 }
 
 static enum wb_status check_keys(const struct reader *reader, const struct section_nodes *section)
@@ -408,16 +409,17 @@ static enum wb_status check_keys(const struct reader *reader, const struct secti
     if (!is_densest && section->search)
         return wb_config_refuse(reader->file.root, "search", "only with packing: densest");
     if (is_densest && section->has_settled)
-        return wb_config_refuse(reader->file.root, "settled", "the densest packing is settled");
+        return wb_config_refuse(reader->file.root, "settled",
+                                "not with packing: densest, which is always settled");
     if (!is_places && m->touching > 0.0)
         return wb_config_refuse(reader->file.root, "touching_mm", "only with packing: places");
     if (is_places && !m->settled && m->wire_gap > 0.0)
         return wb_config_refuse(section->gaps, "wires_mm",
-                                "the places say how far wires are apart");
+                                "not with packing: places, which give the distances");
     return WB_OK;
 }
 
-/* The places that make wires touch, or a refusal of touching_mm that says why there are none. */
+/* Moves the wires until they touch; on failure the message names touching_mm and the reason. */
 static enum wb_status touch(const struct reader *reader, struct wb_packing *packing)
 {
     struct wb_reason why = {""};
@@ -426,7 +428,7 @@ static enum wb_status touch(const struct reader *reader, struct wb_packing *pack
     return wb_config_refuse(reader->file.root, "touching_mm", "%s", why.text);
 }
 
-/* Wires packed with their gap as part of them. */
+/* Packs circles that include the gap between wires. */
 static enum wb_status pack(struct reader *reader, const struct section_nodes *section)
 {
     struct wb_bundle_model *const m = reader->model;
@@ -460,7 +462,7 @@ static enum wb_status pack(struct reader *reader, const struct section_nodes *se
     return WB_OK;
 }
 
-/* Takes the gap off the wires again and puts the axis where it belongs. */
+/* Removes the gap from the circles and moves the axis to the centre of the enclosing circle. */
 static enum wb_status place_axis(struct reader *reader)
 {
     struct wb_bundle_model *const m = reader->model;
@@ -494,36 +496,33 @@ static enum wb_status read_packing(struct reader *reader, const struct section_n
 
 struct taping_settings {
     int layout, layers, hand, outline;
-    double width, lap, poissons_ratio, reach;
-    bool has_layers, has_width, has_lap, has_hand, has_poisson, has_reach;
+    double width, lap;
+    double poissons_ratio, reach; /* NaN: not given */
 };
 
 static enum wb_status check_taping(const struct wb_config_node *map,
                                    const struct taping_settings *settings)
 {
+    static const char *const helix_only[] = {"width_mm", "lap_percent", "hand", NULL};
     const bool is_helix = settings->layout == 1;
-    if (is_helix && settings->has_layers)
+    if (is_helix && wb_config_find(map, "layers"))
         return wb_config_refuse(map, "layers", "the layers of a helix follow from lap_percent");
-    if (is_helix && !settings->has_width)
+    if (is_helix && !wb_config_find(map, "width_mm"))
         return wb_config_refuse(map, "width_mm", "this key is missing: a helix needs it");
-    if (!is_helix && (settings->has_width || settings->has_lap || settings->has_hand))
-        return wb_config_refuse(map,
-                                settings->has_width ? "width_mm"
-                                : settings->has_lap ? "lap_percent"
-                                                    : "hand",
-                                "only with layout: helix");
-    if (settings->outline == 1 && !settings->has_reach)
+    if (!is_helix)
+        WB_TRY(wb_config_refuse_keys(map, helix_only, "only with layout: helix"));
+    if (settings->outline == 1 && isnan(settings->reach))
         return wb_config_refuse(map, "bond_reach_mm",
                                 "this key is missing: a tape on a circle touches wires along lines "
-                                "only; say how far it may be off a wire where it is bonded "
-                                "(0: it is bonded nowhere), here or by --bond-reach-mm");
+                                "only; give the largest distance at which it is bonded to a wire "
+                                "(0: no bond), here or by --bond-reach-mm");
     return WB_OK;
 }
 
 static enum wb_status read_taping(const struct wb_config_node *map,
                                   struct taping_settings *settings)
 {
-    struct wb_config_key keys[] = {
+    const struct wb_config_key keys[] = {
         WB_CONFIG_CHOICE("layout", &settings->layout, layouts),
         WB_CONFIG_OPTIONAL_INTEGER("layers", &settings->layers, 1, 20),
         WB_CONFIG_OPTIONAL_NUMBER("width_mm", &settings->width, WB_MM, 0.1, 1e3),
@@ -534,12 +533,6 @@ static enum wb_status read_taping(const struct wb_config_node *map,
         WB_CONFIG_OPTIONAL_CHOICE("outline", &settings->outline, outlines),
         WB_CONFIG_OPTIONAL_NUMBER("bond_reach_mm", &settings->reach, WB_MM, 0.0, 1.0),
     };
-    keys[1].present = &settings->has_layers;
-    keys[2].present = &settings->has_width;
-    keys[3].present = &settings->has_lap;
-    keys[4].present = &settings->has_hand;
-    keys[5].present = &settings->has_poisson;
-    keys[7].present = &settings->has_reach;
     return wb_config_map(map, keys, WB_COUNT(keys));
 }
 
@@ -556,17 +549,16 @@ static enum wb_status vary_taping(const struct reader *reader, struct taping_set
     if (!has_tape_of_its_own(variant))
         return WB_OK;
     if (settings->layout != 0)
-        return wb_config_refuse(reader->file.root, "taping",
-                                "variant %s: layers, overlap, outline and bonds vary of a sleeve "
-                                "only",
-                                variant->name);
+        return wb_config_refuse(
+            reader->file.root, "taping",
+            "variant %s: layers, overlap, outline and bonds can be varied only with a sleeve",
+            variant->name);
     if (variant->layers > 0)
         settings->layers = variant->layers;
     if (variant->has_outline)
         settings->outline = variant->outline;
     if (variant->has_reach)
         settings->reach = variant->reach;
-    settings->has_reach |= variant->has_reach;
     return WB_OK;
 }
 
@@ -593,7 +585,7 @@ static enum wb_status lay_tape(struct reader *reader, const struct wb_config_nod
     const double layers = settings->layout == 0 ? settings->layers : 1.0 / (1.0 - settings->lap);
     struct wb_packing circle = {.n = 1};
     tape->round = settings->outline == 1;
-    tape->reach = settings->reach;
+    tape->reach = isnan(settings->reach) ? 0.0 : settings->reach;
     circle.wire[0] = wb_packing_enclosing(reader->model->packing.n, reader->model->packing.wire);
     WB_TRY(wb_hull_find(&tape->hull, tape->round ? &circle : &reader->model->packing, touching));
     const double round = wb_hull_length(&tape->hull, tape->gap + 0.5 * layers * layer);
@@ -611,16 +603,17 @@ static enum wb_status lay_tape(struct reader *reader, const struct wb_config_nod
 static enum wb_status read_tape(struct reader *reader, const char *name,
                                 const struct wb_config_node *map)
 {
-    struct taping_settings settings = {.layers = 2, .lap = 0.5};
+    struct taping_settings settings = {
+        .layers = 2, .lap = 0.5, .poissons_ratio = (double)NAN, .reach = (double)NAN};
     if (*name == '\0') {
         if (has_tape_of_its_own(reader->variant))
             return wb_config_refuse(reader->file.root, "tape",
                                     "variant %s applies to a tape, and this bundle has no tape",
                                     reader->variant->name);
         if (map)
-            return wb_config_refuse(reader->file.root, "taping", "there is no tape");
+            return wb_config_refuse(reader->file.root, "taping", "the bundle has no tape");
         return reader->model->tape.gap > 0.0
-                   ? wb_config_refuse(reader->file.root, "gaps", "there is no tape for tape_mm")
+                   ? wb_config_refuse(reader->file.root, "gaps", "tape_mm: the bundle has no tape")
                    : WB_OK;
     }
     if (map)
@@ -629,7 +622,7 @@ static enum wb_status read_tape(struct reader *reader, const char *name,
     WB_TRY(check_taping(map ? map : reader->file.root, &settings));
     WB_TRY(read_tape_material(reader, name));
     double *const poisson = &reader->model->tape.material.material.poissons_ratio;
-    if (settings.has_poisson)
+    if (!isnan(settings.poissons_ratio))
         *poisson = settings.poissons_ratio;
     else if (!isfinite(*poisson))
         *poisson = tape_poisson;
@@ -654,7 +647,7 @@ static enum wb_status read_section(struct reader *reader, struct section_nodes *
 
 /* --- interface --- */
 
-/* The law has to soften after it reaches its strength. */
+/* The law must soften beyond its strength. */
 static enum wb_status check_energy(const struct wb_config_node *map, double strength,
                                    double stiffness, const struct wb_bundle_damage *damage)
 {
@@ -671,15 +664,13 @@ static enum wb_status read_damage(struct wb_bundle_interface *interface,
                                   const struct wb_config_node *map)
 {
     struct wb_bundle_damage *const damage = &interface->damage;
-    bool has_shear = false;
-    struct wb_config_key keys[] = {
+    const struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("strength_MPa", &damage->strength, WB_MPA, 1e-6, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("shear_strength_MPa", &damage->shear_strength, WB_MPA, 1e-6, 1e6),
         WB_CONFIG_NUMBER("fracture_energy_N_mm", &damage->fracture_energy, WB_N_PER_MM, 1e-9, 1e6),
     };
-    keys[1].present = &has_shear;
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    if (!has_shear)
+    if (damage->shear_strength == 0.0)
         damage->shear_strength = damage->strength;
     interface->has_damage = true;
     WB_TRY(check_energy(map, damage->strength, interface->normal_stiffness, damage));
@@ -708,13 +699,11 @@ static enum wb_status read_interface(struct wb_bundle_model *model,
 
 static enum wb_status read_ends(struct wb_bundle_model *model, const struct wb_config_node *map)
 {
-    int tip = 0;
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_NUMBER("potted_mm", &model->potted_length, WB_MM, 0.0, 1e6),
-        WB_CONFIG_OPTIONAL_CHOICE("tip", &tip, tips),
+        WB_CONFIG_OPTIONAL_CHOICE("tip", &model->tip, tips),
     };
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    model->tip = tip == 1 ? WB_BUNDLE_TIP_CAPPED : WB_BUNDLE_TIP_FREE;
     if (!(model->potted_length < 0.5 * model->length))
         return wb_config_refuse(map, "potted_mm", "%g mm is not less than half of length_mm, %g mm",
                                 model->potted_length / WB_MM, model->length / WB_MM);
@@ -724,20 +713,18 @@ static enum wb_status read_ends(struct wb_bundle_model *model, const struct wb_c
 static enum wb_status read_mesh(struct wb_bundle_model *model, const struct wb_config_node *map)
 {
     struct wb_bundle_mesh *const mesh = &model->mesh[model->n_meshes];
-    int formulation = 0;
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", mesh->name),
         WB_CONFIG_INTEGER("core_quads", &mesh->core_quads, 2, 32),
         WB_CONFIG_INTEGER("rings", &mesh->rings, 0, 32),
         WB_CONFIG_INTEGER("elements_along", &mesh->elements_along, 2, 100000),
         WB_CONFIG_OPTIONAL_INTEGER("tape_quads", &mesh->tape_quads, 6, 100000),
-        WB_CONFIG_OPTIONAL_CHOICE("formulation", &formulation, formulations),
+        WB_CONFIG_OPTIONAL_CHOICE("formulation", &mesh->formulation, formulations),
     };
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     WB_TRY(wb_model_file_check_name(map, mesh->name));
-    mesh->formulation = formulation == 1 ? WB_BUNDLE_ONE_POINT : WB_BUNDLE_FOUR_POINTS;
     if (wb_bundle_model_mesh(model, mesh->name))
-        return wb_config_refuse(map, "name", "another mesh is called %s, too", mesh->name);
+        return wb_config_refuse(map, "name", "another mesh has the name %s", mesh->name);
     if (mesh->core_quads % 2 != 0)
         return wb_config_refuse(map, "core_quads", "%d is not even", mesh->core_quads);
     model->n_meshes++;
@@ -798,7 +785,7 @@ static enum wb_status read_published(struct reader *reader, const struct wb_conf
 
 /* --- the whole --- */
 
-/* Values that are nodes until the others are known. */
+/* Blocks that are read after the section. */
 struct root_nodes {
     const struct wb_config_node *interface, *ends, *meshes, *run, *loads, *published, *uncertainty;
 };
@@ -826,14 +813,13 @@ static enum wb_status read_root(struct reader *reader)
     struct wb_bundle_model *const m = reader->model;
     struct section_nodes section = {0};
     struct root_nodes nodes = {0};
-    int packing, length_source = 0;
-    struct wb_config_key keys[] = {
+    const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_BOOLEAN("settled", &m->settled),
         WB_CONFIG_TEXT("name", m->name),
         WB_CONFIG_OPTIONAL_TEXT("title", m->title),
         WB_CONFIG_OPTIONAL_TEXT("notes", m->notes),
         WB_CONFIG_NODE("wires", &section.wires),
-        WB_CONFIG_CHOICE("packing", &packing, packings),
+        WB_CONFIG_CHOICE("packing", &m->arrangement, packings),
         WB_CONFIG_OPTIONAL_NODE("places_mm", &section.places),
         WB_CONFIG_OPTIONAL_NUMBER("touching_mm", &m->touching, WB_MM, 0.0, 1.0),
         WB_CONFIG_OPTIONAL_NODE("search", &section.search),
@@ -841,7 +827,7 @@ static enum wb_status read_root(struct reader *reader)
         WB_CONFIG_OPTIONAL_TEXT("tape", section.tape),
         WB_CONFIG_OPTIONAL_NODE("taping", &section.taping),
         WB_CONFIG_NUMBER("length_mm", &m->length, WB_MM, 1e-3, 1e6),
-        WB_CONFIG_OPTIONAL_CHOICE("length_source", &length_source, length_sources),
+        WB_CONFIG_OPTIONAL_CHOICE("length_source", &m->length_source, length_sources),
         WB_CONFIG_NODE("interface", &nodes.interface),
         WB_CONFIG_OPTIONAL_NODE("ends", &nodes.ends),
         WB_CONFIG_OPTIONAL_NODE("meshes", &nodes.meshes),
@@ -850,12 +836,9 @@ static enum wb_status read_root(struct reader *reader)
         WB_CONFIG_OPTIONAL_NODE("published", &nodes.published),
         WB_CONFIG_OPTIONAL_NODE("uncertainty", &nodes.uncertainty),
     };
-    keys[0].present = &section.has_settled;
-
     WB_TRY(wb_config_map(reader->file.root, keys, WB_COUNT(keys)));
     WB_TRY(wb_model_file_check_name(reader->file.root, m->name));
-    m->arrangement = (enum wb_bundle_packing)packing;
-    m->length_source = (enum wb_bundle_length_source)length_source;
+    section.has_settled = wb_config_find(reader->file.root, "settled");
     WB_TRY(read_section(reader, &section));
     return read_nodes(reader, &nodes);
 }

@@ -7,7 +7,7 @@
 
 #define WB_LOG_DOMAIN "bundle"
 
-/* Beyond these a tolerance is a typing error: the model is not meant for half the value. */
+/* A larger tolerance is taken as a typing error: the model does not hold for half the value. */
 static const double most_tolerance = 50.0; /* percent */
 
 static const char *const lattices[] = {"hexagon", "triangle", "densest", NULL};
@@ -18,8 +18,7 @@ static enum wb_status read_spread(struct wb_bundle_uncertainty *u, const struct 
 {
     struct wb_bundle_spread *const spread = &u->wire[u->n_wires];
     char name[WB_PATH] = "", folder[WB_PATH];
-    bool has_modulus = false, has_yield = false, has_stress = false;
-    struct wb_config_key keys[] = {
+    const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("wire", spread->wire),
         WB_CONFIG_OPTIONAL_TEXT("properties", name),
         WB_CONFIG_OPTIONAL_NUMBER("youngs_modulus_percent", &spread->youngs_modulus, WB_PERCENT,
@@ -29,13 +28,13 @@ static enum wb_status read_spread(struct wb_bundle_uncertainty *u, const struct 
         WB_CONFIG_OPTIONAL_NUMBER("stress_percent", &spread->stress, WB_PERCENT, 0.0,
                                   most_tolerance),
     };
-    keys[2].present = &has_modulus;
-    keys[3].present = &has_yield;
-    keys[4].present = &has_stress;
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     spread->line = wb_config_line(map);
-    spread->has_tolerances = has_modulus && has_yield && has_stress;
-    if (!spread->has_tolerances && (has_modulus || has_yield || has_stress))
+    int n_tolerances = 0;
+    for (size_t i = 2; i < WB_COUNT(keys); i++)
+        n_tolerances += wb_config_find(map, keys[i].name) != NULL;
+    spread->has_tolerances = n_tolerances == 3;
+    if (n_tolerances == 1 || n_tolerances == 2)
         return wb_config_refuse(map, "wire",
                                 "%s: of youngs_modulus_percent, yield_stress_percent and "
                                 "stress_percent all three are needed (0: exact)",
@@ -47,7 +46,7 @@ static enum wb_status read_spread(struct wb_bundle_uncertainty *u, const struct 
                                 spread->wire);
     for (int i = 0; i < u->n_wires; i++)
         if (strcmp(u->wire[i].wire, spread->wire) == 0)
-            return wb_config_refuse(map, "wire", "%s stands here twice", spread->wire);
+            return wb_config_refuse(map, "wire", "%s is given twice", spread->wire);
     u->n_wires++;
     if (name[0] == '\0')
         return WB_OK;
@@ -83,7 +82,7 @@ static enum wb_status read_tape(struct wb_bundle_uncertainty *u, const struct wb
     return wb_config_map(map, keys, WB_COUNT(keys));
 }
 
-/* [least, largest], both above zero: the logarithm is even between them. */
+/* [least, largest], both above zero: the logarithm is uniformly distributed between them. */
 static enum wb_status read_range(const struct wb_config_node *section,
                                  const struct wb_config_node *list, const struct wb_config_key *key,
                                  double range[2])
@@ -101,7 +100,7 @@ static enum wb_status read_scenario(struct wb_bundle_uncertainty *u,
                                     const struct wb_config_node *map, const char *const *outlines)
 {
     struct wb_bundle_variant *const variant = &u->scenario[u->n_scenarios];
-    struct wb_config_key keys[] = {
+    const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", variant->name),
         WB_CONFIG_OPTIONAL_INTEGER("wires", &variant->wires, 1, 128),
         WB_CONFIG_OPTIONAL_CHOICE("packing", &variant->packing, lattices),
@@ -110,18 +109,17 @@ static enum wb_status read_scenario(struct wb_bundle_uncertainty *u,
         WB_CONFIG_OPTIONAL_CHOICE("outline", &variant->outline, outlines),
         WB_CONFIG_OPTIONAL_NUMBER("bond_reach_mm", &variant->reach, WB_MM, 0.0, 1.0),
     };
-    keys[2].present = &variant->has_packing;
-    keys[5].present = &variant->has_outline;
-    keys[6].present = &variant->has_reach;
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    variant->has_packing = wb_config_find(map, "packing");
+    variant->has_outline = wb_config_find(map, "outline");
+    variant->has_reach = wb_config_find(map, "bond_reach_mm");
     WB_TRY(wb_model_file_check_name(map, variant->name));
     if (variant->has_reach != variant->has_outline)
         return wb_config_refuse(map, variant->has_reach ? "bond_reach_mm" : "outline",
-                                "outline and bond_reach_mm belong together");
+                                "outline and bond_reach_mm must be given together");
     for (int i = 0; i < u->n_scenarios; i++)
         if (strcmp(u->scenario[i].name, variant->name) == 0)
-            return wb_config_refuse(map, "name", "another scenario is called %s, too",
-                                    variant->name);
+            return wb_config_refuse(map, "name", "another scenario has the name %s", variant->name);
     u->n_scenarios++;
     return WB_OK;
 }

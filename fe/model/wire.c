@@ -33,7 +33,7 @@ static enum wb_status read_properties(const struct wb_config_node *node, struct 
     return WB_OK;
 }
 
-static enum wb_status read_wire(const struct wb_config_node *root, struct wb_wire *wire)
+static enum wb_status read_wire(const struct wb_config_node *root, void *wire)
 {
     const struct wb_config_node *properties = NULL;
     struct wb_wire w = {0};
@@ -56,30 +56,19 @@ static enum wb_status read_wire(const struct wb_config_node *root, struct wb_wir
                                 w.conductor_diameter / WB_MM, w.outer_diameter / WB_MM);
     if (properties)
         WB_TRY(read_properties(properties, &w));
-    *wire = w;
+    *(struct wb_wire *)wire = w;
     return WB_OK;
-}
-
-static enum wb_status take(struct wb_config *config, struct wb_wire *wire)
-{
-    const enum wb_status status = read_wire(wb_config_root(config), wire);
-    wb_config_destroy(config);
-    return status;
 }
 
 enum wb_status wb_wire_read(const char *path, struct wb_wire *wire, struct wb_reason *why)
 {
-    struct wb_config *config = NULL;
-    WB_TRY(wb_config_read(&config, path, why));
-    return take(config, wire);
+    return wb_config_load(NULL, path, why, read_wire, wire);
 }
 
 enum wb_status wb_wire_parse(const char *text, const char *origin, struct wb_wire *wire,
                              struct wb_reason *why)
 {
-    struct wb_config *config = NULL;
-    WB_TRY(wb_config_parse(&config, text, origin, why));
-    return take(config, wire);
+    return wb_config_load(text, origin, why, read_wire, wire);
 }
 
 double wb_wire_second_moment(const struct wb_wire *wire)
@@ -103,7 +92,7 @@ static double least_rigidity(const struct wb_wire *wire)
 
 static double largest_rigidity(const struct wb_wire *wire)
 {
-    /* A bundle has no single conductor: copper as far as it reaches. */
+    /* A bundle has no single conductor: assume copper over the whole diameter. */
     const double conductor =
         wire->conductor_diameter > 0.0 ? wire->conductor_diameter : wire->outer_diameter;
     const double inner = wb_circle_second_moment(conductor);

@@ -24,7 +24,7 @@ static const char *const laws[] = {"elastic", "elastoplastic", NULL};
 static const char *const clamps[] = {"plane", "fixed", NULL};
 static const char *const integrations[] = {"selective", "reduced", NULL};
 
-/* A model while it is read. */
+/* State while a model is read. */
 struct reader {
     struct wb_wire_model *model;
     struct wb_model_file file;
@@ -57,7 +57,7 @@ static enum wb_status check_material(const struct reader *reader, const struct w
 static enum wb_status read_part(struct reader *reader, const struct wb_config_node *map, int index)
 {
     struct wb_wire_model_part *const part = &reader->model->part[index];
-    char material[WB_PATH], path[WB_PATH]; /* a name, or the way to a file */
+    char material[WB_PATH], path[WB_PATH]; /* a name, or a path */
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", part->name),
         WB_CONFIG_NUMBER("outer_diameter_mm", &part->outer_diameter, WB_MM, 1e-3, 1e3),
@@ -74,7 +74,7 @@ static enum wb_status read_part(struct reader *reader, const struct wb_config_no
                                 part->inner_diameter / WB_MM);
     for (int i = 0; i < index; i++)
         if (strcmp(part->name, reader->model->part[i].name) == 0)
-            return wb_config_refuse(map, "name", "another part is called %s, too", part->name);
+            return wb_config_refuse(map, "name", "another part has the name %s", part->name);
 
     WB_TRY(wb_model_file_find(&reader->file, map, "material", "materials", material, path));
     WB_TRY(wb_material_file_read(&file, path));
@@ -128,22 +128,21 @@ static enum wb_status read_jacket_contact(struct reader *reader, const struct wb
 {
     struct wb_wire_model *const m = reader->model;
     double friction = 0.0, normal_stiffness = 0.0;
-    bool has_stiffness = false;
-    struct wb_config_key keys[] = {
+    const struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("friction", &friction, 1.0, 0.0, 10.0),
         WB_CONFIG_OPTIONAL_NUMBER("normal_stiffness_N_mm3", &normal_stiffness, WB_N_PER_MM3, 1e-3,
                                   1e9),
     };
-    keys[1].present = &has_stiffness;
 
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     if (m->n_parts != 2)
-        return wb_config_refuse(reader->file.root, "interface", "a wire of one part has none");
+        return wb_config_refuse(reader->file.root, "interface",
+                                "a wire of one part has no interface");
     const struct wb_wire_model_part *const jacket = &m->part[1];
     wb_trial_default_jacket_contact(
         &m->jacket_contact, jacket->material.youngs_modulus, jacket->material.poissons_ratio,
         0.5 * (jacket->outer_diameter - jacket->inner_diameter), friction);
-    if (has_stiffness) {
+    if (normal_stiffness > 0.0) {
         m->jacket_contact.tangential_stiffness *=
             normal_stiffness / m->jacket_contact.normal_stiffness;
         m->jacket_contact.normal_stiffness = normal_stiffness;
@@ -154,15 +153,12 @@ static enum wb_status read_jacket_contact(struct reader *reader, const struct wb
 
 static enum wb_status read_mesh(struct wb_wire_model *model, const struct wb_config_node *map)
 {
-    int integration = model->integration;
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_INTEGER("elements_along", &model->elements_along, 1, 10000),
         WB_CONFIG_OPTIONAL_INTEGER("section_density", &model->section_density, 1, 16),
-        WB_CONFIG_OPTIONAL_CHOICE("integration", &integration, integrations),
+        WB_CONFIG_OPTIONAL_CHOICE("integration", &model->integration, integrations),
     };
-    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    model->integration = integration == 1 ? WB_INTEGRATION_REDUCED : WB_INTEGRATION_SELECTIVE;
-    return WB_OK;
+    return wb_config_map(map, keys, WB_COUNT(keys));
 }
 
 static enum wb_status read_sections(struct wb_wire_model *model, const struct wb_config_node *list)
@@ -179,14 +175,14 @@ static enum wb_status read_sections(struct wb_wire_model *model, const struct wb
 
 /* --- loading steps --- */
 
-/* What a loading step starts from. */
+/* State at the beginning of a loading step. */
 struct standing {
     struct wb_tip_loads loads;
     bool held;         /* at a deflection */
     double deflection; /* m, when held */
 };
 
-/* +1 where a load grows, -1 where it becomes smaller or is reversed, 0 where it stays. */
+/* +1: the load grows; -1: it decreases or is reversed; 0: it is constant. */
 static int growth(const double from[3], const double to[3])
 {
     if (from[0] == to[0] && from[1] == to[1] && from[2] == to[2])
@@ -207,34 +203,31 @@ static bool loads_unload(const struct wb_tip_loads *from, const struct wb_tip_lo
     return less;
 }
 
-/* The keys of a step that say what it does. */
+/* The keys that define a step's action. */
 struct action {
     const struct wb_config_node *force, *moment, *follower;
     bool unload, release;
-    bool has_unload, has_release, has_deflection;
-    double deflection;
+    double deflection; /* NaN: not given */
 };
 
 static enum wb_status refuse_false(const struct wb_config_node *map, const char *key, bool value)
 {
-    if (!value)
-        return wb_config_refuse(map, key, "expected true, or no such key");
+    if (wb_config_find(map, key) && !value)
+        return wb_config_refuse(map, key, "expected true, or omit the key");
     return WB_OK;
 }
 
 static enum wb_status check_action(const struct wb_config_node *map, const struct action *action)
 {
+    WB_TRY(refuse_false(map, "unload", action->unload));
+    WB_TRY(refuse_false(map, "release", action->release));
     const int n = (action->force != NULL) + (action->moment != NULL) + (action->follower != NULL) +
-                  action->has_unload + action->has_release + action->has_deflection;
+                  action->unload + action->release + !isnan(action->deflection);
     if (n != 1)
         return wb_config_refuse(map, NULL,
                                 "a step has exactly one of force_N, moment_Nm, follower_N, unload, "
                                 "deflection_mm, release; this one has %d",
                                 n);
-    if (action->has_unload)
-        WB_TRY(refuse_false(map, "unload", action->unload));
-    if (action->has_release)
-        WB_TRY(refuse_false(map, "release", action->release));
     return WB_OK;
 }
 
@@ -243,8 +236,8 @@ static enum wb_status take_loads(const struct wb_config_node *map, const struct 
 {
     const struct wb_tip_loads none = {0}, *const before = &standing->loads;
     if (standing->held)
-        return wb_config_refuse(map, NULL,
-                                "a deflection is held; only another one or release can follow");
+        return wb_config_refuse(
+            map, NULL, "a deflection is held; only another deflection or release can follow");
     step->kind = WB_WIRE_STEP_LOADS;
     if (action->force)
         WB_TRY(read_triple(action->force, "force_N", 1e6, step->loads.force));
@@ -252,7 +245,7 @@ static enum wb_status take_loads(const struct wb_config_node *map, const struct 
         WB_TRY(read_triple(action->moment, "moment_Nm", 1e6, step->loads.moment));
     if (action->follower)
         WB_TRY(read_triple(action->follower, "follower_N", 1e6, step->loads.follower));
-    if (action->has_unload) {
+    if (action->unload) {
         if (wb_vec3_dot(before->force, before->force) == 0.0 &&
             wb_vec3_dot(before->moment, before->moment) == 0.0 &&
             wb_vec3_dot(before->follower, before->follower) == 0.0)
@@ -294,8 +287,8 @@ static enum wb_status take_release(const struct wb_config_node *map, struct stan
 static enum wb_status read_step(struct wb_wire_model *model, const struct wb_config_node *map,
                                 struct standing *standing, struct wb_wire_step *step)
 {
-    struct action action = {0};
-    struct wb_config_key keys[] = {
+    struct action action = {.deflection = (double)NAN};
+    const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", step->name),
         WB_CONFIG_OPTIONAL_NODE("force_N", &action.force),
         WB_CONFIG_OPTIONAL_NODE("moment_Nm", &action.moment),
@@ -306,18 +299,15 @@ static enum wb_status read_step(struct wb_wire_model *model, const struct wb_con
         WB_CONFIG_OPTIONAL_INTEGER("rows", &step->rows, 1, MOST_ROWS),
         WB_CONFIG_OPTIONAL_BOOLEAN("fields", &step->fields),
     };
-    keys[4].present = &action.has_unload;
-    keys[5].present = &action.has_deflection;
-    keys[6].present = &action.has_release;
     step->rows = DEFAULT_ROWS;
     step->loads = standing->loads;
 
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     WB_TRY(wb_model_file_check_name(map, step->name));
     WB_TRY(check_action(map, &action));
-    if (action.has_deflection)
+    if (!isnan(action.deflection))
         WB_TRY(take_deflection(map, model, &action, standing, step));
-    else if (action.has_release)
+    else if (action.release)
         WB_TRY(take_release(map, standing, step));
     else
         WB_TRY(take_loads(map, &action, standing, step));
@@ -339,14 +329,14 @@ static enum wb_status read_loading_steps(struct reader *reader, const struct wb_
         WB_TRY(read_step(m, map, &standing, &m->step[i]));
         for (int k = 0; k < i; k++)
             if (strcmp(m->step[i].name, m->step[k].name) == 0)
-                return wb_config_refuse(map, "name", "another step is called %s, too",
+                return wb_config_refuse(map, "name", "another step has the name %s",
                                         m->step[i].name);
         deflects = deflects || m->step[i].kind == WB_WIRE_STEP_DEFLECTION;
     }
     m->n_steps = n;
     if (m->strand_length > 0.0 && !deflects)
         return wb_config_refuse(reader->file.root, "strand_mm",
-                                "no step of the history makes a deflection");
+                                "no step of the history prescribes a deflection");
     return WB_OK;
 }
 
@@ -356,8 +346,8 @@ static enum wb_status read_root(struct reader *reader)
 {
     struct wb_wire_model *const m = reader->model;
     const struct wb_config_node *parts, *interface, *gravity, *mesh, *sections, *history;
-    char wire[WB_PATH]; /* a name, or the way to a file */
-    int law, clamp = 0;
+    char wire[WB_PATH]; /* a name, or a path */
+    int law;
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", m->name),
         WB_CONFIG_TEXT("title", m->title),
@@ -367,7 +357,7 @@ static enum wb_status read_root(struct reader *reader)
         WB_CONFIG_CHOICE("law", &law, laws),
         WB_CONFIG_OPTIONAL_NODE("parts", &parts),
         WB_CONFIG_OPTIONAL_NODE("interface", &interface),
-        WB_CONFIG_OPTIONAL_CHOICE("clamp", &clamp, clamps),
+        WB_CONFIG_OPTIONAL_CHOICE("clamp", &m->clamp, clamps),
         WB_CONFIG_NODE("gravity", &gravity),
         WB_CONFIG_OPTIONAL_NUMBER("strand_mm", &m->strand_length, WB_MM, 1e-3, 1e9),
         WB_CONFIG_OPTIONAL_NODE("mesh", &mesh),
@@ -378,7 +368,6 @@ static enum wb_status read_root(struct reader *reader)
     WB_TRY(wb_config_map(reader->file.root, keys, WB_COUNT(keys)));
     WB_TRY(wb_model_file_check_name(reader->file.root, m->name));
     m->is_elastic = law == 0;
-    m->clamp = clamp == 1 ? WB_WIRE_CLAMP_FIXED : WB_WIRE_CLAMP_PLANE;
     WB_TRY(wb_model_file_wire(&reader->file, reader->file.root, "wire", wire, &m->wire));
     if (parts)
         WB_TRY(read_parts(reader, parts));
@@ -418,7 +407,7 @@ enum wb_status wb_wire_model_read(struct wb_wire_model *model, const char *path)
     return status;
 }
 
-/* --- what follows from a model --- */
+/* --- derived properties --- */
 
 static bool is_zero(const double vector[3])
 {
@@ -439,8 +428,8 @@ bool wb_wire_model_is_follower(const struct wb_wire_model *model)
     return any;
 }
 
-/* A force to be compared over the deflection is zero at zero deflection: with the weight only a
- * test that begins there has that. */
+/* A force that is compared over the deflection must be zero at zero deflection; with weight this
+ * holds only for a test that begins there. */
 static bool step_bends(const struct wb_wire_model *model, const struct wb_wire_step *step)
 {
     const struct wb_tip_loads *const loads = &step->loads;

@@ -21,36 +21,35 @@ static int tear_down(void **state)
 struct sample {
     double length;
     int count;
-    bool flag, count_given;
+    bool flag;
     char name[8];
     int colour;
     const struct wb_config_node *list;
 };
 
-static enum wb_status read_sample(const char *text, struct sample *sample)
+static enum wb_status read_root(const struct wb_config_node *root, void *into)
 {
     static const char *const colours[] = {"red", "blue", NULL};
-    *sample = (struct sample){.length = -1.0, .count = -1};
-    struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, "test.yaml", NULL));
+    static const char *const old[] = {"size", "width", NULL};
+    struct sample *const sample = into;
     const struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("length_mm", &sample->length, WB_MM, 1.0, 1000.0),
-        {.name = "count",
-         .type = WB_CONFIG_TYPE_INTEGER,
-         .optional = true,
-         .target = &sample->count,
-         .minimum = 0,
-         .maximum = 9,
-         .present = &sample->count_given},
+        WB_CONFIG_OPTIONAL_INTEGER("count", &sample->count, 0, 9),
         WB_CONFIG_OPTIONAL_BOOLEAN("flag", &sample->flag),
         WB_CONFIG_OPTIONAL_TEXT("name", sample->name),
         WB_CONFIG_OPTIONAL_CHOICE("colour", &sample->colour, colours),
         WB_CONFIG_OPTIONAL_NODE("list", &sample->list),
         WB_CONFIG_IGNORED("truth"),
+        WB_CONFIG_IGNORED("width"),
     };
-    const enum wb_status status = wb_config_map(wb_config_root(config), keys, WB_COUNT(keys));
-    wb_config_destroy(config);
-    return status;
+    WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
+    return wb_config_refuse_keys(root, old, "no longer used");
+}
+
+static enum wb_status read_sample(const char *text, struct sample *sample)
+{
+    *sample = (struct sample){.length = -1.0, .count = -1};
+    return wb_config_load(text, "test.yaml", NULL, read_root, sample);
 }
 
 static void layouts_that_are_known_are_read(void **state)
@@ -93,7 +92,6 @@ static void values_become_si(void **state)
                      WB_OK);
     assert_close(sample.length, 0.085, 1e-15);
     assert_int_equal(sample.count, 3);
-    assert_true(sample.count_given);
     assert_true(sample.flag);
     assert_string_equal(sample.name, "abc");
     assert_int_equal(sample.colour, 1);
@@ -107,7 +105,6 @@ static void absent_optional_keys_leave_their_target(void **state)
     struct sample sample;
     assert_int_equal(read_sample("length_mm: 85", &sample), WB_OK);
     assert_int_equal(sample.count, -1);
-    assert_false(sample.count_given);
 }
 
 static void errors_name_file_line_and_key(void **state)
@@ -129,6 +126,7 @@ static void errors_name_file_line_and_key(void **state)
         {"length_mm: 85\nflag: yes", "test.yaml:2: flag", "true or false"},
         {"length_mm: 85\nname: abcdefgh", "test.yaml:2: name", "text too long"},
         {"length_mm: 85\ncolour: green", "test.yaml:2: colour", "one of red, blue, not green"},
+        {"length_mm: 85\nwidth: 1", "test.yaml:2: width", "no longer used"},
         {"- 1\n- 2", "test.yaml:1: ", "expected keys with values"},
         {"a: b: c", "test.yaml:1: ", "mapping"},
         {"a: [1, 2", "test.yaml:", ""},

@@ -429,7 +429,7 @@ static void what_the_piece_cannot_have_is_said_in_options(void **unused)
     assert_non_null(strstr(o.err, "--length-mm"));
     tool("solve bundle 7-type3 --packing triangle");
     assert_int_equal(o.code, 1);
-    assert_non_null(strstr(o.err, "7 wires are no triangle; 6 or 12 are"));
+    assert_non_null(strstr(o.err, "7 wires do not fill a triangle; 6 or 12 do"));
     assert_int_equal(solve("--packing places"), 2);
     assert_non_null(strstr(o.err, "expected file, hexagon, triangle or densest"));
     assert_int_equal(solve("--layers 1"), 1);

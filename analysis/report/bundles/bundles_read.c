@@ -56,7 +56,6 @@ static enum wb_status read_settings(struct settings *s, const struct wb_config_n
     struct wb_bundle_override *const o = &s->override;
     struct list lists[MOST_LISTS];
     int n_lists = 0;
-    bool has_load = false, has_weight = false;
     const struct wb_config_key loads[] = {
         WB_CONFIG_OPTIONAL_BOOLEAN("dead_force", &s->dead_force),
         WB_CONFIG_OPTIONAL_BOOLEAN("weight", &s->weight),
@@ -64,14 +63,12 @@ static enum wb_status read_settings(struct settings *s, const struct wb_config_n
     size_t n = n_own + add_rows(o, keys + n_own, lists, &n_lists);
     for (size_t i = 0; i < WB_COUNT(loads); i++)
         keys[n++] = loads[i];
-    keys[n - 2].present = &has_load;
-    keys[n - 1].present = &has_weight;
     for (int i = 0; i < n_lists; i++)
         keys[n++] =
             (struct wb_config_key)WB_CONFIG_OPTIONAL_NODE(lists[i].row->name, &lists[i].node);
     WB_TRY(wb_config_map(node, keys, n));
-    s->has_load |= has_load;
-    s->has_weight |= has_weight;
+    s->has_load |= wb_config_find(node, "dead_force") != NULL;
+    s->has_weight |= wb_config_find(node, "weight") != NULL;
     for (int i = 0; i < n_lists; i++)
         if (lists[i].node)
             WB_TRY(wb_setting_read_list(lists[i].row, lists[i].node, lists[i].settings));

@@ -103,9 +103,11 @@ static void refusals_name_line_and_key(void **state)
          ":1: yield_stress_MPa: this key is missing"},
         {HEAD "hardening: isotropic\n", ":1: yield_stress_MPa: this key is missing"},
         {HEAD "yield_stress_MPa: 1\nstrength_coefficient_MPa: 3\n",
-         ":6: strength_coefficient_MPa: strength_coefficient_MPa and hardening_exponent go"},
+         ":6: strength_coefficient_MPa: strength_coefficient_MPa must be given together with "
+         "hardening_exponent"},
         {HEAD "yield_stress_MPa: 1\nhardening_exponent: 1\n",
-         ":6: hardening_exponent: strength_coefficient_MPa and hardening_exponent go"},
+         ":6: hardening_exponent: hardening_exponent must be given together with "
+         "strength_coefficient_MPa"},
         {HEAD "yield_stress_MPa: 1\nhardening: kinematic\n", ":6: hardening: kinematic"},
         {HEAD "yield_stress_MPa: 1\nhardening: kinematic\nstrength_coefficient_MPa: 1\n"
               "hardening_exponent: 1\n",

@@ -539,18 +539,19 @@ static void wrong_wires_are_refused(void **state)
     replace(other, thin, "name: thin", "name: type3");
     write_beside("plain.yaml", other);
     refuse(full, "./thin.yaml", "./plain.yaml",
-           ":6: wire: another, different wire is called type3");
+           ":6: wire: another, different wire has the name type3");
 }
 
 static void wrong_packings_are_refused(void **state)
 {
     (void)state;
     refuse(full, "packing: hexagon", "packing: round", ":8: packing: ");
-    refuse(full, "count: 4}", "count: 5}", ":8: packing: 8 wires are no hexagon; 7 or 19 are");
+    refuse(full, "count: 4}", "count: 5}",
+           ":8: packing: 8 wires do not fill a hexagon; 7 or 19 do");
     refuse(full, "packing: hexagon", "packing: triangle",
-           ":8: packing: 7 wires are no triangle; 6 or 12 are");
+           ":8: packing: 7 wires do not fill a triangle; 6 or 12 do");
     refuse(bare, "packing: hexagon", "packing: triangle",
-           ":3: packing: 1 wires are no triangle; the smallest has 3");
+           ":3: packing: 1 wires do not fill a triangle; the smallest has 3");
     refuse(full, "packing: hexagon", "packing: places", "places_mm: this key is missing");
     refuse(full, "packing: hexagon", "packing: hexagon\nplaces_mm: [[0, 0]]", ":9: places_mm: ");
     refuse(full, "packing: hexagon", "packing: hexagon\nsearch: {seed: 1}", ":9: search: ");
@@ -574,7 +575,7 @@ static void wrong_tapes_are_refused(void **state)
     write_beside("plain.yaml", stretchy);
     refuse(full, "tape: tape\n", "tape: ./plain.yaml\n", ":11: tape: material stretchy hardens");
     refuse(full, "tape: tape\n", "tape: nothing\n", ":11: tape: ");
-    refuse(full, "tape: tape\n", "", ":11: taping: there is no tape");
+    refuse(full, "tape: tape\n", "", ":11: taping: the bundle has no tape");
     refuse(bare, "packing: hexagon", "packing: hexagon\ngaps: {tape_mm: 0.1}", ":4: gaps: ");
     refuse(full, "layout: sleeve", "layout: spiral", ":12: layout: ");
     refuse(full, "layers: 4", "layers: 0", ":12: layers: ");
@@ -612,7 +613,7 @@ static void wrong_runs_are_refused(void **state)
     (void)state;
     refuse(full, "potted_mm: 3", "potted_mm: 57", ":20: potted_mm: 57 mm is not less than half");
     refuse(full, "tip: capped", "tip: loose", ":20: tip: ");
-    refuse(full, "name: fine", "name: paper", ":22: name: another mesh is called paper");
+    refuse(full, "name: fine", "name: paper", ":22: name: another mesh has the name paper");
     refuse(full, "core_quads: 4", "core_quads: 3", ":22: core_quads: 3 is not even");
     refuse(full, "elements_along: 40", "elements_along: 1", ":23: elements_along: ");
     refuse(full, "one-point", "two-points", ":23: formulation: ");
@@ -714,8 +715,8 @@ static void wrong_uncertainties_are_refused(void **unused)
         {"pitch_percent: 2", "pitch_percent: 51", "model.yaml:12: pitch_percent"},
         {"friction: [0.1, 0.4]", "friction: [0.4, 0.1]", "expected [least, largest]"},
         {"friction: [0.1, 0.4]", "friction: [0, 0.1]", "friction"},
-        {"name: b, packing", "name: a, packing", "another scenario is called a"},
-        {", bond_reach_mm: 0.01", "", "belong together"},
+        {"name: b, packing", "name: a, packing", "another scenario has the name a"},
+        {", bond_reach_mm: 0.01", "", "must be given together"},
         {"packing: densest", "packing: places", "packing"},
         {"- {wire: type3, properties: p.yaml}", "- {wire: type3}", "expected properties: FILE"},
     };
@@ -768,7 +769,7 @@ static void variants_are_read_as_if_the_file_said_so(void **unused)
             "[{wire: type3, count: 4}, {wire: type2, count: 3}]");
     read_text(text);
     assert_int_not_equal(try_variant(&more), WB_OK);
-    assert_message("of which kind");
+    assert_message("wires: variant more: 12 wires");
 }
 
 /* The same as a file with thicker wires; a pitch of its own leaves the wires as they are. */

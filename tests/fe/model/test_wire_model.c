@@ -358,7 +358,7 @@ static void refusals_name_line_and_key(void **state)
         {"length_mm: 100", "length_mm: 50", ":37: deflection_mm: 53 mm cannot be reached"},
         {"law: elastoplastic", "law: plastic", ":6: law: expected one of elastic, elastoplastic"},
         {"  - name: core", "  - name: core!", ":8: name: expected letters"},
-        {"  - name: jacket", "  - name: core", ":11: name: another part is called core"},
+        {"  - name: jacket", "  - name: core", ":11: name: another part has the name core"},
         {"    outer_diameter_mm: 3.26", "    outer_diameter_mm: 5",
          ":12: outer_diameter_mm: expected more than the 5 mm"},
         {"    outer_diameter_mm: 3.26", "    outer_diameter_mm: -1",
@@ -394,7 +394,7 @@ static void refusals_name_line_and_key(void **state)
         {"fields_at_mm: [3.26, 50]", "fields_at_mm: []", ":24: fields_at_mm: 0 numbers given"},
         {"fields_at_mm: [3.26, 50]", "fields_at_mm: [1,2,3,4,5,6,7,8,9]",
          ":24: fields_at_mm: 9 numbers given"},
-        {"  - name: moment", "  - name: force", ":29: name: another step is called force"},
+        {"  - name: moment", "  - name: force", ":29: name: another step has the name force"},
         {"  - name: force", "  - name: 'a b'", ":26: name: expected letters"},
         {"    force_N: [5, 6, 7]", "    force_N: [5, 6, x]", ":27: force_N: expected a plain"},
         {"    force_N: [5, 6, 7]", "    force_N: [5, 6, 7]\n    release: true",
@@ -445,7 +445,7 @@ static void whole_models_are_refused_for_what_they_are(void **state)
         const char *text, *expected;
     } cases[] = {
         {SHORT "interface:\n  friction: 0.1\n" ONE_STEP, ":8: interface: "},
-        {SHORT "strand_mm: 760\n" ONE_STEP, ":7: strand_mm: no step of the history makes"},
+        {SHORT "strand_mm: 760\n" ONE_STEP, ":7: strand_mm: no step of the history"},
         {SHORT "history:\n  - name: a\n    deflection_mm: 5\n  - name: b\n    release: true\n"
                "  - name: c\n    release: true\n",
          ":13: release: no deflection is held"},
