@@ -37,7 +37,7 @@ static double power_ratio(const struct wb_material *m, double x, double q)
         const double a = exp(q);
         const double b = exp(log_k + n * q);
         const double step = log(a + b) * (a + b) / (a + n * b);
-        /* What is left is less than the step's square. */
+        /* The remaining error is below the square of the step. */
         if (!(fabs(step) > 1e-8))
             return a - a * step;
         q -= step;

@@ -1,4 +1,4 @@
-/* Hardening laws, one row of a table each, and what solvers need to know of them.
+/* Hardening laws, one table row each, with the functions that solvers call.
  *
  * A material yields when its stress reaches a surface, which either grows or moves with the
  * accumulated plastic strain p: it grows by H(p) in isotropic hardening,
@@ -33,12 +33,12 @@
 
 /* --- the laws --- */
 
-/* A number that a law needs: a field of struct wb_material. */
+/* A parameter of a hardening law: a field of struct wb_material. */
 struct wb_hardening_parameter {
     const char *name, *unit, *expected; /* for messages; the unit with a space before it, or "" */
-    double least, largest;              /* beyond which nothing can be computed */
+    double least, largest;              /* valid range of the computation */
     const char *key;                    /* in material files, */
-    double factor, low, high;           /* its unit there, and what it may be in this unit */
+    double factor, low, high;           /* its unit there, and its range in this unit */
     size_t offset;                      /* of the field */
 };
 
@@ -53,9 +53,9 @@ extern const struct wb_hardening_parameter wb_hardening_parameters[WB_HARDENING_
 struct wb_hardening_law {
     const char *name; /* in files; NULL: elastic, which a file says by giving no yield stress */
     bool yields;
-    bool moves;                        /* the surface moves; else it grows */
+    bool moves;                        /* the yield surface moves; false: it grows */
     bool has[WB_HARDENING_PARAMETERS]; /* the parameters that it needs */
-    bool may_be_perfect;               /* without any of them it is perfectly plastic */
+    bool may_be_perfect;               /* without parameters the law is perfectly plastic */
 
     /* Of a surface that grows: H(p), Pa, at p >= 0; the mean of H from 0 to p; the exponent at p,
      * NULL where it is the material's own at any p; r, to round-off, at the logarithm of the strain
@@ -65,7 +65,7 @@ struct wb_hardening_law {
     double (*mean_growth)(const struct wb_material *material, double p);
     double (*exponent)(const struct wb_material *material, double p);
     double (*ratio)(const struct wb_material *material, double log_strain, double guess);
-    /* Of one that moves: the modulus d(back stress) / dp, Pa. */
+    /* Of a surface that moves: the modulus d(back stress) / dp, Pa. */
     double (*back_modulus)(const struct wb_material *material);
 };
 
@@ -81,7 +81,7 @@ static inline const struct wb_hardening_law *wb_hardening_law(const struct wb_ma
     return &wb_hardening_laws[material->hardening];
 }
 
-/* Whether the numbers of the hardening law are possible ones; if not, `why` says which is not. */
+/* Whether the parameters of the hardening law are valid; if not, `why` names the invalid one. */
 bool wb_hardening_is_possible(const struct wb_material *material, char *why, size_t size);
 
 static inline double *wb_hardening_value(struct wb_material *material, int parameter)
@@ -129,9 +129,9 @@ struct wb_hardening_table {
  * infinite, E not positive) gives a table of NaN, which the solver's finite checks find. */
 void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_material *material);
 
-/* r from the table; `scaled` is c / sigma_Y. Outside the table, and for what is not a number, it is
- * some finite number of no meaning: check with wb_hardening_covers() first or later. Branch-free,
- * so that a loop over it vectorises. */
+/* r from the table; `scaled` is c / sigma_Y. Outside the table, and for NaN, the result is finite
+ * but meaningless: check with wb_hardening_covers() before or after. Branch-free, so that a loop
+ * over it vectorises. */
 static inline double wb_hardening_lookup(const struct wb_hardening_table *table, double scaled)
 {
     unsigned long long pattern;

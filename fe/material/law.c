@@ -9,7 +9,7 @@
 
 #define WB_LOG_DOMAIN "law"
 
-/* How far Ludwik's overlay reaches: the larger of the two. */
+/* Strain range of Ludwik's overlay: the larger of the two. */
 static const double reach_strain = 0.1;
 static const double reach_of_yield_strain = 50.0;
 
@@ -168,8 +168,8 @@ enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why)
     if (law->form == WB_LAW_PARALLEL)
         return law->is_combined && law->isotropic_share == 1.0
                    ? wb_fail_to(why, WB_ERR_ARGUMENT,
-                                "isotropic share 1: expected less of parallel parts with combined "
-                                "hardening, which would never yield")
+                                "isotropic share 1: expected less than 1 for parallel parts with "
+                                "combined hardening, which would never yield")
                    : check_parts(law, why);
     if (!wb_hardening_law(&law->material)->growth)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
@@ -180,7 +180,7 @@ enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why)
     if (wb_law_is_overlay(law) && law->material.hardening_exponent > 1.0)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
                           "hardening exponent %g: expected at most 1 with kinematic or mixed "
-                          "hardening, where a curve that steepens would give work back",
+                          "hardening, where a steepening curve would release plastic work",
                           law->material.hardening_exponent);
     return WB_OK;
 }
@@ -250,7 +250,8 @@ static void ludwik_overlay(const struct wb_law *law, struct wb_overlay *overlay)
     struct point corners[CORNERS];
     double slope = law->material.youngs_modulus;
 
-    /* Raised by what the chords lie below the curve, so that they follow it in the mean. */
+    /* Raised by the mean distance of the chords below the curve, so that they follow it in the
+     * mean. */
     const double raised = 1.0 + place_corners(&law->material, corners, CORNERS);
     for (int k = 1; k < CORNERS; k++)
         corners[k].stress *= raised;
@@ -317,8 +318,8 @@ static double chaboche_growth(const struct wb_law *law, double p, double *slope)
     return sum;
 }
 
-/* Newton's method on E (e - p) = sigma_Y + growth(p). What it solves grows ever slower in p, so
- * that it comes from below and never goes too far. */
+/* Newton's method on E (e - p) = sigma_Y + growth(p). growth() is concave in p, so the iteration
+ * converges from below without overshoot. */
 static double chaboche_stress(const struct wb_law *law, double strain, double *tangent)
 {
     const double E = law->material.youngs_modulus, over = E * strain - law->material.yield_stress;

@@ -118,20 +118,22 @@ void wb_law_init_combined(struct wb_law *law, const struct wb_material *material
 void wb_law_init_chaboche(struct wb_law *law, const struct wb_material *material, double saturation,
                           double rate, const struct wb_law_back *backs, int n_backs);
 
-/* Whether it is Ludwik's with isotropic hardening alone, which its material says by itself. */
+/* Whether the law is Ludwik's with isotropic hardening and has no other parameters than its
+ * material. */
 bool wb_law_is_plain(const struct wb_law *law);
 
-/* Whether an overlay computes it: parallel parts, and Ludwik's with kinematic and mixed hardening.
- */
+/* Whether the law is computed as an overlay: parallel parts, and Ludwik's law with kinematic or
+ * mixed hardening. */
 bool wb_law_is_overlay(const struct wb_law *law);
 
-/* WB_ERR_ARGUMENT for what makes no law: also for Ludwik's with n above 1 and a kinematic share,
- * whose curve steepens behind the yield point: its parts would give work back. `why` receives
- * which; NULL: that is logged. */
+/* WB_ERR_ARGUMENT for invalid parameters; also for Ludwik's law with n above 1 and a kinematic
+ * share: its curve steepens beyond the yield point, and its parts would release plastic work. `why`
+ * receives the reason; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why);
 
-/* The overlay of a law that wb_law_check() takes and wb_law_is_overlay(). Ludwik's ends at a strain
- * of 0.1 or 50 times the yield strain, beyond which its stress goes on along the last slope. */
+/* The overlay of a law that passes wb_law_check() and wb_law_is_overlay(). Ludwik's overlay ends at
+ * the larger of a strain of 0.1 and 50 times the yield strain; beyond it the stress continues with
+ * the last slope. */
 void wb_law_overlay(const struct wb_law *law, struct wb_overlay *overlay);
 
 /* F(e) of the law, Pa, at a strain e >= 0; *tangent (Pa, may be NULL) is its slope. Exact. */
@@ -152,15 +154,15 @@ const char *wb_law_form_name(enum wb_law_form form);
 const char *wb_law_form_words(enum wb_law_form form);
 const char *wb_law_rule_name(const struct wb_law *law);
 
-/* Whether its rule is mixed or combined with a share to tell. */
+/* Whether its rule has an isotropic share: mixed, or combined except for Chaboche's law. */
 bool wb_law_has_share(const struct wb_law *law);
 
-/* Appends the law's numbers in one line of words: "E 4527 MPa, sigma_Y 4.52 MPa, K 1325 MPa, n
- * 0.9", or the parts' moduli and yield strains, or Chaboche's; the isotropic share of a mixed or
- * combined rule; and the Maxwell elements. */
+/* Appends the law's parameters as one line of text: "E 4527 MPa, sigma_Y 4.52 MPa, K 1325 MPa, n
+ * 0.9", or the parts' moduli and yield strains, or Chaboche's parameters; the isotropic share of a
+ * mixed or combined rule; and the Maxwell elements. */
 void wb_law_append_numbers(struct wb_text *text, const struct wb_law *law);
-/* The Maxwell elements alone, nothing without: "120 MPa that relax over 15 s (Maxwell); moments at
- * 3.00e-04 1/s of the outer fibre". */
+/* Appends the Maxwell elements alone, nothing if there are none: "120 MPa that relax over 15 s
+ * (Maxwell); moments at 3.00e-04 1/s of the outer fibre". */
 void wb_law_append_relaxation(struct wb_text *text, const struct wb_law *law);
 
 #endif

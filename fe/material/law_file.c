@@ -117,7 +117,8 @@ static enum wb_status check_share(const struct wb_config_node *node, int rule, b
         return wb_config_refuse(node, "isotropic_share",
                                 "this key is missing: %s hardening needs it", rules[rule]);
     if (!needs_share && has_share)
-        return wb_config_refuse(node, "isotropic_share", "%s hardening has none", rules[rule]);
+        return wb_config_refuse(node, "isotropic_share", "%s hardening has no isotropic share",
+                                rules[rule]);
     return WB_OK;
 }
 
@@ -139,13 +140,14 @@ static enum wb_status read_relaxed(const struct wb_config_node *node,
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     if (list && form != WB_LAW_PARALLEL)
-        return wb_config_refuse(node, "parts", "%s has none", wb_law_form_words(form));
+        return wb_config_refuse(node, "parts", "%s has no parts", wb_law_form_words(form));
     if (chaboche && form != WB_LAW_CHABOCHE)
-        return wb_config_refuse(node, "chaboche", "of `form: chaboche`, not of '%s'", forms[form]);
+        return wb_config_refuse(node, "chaboche", "only with `form: chaboche`, not '%s'",
+                                forms[form]);
     if (form == WB_LAW_CHABOCHE) {
         if (!chaboche)
             return wb_config_refuse(node, "chaboche",
-                                    "this key is missing: Chaboche's law needs its numbers");
+                                    "this key is missing: Chaboche's law needs its parameters");
         if (rule != COMBINED || share >= 0.0)
             return wb_config_refuse(node, share >= 0.0 ? "isotropic_share" : "hardening",
                                     "expected `hardening: combined` without a share");
@@ -164,8 +166,8 @@ static enum wb_status read_relaxed(const struct wb_config_node *node,
     }
     if (rule == COMBINED && beta == 1.0)
         return wb_config_refuse(node, "isotropic_share",
-                                "1: expected less of parallel parts with combined hardening, which "
-                                "would never yield");
+                                "1: expected less than 1 for parallel parts with combined "
+                                "hardening, which would never yield");
     if (!list)
         return wb_config_refuse(node, "parts",
                                 "this key is missing: a law of parallel parts needs "

@@ -30,13 +30,13 @@
 #include "base/text.h"
 #include "fe/material/law.h"
 
-/* Reads the block `node`; NULL: there is none. `ludwik` has the four numbers and Poisson's ratio.
- * Errors name file, line and key. */
+/* Reads the block `node`; NULL: the file has none. `ludwik` has Ludwik's four parameters and
+ * Poisson's ratio. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_law_file_read(const struct wb_config_node *node,
                                               const struct wb_material *ludwik, struct wb_law *law);
 
-/* Appends the block, nothing for Ludwik's with isotropic hardening alone. It reads back the same.
- */
+/* Appends the block; nothing for Ludwik's law with isotropic hardening. Reading it back gives the
+ * same law. */
 void wb_law_file_append(struct wb_text *text, const struct wb_law *law);
 
 #endif

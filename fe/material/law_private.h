@@ -1,4 +1,4 @@
-/* What tests of fe/material/law.h ask beside it. */
+/* Functions for the tests of fe/material/law.h. */
 #ifndef WB_FE_MATERIAL_LAW_PRIVATE_H
 #define WB_FE_MATERIAL_LAW_PRIVATE_H
 

@@ -37,7 +37,7 @@ double wb_material_shear_modulus(const struct wb_material *material);
 double wb_material_von_mises(const double stress[6]);
 
 /* The largest von Mises stress (Pa) at an accumulated plastic strain: sigma_Y + K p^n. Infinite
- * where that is no bound: elastic, and kinematic hardening, whose surface moves. */
+ * without a bound: elastic, and kinematic hardening, whose surface moves. */
 double wb_material_flow_stress(const struct wb_material *material, double plastic_strain);
 
 #endif

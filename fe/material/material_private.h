@@ -1,4 +1,4 @@
-/* What only tests ask of fe/material/material.h. */
+/* Functions for the tests of fe/material/material.h. */
 #ifndef WB_FE_MATERIAL_MATERIAL_PRIVATE_H
 #define WB_FE_MATERIAL_MATERIAL_PRIVATE_H
 

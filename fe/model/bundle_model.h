@@ -1,6 +1,5 @@
-/* A taped bundle to be computed, from its YAML file in fixtures/bundles: which wires, how they are
- * packed and taped, what acts between them, ends, meshes, run and loads. The keys, with units,
- * ranges and defaults, are in docs/file-formats.md.
+/* A taped bundle, from its YAML file in fixtures/bundles: wires, packing, taping, interfaces, ends,
+ * meshes, run and loads. The keys, with units, ranges and defaults, are in docs/file-formats.md.
  *
  *     name: 7-type3
  *     wires:                              # in the order of the packing's places
@@ -51,11 +50,11 @@ struct wb_bundle_tape {
     struct wb_material_file material; /* its Poisson's ratio is a number */
     struct wb_taping taping;
     double gap;          /* m, from the wires it touches to its inner face */
-    bool round;          /* on a circle round all wires, not taut on their hull */
+    bool round;          /* on a circle around all wires; false: taut on their hull */
     double reach;        /* m: bonded where no farther from a wire than gap and this; 0: where it
                             lies on one */
-    struct wb_hull hull; /* of the wires, or of the one circle round them; the tape's middle is gap
-                            + half its thickness outside */
+    struct wb_hull hull; /* of the wires, or of the circle around them; the tape's middle is gap +
+                            half its thickness outside */
 };
 
 /* --- between wires and tape --- */
@@ -80,8 +79,8 @@ struct wb_bundle_interface {
 /* --- ends, meshes, run, loads --- */
 
 enum wb_bundle_tip {
-    WB_BUNDLE_TIP_FREE,  /* the wires' ends move as they like */
-    WB_BUNDLE_TIP_CAPPED /* the end section of all wires and the tape moves as one */
+    WB_BUNDLE_TIP_FREE,  /* the wires' ends move freely */
+    WB_BUNDLE_TIP_CAPPED /* the end section of all wires and the tape moves as a rigid body */
 };
 
 enum wb_bundle_formulation {
@@ -94,7 +93,7 @@ struct wb_bundle_mesh {
     int core_quads, rings; /* of a wire's section, see fe/swept/swept_section.h:
                               core^2 + 4 core rings quadrilaterals */
     int elements_along;
-    int tape_quads; /* round the tape; 0: as wide as those round the wires, a multiple of 6 */
+    int tape_quads; /* around the tape; 0: as wide as those around the wires, a multiple of 6 */
     enum wb_bundle_formulation formulation;
 };
 
@@ -102,8 +101,8 @@ struct wb_bundle_run {
     char mesh[32];        /* its name */
     double deflection;    /* m, of the tip */
     int rows;             /* of the dataset, in equal steps of a loading */
-    int cycles;           /* down and back; 0: once up to the deflection */
-    double duration;      /* s, of a loading; 0: chosen by the limit below */
+    int cycles;           /* of loading and unloading; 0: one loading */
+    double duration;      /* s, of a loading; 0: chosen from the limit below */
     double mass_scaling;  /* f_m of eq. 29, at least 1; weight is not scaled */
     double selective;     /* beta of the selective mass scaling, at least 1; 1: none */
     double kinetic_limit; /* largest kinetic over internal energy */
@@ -116,7 +115,7 @@ struct wb_bundle_loads {
     bool weight;
 };
 
-/* What the paper prints of the homogenised beam. */
+/* Published values of the homogenised beam. */
 struct wb_bundle_published {
     double outer_diameter; /* m */
     double density;        /* kg/m3 */
@@ -135,14 +134,14 @@ struct wb_bundle_model {
     char path[WB_PATH]; /* of the file */
 
     int n_types;
-    struct wb_wire type[WB_BUNDLE_MODEL_TYPES]; /* different ones, as they come; all with properties
-                                                 */
+    struct wb_wire type[WB_BUNDLE_MODEL_TYPES]; /* distinct wires in the order of the file; all have
+                                                   properties */
     enum wb_bundle_packing arrangement;
     bool settled;
     double touching; /* m: listed places within it are moved until they touch; 0: none */
     struct wb_packing_search search; /* of the densest */
     double wire_gap;                 /* m, between wires that would touch */
-    struct wb_packing packing;       /* of the wires themselves, without their gap */
+    struct wb_packing packing;       /* of the wires without their gap */
     int type_of[WB_PACKING_MOST];
 
     bool has_tape;
@@ -184,32 +183,32 @@ extern const struct wb_setting wb_bundle_model_cohesion_setting[1];
 /* Reads a bundle with its wires and its tape. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *path);
 
-/* The same with what is another in a variant; NULL: nothing. A variant that the file cannot have (a
- * number of wires of several kinds, layers without tape or of a helix) is refused. */
+/* The same, with a variant's values in place of the file's (NULL: none). A variant that does not
+ * apply to the file (a number of wires of several kinds, layers without tape or of a helix) is
+ * rejected. */
 WB_MUST_CHECK enum wb_status wb_bundle_model_read_variant(struct wb_bundle_model *model,
                                                           const char *path,
                                                           const struct wb_bundle_variant *variant);
 
 /* Factors on a section's lengths. */
 struct wb_bundle_scales {
-    double diameter; /* of the wires; places, gaps and tape go with it, but not the tape's thickness
-                      */
-    double pitch;    /* of places and tape alone: wires count as touching as before */
+    double diameter;  /* of the wires, places, gaps and tape, except the tape's thickness */
+    double pitch;     /* of places and tape alone; the same wires touch */
     double thickness; /* of the tape */
 };
 
 /* Scales a model whose tape, if any, is a sleeve. */
 void wb_bundle_model_scale(struct wb_bundle_model *model, const struct wb_bundle_scales *scales);
 
-/* The number of rows of a complete test: the first, those of the loading, and with cycles those of
- * each way. */
+/* The number of rows of a complete test: the first row, those of the loading, or with cycles those
+ * of each loading and unloading. */
 int wb_bundle_model_rows(const struct wb_bundle_model *model);
 
-/* The mesh of that name; NULL when there is none (no message). */
+/* The mesh of that name; NULL, without a message, if the model has none. */
 const struct wb_bundle_mesh *wb_bundle_model_mesh(const struct wb_bundle_model *model,
                                                   const char *name);
-/* Quadrilaterals of a wire's section, hexahedra of all wires, and quadrilaterals round the tape (0
- * without one). */
+/* Quadrilaterals of a wire's section, hexahedra of all wires, and quadrilaterals around the tape (0
+ * without a tape). */
 int wb_bundle_model_section_quads(const struct wb_bundle_mesh *mesh);
 long wb_bundle_model_hexahedra(const struct wb_bundle_model *model,
                                const struct wb_bundle_mesh *mesh);
@@ -222,14 +221,14 @@ const char *wb_bundle_model_arrangement(const struct wb_bundle_model *model);
 /* The wires of a type. */
 int wb_bundle_model_count(const struct wb_bundle_model *model, int type);
 
-/* The wire that the tape is bonded to at a place (m) that lies `offset` (m) outside its outline:
- * the nearest one within reach; -1 when there is none. */
+/* The wire that the tape is bonded to at a position (m) that lies `offset` (m) outside its outline:
+ * the nearest wire within reach; -1 if no wire is. */
 int wb_bundle_model_tape_wire(const struct wb_bundle_model *model, double y, double z,
                               double offset);
 
 /* --- homogenised --- */
 
-/* The cylinder round wires, gap and tape: d_o, m. */
+/* Diameter d_o (m) of the cylinder around wires, gap and tape. */
 double wb_bundle_model_diameter(const struct wb_bundle_model *model);
 
 /* kg/m of the wires, and of the tape. */
@@ -239,12 +238,12 @@ double wb_bundle_model_tape_mass(const struct wb_bundle_model *model);
 /* Eq. 30 over the circle of that diameter, kg/m3. */
 double wb_bundle_model_density(const struct wb_bundle_model *model, double diameter);
 
-/* Elastic flexural rigidities E I, N m2, each in bending upwards and across. Between wires that
- * slide freely and wires that do not slide at all lies the bundle's. */
+/* Elastic flexural rigidities E I, N m2, each in bending upwards and across. The bundle's rigidity
+ * lies between that of freely sliding wires and that of bonded wires. */
 struct wb_bundle_rigidity {
     double wires;      /* each about its own axis, in any direction */
-    double tape[2];    /* as a tube; a helix has none of its own */
-    double sliding[2]; /* both of them: the lower bound */
+    double tape[2];    /* as a tube; 0 for a helix */
+    double sliding[2]; /* sum of both: the lower bound */
     double bonded[2];  /* plane sections, with the tape as a tube: the upper bound */
 };
 struct wb_bundle_rigidity wb_bundle_model_rigidity(const struct wb_bundle_model *model);
@@ -253,7 +252,7 @@ struct wb_bundle_rigidity wb_bundle_model_rigidity(const struct wb_bundle_model 
 
 struct wb_bundle_fact {
     const char *key;  /* with its unit, for machines: "outer_diameter_mm" */
-    const char *text; /* for people: "outer diameter" */
+    const char *text; /* for readers: "outer diameter" */
     const char *unit; /* "mm" */
     double value;     /* in that unit */
 };
@@ -262,8 +261,8 @@ enum {
     WB_BUNDLE_MODEL_FACTS = 32
 };
 
-/* What follows from the section, in the same order always; what the bundle does not have (a tape,
- * published values) is left out. Returns how many. */
+/* Properties derived from the section, always in the same order; those of a missing tape or of
+ * missing published values are omitted. Returns their number. */
 int wb_bundle_model_facts(const struct wb_bundle_model *model,
                           struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS]);
 

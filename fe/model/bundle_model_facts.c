@@ -1,5 +1,5 @@
-/* What follows from a bundle's section: diameter, mass, bonds, rigidities, and all of it as a list.
- */
+/* Properties derived from a bundle's section: diameter, mass, bonds, rigidities, and a list of
+ * them. */
 #include <math.h>
 #include <stddef.h>
 
@@ -8,10 +8,10 @@
 #include "fe/model/bundle_model.h"
 
 static const double g_per_m = 1e-3;  /* kg/m of one g/m */
-static const double touching = 1e-9; /* m: wires so near to the tape touch it */
+static const double touching = 1e-9; /* m: wires within this distance touch the tape */
 
 enum {
-    OUTLINE = 20000 /* places looked at round a tape */
+    OUTLINE = 20000 /* positions sampled around a tape */
 };
 
 static const struct wb_wire *wire_of(const struct wb_bundle_model *model, int wire)
@@ -95,7 +95,7 @@ static void add(struct stiffness *sum, const struct stiffness *part)
     }
 }
 
-/* About the line where bending makes no force along the bundle. */
+/* About the neutral axis. */
 static double about_neutral(const struct stiffness *sum, int direction)
 {
     return sum->second[direction] - sum->first[direction] * sum->first[direction] / sum->axial;
@@ -157,7 +157,7 @@ static void tell_packing(struct list *list, const struct wb_bundle_model *model)
          wb_packing_pairs(&model->packing, touching, 0, NULL));
 }
 
-/* Wires that have a bond, and all bonds together round the outline, m. */
+/* Number of bonded wires, and length of all bonds along the outline, m. */
 static int find_bonds(const struct wb_bundle_model *model, double *length)
 {
     const struct wb_hull *const hull = &model->tape.hull;

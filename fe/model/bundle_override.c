@@ -7,7 +7,7 @@
 
 #define WB_LOG_DOMAIN "bundle"
 
-/* After the word for what the file says, in the order of enum wb_bundle_packing. */
+/* "file" keeps the file's value; the others are in the order of enum wb_bundle_packing. */
 static const char *const packings[] = {"file", "hexagon", "triangle", "densest", NULL};
 static const char *const outlines[] = {"file", "hull", "circle", NULL};
 
@@ -69,7 +69,7 @@ bool wb_bundle_override_is_empty(const struct wb_bundle_override *override)
     return true;
 }
 
-/* What is given must be in its row's range. */
+/* Checks the given values against the ranges of their rows. */
 static enum wb_status check(const struct wb_bundle_override *override)
 {
     for (int t = 0; t < WB_BUNDLE_OVERRIDE_TABLES; t++) {
@@ -105,7 +105,7 @@ static enum wb_status override_run(const struct wb_bundle_run *given,
     return WB_OK;
 }
 
-/* The tip reaches the deflection, and the epoxy leaves a bundle to bend. */
+/* Checks that the bundle can reach the deflection and that the epoxy leaves a free length. */
 static enum wb_status check_length(const struct wb_bundle_model *model, double length,
                                    double deflection)
 {
@@ -136,7 +136,7 @@ static enum wb_status override_friction(const struct wb_bundle_interface *given,
     return WB_OK;
 }
 
-/* The law has to soften after it reaches its strength. */
+/* The law must soften beyond its strength. */
 static enum wb_status check_softening(double strength, double stiffness, double fracture_energy)
 {
     const double least = 0.5 * strength * strength / stiffness;
@@ -192,7 +192,7 @@ enum wb_status wb_bundle_override_apply(const struct wb_bundle_override *overrid
 
 /* --- packing and tape --- */
 
-/* What the variant leaves open. Messages call it by the options. */
+/* Applies values that the variant does not set. Messages name the options. */
 static void join(const struct wb_bundle_override *override, struct wb_bundle_variant *variant)
 {
     if (override->packing > 0 && !variant->has_packing) {

@@ -1,6 +1,6 @@
-/* What a run has in place of values of its bundle's file (fe/model/bundle_model.h).
+/* Values of a run that replace those of its bundle file (fe/model/bundle_model.h).
  *
- * A zeroed one changes nothing. Rows and ranges of the settings are those of the file.
+ * A zeroed struct changes nothing. Rows and ranges of the settings are those of the file.
  */
 #ifndef WB_FE_MODEL_BUNDLE_OVERRIDE_H
 #define WB_FE_MODEL_BUNDLE_OVERRIDE_H
@@ -29,7 +29,7 @@ struct wb_bundle_override {
                                              ratio; 0: the file's */
 };
 
-/* The rows of all of it, in the order in which a dataset names them. */
+/* The tables of all settings, in the order of a dataset's document. */
 enum {
     WB_BUNDLE_OVERRIDE_MESH,
     WB_BUNDLE_OVERRIDE_PIECE, /* of struct wb_bundle_override itself, and the cycles */
@@ -42,13 +42,13 @@ enum {
 };
 extern const struct wb_setting_table wb_bundle_override_tables[WB_BUNDLE_OVERRIDE_TABLES];
 
-/* Whether it changes anything. */
+/* Whether the override changes nothing. */
 bool wb_bundle_override_is_empty(const struct wb_bundle_override *override);
 
-/* Reads a bundle as wb_bundle_model_read_variant() does, with what the override has in place of the
- * file's. What the variant says has precedence. NULL: neither. WB_ERR_ARGUMENT when the bundle has
- * no such mesh, and for values out of range or that do not go with each other, also for a stiffness
- * with which the interface's damage would not soften. */
+/* Reads a bundle as wb_bundle_model_read_variant() does, with the override's values in place of the
+ * file's. The variant has precedence. NULL: no override, no variant. WB_ERR_ARGUMENT for a mesh
+ * that the bundle does not have, for values out of range or in conflict, and for a stiffness with
+ * which the interface's damage would not soften. */
 WB_MUST_CHECK enum wb_status wb_bundle_override_read(struct wb_bundle_model *model,
                                                      const char *path,
                                                      const struct wb_bundle_override *override,

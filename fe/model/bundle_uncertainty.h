@@ -1,5 +1,6 @@
-/* How well a bundle is known: the section `uncertainty` of its file (fe/model/bundle_model.h), from
- * which `wirebench solve bundle --uncertain` makes bands. The keys are in docs/file-formats.md.
+/* Uncertainty of a bundle: the section `uncertainty` of its file (fe/model/bundle_model.h), from
+ * which `wirebench solve bundle --uncertain` computes bands. The keys are in
+ * docs/file-formats.md.
  *
  *     uncertainty:
  *       wires:
@@ -31,15 +32,15 @@ enum {
     WB_BUNDLE_UNCERTAINTY_SCENARIOS = 8
 };
 
-/* What is another in a scenario; of a zeroed one nothing. */
+/* Values of a scenario that replace the file's; a zeroed struct changes nothing. */
 struct wb_bundle_variant {
     char name[64];
-    int wires;        /* how many; the file has wires of one kind only. 0: the file's */
-    bool has_packing; /* without it another number of wires is a hexagon, else a triangle where it
-                         is a whole one, else the densest packing */
+    int wires;        /* number of wires, of a file with one kind of wire; 0: the file's */
+    bool has_packing; /* false: another number of wires is packed as a hexagon or triangle where it
+                         fills one, else densest */
     int packing;      /* enum wb_bundle_packing, but no places */
     int layers;       /* of the tape; 0: the file's */
-    double lap; /* part of a winding that the next one covers: the tape is 1/(1 - lap) times as
+    double lap; /* part of a winding that the next winding covers: the tape is 1/(1 - lap) times as
                    thick as its layers */
     bool has_outline;
     int outline; /* 0 hull, 1 circle */
@@ -52,17 +53,17 @@ struct wb_bundle_spread {
     char wire[64];
     char properties[WB_PATH]; /* path; "": none */
     bool has_tolerances;
-    double youngs_modulus, yield_stress, stress; /* 1; the last of all stress beyond yield */
+    double youngs_modulus, yield_stress, stress; /* 1; `stress`: of all stress beyond yield */
     int line;                                    /* of the file, for messages */
 };
 
 struct wb_bundle_uncertainty {
     int n_wires;
     struct wb_bundle_spread wire[WB_BUNDLE_UNCERTAINTY_WIRES];
-    double diameter; /* 1, of all wires, which stay in touch */
-    double pitch;    /* 1, of the distances between wires and of the tape from the axis alone */
-    double length;   /* 1 */
-    bool has_tape;   /* the next three were stated */
+    double diameter; /* 1, of all wires, which remain in contact */
+    double pitch;  /* 1, of the distances between wires and of the tape's distance from the axis */
+    double length; /* 1 */
+    bool has_tape; /* the next three were stated */
     double tape_thickness, tape_modulus, tape_yield_stress; /* 1 */
     bool has_cohesion;
     double cohesion[2]; /* K_cc, Pa/m: least, largest */
@@ -73,7 +74,7 @@ struct wb_bundle_uncertainty {
 };
 
 /* Reads the section of a file into a zeroed struct; `outlines` are the names of the tape's
- * outlines. Paths of properties are taken from the file's folder. Errors name file, line and key.
+ * outlines. Paths of properties are relative to the file's folder. Errors name file, line and key.
  */
 WB_MUST_CHECK enum wb_status wb_bundle_uncertainty_read(struct wb_bundle_uncertainty *uncertainty,
                                                         const struct wb_config_node *map,

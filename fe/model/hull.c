@@ -5,7 +5,7 @@
 
 #define WB_LOG_DOMAIN "hull"
 
-/* How far a wire reaches in the direction of a normal. */
+/* Support function of a wire in the direction of a normal. */
 static double support(const struct wb_packing_circle *wire, double normal)
 {
     return wire->z * cos(normal) + wire->y * sin(normal) + wire->radius;
@@ -26,7 +26,7 @@ static double tangential(const struct wb_packing_circle *from, const struct wb_p
 
 /* --- arcs --- */
 
-/* The wire that reaches farthest at a normal; of several that with the most of them ahead. */
+/* The wire that reaches farthest at a normal; of equal wires the rearmost along the outline. */
 static int farthest(const struct wb_packing *packing, double normal)
 {
     int best = 0;
@@ -41,8 +41,8 @@ static int farthest(const struct wb_packing *packing, double normal)
     return best;
 }
 
-/* How far the normal turns on wire a, from `normal`, until wire b reaches as far; negative: b never
- * does. Where a touches b on both sides of b's range it is entered once in a turn. */
+/* Angle by which the normal turns on wire a, from `normal`, until wire b reaches as far; negative:
+ * b never does. Where a touches b on both sides of b's range it is entered once in a turn. */
 static double turn_to(const struct wb_packing_circle *a, const struct wb_packing_circle *b,
                       double normal)
 {
@@ -51,7 +51,7 @@ static double turn_to(const struct wb_packing_circle *a, const struct wb_packing
     if (!(fabs(cosine) < 1.0))
         return -1.0;
     double turn = fmod(atan2(y, z) - acos(cosine) - normal, 2.0 * M_PI);
-    /* Round-off may put a crossing right here a little behind. */
+    /* Round-off may place a crossing at this normal slightly behind it. */
     if (turn < -1e-9)
         turn += 2.0 * M_PI;
     if (turn > 2.0 * M_PI - 1e-9)
@@ -59,8 +59,8 @@ static double turn_to(const struct wb_packing_circle *a, const struct wb_packing
     return fmax(turn, 0.0);
 }
 
-/* The next wire of the outline, and the turn to it; -1: there is none within the rest of the turn.
- * Of wires in line with each other the farthest. */
+/* The next wire of the outline, and the angle to it; -1: none within the rest of the turn. Of
+ * aligned wires the farthest. */
 static int next_wire(const struct wb_packing *packing, int wire, double normal, double *turn)
 {
     const struct wb_packing_circle *const here = &packing->wire[wire];
@@ -90,7 +90,7 @@ static enum wb_status add_arc(struct wb_hull *hull, int wire, double from, doubl
     return WB_OK;
 }
 
-/* Once round from a normal of -pi. */
+/* One turn from a normal of -pi. */
 static enum wb_status go_round(struct wb_hull *hull)
 {
     double normal = -M_PI, turn = 0.0;
@@ -105,7 +105,7 @@ static enum wb_status go_round(struct wb_hull *hull)
     }
 }
 
-/* What was cut at the first normal is one arc, the last. */
+/* The arc that was cut at the first normal is joined; it is the last. */
 static void join_ends(struct wb_hull *hull)
 {
     struct wb_hull_arc *const first = &hull->arc[0], *const last = &hull->arc[hull->n_arcs - 1];
@@ -177,7 +177,7 @@ enum wb_status wb_hull_find(struct wb_hull *hull, const struct wb_packing *packi
     return WB_OK;
 }
 
-/* --- what it measures --- */
+/* --- measures of the outline --- */
 
 double wb_hull_length(const struct wb_hull *hull, double offset)
 {

@@ -1,5 +1,5 @@
-/* The outline of a bundle: the convex hull of its wires, as a taut tape lies round them. Arcs on
- * the wires that it touches alternate with straight pieces between them.
+/* The outline of a bundle: the convex hull of its wires, which a taut tape follows. Arcs on the
+ * wires that it touches alternate with straight pieces.
  *
  * Directions are angles from +z towards +y; the outline runs counter-clockwise as seen with z to
  * the right and y up. The outline `offset` farther out (of a tape's middle, or of its outside) has
@@ -17,8 +17,8 @@ enum {
     WB_HULL_MOST = 3 * WB_PACKING_MOST /* arcs */
 };
 
-/* Where the outline lies on a wire. A wire that it only touches on its way between two others has
- * an arc of no length; a thick wire may have several. */
+/* An arc of the outline on a wire. A wire that is only touched by a straight piece has an arc of
+ * zero length; a thick wire may have several arcs. */
 struct wb_hull_arc {
     int wire;
     double from, to; /* rad, of the outward normal; from <= to, the next arc's from is this one's
@@ -32,11 +32,11 @@ struct wb_hull {
     struct wb_hull_arc arc[WB_HULL_MOST];
 };
 
-/* A wire up to `tolerance` (m) within a straight piece touches it, too. */
+/* A wire up to `tolerance` (m) inside a straight piece counts as touching it. */
 WB_MUST_CHECK enum wb_status wb_hull_find(struct wb_hull *hull, const struct wb_packing *packing,
                                           double tolerance);
 
-/* Of the outline, m. */
+/* Length of the outline, m. */
 double wb_hull_length(const struct wb_hull *hull, double offset);
 
 /* Integrals over the outline: of 1, y, z, y^2, z^2 (m, m2, m3). */
@@ -55,8 +55,8 @@ struct wb_hull_point {
     int wire;      /* on whose arc it lies; -1: on a straight piece */
 };
 
-/* The point at the length s (m, any: a whole outline more is the same point) from the beginning of
- * the first arc. */
+/* The point at the arc length s (m, periodic with the outline's length) from the beginning of the
+ * first arc. */
 struct wb_hull_point wb_hull_at(const struct wb_hull *hull, double offset, double s);
 
 #endif

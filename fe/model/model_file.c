@@ -7,7 +7,7 @@
 
 #define WB_LOG_DOMAIN "model"
 
-/* Beyond this a solid is as good as incompressible. */
+/* Above this a solid is nearly incompressible. */
 static const double largest_poisson = 0.499;
 
 enum wb_status wb_model_file_open(struct wb_model_file *file, const char *path)

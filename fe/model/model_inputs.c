@@ -9,7 +9,7 @@
 #include "fe/material/hardening.h"
 #include "fe/material/law_json.h"
 
-static const double place_step = 1e-9; /* m: packings found on two machines are nearer */
+static const double place_step = 1e-9; /* m: packings differ by less between machines */
 
 static void set_triple(struct wb_json *object, const char *key, const double triple[3])
 {
@@ -47,7 +47,7 @@ void wb_model_inputs_law(struct wb_json *object, const struct wb_law *law)
 
 /* --- bundles --- */
 
-/* Explicit dynamics knows no law beside the material. */
+/* Explicit dynamics uses the material only, not the law. */
 static void set_wires(struct wb_json *object, const struct wb_bundle_model *model, bool is_explicit)
 {
     struct wb_json *const wires = wb_json_set_array(object, "wires");
@@ -130,7 +130,7 @@ static void set_mesh(struct wb_json *object, const struct wb_bundle_model *model
     wb_json_set_text(out, "formulation", is_one_point ? "one-point" : "2x2x1");
 }
 
-/* Without its mesh, whose name says nothing; only the test itself matters to the section model. */
+/* Without the mesh, whose name does not matter; the section model depends on the test only. */
 static void set_run(struct wb_json *object, const struct wb_bundle_run *run, bool is_explicit)
 {
     struct wb_json *const out = wb_json_set_object(object, "run");
@@ -184,7 +184,7 @@ static void set_steps(struct wb_json *object, const struct wb_wire_model *model)
     for (int i = 0; i < model->n_steps; i++) {
         const struct wb_wire_step *const step = &model->step[i];
         struct wb_json *const out = wb_json_append_object(steps);
-        wb_json_set_text(out, "name", step->name); /* which fields are kept under */
+        wb_json_set_text(out, "name", step->name); /* names the step's fields */
         wb_json_set_text(out, "kind", kinds[step->kind]);
         set_triple(out, "force_N", step->loads.force);
         set_triple(out, "moment_Nm", step->loads.moment);
@@ -229,7 +229,7 @@ void wb_model_inputs_wire(struct wb_json *object, const struct wb_wire_model *mo
 void wb_model_inputs_sum(const struct wb_json *object, char sha256[WB_SHA256_TEXT])
 {
     char *text = NULL;
-    /* Without memory for the text the sum is that of none, and of no other model. */
+    /* If the text cannot be formatted, the sum is that of an empty text, which no model has. */
     if (wb_json_format(object, &text) != WB_OK)
         text = NULL;
     wb_hash_bytes(text ? text : "", text ? strlen(text) : 0, sha256);

@@ -10,7 +10,7 @@
 
 #define WB_LOG_DOMAIN "packing"
 
-/* Between the centres. */
+/* Distance between the centres. */
 static double centre_distance(const struct wb_packing_circle *a, const struct wb_packing_circle *b)
 {
     const double y = b->y - a->y, z = b->z - a->z;
@@ -141,7 +141,7 @@ enum wb_status wb_packing_on_lattice(struct wb_packing *packing, int n, const do
     const int whole = wb_packing_whole(lattice, n, &less);
     if (whole != n)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "%d wires make no whole patch of the lattice: expected %d or %d", n, less,
+                       "%d wires do not fill a patch of the lattice: expected %d or %d", n, less,
                        whole);
     if (lattice == WB_PACKING_HEXAGON)
         fill_hexagon(&filled, pitch);
@@ -252,7 +252,7 @@ static bool enclose_three(const struct wb_packing_circle *c[3], struct wb_packin
     return found;
 }
 
-/* How far a circle stands out of another. */
+/* Distance by which a circle protrudes from another. */
 static double excess(const struct wb_packing_circle *outer, const struct wb_packing_circle *circle)
 {
     return centre_distance(outer, circle) + circle->radius - outer->radius;
@@ -260,7 +260,7 @@ static double excess(const struct wb_packing_circle *outer, const struct wb_pack
 
 static const double enclosing_tolerance = 1e-13; /* of the radius */
 
-/* The circles that hold the enclosing one. */
+/* The circles that determine the enclosing circle. */
 struct basis {
     int n;
     const struct wb_packing_circle *member[4];
@@ -275,8 +275,8 @@ static bool holds(const struct wb_packing_circle *outer, const struct basis *all
     return true;
 }
 
-/* The smallest circle round the four or less of `all`, by trying every subset of up to three, which
- * then is the basis. */
+/* The smallest circle around up to four circles `all`: tries every subset of up to three, which
+ * becomes the basis. */
 static bool enclose_few(const struct basis *all, struct basis *basis,
                         struct wb_packing_circle *circle)
 {
@@ -303,8 +303,8 @@ static bool enclose_few(const struct basis *all, struct basis *basis,
     return found;
 }
 
-/* From a basis to the next with the circle that stands out farthest: the radius grows each time, so
- * no basis comes back. */
+/* Exchanges the basis for one with the circle that protrudes farthest: the radius grows each time,
+ * so no basis recurs. */
 struct wb_packing_circle wb_packing_enclosing(int n, const struct wb_packing_circle *circles)
 {
     struct wb_packing_circle enclosing = circles[0];
@@ -322,7 +322,7 @@ struct wb_packing_circle wb_packing_enclosing(int n, const struct wb_packing_cir
         struct basis all = basis, next_basis;
         all.member[all.n++] = &circles[farthest];
         if (!enclose_few(&all, &next_basis, &next) || !(next.radius > enclosing.radius)) {
-            /* Round-off: what is left is made part of the circle. */
+            /* Round-off: the remaining protrusion is added to the radius. */
             enclosing.radius += out;
             return enclosing;
         }
@@ -344,7 +344,7 @@ struct wb_packing_circle wb_packing_enclosing(int n, const struct wb_packing_cir
 
 enum {
     UNKNOWNS = 2 * WB_PACKING_MOST + 1, /* y and z of each wire, then the radius */
-    STEPS = 12,                         /* that the minimisation remembers */
+    STEPS = 12,                         /* steps that L-BFGS keeps */
     MOST_ITERATIONS = 1000,
     MOST_CONTACTS = 4 * WB_PACKING_MOST /* in the plane at most 3 n - 3 pairs, and n at the ring */
 };
@@ -354,12 +354,12 @@ struct ring {
     int n;
     double tension;   /* of the ring */
     double pull;      /* of the centre, for the tension and a distance */
-    double reference; /* of the radius in the energy, so that its last digits count */
+    double reference; /* of the radius in the energy, to keep its last digits */
     double radius[WB_PACKING_MOST];
     double x[UNKNOWNS];
 };
 
-/* What the minimisation knows of the energy's curvature. */
+/* Curvature information of the minimisation. */
 struct memory {
     int n, first; /* steps, the oldest at `first` */
     double step[STEPS][UNKNOWNS];
@@ -480,7 +480,7 @@ static void look(const struct ring *ring, struct point *point)
     point->energy = ring_energy(ring, point->x, point->gradient);
 }
 
-/* A step along the direction that lowers the energy enough; false: there is none. */
+/* A step along the direction that lowers the energy enough; false: not found. */
 static bool step_down(const struct ring *ring, const double *direction, const struct point *from,
                       struct point *to)
 {
@@ -491,7 +491,7 @@ static bool step_down(const struct ring *ring, const double *direction, const st
         return false;
     for (int i = 0; i < n; i++)
         longest = fmax(longest, fabs(direction[i]));
-    /* No wire moves farther than its radius at once. */
+    /* No wire moves farther than its radius in one step. */
     for (double part = fmin(1.0, 1.0 / longest); part > 1e-12; part *= 0.5) {
         memcpy(to->x, from->x, (size_t)n * sizeof *to->x);
         add(n, part, direction, to->x);
@@ -502,7 +502,7 @@ static bool step_down(const struct ring *ring, const double *direction, const st
     return false;
 }
 
-/* Moves all until the forces are balanced to the part `balance` of the tension. */
+/* Minimises until the residual forces are below `balance` times the tension. */
 static void ring_balance(struct ring *ring, struct memory *memory, double balance)
 {
     const int n = 2 * ring->n + 1;
@@ -518,7 +518,7 @@ static void ring_balance(struct ring *ring, struct memory *memory, double balanc
         find_direction(n, memory, now.gradient, direction);
         if (!step_down(ring, direction, &now, &next)) {
             if (memory->n == 0)
-                break; /* no digit left to go down by */
+                break; /* no further decrease in floating point */
             memory->n = 0;
             continue;
         }
@@ -547,7 +547,7 @@ struct contacts {
     struct contact list[MOST_CONTACTS];
 };
 
-/* All that overlap; the same ones again, with their gaps, where there are some. */
+/* All overlapping contacts; if contacts exist, the same ones with new gaps. */
 static void measure(const struct ring *ring, struct contact *contact)
 {
     const double *const x = ring->x, *const a = &x[2 * contact->a];
@@ -629,7 +629,7 @@ static void close_gaps(const struct contacts *contacts, int n, double *motion)
     }
 }
 
-/* Newton's method on all contacts that carry something. */
+/* Newton's method on all contacts that carry a force. */
 static void make_exact(struct ring *ring)
 {
     struct contacts contacts;
@@ -653,7 +653,7 @@ static double mean_radius(const struct wb_packing *packing)
     return sum / packing->n;
 }
 
-/* Takes wires in, round their enclosing circle. */
+/* Places the wires around the centre of their enclosing circle. */
 static void ring_enter(struct ring *ring, const struct wb_packing *packing)
 {
     const double unit = mean_radius(packing);
@@ -668,7 +668,7 @@ static void ring_enter(struct ring *ring, const struct wb_packing *packing)
     ring->x[2 * ring->n] = circle.radius / unit;
 }
 
-/* Moves the wires apart by what is left of overlap, and their circle's centre to the origin. */
+/* Separates the wires by the remaining overlap and moves their circle's centre to the origin. */
 static void leave(const struct ring *ring, struct wb_packing *packing)
 {
     const double unit = mean_radius(packing);
@@ -691,7 +691,7 @@ static void leave(const struct ring *ring, struct wb_packing *packing)
     }
 }
 
-/* Lowers the tension from `from`, until it does not matter, and writes the places to the wires. */
+/* Lowers the tension from `from` until it is negligible and writes the positions to the wires. */
 static enum wb_status ring_settle(struct ring *ring, struct memory *memory, double from,
                                   struct wb_packing *packing)
 {
@@ -704,13 +704,12 @@ static enum wb_status ring_settle(struct ring *ring, struct memory *memory, doub
     leave(ring, &settled);
     if (!(wb_packing_smallest_gap(&settled) >= -1e-12 * mean_radius(&settled)) ||
         !isfinite(wb_packing_enclosing(settled.n, settled.wire).radius))
-        return wb_fail(WB_ERR_CONVERGENCE, "%d wires do not come to rest against each other",
-                       settled.n);
+        return wb_fail(WB_ERR_CONVERGENCE, "the packing of %d wires did not converge", settled.n);
     *packing = settled;
     return WB_OK;
 }
 
-/* Lattices may be balanced on a ridge: small steps off it, the same every time. */
+/* Lattices may be in unstable equilibrium: apply small, reproducible perturbations. */
 static void shake(struct ring *ring)
 {
     static const double most = 1e-3, golden = 0.6180339887498949;
@@ -755,8 +754,8 @@ static int next_index(uint64_t *state, int n)
     return (int)(next_bits(state) % (uint64_t)n);
 }
 
-/* A point within the radius R of the origin, without any function that two libraries could round
- * differently. */
+/* A point within the radius R of the origin, without library functions whose rounding may differ.
+ */
 static void throw_wire(uint64_t *state, double R, double *position)
 {
     double y, z;
@@ -779,7 +778,7 @@ static void throw_all(struct ring *ring, uint64_t *state)
     ring->x[2 * ring->n] = R;
 }
 
-/* Moves one wire elsewhere, or exchanges two of different size. */
+/* Moves one wire, or exchanges two of different size. */
 static void disturb(struct ring *ring, uint64_t *state)
 {
     const int a = next_index(state, ring->n), b = next_index(state, ring->n);
@@ -813,7 +812,7 @@ static double relax(struct ring *ring, struct memory *memory)
     return expected_radius(ring);
 }
 
-/* What a chain of disturbances goes on from, and the best of all. */
+/* The current packing of a chain of perturbations, and the best of all chains. */
 struct record {
     double radius;
     double x[UNKNOWNS];

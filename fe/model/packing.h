@@ -1,4 +1,4 @@
-/* Where the wires of a bundle lie in its cross section: patches of the triangular lattice, and the
+/* Positions of a bundle's wires in its cross section: patches of the triangular lattice, and the
  * densest packing of any mixture.
  *
  * The section is the plane of y (up) and z (across); x runs along the bundle. Drawn with z to the
@@ -32,8 +32,9 @@ enum wb_packing_lattice {
                            from +z */
 };
 
-/* Puts n wires of the given diameters on a lattice whose pitch is the largest of them; the centre
- * of the lattice is the origin. Refused where n is no whole patch; the message names those near. */
+/* Puts n wires of the given diameters on a lattice whose pitch is the largest diameter; the centre
+ * of the lattice is the origin. Fails if n does not fill a patch; the message names the nearest
+ * numbers that do. */
 WB_MUST_CHECK enum wb_status wb_packing_on_lattice(struct wb_packing *packing, int n,
                                                    const double *diameter,
                                                    enum wb_packing_lattice lattice);
@@ -47,18 +48,17 @@ struct wb_packing_search {
     int trials;        /* packings tried, at least 1; 0: 40 for each wire */
 };
 
-/* The smallest circle round n wires of the given diameters that a search finds: random starts, and
- * from each the best so far with a wire moved elsewhere or two wires exchanged, relaxed as by
- * wb_packing_settle(). Of equal wires it finds the densest known to 24 and is within 1e-4 of it to
- * 30, in a second; nothing is proven. */
+/* Searches the smallest circle around n wires of the given diameters: random starts, and from each
+ * the best packing so far with a wire moved or two wires exchanged, relaxed as by
+ * wb_packing_settle(). For up to 24 equal wires it finds the densest known packing, up to 30 within
+ * 1e-4, in a second; optimality is not proven. */
 WB_MUST_CHECK enum wb_status wb_packing_densest(struct wb_packing *packing, int n,
                                                 const double *diameter,
                                                 const struct wb_packing_search *search);
 
-/* Pulls the wires together from where they lie (they may overlap) to the nearest packing whose
- * enclosing circle becomes no smaller by moving any of them a little; its centre becomes the
- * origin. Wires that carry nothing roll towards it until they lie on others. Contacts are exact to
- * round-off, and nothing overlaps. */
+/* Contracts the wires from their positions (they may overlap) to the nearest packing whose
+ * enclosing circle is locally smallest; its centre becomes the origin. Unloaded wires roll towards
+ * the centre until they touch others. Contacts are exact to round-off, without overlap. */
 WB_MUST_CHECK enum wb_status wb_packing_settle(struct wb_packing *packing);
 
 /* The smallest gap between any two wires, m; negative: they overlap. Infinite for one wire. */
@@ -67,7 +67,7 @@ double wb_packing_smallest_gap(const struct wb_packing *packing);
 /* The smallest circle that holds n circles (n >= 1), exact to round-off. */
 struct wb_packing_circle wb_packing_enclosing(int n, const struct wb_packing_circle *circles);
 
-/* Two wires beside each other. */
+/* Two neighbouring wires. */
 struct wb_packing_pair {
     int a, b;         /* a < b */
     double gap;       /* m; negative: they overlap */

@@ -16,7 +16,7 @@ enum {
     MOST_STEPS = 60
 };
 
-static const double exact = 1e-13; /* of the largest diameter, what is left of a gap */
+static const double exact = 1e-13; /* of the largest diameter: remaining gap */
 
 struct contacts {
     int n, wires;
@@ -50,7 +50,7 @@ static double push(const struct contacts *c, const double *gaps, double *x)
     return square;
 }
 
-/* The shortest x that closes all gaps, or in the sense of least squares where none does. */
+/* The shortest x that closes all gaps, or the least-squares solution. */
 static void close_gaps(const struct contacts *c, double *x)
 {
     double left[MOST_PAIRS], change[MOST_PAIRS], down[2 * WB_PACKING_MOST],
@@ -79,8 +79,8 @@ static void close_gaps(const struct contacts *c, double *x)
     }
 }
 
-/* Where the pairs of before are now, and those that came within reach; returns the one with the
- * widest gap, or overlap (-1: there is none). */
+/* Updates the pairs, adds pairs that came within reach, and returns the pair with the widest gap or
+ * overlap (-1: no pair). */
 static int find_contacts(struct contacts *c, const struct wb_packing *packing, double reach)
 {
     struct wb_packing_pair near[MOST_PAIRS];
@@ -113,15 +113,13 @@ static enum wb_status refuse(const struct wb_packing_pair *pair, double reach,
     const char *const how = pair->gap < 0.0 ? "overlap by" : "are apart by";
     if (pair->gap < -reach)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
-                          "wires %d and %d %s %.3g mm: expected no more than that: look at "
+                          "wires %d and %d %s %.3g mm, expected at most the given distance: check "
                           "their places and diameters",
                           pair->a + 1, pair->b + 1, how, -pair->gap / WB_MM);
-    return wb_fail_to(
-        why, WB_ERR_ARGUMENT,
-        "not all wires that are within %g mm of each other can touch: %d and %d still "
-        "%s %.3g mm: expected a length that only "
-        "wires which touch are within",
-        reach / WB_MM, pair->a + 1, pair->b + 1, how, fabs(pair->gap) / WB_MM);
+    return wb_fail_to(why, WB_ERR_ARGUMENT,
+                      "not all wires within %g mm of each other can touch: %d and %d still %s %.3g "
+                      "mm: give a distance that excludes wires that do not touch",
+                      reach / WB_MM, pair->a + 1, pair->b + 1, how, fabs(pair->gap) / WB_MM);
 }
 
 enum wb_status wb_packing_touch(struct wb_packing *packing, double reach, struct wb_reason *why)

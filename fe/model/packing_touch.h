@@ -1,5 +1,5 @@
-/* Places of wires as read off a photograph, put right: wires that lie side by side in the picture
- * touch, though places are read with errors of some hundredths of a millimetre. */
+/* Corrects positions of wires that were read from a photograph: wires that are neighbours in the
+ * picture touch, although positions are read with errors of some hundredths of a millimetre. */
 #ifndef WB_FE_MODEL_PACKING_TOUCH_H
 #define WB_FE_MODEL_PACKING_TOUCH_H
 
@@ -7,11 +7,11 @@
 #include "base/status.h"
 #include "fe/model/packing.h"
 
-/* Moves the wires as little as needed (least squares) until every two of them whose gap is at most
- * `reach` (m, either way) touch, to round-off. Which wires touch stays as it is read, unlike with
- * wb_packing_settle(), which looks for a smaller circle round them. A WB_ERR_ARGUMENT that names
- * the wires where two overlap by more than `reach`, or cannot touch with the others as they are;
- * then `packing` is as before. */
+/* Moves the wires as little as possible (least squares) until every two wires whose gap or overlap
+ * is at most `reach` (m) touch, to round-off. The contacts stay as read, unlike with
+ * wb_packing_settle(), which searches for a smaller enclosing circle. WB_ERR_ARGUMENT, naming the
+ * wires, where two overlap by more than `reach` or cannot touch together with the others; then
+ * `packing` is unchanged. */
 WB_MUST_CHECK enum wb_status wb_packing_touch(struct wb_packing *packing, double reach,
                                               struct wb_reason *why);
 

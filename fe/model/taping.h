@@ -1,4 +1,4 @@
-/* The tape round a bundle: how its windings lie on the outline.
+/* The tape around a bundle: how its windings lie on the outline.
  *
  * A sleeve is a closed tube of some layers. A helix is one tape of a width w, wound with an advance
  * p along the bundle for each turn round the outline's length C. Rolled out it is a strip at the
@@ -18,7 +18,7 @@ enum wb_taping_kind {
 
 struct wb_taping_helix {
     double width; /* w, m */
-    double lap;   /* part of a winding that the next one covers, 0 to 0.95 */
+    double lap;   /* part of a winding that the next winding covers, 0 to 0.95 */
     int hand;     /* 1: as a right-handed screw, -1: left-handed */
 };
 
@@ -26,8 +26,8 @@ struct wb_taping {
     enum wb_taping_kind kind;
     double layer_thickness;         /* m */
     double circumference;           /* C, m: of the outline at the middle of the tape */
-    double layers;                  /* a whole number for a sleeve, the mean for a helix */
-    struct wb_taping_helix helix;   /* of a helix, as what follows */
+    double layers;                  /* an integer for a sleeve, the mean for a helix */
+    struct wb_taping_helix helix;   /* of a helix, as the following fields */
     double advance, angle, covered; /* p, m; a, rad; c, m */
 };
 
@@ -35,7 +35,7 @@ struct wb_taping {
 WB_MUST_CHECK enum wb_status wb_taping_sleeve(struct wb_taping *taping, double circumference,
                                               double layer_thickness, int layers);
 
-/* Refused where a tape so wide cannot be wound round a bundle so thin. */
+/* Fails if the tape is too wide to be wound around the bundle. */
 WB_MUST_CHECK enum wb_status wb_taping_wind(struct wb_taping *taping, double circumference,
                                             double layer_thickness,
                                             const struct wb_taping_helix *helix);

@@ -52,10 +52,10 @@ double wb_wire_second_moment(const struct wb_wire *wire);
 /* Mass per length, rho pi d^2 / 4, kg/m. */
 double wb_wire_mass_per_length(const struct wb_wire *wire);
 
-/* Between what a cantilever's force per deflection of its tip, 3 E I / L^3 in N/m, may begin, for a
- * length in m. With properties: a third of theirs to three times that. Without: from copper strands
- * of 0.05 mm that slide freely, one sixth of the area of the whole wire or three quarters of its
- * conductor's, to a conductor of solid copper in a jacket of 10 GPa. */
+/* Bounds of a cantilever's initial stiffness at its tip, 3 E I / L^3 in N/m, for a length in m.
+ * With properties: a third to three times their stiffness. Without: from freely sliding copper
+ * strands of 0.05 mm that fill one sixth of the wire's area or three quarters of its conductor's,
+ * to a solid copper conductor in a jacket of 10 GPa. */
 void wb_wire_stiffness_bounds(const struct wb_wire *wire, double length, double *lowest,
                               double *highest);
 

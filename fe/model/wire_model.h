@@ -1,5 +1,5 @@
-/* A wire to be computed, from its YAML file in fixtures/models: geometry, parts with their
- * materials, mesh, loading steps in their order.
+/* A wire model, from its YAML file in fixtures/models: geometry, parts with their materials, mesh,
+ * loading steps in their order.
  *
  *     name: residual-1-8awg
  *     title: Residual 1 of section 2.4
@@ -68,7 +68,7 @@ struct wb_wire_model_part {
     double inner_diameter, outer_diameter; /* m */
     char material_name[64];
     char source[400];   /* of the material */
-    bool is_substitute; /* its values stand in for those that the paper lost */
+    bool is_substitute; /* its values replace lost values of the paper */
     struct wb_material material;
     double density; /* kg/m3 */
 };
@@ -120,7 +120,8 @@ struct wb_wire_model {
 /* Reads a model with its wire and materials. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_wire_model_read(struct wb_wire_model *model, const char *path);
 
-/* Whether the only load is a follower across the wire, in its y (a test whose `force` is that). */
+/* Whether the only load is a follower force across the wire, in its y; it is then the test's
+ * `force`. */
 bool wb_wire_model_is_follower(const struct wb_wire_model *model);
 
 /* Whether the model is a bending test like one of the bench, whose force over deflection a planar

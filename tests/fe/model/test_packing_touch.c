@@ -72,7 +72,7 @@ static void what_cannot_touch_is_refused_with_the_wires(void **state)
     for (int i = 1; i < ring.n; i++)
         ring.wire[i] = (struct wb_packing_circle){1.05 * d * sin(i * M_PI / 3.0),
                                                   1.05 * d * cos(i * M_PI / 3.0), 0.5 * d};
-    assert_refused(&ring, 0.1 * d, "not all wires that are within 0.14 mm");
+    assert_refused(&ring, 0.1 * d, "not all wires within 0.14 mm");
     struct wb_packing near = {.n = 2, .wire = {{0.0, 0.0, 0.5 * d}, {0.0, 1.1e-3, 0.5 * d}}};
     assert_refused(&near, 0.1e-3, "wires 1 and 2 overlap by 0.3 mm");
 }
