@@ -76,7 +76,7 @@ void wb_setting_fill(const struct wb_setting_table *table, void *settings)
         fill(&table->rows[i], settings);
 }
 
-/* "1e-6", as people write it. */
+/* Formats 1e-06 as "1e-6". */
 static const char *format_short(double value, char text[WB_NUMBER_TEXT])
 {
     snprintf(text, WB_NUMBER_TEXT, "%g", value);
@@ -106,7 +106,7 @@ static bool is_within(const struct wb_setting *row, double value)
     return !has_range(row) || (value >= row->least && value <= row->largest);
 }
 
-/* False, with the range as --help has it. */
+/* Returns false, with the range in the format of --help in `problem`. */
 static bool refuse_number(const struct wb_setting *row, const char *what, const char *argument,
                           char problem[WB_SETTING_PROBLEM])
 {
@@ -178,7 +178,8 @@ static char separator_of(const struct wb_setting *row)
     return row->separator ? row->separator : ',';
 }
 
-/* The first member alone, where that may be, or all of them with separators between. */
+/* Reads the first member alone, where that is allowed, or all members with separators between them.
+ */
 static bool parse_list(const struct wb_setting *row, const char *argument, void *members,
                        char problem[WB_SETTING_PROBLEM])
 {
@@ -311,7 +312,8 @@ double wb_setting_value(const struct wb_setting *row, const void *settings)
     return *(const int *)field;
 }
 
-/* What has no default must be in its range, but of a list, whose members may be left out. */
+/* A value without a default must be in its range, except members of a list, which may be omitted.
+ */
 static enum wb_status check_row(const struct wb_setting *row, bool has_default,
                                 const void *settings, struct wb_reason *why)
 {
@@ -323,7 +325,8 @@ static enum wb_status check_row(const struct wb_setting *row, bool has_default,
     }
     if ((row->type != WB_SETTING_NUMBER && row->type != WB_SETTING_INTEGER) || !has_range(row))
         return WB_OK;
-    /* In SI: products with the scale keep the order of what was read in the row's unit. */
+    /* Compares in SI: a value at the end of the range was multiplied by the same scale when it was
+     * read. */
     const double scale = scale_of(row);
     const double value =
         row->type == WB_SETTING_NUMBER ? *(const double *)field : *(const int *)field;
@@ -380,7 +383,7 @@ bool wb_setting_differs(const struct wb_setting *row, const void *settings)
     return wb_setting_value(row, settings) != row->fallback;
 }
 
-/* NULL: a borrowed text that there is not. */
+/* NULL: a borrowed text that is not set. */
 static const char *text_of(const struct wb_setting *row, const void *settings)
 {
     const void *const field = look_at(row, settings);
@@ -445,7 +448,7 @@ void wb_setting_set_json(const struct wb_setting *row, const void *settings, str
         wb_json_set_text(object, row->name, text_of(row, settings));
         break;
     case WB_SETTING_LIST: {
-        /* One member alone is no object, as files have it. */
+        /* A single member is written without an object, as in files. */
         struct wb_json *const members =
             row->members->n > 1 ? wb_json_set_object(object, row->name) : object;
         for (size_t i = 0; i < row->members->n; i++)

@@ -1,6 +1,6 @@
-/* Settings: each is one row of a table in the module that owns it, and everything that treats a
- * setting reads the row: the command line and its --help, YAML files, JSON documents, checks of a
- * filled struct, the inputs of a result, the test of the documentation.
+/* Settings: each is one row of a table in the module that owns it. The row serves the command line
+ * and its --help, YAML files, JSON documents, checks of a filled struct, the inputs of a result,
+ * and the test of the documentation.
  *
  *     static const struct wb_setting rows[] = {
  *         {WB_ROW_QUANTITY(wb_example_settings, step, "step_mm", "mm", WB_MM, 0.01, 100.0, 0.5),
@@ -30,7 +30,7 @@ enum wb_setting_type {
     WB_SETTING_TEXT,    /* char[size]; of size 0 a const char *, which is borrowed */
     WB_SETTING_CHOICE,  /* int: an index of `choices` */
     WB_SETTING_LIST /* numbers, each a member with a row of its own: "0.4,0.1,2"; the first alone
-                       serves where `argument` says so: "S[,K,D]" */
+                       is enough where `argument` says so: "S[,K,D]" */
 };
 
 struct wb_setting_table;
@@ -44,21 +44,21 @@ struct wb_setting {
     double scale;          /* SI value of one unit; 0: 1 */
     double least, largest; /* of numbers; both 0: any */
     double fallback;       /* the default, also of a boolean (0, 1) and of a choice (its index) */
-    const char *otherwise; /* the default in words where its number says nothing: "as eq. 10" */
+    const char *otherwise; /* the default in words, in place of its number: "as eq. 10" */
     const char *const *choices; /* NULL-terminated */
-    bool required;              /* files must have it; it has no default */
+    bool required;              /* files must give it; it has no default */
     /* On the command line. */
     const char *option;   /* long name; NULL: none */
     const char *argument; /* "H"; NULL: of a boolean */
-    const char *help;     /* without an end: range and default follow */
-    unsigned applies;     /* bits of the owner: where it may be given; 0: wherever its table may */
+    const char *help;     /* without a full stop: range and default follow */
+    unsigned applies;     /* bits of the owner: places where it may be given; 0: all of its table */
     const char *zero;     /* of a number: the word that stands for 0, "max"; NULL: none */
     /* Of a list. */
     char separator;                         /* between members; 0: ',' */
     const struct wb_setting_table *members; /* their fields lie in the struct at `offset` */
-    size_t given;                           /* offset of a bool that is set when it was given */
-    /* Completes the struct of the members after the first `n` of them were given, and judges it:
-     * -1, or the index of the member at fault with its `problem`. */
+    size_t given;                           /* offset of a bool that is set if it was given */
+    /* Completes and checks the struct of the members after the first `n` of them were given.
+     * Returns -1, or the index of an invalid member with its `problem`. */
     int (*complete)(void *members, int n, char *problem, size_t size);
 };
 
@@ -124,13 +124,13 @@ bool wb_setting_applies(const struct wb_setting *row, unsigned place);
 /* Fills in the defaults of all rows; of a text, none. A list counts as not given. */
 void wb_setting_fill(const struct wb_setting_table *table, void *settings);
 
-/* Reads an option's argument (NULL: of a boolean) into the field. False with a `problem` that says
- * what is expected and what came: "expected a number from 0.01 to 100, not '0'". */
+/* Reads an option's argument (NULL: of a boolean) into the field. False with a `problem` that gives
+ * the expected and the given value: "expected a number from 0.01 to 100, not '0'". */
 bool wb_setting_parse(const struct wb_setting *row, const char *argument, void *settings,
                       char problem[WB_SETTING_PROBLEM]);
 
-/* Keys with which wb_config_map() reads the rows of a place, but lists; returns how many, at most
- * the table's. What a file does not give stays. */
+/* Keys for wb_config_map() of a place's rows, except lists; returns their number, at most the
+ * table's. Fields that a file does not give are unchanged. */
 size_t wb_setting_keys(const struct wb_setting_table *table, unsigned place, void *settings,
                        struct wb_config_key *keys);
 
@@ -146,14 +146,14 @@ WB_MUST_CHECK enum wb_status wb_setting_check_row(const struct wb_setting *row,
 WB_MUST_CHECK enum wb_status wb_setting_check(const struct wb_setting_table *table,
                                               const void *settings, struct wb_reason *why);
 
-/* Whether the field of a struct that began as all zero holds anything. */
+/* Whether the field of a struct that was all zero before has been set. */
 bool wb_setting_is_given(const struct wb_setting *row, const void *settings);
 
-/* Whether the field of a filled struct holds something else than the row's default. */
+/* Whether the field of a filled struct differs from the row's default. */
 bool wb_setting_differs(const struct wb_setting *row, const void *settings);
 
-/* The value as its option takes it, numbers to 10 digits; of a list, the first member alone where
- * another one is not in its range. */
+/* The value in the format of its option, numbers to 10 digits; of a list, the first member alone
+ * if another member is out of range. */
 void wb_setting_format(const struct wb_setting *row, const void *settings,
                        char text[WB_SETTING_VALUE]);
 
