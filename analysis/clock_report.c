@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/align/align.h"
+#include "analysis/dataset/stops.h"
 #include "analysis/import/reversal_lag.h"
 #include "base/units.h"
 
@@ -18,28 +19,28 @@
 
 /* --- making --- */
 
-/* The next reversal of the dataset's rows from *at on: the last row of a cycle's way there that is
- * followed by its unloading. */
-static bool next_reversal(const struct wb_dataset *dataset, size_t *at,
-                          struct wb_reversal *reversal)
+/* The next turn of the dataset from row *at on: from the last row of a cycle's loading to its
+ * unloading, or the stop between them. Returns the number of its reversals; 0: no other turn. */
+static int next_turn(const struct wb_dataset *dataset, size_t *at, struct wb_reversal reversals[2])
 {
     const struct wb_row *const rows = dataset->rows;
     double from = (double)NAN;
     for (size_t i = *at; i + 1 < dataset->n_rows; i++) {
+        struct wb_stop stop = {.arrival = rows[i].t, .departure = rows[i].t};
+        double until = rows[i].t;
         if (rows[i].phase != WB_PHASE_LOAD)
             continue;
         if (!isfinite(from) || i == 0 || rows[i - 1].cycle != rows[i].cycle)
             from = rows[i].t;
         if (rows[i + 1].phase != WB_PHASE_UNLOAD || rows[i + 1].cycle != rows[i].cycle)
             continue;
-        reversal->from = from;
-        reversal->at = rows[i].t;
+        (void)wb_stops_at_turn(dataset, rows[i].cycle, &stop);
         for (i++; i < dataset->n_rows && rows[i].phase == WB_PHASE_UNLOAD; i++)
-            reversal->until = rows[i].t;
+            until = rows[i].t;
         *at = i;
-        return true;
+        return wb_reversal_list(reversals, from, stop.arrival, stop.departure, until);
     }
-    return false;
+    return 0;
 }
 
 static void refuse_lag(struct wb_clock_report *report, int n_reversals, int n, double uncertainty)
@@ -52,7 +53,7 @@ static void refuse_lag(struct wb_clock_report *report, int n_reversals, int n, d
                  "no reversal has a force that stands out of its noise on both sides");
     else
         snprintf(report->reason, sizeof report->reason,
-                 "%d reversal%s leave %.0f ms of uncertainty", n, n == 1 ? "" : "s",
+                 "the lag of %d reversal%s has an uncertainty of %.0f ms", n, n == 1 ? "" : "s",
                  uncertainty / MS);
     report->lag = report->uncertainty = report->interval[0] = report->interval[1] = nan;
 }
@@ -64,14 +65,15 @@ static void find_lag(struct wb_clock_report *report, const struct wb_align_signa
     const struct wb_signal motion = {signals->motion_t, signals->motion, signals->n_motion};
     const struct wb_signal force = {signals->force_t, signals->force, signals->n_force};
     struct wb_reversal_mean lags = {0};
-    struct wb_reversal reversal = {.turn = WB_TURN_BACK};
+    struct wb_reversal reversals[2];
     struct wb_reversal_lag one;
     double left, uncertainty;
-    int n_reversals = 0;
-    for (size_t at = 0; next_reversal(&report->dataset, &at, &reversal);) {
-        n_reversals++;
-        if (wb_reversal_lag_find(&one, &motion, &force, &reversal, signals->filter_delay))
-            wb_reversal_mean_add(&lags, one.lag, one.uncertainty);
+    int n_reversals = 0, n;
+    for (size_t at = 0; (n = next_turn(&report->dataset, &at, reversals)) > 0;) {
+        for (int i = 0; i < n; i++, n_reversals++) {
+            if (wb_reversal_lag_find(&one, &motion, &force, &reversals[i], signals->filter_delay))
+                wb_reversal_mean_add(&lags, one.lag, one.uncertainty);
+        }
     }
     report->expected = signals->filter_delay;
     report->expected_uncertainty = signals->filter_delay_uncertainty;

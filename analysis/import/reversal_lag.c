@@ -27,6 +27,8 @@
 #define N_RESTS 51
 #define REST_STEP 0.02
 #define LEAST_WEIGHT 0.01
+/* s: longest rest of a reversal directly to the next branch */
+#define LONG_REST 0.7
 
 enum {
     P_REST_BEGINS,
@@ -268,6 +270,18 @@ static bool find_with(struct wb_reversal_lag *result, const struct wb_signal *mo
     result->rest = rest / weights;
     result->uncertainty = sqrt(squares / weights - result->lag * result->lag);
     return true;
+}
+
+int wb_reversal_list(struct wb_reversal reversals[2], double from, double arrival, double departure,
+                     double until)
+{
+    reversals[0] = (struct wb_reversal){from, arrival, until, WB_TURN_BACK};
+    if (!(departure - arrival > LONG_REST))
+        return 1;
+    /* The force may decrease during a long rest, as a wire relaxes. */
+    reversals[0] = (struct wb_reversal){from, arrival, departure, WB_TURN_TO_REST};
+    reversals[1] = (struct wb_reversal){arrival, departure, until, WB_TURN_FROM_REST};
+    return 2;
 }
 
 bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_signal *motion,

@@ -40,6 +40,12 @@ struct wb_reversal_lag {
     double rest;        /* s, between the two branches */
 };
 
+/* The reversals of a turn that the motion reaches at `arrival` and leaves at `departure` (s): one
+ * from its branch to the next, or two if the rest between them is longer than 0.7 s. Returns their
+ * number. */
+int wb_reversal_list(struct wb_reversal reversals[2], double from, double arrival, double departure,
+                     double until);
+
 /* False if there are too few samples, or if they do not determine the parameters. */
 bool wb_reversal_lag_find(struct wb_reversal_lag *result, const struct wb_signal *motion,
                           const struct wb_signal *force, const struct wb_reversal *reversal,

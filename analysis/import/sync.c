@@ -27,9 +27,6 @@
 /* Lines to the top of a turn are fitted over at most this time, s, and this part of a branch. */
 #define SIDE_WINDOW 2.5
 #define SIDE_PART 0.4
-/* s: a rest that is longer is evaluated separately at its beginning and end; wb_reversal_lag_find()
- * handles shorter ones. */
-#define LONG_REST 0.7
 /* Largest time between paired events after subtracting the lag, s. */
 #define TAP_GATE 0.12
 #define TURN_GATE 1.0
@@ -302,16 +299,13 @@ static void add_turn(struct lag_search *s, const struct wb_reversal *reversal, d
                              fmax(found.uncertainty, 0.1 * median_period(s->motion)));
 }
 
-/* A long rest is two turns, because the force may decrease in it as a wire relaxes. */
 static void add_event(struct lag_search *s, const struct event *motion, double lag)
 {
-    const double comes = motion->t, leaves = motion->t + motion->rest;
-    if (!(motion->rest > LONG_REST)) {
-        add_turn(s, &(struct wb_reversal){motion->from, comes, motion->until, WB_TURN_BACK}, lag);
-        return;
-    }
-    add_turn(s, &(struct wb_reversal){motion->from, comes, leaves, WB_TURN_TO_REST}, lag);
-    add_turn(s, &(struct wb_reversal){comes, leaves, motion->until, WB_TURN_FROM_REST}, lag);
+    struct wb_reversal reversals[2];
+    const int n = wb_reversal_list(reversals, motion->from, motion->t, motion->t + motion->rest,
+                                   motion->until);
+    for (int i = 0; i < n; i++)
+        add_turn(s, &reversals[i], lag);
 }
 
 static void find_lags(const struct wb_signal *motion, const struct wb_signal *force,

@@ -39,6 +39,7 @@ struct syn {
     /* The test. */
     int cycles;
     double travel; /* m */
+    double dwell;  /* s, at the turn */
     bool no_events, no_tare;
     bool loaded_tare; /* the counterweight is on the strand during the tare */
     /* Faults and noise. */
@@ -156,7 +157,7 @@ static inline double syn_look_up(const double *from, const double *to, double va
 
 static inline double syn_cycle_time(const struct syn *syn)
 {
-    return 2.0 * syn->travel / SYN_SPEED + SYN_DWELL_S;
+    return 2.0 * syn->travel / SYN_SPEED + syn->dwell + SYN_DWELL_S;
 }
 
 /* Commanded travel at bench time t; the first cycle starts at 0. */
@@ -167,7 +168,9 @@ static inline double syn_commanded(const struct syn *syn, double t)
     const double down = syn->travel / SYN_SPEED, in = fmod(t, syn_cycle_time(syn));
     if (syn->only_down)
         return fmin(SYN_SPEED * in, syn->travel);
-    return in < down ? SYN_SPEED * in : fmax(0.0, syn->travel - SYN_SPEED * (in - down));
+    if (in < down + syn->dwell)
+        return fmin(SYN_SPEED * in, syn->travel);
+    return fmax(0.0, syn->travel - SYN_SPEED * (in - down - syn->dwell));
 }
 
 /* Weights that the strand carries at zero deflection (the wire's own is negligible here). */
@@ -408,8 +411,9 @@ static inline void syn_write_events(const struct syn *syn, struct wb_recording *
         const double start = cycle * syn_cycle_time(syn);
         snprintf(text, sizeof text, "%d", cycle + 1);
         syn_event(syn, recording, start, "cycle_start", text);
-        syn_event(syn, recording, start + syn->travel / SYN_SPEED, "turn", text);
-        syn_event(syn, recording, start + 2.0 * syn->travel / SYN_SPEED, "cycle_end", text);
+        syn_event(syn, recording, start + syn->travel / SYN_SPEED + syn->dwell, "turn", text);
+        syn_event(syn, recording, start + 2.0 * syn->travel / SYN_SPEED + syn->dwell, "cycle_end",
+                  text);
     }
     syn_event(syn, recording, syn->cycles * syn_cycle_time(syn), "stop", "done");
 }
