@@ -9,7 +9,8 @@ void wb_band_clear(struct wb_band *band)
            (size_t)band->n * (size_t)wb_band_row(band->width) * sizeof *band->values);
 }
 
-/* Part of the largest entry of a column from which on the diagonal's own serves as pivot. */
+/* The diagonal entry serves as pivot if it is at least this fraction of the largest entry of its
+ * column. */
 static const double large_enough = 0.1;
 
 static double *row_of(const struct wb_band *band, int row)
@@ -52,8 +53,8 @@ static bool scale_row(double *row, int n, double *b)
     return true;
 }
 
-/* The row from k to `last` to eliminate column k with: its own where its entry is not small against
- * the others, because an exchange fills the band. */
+/* The row from k to `last` with the pivot for column k: row k itself unless its entry is small,
+ * because an exchange increases the bandwidth. */
 static int find_pivot(const struct wb_band *band, int k, int last)
 {
     const int w = band->width;
@@ -70,9 +71,9 @@ static int find_pivot(const struct wb_band *band, int k, int last)
     return own >= large_enough * largest ? k : pivot;
 }
 
-/* Entry j of a row of band storage is of column row - width + j. Elimination of column k works on
- * rows k .. k + width. The pivot's row is filled up to column `reach`, which is at most k + 2
- * width; without exchanges of rows it stays at the row's own end, k + width. */
+/* Entry j of a row of band storage belongs to column row - width + j. Elimination of column k
+ * changes rows k .. k + width. The pivot's row is filled up to column `reach`, at most k + 2 width;
+ * without row exchanges it stays at the row's own end, k + width. */
 static inline bool solve(struct wb_band *band, double *b, const int w)
 {
     const int n = band->n;
@@ -91,7 +92,8 @@ static inline bool solve(struct wb_band *band, double *b, const int w)
         if (pivot != k) {
             double *Q = row_of(band, pivot);
             for (int j = k; j <= reach; j++) {
-                /* The pivot's row has room up to column pivot + 2 width, never before `reach`. */
+                /* The pivot's row has space up to column pivot + 2 width, which is not before
+                 * `reach`. */
                 const double kept = P[j - k + w];
                 P[j - k + w] = Q[j - pivot + w];
                 Q[j - pivot + w] = kept;
@@ -131,6 +133,6 @@ static inline bool solve(struct wb_band *band, double *b, const int w)
 
 bool wb_band_solve(struct wb_band *band, double *b)
 {
-    /* The band of a beam, with loops of known length. */
+    /* The width of a beam's band is a constant, so that the compiler can unroll the loops. */
     return band->width == 8 ? solve(band, b, 8) : solve(band, b, band->width);
 }

@@ -19,23 +19,22 @@ enum factors {
 };
 
 /* Block b of the matrix, all column-major: the diagonal one (n x n, lower half when symmetric), the
- * one below (next x linked: the columns from link[b] on), and when not symmetric the one on its
+ * one below (next x linked: the columns from link[b] on), and for general matrices the one on its
  * right (n x next; rows before link[b] are zero until it is factored). With S the diagonal block
- * that is left when all blocks before are eliminated, and C and B those below and on the right,
- * the next one becomes S_next - C S^-1 B. Factored they hold
+ * after elimination of all blocks before, and C and B the blocks below and on the right, the next
+ * diagonal block becomes S_next - C S^-1 B. After factorisation the blocks contain
  *     Cholesky:    L,     C L^-T (zero in the columns before link[b], which are not stored)
  *     indefinite:  L B L^T, C
- *     general:     L U,   C U^-1 (alike),   L^-1 P B.
- */
+ *     general: L U, C U^-1 (same columns), L^-1 P B. */
 struct block {
     int first, n; /* unknowns */
     int before;   /* unknowns before link[b] */
-    int linked;   /* those from it on; 0 in the last block */
-    int next;     /* unknowns of the next block; 0 in the last one */
+    int linked;   /* unknowns from `linked` on couple to the next block; 0 in the last block */
+    int next;     /* number of unknowns of the next block; 0 in the last one */
     double *diagonal, *below, *right;
     lapack_int *pivot; /* (n) */
     enum factors factors;
-    bool stale, stale_links; /* the diagonal block, those beside it: to be zeroed before use */
+    bool stale, stale_links; /* not yet zeroed: the diagonal block; the blocks beside it */
 };
 
 struct wb_layered {
@@ -112,13 +111,11 @@ enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks, const in
 {
     *out = NULL;
     if (!layout_is_possible(n_blocks, first, link))
-        return wb_fail(
-            WB_ERR_ARGUMENT,
-            "the blocks of a layered system do not follow one another: expected the first unknowns "
-            "of the blocks in ascending order, and each link within its block");
+        return wb_fail(WB_ERR_ARGUMENT, "layered system: expected the first unknowns of the blocks "
+                                        "in ascending order, and each link within its block");
 
-    /* One thread: how many share a product decides how its sums are split, so that results would
-     * depend on the machine's load to the last bit; and the blocks are too small to share well. */
+    /* One thread: the split of sums over threads would make the last bits depend on the machine's
+     * load, and the blocks are too small for threads to help. */
     openblas_set_num_threads(1);
 
     struct wb_layered *const layered = wb_memory_new(1, sizeof *layered);
@@ -188,9 +185,9 @@ void wb_layered_clear(struct wb_layered *layered)
         layered->blocks[b].stale = layered->blocks[b].stale_links = true;
 }
 
-/* Zeroes what an element is about to be added to, not earlier: it then is in the cache, and adding
- * takes half the time that it takes to fetch entry by entry what was zeroed long before. */
-static void freshen(bool symmetric, struct block *block)
+/* Zeroes blocks just before an element is added: they are then in the cache, and adding takes half
+ * the time. */
+static void zero_if_stale(bool symmetric, struct block *block)
 {
     const size_t n = (size_t)block->n;
     if (!block->stale)
@@ -213,7 +210,7 @@ static void freshen_links(bool symmetric, struct block *block)
         memset(block->right, 0, n * next * sizeof(double));
 }
 
-/* Unknowns that take part, ascending, and their rows in the matrix to be added. */
+/* Free unknowns, ascending, and their rows in the matrix to be added. */
 struct sorted {
     int n;
     int unknown[WB_LAYERED_MOST], row[WB_LAYERED_MOST];
@@ -266,14 +263,14 @@ void wb_layered_add(struct wb_layered *layered, int n, const int *index, const d
 
     const bool symmetric = layered->symmetric;
     const int there = s.n - here;
-    freshen(symmetric, block);
+    zero_if_stale(symmetric, block);
     if (there > 0) {
         freshen_links(symmetric, block);
-        freshen(symmetric, block + 1);
+        zero_if_stale(symmetric, block + 1);
     }
     for (int k = 0; k < s.n; k++) {
-        /* Entry (i, j) is matrix[n i + j]; of a symmetric one also matrix[n j + i], side by side,
-         * and rows above the diagonal are not stored. */
+        /* Entry (i, j) is matrix[n i + j]; in a symmetric matrix also matrix[n j + i], which is
+         * contiguous. Rows above the diagonal are not stored. */
         const double *source = symmetric ? matrix + n * s.row[k] : matrix + s.row[k];
         const int stride = symmetric ? 1 : n, from = symmetric ? k : 0;
         const ptrdiff_t j = place[k];
@@ -299,7 +296,8 @@ void wb_layered_add(struct wb_layered *layered, int n, const int *index, const d
 
 static bool is_finite(size_t n, const double *values)
 {
-    /* Zero times anything that is not finite is not zero; four sums to keep the adders busy. */
+    /* Do not skip zeros: zero times a non-finite value is NaN. Four sums for instruction-level
+     * parallelism. */
     double sum[4] = {0.0};
     size_t i = 0;
     for (; i + 4 <= n; i += 4) {
@@ -326,8 +324,8 @@ static bool lower_is_finite(int n, const double *matrix)
     return true;
 }
 
-/* Diagonal entries of factors: a zero is a singular block, and a NaN or infinity anywhere arrives
- * there in the end. */
+/* Checks diagonal entries of factors: a zero is a singular block, and a NaN or infinity anywhere in
+ * the block propagates to one of them. */
 static bool diagonal_is_sound(const struct block *block)
 {
     for (ptrdiff_t i = 0; i < block->n; i++) {
@@ -338,8 +336,8 @@ static bool diagonal_is_sound(const struct block *block)
     return true;
 }
 
-/* Negative eigenvalues of B in L B L^T (Sylvester: as many as of the block itself). A block of two
- * has a negative and a positive one by the choice of its pivots. */
+/* Number of negative eigenvalues of B in L B L^T, which equals that of the block (Sylvester). A 2 x
+ * 2 block has a negative and a positive one, because of the pivoting rule. */
 static int count_negative(const struct block *block)
 {
     int negative = 0;
@@ -364,7 +362,7 @@ static bool factor_symmetric(struct wb_layered *layered, struct block *block, in
 
     block->factors = INDEFINITE;
     copy_lower(n, layered->work, block->diagonal);
-    /* What a search for pivots does among NaNs is anybody's guess. */
+    /* The pivot search is undefined for NaN: check first. */
     if (!lower_is_finite(n, block->diagonal) ||
         LAPACKE_dsytrf_work(LAPACK_COL_MAJOR, 'L', n, block->diagonal, n, block->pivot,
                             layered->bunch, layered->n_bunch) != 0)
@@ -427,7 +425,7 @@ void wb_layered_factor(struct wb_layered *layered, struct wb_layered_pivots *piv
     int negative = 0;
     layered->singular = false;
     for (int b = 0; b < layered->n_blocks; b++) {
-        freshen(layered->symmetric, &layered->blocks[b]);
+        zero_if_stale(layered->symmetric, &layered->blocks[b]);
         freshen_links(layered->symmetric, &layered->blocks[b]);
     }
     for (int b = 0; b < layered->n_blocks && !layered->singular; b++) {
@@ -445,7 +443,7 @@ void wb_layered_factor(struct wb_layered *layered, struct wb_layered_pivots *piv
 
 /* --- solution --- */
 
-/* x := op(T)^-1 x for k columns of n of a triangle T. */
+/* x := op(T)^-1 x for k columns of length n and a triangular matrix T. */
 static void solve_triangle(enum CBLAS_UPLO half, enum CBLAS_TRANSPOSE transpose,
                            enum CBLAS_DIAG diagonal, const struct block *block, int k, double *x,
                            int stride)
@@ -472,8 +470,8 @@ static void subtract_product(enum CBLAS_TRANSPOSE transpose, int rows, int colum
                     plain ? columns : rows, -1.0, A, rows, x, stride, 1.0, y, stride);
 }
 
-/* Right-hand sides of an indefinite block are kept for the backward substitution; what they give to
- * the next block goes through the workspace, as many at a time as it holds. */
+/* Right-hand sides of an indefinite block are kept for the backward substitution; their
+ * contribution to the next block uses the workspace, as many columns at a time as fit. */
 static void forward_indefinite(struct wb_layered *layered, const struct block *block, int k,
                                const double *x, double *next)
 {
@@ -532,7 +530,7 @@ static void backward(const struct wb_layered *layered, const struct block *block
         solve_triangle(CblasLower, CblasTrans, CblasNonUnit, block, k, x, stride);
 }
 
-/* From a block that all right-hand sides before are zero of. */
+/* Solves for right-hand sides that are zero in all blocks before `first`. */
 static void solve_from(struct wb_layered *layered, int first, int n_right, double *right)
 {
     if (layered->singular) {

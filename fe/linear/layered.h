@@ -3,12 +3,12 @@
  *
  * Unknowns are split in `n_blocks` consecutive blocks; block b couples to b - 1, b and b + 1.
  * Within block b only the unknowns from link[b] on couple to block b + 1 (those before couple to b
- * - 1 and b only), which the elimination makes use of. Symmetric systems are factored block by
- * block by Cholesky, and by L D L^T with pivoting within the block where a block is not positive
- * definite; general ones by LU with pivoting within the block. LAPACKE and CBLAS do the dense work,
- * on one thread.
+ * - 1 and b only), which elimination exploits. Symmetric systems are factored block by block by
+ *   Cholesky, and by L D L^T with pivoting within the block where a block is not positive definite;
+ *   general ones by LU with pivoting within the block. LAPACKE and CBLAS do the dense operations,
+ *   on one thread.
  *
- * Use: clear, add elements, factor, solve as often as wanted.
+ * Use: clear, add elements, factor, solve any number of times.
  */
 #ifndef WB_FE_LINEAR_LAYERED_H
 #define WB_FE_LINEAR_LAYERED_H
@@ -23,9 +23,9 @@ enum {
 
 struct wb_layered; /* opaque */
 
-/* `first` (n_blocks + 1) and `link` (n_blocks) are unknown numbers; link[b] in
- * first[b] .. first[b + 1], that of the last block has no meaning. Blocks may be empty. Both are
- * copied. `symmetric` systems store half. Sets OpenBLAS to one thread. */
+/* `first` (n_blocks + 1) and `link` (n_blocks) are unknown numbers; link[b] lies in first[b] ..
+ * first[b + 1] and is ignored for the last block. Blocks may be empty. Both arrays are copied.
+ * `symmetric` systems store half. Sets OpenBLAS to one thread. */
 WB_MUST_CHECK enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks,
                                                const int *first, const int *link, bool symmetric);
 void wb_layered_destroy(struct wb_layered *layered); /* accepts NULL */
@@ -33,26 +33,26 @@ void wb_layered_destroy(struct wb_layered *layered); /* accepts NULL */
 /* All entries zero. */
 void wb_layered_clear(struct wb_layered *layered);
 
-/* Adds an n x n matrix (row-major, n <= WB_LAYERED_MOST) at unknowns `index` (n, no two the same);
- * negative ones are left out. In a symmetric system `matrix` must be symmetric. Entries must fall
- * on or next to the diagonal blocks: a coupling that the layout has no place for is a defect of the
- * caller (assert). */
+/* Adds an n x n matrix (row-major, n <= WB_LAYERED_MOST) at the distinct unknowns `index` (n);
+ * negative indices are skipped. In a symmetric system `matrix` must be symmetric. Entries must fall
+ * into diagonal blocks or blocks next to them; other couplings are a defect of the caller
+ * (assert). */
 void wb_layered_add(struct wb_layered *layered, int n, const int *index, const double *matrix);
 
 struct wb_layered_pivots {
-    int negative; /* symmetric: negative eigenvalues, 0 in a stable state; general: 0 or 1, the sign
-                     of the determinant */
-    bool singular; /* a pivot is zero or not finite; there is no solution */
+    int negative;  /* symmetric: number of negative eigenvalues, 0 in a stable state; general: 0 or
+                      1, the sign of the determinant */
+    bool singular; /* a pivot is zero or not finite; no solution */
 };
 
 /* Factors in place. */
 void wb_layered_factor(struct wb_layered *layered, struct wb_layered_pivots *pivots);
 
-/* Solves for n_right right-hand sides: `right` is column after column (unknowns x n_right),
- * replaced by the solutions; by NaN when the matrix is singular. */
+/* Solves for n_right right-hand sides in columns, `right` (unknowns x n_right), and replaces them
+ * by the solutions; by NaN if the matrix is singular. */
 void wb_layered_solve(struct wb_layered *layered, int n_right, double *right);
 
-/* The same for right-hand sides that are zero outside of the last block: cheaper. */
+/* As wb_layered_solve(), cheaper, for right-hand sides that are zero except in the last block. */
 void wb_layered_solve_last(struct wb_layered *layered, int n_right, double *right);
 
 #endif

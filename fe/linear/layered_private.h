@@ -1,4 +1,4 @@
-/* What tests of fe/linear/layered.h ask beside it. */
+/* Functions of fe/linear/layered.c that only tests use. */
 #ifndef WB_FE_LINEAR_LAYERED_PRIVATE_H
 #define WB_FE_LINEAR_LAYERED_PRIVATE_H
 

@@ -1,15 +1,16 @@
-/* Loops compiled for what vectors a processor may have, to be chosen from while the program runs.
+/* Attributes that compile a loop for several vector instruction sets, one of which is chosen at run
+ * time.
  *
- * The body of a loop is an inline function on vectors of the compiler. Functions with the
- * attributes below call it, each compiled with other instructions; vectors wider than those of the
- * file's own target are passed between inlined functions only.
+ * The body of a loop is an inline function on compiler vector types. Functions with the attributes
+ * below call it, each compiled for another instruction set. Vectors wider than the file's own
+ * target are passed between inlined functions only.
  */
 #ifndef WB_FE_LINEAR_PROCESSOR_H
 #define WB_FE_LINEAR_PROCESSOR_H
 
 #include <stdbool.h>
 
-/* Of passing wide vectors, which does not happen. */
+/* Warns about passing wide vectors to functions, which does not happen because they are inlined. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #define WB_ALWAYS_INLINE inline __attribute__((always_inline))

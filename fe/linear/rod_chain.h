@@ -1,5 +1,5 @@
 /* Block tridiagonal systems of 6 x 6 blocks, not symmetric, eliminated from the first block towards
- * the last: the rod in space, as fe/linear/banded.h is for the planar beam.
+ * the last: for the rod in space, as fe/linear/banded.h for the planar beam.
  */
 #ifndef WB_FE_LINEAR_ROD_CHAIN_H
 #define WB_FE_LINEAR_ROD_CHAIN_H
@@ -11,30 +11,32 @@ enum {
 
 /* Blocks are row-major. */
 struct wb_rod_chain {
-    int n; /* blocks */
-    double (
-        *diagonal)[WB_ROD_CHAIN_ENTRIES];  /* (n); destroyed, the last becomes the condensed one */
-    double (*upper)[WB_ROD_CHAIN_ENTRIES]; /* (n - 1) block (i, i + 1); becomes S_i^-1 U_i */
-    double (*lower)[WB_ROD_CHAIN_ENTRIES]; /* (n - 1) block (i + 1, i) */
-    double (*right)[WB_ROD_CHAIN_BLOCK];   /* (n); becomes S_i^-1 g_i, the last the condensed one */
-    int negative; /* eigenvalues below zero of what was eliminated, if symmetric; the last block is
-                     left out */
+    int n;                                    /* blocks */
+    double (*diagonal)[WB_ROD_CHAIN_ENTRIES]; /* (n); destroyed, the last one becomes the condensed
+                                                 block */
+    double (*upper)[WB_ROD_CHAIN_ENTRIES];    /* (n - 1) block (i, i + 1); becomes S_i^-1 U_i */
+    double (*lower)[WB_ROD_CHAIN_ENTRIES];    /* (n - 1) block (i + 1, i) */
+    double (*right)[WB_ROD_CHAIN_BLOCK];      /* (n); becomes S_i^-1 g_i, the last one the condensed
+                                                 right-hand side */
+    int negative; /* number of negative eigenvalues of the eliminated blocks (all but the last), if
+                     symmetric */
 };
 
-/* Eliminates blocks 0 .. n - 2. A singular block gives non-finite numbers. */
+/* Eliminates blocks 0 .. n - 2. A singular block gives non-finite values. */
 void wb_rod_chain_condense(struct wb_rod_chain *chain);
 
-/* With the solution of the last block in right[n - 1], replaces `right` by the whole solution. */
+/* Replaces `right` by the complete solution, given the solution of the last block in right[n -
+ * 1]. */
 void wb_rod_chain_expand(struct wb_rod_chain *chain);
 
-/* Solves A X = B for a 6 x 6 matrix by elimination with scaled partial pivoting. Rows hold A, then
- * `columns` columns of B, which become X; A is destroyed. Non-finite when singular. */
+/* Solves A X = B for a 6 x 6 matrix by elimination with scaled partial pivoting. Each row holds A,
+ * then `columns` columns of B, which become X; A is destroyed. Not finite if singular. */
 enum {
-    WB_ROD_CHAIN_WIDTH = 20 /* doubles of a row; most columns: 14 */
+    WB_ROD_CHAIN_WIDTH = 20 /* doubles per row: 6 of A, at most 14 of B */
 };
 void wb_rod_chain_solve(double rows[WB_ROD_CHAIN_BLOCK][WB_ROD_CHAIN_WIDTH], int columns);
 
-/* c += sign a b for 6 x 6 blocks and for a block and a vector. */
+/* c += sign a b for 6 x 6 blocks, and for a block and a vector. */
 void wb_rod_chain_multiply(double *restrict c, double sign, const double *restrict a,
                            const double *restrict b);
 void wb_rod_chain_apply(double *restrict c, double sign, const double *restrict a,

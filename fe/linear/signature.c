@@ -6,7 +6,7 @@ enum {
     MOST = WB_SIGNATURE_MOST
 };
 
-/* A pivot that elimination has made as small as this beside the diagonal is round-off. */
+/* A pivot below this fraction of the diagonal is round-off. */
 static const double small_pivot = 1e-12;
 
 int wb_signature_negative(int n, int stride, const double *matrix)
@@ -39,7 +39,7 @@ bool wb_signature_is_odd(int n, int stride, const double *matrix)
         double largest = 0.0;
         for (int j = 0; j < n; j++)
             largest = fmax(largest, fabs(matrix[i * stride + j]));
-        /* Rows are forces and moments: comparable pivots need comparable rows. */
+        /* Rows are forces and moments: scale them so that pivots are comparable. */
         for (int j = 0; j < n; j++)
             A[i][j] = matrix[i * stride + j] / largest;
     }

@@ -1,5 +1,5 @@
-/* What the solvers and the models of a bending test have in common: loads of the tip, phases of a
- * loading, how hexahedra are integrated, how a jacket rests on its core.
+/* Definitions shared by the solvers and models of a bending test: loads of the tip, phases of a
+ * loading, integration of hexahedra, contact between jacket and core.
  */
 #ifndef WB_FE_LINEAR_TRIAL_H
 #define WB_FE_LINEAR_TRIAL_H
@@ -11,35 +11,36 @@ struct wb_tip_loads {
     double follower[3]; /* N, in the frame of the tip's section: along the wire, its y, its z */
 };
 
-/* What a row of a test belongs to. */
+/* Phase of a row of a test. */
 enum wb_phase {
     WB_PHASE_LOAD,
     WB_PHASE_UNLOAD,
-    WB_PHASE_SLACK /* the strand carries nothing; such rows are left out of every fit */
+    WB_PHASE_SLACK /* the strand carries no force; such rows are excluded from fits */
 };
 
 /* "load", "unload" or "slack". */
 const char *wb_trial_phase_name(enum wb_phase phase);
 
-/* Integration points of a hexahedron of 20 nodes. */
+/* Integration points of a 20-node hexahedron. */
 enum wb_integration {
     WB_INTEGRATION_SELECTIVE, /* volumetric part 2 x 2 x 2, deviatoric part 3 x 3 x 3 */
     WB_INTEGRATION_REDUCED    /* both 2 x 2 x 2 */
 };
 
-/* Contact with Coulomb friction between a core and its jacket, both parts by penalty. */
+/* Contact with Coulomb friction between a core and its jacket; penalty method, normal and
+ * tangential. */
 struct wb_jacket_contact_law {
     double normal_stiffness;     /* Pa/m */
     double tangential_stiffness; /* Pa/m, of sticking */
     double friction;             /* mu, 1 */
 };
 
-/* Stiffnesses for a jacket of such a material and thickness (m). Normal: that of this layer when it
- * is pressed between plates, M / thickness with M = E (1 - nu) / ((1 + nu) (1 - 2 nu)); the
- * penetration is then what the layer itself is squeezed by, p / M of its thickness (1 % at 1 MPa
- * for a jacket of PVC, whose pressures are a tenth of that). With stiffer ones Newton's method
- * wanders among points that open and close. Tangential: a third of it; before it slips, a point
- * moves by 3 mu times its penetration. */
+/* Default stiffnesses for a jacket of a given material and thickness (m). Normal: that of the
+ * jacket layer pressed between plates, M / thickness with M = E (1 - nu) / ((1 + nu) (1 - 2 nu)).
+ * The penetration is then the layer's own compression, p / M of its thickness (1 % at 1 MPa for a
+ * PVC jacket, whose pressures are about 0.1 MPa). With higher stiffness Newton's method alternates
+ * between points that open and close. Tangential: a third of it; a point then moves by 3 mu times
+ * its penetration before it slips. */
 void wb_trial_default_jacket_contact(struct wb_jacket_contact_law *law, double youngs_modulus,
                                      double poissons_ratio, double thickness, double friction);
 

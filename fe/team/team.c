@@ -13,13 +13,13 @@
 #define WB_LOG_DOMAIN "team"
 
 enum {
-    SLOTS = 2,    /* packets to a side: one that is read, one that is filled */
-    SPINS = 4000, /* looks before others may have the processor */
-    MOST_THREADS = 1024,
-    LINE = 64 /* bytes that processors pass on as one */
+    SLOTS = 2,    /* packets per side: one being read, one being filled */
+    SPINS = 4000, /* polls before the thread yields the processor */
+    MAX_THREADS = 1024,
+    LINE = 64 /* bytes of a cache line */
 };
 
-static const size_t most_numbers = INT_MAX / 2;
+static const size_t max_numbers = INT_MAX / 2;
 
 struct member {
     _Alignas(LINE) atomic_ulong posted; /* rounds */
@@ -36,12 +36,12 @@ struct wb_team {
     size_t packet_size;
     double *memory;
     struct member *member; /* (n_threads) */
-    int n_started;         /* threads beside the caller's */
+    int n_started;         /* threads in addition to the caller's */
 
     pthread_mutex_t lock;
     pthread_cond_t begin, end;
     unsigned long run; /* runs begun */
-    int working;       /* threads still at it */
+    int working;       /* threads that have not finished */
     bool closing;
     void (*work)(void *context, int member);
     void *context;
@@ -90,7 +90,8 @@ void wb_team_run(struct wb_team *team, void (*work)(void *context, int member), 
     pthread_mutex_unlock(&team->lock);
 }
 
-/* Cores this process may use; with fewer than members spinning keeps from work. */
+/* Cores available to this process; with fewer cores than members, spinning would delay the others'
+ * work. */
 static int cores(void)
 {
     cpu_set_t set;
@@ -115,7 +116,7 @@ static void allocate(struct wb_team *team)
     enum {
         OF_A_MEMBER = 2 * SLOTS + 2
     };
-    /* Whole lines, so that packets of two members share none. */
+    /* Round up to whole cache lines, so that packets of two members never share one. */
     const size_t room = (team->packet_size * sizeof(double) + LINE - 1) / LINE * LINE;
     const size_t n = (size_t)team->n_threads;
 
@@ -134,12 +135,13 @@ static void allocate(struct wb_team *team)
 enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size)
 {
     *out = NULL;
-    if (n_threads < 1 || n_threads > MOST_THREADS || size > most_numbers)
-        return wb_fail(WB_ERR_ARGUMENT, "%d threads: expected 1 to %d", n_threads, MOST_THREADS);
+    if (n_threads < 1 || n_threads > MAX_THREADS || size > max_numbers)
+        return wb_fail(WB_ERR_ARGUMENT, "%d threads: expected 1 to %d", n_threads, MAX_THREADS);
     if (n_threads > 1 && wb_team_ranks() > 1 && !wb_team_can_thread())
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "this MPI does not let several threads of a rank send; use one thread and "
-                       "more ranks");
+        return wb_fail(
+            WB_ERR_UNSUPPORTED,
+            "this MPI does not support several sending threads per rank; use one thread and "
+            "more ranks");
     struct wb_team *const team = wb_memory_new(1, sizeof *team);
     team->n_threads = n_threads;
     team->first = wb_team_rank() * n_threads;

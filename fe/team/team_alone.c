@@ -1,4 +1,4 @@
-/* The ranks of a build without MPI: one. */
+/* Ranks in a build without MPI: only one. */
 #include "fe/team/team_ranks.h"
 
 #define WB_LOG_DOMAIN "team"
@@ -7,8 +7,8 @@ enum wb_status wb_team_start(void)
 {
     if (wb_team_started() > 1)
         return wb_fail(WB_ERR_UNSUPPORTED,
-                       "mpirun started %d processes, but this program was built without MPI: they "
-                       "would not know of each other; build with -Dmpi=enabled",
+                       "mpirun started %d processes, but this program was built without MPI; build "
+                       "with -Dmpi=enabled",
                        wb_team_started());
     return WB_OK;
 }

@@ -1,4 +1,4 @@
-/* The ranks by MPI. Without mpirun no function of MPI is called, because joining takes a while. */
+/* Ranks over MPI. Without mpirun no MPI function is called, because MPI_Init takes long. */
 #include <mpi.h>
 #include <stdlib.h>
 
@@ -8,15 +8,15 @@
 #define WB_LOG_DOMAIN "team"
 
 enum {
-    SLOTS = 2 /* packets under way to a side */
+    SLOTS = 2 /* packets in transit per side */
 };
 
-/* MPI's own state is the process's; so is ours of it. */
+/* Static because MPI's state is per process, too. */
 static bool joined, threaded;
 static int own_rank, n_ranks = 1;
 static MPI_Request under_way[2][SLOTS];
 
-/* An allocation that fails ends the program; the other ranks would wait for it. */
+/* Called when an allocation fails: aborts all ranks, since the others would wait for this one. */
 static void abort_others(void)
 {
     if (joined)
@@ -61,7 +61,7 @@ int wb_team_ranks(void)
     return n_ranks;
 }
 
-/* By hand, so that the order of the sum is that of the ranks and does not depend on the library. */
+/* Sums in the order of the ranks, so that the result does not depend on the MPI library. */
 void wb_team_sum(double *values, int n)
 {
     if (n_ranks == 1)
@@ -123,7 +123,7 @@ void wb_team_send(int rank, enum wb_team_side side, unsigned long round, const d
 {
     MPI_Request *request = &under_way[side][round % SLOTS];
 
-    /* The one before in this slot; its packet was received before this rank got here. */
+    /* Reuse of this slot: its previous packet was received before this rank arrived here. */
     MPI_Wait(request, MPI_STATUS_IGNORE);
     MPI_Isend(packet, (int)size, MPI_DOUBLE, rank, (int)side, MPI_COMM_WORLD, request);
 }

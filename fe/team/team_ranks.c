@@ -5,7 +5,7 @@
 
 int wb_team_started(void)
 {
-    /* Open MPI's, MPICH's and Slurm's; each sets one for those it starts. */
+    /* Set by Open MPI, and by MPICH or Slurm, for the processes that they start. */
     static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
 
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

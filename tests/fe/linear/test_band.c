@@ -12,7 +12,7 @@ enum {
     ROW = 3 * WIDTH + 1
 };
 
-/* Equations of the sizes of forces and of moments. */
+/* Equations with the different magnitudes of forces and moments. */
 static double size_of_row(int i)
 {
     return i % 3 == 2 ? 1e-5 : 1.0;
@@ -36,7 +36,7 @@ static void solution_agrees_with_lapack(void **unused)
             for (int j = i - WIDTH; j <= i + WIDTH; j++) {
                 if (j < 0 || j >= N)
                     continue;
-                /* No strong diagonal: pivots are needed. */
+                /* Not diagonally dominant: pivoting is necessary. */
                 const double value = test_random(&random) - 0.5;
                 wb_band_add(&band, i, j, size_of_row(i) * value);
                 dense[i * N + j] = value;
@@ -69,7 +69,7 @@ static void held_unknown_has_its_value_and_leaves_the_rest(void **unused)
     assert_close(b[2], 3.0, 1e-15);
 }
 
-static void singular_matrix_is_refused(void **unused)
+static void singular_matrix_is_reported(void **unused)
 {
     (void)unused;
     double values[2 * 4], b[2] = {1.0, 1.0};
@@ -89,7 +89,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solution_agrees_with_lapack),
         cmocka_unit_test(held_unknown_has_its_value_and_leaves_the_rest),
-        cmocka_unit_test(singular_matrix_is_refused),
+        cmocka_unit_test(singular_matrix_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

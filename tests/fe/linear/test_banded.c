@@ -12,9 +12,9 @@ enum {
     ROWS = 3 * BAND + 1
 };
 
-/* A random, symmetric, diagonally strong chain of blocks, scaled as different as forces and
- * moments, and the same in LAPACK's band storage, equilibrated: LAPACK's pivoting does not know the
- * scales and would lose digits that the chain keeps. */
+/* A random, symmetric, diagonally dominant chain of blocks with the different magnitudes of forces
+ * and moments, and the same matrix in LAPACK's band storage, equilibrated: without that, LAPACK's
+ * pivoting would lose digits that the chain keeps. */
 static const double scale[3] = {1.0, 30.0, 1e-3};
 
 struct chain {
@@ -73,7 +73,7 @@ static void condensed_solution_agrees_with_lapack(void **unused)
         wb_banded_reduce(&banded);
         wb_banded_solve_small(3, 3, chain->diagonal[BLOCKS - 1], chain->right[BLOCKS - 1]);
         wb_banded_expand(&banded);
-        /* The factored matrix serves another right-hand side: half the first. */
+        /* A second right-hand side with the same factors: half the first. */
         double second[BLOCKS][3];
         for (int i = 0; i < UNKNOWNS; i++)
             second[i / 3][i % 3] = 0.5 * first[i / 3][i % 3];
@@ -113,7 +113,7 @@ static void inverse_times_matrix_is_one(void **unused)
 static void small_system_with_a_zero_on_the_diagonal_is_solved(void **unused)
 {
     (void)unused;
-    /* As when a tension without stiffness of its own joins: row stride larger than n. */
+    /* Like a tension without stiffness of its own; the row stride is larger than n. */
     double A[12] = {0.0, 1e-6, 1.0, 9.0, 1e-6, 2.0, 3.0, 9.0, 1.0, 3.0, 0.0, 9.0};
     double b[3] = {3.000002, 13.000001, 7.0};
     wb_banded_solve_small(3, 4, A, b);

@@ -7,17 +7,17 @@
 #include "tests/check.h"
 
 enum {
-    MOST_BLOCKS = 8,
+    MAX_BLOCKS = 8,
     MOST = 160, /* unknowns */
     ELEMENT = 24,
-    BAND = 40 /* of layouts for LAPACK's band storage */
+    BAND = 40 /* bandwidth of layouts for LAPACK's band storage */
 };
 
 #define WB_LOG_DOMAIN "test"
 
-/* A layered system and the same matrix as a plain square, row-major. */
+/* A layered system and the same matrix as a dense square, row-major. */
 struct twin {
-    int n_blocks, first[MOST_BLOCKS + 1], link[MOST_BLOCKS];
+    int n_blocks, first[MAX_BLOCKS + 1], link[MAX_BLOCKS];
     int n;
     bool symmetric;
     struct wb_layered *layered;
@@ -73,7 +73,7 @@ static void twin_add(struct twin *twin, int n, const int *index, const double *m
     }
 }
 
-/* Different unknowns of block b from `from` on, in any order, some of them held (-1). */
+/* Distinct unknowns of block b starting at `from`, in any order, some of them fixed (-1). */
 static int pick(const struct twin *twin, int from, int b, int n, int *index)
 {
     const int size = twin->first[b + 1] - from;
@@ -117,7 +117,7 @@ static void twin_fill(struct twin *twin, int elements)
     }
 }
 
-/* What makes every row's diagonal dominant, by a factor. */
+/* Makes every row diagonally dominant, by a factor. */
 static void twin_strengthen(struct twin *twin, double factor)
 {
     for (int i = 0; i < twin->n; i++) {
@@ -161,8 +161,8 @@ static double dense_solve(const struct twin *twin, double *x)
     return 1.0 / inverse;
 }
 
-/* Factors and solves; the solution must agree with the dense one as far as the condition lets it.
- * Growth of elements between blocks may cost some digits of indefinite ones. */
+/* Factors and solves; the solution must agree with the dense one within its condition. Pivot growth
+ * between blocks may cost some digits of indefinite systems. */
 static struct wb_layered_pivots twin_check(struct twin *twin, double digits)
 {
     struct wb_layered_pivots pivots;
@@ -182,7 +182,7 @@ static struct wb_layered_pivots twin_check(struct twin *twin, double digits)
     return pivots;
 }
 
-/* Negative eigenvalues of the square. */
+/* Number of negative eigenvalues of the square. */
 static int negative_eigenvalues(const struct twin *twin)
 {
     const int n = twin->n;
@@ -216,9 +216,9 @@ static int negative_determinant(const struct twin *twin)
 /* Sizes of blocks, some empty, some a single unknown. */
 static int random_sizes(int *sizes)
 {
-    const int n = 1 + random_integer(MOST_BLOCKS);
+    const int n = 1 + random_integer(MAX_BLOCKS);
     for (int b = 0; b < n; b++)
-        sizes[b] = random_number() < 0.15 ? 0 : 1 + random_integer(MOST / MOST_BLOCKS);
+        sizes[b] = random_number() < 0.15 ? 0 : 1 + random_integer(MOST / MAX_BLOCKS);
     sizes[n - 1] += sizes[0] == 0;
     return n;
 }
@@ -229,7 +229,7 @@ static void dominant_systems_agree_with_dense_ones(void **unused)
     seed = 1;
     for (int trial = 0; trial < 60; trial++) {
         struct twin twin;
-        int sizes[MOST_BLOCKS];
+        int sizes[MAX_BLOCKS];
         const int n_blocks = random_sizes(sizes);
         twin_init(&twin, trial % 2 == 0, n_blocks, sizes);
         twin_fill(&twin, 40);
@@ -247,7 +247,7 @@ static void indefinite_systems_agree_with_dense_ones(void **unused)
     seed = 2;
     for (int trial = 0; trial < 100; trial++) {
         struct twin twin;
-        int sizes[MOST_BLOCKS];
+        int sizes[MAX_BLOCKS];
         const int n_blocks = random_sizes(sizes);
         twin_init(&twin, trial % 2 == 0, n_blocks, sizes);
         twin_fill(&twin, 60);
@@ -321,7 +321,8 @@ static void general_systems_agree_with_lapacks_band(void **unused)
     }
 }
 
-/* Several right-hand sides at once, more than a block is wide, and those of the last block only. */
+/* Several right-hand sides at once, more than a block is wide, and some that are nonzero in the
+ * last block only. */
 static void many_right_hand_sides_give_what_each_gives(void **unused)
 {
     (void)unused;
@@ -339,7 +340,7 @@ static void many_right_hand_sides_give_what_each_gives(void **unused)
         wb_layered_factor(twin.layered, &pivots);
         assert_false(pivots.singular);
         if (kind == 1)
-            assert_true(pivots.negative > 0); /* with blocks that Cholesky refuses */
+            assert_true(pivots.negative > 0); /* with blocks that are not positive definite */
 
         const int n = twin.n, tail = twin.first[twin.n_blocks - 1];
         double together[RIGHT * MOST], last[RIGHT * MOST], right[RIGHT * MOST] = {0.0}, x[MOST];
@@ -392,7 +393,7 @@ static void cleared_system_starts_again(void **unused)
             assert_int_equal(twin_check(&twin, 1e-15).negative, 0);
         }
 
-        /* Nothing is left of a block that is not added to again. */
+        /* A block to which nothing is added again is zero. */
         struct wb_layered_pivots pivots;
         const double one = 1.0;
         wb_layered_clear(twin.layered);
@@ -404,7 +405,7 @@ static void cleared_system_starts_again(void **unused)
     }
 }
 
-static void singular_systems_are_refused(void **unused)
+static void singular_systems_are_reported(void **unused)
 {
     (void)unused;
     const int sizes[] = {6, 7, 5};
@@ -419,7 +420,7 @@ static void singular_systems_are_refused(void **unused)
             twin_init(&twin, symmetric, 3, sizes);
             twin_fill(&twin, 12);
             twin_strengthen(&twin, 1.0);
-            if (kind / 2 == 0) { /* an unknown that nothing holds */
+            if (kind / 2 == 0) { /* an unknown without stiffness */
                 wb_layered_clear(twin.layered);
                 for (int i = 0; i < twin.n; i++) {
                     const double one = i == place ? 0.0 : 1.0;
@@ -468,7 +469,7 @@ static void same_matrix_gives_the_same_bytes(void **unused)
     assert_memory_equal(x[0], x[1], sizeof(double) * 140);
 }
 
-static void impossible_layouts_are_refused(void **unused)
+static void invalid_layouts_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_layered *layered = NULL;
@@ -502,9 +503,9 @@ int main(void)
         cmocka_unit_test(general_systems_agree_with_lapacks_band),
         cmocka_unit_test(many_right_hand_sides_give_what_each_gives),
         cmocka_unit_test(cleared_system_starts_again),
-        cmocka_unit_test(singular_systems_are_refused),
+        cmocka_unit_test(singular_systems_are_reported),
         cmocka_unit_test(same_matrix_gives_the_same_bytes),
-        cmocka_unit_test(impossible_layouts_are_refused),
+        cmocka_unit_test(invalid_layouts_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,7 +22,7 @@ static void put(int i, int j, double value)
     banded[j][2 * BAND + i - j] = value;
 }
 
-/* Random blocks of very different units, as those of forces and moments are. */
+/* Random blocks with the very different units of forces and moments. */
 static void fill(uint64_t *seed)
 {
     memset(banded, 0, sizeof banded);

@@ -31,7 +31,7 @@ static void negative_eigenvalues_are_counted(void **unused)
                 const double unit = unit_of(i) * unit_of(j), skew = unit * test_random(&seed);
                 const double both = unit * (test_random(&seed) - 0.5) +
                                     (i == j ? unit * (3.0 * test_random(&seed) - 1.5) : 0.0);
-                /* A skew part changes nothing. */
+                /* The skew-symmetric part has no effect. */
                 A[STRIDE * i + j] = both + (i == j ? 0.0 : skew);
                 A[STRIDE * j + i] = both - (i == j ? 0.0 : skew);
                 full[N * i + j] = full[N * j + i] = both;
@@ -48,7 +48,7 @@ static void negative_eigenvalues_are_counted(void **unused)
         assert_true(seen[i] > 10);
 }
 
-static void oddness_is_the_determinants_sign(void **unused)
+static void odd_count_is_the_sign_of_the_determinant(void **unused)
 {
     (void)unused;
     uint64_t seed = 7;
@@ -73,7 +73,7 @@ static void oddness_is_the_determinants_sign(void **unused)
     assert_in_range(odd, 500, 1500);
 }
 
-static void what_is_zero_but_for_round_off_is_not_negative(void **unused)
+static void zero_within_round_off_is_not_negative(void **unused)
 {
     (void)unused;
     double A[4] = {1.0, 1.0, 1.0, 1.0 - 1e-14};
@@ -82,8 +82,8 @@ static void what_is_zero_but_for_round_off_is_not_negative(void **unused)
     assert_int_equal(wb_signature_negative(2, 2, A), 1);
 }
 
-/* Inertia adds up over what is eliminated and what is left (Haynsworth). */
-static void a_chain_counts_as_the_whole_matrix(void **unused)
+/* Inertia is additive over eliminated and remaining unknowns (Haynsworth). */
+static void a_chain_counts_like_the_complete_matrix(void **unused)
 {
     (void)unused;
     uint64_t seed = 11;
@@ -124,9 +124,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(negative_eigenvalues_are_counted),
-        cmocka_unit_test(oddness_is_the_determinants_sign),
-        cmocka_unit_test(what_is_zero_but_for_round_off_is_not_negative),
-        cmocka_unit_test(a_chain_counts_as_the_whole_matrix),
+        cmocka_unit_test(odd_count_is_the_sign_of_the_determinant),
+        cmocka_unit_test(zero_within_round_off_is_not_negative),
+        cmocka_unit_test(a_chain_counts_like_the_complete_matrix),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

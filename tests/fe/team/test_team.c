@@ -1,5 +1,5 @@
-/* Members side by side: packets reach the right neighbour in the right round, whoever is slow, with
- * fewer cores than members, and over ranks (make it so with mpirun). */
+/* Members in parallel: packets reach the right neighbour in the right round, with slow members,
+ * with fewer cores than members, and over ranks (run it with mpirun). */
 #include "tests/check.h"
 
 #include <sched.h>
@@ -83,8 +83,8 @@ static void packets_reach_their_neighbours(void **unused)
             swap_packets(n, slow < 0 ? ROUNDS : 300, slow);
 }
 
-/* All on one core, where spinning alone would take a slice of time for every round. */
-static void more_members_than_cores_do_not_stick(void **unused)
+/* All on one core, where pure spinning would take a time slice in every round. */
+static void more_members_than_cores_do_not_block(void **unused)
 {
     (void)unused;
     cpu_set_t before, one;
@@ -99,7 +99,7 @@ static void more_members_than_cores_do_not_stick(void **unused)
     swap_packets(8, 500, -1);
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &end);
     assert_int_equal(sched_setaffinity(0, sizeof before, &before), 0);
-    /* 1500 rounds of 8 members; with slices of a millisecond these were 12 s. */
+    /* 1500 rounds of 8 members; with time slices of a millisecond these would take 12 s. */
     assert_true(end.tv_sec - begin.tv_sec < 5);
 }
 
@@ -146,7 +146,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(packets_reach_their_neighbours),
-        cmocka_unit_test(more_members_than_cores_do_not_stick),
+        cmocka_unit_test(more_members_than_cores_do_not_block),
         cmocka_unit_test(every_member_works_once_a_run),
         cmocka_unit_test(ranks_agree),
     };
