@@ -13,19 +13,19 @@
 #define WB_LOG_DOMAIN "beam"
 
 enum {
-    MOST_ELEMENTS = 100000,
+    MAX_ELEMENTS = 100000,
     POINTS = WB_BEAM_ELEMENT_POINTS
 };
 
-/* How an element's middle node follows its ends: d2 = -w - W1 d1 - W3 d3, with w = inverse times
- * what is unbalanced there. */
+/* Elimination of an element's middle node from its end nodes: d2 = -w - W1 d1 - W3 d3, with w =
+ * inverse times the residual of the middle node. */
 struct middle {
     double inverse[9], W1[9], W3[9];
 };
 
-/* Strains of a Gauss point. They are unknowns of their own, beside the positions that follow from
- * them: taken from differences of positions, they would carry round-off of epsilon L over an
- * element's length, and the axial stiffness would turn that into forces. */
+/* Strains of a Gauss point. They are unknowns in addition to the positions, which follow from them.
+ * Strains taken from differences of positions would carry round-off of epsilon L over an element's
+ * length, and the axial stiffness would turn that into forces. */
 struct strain {
     double eps, gamma;
 };
@@ -42,9 +42,9 @@ struct wb_beam {
     size_t history_size; /* of all Gauss points */
     double load_x, load_y;
 
-    /* Positions, (n_nodes) each; `earlier` is committed before `committed`. */
+    /* Positions, (n_nodes) each; `earlier` is the state committed before `committed`. */
     struct wb_beam_node *reference, *trial, *committed, *earlier, *saved, *saved_earlier;
-    /* Strains that belong to them, (n_elements x POINTS) each. */
+    /* Strains of the same states, (n_elements x POINTS) each. */
     struct strain *trial_strain, *committed_strain, *earlier_strain, *saved_strain,
         *saved_earlier_strain;
     double *history, *trial_history, *saved_history;
@@ -52,18 +52,18 @@ struct wb_beam {
     struct resultants *committed_resultants, *saved_resultants; /* (n_elements x POINTS) each */
 
     struct wb_beam_point *points; /* (n_elements x POINTS) */
-    bool has_turns;               /* cosines and sines of the points are the trial state's */
-    double (*residual)[3];        /* (n_nodes) */
-    struct middle *middles;       /* (n_elements) */
-    double (*right_middles)[3];   /* (n_elements): w of struct middle */
-    struct wb_banded banded;      /* end nodes of the elements without the clamp */
-    struct wb_memory memory;      /* of all arrays */
+    bool has_turns;         /* the points' cosines and sines are up to date with the trial state */
+    double (*residual)[3];  /* (n_nodes) */
+    struct middle *middles; /* (n_elements) */
+    double (*right_middles)[3]; /* (n_elements): w of struct middle */
+    struct wb_banded banded;    /* stiffness of the elements' end nodes, without the clamp */
+    struct wb_memory memory;    /* owns all arrays */
 };
 
 /* Integrates the natural curvature from the clamp into rotations and positions of the nodes, with
  * Simpson's rule on several intervals between neighbouring nodes. */
-static void lay_out(struct wb_beam *beam, double (*natural_curvature)(void *, double),
-                    void *context)
+static void set_reference_shape(struct wb_beam *beam, double (*natural_curvature)(void *, double),
+                                void *context)
 {
     enum {
         INTERVALS = 8
@@ -93,8 +93,8 @@ static void lay_out(struct wb_beam *beam, double (*natural_curvature)(void *, do
     }
 }
 
-/* The reference's own strains are subtracted as the elements see them, so that it is free of stress
- * to the last bit. */
+/* Stores the strains of the reference configuration, computed by the element's own formulas:
+ * subtracting them makes the reference exactly free of stress. */
 static void measure_reference(struct wb_beam *beam)
 {
     for (int e = 0; e < beam->n_elements; e++) {
@@ -113,9 +113,9 @@ static enum wb_status check_model(const struct wb_beam_model *model)
 {
     if (!(isfinite(model->length) && model->length > 0.0))
         return wb_fail(WB_ERR_ARGUMENT, "length %g m: expected a number above 0", model->length);
-    if (model->n_elements < 1 || model->n_elements > MOST_ELEMENTS)
+    if (model->n_elements < 1 || model->n_elements > MAX_ELEMENTS)
         return wb_fail(WB_ERR_ARGUMENT, "%d elements: expected 1 to %d", model->n_elements,
-                       MOST_ELEMENTS);
+                       MAX_ELEMENTS);
     if (!(model->section->shear_stiffness > 0.0))
         return wb_fail(WB_ERR_ARGUMENT, "shear stiffness %g N: expected a number above 0",
                        model->section->shear_stiffness);
@@ -204,7 +204,7 @@ void wb_beam_destroy(struct wb_beam *beam)
 enum wb_status wb_beam_set_curvature(struct wb_beam *beam,
                                      double (*natural_curvature)(void *, double), void *context)
 {
-    lay_out(beam, natural_curvature, context);
+    set_reference_shape(beam, natural_curvature, context);
     measure_reference(beam);
     wb_beam_reset(beam);
     if (!isfinite(beam->reference[beam->n_nodes - 1].x))
@@ -276,7 +276,7 @@ static void subtract_load(struct wb_beam *beam, double factor)
     }
 }
 
-/* fmax() would drop a NaN; this one keeps it. */
+/* As fmax(), but returns NaN if either argument is NaN. */
 static double larger(double a, double b)
 {
     return b > a || b != b ? b : a;
@@ -350,7 +350,8 @@ static inline void add_transposed_vector(double *restrict v, const double *A, co
         v[r] += A[r] * b[0] + A[3 + r] * b[1] + A[6 + r] * b[2];
 }
 
-/* Eliminates an element's middle node and adds the rest to the chain of end nodes. */
+/* Eliminates an element's middle node and adds the condensed stiffness to the chain of end
+ * nodes. */
 static void condense_element(struct wb_beam *beam, int e)
 {
     struct wb_beam_element_stiffness K;
@@ -383,7 +384,7 @@ static void condense_element(struct wb_beam *beam, int e)
     memcpy(beam->banded.diagonal[e], K.K33, sizeof K.K33);
 }
 
-/* The same of what is unbalanced, with a condensed tangent. */
+/* Condenses the residual of an element with a tangent that is already condensed. */
 static void reduce_element(struct wb_beam *beam, const struct wb_beam *tangent, int e)
 {
     const struct middle *m = &tangent->middles[e];
@@ -398,8 +399,9 @@ static void reduce_element(struct wb_beam *beam, const struct wb_beam *tangent, 
     add_transposed_vector(beam->banded.right[e], m->W3, at_middle);
 }
 
-/* A condensed tangent with the right-hand side of a beam. */
-static struct wb_banded chain_of(const struct wb_beam *beam, const struct wb_beam *tangent)
+/* The condensed tangent of `tangent` with the right-hand side of `beam`. */
+static struct wb_banded chain_with_right_side(const struct wb_beam *beam,
+                                              const struct wb_beam *tangent)
 {
     struct wb_banded chain = tangent->banded;
     chain.right = beam->banded.right;
@@ -416,7 +418,7 @@ void wb_beam_condense(struct wb_beam *beam, double *stiffness)
 
 void wb_beam_reduce(struct wb_beam *beam, const struct wb_beam *tangent, double *right)
 {
-    const struct wb_banded chain = chain_of(beam, tangent);
+    const struct wb_banded chain = chain_with_right_side(beam, tangent);
     for (int e = 0; e < beam->n_elements; e++)
         reduce_element(beam, tangent, e);
     wb_banded_reduce(&chain);
@@ -429,9 +431,9 @@ static inline void add_product(double *restrict v, double sign, const double *A,
         v[r] += sign * (A[3 * r] * b[0] + A[3 * r + 1] * b[1] + A[3 * r + 2] * b[2]);
 }
 
-/* Positions of an element's middle and last node from its first node, its rotations and its
- * strains: (x', y') = R(t) (a, b), and x' is linear within the element. Leaves the rotation of its
- * points behind. */
+/* Computes positions of an element's middle and last node from its first node, its rotations and
+ * its strains: (x', y') = R(t) (a, b), and x' is linear within the element. Also updates the
+ * cosines and sines of its points. */
 static void place_nodes(struct wb_beam *beam, int e)
 {
     const double h = beam->element_length;
@@ -456,9 +458,9 @@ static void place_nodes(struct wb_beam *beam, int e)
 }
 
 /* Moves an element whose first node has moved, by `scale` times the increments of its three nodes.
- * An increment is applied to rotations and strains, not to positions, which then follow from them.
- * Adding it to positions would stretch a turning element by half the square of its turn, far beyond
- * yield, and the next tangent would be that of a wire torn in tension. */
+ * The increment changes rotations and strains; positions follow from them. Adding it to positions
+ * would stretch a rotating element by half the square of its rotation, far beyond yield, and the
+ * next tangent would be that of a wire failing in tension. */
 static void advance_element(struct wb_beam *beam, int e, double scale,
                             const double *const increment[WB_BEAM_ELEMENT_NODES])
 {
@@ -484,7 +486,7 @@ double wb_beam_advance(struct wb_beam *beam, const struct wb_beam *tangent, cons
                        double most_rotation)
 {
     static const double clamp[3] = {0.0, 0.0, 0.0};
-    const struct wb_banded chain = chain_of(beam, tangent);
+    const struct wb_banded chain = chain_with_right_side(beam, tangent);
     double(*d)[3] = chain.right;
 
     memcpy(d[beam->n_elements - 1], tip, 3 * sizeof *tip);
@@ -630,7 +632,7 @@ double wb_beam_element_length(const struct wb_beam *beam)
 
 const struct wb_beam_point *wb_beam_section(const struct wb_beam *beam, double s)
 {
-    /* The two points of an element lie one in each of its halves. */
+    /* Each half of an element contains one of its two points. */
     const double halves = floor(2.0 * s / beam->element_length);
     return &beam->points[(int)fmin(fmax(halves, 0.0), beam->n_elements * POINTS - 1)];
 }
@@ -695,7 +697,7 @@ double wb_beam_root_moment(const struct wb_beam *beam)
 
 double wb_beam_noise(const struct wb_beam *beam)
 {
-    /* Strains are about 1e-3 and rounded to epsilon of that; some dozen such errors add up. */
+    /* Strains are about 1e-3 and carry a relative error of epsilon; 30 such errors add up. */
     const double stiffness =
         fmax(wb_fibres_axial_stiffness(beam->fibres), wb_fibres_shear_stiffness(beam->fibres));
     return 3e-2 * DBL_EPSILON * stiffness;

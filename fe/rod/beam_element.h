@@ -25,7 +25,7 @@ struct wb_beam_node {
     double x, y, t;
 };
 
-/* One Gauss point: what the reference subtracts, the present kinematics, and the resultants. */
+/* One Gauss point: strains of the reference, current kinematics, resultants. */
 struct wb_beam_point {
     double reference_a, reference_b, reference_k;
     double cosine, sine; /* of t */
@@ -39,15 +39,15 @@ struct wb_beam_element_stiffness {
     double K11[9], K12[9], K13[9], K22[9], K23[9], K33[9];
 };
 
-/* Rotation at Gauss point g: fills cosine and sine. */
+/* Computes the cosine and sine of the rotation at Gauss point g. */
 void wb_beam_element_turn(const struct wb_rod_shape *shape, int g, const struct wb_beam_node *nodes,
                           struct wb_beam_point *point);
 
-/* Its derivative there, t'. */
+/* Derivative t' of the rotation at Gauss point g, 1/m. */
 double wb_beam_element_curvature(const struct wb_rod_shape *shape, int g,
                                  const struct wb_beam_node *nodes);
 
-/* All kinematics of Gauss point g, from positions: fills cosine, sine, a, b, k. */
+/* Computes all kinematics of Gauss point g from nodal positions: cosine, sine, a, b, k. */
 void wb_beam_element_kinematics(const struct wb_rod_shape *shape, int g,
                                 const struct wb_beam_node *nodes, struct wb_beam_point *point);
 
@@ -55,7 +55,7 @@ void wb_beam_element_kinematics(const struct wb_rod_shape *shape, int g,
 void wb_beam_element_add_forces(const struct wb_rod_shape *shape, int g,
                                 const struct wb_beam_point *point, double *restrict f);
 
-/* The element's tangent stiffness from its two points. */
+/* Computes the element's tangent stiffness from its two points. */
 void wb_beam_element_stiffness(const struct wb_rod_shape *shape, const struct wb_beam_point *points,
                                struct wb_beam_element_stiffness *restrict stiffness);
 

@@ -13,31 +13,31 @@
 #define WB_LOG_DOMAIN "fibres"
 
 enum {
-    /* The first double says whether the point ever yielded, the second how many parts of an overlay
-     * may have. */
+    /* The first double is 1 if the point ever yielded; the second is the number of overlay parts
+     * that have history rows. */
     HISTORY_HEAD = 8,
-    /* Within the head, for Maxwell elements: strains at the end of the last step, then N and M of
+    /* Also in the head, for Maxwell elements: strains at the end of the last step, then N and M of
      * each element. */
     HISTORY_EPS = 2,
     HISTORY_KAPPA,
     HISTORY_MAXWELL,
     HISTORY_ROWS = 3, /* plastic strain, accumulated plastic strain, yield or back stress */
-    MOST_PASSES = 50
+    MAX_PASSES = 50
 };
 
 _Static_assert(HISTORY_MAXWELL + 2 * WB_LAW_MOST_MAXWELL <= HISTORY_HEAD, "head of the history");
 
-/* See fe/material/material.c. */
+/* Relative distance to the yield surface below which a fibre counts as elastic; see
+ * fe/material/material.c. */
 static const double on_surface = 1e-12;
-/* A step of Chaboche's law is solved where what is left of the stress beyond the surface is this
- * part of it. */
-static const double settled = 1e-12;
+/* Relative tolerance of the stress beyond the yield surface in a step of Chaboche's law. */
+static const double stress_tolerance = 1e-12;
 
-/* Fibres of one material, contiguous and padded with fibres without area. */
+/* Fibres of one material, contiguous and padded with fibres of zero area. */
 struct batch {
     int material;
     int begin, end; /* padded indices */
-    /* Of the material's hardening law, at hand for the inner loop. */
+    /* Copied from the material's hardening law for the inner loop. */
     bool grows, moves, has_constant_exponent;
 };
 
@@ -51,29 +51,31 @@ enum wb_fibres_kind {
 
 struct wb_fibres {
     int n;           /* padded number of fibres */
-    int n_materials; /* of the section, as batches */
+    int n_materials; /* materials of the section, one batch each */
     struct batch *batches;
     double *y, *area; /* (n) */
     struct wb_material *materials;
     struct wb_hardening_table *tables; /* (n_materials) */
     double *virgin;                    /* history of a virgin point, with its head */
     double outermost;                  /* largest |y|, m */
-    double yield_strain;               /* no fibre yields below this strain, 1 */
+    double yield_strain;               /* strain below which no fibre yields, 1 */
     double EA, ES, EI;                 /* elastic N = EA eps + ES kappa, M = ES eps + EI kappa */
-    double shear_ratio;                /* the section's shear stiffness over the fibres' sum */
+    double shear_ratio; /* shear stiffness of the section over the sum over its fibres */
     double shear_stiffness;
     enum wb_fibres_kind kind;
-    /* Of a section with a law; its fibres are of one batch. */
-    int capacity;                           /* rows of parts or back stresses in the history */
-    struct wb_law law;                      /* combined hardening */
-    struct wb_overlay *overlay;             /* kinematic and mixed hardening; owned */
-    double tail[WB_OVERLAY_MOST_PARTS + 1]; /* Pa: sum of the moduli from a part on, */
-    double full[WB_OVERLAY_MOST_PARTS + 1]; /* and stress of all parts before it once they yield */
-    double compliance;                      /* 1/Pa: of all parts while they are elastic */
-    double duration;                        /* s, of a step */
+    /* For a section with a law; its fibres are one batch. */
+    int capacity;               /* allocated history rows of parts or back stresses */
+    struct wb_law law;          /* combined hardening */
+    struct wb_overlay *overlay; /* kinematic and mixed hardening; owned */
+    /* Pa: sum of the moduli of part i and all later parts. */
+    double tail[WB_OVERLAY_MOST_PARTS + 1];
+    /* Pa: stress of all parts before part i once they yield. */
+    double full[WB_OVERLAY_MOST_PARTS + 1];
+    double compliance; /* 1/Pa: of all parts together while elastic */
+    double duration;   /* s, of a step */
     struct wb_law_maxwell_step maxwell[WB_LAW_MOST_MAXWELL];
-    const struct wb_point_law *point_laws; /* (n_materials) of a section that has them; borrowed */
-    int point_history;                     /* rows of the history that the largest needs */
+    const struct wb_point_law *point_laws; /* (n_materials) or NULL; borrowed */
+    int point_history;                     /* history rows of the point law that needs most */
     void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *before,
                     double *after, struct wb_fibres_response *response);
     struct wb_memory memory; /* of all arrays */
@@ -113,9 +115,9 @@ static double shear_sum(const struct wb_fibres *f)
     return sum;
 }
 
-/* Rows of the history: of an overlay the plastic strain of each part, with the accumulated one
- * behind it where limits grow, and three of the share with isotropic hardening; of combined
- * hardening one for each back stress. */
+/* History rows. Overlay: the plastic strain of each part, followed by its accumulated plastic
+ * strain if the limits grow, and three rows for the share with isotropic hardening. Combined
+ * hardening: one row for each back stress. */
 static int history_rows(const struct wb_fibres *f)
 {
     return f->kind == BY_POINT_LAW ? f->point_history : HISTORY_ROWS + f->capacity;
@@ -130,7 +132,7 @@ static enum wb_fibres_kind kind_of(const struct wb_law *law)
                                           : LUDWIK_COMBINED;
 }
 
-/* Rows of the history beyond HISTORY_ROWS that the law needs. */
+/* History rows that the law needs in addition to HISTORY_ROWS. */
 static int rows_of(const struct wb_law *law)
 {
     if (law->form == WB_LAW_PARALLEL)
@@ -166,8 +168,9 @@ static void set_overlay(struct wb_fibres *f, const struct wb_law *law)
 enum wb_status wb_fibres_set_law(struct wb_fibres *f, const struct wb_law *law)
 {
     if (kind_of(law) != f->kind || rows_of(law) > f->capacity || f->n_materials != 1)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "a section of another law, or of fewer parts or back stresses");
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "the law is of another kind, or needs more history rows than the section has");
     f->law = *law;
     wb_fibres_set_duration(f, f->duration);
     if (f->kind == AS_OVERLAY) {
@@ -243,7 +246,7 @@ double wb_fibres_shear_stiffness(const struct wb_fibres *fibres)
     return fibres->shear_stiffness;
 }
 
-/* Where the history of four fibres is read and written. */
+/* Pointers to the history of four fibres, before and after the step. */
 struct rows {
     const double *plastic, *accumulated, *third;
     double *plastic_after, *accumulated_after, *third_after;
@@ -272,8 +275,8 @@ static WB_ALWAYS_INLINE struct answer respond_elastically(const struct wb_materi
     return answer;
 }
 
-/* r(c) lane by lane: a table row is one cache line, and gathering rows is dearer than their
- * polynomials. */
+/* r(c), computed lane by lane: a table row is one cache line, and gathering rows costs more than
+ * evaluating their polynomials. */
 static WB_ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
                                             const struct wb_hardening_table *table, masks yields,
                                             lanes c)
@@ -289,8 +292,8 @@ static WB_ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
     return r;
 }
 
-/* The exponents at LANES plastic strains of a law where they differ: in no inner loop, so that it
- * leaves the loop of power laws alone. */
+/* Exponents at LANES plastic strains, for a law whose exponent varies. Not inlined, so that the
+ * loop of power laws stays fast. */
 static __attribute__((noinline, cold)) void find_exponents(const struct wb_material *m,
                                                            const double *p, double *n)
 {
@@ -309,8 +312,8 @@ static WB_ALWAYS_INLINE lanes exponents(const struct wb_material *m, bool is_con
     return load(n);
 }
 
-/* sigma = sigma_Y + (1 - r) c with r(c) from the table; see fe/material/hardening.h. The third row
- * is the yield stress reached so far. */
+/* Isotropic hardening: sigma = sigma_Y + (1 - r) c with r(c) from the table; see
+ * fe/material/hardening.h. The third row is the yield stress reached so far. */
 static WB_ALWAYS_INLINE struct answer respond_growing(const struct wb_material *m,
                                                       bool has_constant_exponent,
                                                       const struct wb_hardening_table *table,
@@ -348,7 +351,7 @@ static WB_ALWAYS_INLINE struct answer respond_growing(const struct wb_material *
     return answer;
 }
 
-/* The third row is the back stress. */
+/* Kinematic hardening; the third row is the back stress. */
 static WB_ALWAYS_INLINE struct answer respond_moving(const struct wb_material *m, lanes strain,
                                                      const struct rows *h)
 {
@@ -360,12 +363,12 @@ static WB_ALWAYS_INLINE struct answer respond_moving(const struct wb_material *m
     const lanes distance = trial - back;
     const lanes over = absolute(distance) - m->yield_stress;
     const masks yields = over > on_surface * m->yield_stress;
-    const lanes none = 0.0 * strain;
-    const lanes size = select_lanes(yields, over * (1.0 / (E + H)), none);
+    const lanes zero = 0.0 * strain;
+    const lanes size = select_lanes(yields, over * (1.0 / (E + H)), zero);
     const lanes increment = with_sign(size, distance);
     const struct answer answer = {
         trial - E * increment,
-        select_lanes(yields, none + E * H / (E + H), none + E),
+        select_lanes(yields, zero + E * H / (E + H), zero + E),
     };
 
     store(h->plastic_after, plastic + increment);
@@ -387,7 +390,7 @@ respond_of(const struct wb_fibres *f, const struct batch *batch, lanes strain, c
     return respond_elastically(m, strain);
 }
 
-/* Adds the lanes in a fixed order. */
+/* Adds the lanes in a fixed order, so that results do not depend on the vector width. */
 static WB_ALWAYS_INLINE double add_lanes(lanes v)
 {
     return (v[0] + v[2]) + (v[1] + v[3]);
@@ -398,7 +401,7 @@ struct strains {
     double eps, kappa;
 };
 
-/* What the fibres of a section add up to, lane by lane. */
+/* Sums over the fibres of a section, lane by lane. */
 struct sums {
     lanes N, M, D11, D12, D22;
 };
@@ -439,9 +442,9 @@ static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct stra
     take_sums(&sums, response);
 }
 
-/* The share of an overlay with isotropic hardening: the stress is the virgin curve's at the strain
- * e = |trial| / E + p at which a first loading would have come as far. The third row is the stress
- * reached so far. */
+/* The share of an overlay with isotropic hardening: the stress is that of the virgin curve at the
+ * strain e = |trial| / E + p, where monotonic loading would have reached the same state. The third
+ * row is the stress reached so far. */
 static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_fibres *f,
                                                               lanes strain, const struct rows *h)
 {
@@ -458,8 +461,8 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_fi
         return (struct answer){trial, E - (lanes){0}};
     }
 
-    /* Parts below that of the smallest strain all yield, parts beyond that of the largest are
-     * elastic, all together. */
+    /* Parts with a yield strain below the smallest strain all yield; parts above the largest strain
+     * are elastic and act as one stiffness. */
     const lanes virgin = size * f->compliance + p0;
     const double least = smallest_of(virgin), most = largest_of(virgin);
     int i = 0;
@@ -483,8 +486,9 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_fi
                            select_lanes(yields, tangent, E - (lanes){0})};
 }
 
-/* Which parts of an overlay a step looks at one by one: those that yielded before have rows of the
- * history; those that may yield now get some; the others are elastic, all together. */
+/* Parts of an overlay that a step computes one by one: `before` parts have yielded earlier and have
+ * history rows; up to `now` parts may yield in this step and get rows. The other parts are elastic
+ * and act as one stiffness. */
 struct active_parts {
     int before, now;
 };
@@ -504,7 +508,8 @@ static WB_ALWAYS_INLINE lanes add_moving_part(struct answer *answer, const struc
     return select_lanes(stays, plastic, strain - kept);
 }
 
-/* The share with kinematic hardening: a row of the history for each part's plastic strain. */
+/* The share of an overlay with kinematic hardening: one history row for the plastic strain of each
+ * part. */
 static WB_ALWAYS_INLINE struct answer respond_overlay_moving(const struct wb_fibres *f,
                                                              struct active_parts active,
                                                              lanes strain, const double *rows,
@@ -522,8 +527,8 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_moving(const struct wb_fib
     return answer;
 }
 
-/* Combined hardening: the limit of a part grows with its accumulated plastic strain, whose row
- * follows the row of its plastic strain. */
+/* Combined hardening of an overlay: the yield limit of a part grows with its accumulated plastic
+ * strain, whose row follows the row of its plastic strain. */
 static WB_ALWAYS_INLINE struct answer respond_overlay_combined(const struct wb_fibres *f,
                                                                struct active_parts active,
                                                                lanes strain, const double *rows,
@@ -531,16 +536,16 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_combined(const struct wb_f
 {
     const struct wb_overlay *const o = f->overlay;
     const double kept = o->kept, growth = kept / (1.0 - kept);
-    const lanes tail = f->tail[active.now] - (lanes){0}, none = {0};
+    const lanes tail = f->tail[active.now] - (lanes){0}, zero = {0};
     const ptrdiff_t n = f->n;
     struct answer answer = {tail * strain, tail};
     for (int part = 0; part < active.now; part++, rows += 2 * n, rows_after += 2 * n) {
-        const lanes plastic = part < active.before ? load(rows) : none;
-        const lanes accumulated = part < active.before ? load(rows + n) : none;
+        const lanes plastic = part < active.before ? load(rows) : zero;
+        const lanes accumulated = part < active.before ? load(rows + n) : zero;
         const lanes trial = strain - plastic;
         const lanes over = absolute(trial) - o->yield_strain[part] - growth * accumulated;
         const masks yields = over >= 0.0;
-        const lanes step = select_lanes(yields, (1.0 - kept) * over, none);
+        const lanes step = select_lanes(yields, (1.0 - kept) * over, zero);
         const lanes signed_step = with_sign(step, trial);
         const double E = o->modulus[part];
         answer.stress += E * (trial - signed_step);
@@ -628,8 +633,8 @@ static WB_ALWAYS_INLINE struct answer respond_combined(const struct wb_fibres *f
     return answer;
 }
 
-/* One of the stresses that Chaboche's law hardens by in a step: room (1 - exp(-rate d)) over its
- * increment d of plastic strain; over a rate of 0, slope d. */
+/* One hardening stress of Chaboche's law in a step: room (1 - exp(-rate d)) for an increment d of
+ * plastic strain; slope d if the rate is 0. */
 struct term {
     lanes room;
     double rate, slope;
@@ -646,10 +651,10 @@ static WB_ALWAYS_INLINE lanes value_of(const struct term *term, lanes d, lanes *
     return value;
 }
 
-/* Solves E d + all terms = over by Newton's method, to what rounding leaves of the terms. Their sum
- * grows ever slower in d, so that from any place a step ends below the solution; the least that d
- * can be is known of its tangent at 0 and of its value where the terms have saturated. It begins
- * where the parabola of the first two derivatives has the solution, if that is near. */
+/* Solves E d + sum of all terms = over by Newton's method. The sum is concave in d, so each Newton
+ * step from any point ends below the solution. Lower bounds of d are the tangent at 0 and the value
+ * with all terms saturated. The initial guess is the solution of the parabola of the first two
+ * derivatives if that is close, else the lower bound. */
 static WB_ALWAYS_INLINE lanes solve_terms(double E, const struct term *terms, int n, lanes over,
                                           lanes *values, lanes *slope)
 {
@@ -662,12 +667,12 @@ static WB_ALWAYS_INLINE lanes solve_terms(double E, const struct term *terms, in
         all += terms[i].room;
         last += terms[i].slope;
     }
-    const lanes enough = settled * over;
+    const lanes enough = stress_tolerance * over;
     const lanes tangent = over / first, saturated = (over - all) * (1.0 / last);
     const lanes least = select_lanes(saturated > tangent, saturated, tangent);
     const lanes bend = 0.5 * second * tangent / first;
     lanes d = select_lanes((bend < 1.0) & (saturated < tangent), tangent * (1.0 + bend), least);
-    for (int pass = 0; pass < MOST_PASSES; pass++) {
+    for (int pass = 0; pass < MAX_PASSES; pass++) {
         lanes left = over - E * d;
         *slope = (lanes){0};
         for (int i = 0; i < n; i++) {
@@ -679,17 +684,17 @@ static WB_ALWAYS_INLINE lanes solve_terms(double E, const struct term *terms, in
         const lanes next = d + left / (E + *slope);
         d = select_lanes(next > least, next, least);
     }
-    return all_lanes((double)NAN); /* a beam ends where a stress is no number */
+    return all_lanes((double)NAN); /* stress not found: the beam's iteration stops at NaN */
 }
 
-/* Chaboche's law. In a step the strain does not turn, so that its rates are integrated exactly:
- * with the increment d of plastic strain and the sign s of the distance from the back stress,
+/* Chaboche's law. The strain is monotonic in a step, so the rates are integrated exactly: with the
+ * increment d of plastic strain and the sign s of the distance from the back stress,
  *
  *     R = R_0 + (Q - R_0) (1 - exp(-b d)),
  *     s X_i = s X_i0 + (C_i / gamma_i - s X_i0) (1 - exp(-gamma_i d)),
  *     |trial - X_0| = sigma_Y + R + sum s (X_i - X_i0) + E d.
  *
- * The third row is R; then the X_i follow. */
+ * The third row is R; the rows of the X_i follow. */
 static WB_ALWAYS_INLINE struct answer respond_chaboche(const struct wb_fibres *f, lanes strain,
                                                        const struct rows *h, const double *backs,
                                                        double *backs_after)
@@ -697,7 +702,7 @@ static WB_ALWAYS_INLINE struct answer respond_chaboche(const struct wb_fibres *f
     const struct wb_law *const law = &f->law;
     const double E = law->material.youngs_modulus, sigma_Y = law->material.yield_stress;
     const int n_backs = law->n_backs;
-    const lanes plastic = load(h->plastic), grown = load(h->third), none = {0};
+    const lanes plastic = load(h->plastic), grown = load(h->third), zero = {0};
     const lanes trial = E * (strain - plastic);
     lanes distance = trial;
     for (int i = 0; i < n_backs; i++)
@@ -705,18 +710,18 @@ static WB_ALWAYS_INLINE struct answer respond_chaboche(const struct wb_fibres *f
     const lanes over = absolute(distance) - sigma_Y - grown;
     const masks yields = over > on_surface * (sigma_Y + grown);
     struct answer answer = {trial, all_lanes(E)};
-    lanes d = none, values[1 + WB_LAW_MOST_BACKS] = {{0}, {0}, {0}, {0}};
+    lanes d = zero, values[1 + WB_LAW_MOST_BACKS] = {{0}, {0}, {0}, {0}};
     if (any(yields)) {
         struct term terms[1 + WB_LAW_MOST_BACKS] = {{law->saturation - grown, law->rate, 0.0}};
         lanes slope;
         for (int i = 0; i < n_backs; i++) {
             const struct wb_law_back *const back = &law->backs[i];
-            const lanes X = with_sign(none + 1.0, distance) * load(backs + i * (ptrdiff_t)f->n);
+            const lanes X = with_sign(zero + 1.0, distance) * load(backs + i * (ptrdiff_t)f->n);
             terms[1 + i] = back->recovery > 0.0 ? (struct term){back->modulus / back->recovery - X,
                                                                 back->recovery, 0.0}
-                                                : (struct term){none, 0.0, back->modulus};
+                                                : (struct term){zero, 0.0, back->modulus};
         }
-        d = solve_terms(E, terms, 1 + n_backs, select_lanes(yields, over, none), values, &slope);
+        d = solve_terms(E, terms, 1 + n_backs, select_lanes(yields, over, zero), values, &slope);
         answer.stress = trial - with_sign(E * d, distance);
         answer.tangent = select_lanes(yields, E * slope / (E + slope), answer.tangent);
     }
@@ -751,7 +756,7 @@ static WB_ALWAYS_INLINE void respond_law(const struct wb_fibres *f, struct strai
     take_sums(&sums, response);
 }
 
-/* One fibre after the other: the history of a fibre is contiguous. */
+/* Point laws, one fibre after another: the history of a fibre is contiguous. */
 static void respond_points(const struct wb_fibres *f, double eps, double kappa,
                            const double *before, double *after, struct wb_fibres_response *response)
 {
@@ -788,8 +793,8 @@ static WB_ALWAYS_INLINE void respond_any(const struct wb_fibres *f, struct strai
         respond_rows(f, strains, before + HISTORY_HEAD, after + HISTORY_HEAD, response);
 }
 
-/* The same function, compiled for what the processor has. No variant contracts a * b + c, so all
- * give the same bits. */
+/* The same function compiled for the baseline instruction set. No variant contracts a * b + c, so
+ * all variants return identical bits. */
 static void respond_portably(const struct wb_fibres *f, double eps, double kappa,
                              const double *before, double *after,
                              struct wb_fibres_response *response)
@@ -832,7 +837,7 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
 {
     *out = NULL;
     if (section->n_fibres < 1 || section->n_materials < 1)
-        return wb_fail(WB_ERR_ARGUMENT, "a section without fibres cannot carry anything");
+        return wb_fail(WB_ERR_ARGUMENT, "the section has no fibres");
 
     struct wb_fibres *const f = wb_memory_new(1, sizeof *f);
 

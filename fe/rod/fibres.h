@@ -1,10 +1,10 @@
-/* A section prepared for computing: its fibres are sorted by material, its power laws tabulated,
- * and the plastic history of a section point is a plain row of doubles.
+/* A section prepared for computation: its fibres are sorted by material, its power laws tabulated,
+ * and the plastic history of a section point is an array of doubles.
  *
- * Stresses are those of wb_material_stress() to about 1e-11 of the yield stress
- * (tests/twin/test_fibres_twin.c): p(c) comes from the table of fe/material/hardening.h, and
- * sections that never yielded are skipped. The arithmetic is in a fixed order, so that results are
- * the same to the last bit with every vector width.
+ * Stresses agree with wb_material_stress() to about 1e-11 of the yield stress
+ * (tests/twin/test_fibres_twin.c): p(c) comes from the table of fe/material/hardening.h, and points
+ * that never yielded take a fast elastic path. The order of arithmetic is fixed, so results are
+ * identical to the last bit for every vector width.
  */
 #ifndef WB_FE_ROD_FIBRES_H
 #define WB_FE_ROD_FIBRES_H
@@ -23,33 +23,35 @@ struct wb_fibres_response {
 
 struct wb_fibres; /* opaque */
 
-/* Sorts the section's fibres by material and tabulates its laws; the section is not kept. */
+/* Sorts the section's fibres by material and tabulates its laws; does not keep a pointer to the
+ * section. */
 WB_MUST_CHECK enum wb_status wb_fibres_create(struct wb_fibres **out,
                                               const struct wb_section *section);
 void wb_fibres_destroy(struct wb_fibres *fibres);
 
-/* Exchanges the materials (as many as the section has) and tabulates their laws again. */
+/* Replaces the materials (as many as the section has) and tabulates their laws again. */
 void wb_fibres_set_materials(struct wb_fibres *fibres, const struct wb_material *materials);
 
-/* Replaces the law of a section that was made with one. The new law must be of the same kind and
- * need no more rows of history: one for each part of kinematic or mixed hardening and for each back
- * stress, two for each part of combined hardening; else WB_ERR_ARGUMENT. */
+/* Replaces the law of a section that was created with a law. The new law must be of the same kind
+ * and need no more history rows: one for each part of kinematic or mixed hardening and for each
+ * back stress, two for each part of combined hardening; otherwise WB_ERR_ARGUMENT. */
 WB_MUST_CHECK enum wb_status wb_fibres_set_law(struct wb_fibres *fibres, const struct wb_law *law);
 
-/* Duration (s, 0 to infinite) of the steps that follow, over which the law's Maxwell elements
+/* Duration of the following steps (s, 0 to infinity), during which the law's Maxwell elements
  * relax; infinite after creation. */
 void wb_fibres_set_duration(struct wb_fibres *fibres, double duration);
 
-/* Doubles in the history of one section point. All zero is the virgin state. */
+/* Number of doubles in the history of one section point. All zero is the virgin state. */
 size_t wb_fibres_history_size(const struct wb_fibres *fibres);
 
-/* Elastic stiffnesses about the axis: axial EA, bending EI, shear (scaled with the materials). */
+/* Elastic stiffnesses about the axis: axial EA (N), bending EI (N m2), shear (N; scaled with the
+ * materials). */
 double wb_fibres_axial_stiffness(const struct wb_fibres *fibres);
 double wb_fibres_bending_stiffness(const struct wb_fibres *fibres);
 double wb_fibres_shear_stiffness(const struct wb_fibres *fibres);
 
-/* Response to axial strain and curvature, from the history `before`; `after` (not the same memory)
- * receives the history if the step is accepted. Pure. */
+/* Response to axial strain and curvature from the history `before`. `after` (different memory)
+ * receives the history at the end of the step. No side effects. */
 void wb_fibres_respond(const struct wb_fibres *fibres, double eps, double kappa,
                        const double *restrict before, double *restrict after,
                        struct wb_fibres_response *restrict response);

@@ -1,6 +1,6 @@
-/* Four numbers at a time, one for each of four fibres, as vectors of the compiler: it makes of them
- * what the target has, without a vector unit too. Comparisons give masks, all bits of a lane set or
- * none. For fe/rod/fibres.c and what it includes: the names are short.
+/* Vectors of four doubles, one for each of four fibres, as compiler vector types; they also compile
+ * for targets without vector instructions. Comparisons return masks with all bits of a lane set or
+ * clear. Names are short because only fe/rod/fibres.c and the files it includes use them.
  */
 #ifndef WB_FE_ROD_LANES_H
 #define WB_FE_ROD_LANES_H
@@ -69,9 +69,9 @@ static WB_ALWAYS_INLINE lanes all_lanes(double value)
     return value - (lanes){0};
 }
 
-/* 1 - exp(-x) for x >= 0, to some 1e-16 of it. The exponential is 2^-k times that of what is left
- * of x beyond k ln 2, at most ln 2 / 2 on either side of 0. That less one is Taylor's polynomial,
- * whose terms are added in pairs so that none waits for all before it. */
+/* 1 - exp(-x) for x >= 0, relative error about 1e-16. The exponential is 2^-k times that of the
+ * remainder of x after k ln 2, at most ln 2 / 2 in magnitude. exp(remainder) - 1 is a Taylor
+ * polynomial whose terms are added in pairs to shorten the dependency chain. */
 static WB_ALWAYS_INLINE lanes one_less_exponential(lanes x)
 {
     const double per_ln2 = 1.4426950408889634074, to_integer = 6755399441055744.0; /* 1.5 * 2^52 */
@@ -87,7 +87,7 @@ static WB_ALWAYS_INLINE lanes one_less_exponential(lanes x)
     const lanes third =
         (1.0 / 3628800 + r * (1.0 / 39916800)) + (1.0 / 479001600 + r * (1.0 / 6227020800)) * r2;
     const lanes less_one = r + r2 * (first + (second + third * r4) * r4);
-    /* -k stands in the lowest bits of `shifted`: to the exponent of 1 with it. */
+    /* The lowest bits of `shifted` hold -k: add it to the exponent of 1. */
     const lanes power = (lanes)(((masks)shifted << 52) + (masks)one);
     return (1.0 - power) - power * less_one;
 }

@@ -13,13 +13,13 @@
 #define WB_LOG_DOMAIN "rod"
 
 enum {
-    MOST_ELEMENTS = 100000,
+    MAX_ELEMENTS = 100000,
     POINTS = WB_ROD_ELEMENT_POINTS,
     NODES = WB_ROD_ELEMENT_NODES,
     U = WB_ROD_ELEMENT_UNKNOWNS
 };
 
-/* How an element's middle node follows its ends: d2 = -w - W1 d1 - W3 d3. */
+/* Elimination of an element's middle node from its end nodes: d2 = -w - W1 d1 - W3 d3. */
 struct middle {
     double w[U], W1[U * U], W3[U * U];
 };
@@ -29,12 +29,12 @@ struct wb_rod {
     int n_elements, n_nodes, n_points;
     double length;
     struct wb_rod_shape shape;
-    size_t row, history_size; /* of one point, of all */
+    size_t row, history_size; /* doubles of one point, of all points */
     double load[3];
     bool has_balance;
 
-    /* Strains of the points, (n_points) each: of the reference, and less those of the reference.
-     * `earlier` is committed before `committed`. */
+    /* Strains of the points, (n_points) each: `natural` of the reference, the others relative to
+     * it. `earlier` is the state committed before `committed`. */
     struct wb_rod_strain *natural, *trial, *committed, *earlier;
     double *history, *trial_history;
     double stored, dissipated;
@@ -44,12 +44,12 @@ struct wb_rod {
     struct wb_rod_point *points;     /* (n_points) */
     double (*residual)[U];           /* (n_nodes) */
     struct middle *middles;          /* (n_elements) */
-    struct wb_rod_chain chain;       /* end nodes of the elements without the clamp */
-    int negative;                    /* eigenvalues below zero of the middle nodes' blocks */
+    struct wb_rod_chain chain;       /* stiffness of the elements' end nodes, without the clamp */
+    int negative;                    /* negative eigenvalues of the middle nodes' blocks */
     struct wb_memory memory;         /* of all arrays */
 };
 
-/* Strains of an element's points with those of the reference. */
+/* Total strains of an element's points, including those of the reference. */
 static void total_strain(const struct wb_rod *rod, int e, struct wb_rod_strain *total)
 {
     for (int g = 0; g < POINTS; g++) {
@@ -77,7 +77,7 @@ static double place_of(const struct wb_rod *rod, int g)
     return rod->shape.length * (g / POINTS + 0.5 + 0.5 * z);
 }
 
-static bool lay_out(struct wb_rod *rod, const struct wb_rod_model *model)
+static bool set_reference_shape(struct wb_rod *rod, const struct wb_rod_model *model)
 {
     for (int g = 0; g < rod->n_points; g++) {
         double *k = rod->natural[g].curvature;
@@ -97,9 +97,9 @@ static enum wb_status check_model(const struct wb_rod_model *model)
         return wb_fail(WB_ERR_ARGUMENT, "the rod has no section");
     if (!(isfinite(model->length) && model->length > 0.0))
         return wb_fail(WB_ERR_ARGUMENT, "length %g m: expected a number above 0", model->length);
-    if (model->n_elements < 1 || model->n_elements > MOST_ELEMENTS)
+    if (model->n_elements < 1 || model->n_elements > MAX_ELEMENTS)
         return wb_fail(WB_ERR_ARGUMENT, "%d elements: expected 1 to %d", model->n_elements,
-                       MOST_ELEMENTS);
+                       MAX_ELEMENTS);
     const double *q = model->load;
     if (!(isfinite(q[0]) && isfinite(q[1]) && isfinite(q[2])))
         return wb_fail(WB_ERR_ARGUMENT, "load (%g, %g, %g) N/m is not finite", q[0], q[1], q[2]);
@@ -148,7 +148,7 @@ enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *mod
     memcpy(rod->load, model->load, sizeof rod->load);
     wb_rod_shape_init(&rod->shape, model->length / model->n_elements);
     take_memory(rod);
-    if (!lay_out(rod, model)) {
+    if (!set_reference_shape(rod, model)) {
         wb_rod_destroy(rod);
         return wb_fail(WB_ERR_ARGUMENT, "the natural curvature is not finite everywhere");
     }
@@ -172,7 +172,7 @@ static void copy_strains(const struct wb_rod *rod, struct wb_rod_strain *to,
     memcpy(to, from, (size_t)rod->n_points * sizeof *to);
 }
 
-/* What is committed beside the strains. */
+/* Stores the rotations of the committed state. */
 static void remember_rotations(struct wb_rod *rod)
 {
     for (int i = 0; i < rod->n_nodes; i++)
@@ -210,7 +210,7 @@ static void subtract_load(struct wb_rod *rod, double factor)
     }
 }
 
-/* fmax() would drop a NaN; this one keeps it. */
+/* As fmax(), but returns NaN if either argument is NaN. */
 static double larger(double a, double b)
 {
     return b > a || b != b ? b : a;
@@ -269,7 +269,8 @@ void wb_rod_evaluate(struct wb_rod *rod, double load_factor, struct wb_rod_balan
     memcpy(balance->clamp, rod->residual[0], sizeof balance->clamp);
 }
 
-/* Eliminates an element's middle node and adds the rest to the chain of end nodes. */
+/* Eliminates an element's middle node and adds the condensed stiffness to the chain of end
+ * nodes. */
 static void condense_element(struct wb_rod *rod, int e)
 {
     struct wb_rod_element_stiffness s;
@@ -326,8 +327,8 @@ int wb_rod_negative(const struct wb_rod *rod)
     return rod->negative + rod->chain.negative;
 }
 
-/* An increment is applied to strains, and positions and rotations follow, for the reasons of
- * wb_beam_advance(). */
+/* The increment changes strains; positions and rotations follow from them, for the reasons given in
+ * beam.c. */
 double wb_rod_advance(struct wb_rod *rod, const double *tip, double most_rotation)
 {
     double(*d)[U] = rod->chain.right;

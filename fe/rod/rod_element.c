@@ -46,7 +46,7 @@ void wb_rod_element_compose(const double a[4], const double b[4], double c[4])
     p[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
     p[2] = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
     p[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
-    /* A product of unit quaternions loses its norm by round-off only: one step restores it. */
+    /* Round-off is the only reason for a norm other than 1, so one Newton step restores it. */
     const double scale = 1.5 - 0.5 * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
     for (int i = 0; i < 4; i++)
         c[i] = scale * p[i];

@@ -13,16 +13,16 @@
  *
  * exact in a plane and for a constant k (helix). Then r' = R (G + (1, 0, 0)) at the Gauss points,
  * and r' is linear between them. Rotations follow from strains, never strains from rotations, so a
- * rigid rotation changes no strain and no path leaves a trace in it: what Crisfield & Jelenic
- * (1999, Proc. R. Soc. A 455:1125) ask of an interpolation (cf. Zupan & Saje 2003, CMAME 192:5209).
- * In a plane it is the element of fe/rod/beam_element.h.
+ * rigid rotation changes no strain and the strains do not depend on the path: the requirements of
+ * Crisfield & Jelenic (1999, Proc. R. Soc. A 455:1125) for an interpolation (cf. Zupan & Saje 2003,
+ * CMAME 192:5209). In a plane the element reduces to that of fe/rod/beam_element.h.
  *
- * Equilibrium is that of virtual motions dr, dt (t: spin) that are quadratic in space,
- * sum w (n . (dr' - dt x r') + m . dt') with n = R N, m = R M: rigid ones are among them, so forces
- * and moments balance exactly. Its tangent takes the strains' own variations from quadratic
- * motions too, which in space differ from the exact ones by a small part (fourth power of the
- * element's turn at its nodes): Newton's method then converges a little less than quadratically, to
- * the same result.
+ * Equilibrium is that of virtual motions dr, dt (t: spin) that are quadratic in space: sum w (n .
+ * (dr' - dt x r') + m . dt') with n = R N, m = R M. Rigid motions are among them, so forces and
+ * moments balance exactly. The tangent also takes the variations of the strains from quadratic
+ * motions. In space these differ from the exact variations by a small amount (fourth power of the
+ * element's rotation between its nodes), so Newton's method converges slightly slower than
+ * quadratically, to the same result.
  *
  * Unknowns of a node: increments of r and of the spin, in space.
  */
@@ -63,27 +63,27 @@ struct wb_rod_element_stiffness {
             [WB_ROD_ELEMENT_UNKNOWNS * WB_ROD_ELEMENT_UNKNOWNS];
 };
 
-/* Places nodes 1 and 2 of an element from its node 0 and the total stretches (with the 1) and
- * curvatures of its points; fills in R and slope of these. */
+/* Places nodes 1 and 2 of an element from its node 0 and the total stretches (including the 1) and
+ * curvatures of its points; sets the points' rotation R and slope. */
 void wb_rod_element_place(const struct wb_rod_shape *shape, const struct wb_rod_strain *total,
                           struct wb_rod_node *nodes, struct wb_rod_point *points);
 
-/* Rotation at arc length s within an element whose first node has the rotation `first`. */
+/* Rotation at arc length s within an element whose first node has rotation `first`. */
 void wb_rod_element_rotation(const struct wb_rod_shape *shape, const struct wb_rod_strain *total,
                              double s, const double first[4], double rotation[4]);
 
-/* Forces in space of a point from those of its section and its shear strains (y, z). */
+/* Rotates the forces of a point's section and its shear strains (y, z) into space. */
 void wb_rod_element_turn_forces(struct wb_rod_point *point, const double *shear);
 
 /* Adds the internal forces of Gauss point g to f (3 nodes x 6). */
 void wb_rod_element_add_forces(const struct wb_rod_shape *shape, int g,
                                const struct wb_rod_point *point, double *restrict f);
 
-/* The element's tangent stiffness from its two points. */
+/* Computes the element's tangent stiffness from its two points. */
 void wb_rod_element_stiffness(const struct wb_rod_shape *shape, const struct wb_rod_point *points,
                               struct wb_rod_element_stiffness *restrict stiffness);
 
-/* Increment of the strains of point g by increments d (3 nodes x 6). */
+/* Increment of the strains of point g for nodal increments d (3 nodes x 6). */
 void wb_rod_element_strain_increment(const struct wb_rod_shape *shape, int g,
                                      const struct wb_rod_point *point, const double *d,
                                      struct wb_rod_strain *increment);

@@ -3,14 +3,15 @@
 #include <math.h>
 
 enum {
-    MOST_ITERATIONS = 60
+    MAX_ITERATIONS = 60
 };
 
-/* See fe/material/material.c. */
+/* Relative distance to the yield surface below which a fibre counts as elastic; see
+ * fe/material/material.c. */
 static const double on_surface = 1e-12;
 
-/* Newton's method converges quadratically: after a step of this size (relative) only round-off is
- * left. */
+/* Newton's method converges quadratically: after a step of this relative size the error is
+ * round-off. */
 static const double last_step = 1e-7;
 
 void wb_rod_fibre_law_init(struct wb_rod_fibre_law *law, const struct wb_material *material,
@@ -27,18 +28,18 @@ void wb_rod_fibre_law_init(struct wb_rod_fibre_law *law, const struct wb_materia
     };
 }
 
-/* The return to the surface: what its equation needs, and its solution. */
+/* The return mapping: the data of its equation, and its solution. */
 struct mapping {
-    double E, shear3; /* E and 3 G, with K when kinematic */
-    double s, t;      /* trial stresses, less back stresses */
-    double length;    /* l, increment of equivalent plastic strain */
+    double E, shear3; /* E and 3 G, plus K for kinematic hardening */
+    double s, t;      /* trial stresses minus back stresses */
+    double length;    /* increment l of equivalent plastic strain */
     double q;         /* at the end of the step */
     double A, B;
 };
 
-/* What is returned to the surface: the direction of flow (s, t) / q, and how stresses depend on
- * strains. They keep own / A and own / B of the elastic moduli where l stays, and lose as l changes
- * by (u d(strain) + v d(angle)) / slope. */
+/* Result of the return mapping: the direction of flow (s, t) / q, and the dependence of stresses on
+ * strains. At constant l the stresses keep own / A and own / B of the elastic moduli; they decrease
+ * as l changes by (u d(strain) + v d(angle)) / slope. */
 struct returned {
     double flow[2], per_A, per_B;
     double own, loss, slope;
@@ -52,14 +53,14 @@ static inline double ratio_at(const struct wb_rod_fibre_law *law, double c)
     return wb_hardening_ratio(&law->material, c);
 }
 
-/* E dp/dc, which is E / (E + H') with the slope H' of the law, finite also where H' is not. */
-static inline double share_of_plastic(const struct wb_rod_fibre_law *law, double r, double p)
+/* E dp/dc = E / (E + H') with the slope H' of the law; finite also where H' is infinite. */
+static inline double plastic_fraction(const struct wb_rod_fibre_law *law, double r, double p)
 {
     return r / (r + wb_hardening_exponent(&law->material, p) * (1.0 - r));
 }
 
-/* Newton's step for 1/sqrt((s/A)^2 + 3 (t/B)^2) = 1 from the derivatives of A and B; *S is the
- * present sum of squares. */
+/* Newton step for 1/sqrt((s/A)^2 + 3 (t/B)^2) = 1 from the derivatives of A and B; *S receives the
+ * current sum of squares. */
 static inline double newton_step(const struct mapping *map, double dA, double dB, double *S)
 {
     const double A = 1.0 / map->A, B = 1.0 / map->B;
@@ -78,8 +79,8 @@ static inline void place_growing(const struct wb_rod_fibre_law *law, double accu
     map->B = map->A + (map->shear3 - E) * map->length;
 }
 
-/* Newton's method within a bracket: at c = high the stress would be returned as far as without
- * shear, at c = low not at all. Returns r. */
+/* Newton's method with a bracket: c = high is the solution without the difference between shear and
+ * axial modulus, c = low is no plastic flow. Returns r. */
 static double return_growing(const struct wb_rod_fibre_law *law,
                              const struct wb_rod_fibre_state *before, struct mapping *map)
 {
@@ -95,11 +96,11 @@ static double return_growing(const struct wb_rod_fibre_law *law,
     if (map->t == 0.0)
         return r;
     const double excess = (map->shear3 - E) * law->per_E;
-    for (int i = 0; i < MOST_ITERATIONS; i++) {
+    for (int i = 0; i < MAX_ITERATIONS; i++) {
         double S;
         double next =
             c +
-            newton_step(map, 1.0, 1.0 + excess * share_of_plastic(law, r, r * c * law->per_E), &S);
+            newton_step(map, 1.0, 1.0 + excess * plastic_fraction(law, r, r * c * law->per_E), &S);
         if (S > 1.0)
             low = c;
         else
@@ -122,8 +123,8 @@ static void place_moving(struct mapping *map)
     map->B = map->q + map->shear3 * map->length;
 }
 
-/* 1/sqrt of the sum is concave in the increment, and this start is not beyond the solution:
- * Newton's steps never pass it. */
+/* 1/sqrt of the sum is concave in the increment and the initial guess is below the solution, so
+ * Newton's steps do not overshoot. */
 static void return_moving(const struct wb_rod_fibre_law *law, struct mapping *map)
 {
     const double size = sqrt(map->s * map->s + 3.0 * map->t * map->t);
@@ -131,7 +132,7 @@ static void return_moving(const struct wb_rod_fibre_law *law, struct mapping *ma
     map->q = law->material.yield_stress;
     map->length = (size - map->q) / (map->t == 0.0 ? map->E : map->shear3);
     place_moving(map);
-    for (int i = 0; i < MOST_ITERATIONS && map->t != 0.0; i++) {
+    for (int i = 0; i < MAX_ITERATIONS && map->t != 0.0; i++) {
         double S;
         const double step = newton_step(map, map->E, map->shear3, &S);
         map->length += step;
@@ -164,8 +165,8 @@ static void return_to_surface(const struct wb_rod_fibre_law *law,
         back->slope = aa * map->E + bb * map->shear3;
         return;
     }
-    /* The slope H' = E (1 - f) / f of the law is multiplied by f throughout. */
-    const double f = share_of_plastic(law, r, was->accumulated + map->length);
+    /* The slope H' = E (1 - f) / f is infinite for f = 0, so all terms are multiplied by f. */
+    const double f = plastic_fraction(law, r, was->accumulated + map->length);
     back->own = map->q;
     back->loss = f * map->q - map->length * E * (1.0 - f);
     back->slope = aa * E + bb * (E * (1.0 - f) + map->shear3 * f);

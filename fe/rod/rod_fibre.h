@@ -11,9 +11,9 @@
  *     (s* / A)^2 + 3 (t* / B)^2 = 1,
  *
  * one equation for one unknown. With isotropic hardening that unknown is the overstress c of
- * fe/material/hardening.h: p and q are then values of the tabulated r(c), without a power, A = c +
- * sigma_Y - E p_0 is linear, and where t* = 0 it is solved at once. Source: J. C. Simo, T. J. R.
- * Hughes, Computational Inelasticity, chapter 3 (the same for plane stress).
+ * fe/material/hardening.h: p and q then follow from the tabulated r(c) without computing a power, A
+ * = c + sigma_Y - E p_0 is linear, and for t* = 0 no iteration is needed. Source: J. C. Simo, T. J.
+ * R. Hughes, Computational Inelasticity, chapter 3 (the same for plane stress).
  */
 #ifndef WB_FE_ROD_ROD_FIBRE_H
 #define WB_FE_ROD_ROD_FIBRE_H
@@ -27,8 +27,8 @@
 struct wb_rod_fibre_state {
     double plastic;       /* axial plastic strain */
     double plastic_shear; /* plastic shear angle */
-    double accumulated;   /* equivalent plastic strain, never decreases */
-    double yield;         /* q to which the isotropic surface has grown, Pa */
+    double accumulated;   /* equivalent plastic strain, monotonic */
+    double yield;         /* q of the yield surface after isotropic growth, Pa */
 };
 
 struct wb_rod_fibre_response {
@@ -43,19 +43,20 @@ struct wb_rod_fibre_law {
     const struct wb_hardening_law *hardening;
     const struct wb_hardening_table *table; /* of an isotropic material, borrowed */
     double shear_modulus;                   /* E / 2 (1 + nu), Pa */
-    double back;                            /* K of kinematic hardening, Pa; 0 otherwise */
+    double back;                            /* K of kinematic hardening, Pa; otherwise 0 */
     double per_E, per_yield;                /* 1 / E, 1 / sigma_Y, 1/Pa */
 };
 
 void wb_rod_fibre_law_init(struct wb_rod_fibre_law *law, const struct wb_material *material,
                            const struct wb_hardening_table *table);
 
-/* Response to axial strain and shear angle from the history `before` (may be `after`). Pure. */
+/* Response to axial strain and shear angle from the history `before` (may be `after`). No side
+ * effects. */
 void wb_rod_fibre_respond(const struct wb_rod_fibre_law *law, const double strain[2],
                           const struct wb_rod_fibre_state *before, struct wb_rod_fibre_state *after,
                           struct wb_rod_fibre_response *response);
 
-/* Elastic energy of a fibre per volume, J/m3, with that in the back stress. */
+/* Elastic energy of a fibre per volume, J/m3, including the energy stored in the back stress. */
 double wb_rod_fibre_energy(const struct wb_rod_fibre_law *law, const double strain[2],
                            const struct wb_rod_fibre_state *state);
 

@@ -1,17 +1,17 @@
-/* What tests of fe/rod/rod.h ask beside it. */
+/* Functions of fe/rod/rod.c that only tests use. */
 #ifndef WB_FE_ROD_ROD_PRIVATE_H
 #define WB_FE_ROD_ROD_PRIVATE_H
 
 #include "fe/rod/rod.h"
 
-/* Turns the clamp: a unit quaternion, scalar first. The trial state turns with it. */
+/* Rotates the clamp (unit quaternion, scalar first) and the trial state with it. */
 void wb_rod_set_clamp(struct wb_rod *rod, const double rotation[4]);
 
-/* Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, of the state last evaluated. */
+/* Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, in the state last evaluated. */
 const struct wb_rod_point *wb_rod_point(const struct wb_rod *rod, int g);
 
-/* Elastic energy of the committed state, and plastic work dissipated since the virgin one, J. Needs
- * has_balance; zero without. */
+/* Elastic energy of the committed state, and plastic work dissipated since the virgin state, J.
+ * Both are 0 unless has_balance. */
 void wb_rod_energy(const struct wb_rod *rod, double *stored, double *dissipated);
 
 #endif

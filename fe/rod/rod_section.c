@@ -13,12 +13,13 @@
 enum {
     DEFAULT_RINGS = 8,
     DEFAULT_AROUND = 24,
-    MOST_PARTS = 16,
-    MOST_RINGS = 64,
-    MOST_AROUND = 256,
-    HISTORY_HEAD = MOST_PARTS, /* a double for each part: whether it ever yielded at this point */
-    HISTORY_ROWS = 4,          /* plastic, plastic_shear, accumulated, yield of a part's fibres */
-    LANES = 4,                 /* fibres of a ring are a multiple of this */
+    MAX_PARTS = 16,
+    MAX_RINGS = 64,
+    MAX_AROUND = 256,
+    HISTORY_HEAD =
+        MAX_PARTS,    /* one double for each part: 1 if the part ever yielded at this point */
+    HISTORY_ROWS = 4, /* plastic, plastic_shear, accumulated, yield of each fibre of a part */
+    LANES = 4,        /* the number of fibres in a ring is a multiple of this */
     N_STRAINS = WB_ROD_SECTION_STRAINS
 };
 
@@ -28,14 +29,14 @@ struct stiffness {
 };
 
 struct wb_rod_section {
-    int n_parts, n;                    /* parts, fibres; those of a part are contiguous */
-    int n_rings, n_around;             /* in each part, in each ring */
+    int n_parts, n;        /* number of parts, of fibres; the fibres of a part are contiguous */
+    int n_rings, n_around; /* rings in each part, fibres in each ring */
     struct wb_rod_fibre_law *laws;     /* (n_parts) */
     struct wb_hardening_table *tables; /* (n_parts) */
     struct stiffness *stiffness;       /* (n_parts) */
     double *y, *z, *area;              /* (n) */
-    double *radius;                    /* (n_parts n_rings) of the rings */
-    double *edge;                      /* (n_parts (n_rings + 1)) radii between the rings' cells */
+    double *radius;                    /* (n_parts n_rings) radius of each ring */
+    double *edge; /* (n_parts (n_rings + 1)) boundaries between the rings' cells */
     struct stiffness total;
     double shear_stiffness;
     struct wb_memory memory; /* of all arrays */
@@ -64,7 +65,7 @@ static void gauss_rule(int n, double *point, double *weight)
     }
 }
 
-/* Direction of fibre i of a ring that is turned by half a space or not, mirrored from the first
+/* Direction of fibre i of a ring, which may be turned by half the spacing; mirrored from the first
  * octant so that the ring is symmetric to the last bit. */
 static void direction(int i, int n_around, bool turned, double *c, double *s)
 {
@@ -82,7 +83,7 @@ static void direction(int i, int n_around, bool turned, double *c, double *s)
 
 static void fill_part(struct wb_rod_section *section, int part, double Ri, double Ro)
 {
-    double point[MOST_RINGS], weight[MOST_RINGS];
+    double point[MAX_RINGS], weight[MAX_RINGS];
     const int n_rings = section->n_rings, n_around = section->n_around;
     const double squares = Ro * Ro - Ri * Ri;
     double *radius = section->radius + part * n_rings;
@@ -131,16 +132,16 @@ static void add_stiffness(struct wb_rod_section *section, int part)
 static enum wb_status check_parts(int n_parts, const struct wb_rod_section_part *parts,
                                   const struct wb_rod_section_layout *layout)
 {
-    if (n_parts < 1 || n_parts > MOST_PARTS)
+    if (n_parts < 1 || n_parts > MAX_PARTS)
         return wb_fail(WB_ERR_ARGUMENT, "%d parts of a section: expected 1 to %d", n_parts,
-                       MOST_PARTS);
-    if (layout->n_rings < 1 || layout->n_rings > MOST_RINGS)
+                       MAX_PARTS);
+    if (layout->n_rings < 1 || layout->n_rings > MAX_RINGS)
         return wb_fail(WB_ERR_ARGUMENT, "%d rings of fibres: expected 1 to %d", layout->n_rings,
-                       MOST_RINGS);
-    if (layout->n_around < 4 || layout->n_around > MOST_AROUND || layout->n_around % 4 != 0)
+                       MAX_RINGS);
+    if (layout->n_around < 4 || layout->n_around > MAX_AROUND || layout->n_around % 4 != 0)
         return wb_fail(WB_ERR_ARGUMENT,
                        "%d fibres in a ring: expected a multiple of 4 from 4 to %d",
-                       layout->n_around, MOST_AROUND);
+                       layout->n_around, MAX_AROUND);
     for (int i = 0; i < n_parts; i++) {
         const struct wb_rod_section_part *p = &parts[i];
         if (!(isfinite(p->outer_diameter) && p->inner_diameter >= 0.0 &&
@@ -260,7 +261,7 @@ static void add_elastic(const struct stiffness *own, const double *strain,
     }
 }
 
-/* Rows of a part's histories, for as many fibres as a part has. */
+/* Pointers to the history rows of one part, each as long as the part has fibres. */
 struct rows {
     double *plastic, *plastic_shear, *accumulated, *yield;
 };
@@ -277,9 +278,9 @@ static struct rows rows_of(const struct wb_rod_section *section, int part, doubl
     return (struct rows){first, first + n, first + 2 * n, first + 3 * n};
 }
 
-/* The history of fibre i, which is that of a virgin one in a part that never yielded. */
-static struct wb_rod_fibre_state state_of(const struct wb_rod_section *section, int i,
-                                          const double *history)
+/* The history of fibre i; the virgin history if its part never yielded. */
+static struct wb_rod_fibre_state fibre_state(const struct wb_rod_section *section, int i,
+                                             const double *history)
 {
     const int n = fibres_of_part(section), part = i / n;
     const double *at = history + HISTORY_HEAD + part * HISTORY_ROWS * n + i % n;
@@ -288,7 +289,7 @@ static struct wb_rod_fibre_state state_of(const struct wb_rod_section *section, 
     return (struct wb_rod_fibre_state){at[0], at[n], at[2 * n], at[3 * n]};
 }
 
-/* Histories of a part at the end of a step in which no fibre yields. */
+/* Histories of a part at the end of a step without yielding. */
 static void carry_over(const struct wb_rod_section *section, int part, const double *before,
                        double *after)
 {
@@ -310,7 +311,7 @@ static double axial_strain(const struct wb_rod_section *section, int i, const do
     return strain[0] + section->z[i] * strain[2] - section->y[i] * strain[3];
 }
 
-/* Whether no fibre of a virgin part yields: sqrt(s^2 + 3 t^2) is at most |s| + sqrt(3) |t|. */
+/* True if no fibre of a virgin part yields: sqrt(s^2 + 3 t^2) is at most |s| + sqrt(3) |t|. */
 static bool stays_elastic(const struct wb_rod_section *section, int part, const double *strain)
 {
     const struct wb_rod_fibre_law *law = &section->laws[part];
@@ -321,17 +322,18 @@ static bool stays_elastic(const struct wb_rod_section *section, int part, const 
            law->material.yield_stress;
 }
 
-/* A ring under way: its stresses, and by how much each fibre is beyond its yield surface. */
+/* A ring during evaluation: stresses, and the distance of each fibre beyond its yield surface. */
 struct ring {
     int first; /* fibre, of all */
     double radius, area;
-    double axial[MOST_AROUND], shear[MOST_AROUND], beyond[MOST_AROUND];
+    double axial[MAX_AROUND], shear[MAX_AROUND], beyond[MAX_AROUND];
 };
 
-/* Trial stresses; `rows` begin at the ring. This is where the time goes for fibres that do not
- * yield, so it has no branches. */
-static void try_ring(const struct wb_rod_section *section, const struct wb_rod_fibre_law *law,
-                     const double *strain, const struct rows *rows, struct ring *ring)
+/* Trial stresses of one ring; `rows` point to the ring. Elastic fibres spend most of their time
+ * here, so the loop has no branches. */
+static void compute_trial_stresses(const struct wb_rod_section *section,
+                                   const struct wb_rod_fibre_law *law, const double *strain,
+                                   const struct rows *rows, struct ring *ring)
 {
     const double E = law->material.youngs_modulus, G = law->shear_modulus, K = law->back;
     const double *restrict y = section->y + ring->first, *restrict z = section->z + ring->first;
@@ -349,10 +351,11 @@ static void try_ring(const struct wb_rod_section *section, const struct wb_rod_f
     }
 }
 
-/* Subtracts from the tangent (lower triangle) what a yielding fibre has less than an elastic one.
- */
-static void soften(const struct wb_rod_fibre_response *f, const double moduli[2],
-                   const double place[3], double area, struct wb_rod_section_response *response)
+/* Subtracts the difference between the elastic and the yielding fibre from the tangent (lower
+ * triangle). */
+static void reduce_tangent(const struct wb_rod_fibre_response *f, const double moduli[2],
+                           const double place[3], double area,
+                           struct wb_rod_section_response *response)
 {
     const double y = place[0], z = place[1], r = place[2];
     const double D = area * (moduli[0] - f->D11), C = -area * r * f->D12;
@@ -371,8 +374,8 @@ static void soften(const struct wb_rod_fibre_response *f, const double moduli[2]
     response->yielding += f->yields;
 }
 
-/* The fibres that are beyond their surface, or not finite. `rows` are those at the end of the step,
- * so far as they were at its beginning. */
+/* Return mapping for fibres that are beyond their surface or not finite. `rows` hold the history at
+ * the end of the step, still with the values from its beginning. */
 static void return_ring(const struct wb_rod_section *section, int part, const double *strain,
                         const struct rows *rows, struct ring *ring,
                         struct wb_rod_section_response *response)
@@ -396,7 +399,7 @@ static void return_ring(const struct wb_rod_section *section, int part, const do
         rows->yield[i] = state.yield;
         ring->axial[i] = f.axial;
         ring->shear[i] = f.shear;
-        soften(&f, moduli, place, ring->area, response);
+        reduce_tangent(&f, moduli, place, ring->area, response);
     }
 }
 
@@ -445,7 +448,7 @@ static void respond_part(const struct wb_rod_section *section, int part, const d
         ring.first = r * n;
         ring.radius = section->radius[r];
         ring.area = section->area[ring.first];
-        try_ring(section, law, strain, &rows, &ring);
+        compute_trial_stresses(section, law, strain, &rows, &ring);
         return_ring(section, part, strain, &rows, &ring, response);
         add_forces(section, &ring, response);
         rows = (struct rows){rows.plastic + n, rows.plastic_shear + n, rows.accumulated + n,
@@ -474,8 +477,8 @@ void wb_rod_section_energy(const struct wb_rod_section *section, const double *s
     for (int i = 0; i < section->n; i++) {
         const int ring = i / section->n_around, part = ring / section->n_rings;
         const double at[2] = {axial_strain(section, i, strain), section->radius[ring] * strain[1]};
-        const struct wb_rod_fibre_state was = state_of(section, i, before);
-        const struct wb_rod_fibre_state is = state_of(section, i, after);
+        const struct wb_rod_fibre_state was = fibre_state(section, i, before);
+        const struct wb_rod_fibre_state is = fibre_state(section, i, after);
         energy += section->area[i] * wb_rod_fibre_energy(&section->laws[part], at, &is);
         loss += section->area[i] * is.yield * (is.accumulated - was.accumulated);
     }
@@ -488,7 +491,7 @@ void wb_rod_section_stress(const struct wb_rod_section *section, int i, const do
 {
     const int ring = i / section->n_around, part = ring / section->n_rings;
     const struct wb_rod_fibre_law *law = &section->laws[part];
-    const struct wb_rod_fibre_state state = state_of(section, i, history);
+    const struct wb_rod_fibre_state state = fibre_state(section, i, history);
 
     *axial = law->material.youngs_modulus * (axial_strain(section, i, strain) - state.plastic);
     *shear = law->shear_modulus * (section->radius[ring] * strain[1] - state.plastic_shear);

@@ -32,10 +32,10 @@ struct wb_rod_section_part {
 
 struct wb_rod_section_layout {
     int n_rings;  /* in each part; 0: 8 */
-    int n_around; /* fibres of a ring, a multiple of 4; 0: 24 */
+    int n_around; /* fibres in a ring, a multiple of 4; 0: 24 */
 };
 
-/* A fibre and its cell, the part of a ring that it stands for. */
+/* A fibre and its cell, the sector of the ring that it represents. */
 struct wb_rod_section_fibre {
     double y, z;                       /* m */
     double inner_radius, outer_radius; /* m */
@@ -47,7 +47,7 @@ struct wb_rod_section_fibre {
 struct wb_rod_section_response {
     double force[WB_ROD_SECTION_STRAINS];
     double tangent[WB_ROD_SECTION_STRAINS][WB_ROD_SECTION_STRAINS]; /* symmetric */
-    int yielding;                                                   /* fibres, in this step */
+    int yielding; /* number of fibres that yield in this step */
 };
 
 struct wb_rod_section; /* opaque */
@@ -62,7 +62,7 @@ int wb_rod_section_fibres(const struct wb_rod_section *section);
 void wb_rod_section_fibre(const struct wb_rod_section *section, int i,
                           struct wb_rod_section_fibre *fibre);
 
-/* Doubles in the history of one section point. All zero is the virgin state. */
+/* Number of doubles in the history of one section point. All zero is the virgin state. */
 size_t wb_rod_section_history_size(const struct wb_rod_section *section);
 
 /* Elastic stiffnesses about the axis, N, N m2: axial EA, bending EI, and transverse shear with
@@ -71,21 +71,21 @@ double wb_rod_section_axial_stiffness(const struct wb_rod_section *section);
 double wb_rod_section_bending_stiffness(const struct wb_rod_section *section);
 double wb_rod_section_shear_stiffness(const struct wb_rod_section *section);
 
-/* Response to the strains from the history `before`; `after` (not the same memory) receives the
- * history if the step is accepted. Pure. */
+/* Response to the strains from the history `before`. `after` (different memory) receives the
+ * history at the end of the step. No side effects. */
 void wb_rod_section_respond(const struct wb_rod_section *section, const double *strain,
                             const double *restrict before, double *restrict after,
                             struct wb_rod_section_response *restrict response);
 
-/* Of a step from `before` to `after`, per length of rod, J/m: elastic energy stored at its end
- * (also in back stresses) and plastic work dissipated in it, q times the increment of equivalent
- * plastic strain. */
+/* Energies per length of rod for a step from `before` to `after`, J/m: elastic energy stored at its
+ * end (including back stresses) and plastic work dissipated in it, q times the increment of
+ * equivalent plastic strain. */
 void wb_rod_section_energy(const struct wb_rod_section *section, const double *strain,
                            const double *before, const double *after, double *stored,
                            double *dissipated);
 
-/* Stresses of fibre i and its equivalent plastic strain, at the strains that belong to `history`.
- */
+/* Stresses of fibre i and its equivalent plastic strain, at the strains that belong to
+ * `history`. */
 void wb_rod_section_stress(const struct wb_rod_section *section, int i, const double *strain,
                            const double *history, double *axial, double *shear, double *plastic);
 

@@ -9,14 +9,14 @@ enum {
     WB_ROD_SHAPE_POINTS = 2
 };
 
-/* The same for all elements of a beam or a rod; derivatives are by arc length. */
+/* The shape functions of all elements of a beam or rod; derivatives with respect to arc length. */
 struct wb_rod_shape {
     double length, weight;                              /* m */
     double N[WB_ROD_SHAPE_POINTS][WB_ROD_SHAPE_NODES];  /* 1 */
     double dN[WB_ROD_SHAPE_POINTS][WB_ROD_SHAPE_NODES]; /* 1/m */
 };
 
-/* Fills in those of an element of length h, m. */
+/* Sets the shape functions for elements of length h, m. */
 static inline void wb_rod_shape_init(struct wb_rod_shape *shape, double h)
 {
     shape->length = h;

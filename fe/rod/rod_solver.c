@@ -14,36 +14,36 @@
 
 enum {
     TIP = 6,
-    MOST_UNKNOWNS = 7, /* the tip's and the tension */
+    MAX_UNKNOWNS = 7, /* six of the tip, and the tension */
     N_CONTROLS = 12
 };
 
-/* A Newton iteration turns no node by more than this, rad. */
-static const double most_iteration_turn = 0.5;
+/* Newton iterations are scaled down so that no node rotates by more than this, rad. */
+static const double max_iteration_rotation = 0.5;
 
-/* Iterations of an increment that may be held back by it. */
-static const int most_held_back = 3;
+/* An increment fails after this many scaled-down iterations. */
+static const int max_scaled_down = 3;
 
 /* Why an increment failed. */
 enum failure {
     NONE,
     ITERATIONS,
     NOT_FINITE,
-    TURNED,  /* farther than an increment may */
-    CRITICAL /* to what cannot stand */
+    TURNED,  /* a section rotated farther than an increment may */
+    CRITICAL /* the equilibrium is unstable */
 };
 
-/* The last evaluation whose numbers were finite. */
+/* Diagnostics of the last evaluation with finite values. */
 struct found {
     double residual; /* relative */
-    double place;    /* m: arc length where it is largest */
-    int yielding;    /* fibres */
+    double place;    /* arc length of the largest residual, m */
+    int yielding;    /* number of fibres */
 };
 
-/* One equilibrium to be found. */
+/* One equilibrium to solve for. */
 struct step {
     enum wb_rod_control control;
-    struct wb_rod_loads loads; /* but for the tension with WB_ROD_DEFLECTION */
+    struct wb_rod_loads loads; /* the tension is an unknown for WB_ROD_DEFLECTION */
     double deflection;
     bool slack;
 };
@@ -55,17 +55,17 @@ struct wb_rod_solver {
 
     /* The last equilibrium. */
     struct wb_rod_loads loads;
-    double deflection; /* the control's value, also where the strand is slack */
+    double deflection; /* the controlled value, also while the strand is slack */
     bool slack;
-    double way[N_CONTROLS]; /* of the last increment; see way_of() */
-    double turn;            /* by which it turned a section, rad */
-    double fraction;        /* of its move that the last increment was */
+    double change[N_CONTROLS]; /* change in the last increment; see control_change() */
+    double turn;               /* largest rotation of a section in the last increment, rad */
+    double fraction;           /* size of the last increment as a fraction of its move */
 
     /* The trial state. */
     struct wb_rod_loads trial;
     struct wb_rod_balance balance;
-    double trial_turn; /* by which it turns a section, rad */
-    double residual;   /* relative, last */
+    double trial_turn; /* largest rotation of a section, rad */
+    double residual;   /* relative, of the last check */
     double tolerance;  /* absolute, of the last check, N */
     int iterations;
     enum failure failure;
@@ -107,8 +107,8 @@ enum wb_status wb_rod_solver_create(struct wb_rod_solver **out,
           s.most_rotation > 0.0 && s.max_iterations > 0))
         return wb_fail(
             WB_ERR_ARGUMENT,
-            "the solver's force_tolerance is %g, its smallest_increment %g, its largest_increment "
-            "%g, its most_rotation %g and its max_iterations %d: expected numbers above 0",
+            "rod solver: force_tolerance %g, smallest_increment %g, largest_increment %g, "
+            "most_rotation %g, max_iterations %d: expected numbers above 0",
             s.force_tolerance, s.smallest_increment, s.largest_increment, s.most_rotation,
             s.max_iterations);
 
@@ -130,19 +130,19 @@ void wb_rod_solver_reset(struct wb_rod_solver *solver)
 {
     wb_rod_reset(solver->model.rod);
     solver->loads = solver->trial = (struct wb_rod_loads){0};
-    memset(solver->way, 0, sizeof solver->way);
+    memset(solver->change, 0, sizeof solver->change);
     solver->turn = 0.0;
     solver->deflection = 0.0;
     solver->slack = false;
     solver->fraction = 1.0;
 }
 
-/* Direction of the tension and its derivatives by the tip's x and z. */
+/* Direction of the tension and its derivatives with respect to the tip's x and z. */
 struct strand {
     double direction[3], by_x[3], by_z[3];
 };
 
-/* Not finite where the tip is farther aside than the strand is long. */
+/* Not finite if the tip's lateral distance exceeds the strand's length. */
 static struct strand strand_at(const struct wb_rod_solver *s)
 {
     const double S = s->model.strand_length;
@@ -158,7 +158,7 @@ static struct strand strand_at(const struct wb_rod_solver *s)
     };
 }
 
-/* The follower force in space. */
+/* The follower force in space axes. */
 static void follower(const struct wb_rod_solver *s, double force[3])
 {
     const double *f = s->trial.tip.follower;
@@ -168,7 +168,7 @@ static void follower(const struct wb_rod_solver *s, double force[3])
         force[i] = R[3 * i] * f[0] + R[3 * i + 1] * f[1] + R[3 * i + 2] * f[2];
 }
 
-/* Unbalanced forces of the tip: internal less applied. */
+/* Unbalanced forces at the tip: internal minus applied. */
 static void tip_balance(const struct wb_rod_solver *s, const struct strand *strand, double r[TIP])
 {
     double turned[3];
@@ -185,13 +185,14 @@ static bool is_held(const struct step *step)
     return step->control == WB_ROD_DEFLECTION && !step->slack;
 }
 
-/* Distance by which a held tip misses its deflection. */
-static double miss(const struct wb_rod_solver *s, const struct step *step)
+/* Distance between the prescribed and the actual deflection; 0 if the tip is not prescribed. */
+static double deflection_error(const struct wb_rod_solver *s, const struct step *step)
 {
     return is_held(step) ? step->deflection - wb_rod_tip(s->model.rod)->position[1] : 0.0;
 }
 
-/* Evaluates the trial state; true when it is an equilibrium. `r` is the tip's imbalance. */
+/* Evaluates the trial state; true if it is an equilibrium. `r` receives the tip's unbalanced
+ * forces. */
 static bool check_balance(struct wb_rod_solver *s, const struct step *step, struct strand *strand,
                           double r[TIP])
 {
@@ -212,22 +213,22 @@ static bool check_balance(struct wb_rod_solver *s, const struct step *step, stru
     if (isfinite(s->residual))
         s->found = (struct found){s->residual, s->balance.worst_place, s->balance.yielding};
     s->tolerance = s->settings.force_tolerance * scale + wb_rod_noise(s->model.rod);
-    return unbalanced <= s->tolerance && fabs(miss(s, step)) <= 1e-11 * s->model.length;
+    return unbalanced <= s->tolerance && fabs(deflection_error(s, step)) <= 1e-11 * s->model.length;
 }
 
-/* The tip's system: condensed rod, stiffness of the loads, and row and column of an unknown
- * tension. Returns the number of unknowns. */
+/* The tip's linear system: condensed rod, stiffness of the loads, and a row and column for an
+ * unknown tension. Returns the number of unknowns. */
 static int tip_system(struct wb_rod_solver *s, const struct step *step, const struct strand *strand,
-                      double A[MOST_UNKNOWNS * MOST_UNKNOWNS], double b[MOST_UNKNOWNS])
+                      double A[MAX_UNKNOWNS * MAX_UNKNOWNS], double b[MAX_UNKNOWNS])
 {
     enum {
-        W = MOST_UNKNOWNS
+        W = MAX_UNKNOWNS
     };
     const double T = s->trial.tension;
     double K[TIP * TIP], right[TIP], r[TIP], f[3];
 
     wb_rod_condense(s->model.rod, K, right);
-    /* `right` holds the rod's own share; the tip's applied loads come on top. */
+    /* `right` contains only the rod's residual; subtract the tip's applied loads. */
     tip_balance(s, strand, r);
     follower(s, f);
     for (int i = 0; i < TIP; i++) {
@@ -253,71 +254,72 @@ static int tip_system(struct wb_rod_solver *s, const struct step *step, const st
     for (int i = 0; i < 3; i++)
         A[i * W + TIP] = -strand->direction[i];
     A[TIP * W + 1] = 1.0;
-    b[TIP] = miss(s, step);
+    b[TIP] = deflection_error(s, step);
     return TIP + 1;
 }
 
-/* Newton's method from the trial state; true when it converged. An iteration that had to be held
- * back is a sign of an increment too long: after a few it gives up, because a shorter one is
+/* Newton's method from the trial state; true if it converged. A scaled-down iteration indicates
+ * that the increment is too long: after a few of them give up, because a shorter increment is
  * cheaper. */
 static bool iterate(struct wb_rod_solver *s, const struct step *step)
 {
     struct strand strand;
     double r[TIP];
-    int held_back = 0;
+    int scaled_down = 0;
 
     for (int iteration = 0;; iteration++) {
         if (check_balance(s, step, &strand, r))
             return true;
         s->failure = isfinite(s->residual) ? ITERATIONS : NOT_FINITE;
-        if (iteration == s->settings.max_iterations || held_back == most_held_back ||
+        if (iteration == s->settings.max_iterations || scaled_down == max_scaled_down ||
             s->failure == NOT_FINITE)
             return false;
 
-        double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+        double A[MAX_UNKNOWNS * MAX_UNKNOWNS], b[MAX_UNKNOWNS];
         const int n = tip_system(s, step, &strand, A, b);
-        wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
-        const double scale = wb_rod_advance(s->model.rod, b, most_iteration_turn);
-        held_back += scale < 1.0;
+        wb_banded_solve_small(n, MAX_UNKNOWNS, A, b);
+        const double scale = wb_rod_advance(s->model.rod, b, max_iteration_rotation);
+        scaled_down += scale < 1.0;
         if (is_held(step))
             s->trial.tension += scale * b[TIP];
         s->iterations++;
     }
 }
 
-/* What a step changes of loads and deflection, in comparable units. */
-static void way_of(const struct wb_rod_solver *s, const struct step *step, double way[N_CONTROLS])
+/* The change of loads and deflection in a step, in comparable units. */
+static void control_change(const struct wb_rod_solver *s, const struct step *step,
+                           double change[N_CONTROLS])
 {
     const struct wb_rod_loads *to = &step->loads, *from = &s->loads;
     const double scale = 1.0 / s->scale_force, lever = 1.0 / s->model.length;
 
     for (int i = 0; i < 3; i++) {
-        way[i] = scale * (to->tip.force[i] - from->tip.force[i]);
-        way[3 + i] = scale * lever * (to->tip.moment[i] - from->tip.moment[i]);
-        way[6 + i] = scale * (to->tip.follower[i] - from->tip.follower[i]);
+        change[i] = scale * (to->tip.force[i] - from->tip.force[i]);
+        change[3 + i] = scale * lever * (to->tip.moment[i] - from->tip.moment[i]);
+        change[6 + i] = scale * (to->tip.follower[i] - from->tip.follower[i]);
     }
     const bool driven = step->control == WB_ROD_DEFLECTION;
-    way[9] = to->weight - from->weight;
-    way[10] = driven ? 0.0 : scale * (to->tension - from->tension);
-    way[11] = driven ? lever * (step->deflection - s->deflection) : 0.0;
+    change[9] = to->weight - from->weight;
+    change[10] = driven ? 0.0 : scale * (to->tension - from->tension);
+    change[11] = driven ? lever * (step->deflection - s->deflection) : 0.0;
 }
 
-/* How far beyond the last two states the step lies, in their distance; 0 when nothing is to be
- * extrapolated: it goes elsewhere, back, or much farther. */
+/* Factor by which to extrapolate the last two states to the step; 0 if the step changes direction,
+ * reverses, or is much longer than the last one. */
 static double extrapolation(const struct wb_rod_solver *s, const struct step *step)
 {
-    double way[N_CONTROLS], along = 0.0, square = 0.0, aside = 0.0;
+    double change[N_CONTROLS], along = 0.0, square = 0.0, aside = 0.0;
 
-    way_of(s, step, way);
+    control_change(s, step, change);
     for (int i = 0; i < N_CONTROLS; i++) {
-        along += way[i] * s->way[i];
-        square += s->way[i] * s->way[i];
+        along += change[i] * s->change[i];
+        square += s->change[i] * s->change[i];
     }
     if (square == 0.0 || step->slack != s->slack)
         return 0.0;
     const double ratio = along / square;
     for (int i = 0; i < N_CONTROLS; i++)
-        aside += pow(way[i] - ratio * s->way[i], 2.0);
+        aside += pow(change[i] - ratio * s->change[i], 2.0);
     return ratio > 0.0 && ratio <= 4.0 && aside <= 1e-12 * ratio * ratio * square ? ratio : 0.0;
 }
 
@@ -328,8 +330,8 @@ static void start_loads(struct wb_rod_solver *s, const struct step *step)
         s->trial.tension = step->slack ? 0.0 : s->loads.tension;
 }
 
-/* Whether the converged step turned no section farther than it may. */
-static bool is_near(struct wb_rod_solver *s)
+/* True if no section rotates farther in the converged step than an increment may. */
+static bool rotation_is_allowed(struct wb_rod_solver *s)
 {
     s->trial_turn = wb_rod_turn(s->model.rod);
     if (s->trial_turn <= s->settings.most_rotation)
@@ -338,7 +340,8 @@ static bool is_near(struct wb_rod_solver *s)
     return false;
 }
 
-/* Finds the equilibrium of the step: first from the extrapolated state, then from the last one. */
+/* Solves the step for a given state of the strand: first from the extrapolated state, then from the
+ * last equilibrium. */
 static bool solve_mode(struct wb_rod_solver *s, const struct step *step)
 {
     const double ratio = extrapolation(s, step);
@@ -347,16 +350,16 @@ static bool solve_mode(struct wb_rod_solver *s, const struct step *step)
         start_loads(s, step);
         wb_rod_extrapolate(s->model.rod, ratio);
         if (iterate(s, step))
-            return is_near(s);
+            return rotation_is_allowed(s);
     }
     start_loads(s, step);
     wb_rod_revert(s->model.rod);
-    return iterate(s, step) && is_near(s);
+    return iterate(s, step) && rotation_is_allowed(s);
 }
 
-/* Finds the equilibrium of the step with the strand as it must be: a taut one does not push, a
- * slack one does not reach down to where the tip would be held. */
-static bool settle(struct wb_rod_solver *s, struct step *step)
+/* Solves the step and determines whether the strand is taut or slack: a taut strand cannot push,
+ * and a slack strand cannot hold the tip below the prescribed deflection. */
+static bool solve_with_strand(struct wb_rod_solver *s, struct step *step)
 {
     const bool unilateral = s->model.strand_length > 0.0 && step->control == WB_ROD_DEFLECTION;
     step->slack = s->slack && (unilateral || step->loads.tension == 0.0);
@@ -378,35 +381,37 @@ static bool settle(struct wb_rod_solver *s, struct step *step)
     return false;
 }
 
-/* Ways that are left to the tip: all six, or the five across a tension that holds it. Columns are
- * ways. */
-static int free_ways(const struct step *step, const struct strand *strand, double way[TIP][TIP])
+/* Degrees of freedom of the tip, as columns: all six, or the five perpendicular to a tension that
+ * prescribes the deflection. */
+static int tip_freedoms(const struct step *step, const struct strand *strand,
+                        double change[TIP][TIP])
 {
     const double *d = strand->direction;
     int n = 0;
 
-    memset(way, 0, TIP * sizeof way[0]);
+    memset(change, 0, TIP * sizeof change[0]);
     if (is_held(step)) {
-        /* Two vectors across d; its second component is the largest but in absurd states. */
+        /* Two vectors perpendicular to d, whose y component dominates unless the strand is nearly
+         * horizontal. */
         const double length = hypot(d[0], d[1]);
         const double first[3] = {d[1] / length, -d[0] / length, 0.0};
         for (int i = 0; i < 3; i++)
-            way[i][0] = first[i];
-        way[0][1] = d[1] * first[2] - d[2] * first[1];
-        way[1][1] = d[2] * first[0] - d[0] * first[2];
-        way[2][1] = d[0] * first[1] - d[1] * first[0];
+            change[i][0] = first[i];
+        change[0][1] = d[1] * first[2] - d[2] * first[1];
+        change[1][1] = d[2] * first[0] - d[0] * first[2];
+        change[2][1] = d[0] * first[1] - d[1] * first[0];
         n = 2;
     } else {
         for (; n < 3; n++)
-            way[n][n] = 1.0;
+            change[n][n] = 1.0;
     }
     for (int i = 3; i < TIP; i++)
-        way[i][n++] = 1.0;
+        change[i][n++] = 1.0;
     return n;
 }
 
-/* Whether the loads have a potential. Those that turn with the tip, a moment, and a tension of
- * given size along a strand that leans have none. */
+/* True if the loads have a potential. Follower forces, moments, and a given tension along an
+ * inclined strand do not. */
 static bool is_conservative(const struct wb_rod_solver *s, const struct step *step)
 {
     double others = 0.0;
@@ -417,35 +422,35 @@ static bool is_conservative(const struct wb_rod_solver *s, const struct step *st
     return others == 0.0;
 }
 
-/* Whether the equilibrium just found can stand under its control. The tangent is that of the state
- * itself: a straight strut's equilibria need no iteration that would have seen it. */
-static bool can_stand(struct wb_rod_solver *s, const struct step *step)
+/* True if the equilibrium is stable under its control. The tangent is computed at the state itself,
+ * because equilibria of a straight strut need no iteration. */
+static bool is_stable(struct wb_rod_solver *s, const struct step *step)
 {
     const struct strand strand = strand_at(s);
-    double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS], way[TIP][TIP], own[TIP][TIP] = {{0}};
+    double A[MAX_UNKNOWNS * MAX_UNKNOWNS], b[MAX_UNKNOWNS], change[TIP][TIP], own[TIP][TIP] = {{0}};
 
     tip_system(s, step, &strand, A, b);
-    const int n = free_ways(step, &strand, way), inner = wb_rod_negative(s->model.rod);
+    const int n = tip_freedoms(step, &strand, change), inner = wb_rod_negative(s->model.rod);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             for (int k = 0; k < TIP * TIP; k++)
                 own[i][j] +=
-                    way[k / TIP][i] * A[k / TIP * MOST_UNKNOWNS + k % TIP] * way[k % TIP][j];
+                    change[k / TIP][i] * A[k / TIP * MAX_UNKNOWNS + k % TIP] * change[k % TIP][j];
         }
     }
-    const bool stands = is_conservative(s, step)
+    const bool stable = is_conservative(s, step)
                             ? inner + wb_signature_negative(n, TIP, own[0]) == 0
                             : (inner % 2 != 0) == wb_signature_is_odd(n, TIP, own[0]);
-    if (!stands)
+    if (!stable)
         s->failure = CRITICAL;
-    return stands;
+    return stable;
 }
 
 static void accept(struct wb_rod_solver *s, const struct step *step)
 {
-    way_of(s, step, s->way);
+    control_change(s, step, s->change);
     if (step->slack != s->slack)
-        memset(s->way, 0, sizeof s->way);
+        memset(s->change, 0, sizeof s->change);
     s->turn = s->trial_turn;
     s->loads = s->trial;
     s->slack = step->slack;
@@ -454,18 +459,19 @@ static void accept(struct wb_rod_solver *s, const struct step *step)
     wb_rod_commit(s->model.rod);
 }
 
-/* The increment of a move from `done` that would turn sections by most of what they may, were they
- * to turn as in the last increment, and equally long ones after it. */
-static double near_increment(const struct wb_rod_solver *s, const struct wb_rod_move *move,
-                             double done)
+/* The increment from `done` that rotates sections by 80 % of the limit, assuming that rotation is
+ * proportional to the change of the controls as in the last increment; the rest of the move is
+ * divided into equal increments of about this size. */
+static double choose_increment(const struct wb_rod_solver *s, const struct wb_rod_move *move,
+                               double done)
 {
     const struct step rest = {
         .control = move->control, .loads = move->target, .deflection = move->deflection};
-    double way[N_CONTROLS], square = 0.0, last = 0.0;
-    way_of(s, &rest, way);
+    double change[N_CONTROLS], square = 0.0, last = 0.0;
+    control_change(s, &rest, change);
     for (int i = 0; i < N_CONTROLS; i++) {
-        square += way[i] * way[i];
-        last += s->way[i] * s->way[i];
+        square += change[i] * change[i];
+        last += s->change[i] * s->change[i];
     }
     if (last == 0.0 || square == 0.0)
         return 1.0;
@@ -500,26 +506,27 @@ static void describe_problem(const struct wb_rod_solver *s, double fraction,
 {
     if (s->failure == TURNED) {
         snprintf(result->problem, sizeof result->problem,
-                 "a section turns by more than %.2g rad in an increment of %.1g of the way: no "
-                 "equilibrium is near",
+                 "a section rotates by more than %.2g rad in an increment of %.1g of the move: no "
+                 "equilibrium nearby",
                  s->settings.most_rotation, fraction);
         return;
     }
     if (s->failure == CRITICAL) {
         snprintf(result->problem, sizeof result->problem,
-                 "a critical point lies within %.1g of the way: a limit load or a buckling load, "
-                 "beyond which no equilibrium can stand",
+                 "a critical point lies within %.1g of the move: a limit load or a buckling load, "
+                 "beyond which no equilibrium is stable",
                  fraction);
         return;
     }
-    snprintf(result->problem, sizeof result->problem,
-             "with increments of %.1g of the way the iteration %s; forces are out of balance by "
-             "%.1g of the largest, most at s = %.1f mm, and %d fibres yield",
-             fraction, s->failure == NOT_FINITE ? "diverges" : "does not converge",
-             s->found.residual, s->found.place * 1e3, s->found.yielding);
+    snprintf(
+        result->problem, sizeof result->problem,
+        "the iteration %s with increments of %.1g of the move; unbalanced forces are %.1g of the "
+        "largest force, with the maximum at s = %.1f mm; %d fibres yield",
+        s->failure == NOT_FINITE ? "diverges" : "does not converge", fraction, s->found.residual,
+        s->found.place * 1e3, s->found.yielding);
 }
 
-/* Back to the last equilibrium, evaluated. */
+/* Returns to the last equilibrium and evaluates it. */
 static void return_to_last(struct wb_rod_solver *s)
 {
     wb_rod_revert(s->model.rod);
@@ -540,17 +547,17 @@ enum wb_status wb_rod_solver_move(struct wb_rod_solver *s, const struct wb_rod_m
     bool failed = false;
 
     while (result->fraction < 1.0) {
-        fraction = fmin(fraction, near_increment(s, move, result->fraction));
+        fraction = fmin(fraction, choose_increment(s, move, result->fraction));
         const double next =
             result->fraction + fraction > 1.0 - 1e-9 ? 1.0 : result->fraction + fraction;
         struct step step = {.control = move->control,
                             .deflection = wb_interpolate(start, move->deflection, next)};
         loads_between(&from, &move->target, next, &step.loads);
         s->iterations = 0;
-        const bool settled = settle(s, &step) && can_stand(s, &step);
+        const bool stable = solve_with_strand(s, &step) && is_stable(s, &step);
         result->iterations += s->iterations;
         result->residual = s->residual;
-        if (settled) {
+        if (stable) {
             accept(s, &step);
             s->fraction = fraction;
             result->fraction = next;

@@ -11,7 +11,7 @@
 
 enum {
     DEFAULT_FIBRES = 20,
-    MOST_FIBRES = 4096
+    MAX_FIBRES = 4096
 };
 
 enum wb_status wb_section_check_material(const struct wb_material *m)
@@ -34,7 +34,7 @@ double wb_section_shear_modulus(const struct wb_material *material)
     return 3.0 * material->youngs_modulus / (7.0 + 6.0 * nu);
 }
 
-/* Grows the section by n fibres and one material; the fibres are for the caller to fill. */
+/* Adds n fibres and one material to the section; the caller fills in the fibres. */
 static struct wb_fibre *grow(struct wb_section *section, const struct wb_material *material, int n)
 {
     section->fibres =
@@ -54,7 +54,7 @@ static void fill_circle(struct wb_fibre *fibres, int n, double R)
         fibres[i].y = R * cos(t);
         fibres[i].area = 2.0 * R * R * sin(t) * sin(t) * M_PI / (n + 1);
     }
-    /* The rule is symmetric; make its numbers so too, or a straight wire bends by round-off. */
+    /* The rule is symmetric; make the numbers symmetric too, or round-off bends a straight wire. */
     for (int i = 0; i < n / 2; i++) {
         fibres[n - 1 - i].y = -fibres[i].y;
         fibres[n - 1 - i].area = fibres[i].area;
@@ -76,8 +76,8 @@ static void disc_part(double R, double h, double *area, double *second_moment)
     *second_moment = R * R * R * R * (0.25 * a - sin(4.0 * a) / 16.0);
 }
 
-/* Strips of a ring between angles of equal size over the outer diameter, n even. Each has its
- * exact area and sits at its radius of gyration, so the ring's area and second moment are exact. */
+/* Strips of a ring between equal angles over the outer diameter, n even. Each strip has its exact
+ * area and lies at its radius of gyration, so the ring's area and second moment are exact. */
 static void fill_ring(struct wb_fibre *fibres, int n, double Ri, double Ro)
 {
     const int half = n / 2;
@@ -116,8 +116,8 @@ enum wb_status wb_section_add_ring(struct wb_section *section, double inner_diam
     if (!(area_fraction > 0.0 && area_fraction <= 1.0))
         return wb_fail(WB_ERR_ARGUMENT, "area fraction %g: expected above 0, at most 1",
                        area_fraction);
-    if (n < 0 || n > MOST_FIBRES)
-        return wb_fail(WB_ERR_ARGUMENT, "%d fibres: expected 0 to %d", n, MOST_FIBRES);
+    if (n < 0 || n > MAX_FIBRES)
+        return wb_fail(WB_ERR_ARGUMENT, "%d fibres: expected 0 to %d", n, MAX_FIBRES);
     WB_TRY(wb_section_check_material(material));
 
     int count = n == 0 ? DEFAULT_FIBRES : n;

@@ -18,12 +18,12 @@ struct wb_fibre {
     int material; /* index into the section's materials */
 };
 
-/* A stress-strain law that a section borrows, for wires richer than the laws of
- * fe/material/hardening.h: the virtual rig's. It is asked fibre by fibre, which is slow. */
+/* A stress-strain law for wires that the laws of fe/material/hardening.h cannot describe, such as
+ * the virtual rig's; borrowed by the section. It is evaluated fibre by fibre, which is slow. */
 struct wb_point_law {
-    int n_history; /* doubles of a point; all zero is the virgin state */
-    /* Stress (Pa) and its slope at a strain, from the history `before`; `after` receives the
-     * history if the step is accepted. Pure. */
+    int n_history; /* doubles in a point's history; all zero is the virgin state */
+    /* Stress (Pa) and tangent modulus at a strain from the history `before`; `after` receives the
+     * history at the end of the step. No side effects. */
     void (*respond)(const void *context, double strain, const double *before, double *after,
                     double *stress, double *tangent);
     const void *context;
@@ -35,11 +35,11 @@ struct wb_section {
     int n_materials;
     struct wb_material *materials; /* (n_materials), owned */
     double shear_stiffness;        /* G A k, N, elastic */
-    /* NULL: the fibres have their materials' own laws. Else all fibres have this one, and the only
-     * material says their shear stiffness; owned. */
+    /* NULL: each fibre uses its material's law. Otherwise all fibres use this law, and the only
+     * material gives the shear stiffness; owned. */
     struct wb_law *law;
-    /* NULL, or a law for each material instead of the material's own, which then says the elastic
-     * stiffness; (n_materials), borrowed. */
+    /* NULL, or a law for each material that replaces the material's own law; the material then
+     * gives only the elastic stiffness; (n_materials), borrowed. */
     const struct wb_point_law *point_laws;
 };
 
@@ -47,27 +47,26 @@ struct wb_section {
 WB_MUST_CHECK enum wb_status wb_section_init_circle(struct wb_section *section, double diameter,
                                                     const struct wb_material *material, int n);
 
-/* Solid circle of a law with n strips (0: 20); WB_ERR_ARGUMENT for what makes no law. */
+/* Solid circle of a law with n strips (0: 20); WB_ERR_ARGUMENT for an invalid law. */
 WB_MUST_CHECK enum wb_status wb_section_init_law(struct wb_section *section, double diameter,
                                                  const struct wb_law *law, int n);
 
-/* An empty section to be filled with wb_section_add_ring(); shear stiffness starts at zero and
- * grows with each part. */
+/* An empty section for wb_section_add_ring(); each part adds to the shear stiffness. */
 void wb_section_init_empty(struct wb_section *section);
 
-/* Adds a solid circle (inner_diameter = 0) or a ring of `material`, of which only `area_fraction`
- * (0..1] takes part, so that several laws in parallel (an overlay) can share one region. n strips
- * over the outer diameter (0: 20). */
+/* Adds a solid circle (inner_diameter = 0) or a ring of `material`. Only `area_fraction` (0..1] of
+ * its area carries load, so that several laws in parallel (an overlay) can share one region. n
+ * strips over the outer diameter (0: 20). */
 WB_MUST_CHECK enum wb_status wb_section_add_ring(struct wb_section *section, double inner_diameter,
                                                  double outer_diameter,
                                                  const struct wb_material *material,
                                                  double area_fraction, int n);
 
-/* G times the circle's shear factor (Cowper), Pa: what one m2 of `material` adds to
- * shear_stiffness. */
+/* Shear modulus G times the circle's shear factor (Cowper), Pa: contribution of one m2 of
+ * `material` to shear_stiffness. */
 double wb_section_shear_modulus(const struct wb_material *material);
 
-/* Refuses a material whose numbers make no law. */
+/* Checks a material; WB_ERR_ARGUMENT with a logged message if its parameters are invalid. */
 WB_MUST_CHECK enum wb_status wb_section_check_material(const struct wb_material *material);
 
 /* Frees what the section owns; accepts a zeroed section. */

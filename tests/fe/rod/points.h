@@ -17,7 +17,7 @@ static inline struct fibre_point make_point(const struct wb_law *law, int n)
     return p;
 }
 
-/* Moment at a curvature, which is kept. */
+/* Moment at a curvature; the history is committed. */
 static inline double bend(struct fibre_point *p, double kappa)
 {
     const struct wb_fibres_response r = fibre_point_respond(p, 0.0, kappa);
@@ -25,7 +25,7 @@ static inline double bend(struct fibre_point *p, double kappa)
     return r.M;
 }
 
-/* Bends to and fro with the processor's vector instructions and without. */
+/* Bends back and forth with the processor's vector instructions and without. */
 static inline void assert_same_bits(const struct wb_law *law)
 {
     struct fibre_point fastest = make_point(law, 20), portable = make_point(law, 20);
@@ -39,7 +39,7 @@ static inline void assert_same_bits(const struct wb_law *law)
     fibre_point_release(&portable);
 }
 
-/* A point of a law that is exchanged for another bends as one that was made of that. */
+/* After wb_fibres_set_law() a point bends like a new one with the other law. */
 static inline void assert_exchanged(const struct wb_law *law, const struct wb_law *other)
 {
     struct fibre_point p = make_point(law, 20), fresh = make_point(other, 20);

@@ -58,7 +58,7 @@ static inline void test_rod_release(struct test_rod *t)
     wb_rod_section_destroy(t->section);
 }
 
-/* Moves the loads to `tip` in full weight and insists on convergence. */
+/* Moves the loads to `tip` under full weight; fails if it does not converge. */
 static inline struct wb_rod_result test_rod_load(struct test_rod *t, const struct wb_tip_loads *tip)
 {
     struct wb_rod_result result;
@@ -69,7 +69,7 @@ static inline struct wb_rod_result test_rod_load(struct test_rod *t, const struc
     return result;
 }
 
-/* Moves the tip's y and insists on convergence. */
+/* Moves the tip's y; fails if it does not converge. */
 static inline struct wb_rod_result test_rod_raise(struct test_rod *t, double deflection)
 {
     struct wb_rod_result result;

@@ -13,8 +13,8 @@ static struct wb_beam *make_beam(const struct wb_section *section, int n_element
     return beam;
 }
 
-/* Loads the tip of the virgin beam, finds the equilibrium in one step of the history (approached
- * gradually), and gives the tip's place and condensed stiffness. */
+/* Loads the tip of the virgin beam, solves for equilibrium in one step of the history (approached
+ * gradually), and returns the tip's position and condensed stiffness. */
 static void load_tip(struct wb_beam *beam, const double *force, double *place, double *K)
 {
     struct wb_beam_balance balance;
@@ -62,7 +62,7 @@ static void condensed_stiffness_is_the_derivative_of_the_tip_forces(void **unuse
             changed[j] += k == 0 ? -d[j] : d[j];
             load_tip(beam, changed, side[k], other_K);
         }
-        /* K times the change of place is the change of force. */
+        /* K times the change of position is the change of force. */
         for (int i = 0; i < 3; i++) {
             double sum = 0.0;
             for (int k = 0; k < 3; k++)
@@ -89,8 +89,8 @@ static double wavy_curvature(void *context, double s)
     return *(const double *)context * cos(60.0 * s);
 }
 
-/* What is remembered of a trial state that is given up must not enter the next evaluation. */
-static void a_state_that_is_given_up_leaves_nothing_behind(void **unused)
+/* Data of a rejected trial state must not enter the next evaluation. */
+static void rejected_trial_state_has_no_effect(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(3);
@@ -141,7 +141,7 @@ static void natural_curvature_is_free_of_stress(void **unused)
     assert_true(balance.largest_force == 0.0);
     assert_true(balance.largest_residual == 0.0);
 
-    /* Its reference is the integral of the curvature: t = c sin(60 s) / 60, here by fine sums. */
+    /* The reference is the integral of the curvature: t = c sin(60 s) / 60, here by fine sums. */
     enum {
         FINE = 170000
     };
@@ -170,7 +170,7 @@ static void natural_curvature_is_free_of_stress(void **unused)
     wb_section_release(&s);
 }
 
-static void advance_keeps_a_turning_beam_from_stretching(void **unused)
+static void advance_does_not_stretch_a_rotating_beam(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(1);
@@ -184,7 +184,7 @@ static void advance_keeps_a_turning_beam_from_stretching(void **unused)
     wb_beam_evaluate(beam, 1.0, &balance);
     wb_beam_condense(beam, K);
     wb_beam_reduce(beam, beam, right);
-    /* Sideways by a third of its length in one linear step. */
+    /* Moved sideways by a third of its length in one linear step. */
     const double tip[3] = {0.0, 0.03, 0.5};
     wb_beam_advance(beam, beam, tip, 1.0);
     wb_beam_evaluate(beam, 1.0, &balance);
@@ -213,9 +213,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(condensed_stiffness_is_the_derivative_of_the_tip_forces),
-        cmocka_unit_test(a_state_that_is_given_up_leaves_nothing_behind),
+        cmocka_unit_test(rejected_trial_state_has_no_effect),
         cmocka_unit_test(natural_curvature_is_free_of_stress),
-        cmocka_unit_test(advance_keeps_a_turning_beam_from_stretching),
+        cmocka_unit_test(advance_does_not_stretch_a_rotating_beam),
         cmocka_unit_test(load_adds_up_to_weight),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

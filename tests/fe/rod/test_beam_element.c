@@ -2,7 +2,7 @@
 
 #include "tests/fe/rod/wires.h"
 
-/* A linear elastic element, curved and strained at random. */
+/* A linear elastic element, curved and with random strains. */
 static const double EA = 5000.0, GA = 1500.0, EI = 4e-4, ES = 0.05, h = 1.7e-3;
 
 struct element {
@@ -104,7 +104,7 @@ static void stiffness_is_the_derivative_of_the_forces(void **unused)
             forces(&low, f_low);
             forces(&high, f_high);
             for (int i = 0; i < 9; i++) {
-                /* Blocks below the diagonal are the transposed ones above. */
+                /* Blocks below the diagonal are the transposes of those above. */
                 const double entry = i / 3 <= j / 3 ? block[i / 3][j / 3][3 * (i % 3) + j % 3]
                                                     : block[j / 3][i / 3][3 * (j % 3) + i % 3];
                 const double unit = (i % 3 == 2 ? h : 1.0) * (j % 3 == 2 ? h : 1.0) * EA / h;
@@ -114,7 +114,7 @@ static void stiffness_is_the_derivative_of_the_forces(void **unused)
     }
 }
 
-static void rigid_motion_strains_nothing(void **unused)
+static void rigid_motion_causes_no_strain(void **unused)
 {
     (void)unused;
     for (double turn = -3.0; turn < 3.0; turn += 0.7) {
@@ -154,7 +154,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(forces_are_the_derivative_of_the_stored_work),
         cmocka_unit_test(stiffness_is_the_derivative_of_the_forces),
-        cmocka_unit_test(rigid_motion_strains_nothing),
+        cmocka_unit_test(rigid_motion_causes_no_strain),
         cmocka_unit_test(forces_of_an_element_balance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,6 @@
 /* Sections of laws with combined hardening: Chaboche's, Ludwik's with one surface that grows and
- * moves, and parallel parts whose limits grow. Against their closed forms and their rates,
- * integrated in small steps by a code of its own. */
+ * moves, and parallel parts whose limits grow. Compared with closed forms and with the rate
+ * equations, integrated independently in small steps. */
 #include "fe/material/hardening.h"
 #include "fe/material/law.h"
 #include "fe/rod/lanes.h"
@@ -72,7 +72,7 @@ static double area(void)
     return M_PI * DIAMETER * DIAMETER / 4.0;
 }
 
-/* The stress of a stretched section: all fibres have the same. */
+/* The stress of a section in tension: equal in all fibres. */
 static double stretch(struct fibre_point *p, double strain, double *tangent)
 {
     const struct wb_fibres_response r = fibre_point_respond(p, strain, 0.0);
@@ -82,7 +82,7 @@ static double stretch(struct fibre_point *p, double strain, double *tangent)
     return r.N / area();
 }
 
-/* --- a law's rates, in small steps --- */
+/* --- rate equations of a law, in small steps --- */
 
 struct rates {
     const struct wb_law *law;
@@ -97,7 +97,7 @@ static double distance_of(const struct rates *r)
     return distance;
 }
 
-/* What d(plastic strain) = s dp changes: growth and back stresses per dp. */
+/* Rates per dp for d(plastic strain) = s dp: growth and back stresses. */
 static void find_rates(const struct rates *r, double s, double *growth, double *back)
 {
     const struct wb_law *const law = r->law;
@@ -124,7 +124,7 @@ static void move_by(struct rates *r, double s, double dp, double growth, const d
         r->back[i] += back[i] * dp;
 }
 
-/* Stretches to a strain by n steps, each by the midpoint rule. */
+/* Integrates to a strain in n steps of the midpoint rule. */
 static double integrate(struct rates *r, double strain, int n)
 {
     const double E = r->law->material.youngs_modulus, step = (strain - r->strain) / n;
@@ -157,7 +157,7 @@ static double integrate(struct rates *r, double strain, int n)
 
 /* --- facts --- */
 
-static void the_exponential_is_the_librarys(void **unused)
+static void vector_exponential_agrees_with_expm1(void **unused)
 {
     (void)unused;
     double largest = 0.0;
@@ -205,8 +205,9 @@ static void chaboches_virgin_curve_is_the_closed_form(void **unused)
     }
 }
 
-/* Any way there and back, against the rates: their error goes with the square of the step. */
-static void a_path_that_turns_follows_the_rates(void **unused)
+/* Arbitrary paths with reversals compared with the rate equations, whose error is of second order
+ * in the step. */
+static void reversals_follow_the_rate_equations(void **unused)
 {
     (void)unused;
     static const double turns[] = {4e-3, -1e-3, 2e-3, -6e-3, 8e-3, 0.0};
@@ -223,7 +224,7 @@ static void a_path_that_turns_follows_the_rates(void **unused)
             }
             fibre_point_release(&p);
         }
-        /* Of Ludwik's law the slope is infinite where it yields first. */
+        /* Ludwik's law has an infinite initial slope. */
         assert_true(difference[1] < (law.form == WB_LAW_CHABOCHE ? 2e-5 : 1e-3) * WB_MPA);
         assert_true(difference[1] < 0.6 * difference[0]);
     }
@@ -255,7 +256,7 @@ static void tangents_are_slopes(void **unused)
     }
 }
 
-/* With share 1 combined hardening is isotropic, with share 0 the surface only moves. */
+/* With share 1 combined hardening is isotropic, with share 0 kinematic. */
 static void shares_of_ludwiks_hardening_have_their_ends(void **unused)
 {
     (void)unused;
@@ -285,9 +286,9 @@ static void shares_of_ludwiks_hardening_have_their_ends(void **unused)
     fibre_point_release(&q);
 }
 
-/* One part between two strains: its limit a grows by h dp, h = share / (1 - share), so that from a
- * limit a a range of w makes a + h (w - 2 a) / (1 + h), the next stress; all goes to w / 2, where
- * it yields no more. */
+/* One part between two strains: its limit a grows by h dp, h = share / (1 - share), so that after a
+ * limit a and a range w it is a + h (w - 2 a) / (1 + h), the next stress; the limit is w / 2,
+ * without further yielding. */
 static void a_part_whose_limit_grows_shakes_down(void **unused)
 {
     (void)unused;
@@ -310,7 +311,7 @@ static void a_part_whose_limit_grows_shakes_down(void **unused)
     fibre_point_release(&p);
 }
 
-/* Each part by itself, over any way. */
+/* Each part alone, on arbitrary paths. */
 static void parts_whose_limits_grow_add_up(void **unused)
 {
     (void)unused;
@@ -390,9 +391,8 @@ static void ratchetting_is_that_of_the_closed_form(void **unused)
     fibre_point_release(&p);
 }
 
-/* Between two strains the loop closes, gives no work back and has the width that saturation says.
- */
-static void loops_close_and_take_work(void **unused)
+/* Between two strains the loop closes, produces no work and has the width given by saturation. */
+static void loops_close_and_dissipate_work(void **unused)
 {
     (void)unused;
     for (int i = 0; i < LAWS; i++) {
@@ -412,7 +412,7 @@ static void loops_close_and_take_work(void **unused)
                     M[1] = next;
                 }
             }
-            /* A surface that grows on and on ends elastic. */
+            /* A surface that grows without limit ends up elastic. */
             assert_true(work > (law.form == WB_LAW_CHABOCHE ? 1e-3 : -1e-12) * fabs(25.0 * last));
         }
         assert_close_relative(M[0], M[1], law.form == WB_LAW_CHABOCHE ? 1e-3 : 2e-2);
@@ -447,17 +447,17 @@ static void a_law_is_exchanged_for_one_of_its_kind(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_exponential_is_the_librarys),
+        cmocka_unit_test(vector_exponential_agrees_with_expm1),
         cmocka_unit_test(a_first_loading_is_the_virgin_curve_in_any_steps),
         cmocka_unit_test(chaboches_virgin_curve_is_the_closed_form),
-        cmocka_unit_test(a_path_that_turns_follows_the_rates),
+        cmocka_unit_test(reversals_follow_the_rate_equations),
         cmocka_unit_test(tangents_are_slopes),
         cmocka_unit_test(shares_of_ludwiks_hardening_have_their_ends),
         cmocka_unit_test(a_part_whose_limit_grows_shakes_down),
         cmocka_unit_test(parts_whose_limits_grow_add_up),
         cmocka_unit_test(parts_whose_limits_do_not_grow_are_kinematic),
         cmocka_unit_test(ratchetting_is_that_of_the_closed_form),
-        cmocka_unit_test(loops_close_and_take_work),
+        cmocka_unit_test(loops_close_and_dissipate_work),
         cmocka_unit_test(vector_instructions_do_not_change_a_bit),
         cmocka_unit_test(a_law_is_exchanged_for_one_of_its_kind),
     };

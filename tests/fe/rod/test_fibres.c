@@ -115,8 +115,8 @@ static void rectangle_follows_its_closed_form(void **unused)
 static void pure_power_law_moment_is_its_integral(void **unused)
 {
     (void)unused;
-    /* With E -> infinity and sigma_Y -> 0 the law is sigma = K e^n:
-     * M = 2 K kappa^n int y^(n+1) 2 sqrt(R^2 - y^2) dy = 2 K kappa^n R^(n+3) B((n+2)/2, 3/2). */
+    /* For E -> infinity and sigma_Y -> 0 the law is sigma = K e^n: M = 2 K kappa^n int y^(n+1) 2
+     * sqrt(R^2 - y^2) dy = 2 K kappa^n R^(n+3) B((n+2)/2, 3/2). */
     const double R = 0.5e-3, K = 1e9, kappa = 20.0;
     const double exponents[] = {0.3, 0.6, 0.9};
     for (size_t i = 0; i < 3; i++) {
@@ -151,14 +151,14 @@ static void springback_is_elastic(void **unused)
     const struct wb_fibres_response r = fibre_point_respond(&p, 0.0, left);
     assert_close(r.M, 0.0, 1e-12 * M);
     assert_close_relative(r.D22, wb_fibres_bending_stiffness(p.fibres), 1e-13);
-    /* Residual stresses remain: the fibres balance but are not free. */
+    /* Residual stresses remain: the resultants are zero, the fibres' stresses are not. */
     fibre_point_accept(&p);
     assert_true(wb_fibres_largest_plastic_strain(p.fibres, p.before) > 1e-3);
     fibre_point_release(&p);
     wb_section_release(&s);
 }
 
-static void exchanged_materials_act_like_new_ones(void **unused)
+static void replaced_materials_act_like_new_ones(void **unused)
 {
     (void)unused;
     const struct test_wire one = test_wire_type(1), three = test_wire_type(3);
@@ -178,7 +178,7 @@ static void exchanged_materials_act_like_new_ones(void **unused)
     wb_section_release(&b);
 }
 
-/* A section whose law has Maxwell elements, and the moment of the law without them. */
+/* A section whose law has Maxwell elements, and the moment of its relaxed law. */
 struct relaxing {
     struct wb_section section, relaxed;
     struct fibre_point point, without;
@@ -207,9 +207,9 @@ static void release_relaxing(struct relaxing *r)
     wb_section_release(&r->relaxed);
 }
 
-/* Goes to a curvature in a time, in n steps; returns the moment beyond the relaxed law's, over that
- * of an elastic section of modulus 1. */
-static double go(struct relaxing *r, double *kappa, double to, double time, int n)
+/* Changes the curvature within a time, in n steps; returns the moment minus the relaxed law's, over
+ * that of an elastic section of modulus 1. */
+static double change_curvature(struct relaxing *r, double *kappa, double to, double time, int n)
 {
     struct wb_fibres_response with = {0}, without = {0};
     const double from = *kappa;
@@ -225,8 +225,8 @@ static double go(struct relaxing *r, double *kappa, double to, double time, int 
     return (with.M - without.M) / I;
 }
 
-/* q' = E kappa' - q / tau over a ramp, a rest and a ramp back, in closed form; in one step or many
- * alike. */
+/* q' = E kappa' - q / tau for a ramp, a rest and a ramp back, in closed form; the same in one step
+ * or many. */
 static void maxwell_elements_follow_their_rate_form(void **unused)
 {
     (void)unused;
@@ -243,13 +243,14 @@ static void maxwell_elements_follow_their_rate_form(void **unused)
                 q[i] = E * rate * tau + (q[i] - E * rate * tau) * exp(-time / tau);
                 sum += q[i];
             }
-            assert_close(go(&r, &kappa, ways[k][0], time, n), sum, 1e-9 * 0.7e9 * 30.0);
+            assert_close(change_curvature(&r, &kappa, ways[k][0], time, n), sum,
+                         1e-9 * 0.7e9 * 30.0);
         }
         assert_close(sum, 0.0, 1e-3 * 0.7e9); /* all relaxed */
         /* A sudden change is elastic. */
-        assert_close(go(&r, &kappa, 11.0, 0.0, 1), 0.7e9 + sum, 1e-9 * 0.7e9 * 30.0);
-        /* A slow one has nothing of it. */
-        assert_close(go(&r, &kappa, 13.0, (double)INFINITY, 1), 0.0, 1e-9 * 0.7e9);
+        assert_close(change_curvature(&r, &kappa, 11.0, 0.0, 1), 0.7e9 + sum, 1e-9 * 0.7e9 * 30.0);
+        /* A slow change adds no stress. */
+        assert_close(change_curvature(&r, &kappa, 13.0, (double)INFINITY, 1), 0.0, 1e-9 * 0.7e9);
         release_relaxing(&r);
     }
 }
@@ -260,7 +261,7 @@ static void tangent_of_a_relaxing_section_is_the_derivative(void **unused)
     struct relaxing r;
     double kappa = 0.0;
     make_relaxing(&r, 1);
-    (void)go(&r, &kappa, 20.0, 4.0, 3);
+    (void)change_curvature(&r, &kappa, 20.0, 4.0, 3);
     wb_fibres_set_duration(r.point.fibres, 2.0);
     const double at = 21.0, d = 1e-5, de = 1e-9;
     const struct wb_fibres_response low = fibre_point_respond(&r.point, 0.0, at - d);
@@ -281,7 +282,7 @@ int main(void)
         cmocka_unit_test(rectangle_follows_its_closed_form),
         cmocka_unit_test(pure_power_law_moment_is_its_integral),
         cmocka_unit_test(springback_is_elastic),
-        cmocka_unit_test(exchanged_materials_act_like_new_ones),
+        cmocka_unit_test(replaced_materials_act_like_new_ones),
         cmocka_unit_test(maxwell_elements_follow_their_rate_form),
         cmocka_unit_test(tangent_of_a_relaxing_section_is_the_derivative),
     };

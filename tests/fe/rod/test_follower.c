@@ -1,10 +1,9 @@
-/* The cantilever under a force that stays normal to the wire: by its size, and by the deflection
- * that it makes. */
+/* The cantilever under a force normal to the wire, controlled by the force or by the deflection. */
 #include "fe/trial/loading_steps.h"
 
 #include "tests/fe/rod/wires.h"
 
-/* A slender elastic wire, so that stretch and shear do not show: E A L^2 / E I = 4e6. */
+/* A slender elastic wire, so that extension and shear are negligible: E A L^2 / E I = 4e6. */
 static const double length = 0.1, diameter = 0.2e-3, youngs_modulus = 5e9;
 
 static double bending_stiffness(void)
@@ -39,8 +38,8 @@ static struct rig slender_rig(double strand, double mass_per_length)
     return rig_of(section, strand, mass_per_length);
 }
 
-/* A stout wire: copper core in a soft jacket, which yields at 6.2 N and is then bent more and more
- * near the clamp only. */
+/* A stiff wire: copper core in a soft jacket, which yields at 6.2 N and then bends more and more,
+ * only near the clamp. */
 static struct rig composite_rig(void)
 {
     const struct wb_material copper = {
@@ -70,11 +69,10 @@ static const double elastica[][5] = {
 
 enum {
     ROWS = sizeof elastica / sizeof elastica[0],
-    RISING = 5 /* of them; y is largest a little beyond a = 4 */
+    RISING = 5 /* number of rows before the maximum of y, slightly beyond a = 4 */
 };
 
-/* Errors of a point against a row: relative, and of x over the length, because the tip passes
- * x = 0. */
+/* Errors of a point relative to a row; that of x over the length, because the tip passes x = 0. */
 static void compare(const struct wb_cantilever_point *p, const double *row, double *worst,
                     double *aside)
 {
@@ -104,7 +102,7 @@ static void given_force_follows_the_elastica(void **unused)
     release_rig(&rig);
 }
 
-static void given_deflection_finds_the_elasticas_force(void **unused)
+static void prescribed_deflection_gives_the_force_of_the_elastica(void **unused)
 {
     (void)unused;
     struct rig rig = slender_rig(0.0, 0.0);
@@ -136,7 +134,7 @@ static void given_deflection_finds_the_elasticas_force(void **unused)
     release_rig(&rig);
 }
 
-/* Newton's method with the exact tangent: the tip's loads turn with it. */
+/* Newton's method needs the exact tangent of loads that rotate with the tip. */
 static void small_steps_need_two_iterations(void **unused)
 {
     (void)unused;
@@ -151,7 +149,7 @@ static void small_steps_need_two_iterations(void **unused)
     release_rig(&rig);
 }
 
-static void deflection_and_force_lead_back_to_each_other(void **unused)
+static void deflection_and_force_control_agree(void **unused)
 {
     (void)unused;
     struct rig rig = composite_rig();
@@ -175,7 +173,8 @@ static void deflection_and_force_lead_back_to_each_other(void **unused)
     release_rig(&rig);
 }
 
-/* The largest deflection of a virgin wire under the follower force, by small steps of force. */
+/* The largest deflection of a virgin wire under the follower force, found in small steps of
+ * force. */
 static struct wb_cantilever_point farthest(struct wb_cantilever *cantilever, double first,
                                            double step)
 {
@@ -187,7 +186,7 @@ static struct wb_cantilever_point farthest(struct wb_cantilever *cantilever, dou
     return before;
 }
 
-static void no_deflection_beyond_the_largest_is_reached(void **unused)
+static void deflection_beyond_the_maximum_does_not_converge(void **unused)
 {
     (void)unused;
     for (int plastic = 0; plastic < 2; plastic++) {
@@ -210,7 +209,7 @@ static void no_deflection_beyond_the_largest_is_reached(void **unused)
         assert_true(p.deflection <= top.deflection + 1e-7 * length);
         assert_close_relative(p.follower, top.follower, 5e-3);
 
-        /* In one step from the straight wire it does not leap over it either. */
+        /* It does not jump over the maximum in one step from the straight wire either. */
         wb_cantilever_reset(rig.cantilever);
         assert_int_equal(wb_cantilever_move(rig.cantilever, WB_CONTROL_FOLLOWER_DEFLECTION,
                                             1.3 * top.deflection, &p),
@@ -219,14 +218,14 @@ static void no_deflection_beyond_the_largest_is_reached(void **unused)
         assert_true(p.deflection <= top.deflection + 1e-7 * length);
         assert_true(p.follower <= top.follower + 2e-4 * first);
 
-        /* And what is below can still be had. */
+        /* Deflections below the maximum are still reachable. */
         p = test_move(rig.cantilever, WB_CONTROL_FOLLOWER_FORCE, 0.0);
         assert_true(plastic ? p.deflection > 1e-3 : fabs(p.deflection) < 1e-9);
         release_rig(&rig);
     }
 }
 
-static void a_curled_wire_is_left_alone(void **unused)
+static void a_curled_wire_does_not_converge(void **unused)
 {
     (void)unused;
     struct rig rig = composite_rig();
@@ -245,7 +244,7 @@ static void a_curled_wire_is_left_alone(void **unused)
     release_rig(&rig);
 }
 
-static void perfectly_plastic_wire_turns_about_its_hinge(void **unused)
+static void perfectly_plastic_wire_rotates_about_its_hinge(void **unused)
 {
     (void)unused;
     struct test_wire wire = test_wire_type(1);
@@ -257,7 +256,7 @@ static void perfectly_plastic_wire_turns_about_its_hinge(void **unused)
     for (int i = 1; i <= 20; i++)
         p = test_move(rig.cantilever, WB_CONTROL_FOLLOWER_DEFLECTION, 0.025 * i * length);
     assert_close_relative(p.root_moment, moment, 1e-2); /* twenty fibres: 0.7 % */
-    /* The arm of the force about the clamp is nearly the length. */
+    /* The lever of the force about the clamp is nearly the length. */
     assert_close_relative(p.follower, moment / length, 2e-2);
     release_rig(&rig);
 }
@@ -301,7 +300,7 @@ static void strand_and_follower_exclude_each_other(void **unused)
     release_rig(&rig);
 }
 
-static void force_of_loading_steps_is_the_followers(void **unused)
+static void loading_steps_report_the_follower_force(void **unused)
 {
     (void)unused;
     const enum wb_cantilever_control controls[] = {WB_CONTROL_FOLLOWER_DEFLECTION,
@@ -327,16 +326,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(given_force_follows_the_elastica),
-        cmocka_unit_test(given_deflection_finds_the_elasticas_force),
+        cmocka_unit_test(prescribed_deflection_gives_the_force_of_the_elastica),
         cmocka_unit_test(small_steps_need_two_iterations),
-        cmocka_unit_test(deflection_and_force_lead_back_to_each_other),
-        cmocka_unit_test(no_deflection_beyond_the_largest_is_reached),
-        cmocka_unit_test(a_curled_wire_is_left_alone),
-        cmocka_unit_test(perfectly_plastic_wire_turns_about_its_hinge),
+        cmocka_unit_test(deflection_and_force_control_agree),
+        cmocka_unit_test(deflection_beyond_the_maximum_does_not_converge),
+        cmocka_unit_test(a_curled_wire_does_not_converge),
+        cmocka_unit_test(perfectly_plastic_wire_rotates_about_its_hinge),
         cmocka_unit_test(weight_is_carried_at_zero_deflection),
         cmocka_unit_test(other_tip_loads_stay),
         cmocka_unit_test(strand_and_follower_exclude_each_other),
-        cmocka_unit_test(force_of_loading_steps_is_the_followers),
+        cmocka_unit_test(loading_steps_report_the_follower_force),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,7 +2,7 @@
 #include "fe/material/law.h"
 #include "tests/fe/rod/points.h"
 
-/* The moment of a first loading. */
+/* The moment of a monotonic loading. */
 static double virgin_moment(const struct wb_law *law, double kappa, int n)
 {
     struct fibre_point p = make_point(law, n);
@@ -70,7 +70,7 @@ static void the_moment_of_parallel_parts_is_that_of_the_closed_form(void **unuse
         for (int i = 0; i < law.n_parts; i++)
             M += closed_form(law.parts[i].modulus, law.parts[i].yield_strain, kappa);
         assert_close_relative(virgin_moment(&law, kappa, 400), M, 2e-5);
-        /* Twenty strips, which a beam has. */
+        /* Twenty strips, as in a beam. */
         assert_close_relative(virgin_moment(&law, kappa, 20), M, 6e-3);
     }
 }
@@ -126,7 +126,7 @@ static void kinematic_branches_are_the_virgin_curve_at_twice_the_size(void **unu
     }
 }
 
-static void kinematic_branches_return_to_the_turn_and_forget_the_loop(void **unused)
+static void kinematic_branches_return_to_the_reversal_point(void **unused)
 {
     (void)unused;
     for (int form = 0; form < 2; form++) {
@@ -139,19 +139,19 @@ static void kinematic_branches_return_to_the_turn_and_forget_the_loop(void **unu
         assert_close(bend(&p, -10.0), low, 1e-12 * top);
         (void)bend(&p, 12.0);
         assert_close(bend(&p, 30.0), top, 1e-12 * top);
-        /* Beyond the first turn the wire bends as if it had never been let go. */
+        /* Beyond the first reversal the wire follows the monotonic curve again. */
         assert_close(bend(&p, 45.0), virgin_moment(&law, 45.0, 20), 1e-12 * top);
         fibre_point_release(&p);
     }
 }
 
-static void isotropic_hardening_yields_again_at_the_moment_that_it_reached(void **unused)
+static void isotropic_hardening_yields_again_at_the_largest_moment(void **unused)
 {
     (void)unused;
     const struct wb_law law = parallel_law(1.0);
     struct fibre_point p = make_point(&law, 20);
     (void)bend(&p, 30.0);
-    /* The outermost fibre's stress goes from +F to -F elastically: 2 F / E. */
+    /* The outermost fibre's stress changes from +F to -F elastically: strain range 2 F / E. */
     struct wb_section section;
     assert_int_equal(wb_section_init_law(&section, DIAMETER, &law, 20), WB_OK);
     const double outer = section.fibres[0].y;
@@ -164,7 +164,7 @@ static void isotropic_hardening_yields_again_at_the_moment_that_it_reached(void 
     fibre_point_release(&p);
 }
 
-static void the_rule_leaves_a_first_loading_as_it_is(void **unused)
+static void monotonic_loading_does_not_depend_on_the_rule(void **unused)
 {
     (void)unused;
     for (double kappa = 0.5; kappa < 50.0; kappa *= 1.5) {
@@ -176,8 +176,8 @@ static void the_rule_leaves_a_first_loading_as_it_is(void **unused)
     }
 }
 
-/* Work over closed paths of curvature, each walked until the loop is closed in the moment too. */
-static void no_closed_cycle_gives_work(void **unused)
+/* Work over closed paths of curvature, repeated until the moment loop is closed, too. */
+static void no_closed_cycle_produces_work(void **unused)
 {
     (void)unused;
     uint64_t random = 11;
@@ -225,7 +225,8 @@ static void tangents_are_slopes(void **unused)
                                             e2 = fibre_point_respond(&p, eps + h, kappa);
             const struct wb_fibres_response k1 = fibre_point_respond(&p, eps, kappa - k),
                                             k2 = fibre_point_respond(&p, eps, kappa + k);
-            /* A corner between the two leaves a part of a fibre's stiffness between them. */
+            /* At a corner the tangent may differ from the secant by a part of a fibre's
+             * stiffness. */
             const double EA = wb_fibres_axial_stiffness(p.fibres);
             const double EI = wb_fibres_bending_stiffness(p.fibres), ES = sqrt(EA * EI);
             assert_close((e2.N - e1.N) / (2 * h), r.D11, 2e-2 * EA);
@@ -248,7 +249,7 @@ static void vector_instructions_do_not_change_a_bit(void **unused)
     }
 }
 
-static void an_overlay_is_exchanged_for_one_of_no_more_parts(void **unused)
+static void an_overlay_is_replaced_by_one_with_at_most_as_many_parts(void **unused)
 {
     (void)unused;
     const struct wb_law five = parallel_law(0.0), other = parallel_law(0.4), many = ludwik_law(0.0);
@@ -263,13 +264,13 @@ int main(void)
         cmocka_unit_test(a_perfectly_plastic_part_is_the_material_without_hardening),
         cmocka_unit_test(isotropic_overlays_follow_ludwiks_law_through_cycles),
         cmocka_unit_test(kinematic_branches_are_the_virgin_curve_at_twice_the_size),
-        cmocka_unit_test(kinematic_branches_return_to_the_turn_and_forget_the_loop),
-        cmocka_unit_test(isotropic_hardening_yields_again_at_the_moment_that_it_reached),
-        cmocka_unit_test(the_rule_leaves_a_first_loading_as_it_is),
-        cmocka_unit_test(no_closed_cycle_gives_work),
+        cmocka_unit_test(kinematic_branches_return_to_the_reversal_point),
+        cmocka_unit_test(isotropic_hardening_yields_again_at_the_largest_moment),
+        cmocka_unit_test(monotonic_loading_does_not_depend_on_the_rule),
+        cmocka_unit_test(no_closed_cycle_produces_work),
         cmocka_unit_test(tangents_are_slopes),
         cmocka_unit_test(vector_instructions_do_not_change_a_bit),
-        cmocka_unit_test(an_overlay_is_exchanged_for_one_of_no_more_parts),
+        cmocka_unit_test(an_overlay_is_replaced_by_one_with_at_most_as_many_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

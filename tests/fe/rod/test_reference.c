@@ -1,4 +1,4 @@
-/* The cantilever against the project's reference: an inextensible rod with the exact
+/* The cantilever compared with the project's reference: an inextensible rod with the exact
  * moment-curvature law, solved by shooting (tests/data/cantilever_reference.json). */
 #include <stdlib.h>
 
@@ -150,7 +150,7 @@ static void unloaded_wire_keeps_the_residual_deflection(void **unused)
     struct wb_json *root = read_reference();
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         if (cases[i].strand_and_weight)
-            continue; /* the reference takes strand and weight away */
+            continue; /* in the reference strand and weight are removed */
         const struct wb_json *rows = wb_json_get(root, cases[i].name);
         struct rig rig = make_rig(&cases[i]);
         double worst = 0.0;
@@ -171,7 +171,7 @@ static void unloaded_wire_keeps_the_residual_deflection(void **unused)
     wb_json_destroy(root);
 }
 
-static void published_bundle_curves_come_out(void **unused)
+static void published_bundle_curves_are_reproduced(void **unused)
 {
     (void)unused;
     /* Rod solutions of the paper's five bundles as beams, L = 114 mm, vertical dead force, N. */
@@ -221,7 +221,8 @@ static void published_bundle_curves_come_out(void **unused)
                                       bundles[i].sigma_Y,           bundles[i].K, bundles[i].n};
         struct wb_section s;
         assert_int_equal(wb_section_init_circle(&s, bundles[i].diameter, &m, 0), WB_OK);
-        /* The rod neither stretches nor shears; a bundle's beam would shear by 0.5 %. */
+        /* The reference rod neither extends nor shears; shear would change a bundle's beam by 0.5
+         * %. */
         s.shear_stiffness *= 1e3;
         struct wb_cantilever_model model;
         wb_cantilever_default_model(&model);
@@ -247,7 +248,7 @@ int main(void)
         cmocka_unit_test(every_listed_deflection_agrees),
         cmocka_unit_test(one_long_step_gives_the_same_as_many),
         cmocka_unit_test(unloaded_wire_keeps_the_residual_deflection),
-        cmocka_unit_test(published_bundle_curves_come_out),
+        cmocka_unit_test(published_bundle_curves_are_reproduced),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The rod's mesh: reference, balance, tangent, and that turning it changes nothing. */
+/* The rod's mesh: reference, balance, tangent, invariance to rotation. */
 #include "fe/rod/rod.h"
 
 #include "fe/linear/banded.h"
@@ -18,7 +18,7 @@ static struct test_rod make_copper(void)
     return test_rod_make(&copper_plan);
 }
 
-/* Bends and twists into the plastic range, out of any plane. */
+/* Bending and twist in the plastic range, in no plane. */
 static const struct wb_tip_loads bent = {.force = {-5.0, 5.0, 2.0}, .moment = {0.4, -0.3, 0.2}};
 
 static void spiral(void *context, double s, double curvature[3])
@@ -87,8 +87,8 @@ static void clamp_carries_all_loads(void **unused)
     test_rod_release(&t);
 }
 
-/* Loads the virgin rod in one step of its history, approached gradually, and gives the tip's place
- * and condensed stiffness. */
+/* Loads the virgin rod in one step of its history, approached gradually, and returns the tip's
+ * position and condensed stiffness. */
 static void load_tip(struct wb_rod *rod, const double *force, struct wb_rod_node *tip, double *K)
 {
     struct wb_rod_balance balance;
@@ -148,7 +148,7 @@ static void condensed_stiffness_is_the_derivative_of_the_tip_forces(void **unuse
             load_tip(t.rod, changed, &side[k], other);
         }
         motion(&side[0], &side[1], d);
-        /* K times the change of place is the change of force. */
+        /* K times the change of position is the change of force. */
         for (int i = 0; i < 6; i++) {
             double sum = 0.0;
             for (int k = 0; k < 6; k++)
@@ -169,8 +169,8 @@ static void turn_vector(const double q[4], const double *v, double *turned)
         turned[i] = R[3 * i] * v[0] + R[3 * i + 1] * v[1] + R[3 * i + 2] * v[2];
 }
 
-/* Clamp and dead loads turn together, once around: the rod stays in balance as it is. */
-static void turning_a_loaded_rod_changes_nothing(void **unused)
+/* Clamp and dead loads rotate together by a full turn: the rod stays in balance. */
+static void rotating_a_loaded_rod_changes_nothing(void **unused)
 {
     (void)unused;
     struct test_rod t = make_copper();
@@ -209,9 +209,9 @@ static void turning_a_loaded_rod_changes_nothing(void **unused)
     test_rod_release(&t);
 }
 
-/* An elastic rod has no memory: two ways to the same loads, one of them through a large turn out
+/* An elastic rod has no memory: two paths to the same loads, one of them with a large rotation out
  * of the plane, end in the same state. */
-static void the_path_leaves_no_trace_in_an_elastic_rod(void **unused)
+static void elastic_rod_is_path_independent(void **unused)
 {
     (void)unused;
     struct test_rod_plan elastic = plan;
@@ -241,7 +241,7 @@ static void the_path_leaves_no_trace_in_an_elastic_rod(void **unused)
     test_rod_release(&b);
 }
 
-static void advance_keeps_a_turning_rod_from_stretching(void **unused)
+static void advance_does_not_stretch_a_rotating_rod(void **unused)
 {
     (void)unused;
     struct test_rod t = make_copper();
@@ -250,7 +250,7 @@ static void advance_keeps_a_turning_rod_from_stretching(void **unused)
     const double *history;
     wb_rod_evaluate(t.rod, 1.0, &balance);
     wb_rod_condense(t.rod, K, right);
-    /* Sideways by a third of its length in one linear step. */
+    /* Moved sideways by a third of its length in one linear step. */
     const double tip[6] = {0.0, 0.03, 0.02, 0.3, -0.3, 0.5};
     assert_close(wb_rod_advance(t.rod, tip, 1.0), 1.0, 0.0);
     wb_rod_evaluate(t.rod, 1.0, &balance);
@@ -259,7 +259,7 @@ static void advance_keeps_a_turning_rod_from_stretching(void **unused)
         wb_rod_point_state(t.rod, g, &s, strain, &history);
         assert_close(strain[0], 0.0, 1e-9);
     }
-    /* And no node turns by more than it may. */
+    /* No node rotates by more than the limit. */
     const double far[6] = {0.0, 0.3, 0.2, 0.3, -0.3, 5.0};
     wb_rod_evaluate(t.rod, 1.0, &balance);
     wb_rod_condense(t.rod, K, right);
@@ -268,7 +268,7 @@ static void advance_keeps_a_turning_rod_from_stretching(void **unused)
     test_rod_release(&t);
 }
 
-static void what_makes_no_rod_is_refused(void **unused)
+static void invalid_rods_are_rejected(void **unused)
 {
     (void)unused;
     struct test_rod t = make_copper();
@@ -296,10 +296,10 @@ int main(void)
         cmocka_unit_test(natural_curvature_is_free_of_stress),
         cmocka_unit_test(clamp_carries_all_loads),
         cmocka_unit_test(condensed_stiffness_is_the_derivative_of_the_tip_forces),
-        cmocka_unit_test(turning_a_loaded_rod_changes_nothing),
-        cmocka_unit_test(the_path_leaves_no_trace_in_an_elastic_rod),
-        cmocka_unit_test(advance_keeps_a_turning_rod_from_stretching),
-        cmocka_unit_test(what_makes_no_rod_is_refused),
+        cmocka_unit_test(rotating_a_loaded_rod_changes_nothing),
+        cmocka_unit_test(elastic_rod_is_path_independent),
+        cmocka_unit_test(advance_does_not_stretch_a_rotating_rod),
+        cmocka_unit_test(invalid_rods_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

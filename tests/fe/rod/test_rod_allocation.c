@@ -1,4 +1,5 @@
-/* Nothing is allocated while a rod is computed, and creating one without memory is an error. */
+/* Nothing is allocated while a rod is computed, and running out of memory during creation is an
+ * error. */
 #include "base/memory.h"
 #include "fe/trial/wire1d.h"
 #include "tests/fe/allocations.h"
@@ -60,7 +61,7 @@ static enum wb_status take_section(void *context)
     return WB_OK;
 }
 
-/* The numbers of a wire just created. */
+/* Results of a newly created wire. */
 static void compute(struct wb_wire1d *wire, const struct wb_wire_model *model,
                     struct wb_wire_run *run)
 {
@@ -68,7 +69,7 @@ static void compute(struct wb_wire1d *wire, const struct wb_wire_model *model,
     assert_int_equal(wb_wire1d_run(wire, run, NULL), WB_OK);
 }
 
-static void every_missing_piece_of_memory_is_an_error(void **unused)
+static void every_failed_allocation_is_an_error(void **unused)
 {
     (void)unused;
     const struct wb_wire_model model = make_model();
@@ -112,7 +113,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stepping_allocates_nothing),
-        cmocka_unit_test(every_missing_piece_of_memory_is_an_error),
+        cmocka_unit_test(every_failed_allocation_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

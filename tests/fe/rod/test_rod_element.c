@@ -21,7 +21,7 @@ static double difference(const double *a, const double *b, int n)
     return worst;
 }
 
-/* Strains of an element's points from lines through them. */
+/* Strains of an element's points that vary linearly. */
 static void linear_strain(const double *a, const double *b, double h, struct wb_rod_strain *total)
 {
     for (int g = 0; g < POINTS; g++) {
@@ -32,7 +32,7 @@ static void linear_strain(const double *a, const double *b, double h, struct wb_
     }
 }
 
-/* The rotation as a product of many small turns. */
+/* The rotation as a product of many small rotations. */
 static void fine_rotation(const double *a, const double *b, double h, double *q)
 {
     enum {
@@ -88,7 +88,8 @@ static void constant_curvature_is_a_helix(void **unused)
         wb_rod_element_place(&shape, total, nodes, points);
         nodes[0] = nodes[2];
     }
-    /* A whole turn: the frame is back, the axis has advanced by the pitch along (t, 0, k). */
+    /* A full turn: the frame is the initial one again, and the axis has advanced by the pitch along
+     * (t, 0, k). */
     assert_close(fabs(nodes[2].rotation[0]), 1.0, 1e-13);
     const double pitch = 2.0 * M_PI * t / square;
     const double end[3] = {pitch * t / sqrt(square), 0.0, pitch * k / sqrt(square)};
@@ -180,7 +181,7 @@ static void forces_and_moments_balance(void **unused)
     }
 }
 
-/* Turns and stretches a point as quadratic motions do, to first order, and evaluates its forces. */
+/* Rotates and stretches a point by quadratic motions, to first order, and evaluates its forces. */
 static void move_point(const struct wb_rod_shape *shape, int g, const struct wb_rod_point *p,
                        const double *d, struct wb_rod_point *moved)
 {
@@ -251,9 +252,9 @@ static void stiffness_is_the_derivative_of_the_forces(void **unused)
     assert_true(worst < 1e-8);
 }
 
-/* What the tangent neglects: how far the nodes that follow from the strains of a quadratic motion
- * are from that motion. */
-static void quadratic_motions_are_nearly_those_of_the_strains(void **unused)
+/* The tangent's approximation: distance between the nodes that follow from the strains of a
+ * quadratic motion and that motion. */
+static void quadratic_motions_approximate_those_of_the_strains(void **unused)
 {
     (void)unused;
     const double a[3] = {0.8, -0.5, 1.1}, b[3] = {-0.9, 1.4, 0.6};
@@ -309,7 +310,7 @@ int main(void)
         cmocka_unit_test(forces_do_the_work_of_the_strains),
         cmocka_unit_test(forces_and_moments_balance),
         cmocka_unit_test(stiffness_is_the_derivative_of_the_forces),
-        cmocka_unit_test(quadratic_motions_are_nearly_those_of_the_strains),
+        cmocka_unit_test(quadratic_motions_approximate_those_of_the_strains),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The rod's material point against the uniaxial law, closed forms, its slow twin, differences and
- * the rate equations. */
+/* The rod's material point compared with the uniaxial law, closed forms, its slow twin, finite
+ * differences and the rate equations. */
 #include "fe/rod/rod_fibre.h"
 
 #include "fe/material/material_private.h"
@@ -81,7 +81,7 @@ static void pure_shear_follows_the_law_in_equivalents(void **unused)
                               1e-10);
         assert_close_relative(state.accumulated, plastic / sqrt(3.0), 1e-9);
     }
-    /* Yield begins at sigma_Y / sqrt(3) / G. */
+    /* Yielding begins at sigma_Y / sqrt(3) / G. */
     for (int side = -1; side <= 1; side += 2) {
         struct wb_rod_fibre_state state = virgin(&copper);
         const double strain[2] = {0.0, 182e6 / sqrt(3.0) / G * (1.0 + side * 1e-9)};
@@ -91,7 +91,7 @@ static void pure_shear_follows_the_law_in_equivalents(void **unused)
     }
 }
 
-/* The equations of backward Euler, put to the result. */
+/* Checks that the result satisfies the equations of backward Euler. */
 static void check_equations(const struct wb_material *m, const double strain[2],
                             const struct wb_rod_fibre_state *was,
                             const struct wb_rod_fibre_state *is,
@@ -117,7 +117,7 @@ static void check_equations(const struct wb_material *m, const double strain[2],
     assert_true(l > 0.0);
 }
 
-static void the_return_fulfils_its_equations(void **unused)
+static void the_return_mapping_satisfies_its_equations(void **unused)
 {
     (void)unused;
     const struct wb_material *laws[] = {&copper, &prager, &perfect};
@@ -230,14 +230,14 @@ static void substep(const struct wb_material *m, int n, const double strain[2], 
     const double de = strain[0] / n, dg = strain[1] / n;
     double s = 0.0, t = 0.0, back_s = 0.0, back_t = 0.0;
 
-    /* The way bends: all of the axial strain comes in the first half, then the shear. */
+    /* A bent path: all of the axial strain in the first half, then the shear. */
     for (int i = 0; i < 2 * n; i++) {
         const double e = i < n ? de : 0.0, g = i < n ? 0.0 : dg;
         const double xs = s - back_s, xt = t - back_t, q = sqrt(xs * xs + 3.0 * xt * xt);
         double l = 0.0;
         if (q >= m->yield_stress) {
             const double a = xs / q, b = xt / q;
-            /* Also back to the surface, from which explicit steps drift. */
+            /* Includes a correction to the surface, from which explicit steps drift. */
             l = (a * E * e + 3.0 * b * G * g + (q - m->yield_stress)) /
                 (a * a * (E + H) + 3.0 * b * b * (3.0 * G + H));
             l = fmax(l, 0.0);
@@ -283,7 +283,7 @@ static void small_steps_approach_the_rate_equations(void **unused)
     }
 }
 
-static void nonsense_stays_visible(void **unused)
+static void non_finite_input_gives_non_finite_output(void **unused)
 {
     (void)unused;
     wb_hardening_tabulate(&table, &copper);
@@ -299,11 +299,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_shear_it_is_the_uniaxial_law),
         cmocka_unit_test(pure_shear_follows_the_law_in_equivalents),
-        cmocka_unit_test(the_return_fulfils_its_equations),
+        cmocka_unit_test(the_return_mapping_satisfies_its_equations),
         cmocka_unit_test(it_agrees_with_its_slow_twin),
         cmocka_unit_test(the_tangent_is_the_derivative),
         cmocka_unit_test(small_steps_approach_the_rate_equations),
-        cmocka_unit_test(nonsense_stays_visible),
+        cmocka_unit_test(non_finite_input_gives_non_finite_output),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

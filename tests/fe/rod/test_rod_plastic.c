@@ -1,5 +1,5 @@
-/* The elastoplastic rod against the planar beam, the project's reference, its energy and its
- * limits. */
+/* The elastoplastic rod compared with the planar beam and the project's reference; energy balance
+ * and limit loads. */
 #include <stdlib.h>
 
 #include "base/json.h"
@@ -68,7 +68,7 @@ static void type_3_gives_the_reference_force(void **unused)
     assert_true(place < 0.02 * WB_MM);
     assert_true(angle < 5e-4);
 
-    /* Released, it keeps the residual deflection of the reference. */
+    /* After release it has the residual deflection of the reference. */
     const struct wb_rod_move release = {.control = WB_ROD_LOADS, .target = {.weight = 1.0}};
     struct wb_rod_result result;
     assert_int_equal(wb_rod_solver_move(t.solver, &release, &result), WB_OK);
@@ -80,8 +80,8 @@ static void type_3_gives_the_reference_force(void **unused)
     test_rod_release(&t);
 }
 
-/* Raised by a strand under its weight, to slack and up again, beside the planar cantilever with
- * many fibres. */
+/* Raised by a strand under its weight, to slack and up again; compared with the planar cantilever
+ * with many fibres. */
 static void strand_and_weight_as_the_planar_cantilever(void **unused)
 {
     (void)unused;
@@ -121,7 +121,7 @@ static void strand_and_weight_as_the_planar_cantilever(void **unused)
     wb_section_release(&section);
 }
 
-/* Copper core and PVC ring, 8 AWG, with its own fibres. */
+/* Copper core and PVC ring, 8 AWG, with its own number of fibres. */
 static struct test_rod make_8awg(int n_rings, int n_around)
 {
     struct test_rod t;
@@ -241,7 +241,7 @@ static bool add_work(void *context, double fraction, int iterations)
     return true;
 }
 
-/* The history of the paper's section 2.4, harder: force, moment, unloading, follower. */
+/* The history of the paper's section 2.4 with larger loads: force, moment, unloading, follower. */
 static void work_is_stored_or_dissipated(void **unused)
 {
     (void)unused;
@@ -284,13 +284,13 @@ static void work_is_stored_or_dissipated(void **unused)
         assert_true(aside > 2e-3);
         test_rod_release(&t);
     }
-    /* Backward Euler dissipates too much in long increments; to first order this goes. */
+    /* Backward Euler dissipates too much in long increments; the error is of first order. */
     assert_true(error[1] > 0.0 && error[1] < 8e-3);
     assert_close(2.0 * error[1], error[0], 1e-3);
 }
 
-/* A stubby elastic rod, in which shear stores a share: what is stored is the work, to second order
- * of the increments. */
+/* A short elastic rod, in which shear stores a part of the energy: the stored energy equals the
+ * work, with an error of second order in the increments. */
 static void elastic_work_is_stored(void **unused)
 {
     (void)unused;
@@ -326,8 +326,8 @@ static void elastic_work_is_stored(void **unused)
     assert_true(error[1] < 0.3 * error[0] || error[1] < 1e-7);
 }
 
-/* A perfectly plastic cantilever carries Mp / L, before its lever grows shorter. */
-static void beyond_the_limit_load_it_says_so(void **unused)
+/* A perfectly plastic cantilever carries Mp / L, before its lever becomes shorter. */
+static void load_beyond_the_limit_does_not_converge(void **unused)
 {
     (void)unused;
     const struct wb_material perfect = {
@@ -345,14 +345,14 @@ static void beyond_the_limit_load_it_says_so(void **unused)
     assert_close(result.fraction * 1.1, 1.0, 5e-3);
     assert_true(strlen(result.problem) > 20);
     assert_true(result.increments > 0 && result.cutbacks > 0);
-    /* It stands at the last equilibrium. */
+    /* It stays at the last equilibrium. */
     struct wb_rod_balance balance;
     wb_rod_evaluate(t.rod, 0.0, &balance);
     assert_close(balance.tip[3], result.fraction * twist.moment[0], 1e-6);
     assert_close(wb_rod_solver_loads(t.solver)->tip.moment[0], balance.tip[3], 1e-6);
     assert_true(balance.largest_residual < 1e-6);
 
-    /* In bending, the limit is passed only as far as the rod has turned. */
+    /* In bending, the limit load is exceeded only because of the rod's rotation. */
     wb_rod_solver_reset(t.solver);
     double reached = 0.0;
     for (int i = 1; i <= 30; i++) {
@@ -370,7 +370,7 @@ static void beyond_the_limit_load_it_says_so(void **unused)
     test_rod_release(&t);
 }
 
-static void what_is_not_finite_is_refused(void **unused)
+static void non_finite_input_is_rejected(void **unused)
 {
     (void)unused;
     struct test_rod t = make_type3(0.0, 0.0, 4, 8);
@@ -422,8 +422,8 @@ int main(void)
         cmocka_unit_test(every_direction_gives_the_same_curve),
         cmocka_unit_test(work_is_stored_or_dissipated),
         cmocka_unit_test(elastic_work_is_stored),
-        cmocka_unit_test(beyond_the_limit_load_it_says_so),
-        cmocka_unit_test(what_is_not_finite_is_refused),
+        cmocka_unit_test(load_beyond_the_limit_does_not_converge),
+        cmocka_unit_test(non_finite_input_is_rejected),
         cmocka_unit_test(the_observer_stops_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* The rod's section against closed forms, the planar section, differences and its energy. */
+/* The rod's section compared with closed forms, the planar section and finite differences; energy
+ * balance. */
 #include "fe/rod/rod_section.h"
 
 #include <stdlib.h>
@@ -88,8 +89,8 @@ static void elastic_stiffnesses_are_exact(void **unused)
                                   wb_section_shear_modulus(&pvc) * ring_area,
                               1e-13);
 
-        /* The virgin section, and its fibres once one has yielded (here none has, but the
-         * history says so). */
+        /* The virgin section, and with the fibre code enabled by the history's flag (no fibre has
+         * yielded). */
         const double strain[N] = {1e-4, 0.1, 0.2, -0.3};
         const double expected[N] = {EA * 1e-4, GJ * 0.1, EI * 0.2, -EI * 0.3};
         const double far[N] = {0.0, 4.0, 0.0, 0.0}, none[N] = {0.0, 0.0, 0.0, 0.0};
@@ -150,9 +151,9 @@ static void fully_plastic_limits_are_reached(void **unused)
     assert_close_relative(respond(&p, twist)[1], Tp, 5e-4);
     assert_close_relative(respond(&p, pull)[0], 182e6 * M_PI * R * R, 1e-12);
 
-    /* Bending and torsion: s : t is the same along each radius, so the limits are integrals over
-     * the angle. They lie on the circle or, this mechanism being an upper bound, a little outside
-     * it. */
+    /* Bending and torsion: s : t is constant along each radius, so the limits are integrals over
+     * the angle. They lie on the circle or, because this mechanism gives an upper bound, slightly
+     * outside it. */
     double worst = 0.0, farthest = 0.0;
     for (int i = 1; i < 18; i++) {
         const double a = M_PI / 36.0 * i, k = cos(a), g = sin(a) / 3.0;
@@ -214,7 +215,7 @@ static void every_direction_bends_alike(void **unused)
                 first = along;
             worst = fmax(worst, fabs(along / first - 1.0));
             if (i % 8 == 0) {
-                /* y, z and the diagonals: the same to round-off, and no moment aside. */
+                /* y, z and the diagonals: equal to round-off, without a lateral moment. */
                 assert_close_relative(along, first, 1e-13);
                 assert_close(aside, 0.0, 1e-13 * first);
                 assert_close(f[0], 0.0, 1e-13 * first / R);
@@ -227,8 +228,8 @@ static void every_direction_bends_alike(void **unused)
     release(&p);
 }
 
-/* A planar path with reversals against the strips of fe/rod/fibres.h. */
-static void planar_paths_are_those_of_the_planar_section(void **unused)
+/* A planar path with reversals compared with the strips of fe/rod/fibres.h. */
+static void planar_paths_agree_with_the_planar_section(void **unused)
 {
     (void)unused;
     const struct wb_material *laws[] = {&copper, &prager};
@@ -310,7 +311,7 @@ static void the_tangent_is_the_derivative(void **unused)
     assert_true(worst < 1e-4);
 }
 
-/* Work in fine steps along a closed path that is not proportional: it is stored or dissipated. */
+/* Work in fine steps along a closed non-proportional path is stored or dissipated. */
 static void work_is_stored_or_dissipated(void **unused)
 {
     (void)unused;
@@ -374,7 +375,7 @@ static void stresses_add_up_to_the_forces(void **unused)
     release(&p);
 }
 
-static void what_makes_no_section_is_refused(void **unused)
+static void invalid_sections_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_rod_section *section = NULL;
@@ -406,11 +407,11 @@ int main(void)
         cmocka_unit_test(fully_plastic_limits_are_reached),
         cmocka_unit_test(power_law_in_bending_is_the_beta_function),
         cmocka_unit_test(every_direction_bends_alike),
-        cmocka_unit_test(planar_paths_are_those_of_the_planar_section),
+        cmocka_unit_test(planar_paths_agree_with_the_planar_section),
         cmocka_unit_test(the_tangent_is_the_derivative),
         cmocka_unit_test(work_is_stored_or_dissipated),
         cmocka_unit_test(stresses_add_up_to_the_forces),
-        cmocka_unit_test(what_makes_no_section_is_refused),
+        cmocka_unit_test(invalid_sections_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* The elastic rod against exact solutions: elastica, follower, circle, bend in space, shooting. */
+/* The elastic rod compared with exact solutions: elastica, follower, circle, bend in space,
+ * shooting. */
 #include <stdlib.h>
 
 #include "base/vec3.h"
@@ -12,7 +13,7 @@ enum {
 
 static const struct wb_material elastic = {WB_HARDENING_NONE_ELASTIC, 13.84e9, 0.39, 0.0, 0.0, 0.0};
 
-/* Slender enough for axial strain and shear to be nothing beside six digits. */
+/* Slender enough that axial strain and shear do not affect six digits. */
 static struct test_rod make_slender(double *EI)
 {
     struct test_rod t = test_rod_make(
@@ -137,7 +138,7 @@ static void slope(const struct shooting *p, const double y[STATE], double dy[STA
     wb_vec3_cross(n, dy, dy + 15);
 }
 
-/* From forces and moments at the clamp to what they leave unbalanced at the tip. */
+/* Integrates from forces and moments at the clamp to the unbalanced ones at the tip. */
 static void shoot(const struct shooting *p, const double root[6], double y[STATE], double miss[6])
 {
     const double h = p->length / STEPS;
@@ -166,7 +167,7 @@ static void shoot(const struct shooting *p, const double root[6], double y[STATE
     }
 }
 
-/* Newton's method with differences on the clamp's reactions, from a guess. */
+/* Newton's method with finite differences on the clamp's reactions, from an initial guess. */
 static void solve_by_shooting(const struct shooting *p, double root[6], double y[STATE])
 {
     const double unit[6] = {1.0, 1.0, 1.0, p->length, p->length, p->length};
@@ -225,7 +226,7 @@ static struct shooting shooting_of(const struct test_rod *t, double length,
     };
 }
 
-/* Distance of the tip from the shooting's, whose guess are the rod's own reactions. */
+/* Distance of the tip from the result of shooting, whose initial guess is the rod's reactions. */
 static double shooting_error(const struct test_rod *t, const struct shooting *p)
 {
     struct wb_rod_balance balance;
@@ -333,7 +334,7 @@ static void coil(void *context, double s, double curvature[3])
     memcpy(curvature, context, 3 * sizeof *curvature);
 }
 
-/* A helical spring of more than two turns, pulled and twisted. */
+/* A helical spring with more than two turns, in tension and torsion. */
 static void helix_under_force_and_moment_matches_shooting(void **unused)
 {
     (void)unused;
@@ -385,7 +386,7 @@ static void paper_follower_of_24_newtons(void **unused)
     test_rod_release(&t);
 }
 
-/* The tension of a strand points at its upper end, also out of the plane. */
+/* The tension of a strand acts towards its upper end, also out of the plane. */
 static void strand_pulls_towards_its_upper_end(void **unused)
 {
     (void)unused;
@@ -412,7 +413,8 @@ static void strand_pulls_towards_its_upper_end(void **unused)
     assert_close(-balance.clamp[2], T * q + 1.5, 1e-7);
     assert_close(wb_rod_solver_vertical_force(t.solver), -balance.clamp[1], 1e-7);
 
-    /* All tangents of the loads are right: a small change elsewhere takes few iterations. */
+    /* Checks that all tangents of the loads are exact: a small additional change needs few
+     * iterations. */
     const struct wb_rod_move other = {
         .control = WB_ROD_DEFLECTION,
         .target = {.weight = 1.0,

@@ -98,7 +98,7 @@ static void ignore_message(void *context, enum wb_log_level level, const char *d
     ++*(int *)context;
 }
 
-static void nonsense_is_refused_with_one_message(void **unused)
+static void invalid_sections_are_rejected_with_one_message(void **unused)
 {
     (void)unused;
     int messages = 0;
@@ -136,7 +136,7 @@ int main(void)
         cmocka_unit_test(ring_has_its_area_and_second_moment),
         cmocka_unit_test(parts_add_up_with_their_materials),
         cmocka_unit_test(shear_has_cowpers_factor),
-        cmocka_unit_test(nonsense_is_refused_with_one_message),
+        cmocka_unit_test(invalid_sections_are_rejected_with_one_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

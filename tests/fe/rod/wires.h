@@ -34,7 +34,7 @@ static inline struct wb_section test_section(const struct test_wire *wire)
     return section;
 }
 
-/* A core of copper with Bauschinger effect and isotropic hardening side by side, in a jacket. */
+/* A core with kinematic and isotropic hardening in parallel, in a jacket. */
 static inline struct wb_section test_composite_section(void)
 {
     const struct wb_material kinematic = {
@@ -57,7 +57,7 @@ static inline struct wb_cantilever *test_cantilever(const struct wb_cantilever_m
     return cantilever;
 }
 
-/* Moves and insists on convergence. */
+/* Moves; fails if it does not converge. */
 static inline struct wb_cantilever_point
 test_move(struct wb_cantilever *cantilever, enum wb_cantilever_control control, double target)
 {
