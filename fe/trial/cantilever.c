@@ -11,7 +11,7 @@
 
 #define WB_LOG_DOMAIN "cantilever"
 
-/* Which unilateral constraints hold. Without a strand the vertical force counts as always taut. */
+/* Active unilateral constraints. Without a strand the vertical force counts as always taut. */
 enum {
     TAUT = 1,
     RESTING = 2,
@@ -19,58 +19,59 @@ enum {
 };
 
 enum {
-    MOST_UNKNOWNS = 5, /* tip x, y, t, tension, reaction of the rest */
+    MAX_UNKNOWNS = 5, /* tip x, y, t, tension, reaction of the rest */
 };
 
-/* A Newton iteration turns no node by more than this, rad. */
-static const double most_rotation = 0.5;
+/* Newton iterations are scaled down so that no node rotates by more than this, rad. */
+static const double max_iteration_rotation = 0.5;
 
-/* Iterations of a step that may be held back by it. */
-static const int most_held_back = 3;
+/* A step fails after this many scaled-down iterations. */
+static const int max_scaled_down = 3;
 
-/* Everything that acts at the tip besides the clamp's distant hand. */
+/* Loads applied at the tip. */
 struct loads {
-    double tension;  /* strand, or vertical force, N */
+    double tension;  /* of the strand, or vertical force, N */
     double reaction; /* of the rest, N */
     double follower; /* N */
     double moment;   /* N m */
-    double weight;   /* factor of weight and counterweight, 0 to 1 */
+    double weight;   /* factor on weight and counterweight, 0 to 1 */
 };
 
-/* What a converged step leaves behind, besides the beam. */
+/* State after a converged step, except for the beam. */
 struct state {
-    struct loads loads, earlier; /* `earlier` one step before */
+    struct loads loads, earlier; /* `earlier`: one step before */
     int mode;
-    bool has_control; /* some move was made */
+    bool has_control; /* false until the first move */
     enum wb_cantilever_control control;
     double value;     /* of the control */
-    double last_step; /* its last increment; 0: nothing to extrapolate from */
-    double fraction;  /* of the last move that its last step was */
+    double last_step; /* the last increment of the control; 0: no extrapolation */
+    double fraction;  /* size of the last step as a fraction of its move */
 };
 
 struct wb_cantilever {
-    struct wb_cantilever_model model; /* without section and curvature, which are borrowed */
+    /* Section and curvature are cleared: they are borrowed during creation. */
+    struct wb_cantilever_model model;
     struct wb_cantilever_settings settings;
     struct wb_beam *beam;
     struct state state, saved;
     int n_materials;
 
     struct wb_cantilever *const *followers; /* (n_followers), borrowed */
-    const double *offsets;                  /* of their controls, (n_followers), borrowed */
+    const double *offsets; /* of the followers' controls, (n_followers), borrowed */
     int n_followers;
 
     /* The trial step. */
     struct loads loads;
     struct wb_beam_balance balance;
-    double ratio;         /* of the extrapolation that it began from */
+    double ratio;         /* of the extrapolation at the start of the step */
     double residual;      /* relative, last */
-    double duration;      /* s, of a move, */
-    double step_duration; /* and of its step */
+    double duration;      /* s, of a move */
+    double step_duration; /* s, of the step */
     double tolerance;     /* absolute force tolerance of the last check, N */
     int iterations;
 };
 
-/* One equilibrium to be found. */
+/* One equilibrium to solve for. */
 struct step {
     enum wb_cantilever_control control;
     double value;
@@ -113,15 +114,16 @@ static enum wb_status check_model(const struct wb_cantilever_model *m,
         return wb_fail(WB_ERR_ARGUMENT, "gravity (%g, %g) is not finite", m->gravity_x,
                        m->gravity_y);
     if (m->has_rest && !(isfinite(m->rest_level) && m->strand_length > 0.0))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the rest's level is %g m and the strand's length %g m: expected a finite "
-                       "level, and a length above 0",
-                       m->rest_level, m->strand_length);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "rest_level %g m, strand_length %g m: a rest needs a finite level and a strand",
+            m->rest_level, m->strand_length);
     if (!(s->force_tolerance > 0.0 && s->max_iterations > 0 && s->smallest_step > 0.0))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the solver's force_tolerance is %g, its max_iterations %d and its "
-                       "smallest_step %g: expected numbers above 0",
-                       s->force_tolerance, s->max_iterations, s->smallest_step);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "cantilever solver: force_tolerance %g, max_iterations %d, smallest_step %g: "
+            "expected numbers above 0",
+            s->force_tolerance, s->max_iterations, s->smallest_step);
     return WB_OK;
 }
 
@@ -221,13 +223,13 @@ void wb_cantilever_restore(struct wb_cantilever *cantilever)
     cantilever->loads = cantilever->state.loads;
 }
 
-/* Direction of the strand's pull and its derivative by the tip's x. */
+/* Direction of the strand's tension and its derivative with respect to the tip's x. */
 struct strand {
     double x, y;   /* sin p, cos p */
     double dx, dy; /* d/dx */
 };
 
-/* Not finite where the tip is farther aside than the strand is long. */
+/* Not finite if the tip's lateral distance exceeds the strand's length. */
 static struct strand strand_direction(const struct wb_cantilever *c, double tip_x)
 {
     const double S = c->model.strand_length;
@@ -238,11 +240,11 @@ static struct strand strand_direction(const struct wb_cantilever *c, double tip_
     return (struct strand){sine, cosine, -1.0 / S, sine / (S * cosine)};
 }
 
-/* The stage's travel at which the strand just reaches the tip. */
+/* The stage's travel at which the strand just becomes taut. */
 static double stage_travel(const struct wb_cantilever *c, const struct wb_beam_node *tip)
 {
     const double sine = (c->model.length - tip->x) / c->model.strand_length;
-    /* S (1 - cos p), without cancellation */
+    /* S (1 - cos p) without cancellation */
     const double lean = c->model.strand_length * sine * sine / (1.0 + sqrt(1.0 - sine * sine));
     return tip->y - lean;
 }
@@ -252,14 +254,14 @@ static bool is_unilateral(const struct wb_cantilever *c)
     return c->model.strand_length > 0.0;
 }
 
-/* Controls that prescribe where the tip is and find the force. */
+/* Controls that prescribe the position of the tip; the force is an unknown. */
 static bool drives_tip(enum wb_cantilever_control control)
 {
     return control == WB_CONTROL_DEFLECTION || control == WB_CONTROL_STAGE ||
            control == WB_CONTROL_FOLLOWER_DEFLECTION;
 }
 
-/* The force that such a control finds. */
+/* The unknown force of such a control. */
 static double *driving_force(struct loads *loads, enum wb_cantilever_control control)
 {
     return control == WB_CONTROL_FOLLOWER_DEFLECTION ? &loads->follower : &loads->tension;
@@ -284,7 +286,7 @@ static double present_value(const struct wb_cantilever *c, enum wb_cantilever_co
     return 0.0;
 }
 
-/* Unbalanced forces of the tip: internal less applied. */
+/* Unbalanced forces at the tip: internal minus applied. */
 static void tip_balance(const struct wb_cantilever *c, const struct strand *strand, double *r)
 {
     const struct loads *l = &c->loads;
@@ -298,7 +300,7 @@ static void tip_balance(const struct wb_cantilever *c, const struct strand *stra
     r[2] = c->balance.tip[2] - l->moment;
 }
 
-/* Distances by which the constraints of the step are missed. */
+/* Distances by which the constraints of the step are violated. */
 struct misses {
     double control, rest;
 };
@@ -315,7 +317,8 @@ static struct misses constraint_misses(const struct wb_cantilever *c, const stru
     return miss;
 }
 
-/* Evaluates the trial state; true when it is an equilibrium. `r` is the tip's imbalance. */
+/* Evaluates the trial state; true if it is an equilibrium. `r` receives the tip's unbalanced
+ * forces. */
 static bool check_balance(struct wb_cantilever *c, const struct step *step, struct strand *strand,
                           double *r)
 {
@@ -335,13 +338,13 @@ static bool check_balance(struct wb_cantilever *c, const struct step *step, stru
     return unbalanced <= c->tolerance && fabs(miss.control) <= reach && fabs(miss.rest) <= reach;
 }
 
-/* Matrix of the tip: the condensed beam, stiffness of the loads, and rows and columns of the
- * unknown driving force and reaction. Returns the number of unknowns. */
+/* Matrix of the tip: condensed beam, stiffness of the loads, and a row and column for each unknown
+ * force (driving force, reaction of the rest). Returns the number of unknowns. */
 static int tip_matrix(struct wb_cantilever *c, const struct step *step, const struct strand *strand,
-                      double A[MOST_UNKNOWNS * MOST_UNKNOWNS])
+                      double A[MAX_UNKNOWNS * MAX_UNKNOWNS])
 {
     enum {
-        W = MOST_UNKNOWNS
+        W = MAX_UNKNOWNS
     };
     const double T = c->loads.tension, F = c->loads.follower;
     const double t = wb_beam_tip(c->beam)->t;
@@ -378,13 +381,14 @@ static int tip_matrix(struct wb_cantilever *c, const struct step *step, const st
     return n;
 }
 
-/* Its right-hand side, by the tangent of a beam. `r` is the tip's imbalance. */
+/* Right-hand side of the tip's system, with the tangent of the beam `tangent`. `r`: the tip's
+ * unbalanced forces. */
 static void tip_right(struct wb_cantilever *c, const struct step *step,
-                      const struct wb_beam *tangent, const double *r, double b[MOST_UNKNOWNS])
+                      const struct wb_beam *tangent, const double *r, double b[MAX_UNKNOWNS])
 {
     const struct misses miss = constraint_misses(c, step);
     int n = 3;
-    /* The beam's own share, and the tip's applied loads on top. */
+    /* `b` receives only the beam's residual; subtract the tip's applied loads. */
     wb_beam_reduce(c->beam, tangent, b);
     for (int i = 0; i < 3; i++)
         b[i] -= r[i] - c->balance.tip[i];
@@ -398,7 +402,7 @@ static void tip_right(struct wb_cantilever *c, const struct step *step,
 static double advance(struct wb_cantilever *c, const struct step *step,
                       const struct wb_beam *tangent, const double *b)
 {
-    const double scale = wb_beam_advance(c->beam, tangent, b, most_rotation);
+    const double scale = wb_beam_advance(c->beam, tangent, b, max_iteration_rotation);
     int next = 3;
     if (drives_tip(step->control) && (step->mode & TAUT))
         *driving_force(&c->loads, step->control) += scale * b[next++];
@@ -407,54 +411,54 @@ static double advance(struct wb_cantilever *c, const struct step *step,
     return scale;
 }
 
-/* Whether follower force and deflection of the converged trial state have grown together, and would
- * go on to. Past the largest deflection they do not: just below it the same deflection belongs to a
- * farther curled wire too, and above it to one that springs back, and Newton's method may end in
- * either. A plastic hinge turns at a constant force, which is taken. */
-static bool follower_rises(struct wb_cantilever *c, const struct step *step,
-                           const struct strand *strand)
+/* True if follower force and deflection have increased together in this step and will increase in
+ * the next. Beyond the maximum deflection they do not: the same deflection is then reached by a
+ * more curled wire as well as by one that springs back, and Newton's method may converge to either.
+ * A plastic hinge, which rotates at constant force, is accepted. */
+static bool follower_force_rises(struct wb_cantilever *c, const struct step *step,
+                                 const struct strand *strand)
 {
     const double flat = 1e-6 * wb_beam_scale_force(c->beam) / c->model.length;
     const double raised = wb_beam_tip(c->beam)->y - wb_beam_position(c->beam, c->model.length).y;
     const double more = c->loads.follower - c->state.loads.follower;
-    double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+    double A[MAX_UNKNOWNS * MAX_UNKNOWNS], b[MAX_UNKNOWNS];
 
-    /* The weight that comes with the first step moves the tip too. */
+    /* In the first step the weight moves the tip, too, so that step is not checked. */
     if (step->weight == c->state.loads.weight && more * raised < -flat * raised * raised)
         return false;
     const int n = tip_matrix(c, step, strand, A);
     for (int i = 0; i < n; i++)
         b[i] = i == n - 1 ? 1.0 : 0.0;
-    wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
+    wb_banded_solve_small(n, MAX_UNKNOWNS, A, b);
     return b[n - 1] > -flat;
 }
 
-/* Newton's method from the trial state; true when it converged. An iteration that had to be held
- * back is a sign of a step too long: after a few it gives up, because a shorter step is cheaper. */
+/* Newton's method from the trial state; true if it converged. A scaled-down iteration indicates
+ * that the step is too long: after a few of them give up, because a shorter step is cheaper. */
 static bool solve(struct wb_cantilever *c, const struct step *step)
 {
     struct strand strand;
     double r[3];
-    int held_back = 0;
+    int scaled_down = 0;
 
     for (int iteration = 0;; iteration++) {
         if (check_balance(c, step, &strand, r))
             return step->control != WB_CONTROL_FOLLOWER_DEFLECTION ||
-                   follower_rises(c, step, &strand);
-        if (iteration == c->settings.max_iterations || held_back == most_held_back ||
+                   follower_force_rises(c, step, &strand);
+        if (iteration == c->settings.max_iterations || scaled_down == max_scaled_down ||
             !isfinite(c->residual))
             return false;
 
-        double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+        double A[MAX_UNKNOWNS * MAX_UNKNOWNS], b[MAX_UNKNOWNS];
         const int n = tip_matrix(c, step, &strand, A);
         tip_right(c, step, c->beam, r, b);
-        wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
-        held_back += advance(c, step, c->beam, b) < 1.0;
+        wb_banded_solve_small(n, MAX_UNKNOWNS, A, b);
+        scaled_down += advance(c, step, c->beam, b) < 1.0;
         c->iterations++;
     }
 }
 
-/* Loads of the trial state at the step's start. */
+/* Sets the initial loads of the trial state. */
 static void start_loads(struct wb_cantilever *c, const struct step *step)
 {
     c->loads = c->state.loads;
@@ -481,8 +485,8 @@ static void start_loads(struct wb_cantilever *c, const struct step *step)
         c->loads.reaction = 0.0;
 }
 
-/* How far beyond the last two states the step lies, in their distance; 0 when nothing is to be
- * extrapolated: other constraints, a turn back, a much longer step. */
+/* Factor by which to extrapolate the last two states to the step; 0 if constraints change, the
+ * direction reverses, or the step is much longer than the last one. */
 static double extrapolation(const struct wb_cantilever *c, const struct step *step)
 {
     const struct state *s = &c->state;
@@ -493,8 +497,8 @@ static double extrapolation(const struct wb_cantilever *c, const struct step *st
     return ratio > 0.0 && ratio <= 2.0 ? ratio : 0.0;
 }
 
-/* Finds the equilibrium of the step in its mode: first from the extrapolated state, then from the
- * last one. */
+/* Solves the step in its mode: first from the extrapolated state, then from the last
+ * equilibrium. */
 static bool solve_mode(struct wb_cantilever *c, const struct step *step)
 {
     const double ratio = c->ratio = extrapolation(c, step);
@@ -516,7 +520,8 @@ static bool solve_mode(struct wb_cantilever *c, const struct step *step)
     return solve(c, step);
 }
 
-/* The mode that the converged trial state asks for: the same when nothing is violated. */
+/* The mode required by the converged trial state; equals the step's mode if no constraint is
+ * violated. */
 static int wanted_mode(const struct wb_cantilever *c, const struct step *step)
 {
     const struct wb_beam_node *tip = wb_beam_tip(c->beam);
@@ -533,15 +538,15 @@ static int wanted_mode(const struct wb_cantilever *c, const struct step *step)
         return mode;
     if (mode & RESTING ? c->loads.reaction < -force : tip->y < c->model.rest_level - distance)
         mode ^= RESTING;
-    /* Held at a level and lifted to another at once: the rest wins when the tip is to go below
-     * it. */
+    /* A deflection cannot be prescribed both by the strand and by the rest: the rest is active if
+     * the target is below its level. */
     if (step->control == WB_CONTROL_DEFLECTION && mode == (TAUT | RESTING))
         mode = step->value < c->model.rest_level ? RESTING : TAUT;
     return mode;
 }
 
-/* One step to the end of its value, in whatever mode satisfies all inequalities. */
-static bool settle(struct wb_cantilever *c, struct step step)
+/* Solves one step in the mode that satisfies all inequalities. */
+static bool solve_in_any_mode(struct wb_cantilever *c, struct step step)
 {
     const bool one_mode = !drives_tip(step.control) || !is_unilateral(c);
     bool tried[ALL_MODES] = {false};
@@ -584,7 +589,8 @@ static void accept(struct wb_cantilever *c, const struct step *step, double from
     wb_beam_commit(c->beam);
 }
 
-/* A follower's load: it changes as the leader's does, and what they differ by goes on. */
+/* Predicted load of a follower: it changes like the leader's load, and the difference between the
+ * two continues to change by `ratio` times its last change. */
 static double follow_load(const double *state, const double *earlier, double leader,
                           const double *leader_state, const double *leader_earlier, double ratio)
 {
@@ -592,14 +598,14 @@ static double follow_load(const double *state, const double *earlier, double lea
            ratio * ((*state - *earlier) - (*leader_state - *leader_earlier));
 }
 
-/* One follower's step beside the leader's converged one, with the leader's tangent: `A` of `n`
- * unknowns. */
-static void follow(struct wb_cantilever *f, struct wb_cantilever *leader, struct step step,
-                   const double *A, int n, double offset, double from)
+/* One step of a follower, with the leader's tangent matrix `A` of `n` unknowns at the leader's
+ * converged state. */
+static void move_follower(struct wb_cantilever *f, struct wb_cantilever *leader, struct step step,
+                          const double *A, int n, double offset, double from)
 {
     struct state *const now = &leader->state;
     struct strand strand;
-    double r[3], matrix[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+    double r[3], matrix[MAX_UNKNOWNS * MAX_UNKNOWNS], b[MAX_UNKNOWNS];
     step.value += offset;
     start_loads(f, &step);
     if (step.mode & TAUT && drives_tip(step.control))
@@ -617,26 +623,27 @@ static void follow(struct wb_cantilever *f, struct wb_cantilever *leader, struct
     check_balance(f, &step, &strand, r);
     memcpy(matrix, A, sizeof matrix);
     tip_right(f, &step, leader->beam, r, b);
-    wb_banded_solve_small(n, MOST_UNKNOWNS, matrix, b);
+    wb_banded_solve_small(n, MAX_UNKNOWNS, matrix, b);
     advance(f, &step, leader->beam, b);
-    /* Carried on, it was so near that plastic strains lag by next to nothing. */
+    /* After an extrapolation the prediction was close enough for the plastic strains; otherwise
+     * evaluate again so that they include the correction. */
     if (leader->ratio == 0.0)
         check_balance(f, &step, &strand, r);
     f->state.mode = step.mode;
     accept(f, &step, from + offset);
 }
 
-/* Takes all followers along to the trial state. */
-static void lead(struct wb_cantilever *c, struct step step, double from)
+/* Moves all followers to the leader's trial state. */
+static void move_followers(struct wb_cantilever *c, struct step step, double from)
 {
-    double A[MOST_UNKNOWNS * MOST_UNKNOWNS];
+    double A[MAX_UNKNOWNS * MAX_UNKNOWNS];
     if (c->n_followers == 0)
         return;
     step.mode = c->state.mode;
     const struct strand strand = strand_direction(c, wb_beam_tip(c->beam)->x);
     const int n = tip_matrix(c, &step, &strand, A);
     for (int i = 0; i < c->n_followers; i++)
-        follow(c->followers[i], c, step, A, n, c->offsets[i], from);
+        move_follower(c->followers[i], c, step, A, n, c->offsets[i], from);
 }
 
 static enum wb_status check_move(const struct wb_cantilever *c, enum wb_cantilever_control control,
@@ -647,7 +654,8 @@ static enum wb_status check_move(const struct wb_cantilever *c, enum wb_cantilev
     if (control == WB_CONTROL_STAGE && !is_unilateral(c))
         return wb_fail(WB_ERR_ARGUMENT, "the stage cannot control a model without a strand");
     if ((!drives_tip(control) || control == WB_CONTROL_FOLLOWER_DEFLECTION) && is_unilateral(c))
-        return wb_fail(WB_ERR_ARGUMENT, "a model with a strand has no applied force to control");
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "a tip force or moment cannot control a model with a strand");
     return WB_OK;
 }
 
@@ -700,8 +708,8 @@ enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_co
         };
         c->step_duration = (next - done) * c->duration;
         wb_beam_set_duration(c->beam, c->step_duration);
-        if (settle(c, step)) {
-            lead(c, step, from);
+        if (solve_in_any_mode(c, step)) {
+            move_followers(c, step, from);
             accept(c, &step, from);
             c->state.fraction = fraction;
             done = next;
@@ -718,7 +726,7 @@ enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_co
     }
 
     if (point->end != WB_CANTILEVER_CONVERGED) {
-        /* Back to the last equilibrium, and its resultants for the report. */
+        /* Return to the last equilibrium and evaluate its resultants for `point`. */
         struct strand strand;
         double r[3];
         const struct step last = {.control = control, .mode = c->state.mode};

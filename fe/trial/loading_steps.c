@@ -8,10 +8,10 @@
 #define WB_LOG_DOMAIN "loading steps"
 
 enum {
-    MOST_STEPS = 1000000,
-    MOST_CYCLES = 100000,
-    MOST_ROWS = 10000000,
-    MOST_SHAPE = 1000
+    MAX_STEPS = 1000000,
+    MAX_CYCLES = 100000,
+    MAX_ROWS = 10000000,
+    MAX_SHAPE = 1000
 };
 
 int wb_loading_steps_planned_rows(const struct wb_loading_steps_plan *plan)
@@ -24,15 +24,15 @@ static enum wb_status check_plan(const struct wb_loading_steps_plan *plan)
     if (!isfinite(plan->maximum) || plan->maximum == 0.0)
         return wb_fail(WB_ERR_ARGUMENT, "largest value %g: expected a number other than 0",
                        plan->maximum);
-    if (plan->steps < 1 || plan->steps > MOST_STEPS)
-        return wb_fail(WB_ERR_ARGUMENT, "%d steps: expected 1 to %d", plan->steps, MOST_STEPS);
-    if (plan->cycles < 0 || plan->cycles > MOST_CYCLES ||
-        2.0 * plan->steps * plan->cycles > MOST_ROWS)
+    if (plan->steps < 1 || plan->steps > MAX_STEPS)
+        return wb_fail(WB_ERR_ARGUMENT, "%d steps: expected 1 to %d", plan->steps, MAX_STEPS);
+    if (plan->cycles < 0 || plan->cycles > MAX_CYCLES ||
+        2.0 * plan->steps * plan->cycles > MAX_ROWS)
         return wb_fail(WB_ERR_ARGUMENT, "%d cycles of %d steps: expected at most %d rows in all",
-                       plan->cycles, plan->steps, MOST_ROWS);
-    if (plan->n_shape < 0 || plan->n_shape > MOST_SHAPE)
+                       plan->cycles, plan->steps, MAX_ROWS);
+    if (plan->n_shape < 0 || plan->n_shape > MAX_SHAPE)
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected 0 to %d", plan->n_shape,
-                       MOST_SHAPE);
+                       MAX_SHAPE);
     return WB_OK;
 }
 
@@ -62,8 +62,9 @@ void wb_loading_steps_release(struct wb_loading_steps *loading)
     *loading = (struct wb_loading_steps){0};
 }
 
-/* True while the test is to go on. */
-static bool goes_on(struct wb_loading_steps *loading, const struct wb_loading_steps_plan *plan)
+/* True while the test continues: converged and not stopped. */
+static bool test_continues(struct wb_loading_steps *loading,
+                           const struct wb_loading_steps_plan *plan)
 {
     if (loading->converged && !loading->stopped && plan->stop)
         loading->stopped = plan->stop(plan->stop_context);
@@ -76,7 +77,7 @@ static bool is_follower(const struct wb_loading_steps_plan *plan)
            plan->control == WB_CONTROL_FOLLOWER_DEFLECTION;
 }
 
-/* Moves to step `index` of the way up and adds the row, if it gets there. */
+/* Moves to loading step `index` (0 .. plan->steps) and adds a row if it converged. */
 static enum wb_status add_row(struct wb_loading_steps *loading,
                               const struct wb_loading_steps_plan *plan,
                               struct wb_cantilever *cantilever, int cycle, int index,
@@ -107,12 +108,12 @@ static enum wb_status add_row(struct wb_loading_steps *loading,
     return WB_OK;
 }
 
-/* `steps` rows from one end to the other. */
+/* `steps` rows from zero to the maximum or back. */
 static enum wb_status run_branch(struct wb_loading_steps *loading,
                                  const struct wb_loading_steps_plan *plan,
                                  struct wb_cantilever *cantilever, int cycle, enum wb_phase phase)
 {
-    for (int i = 1; i <= plan->steps && goes_on(loading, plan); i++) {
+    for (int i = 1; i <= plan->steps && test_continues(loading, plan); i++) {
         const int index = phase == WB_PHASE_LOAD ? i : plan->steps - i;
         WB_TRY(add_row(loading, plan, cantilever, cycle, index, phase));
     }
@@ -127,7 +128,7 @@ enum wb_status wb_loading_steps_run(struct wb_loading_steps *loading,
     if (loading->capacity < wb_loading_steps_planned_rows(plan) ||
         loading->n_shape != plan->n_shape)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the loading has room for %d rows and %d positions of a shape: expected at "
+                       "loading allocated for %d rows and %d positions of a shape: expected at "
                        "least %d rows and exactly %d positions",
                        loading->capacity, loading->n_shape, wb_loading_steps_planned_rows(plan),
                        plan->n_shape);
@@ -136,7 +137,7 @@ enum wb_status wb_loading_steps_run(struct wb_loading_steps *loading,
     loading->zero_force = 0.0;
     loading->converged = true;
     loading->stopped = false;
-    if (goes_on(loading, plan))
+    if (test_continues(loading, plan))
         WB_TRY(add_row(loading, plan, cantilever, 1, 0, WB_PHASE_LOAD));
 
     const int cycles = plan->cycles == 0 ? 1 : plan->cycles;

@@ -7,12 +7,12 @@ enum {
     UNKNOWNS = 3 * NODES
 };
 
-/* Position, rotation and their derivatives by arc length at a place of an element. */
+/* Position, rotation and their derivatives with respect to arc length at a point of an element. */
 struct at {
     double x, y, t, x_, y_, t_;
 };
 
-/* z from -1 to 1 along an element of length h. */
+/* Shape functions at z from -1 to 1 in an element of length h. */
 static void shape_at(double z, double h, double N[NODES], double dN[NODES])
 {
     N[0] = 0.5 * z * (z - 1.0);
@@ -38,15 +38,15 @@ static struct at interpolate(const struct wb_beam_node *node, const double N[NOD
     return at;
 }
 
-/* (x - c) . (cos t, sin t): below zero before the contact, above it behind. */
-static double ahead(const struct wb_roller *r, double x, double y, double t)
+/* (x - c) . (cos t, sin t): negative before the contact point, positive after it. */
+static double signed_distance(const struct wb_roller *r, double x, double y, double t)
 {
     return (x - r->x) * cos(t) + (y - r->y) * sin(t);
 }
 
-static double ahead_of_node(const struct wb_roller *r, const struct wb_beam_node *node)
+static double node_signed_distance(const struct wb_roller *r, const struct wb_beam_node *node)
 {
-    return ahead(r, node->x, node->y, node->t);
+    return signed_distance(r, node->x, node->y, node->t);
 }
 
 bool wb_roller_find(const struct wb_roller *roller, const struct wb_beam *beam, double near,
@@ -57,25 +57,25 @@ bool wb_roller_find(const struct wb_roller *roller, const struct wb_beam *beam, 
     const double h = wb_beam_element_length(beam);
     int e = (int)fmin(fmax(floor(near / h), 0.0), n_elements - 1);
 
-    while (ahead_of_node(roller, &nodes[2 * e + 2]) < 0.0) {
+    while (node_signed_distance(roller, &nodes[2 * e + 2]) < 0.0) {
         if (++e == n_elements)
             return false;
     }
-    while (ahead_of_node(roller, &nodes[2 * e]) > 0.0) {
+    while (node_signed_distance(roller, &nodes[2 * e]) > 0.0) {
         if (--e < 0)
             return false;
     }
-    if (!isfinite(ahead_of_node(roller, &nodes[2 * e])))
+    if (!isfinite(node_signed_distance(roller, &nodes[2 * e])))
         return false;
 
-    /* Newton's method, kept between ends of opposite signs. */
+    /* Newton's method with a bracket. */
     const struct wb_beam_node *node = nodes + 2 * e;
     double low = -1.0, high = 1.0, z = fmin(fmax(2.0 * (near / h - e) - 1.0, -1.0), 1.0);
     struct at at;
     for (int i = 0; i < 100; i++) {
         shape_at(z, h, place->N, place->dN);
         at = interpolate(node, place->N, place->dN);
-        const double miss = ahead(roller, at.x, at.y, at.t);
+        const double miss = signed_distance(roller, at.x, at.y, at.t);
         if (miss > 0.0)
             high = z;
         else
@@ -112,15 +112,15 @@ bool wb_roller_press(const struct wb_roller *roller, const struct wb_beam *beam,
     contact->normal = k * (roller->radius - g);
     contact->slip = -(own_radius * (p->angle - state->angle) + p->arc - state->arc);
     const double stuck = state->friction - roller->sticking * contact->slip;
-    /* While Newton's method is on its way the normal force may be below zero. Friction follows it
-     * there, without a kink, or the iteration goes in circles. */
+    /* During Newton iterations the normal force may be negative. The friction limit then follows it
+     * without a kink, because a kink makes the iteration cycle. */
     const double most = roller->friction * contact->normal;
     const double direction = copysign(1.0, stuck);
     const bool slides = fabs(stuck) > most;
     contact->friction = slides ? direction * most : stuck;
 
-    /* Derivatives by the unknowns of the element: of the contact's arc length, angle, distance, and
-     * of both forces. */
+    /* Derivatives with respect to the element's unknowns of the contact's arc length, angle,
+     * distance, and both forces. */
     double ds[UNKNOWNS], dt[UNKNOWNS], dn[UNKNOWNS], df[UNKNOWNS];
     for (int i = 0; i < UNKNOWNS; i++) {
         const double N = p->N[i / 3];
@@ -155,7 +155,7 @@ bool wb_roller_press(const struct wb_roller *roller, const struct wb_beam *beam,
 double wb_roller_commit(const struct wb_roller *roller, const struct wb_roller_contact *contact,
                         struct wb_roller_state *state)
 {
-    /* What the spring of sticking does not take of the slip. */
+    /* Slip minus the elastic part in the sticking spring. */
     const double slid = contact->slip + (contact->friction - state->friction) / roller->sticking;
     const double work = -0.5 * (contact->friction + state->friction) * slid;
     state->arc = contact->place.arc;

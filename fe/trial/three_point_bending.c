@@ -14,61 +14,65 @@
 
 enum {
     DEFAULT_ELEMENTS = 80,
-    MOST_ROLLERS = 2,
+    MAX_ROLLERS = 2,
     NODES = WB_BEAM_ELEMENT_NODES,
-    WIDTH = 3 * NODES - 1, /* of the band: all unknowns of an element meet */
-    MOST_ITERATIONS = 40,
-    MOST_SPENT = 2000, /* iterations of a move */
-    MOST_TRIALS_OF_ZERO = 40
+    WIDTH = 3 * NODES - 1, /* bandwidth: all unknowns of an element are coupled */
+    MAX_ITERATIONS = 40,
+    MAX_MOVE_ITERATIONS = 2000, /* iterations of a move */
+    MAX_ZERO_ITERATIONS = 40
 };
 
 static const double default_overhang = 0.3; /* of the span */
 
-/* Stiffness of a contact over that of a simply supported elastic beam, 48 E I / L^3. The nose's is
- * less, because its nodes come and go: with 1e5 Newton's method takes twice as many iterations. */
+/* Stiffness of a contact relative to that of a simply supported elastic beam, 48 E I / L^3. The
+ * nose's is lower because its nodes make and lose contact: with 1e5 Newton's method takes twice as
+ * many iterations. */
 static const double roller_stiffness = 1e5, nose_stiffness = 2e4;
-/* The same of a roller along a wire that sticks: friction turns over a slip of some 1e-4 of the
- * deflection. */
+/* Tangential stiffness of a sticking roller, on the same scale: friction reverses over a slip of
+ * about 1e-4 of the deflection. */
 static const double sticking_stiffness = 1e3;
 
 static const double force_tolerance = 1e-9; /* residual over the largest internal force */
-static const double most_rotation = 0.3;    /* of a node in an iteration, rad */
-static const double smallest_step = 1e-7;   /* of a sub-step, over the span */
-static const double first_step = 2e-3;      /* the same, of the virgin wire */
-static const double turning_step = 5e-5;    /* the same, where the nose turns back */
-/* The same, of a wire that converges easily; and over the nose's radius, wire included, through
- * which a longer step would carry it. */
+static const double max_iteration_rotation =
+    0.3;                                  /* limit of a node's rotation in an iteration, rad */
+static const double smallest_step = 1e-7; /* of a sub-step, over the span */
+static const double first_step = 2e-3;    /* of the virgin wire, over the span */
+static const double turning_step = 5e-5;  /* after the nose reverses, over the span */
+/* Longest sub-step over the span, and over the nose's radius including the wire's, so that the wire
+ * cannot pass through the nose. */
 static const double longest_step = 0.02, longest_over_nose = 0.25;
 
 struct nose {
-    double force;       /* upwards on the nose, N: of the half or the whole that is computed */
-    double first, last; /* angles of touching nodes, rad; first > last: none */
-    int nearest;        /* node */
+    double force; /* on the nose, upwards, N; of the computed half or whole wire */
+    /* Angles of the first and last touching node, rad; no contact if first > last. */
+    double first, last;
+    int nearest; /* node */
 };
 
-/* What a converged step leaves behind, besides the beam. */
+/* State after a converged step, except for the beam. */
 struct state {
-    double level; /* of the nose, m of deflection */
+    double level; /* of the nose, as deflection in m */
     double last_step;
     double step; /* that converged easily, m */
     double force, largest_force;
     double work, internal_work, friction_work;
     bool slack;
     double contact_level;
-    struct wb_roller_state roller[MOST_ROLLERS];
+    struct wb_roller_state roller[MAX_ROLLERS];
 };
 
 struct wb_three_point_bending {
-    struct wb_three_point_bending_model model; /* without section and curvature */
+    /* Section and curvature are cleared: they are borrowed during creation. */
+    struct wb_three_point_bending_model model;
     struct wb_beam *beam;
-    int n_nodes, middle; /* the node that is held to x = 0 */
+    int n_nodes, middle; /* the node held at x = 0 */
     double middle_arc;   /* of it, m */
     int n_rollers;
-    struct wb_roller roller[MOST_ROLLERS];
-    struct wb_roller_state at_rest[MOST_ROLLERS];
-    double parts;       /* of the wire that are computed: 1, or a half as 2 */
-    double nose_radius; /* with half the diameter, m */
-    double nose_level;  /* y of its axis when it first touches, m */
+    struct wb_roller roller[MAX_ROLLERS];
+    struct wb_roller_state at_rest[MAX_ROLLERS];
+    double parts;       /* wire over computed wire: 1, or 2 if half is computed */
+    double nose_radius; /* including half the wire's diameter, m */
+    double nose_level;  /* y of the nose's axis at first contact, m */
     double stiffness;   /* of contacts, N/m */
     double (*natural_curvature)(void *, double);
     void *curvature_context;
@@ -76,10 +80,10 @@ struct wb_three_point_bending {
 
     /* The trial step. */
     struct nose nose;
-    struct wb_roller_contact contact[MOST_ROLLERS];
+    struct wb_roller_contact contact[MAX_ROLLERS];
     double residual, tolerance;
     int iterations;
-    bool off; /* no place of the wire lies on a roller */
+    bool off; /* the wire slipped off a roller */
 
     double (*unbalanced)[3]; /* (n_nodes) */
     double *increment;       /* (n_nodes x 3) */
@@ -87,7 +91,7 @@ struct wb_three_point_bending {
     struct wb_memory memory;
 };
 
-/* The beam's first node is the middle, or the left end. */
+/* The beam's first node is the middle (half wire) or the left end. */
 static double curvature_of(void *context, double arc)
 {
     const struct wb_three_point_bending *b = context;
@@ -125,16 +129,15 @@ static void take_memory(struct wb_three_point_bending *b)
         wb_memory_take(&b->memory, 3 * nodes * (size_t)wb_band_row(WIDTH), sizeof *b->band.values);
 }
 
-/* The gap of a roller when the wire lies with its middle at (0, y), turned by `turn`; false where
- * it does not reach. */
-static bool gap_at(struct wb_three_point_bending *b, double y, double turn,
-                   double gap[MOST_ROLLERS])
+/* Gaps at the rollers when the wire's middle is at (0, y) and rotated by `turn`; false if the wire
+ * does not reach a roller. */
+static bool gap_at(struct wb_three_point_bending *b, double y, double turn, double gap[MAX_ROLLERS])
 {
     struct wb_beam_node first = {0.0, 0.0, 0.0};
 
     wb_beam_place(b->beam, &first);
     const struct wb_beam_node middle = wb_beam_nodes(b->beam)[b->middle];
-    /* The middle stays where it is while the wire turns about it, and its slope becomes `turn`. */
+    /* Rotate the wire about its middle until its slope there is `turn`. */
     const double a = turn - middle.t, c = cos(a), s = sin(a);
     first =
         (struct wb_beam_node){-(c * middle.x - s * middle.y), y - (s * middle.x + c * middle.y), a};
@@ -150,11 +153,11 @@ static bool gap_at(struct wb_three_point_bending *b, double y, double turn,
     return true;
 }
 
-/* Lays the virgin wire on the rollers, and the nose on the wire. */
-static enum wb_status lay_down(struct wb_three_point_bending *b)
+/* Places the virgin wire on the rollers and the nose on the wire. */
+static enum wb_status place_wire(struct wb_three_point_bending *b)
 {
     const double small = 1e-6 * b->model.span;
-    double y = 0.0, turn = 0.0, gap[MOST_ROLLERS] = {0}, more[MOST_ROLLERS] = {0};
+    double y = 0.0, turn = 0.0, gap[MAX_ROLLERS] = {0}, more[MAX_ROLLERS] = {0};
     bool found = false;
 
     for (int i = 0; i < b->n_rollers; i++)
@@ -173,7 +176,7 @@ static enum wb_status lay_down(struct wb_three_point_bending *b)
             y -= gap[0] * small / (more[0] - gap[0]);
         } else {
             const double angle = small / b->model.span;
-            double by_turn[MOST_ROLLERS];
+            double by_turn[MAX_ROLLERS];
             if (!gap_at(b, y + small, turn, more) || !gap_at(b, y, turn + angle, by_turn))
                 break;
             const double yy[2] = {(more[0] - gap[0]) / small, (more[1] - gap[1]) / small};
@@ -185,10 +188,11 @@ static enum wb_status lay_down(struct wb_three_point_bending *b)
         found = miss <= 1e-11 * b->model.span;
     }
     if (!found || !gap_at(b, y, turn, gap))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "a wire of this natural curvature does not lie on rollers "
-                       "%g mm apart: it is too bent, or too short",
-                       1e3 * b->model.span);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "the wire does not rest on rollers %g mm apart: its natural curvature is too "
+            "large, or it is too short",
+            1e3 * b->model.span);
 
     const struct wb_beam_node *node = wb_beam_nodes(b->beam);
     b->nose_level = -HUGE_VAL;
@@ -200,9 +204,9 @@ static enum wb_status lay_down(struct wb_three_point_bending *b)
     return WB_OK;
 }
 
-static enum wb_status start(struct wb_three_point_bending *b)
+static enum wb_status start_at_rest(struct wb_three_point_bending *b)
 {
-    WB_TRY(lay_down(b));
+    WB_TRY(place_wire(b));
     b->state = (struct state){
         .slack = true,
         .step = fmin(first_step * b->model.span, longest_over_nose * b->nose_radius)};
@@ -238,7 +242,7 @@ enum wb_status wb_three_point_bending_create(struct wb_three_point_bending **out
     if (status == WB_OK) {
         b->n_nodes = wb_beam_count_nodes(b->beam);
         take_memory(b);
-        /* The beam scales by E I / length^2. */
+        /* wb_beam_scale_force() is E I / length^2. */
         const double EI = wb_beam_scale_force(b->beam) * beam.length * beam.length;
         const double stiffness = 48.0 * EI / pow(model->span, 3);
         b->stiffness = nose_stiffness * stiffness;
@@ -257,7 +261,7 @@ enum wb_status wb_three_point_bending_create(struct wb_three_point_bending **out
         if (model->natural_curvature)
             status = wb_beam_set_curvature(b->beam, curvature_of, b);
         if (status == WB_OK)
-            status = start(b);
+            status = start_at_rest(b);
     }
     if (status != WB_OK) {
         wb_three_point_bending_destroy(b);
@@ -280,8 +284,8 @@ void wb_three_point_bending_destroy(struct wb_three_point_bending *bending)
 void wb_three_point_bending_reset(struct wb_three_point_bending *bending)
 {
     wb_beam_reset(bending->beam);
-    /* It lay down before. */
-    (void)start(bending);
+    /* Cannot fail: it succeeded during creation. */
+    (void)start_at_rest(bending);
 }
 
 enum wb_status wb_three_point_bending_set_law(struct wb_three_point_bending *bending,
@@ -300,7 +304,7 @@ enum wb_status wb_three_point_bending_set_curvature(struct wb_three_point_bendin
     bending->natural_curvature = natural_curvature;
     bending->curvature_context = context;
     WB_TRY(wb_beam_set_curvature(bending->beam, natural_curvature ? curvature_of : NULL, bending));
-    return start(bending);
+    return start_at_rest(bending);
 }
 
 double wb_three_point_bending_contact_level(const struct wb_three_point_bending *bending)
@@ -312,11 +316,11 @@ double wb_three_point_bending_contact_level(const struct wb_three_point_bending 
 
 static double node_stiffness(const struct wb_three_point_bending *b, int node)
 {
-    /* Half of the middle's contact belongs to the other half of the wire. */
+    /* Half of the middle node's contact belongs to the half that is not computed. */
     return b->parts == 2.0 && node == b->middle ? 0.5 * b->stiffness : b->stiffness;
 }
 
-/* Adds what the nose does to one node; `held` also where it would pull. */
+/* Adds the nose's force at one node; with `held` also a pulling force. */
 static void press_node(struct wb_three_point_bending *b, int i, double nose_y, bool held,
                        bool with_tangent)
 {
@@ -344,8 +348,9 @@ static void press_node(struct wb_three_point_bending *b, int i, double nose_y, b
     wb_band_add(&b->band, 3 * i + 1, 3 * i, (k + side) * nx * ny);
 }
 
-/* A wire that no node of which touches is held by the nearest one, so that it cannot fly away on
- * the way to the force zero: the force is then below zero. */
+/* Adds the nose's forces. If no node touches, the nearest one is attached to the nose, so that the
+ * wire stays in equilibrium while the solver searches for zero force; its force is then
+ * negative. */
 static void press(struct wb_three_point_bending *b, double level, bool with_tangent)
 {
     const struct wb_beam_node *node = wb_beam_nodes(b->beam);
@@ -367,7 +372,8 @@ static void press(struct wb_three_point_bending *b, double level, bool with_tang
 
 /* --- equilibrium --- */
 
-/* The largest of a node's forces, which are finite. (fmax() is a call, for NaN's sake.) */
+/* The largest component of a node's forces. Plain comparisons, because fmax() is a slow call and
+ * all values are finite. */
 static double size_of(const double force[3], double lever)
 {
     const double x = fabs(force[0]), y = fabs(force[1]), t = fabs(force[2]) * lever;
@@ -375,14 +381,14 @@ static double size_of(const double force[3], double lever)
     return larger > t ? larger : t;
 }
 
-/* The middle's x is held; with half a wire its rotation too. */
+/* The middle's x is fixed; for half a wire its rotation, too. */
 static bool is_held(const struct wb_three_point_bending *b, int node, int k)
 {
     return node == b->middle && (k == 0 || (k == 2 && b->parts == 2.0));
 }
 
-/* Unbalanced forces of the trial state with the nose at `level`, and what it takes of them to be
- * an equilibrium. False where the wire has left a roller. */
+/* Computes the unbalanced forces of the trial state with the nose at `level`, and the tolerance for
+ * equilibrium. False if the wire has slipped off a roller. */
 static bool evaluate(struct wb_three_point_bending *b, double level, bool with_tangent)
 {
     struct wb_beam_balance balance;
@@ -432,23 +438,24 @@ static bool evaluate(struct wb_three_point_bending *b, double level, bool with_t
     }
     const double scale = balance.largest_force + 1e-6 * wb_beam_scale_force(b->beam);
     b->residual = largest / scale;
-    /* Springs as stiff as the contacts turn round-off of places into forces. */
+    /* The stiff contact springs amplify round-off of positions into forces. */
     const double noise = wb_beam_noise(b->beam) + 4e-16 * b->model.span * b->roller[0].stiffness;
     b->tolerance = force_tolerance * scale + noise;
     return true;
 }
 
-/* Newton's method from the trial state; true when it converged. */
+/* Newton's method from the trial state; true if it converged. */
 static bool solve(struct wb_three_point_bending *b, double level)
 {
-    int held_back = 0;
-    for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+    int scaled_down = 0;
+    for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
         if (!evaluate(b, level, true))
             return false;
         double largest = 0.0;
         for (int i = 0; i < b->n_nodes; i++)
             largest = fmax(largest, size_of(b->unbalanced[i], 1.0 / b->model.span));
-        /* The wire below the nose: on the far side it would be in balance, too. */
+        /* Accept only the solution with the wire below the nose: there is another on the far
+         * side. */
         const struct wb_beam_node *node = wb_beam_nodes(b->beam);
         if (largest <= b->tolerance && fabs(node[b->middle].x) <= 1e-11 * b->model.span)
             return node[b->middle].y < b->nose_level - level;
@@ -456,7 +463,7 @@ static bool solve(struct wb_three_point_bending *b, double level)
             for (int k = 0; k < 3; k++)
                 b->increment[3 * i + k] = -b->unbalanced[i][k];
         }
-        /* Increments of rotations and strains move the middle a little even so. */
+        /* Advancing by rotations and strains shifts the middle slightly: correct it. */
         for (int i = 0; i < b->n_nodes; i++) {
             for (int k = 0; k < 3; k++) {
                 if (is_held(b, i, k))
@@ -468,16 +475,16 @@ static bool solve(struct wb_three_point_bending *b, double level)
             return false;
         b->iterations++;
         const double scale = wb_beam_advance_nodes(
-            b->beam, (const double(*)[3])(const void *)b->increment, most_rotation);
-        held_back += scale < 1.0;
-        if (held_back > 3)
+            b->beam, (const double(*)[3])(const void *)b->increment, max_iteration_rotation);
+        scaled_down += scale < 1.0;
+        if (scaled_down > 3)
             return false;
     }
     return false;
 }
 
-/* From the extrapolated state, else from the last one. */
-static bool settle(struct wb_three_point_bending *b, double level)
+/* Solves from the extrapolated state, then from the last equilibrium. */
+static bool solve_step(struct wb_three_point_bending *b, double level)
 {
     const double ratio =
         b->state.last_step != 0.0 ? (level - b->state.level) / b->state.last_step : 0.0;
@@ -507,7 +514,7 @@ static void accept(struct wb_three_point_bending *b, double level)
     wb_beam_commit(b->beam);
 }
 
-/* The level of the nose at which only the wire's thickness is left between it and a roller. */
+/* The level of the nose at which the gap between nose and roller equals the wire's thickness. */
 static double pinching_level(const struct wb_three_point_bending *b)
 {
     const struct wb_roller *r = &b->roller[0];
@@ -544,17 +551,17 @@ static void describe(const struct wb_three_point_bending *b, double level,
     point->residual = b->residual;
 }
 
-/* Finds where the force is zero between the last state and `level`, where it is below, and leaves
- * the nose there. */
-static bool leave(struct wb_three_point_bending *b, double level)
+/* Finds the level between the last state and `level` at which the force becomes zero, and lifts the
+ * nose off the wire there. */
+static bool lift_off(struct wb_three_point_bending *b, double level)
 {
     double high = level, low = b->state.level;
     double at_high = b->parts * b->nose.force, at_low = b->state.force;
-    /* False position with Illinois' halving. */
-    for (int i = 0; i < MOST_TRIALS_OF_ZERO; i++) {
+    /* False position, Illinois variant. */
+    for (int i = 0; i < MAX_ZERO_ITERATIONS; i++) {
         const double zero = 1e-7 * b->state.largest_force + b->tolerance;
         const double next = low + (high - low) * at_low / (at_low - at_high);
-        if (!settle(b, next))
+        if (!solve_step(b, next))
             return false;
         const double force = b->parts * b->nose.force;
         if (fabs(force) <= zero) {
@@ -594,7 +601,8 @@ enum wb_status wb_three_point_bending_move(struct wb_three_point_bending *bendin
 
     b->iterations = 0;
     point->end = WB_THREE_POINT_BENDING_CONVERGED;
-    /* Where the nose turns back, friction turns within a hair's breadth. */
+    /* After a reversal of the nose, friction reverses within a very short travel: start
+     * with a small step. */
     if ((deflection - s->level) * s->last_step < 0.0)
         step = fmin(step, turning_step * b->model.span);
     if (s->slack && deflection > s->contact_level)
@@ -604,16 +612,16 @@ enum wb_status wb_three_point_bending_move(struct wb_three_point_bending *bendin
         return WB_OK;
     }
     while (s->level != deflection && !s->slack) {
-        const double way = deflection - s->level;
+        const double remaining = deflection - s->level;
         const double next =
-            fabs(way) <= 1.0001 * step ? deflection : s->level + copysign(step, way);
+            fabs(remaining) <= 1.0001 * step ? deflection : s->level + copysign(step, remaining);
         if (next >= pinched) {
             point->end = WB_THREE_POINT_BENDING_PINCHED;
             break;
         }
-        if (settle(b, next)) {
+        if (solve_step(b, next)) {
             if (b->nose.force < 0.0) {
-                if (leave(b, next))
+                if (lift_off(b, next))
                     break;
             } else {
                 accept(b, next);
@@ -624,8 +632,8 @@ enum wb_status wb_three_point_bending_move(struct wb_three_point_bending *bendin
             }
         }
         failed = true;
-        step = 0.5 * fmin(step, fabs(way));
-        if (step < smallest_step * b->model.span || b->iterations > MOST_SPENT) {
+        step = 0.5 * fmin(step, fabs(remaining));
+        if (step < smallest_step * b->model.span || b->iterations > MAX_MOVE_ITERATIONS) {
             point->end =
                 b->off ? WB_THREE_POINT_BENDING_RAN_OFF : WB_THREE_POINT_BENDING_NOT_CONVERGED;
             break;

@@ -12,7 +12,7 @@
 
 enum {
     DEFAULT_ELEMENTS = 50,
-    MOST_SHAPE = 1000 /* of a run; see fe/trial/wire_run.h */
+    MAX_SHAPE = 1000 /* positions of a run's shape; see fe/trial/wire_run.h */
 };
 
 struct wb_wire1d {
@@ -21,7 +21,7 @@ struct wb_wire1d {
     struct wb_rod_section *section;
     struct wb_rod *rod;
     struct wb_rod_solver *solver;
-    double (*shape)[3]; /* (MOST_SHAPE) workspace */
+    double (*shape)[3]; /* (MAX_SHAPE) workspace */
 };
 
 /* A run under way. */
@@ -78,7 +78,7 @@ enum wb_status wb_wire1d_create(struct wb_wire1d **out, const struct wb_wire_mod
     struct wb_wire1d *const wire = wb_memory_new(1, sizeof *wire);
     wire->model = model;
     wire->n_elements = given.n_elements == 0 ? DEFAULT_ELEMENTS : given.n_elements;
-    wire->shape = wb_memory_new(MOST_SHAPE, sizeof *wire->shape);
+    wire->shape = wb_memory_new(MAX_SHAPE, sizeof *wire->shape);
     enum wb_status status = make_section(wire, &layout);
     if (status == WB_OK)
         status = make_rod(wire);
@@ -133,17 +133,17 @@ static void add_row(struct run *r, double fraction)
                         (const double(*)[3])wire->shape);
 }
 
-/* What wb_rod_solver_move() tells after each increment. */
+/* Called by wb_rod_solver_move() after each increment. */
 static bool observe(void *context, double fraction, int iterations)
 {
     struct run *r = context;
     double tip[3], frame[3][3];
 
     wb_wire1d_frame(r->wire, r->wire->model->length, tip, frame);
-    return wb_wire_run_tell(&r->at, frame[0], fraction, iterations);
+    return wb_wire_run_end_increment(&r->at, frame[0], fraction, iterations);
 }
 
-/* One move and what it cost; true when it arrived. */
+/* Makes one move and adds its iterations and cutbacks to the run; true if it converged. */
 static bool move(struct run *r, struct wb_rod_move *move, struct wb_rod_result *result)
 {
     move->observer = observe;
@@ -157,7 +157,7 @@ static bool move(struct run *r, struct wb_rod_move *move, struct wb_rod_result *
     return result->end == WB_ROD_CONVERGED;
 }
 
-/* The end of a row: what the step wants at `share` of its way from `start`. */
+/* The move to the end of a row: the loads at `share` of the step, which began at `start`. */
 static struct wb_rod_move plan_row(const struct run *r, const struct wb_wire_target *start,
                                    double share)
 {
@@ -187,7 +187,7 @@ static bool run_step(struct run *r)
         if (!move(r, &row, &result)) {
             if (result.end == WB_ROD_NOT_CONVERGED)
                 snprintf(r->at.run->problem, sizeof r->at.run->problem,
-                         "step '%s', row %d (%.3g of the way): %s", step->name, r->at.row,
+                         "step '%s', row %d (%.3g of the row): %s", step->name, r->at.row,
                          result.fraction, result.problem);
             return false;
         }
@@ -198,7 +198,8 @@ static bool run_step(struct run *r)
     return true;
 }
 
-/* The virgin wire under its weight; a test that begins by a deflection begins at zero. */
+/* Applies the weight to the virgin wire; if the first step prescribes a deflection, at deflection
+ * zero. */
 static bool begin(struct run *r)
 {
     const bool level = r->wire->model->step[0].kind == WB_WIRE_STEP_DEFLECTION;
@@ -228,9 +229,9 @@ enum wb_status wb_wire1d_run(struct wb_wire1d *wire, struct wb_wire_run *run,
         .at = {.run = run, .model = wire->model, .observer = observer, .status = WB_OK},
     };
 
-    if (run->n_shape > MOST_SHAPE)
+    if (run->n_shape > MAX_SHAPE)
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected at most %d",
-                       run->n_shape, MOST_SHAPE);
+                       run->n_shape, MAX_SHAPE);
     run->n_elements = wire->n_elements;
     run->n_unknowns = 2 * WB_ROD_ELEMENT_UNKNOWNS * wire->n_elements;
     run->converged = begin(&r);

@@ -1,7 +1,7 @@
 /* A wire model computed as a 1D rod in space with fibres: the counterpart of fe/trial/wire3d.h.
  *
  * Each part is a ring of fibres that carry axial stress and the shear stress of torsion, J2 with
- * the part's own law; bonded parts only (an interface makes no difference to a rod, see
+ * the part's own law; parts are always bonded (a rod cannot represent an interface, see
  * docs/theory.md). Transverse shear is elastic.
  */
 #ifndef WB_FE_TRIAL_WIRE1D_H
@@ -11,7 +11,7 @@
 #include "fe/model/wire_model.h"
 #include "fe/trial/wire_run.h"
 
-/* Counted up whenever the same model comes to other numbers: datasets of before are outdated. */
+/* Increase whenever results for the same model change: older datasets are then outdated. */
 enum {
     WB_WIRE1D_VERSION = 1
 };
@@ -20,8 +20,8 @@ struct wb_wire1d; /* opaque */
 
 struct wb_wire1d_settings {
     int n_elements; /* 0: 50 */
-    int n_rings;    /* of fibres in each part; 0: 8 */
-    int n_around;   /* fibres of a ring, a multiple of 4; 0: 24 */
+    int n_rings;    /* rings of fibres in each part; 0: 8 */
+    int n_around;   /* fibres in a ring, a multiple of 4; 0: 24 */
 };
 
 /* `model` is borrowed; `settings` may be NULL. On failure *out is NULL. */
@@ -34,19 +34,19 @@ void wb_wire1d_destroy(struct wb_wire1d *wire); /* accepts NULL */
 WB_MUST_CHECK enum wb_status wb_wire1d_run(struct wb_wire1d *wire, struct wb_wire_run *run,
                                            const struct wb_wire_observer *observer);
 
-/* Stress of the fibres in the section nearest to arc length s of the present state. */
+/* A fibre in the section nearest to arc length s, in the current state. */
 struct wb_wire1d_fibre {
     double y, z;                       /* m, in the section */
-    double inner_radius, outer_radius; /* m, of its cell, a part of a ring */
+    double inner_radius, outer_radius; /* of its cell, a sector of a ring, m */
     double begin_angle, end_angle;     /* rad, from y towards z */
-    double axial, shear;               /* Pa; the shear of torsion */
+    double axial, shear;               /* Pa; shear: of torsion */
     double plastic;                    /* equivalent plastic strain */
     int part;
 };
 struct wb_wire1d_fibre *wb_wire1d_section(const struct wb_wire1d *wire, double s, int *n);
 
-/* Of the present state at arc length s: position of the axis (m) and the section's frame, rows:
- * unit vectors along the wire, the section's y, its z. */
+/* Current position of the axis (m) at arc length s, and the section's frame as rows: unit vectors
+ * along the wire, the section's y, its z. */
 void wb_wire1d_frame(const struct wb_wire1d *wire, double s, double position[3],
                      double frame[3][3]);
 

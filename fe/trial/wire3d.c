@@ -10,22 +10,22 @@
 #include "base/units.h"
 #include "fe/solid/solid.h"
 
-/* Past a limit point the path is followed by the arc length: as long as this share of the wire per
- * increment, at most as often. */
+/* Arc-length increment past a limit point, relative to the wire's length, and maximum number of
+ * increments. */
 static const double arc_share = 0.02;
 
 enum {
-    MOST_ARC_INCREMENTS = 100
+    MAX_ARC_INCREMENTS = 100
 };
 
-/* Small sliding holds up to this share of an element's shorter side on the interface. */
+/* Small sliding is valid up to this fraction of an element's shorter side on the interface. */
 static const double slip_share = 0.25;
 
 struct wb_wire3d {
     const struct wb_wire_model *model; /* borrowed */
     struct wb_solid_mesh mesh;
     struct wb_solid *solid;
-    double sliding; /* m: largest of the run, over the interface */
+    double sliding; /* largest sliding of the run, over the interface, m */
     bool has_run;
 };
 
@@ -34,8 +34,8 @@ struct run {
     struct wb_wire3d *wire;
     struct wb_wire_progress at;
     double (*shape)[3]; /* (n_shape) workspace */
-    bool slack;         /* the strand carries nothing */
-    double held;        /* m: the deflection at which it would hold the tip */
+    bool slack;         /* the strand carries no force */
+    double held;        /* deflection at which the strand would become taut, m */
 };
 
 static enum wb_status make_mesh(struct wb_wire3d *wire)
@@ -54,8 +54,8 @@ static enum wb_status make_mesh(struct wb_wire3d *wire)
     return wb_solid_mesh_sweep(&wire->mesh, &shape);
 }
 
-/* A plane clamp holds the section's plane, and its centre and turning by the nodes on its axes, so
- * that the section may contract freely. */
+/* A plane clamp holds the section's plane; nodes on the section's axes hold its centre and
+ * rotation, so that the section can contract freely. */
 static int hold_clamp(const struct wb_wire3d *wire, struct wb_solid_support *supports)
 {
     const struct wb_solid_mesh *mesh = &wire->mesh;
@@ -124,7 +124,7 @@ void wb_wire3d_destroy(struct wb_wire3d *wire)
     free(wire);
 }
 
-/* Position of the axis at reference arc length s: quadratic in the element slice that holds it. */
+/* Position of the axis at reference arc length s: quadratic within a slice of elements. */
 static void axis_at(const struct wb_wire3d *wire, double s, double position[3])
 {
     const struct wb_solid_mesh *mesh = &wire->mesh;
@@ -164,7 +164,7 @@ static void add_row(struct run *r, double fraction)
     wb_wire_run_end_row(&r->at, &row, r->slack, (const double(*)[3])r->shape);
 }
 
-/* What wb_solid_move() tells after each increment. */
+/* Called by wb_solid_move() after each increment. */
 static bool observe(void *context, double fraction, int iterations)
 {
     struct run *r = context;
@@ -174,10 +174,10 @@ static bool observe(void *context, double fraction, int iterations)
     wb_solid_tip(r->wire->solid, &tip);
     wb_solid_balance(r->wire->solid, &balance);
     r->wire->sliding = fmax(r->wire->sliding, balance.jacket_contact.sliding);
-    return wb_wire_run_tell(&r->at, tip.frame[0], fraction, iterations);
+    return wb_wire_run_end_increment(&r->at, tip.frame[0], fraction, iterations);
 }
 
-/* One move and what it cost; true when it arrived. */
+/* Makes one move and adds its iterations and cutbacks to the run; true if it converged. */
 static bool move(struct run *r, struct wb_solid_move *move, struct wb_solid_point *point)
 {
     move->observer = observe;
@@ -191,7 +191,7 @@ static bool move(struct run *r, struct wb_solid_move *move, struct wb_solid_poin
     return point->end == WB_SOLID_CONVERGED;
 }
 
-/* The end of a row: what the step wants at `share` of its way from `start`. */
+/* The move to the end of a row: the loads at `share` of the step, which began at `start`. */
 static struct wb_solid_move plan_row(const struct run *r, const struct wb_wire_target *start,
                                      double share)
 {
@@ -211,7 +211,7 @@ static double tip_y(const struct run *r)
     return tip.position[1];
 }
 
-/* Room for another row of a path beside those that are still planned. */
+/* True if there is room for another row of a path in addition to the planned rows. */
 static bool has_room(struct run *r)
 {
     int planned = 0;
@@ -226,14 +226,15 @@ static bool has_room(struct run *r)
     return false;
 }
 
-/* A path past a limit point, on the way of one row. */
+/* A path past a limit point, within one row. */
 struct path {
-    double share;      /* of the way to the row's loads at which it stands */
-    int next_try;      /* to reach them directly */
-    int until_another; /* arcs from a try that failed to the next one; each costs many */
+    double share;       /* fraction of the row's load change reached so far */
+    int next_try;       /* increment at which to try the row's loads directly */
+    int retry_interval; /* increments from a failed attempt to the next; doubles, as each is costly
+                         */
 };
 
-/* Tries to reach the row's loads from where the path stands. */
+/* Tries to reach the row's loads from the current point of the path. */
 static bool reach_from_path(struct run *r, const struct wb_solid_move *row, struct path *path,
                             int arc)
 {
@@ -243,26 +244,26 @@ static bool reach_from_path(struct run *r, const struct wb_solid_move *row, stru
     if (move(r, &rest, &point))
         return true;
     path->share += point.fraction * (1.0 - path->share);
-    path->next_try = arc + path->until_another;
-    path->until_another *= 2;
+    path->next_try = arc + path->retry_interval;
+    path->retry_interval *= 2;
     return false;
 }
 
 /* Follows the path past a limit point of the load, with a row for each increment, until the row's
- * loads can be reached again. `share` of the way to them was made before. */
+ * loads can be reached again. `share` of the load change was completed before. */
 static bool follow_arc(struct run *r, const struct wb_solid_move *row, double from, double to,
                        double share)
 {
-    struct path path = {.share = share, .until_another = 2};
+    struct path path = {.share = share, .retry_interval = 2};
     struct wb_solid_move arc = *row;
     struct wb_solid_point point;
 
     arc.control = WB_SOLID_ARC;
     arc.arc_length = arc_share * r->wire->model->length;
-    for (int i = 0; i < MOST_ARC_INCREMENTS; i++) {
+    for (int i = 0; i < MAX_ARC_INCREMENTS; i++) {
         if (!move(r, &arc, &point))
             return false;
-        /* What is left of the way is an arc's whole. */
+        /* point.fraction is relative to the remaining change of the loads. */
         path.share += point.fraction * (1.0 - path.share);
         add_row(r, fmin(wb_interpolate(from, to, path.share), 0.999999));
         if (r->at.status != WB_OK || r->at.run->stopped)
@@ -272,15 +273,15 @@ static bool follow_arc(struct run *r, const struct wb_solid_move *row, double fr
             return true;
         if (r->at.status != WB_OK || r->at.run->stopped)
             return false;
-        /* Loads that are reached on an unstable branch are never reached in truth. */
+        /* On an unstable branch the row's loads are not an equilibrium of the test: stop. */
         if (path.share >= 1.0 || !has_room(r))
             return false;
     }
     return false;
 }
 
-/* Lets go of a strand that would have to push. */
-static bool let_go(struct run *r, const struct wb_solid_move *row)
+/* Releases a strand that would have to push. */
+static bool release_strand(struct run *r, const struct wb_solid_move *row)
 {
     struct wb_solid_move release = *row;
     struct wb_solid_point point;
@@ -291,7 +292,7 @@ static bool let_go(struct run *r, const struct wb_solid_move *row)
     return move(r, &release, &point);
 }
 
-/* Moves to the end of a row; a slack strand waits until the tip comes to it again. */
+/* Moves to the end of a row; a slack strand stays slack until it becomes taut again. */
 static bool reach_row(struct run *r, struct wb_solid_move *row, double from, double to)
 {
     struct wb_solid_point point = {0};
@@ -302,10 +303,10 @@ static bool reach_row(struct run *r, struct wb_solid_move *row, double from, dou
     r->slack = r->slack && !held && row->target.tension == 0.0;
     if (move(r, row, &point))
         return true;
-    if (point.end == WB_SOLID_SLACK && let_go(r, row))
+    if (point.end == WB_SOLID_SLACK && release_strand(r, row))
         return true;
     snprintf(r->at.run->problem, sizeof r->at.run->problem,
-             "step '%s', row %d (%.3g of the way): %s", r->wire->model->step[r->at.step].name,
+             "step '%s', row %d (%.3g of the row): %s", r->wire->model->step[r->at.step].name,
              r->at.row, point.fraction, point.problem);
     if (r->at.status != WB_OK || r->at.run->stopped || held)
         return false;
@@ -336,7 +337,8 @@ static bool run_step(struct run *r)
     return true;
 }
 
-/* The virgin wire under its weight; a test that begins by a deflection begins at zero. */
+/* Applies the weight to the virgin wire; if the first step prescribes a deflection, at deflection
+ * zero. */
 static bool begin(struct run *r)
 {
     const bool level = r->wire->model->step[0].kind == WB_WIRE_STEP_DEFLECTION;
@@ -346,7 +348,7 @@ static bool begin(struct run *r)
     };
     struct wb_solid_point point = {0};
 
-    if (!move(r, &first, &point) && !(point.end == WB_SOLID_SLACK && let_go(r, &first))) {
+    if (!move(r, &first, &point) && !(point.end == WB_SOLID_SLACK && release_strand(r, &first))) {
         snprintf(r->at.run->problem, sizeof r->at.run->problem, "under its weight: %s",
                  point.problem);
         return false;
@@ -359,7 +361,7 @@ static bool begin(struct run *r)
 static enum wb_status begin_anew(struct wb_wire3d *wire)
 {
     wb_solid_destroy(wire->solid);
-    wire->solid = NULL; /* also after an allocation that fails */
+    wire->solid = NULL; /* NULL even if wb_solid_create() failed */
     wire->sliding = 0.0;
     return make_solid(wire);
 }
@@ -392,7 +394,7 @@ const struct wb_solid_mesh *wb_wire3d_mesh(const struct wb_wire3d *wire)
     return &wire->mesh;
 }
 
-/* Replaces the elements' own values at a node by their mean over the elements of one part. */
+/* Replaces the elements' values at a node by their mean over the elements of one part. */
 static void average_by_part(const struct wb_solid_mesh *mesh, struct wb_wire3d_fields *fields)
 {
     enum {
@@ -420,9 +422,9 @@ static void average_by_part(const struct wb_solid_mesh *mesh, struct wb_wire3d_f
     free(count);
 }
 
-/* What is continued from inside an element to its nodes overshoots where the plastic zone begins:
- * no deviator is left larger than the flow stress of the node's own plastic strain. */
-static void keep_to_law(const struct wb_wire3d *wire, struct wb_wire3d_fields *fields)
+/* Extrapolation from the points inside an element overshoots at the border of the plastic zone:
+ * scale each deviator down to the flow stress of the node's plastic strain. */
+static void limit_to_flow_stress(const struct wb_wire3d *wire, struct wb_wire3d_fields *fields)
 {
     const struct wb_solid_mesh *mesh = &wire->mesh;
 
@@ -456,7 +458,7 @@ void wb_wire3d_fields(const struct wb_wire3d *wire, struct wb_wire3d_fields *fie
     for (int e = 0; e < mesh->n_elements; e++)
         wb_solid_nodal_stress(wire->solid, e, fields->stress[e], fields->plastic[e]);
     average_by_part(mesh, fields);
-    keep_to_law(wire, fields);
+    limit_to_flow_stress(wire, fields);
 }
 
 void wb_wire3d_fields_release(struct wb_wire3d_fields *fields)
@@ -467,7 +469,7 @@ void wb_wire3d_fields_release(struct wb_wire3d_fields *fields)
     *fields = (struct wb_wire3d_fields){0};
 }
 
-/* Of an element's face on the interface, m. */
+/* Shorter side of an element's face on the interface, m. */
 static double shorter_side(const struct wb_wire_model *model)
 {
     const double around = M_PI * model->part[0].outer_diameter / (8 * model->section_density);

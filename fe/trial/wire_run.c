@@ -11,7 +11,7 @@
 #define WB_LOG_DOMAIN "wire run"
 
 enum {
-    MOST_SHAPE = 1000
+    MAX_SHAPE = 1000
 };
 
 int wb_wire_run_planned_rows(const struct wb_wire_model *model)
@@ -26,9 +26,9 @@ enum wb_status wb_wire_run_init(struct wb_wire_run *run, const struct wb_wire_mo
                                 int n_shape)
 {
     *run = (struct wb_wire_run){.converged = true};
-    if (n_shape < 0 || n_shape == 1 || n_shape > MOST_SHAPE)
+    if (n_shape < 0 || n_shape == 1 || n_shape > MAX_SHAPE)
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
-                       n_shape, MOST_SHAPE);
+                       n_shape, MAX_SHAPE);
 
     const size_t rows = (size_t)wb_wire_run_planned_rows(model) + WB_WIRE_RUN_SPARE;
     const size_t n = (size_t)n_shape;
@@ -52,7 +52,7 @@ void wb_wire_run_release(struct wb_wire_run *run)
     *run = (struct wb_wire_run){0};
 }
 
-/* The branch's phase is that of its step, also in rows in which the strand is slack. */
+/* The branch's phase is that of its step, also in rows with a slack strand. */
 static int cycle_of(const struct wb_wire_run *run, const struct wb_wire_model *model, int step)
 {
     if (run->n_rows == 0)
@@ -62,7 +62,7 @@ static int cycle_of(const struct wb_wire_run *run, const struct wb_wire_model *m
     return before->cycle + (begins ? 1 : 0);
 }
 
-/* To the angle's branch nearest to where it was. */
+/* Updates the tip angle to the branch of atan2 nearest to its last value. */
 static void turn_to(struct wb_wire_run *run, const double tangent[3])
 {
     const double angle = atan2(tangent[1], tangent[0]);
@@ -83,7 +83,7 @@ void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
                                                   : WB_PHASE_LOAD;
     turn_to(run, row->tangent);
     out->tip_angle = run->tip_angle;
-    /* A deflection as the first step begins at zero, with the weight on. */
+    /* A deflection as first step begins at zero with the weight applied. */
     if (run->n_rows == 0)
         run->zero_force =
             model->step[0].kind == WB_WIRE_STEP_DEFLECTION ? row->vertical_force : 0.0;
@@ -114,8 +114,8 @@ struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
     return target;
 }
 
-bool wb_wire_run_tell(struct wb_wire_progress *p, const double tangent[3], double fraction,
-                      int iterations)
+bool wb_wire_run_end_increment(struct wb_wire_progress *p, const double tangent[3], double fraction,
+                               int iterations)
 {
     const double done = (p->run->n_rows + fraction) / wb_wire_run_planned_rows(p->model);
     const double of_step = (p->row - 1 + fraction) / p->model->step[p->step].rows;

@@ -1,11 +1,11 @@
-/* Counts the library's allocations, and lets one fail: the linker sends them here (--wrap). */
+/* Counts the library's allocations and makes one fail: the linker redirects them here (--wrap). */
 #ifndef WB_TESTS_FE_ALLOCATIONS_H
 #define WB_TESTS_FE_ALLOCATIONS_H
 
 #include <stdlib.h>
 
 static int allocations;
-static int fail_at; /* the allocation that fails, from 1; 0: none */
+static int fail_at; /* number of the allocation that fails, from 1; 0: none */
 
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t n, size_t size);

@@ -52,7 +52,7 @@ static inline struct computed *begin_from_file(const char *name)
     return c;
 }
 
-/* One part of one material; steps are the caller's. */
+/* One part of one material; the caller adds the steps. */
 static inline struct computed *begin_rod(double length, double diameter,
                                          struct wb_material material, int elements_along)
 {

@@ -4,7 +4,7 @@
 
 #include "tests/fe/rod/wires.h"
 
-/* A slender elastic wire, so that stretch and shear do not show: E A L^2 / E I = 4e6. */
+/* A slender elastic wire, so that extension and shear are negligible: E A L^2 / E I = 4e6. */
 static const double length = 0.1, diameter = 0.2e-3, youngs_modulus = 5e9;
 
 static double bending_stiffness(void)
@@ -124,7 +124,7 @@ static void end_moment_rolls_the_wire_into_a_circle(void **unused)
     assert_close(p.tip_x, 0.0, 1e-5 * length);
     assert_close(p.deflection, 0.0, 1e-5 * length);
     assert_close(p.tip_angle, 2.0 * M_PI, 1e-6);
-    /* Everywhere it is on the circle, at the middle nodes too; the highest point is L / pi up. */
+    /* All nodes are on the circle, including middle nodes; the highest point is at L / pi. */
     const double radius = 0.5 * length / M_PI;
     for (int i = 0; i <= 100; i++) {
         const double s = 0.01 * i * length, turn = 2.0 * M_PI * 0.01 * i;
@@ -162,7 +162,7 @@ static void prager_and_hodge_cantilever_up_to_collapse(void **unused)
 {
     (void)unused;
     /* Perfectly plastic rectangle (Prager and Hodge 1951). Small displacements: the numbers are
-     * chosen so that the deflection is 1e-3 L. */
+     * chosen for a deflection of 1e-3 L. */
     enum {
         STRIPS = 200
     };
@@ -201,7 +201,7 @@ static void prager_and_hodge_cantilever_up_to_collapse(void **unused)
     wb_cantilever_destroy(c);
 }
 
-static void overload_of_a_perfectly_plastic_wire_says_not_converged(void **unused)
+static void overload_of_a_perfectly_plastic_wire_does_not_converge(void **unused)
 {
     (void)unused;
     struct test_wire wire = test_wire_type(1);
@@ -211,7 +211,7 @@ static void overload_of_a_perfectly_plastic_wire_says_not_converged(void **unuse
     const double R = 0.5 * wire.diameter;
     const double moment = 4.0 / 3.0 * wire.material.yield_stress * R * R * R;
 
-    /* More end moment than the plastic moment: no equilibrium. The state stays below it. */
+    /* An end moment above the plastic moment: no equilibrium. The state stays below it. */
     assert_int_equal(wb_cantilever_move(rig.cantilever, WB_CONTROL_TIP_MOMENT, 1.2 * moment, &p),
                      WB_OK);
     assert_int_equal(p.end, WB_CANTILEVER_NOT_CONVERGED);
@@ -224,7 +224,7 @@ static void overload_of_a_perfectly_plastic_wire_says_not_converged(void **unuse
     release_rig(&rig);
 }
 
-static void closed_cycle_costs_work_only_when_plastic(void **unused)
+static void closed_cycle_dissipates_only_when_plastic(void **unused)
 {
     (void)unused;
     for (int plastic = 0; plastic < 2; plastic++) {
@@ -273,7 +273,7 @@ static void same_moves_give_the_same_bits(void **unused)
     release_rig(&two);
 }
 
-static void trial_move_can_be_taken_back(void **unused)
+static void trial_move_can_be_undone(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(1);
@@ -289,7 +289,7 @@ static void trial_move_can_be_taken_back(void **unused)
     release_rig(&rig);
 }
 
-static void exchanged_material_acts_like_a_new_wire(void **unused)
+static void replaced_material_acts_like_a_new_wire(void **unused)
 {
     (void)unused;
     struct test_wire wire = test_wire_type(1), other = wire;
@@ -316,7 +316,7 @@ static void count_message(void *context, enum wb_log_level level, const char *do
     messages++;
 }
 
-static void refuses(const struct wb_cantilever_model *model)
+static void assert_rejected(const struct wb_cantilever_model *model)
 {
     struct wb_cantilever *c = NULL;
     const int before = messages;
@@ -331,7 +331,7 @@ static double broken_curvature(void *context, double s)
     return s > 0.05 ? (double)NAN : 0.0;
 }
 
-static void models_and_moves_that_make_no_sense_are_refused(void **unused)
+static void invalid_models_and_moves_are_rejected(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(1);
@@ -350,7 +350,7 @@ static void models_and_moves_that_make_no_sense_are_refused(void **unused)
         m.has_rest = i == 5; /* without a strand */
         m.gravity_x = i == 6 ? (double)INFINITY : 0.0;
         m.natural_curvature = i == 7 ? broken_curvature : NULL;
-        refuses(&m);
+        assert_rejected(&m);
     }
     assert_int_equal(wb_cantilever_move(rig.cantilever, WB_CONTROL_STAGE, 0.01, &p),
                      WB_ERR_ARGUMENT);
@@ -361,7 +361,7 @@ static void models_and_moves_that_make_no_sense_are_refused(void **unused)
 }
 
 /* A Zener wire held at a small deflection: the force decays to the relaxed wire's, in one step as
- * in the sub-steps that a strong bend needs. */
+ * well as in the sub-steps of a strong bend. */
 static void a_held_tip_relaxes_exponentially(void **unused)
 {
     (void)unused;
@@ -390,7 +390,7 @@ static void a_held_tip_relaxes_exponentially(void **unused)
     force = test_move(c, WB_CONTROL_DEFLECTION, delta).tension;
     assert_close_relative(force, stiffness * delta, 1e-5);
 
-    /* The time of a long move is that of its parts. */
+    /* The duration of a long move is the sum of those of its sub-steps. */
     double forces[2];
     for (int i = 0; i < 2; i++) {
         const int n = i == 0 ? 1 : 40;
@@ -413,13 +413,13 @@ int main(void)
         cmocka_unit_test(end_moment_rolls_the_wire_into_a_circle),
         cmocka_unit_test(force_converges_with_fourth_order),
         cmocka_unit_test(prager_and_hodge_cantilever_up_to_collapse),
-        cmocka_unit_test(overload_of_a_perfectly_plastic_wire_says_not_converged),
-        cmocka_unit_test(closed_cycle_costs_work_only_when_plastic),
+        cmocka_unit_test(overload_of_a_perfectly_plastic_wire_does_not_converge),
+        cmocka_unit_test(closed_cycle_dissipates_only_when_plastic),
         cmocka_unit_test(same_moves_give_the_same_bits),
-        cmocka_unit_test(trial_move_can_be_taken_back),
+        cmocka_unit_test(trial_move_can_be_undone),
         cmocka_unit_test(a_held_tip_relaxes_exponentially),
-        cmocka_unit_test(exchanged_material_acts_like_a_new_wire),
-        cmocka_unit_test(models_and_moves_that_make_no_sense_are_refused),
+        cmocka_unit_test(replaced_material_acts_like_a_new_wire),
+        cmocka_unit_test(invalid_models_and_moves_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
-/* A cantilever that is bent beyond yield and let go, against a shooting solution: the inextensible
+/* A cantilever bent beyond yield and released, compared with a shooting solution: the inextensible
  * elastica under a vertical dead force, whose curvature follows from the moment by the closed form
- * of parallel parts and Masing's rule, point by point of the wire. */
+ * of parallel parts and Masing's rule, at each point of the wire. */
 #include <stdlib.h>
 
 #include "fe/material/law.h"
@@ -11,14 +11,14 @@
 #define LENGTH 0.085
 
 enum {
-    FINE = 800, /* steps of the loading; the unloading needs its moments at half its own steps */
+    FINE = 800, /* steps of the loading; unloading needs its moments at half of its own steps */
     COARSE = FINE / 2
 };
 
 static const struct wb_law_part parts[] = {
     {2.5e9, 2e-4}, {1.5e9, 8e-4}, {0.8e9, 3e-3}, {0.5e9, 9e-3}, {0.3e9, (double)INFINITY}};
 
-/* Moment of a first loading and its slope. */
+/* Moment of a monotonic loading and its slope. */
 static double moment(double kappa, double *slope)
 {
     const double R = 0.5 * DIAMETER;
@@ -37,7 +37,7 @@ static double moment(double kappa, double *slope)
     return M;
 }
 
-/* Curvature of a first loading, of either sign. */
+/* Curvature of a monotonic loading, of either sign. */
 static double curvature(double M)
 {
     double slope, kappa = 1.0;
@@ -52,11 +52,11 @@ static double curvature(double M)
     return copysign(kappa, M);
 }
 
-/* The wire at a force; `largest` NULL: a first loading. */
+/* The wire at a force; `largest` NULL: monotonic loading. */
 struct shot {
     int n;
-    const double *largest; /* (2 n + 1) moments of the turn */
-    double force, tip;     /* N, m: x of the tip that is aimed at */
+    const double *largest; /* (2 n + 1) moments at the reversal */
+    double force, tip;     /* N; m: x of the tip to find */
     double x[FINE + 1], y[FINE + 1], moment[FINE + 1];
 };
 
@@ -69,7 +69,7 @@ static double curvature_at(const struct shot *shot, int half, double x)
     return curvature(top) - 2.0 * curvature(0.5 * (top - M));
 }
 
-/* Integrates from the clamp; returns by how much the tip is missed. */
+/* Integrates from the clamp; returns the error of the tip's x. */
 static double shoot(struct shot *shot, double tip)
 {
     const double h = LENGTH / shot->n;
@@ -97,7 +97,7 @@ static double shoot(struct shot *shot, double tip)
 
 static void solve(struct shot *shot)
 {
-    /* A tip that is too far gives too much moment, so that the wire ends short of it. */
+    /* An x that is too large gives too much moment, so that the computed tip is short of it. */
     double low = 0.2 * LENGTH, high = LENGTH;
     for (int i = 0; i < 50; i++) {
         const double middle = 0.5 * (low + high);
@@ -109,7 +109,7 @@ static void solve(struct shot *shot)
     assert_close(shoot(shot, 0.5 * (low + high)), 0.0, 1e-9);
 }
 
-static void bent_and_let_go_as_by_shooting(void **unused)
+static void loading_and_unloading_agree_with_shooting(void **unused)
 {
     (void)unused;
     static struct shot up = {.n = FINE}, down = {.n = COARSE};
@@ -144,8 +144,9 @@ static void bent_and_let_go_as_by_shooting(void **unused)
     wb_section_release(&section);
 }
 
-/* Strand, weight, natural shape and a law of either form: no step may need more than it should. */
-static void all_laws_come_through_cycles_on_a_strand(void **unused)
+/* Strand, weight, natural shape and a law of either form: no step may need more iterations than
+ * allowed. */
+static void all_laws_converge_in_cycles_on_a_strand(void **unused)
 {
     (void)unused;
     const struct wb_material ludwik = {
@@ -188,7 +189,7 @@ static void all_laws_come_through_cycles_on_a_strand(void **unused)
     }
 }
 
-static void laws_and_natural_shape_are_exchanged_without_a_trace(void **unused)
+static void replaced_laws_and_shapes_act_like_new_ones(void **unused)
 {
     (void)unused;
     struct wb_law first, second;
@@ -232,9 +233,9 @@ static void laws_and_natural_shape_are_exchanged_without_a_trace(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bent_and_let_go_as_by_shooting),
-        cmocka_unit_test(all_laws_come_through_cycles_on_a_strand),
-        cmocka_unit_test(laws_and_natural_shape_are_exchanged_without_a_trace),
+        cmocka_unit_test(loading_and_unloading_agree_with_shooting),
+        cmocka_unit_test(all_laws_converge_in_cycles_on_a_strand),
+        cmocka_unit_test(replaced_laws_and_shapes_act_like_new_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,7 +85,7 @@ static void cycles_load_and_unload_and_go_slack(void **unused)
     assert_int_equal(h.rows[40].phase, WB_PHASE_SLACK);
     assert_int_equal(h.rows[41].phase, WB_PHASE_SLACK);
     assert_string_equal(wb_trial_phase_name(h.rows[40].phase), "slack");
-    /* A slack strand's vertical force is zero, so its zeroed force is less than nothing. */
+    /* A slack strand's vertical force is zero, so its zeroed force is negative. */
     assert_close(h.rows[40].force, -h.zero_force, 1e-15);
     wb_loading_steps_release(&h);
     release_rig(&rig);
@@ -111,7 +111,7 @@ static void run_can_be_repeated_after_a_reset(void **unused)
     release_rig(&rig);
 }
 
-static void curve_is_cut_short_where_there_is_no_equilibrium(void **unused)
+static void curve_ends_where_there_is_no_equilibrium(void **unused)
 {
     (void)unused;
     struct test_wire wire = test_wire_type(1);
@@ -172,7 +172,7 @@ static void count_message(void *context, enum wb_log_level level, const char *do
     messages++;
 }
 
-static void plans_that_make_no_sense_are_refused(void **unused)
+static void invalid_plans_are_rejected(void **unused)
 {
     (void)unused;
     const struct wb_loading_steps_plan plans[] = {
@@ -199,9 +199,9 @@ int main(void)
         cmocka_unit_test(one_loading_has_a_row_at_zero_and_one_per_step),
         cmocka_unit_test(cycles_load_and_unload_and_go_slack),
         cmocka_unit_test(run_can_be_repeated_after_a_reset),
-        cmocka_unit_test(curve_is_cut_short_where_there_is_no_equilibrium),
+        cmocka_unit_test(curve_ends_where_there_is_no_equilibrium),
         cmocka_unit_test(stop_ends_the_test),
-        cmocka_unit_test(plans_that_make_no_sense_are_refused),
+        cmocka_unit_test(invalid_plans_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

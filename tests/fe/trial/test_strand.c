@@ -1,4 +1,5 @@
-/* The cantilever under its strand: direction of the pull, going slack and taut, the rest. */
+/* The cantilever under its strand: direction of the tension, transitions to slack and taut, the
+ * rest. */
 #include "fe/trial/cantilever.h"
 
 #include "tests/fe/rod/wires.h"
@@ -12,7 +13,7 @@ struct rig {
     struct wb_cantilever *cantilever;
 };
 
-/* Type 1 without weight; the test changes rig.model and then makes the cantilever. */
+/* Type 1 without weight; the test changes rig.model and then creates the cantilever. */
 static void begin(struct rig *rig, int type)
 {
     rig->wire = test_wire_type(type);
@@ -35,14 +36,14 @@ static void end(struct rig *rig)
     wb_section_release(&rig->section);
 }
 
-/* Stage travel at which a strand to this tip is just straight. */
+/* Stage travel at which a strand to this tip is just taut. */
 static double reach(const struct wb_cantilever_point *p)
 {
     const double aside = wire_length - p->tip_x;
     return p->deflection - strand_length + sqrt(strand_length * strand_length - aside * aside);
 }
 
-static void pull_points_to_the_strands_upper_end(void **unused)
+static void tension_acts_towards_the_strands_upper_end(void **unused)
 {
     (void)unused;
     struct rig rig;
@@ -54,7 +55,7 @@ static void pull_points_to_the_strands_upper_end(void **unused)
         const double sine = (wire_length - p.tip_x) / strand_length;
         const double x = p.tension * sine, y = p.tension * sqrt(1.0 - sine * sine);
         assert_close(p.vertical_force, y, 1e-14);
-        /* Moments about the clamp: the forces that the wire feels are these. */
+        /* Moments about the clamp: checks the forces that act on the wire. */
         assert_close(p.root_moment, y * p.tip_x - x * p.deflection, 1e-9 * (1e-6 + p.root_moment));
         assert_false(p.slack);
     }
@@ -88,10 +89,11 @@ static void stage_and_deflection_control_agree(void **unused)
     end(&two);
 }
 
-static void short_strand_does_not_slow_newton_down(void **unused)
+static void short_strand_needs_no_more_iterations(void **unused)
 {
     (void)unused;
-    /* A strand of 60 mm leans by 20 degrees: without its derivatives Newton would crawl. */
+    /* A strand of 60 mm inclines by 20 degrees: without its derivatives Newton's method would be
+     * slow. */
     for (int control = WB_CONTROL_DEFLECTION; control <= WB_CONTROL_STAGE; control++) {
         struct rig rig;
         begin(&rig, 1);
@@ -112,7 +114,7 @@ static void short_strand_does_not_slow_newton_down(void **unused)
     }
 }
 
-static void counterweight_and_weight_hang_on_the_strand(void **unused)
+static void strand_carries_counterweight_and_weight(void **unused)
 {
     (void)unused;
     struct rig rig;
@@ -162,7 +164,7 @@ static void unloading_ends_slack_where_the_tip_is_free(void **unused)
         }
         assert_true(slack > 10);
 
-        /* The same wire, pushed up by the same and let go, ends at the same place. */
+        /* The same wire, pushed up by the same amount and released, ends at the same position. */
         test_move(free_end.cantilever, WB_CONTROL_DEFLECTION, 0.053);
         const struct wb_cantilever_point q =
             test_move(free_end.cantilever, WB_CONTROL_DEAD_FORCE, 0.0);
@@ -198,7 +200,7 @@ static void strand_is_taut_again_where_the_free_tip_is(void **unused)
         assert_true(p.slack);
         rest[cycle] = p.deflection;
     }
-    /* Isotropic hardening: reloading is elastic and finds the same curve's end. */
+    /* Isotropic hardening: reloading is elastic up to the end of the same curve. */
     assert_close_relative(top[1], top[0], 1e-3);
     assert_close_relative(top[2], top[1], 1e-4);
     assert_close(rest[2], rest[1], 0.02 * WB_MM);
@@ -279,9 +281,9 @@ static void lowered_tip_lies_on_the_rest(void **unused)
             assert_close(p.deflection, rig.model.rest_level, 1e-10);
         }
     }
-    /* Up again: slack until the strand reaches the tip, then the tension rises from zero while the
-     * tip still rests (within less than a nanometre of travel), then it lifts off. Very fine steps
-     * through the event. */
+    /* Up again: slack until the strand becomes taut, then the tension increases from zero while the
+     * tip is still on the rest (within less than a nanometre of travel), then it lifts off. Very
+     * fine steps through the event. */
     p = test_move(rig.cantilever, WB_CONTROL_STAGE, -0.0025);
     const double lift = reach(&p);
     assert_true(p.slack && p.resting && lift > -0.0025);
@@ -298,7 +300,7 @@ static void lowered_tip_lies_on_the_rest(void **unused)
     end(&rig);
 }
 
-static void rest_wins_over_a_deflection_below_it(void **unused)
+static void rest_limits_a_deflection_below_it(void **unused)
 {
     (void)unused;
     struct rig rig;
@@ -321,9 +323,9 @@ static void rest_wins_over_a_deflection_below_it(void **unused)
     end(&rig);
 }
 
-/* Whatever is moved, the inequalities hold: the strand only pulls and does not stretch, the tip is
+/* For any motion the inequalities hold: the strand only pulls and does not extend, and the tip is
  * not below the rest. */
-static void random_tests_obey_the_inequalities(void **unused)
+static void random_tests_satisfy_the_inequalities(void **unused)
 {
     (void)unused;
     uint64_t random = 123456789;
@@ -368,14 +370,14 @@ static void drop_message(void *context, enum wb_log_level level, const char *dom
     (void)message;
 }
 
-/* A leader on the stage, with a rest, past where the strand goes slack and the tip lies down: a
- * follower that is a little stiffer goes as it goes alone, to second order in what they differ by.
- */
-static void a_follower_goes_as_it_goes_alone(void **unused)
+/* A leader on the stage, with a rest, beyond the point where the strand becomes slack and the tip
+ * lies on the rest: a slightly stiffer follower moves as it would alone, to second order in the
+ * difference between the two. */
+static void a_follower_moves_as_it_would_alone(void **unused)
 {
     (void)unused;
     const double stiffer = 1e-3, offset = 1e-5;
-    struct rig rigs[3]; /* leader, follower, and the follower by itself */
+    struct rig rigs[3]; /* leader, follower, and the follower alone */
     double squares = 0.0, missed = 0.0;
     int slack = 0, resting = 0;
     for (int i = 0; i < 3; i++) {
@@ -438,18 +440,18 @@ static void force_control_and_a_strand_exclude_each_other(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pull_points_to_the_strands_upper_end),
+        cmocka_unit_test(tension_acts_towards_the_strands_upper_end),
         cmocka_unit_test(stage_and_deflection_control_agree),
-        cmocka_unit_test(short_strand_does_not_slow_newton_down),
-        cmocka_unit_test(counterweight_and_weight_hang_on_the_strand),
+        cmocka_unit_test(short_strand_needs_no_more_iterations),
+        cmocka_unit_test(strand_carries_counterweight_and_weight),
         cmocka_unit_test(unloading_ends_slack_where_the_tip_is_free),
         cmocka_unit_test(strand_is_taut_again_where_the_free_tip_is),
         cmocka_unit_test(slack_does_not_depend_on_the_steps),
         cmocka_unit_test(bow_decides_whether_the_virgin_strand_is_slack),
         cmocka_unit_test(lowered_tip_lies_on_the_rest),
-        cmocka_unit_test(rest_wins_over_a_deflection_below_it),
-        cmocka_unit_test(random_tests_obey_the_inequalities),
-        cmocka_unit_test(a_follower_goes_as_it_goes_alone),
+        cmocka_unit_test(rest_limits_a_deflection_below_it),
+        cmocka_unit_test(random_tests_satisfy_the_inequalities),
+        cmocka_unit_test(a_follower_moves_as_it_would_alone),
         cmocka_unit_test(force_control_and_a_strand_exclude_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

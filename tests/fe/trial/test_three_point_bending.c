@@ -5,7 +5,7 @@
 #include "tests/fe/rod/wires.h"
 #include "tests/fe/trial/three_point_shooting.h"
 
-/* An elastic wire on a bench like the ones of the shared tests, in round numbers. */
+/* An elastic wire on a bench similar to those of the shared tests, in round numbers. */
 static const double modulus = 5e9, diameter = 1e-3, span = 40e-3;
 
 static struct wb_section elastic_section(double shear_factor)
@@ -51,7 +51,7 @@ static struct wb_three_point_bending *create(const struct wb_three_point_bending
     return bending;
 }
 
-/* Moves and insists on convergence. */
+/* Moves; fails if it does not converge. */
 static struct wb_three_point_bending_point move(struct wb_three_point_bending *bending,
                                                 double deflection)
 {
@@ -86,9 +86,9 @@ static double constant(void *context, double from_middle)
     return *(const double *)context;
 }
 
-/* Slopes at the roller up to where the deflection is a third of the span, each compared in force
- * and draw-in, from where the friction has turned to that of a wire which is drawn in; returns how
- * many contacts of which kind were compared. */
+/* Compares points up to a deflection of a third of the span in force and draw-in with shooting,
+ * starting where friction has the direction of a wire being drawn in; counts the compared contacts
+ * of each kind. */
 struct compared {
     int points, wrapped, two_lines;
     double deepest; /* over the span */
@@ -121,7 +121,8 @@ static struct compared compare(struct wb_three_point_bending_model *model, struc
             u[2] = 0.02;
             found = shoot(p, rest + 0.02 * i, contact, u, &shot);
         }
-        /* Two lines for a wire that is stiff in shear only: see shooting_miss(). */
+        /* Only for a wire with high shear stiffness there are two lines of contact: see
+         * shooting_miss(). */
         if (found && contact == SHOOTING_WRAPPED && shot.axial < 0.0 && p->GA > p->EA) {
             contact = SHOOTING_TWO_LINES;
             u[3] = shot.alpha * rn / p->span;
@@ -155,7 +156,7 @@ static struct compared compare(struct wb_three_point_bending_model *model, struc
     return compared;
 }
 
-static void large_deflection_and_wandering_contacts_match_shooting(void **unused)
+static void large_deflection_and_moving_contacts_match_shooting(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
@@ -175,7 +176,7 @@ static void large_deflection_and_wandering_contacts_match_shooting(void **unused
     wb_section_release(&section);
 }
 
-/* A nose so large that the wire lies on it along two thirds of a radian and more. */
+/* A nose so large that the wire lies on it over two thirds of a radian and more. */
 static void wrapping_matches_shooting(void **unused)
 {
     (void)unused;
@@ -189,10 +190,10 @@ static void wrapping_matches_shooting(void **unused)
         struct shooting p = same(&model);
         const struct compared c = compare(&model, &p, 0.0, 1e-3);
         assert_true(c.wrapped + c.two_lines >= 20);
-        /* Friction pulls the wire on to the nose; without, it springs off. */
+        /* Friction pulls the wire onto the nose; without it, the wire lifts off. */
         assert_true(i == 2 ? c.wrapped >= 20 : c.two_lines >= 20);
     }
-    /* With the shear stiffness of a wire the contact is smeared over some (EI / GA)^1/2. */
+    /* With the shear stiffness of a wire the contact extends over about (EI / GA)^1/2. */
     struct wb_three_point_bending_model model = bench(&plain);
     model.nose_radius = 18e-3;
     model.friction = 0.6;
@@ -237,7 +238,7 @@ static void elastoplastic_wire_matches_shooting(void **unused)
     struct wb_law law;
     wb_law_init_ludwik(&law, &wire.material);
     struct wb_section section;
-    /* Strips enough that the section is as good as exact. */
+    /* Enough strips for a practically exact section. */
     assert_int_equal(wb_section_init_circle(&section, wire.diameter, &wire.material, 80), WB_OK);
     static struct table table = {.most = 500.0};
     for (int i = 0; i <= TABLE; i++) {
@@ -275,7 +276,7 @@ enum {
     PATH = sizeof path / sizeof *path
 };
 
-static void half_is_a_twin_of_the_whole(void **unused)
+static void half_model_agrees_with_the_whole(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(2);
@@ -349,7 +350,7 @@ static void mirrored_bow_gives_the_mirrored_test(void **unused)
     wb_section_release(&section);
 }
 
-static void work_of_the_nose_is_stored_or_used_up(void **unused)
+static void work_of_the_nose_is_stored_or_dissipated(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(2);
@@ -374,7 +375,7 @@ static void work_of_the_nose_is_stored_or_used_up(void **unused)
     wb_section_release(&section);
 }
 
-static void elastic_wire_without_friction_comes_back_on_itself(void **unused)
+static void elastic_wire_without_friction_is_reversible(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
@@ -394,7 +395,7 @@ static void elastic_wire_without_friction_comes_back_on_itself(void **unused)
     wb_section_release(&section);
 }
 
-static void bent_wire_stays_bent_and_is_met_there_again(void **unused)
+static void bent_wire_stays_bent_and_is_touched_there_again(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(2);
@@ -422,7 +423,7 @@ static void bent_wire_stays_bent_and_is_met_there_again(void **unused)
     wb_section_release(&section);
 }
 
-static void compliance_adds_to_the_travel_alone(void **unused)
+static void compliance_only_adds_to_the_travel(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
@@ -436,7 +437,7 @@ static void compliance_adds_to_the_travel_alone(void **unused)
     wb_section_release(&section);
 }
 
-static void end_of_the_test_is_said(void **unused)
+static void end_of_the_test_is_reported(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
@@ -461,7 +462,7 @@ static void end_of_the_test_is_said(void **unused)
     wb_section_release(&section);
 }
 
-static void model_that_is_no_test_is_refused(void **unused)
+static void invalid_model_is_rejected(void **unused)
 {
     (void)unused;
     struct wb_section section = elastic_section(1.0);
@@ -507,17 +508,17 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_deflection_is_F_L3_over_48_EI),
-        cmocka_unit_test(large_deflection_and_wandering_contacts_match_shooting),
+        cmocka_unit_test(large_deflection_and_moving_contacts_match_shooting),
         cmocka_unit_test(wrapping_matches_shooting),
         cmocka_unit_test(elastoplastic_wire_matches_shooting),
-        cmocka_unit_test(half_is_a_twin_of_the_whole),
+        cmocka_unit_test(half_model_agrees_with_the_whole),
         cmocka_unit_test(mirrored_bow_gives_the_mirrored_test),
-        cmocka_unit_test(work_of_the_nose_is_stored_or_used_up),
-        cmocka_unit_test(elastic_wire_without_friction_comes_back_on_itself),
-        cmocka_unit_test(bent_wire_stays_bent_and_is_met_there_again),
-        cmocka_unit_test(compliance_adds_to_the_travel_alone),
-        cmocka_unit_test(end_of_the_test_is_said),
-        cmocka_unit_test(model_that_is_no_test_is_refused),
+        cmocka_unit_test(work_of_the_nose_is_stored_or_dissipated),
+        cmocka_unit_test(elastic_wire_without_friction_is_reversible),
+        cmocka_unit_test(bent_wire_stays_bent_and_is_touched_there_again),
+        cmocka_unit_test(compliance_only_adds_to_the_travel),
+        cmocka_unit_test(end_of_the_test_is_reported),
+        cmocka_unit_test(invalid_model_is_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,7 +36,7 @@ static void make_type3(int n_steps)
     }
 }
 
-/* What a test holds of a computed wire. */
+/* A computed wire and its run. */
 struct computed {
     struct wb_wire1d *wire;
     struct wb_wire_run run;
@@ -97,7 +97,7 @@ static void solid_cylinder_gives_force_and_residual_deflection(void **unused)
     print_message("53 mm: %.6f N; released: %.4f mm; %d increments, %d iterations, %.0f ms\n",
                   top->tension, end->tip[1] / WB_MM, c.run.increments, c.run.iterations,
                   1e3 * c.cpu);
-    /* The predictor leaves two or three iterations to an increment. */
+    /* With extrapolation an increment needs two or three iterations. */
     assert_true(c.run.iterations < 3 * c.run.increments);
     assert_close(top->tip[1], 0.053, 1e-9);
     assert_close_relative(top->tension, 0.155210, 1e-3);
@@ -163,7 +163,7 @@ static void elastic_follower_has_its_tip_and_outer_stress(void **unused)
         assert_close(f->shear, 0.0, 1e3);
     }
     print_message("outer stress one diameter from the clamp: %.1f MPa\n", outer / 1e6);
-    /* The section is that of the nearest point, up to 0.6 mm aside. */
+    /* The section is that of the nearest point, up to 0.6 mm away. */
     assert_close_relative(moment, 24.0 * lever, 7e-3);
     assert_close_relative(outer, 68.2e9 * kappa * 1.63e-3, 1e-2);
     for (int a = 0; a < 3; a++) {
@@ -178,7 +178,7 @@ static void elastic_follower_has_its_tip_and_outer_stress(void **unused)
     release(&c);
 }
 
-static void paper_histories_run_through(void **unused)
+static void paper_histories_converge(void **unused)
 {
     (void)unused;
     static const char *names[] = {"follower-8awg", "residual-1-8awg", "residual-2-8awg"};
@@ -192,7 +192,7 @@ static void paper_histories_run_through(void **unused)
                       names[i], row->tip[0] / WB_MM, row->tip[1] / WB_MM, row->tip[2] / WB_MM,
                       row->tip_angle * 180.0 / M_PI, c.run.increments, c.run.iterations,
                       1e3 * c.cpu);
-        /* It curls up far, past a right angle: continued, the angle only grows. */
+        /* It curls far beyond a right angle: the continuous angle only increases. */
         assert_true(row->tip_angle > 2.4 && row->tip_angle < 3.2);
         assert_close(row->loads.follower[1], 24.0, 0.0);
         for (int k = 0; k < 3; k++) {
@@ -200,7 +200,8 @@ static void paper_histories_run_through(void **unused)
             assert_close(row->loads.moment[k], 0.0, 0.0);
         }
         if (i > 0) {
-            /* After force and moment in space: out of the plane, and residually so. */
+            /* After force and moment in space: deflected out of the plane, with a residual
+             * deflection. */
             const struct wb_wire_row *moment = &c.run.rows[10], *free_end = &c.run.rows[15];
             assert_close(moment->loads.moment[2], i == 1 ? 0.2 : 0.5, 0.0);
             assert_close(moment->loads.force[2], i == 1 ? 5.0 : 3.0, 0.0);
@@ -236,7 +237,7 @@ static void longer_increments_change_little(void **unused)
     assert_true(hypot(tip[0][1], tip[0][2]) > 4e-4);
 }
 
-static void strand_goes_slack_and_comes_back(void **unused)
+static void strand_becomes_slack_and_taut_again(void **unused)
 {
     (void)unused;
     make_type3(3);
@@ -291,7 +292,7 @@ static void strand_goes_slack_and_comes_back(void **unused)
     release(&c);
 }
 
-static void a_limit_load_ends_the_steps_with_its_rows_kept(void **unused)
+static void rows_before_a_limit_load_are_kept(void **unused)
 {
     (void)unused;
     make_type3(2);
@@ -314,7 +315,7 @@ static void a_limit_load_ends_the_steps_with_its_rows_kept(void **unused)
     release(&c);
 }
 
-struct told {
+struct observed {
     int increments, rows, last_rows, stop_after;
     double done, fraction;
     bool grows;
@@ -323,22 +324,22 @@ struct told {
 static bool on_increment(void *context, const struct wb_wire_run *run, int step, double fraction,
                          int iterations, double done)
 {
-    struct told *told = context;
+    struct observed *observed = context;
     (void)run, (void)iterations;
-    told->increments++;
-    told->grows = told->grows && done >= told->done && done <= 1.0;
-    told->grows = told->grows && fraction >= 0.0 && fraction <= 1.0 && step < model.n_steps;
-    told->done = done;
-    told->fraction = fraction;
-    return told->increments != told->stop_after;
+    observed->increments++;
+    observed->grows = observed->grows && done >= observed->done && done <= 1.0;
+    observed->grows = observed->grows && fraction >= 0.0 && fraction <= 1.0 && step < model.n_steps;
+    observed->done = done;
+    observed->fraction = fraction;
+    return observed->increments != observed->stop_after;
 }
 
 static enum wb_status on_row(void *context, const struct wb_wire_run *run, bool last)
 {
-    struct told *told = context;
-    told->rows++;
-    told->last_rows += last;
-    return run->n_rows == told->rows ? WB_OK : WB_ERR_DATA;
+    struct observed *observed = context;
+    observed->rows++;
+    observed->last_rows += last;
+    return run->n_rows == observed->rows ? WB_OK : WB_ERR_DATA;
 }
 
 static void a_strut_ends_before_it_buckles(void **unused)
@@ -360,7 +361,7 @@ static void a_strut_ends_before_it_buckles(void **unused)
     assert_non_null(strstr(c.run.problem, "a limit load or a buckling load"));
     release(&c);
 
-    /* Pulled aside it bends instead. */
+    /* With a lateral load it bends instead. */
     model.step[0].loads.force[1] = 0.1 * P;
     c = compute(NULL, NULL);
     assert_complete(&c);
@@ -368,22 +369,22 @@ static void a_strut_ends_before_it_buckles(void **unused)
     release(&c);
 }
 
-static void observer_is_told_and_can_stop(void **unused)
+static void observer_is_called_and_can_stop(void **unused)
 {
     (void)unused;
-    struct told told = {.grows = true};
-    const struct wb_wire_observer observer = {on_increment, on_row, &told};
+    struct observed observed = {.grows = true};
+    const struct wb_wire_observer observer = {on_increment, on_row, &observed};
     make_type3(2);
     model.step[0].loads.force[2] = 0.1;
     model.step[1].loads.follower[0] = 0.05;
     model.step[1].loads.follower[1] = 0.1;
     struct computed c = compute(&(struct wb_wire1d_settings){10, 4, 8}, &observer);
     assert_complete(&c);
-    assert_int_equal(told.rows, 11);
-    assert_int_equal(told.last_rows, 2);
-    assert_int_equal(told.increments, c.run.increments);
-    assert_true(told.grows);
-    assert_close(told.done, 1.0, 1e-12);
+    assert_int_equal(observed.rows, 11);
+    assert_int_equal(observed.last_rows, 2);
+    assert_int_equal(observed.increments, c.run.increments);
+    assert_true(observed.grows);
+    assert_close(observed.done, 1.0, 1e-12);
     double position[3], frame[3][3];
     wb_wire1d_frame(c.wire, 0.085, position, frame);
     assert_close(last_row(&c)->tension, 0.05 * frame[0][1] + 0.1 * frame[1][1], 1e-12);
@@ -391,17 +392,17 @@ static void observer_is_told_and_can_stop(void **unused)
     assert_true(frame[0][1] > 0.3);
     release(&c);
 
-    told = (struct told){.grows = true, .stop_after = 4};
+    observed = (struct observed){.grows = true, .stop_after = 4};
     c = compute(&(struct wb_wire1d_settings){10, 4, 8}, &observer);
     assert_true(c.run.stopped && c.run.converged);
     assert_int_equal(c.run.increments, 4);
-    assert_int_equal(told.increments, 4);
+    assert_int_equal(observed.increments, 4);
     assert_true(c.run.n_rows < 11);
     assert_string_equal(c.run.problem, "");
     release(&c);
 }
 
-static void a_second_run_begins_anew(void **unused)
+static void a_second_run_starts_from_the_virgin_state(void **unused)
 {
     (void)unused;
     make_type3(1);
@@ -418,7 +419,7 @@ static void a_second_run_begins_anew(void **unused)
     release(&c);
 }
 
-static void what_makes_no_wire_is_refused(void **unused)
+static void invalid_wires_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_wire1d *wire = NULL;
@@ -434,7 +435,7 @@ static void what_makes_no_wire_is_refused(void **unused)
     model.length = -1.0;
     assert_int_equal(wb_wire1d_create(&wire, &model, NULL), WB_ERR_ARGUMENT);
     assert_null(wire);
-    /* A load that is not a number is an error, not a row. */
+    /* A load that is not finite is an error, not a row. */
     make_type3(1);
     model.step[0].loads.force[1] = (double)NAN;
     struct wb_wire_run run;
@@ -452,14 +453,14 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solid_cylinder_gives_force_and_residual_deflection),
         cmocka_unit_test(elastic_follower_has_its_tip_and_outer_stress),
-        cmocka_unit_test(paper_histories_run_through),
+        cmocka_unit_test(paper_histories_converge),
         cmocka_unit_test(longer_increments_change_little),
-        cmocka_unit_test(strand_goes_slack_and_comes_back),
-        cmocka_unit_test(a_limit_load_ends_the_steps_with_its_rows_kept),
+        cmocka_unit_test(strand_becomes_slack_and_taut_again),
+        cmocka_unit_test(rows_before_a_limit_load_are_kept),
         cmocka_unit_test(a_strut_ends_before_it_buckles),
-        cmocka_unit_test(observer_is_told_and_can_stop),
-        cmocka_unit_test(a_second_run_begins_anew),
-        cmocka_unit_test(what_makes_no_wire_is_refused),
+        cmocka_unit_test(observer_is_called_and_can_stop),
+        cmocka_unit_test(a_second_run_starts_from_the_virgin_state),
+        cmocka_unit_test(invalid_wires_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The 3D wire against the 1D beam, the exact rod and the reference tables. */
+/* The 3D wire compared with the 1D beam, the exact rod and the reference tables. */
 #include "tests/fe/trial/computed_wires.h"
 
 #include "base/units.h"
@@ -35,7 +35,7 @@ static double beam_tension(struct rod *rod, double deflection)
     return point.tension;
 }
 
-static void solid_cylinder_follows_the_rod_and_springs_back_like_it(void **state)
+static void solid_cylinder_agrees_with_the_rod_and_its_springback(void **state)
 {
     (void)state;
     struct computed *c = begin_from_file("solid-cylinder-type3");
@@ -68,8 +68,8 @@ static void solid_cylinder_follows_the_rod_and_springs_back_like_it(void **state
     end(c);
 }
 
-/* Plastic work by backward Euler is too large by half an increment's hardening: the gap between
- * work and energies closes with the increments. */
+/* Plastic work by backward Euler is too large by half an increment's hardening: the difference
+ * between work and energies decreases with the increments. */
 static void energies_balance_as_the_increments_shrink(void **state)
 {
     (void)state;
@@ -93,7 +93,7 @@ static void energies_balance_as_the_increments_shrink(void **state)
     assert_true(gap[2] < 0.02);
 }
 
-/* --- elastic wires against closed forms --- */
+/* --- elastic wires and closed forms --- */
 
 static void no_node_is_stressed_beyond_its_flow_stress(void **state)
 {
@@ -160,8 +160,8 @@ static double stress_at(const struct computed *c, double x, double y, double z)
 }
 
 /* One core diameter from the clamp, whose corner is singular. The stress of the rod, E_Cu kappa r,
- * is 696.93 MPa at the root and 675.08 MPa there. Logarithmic strain and Cauchy's stress make it
- * larger on the pressed side than on the pulled one. */
+ * is 696.93 MPa at the root and 675.08 MPa there. With logarithmic strain and Cauchy stress it is
+ * larger on the compressed side than on the tensile one. */
 static void stress_in_the_coppers_outer_fibre_is_that_of_the_rod(void **state)
 {
     (void)state;
@@ -211,7 +211,7 @@ static void contact_with_friction_hardly_changes_the_elastic_wire(void **state)
 }
 
 /* a = F L^2 / EI and x/L, y/L, angle: exact follower solution. */
-static void far_curled_elastic_wire_keeps_to_the_exact_rod(void **state)
+static void strongly_curled_elastic_wire_agrees_with_the_exact_rod(void **state)
 {
     (void)state;
     static const double exact[][4] = {{2.0, 0.767362, 0.573839, 0.968239},
@@ -283,7 +283,7 @@ static void tip_moment_twists_by_torsional_rigidity(void **state)
     end(c);
 }
 
-static void a_force_bends_alike_in_every_direction(void **state)
+static void a_force_bends_equally_in_every_direction(void **state)
 {
     (void)state;
     double way[3];
@@ -323,7 +323,7 @@ static void weight_bends_the_wire_like_a_beam(void **state)
     end(c);
 }
 
-static void strand_pulls_as_in_the_beam_and_goes_slack(void **state)
+static void strand_agrees_with_the_beam_and_becomes_slack(void **state)
 {
     (void)state;
     struct computed *c = begin_rod(85e-3, 1.4e-3, type3, 40);
@@ -379,9 +379,9 @@ static struct computed *begin_column(double along)
     return c;
 }
 
-/* A plastic column sheds load once it has buckled. Beyond the largest load the arc goes on, every
- * point in equilibrium: at its tip's deflection the 1D beam under the same inclined force stands
- * where the column does. */
+/* A plastic column carries less load after buckling. Beyond the largest load the arc continues,
+ * with every point in equilibrium: at its tip's deflection the 1D beam under the same inclined
+ * force has the same position. */
 static void arc_follows_a_plastic_column_past_its_largest_load(void **state)
 {
     (void)state;
@@ -408,7 +408,7 @@ static void arc_follows_a_plastic_column_past_its_largest_load(void **state)
 }
 
 /* Under 1.5 times its critical load an elastic column has a second, nearly straight equilibrium, to
- * which a large increment of Newton's method jumps. It must arrive on the bent one. */
+ * which a large increment of Newton's method jumps. It must converge to the bent one. */
 static void loads_do_not_jump_to_an_unstable_branch(void **state)
 {
     (void)state;
@@ -419,7 +419,7 @@ static void loads_do_not_jump_to_an_unstable_branch(void **state)
     c->model.step[0].loads.force[0] = -1.518 * euler;
     compute(c, NULL);
     assert_true(c->run.converged);
-    /* Elastica: P / P_cr = 1.518 turns the end by 100 degrees (Timoshenko & Gere, table 2-4), and
+    /* Elastica: P / P_cr = 1.518 rotates the end by 100 degrees (Timoshenko & Gere, table 2-4), and
      * its deflection is 0.792 L, its height 0.349 L. */
     assert_close(last_row(c)->tip_angle / WB_DEGREE, 100.0, 1.0);
     assert_close(last_row(c)->tip[1] / 0.04, 0.792, 0.01);
@@ -427,7 +427,7 @@ static void loads_do_not_jump_to_an_unstable_branch(void **state)
     end(c);
 }
 
-static void what_was_reached_is_kept_when_it_does_not_converge(void **state)
+static void completed_rows_are_kept_when_it_does_not_converge(void **state)
 {
     (void)state;
     struct computed *c = begin_rod(0.006, 1.4e-3, type3, 3);
@@ -442,8 +442,7 @@ static void what_was_reached_is_kept_when_it_does_not_converge(void **state)
     assert_true(c->run.n_rows >= 4);
     assert_true(c->run.rows[3].loads.force[0] == 6.0);
     assert_true(strstr(c->run.problem, "step 'pull', row 4") != NULL);
-    /* Past its largest load it becomes thinner somewhere, on any of many paths: not to be pursued
-     * for long. */
+    /* Beyond its largest load it necks, on one of many paths: must not be followed for long. */
     assert_true(c->run.iterations < 1000);
     end(c);
 }
@@ -475,21 +474,21 @@ static void observer_stops_the_run(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(solid_cylinder_follows_the_rod_and_springs_back_like_it),
+        cmocka_unit_test(solid_cylinder_agrees_with_the_rod_and_its_springback),
         cmocka_unit_test(energies_balance_as_the_increments_shrink),
         cmocka_unit_test(no_node_is_stressed_beyond_its_flow_stress),
         cmocka_unit_test(elastic_wire_under_a_follower_force_is_the_exact_rod),
         cmocka_unit_test(stress_in_the_coppers_outer_fibre_is_that_of_the_rod),
         cmocka_unit_test(contact_with_friction_hardly_changes_the_elastic_wire),
-        cmocka_unit_test(far_curled_elastic_wire_keeps_to_the_exact_rod),
+        cmocka_unit_test(strongly_curled_elastic_wire_agrees_with_the_exact_rod),
         cmocka_unit_test(end_moment_rolls_the_wire_up_into_a_circle),
         cmocka_unit_test(tip_moment_twists_by_torsional_rigidity),
-        cmocka_unit_test(a_force_bends_alike_in_every_direction),
+        cmocka_unit_test(a_force_bends_equally_in_every_direction),
         cmocka_unit_test(weight_bends_the_wire_like_a_beam),
-        cmocka_unit_test(strand_pulls_as_in_the_beam_and_goes_slack),
+        cmocka_unit_test(strand_agrees_with_the_beam_and_becomes_slack),
         cmocka_unit_test(arc_follows_a_plastic_column_past_its_largest_load),
         cmocka_unit_test(loads_do_not_jump_to_an_unstable_branch),
-        cmocka_unit_test(what_was_reached_is_kept_when_it_does_not_converge),
+        cmocka_unit_test(completed_rows_are_kept_when_it_does_not_converge),
         cmocka_unit_test(observer_stops_the_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* Wherever memory ends for the 3D wire is an error, and it takes none while it steps. */
+/* Running out of memory anywhere in the 3D wire is an error, and stepping allocates nothing. */
 #include <string.h>
 
 #include "base/memory.h"
@@ -59,7 +59,7 @@ static enum wb_status take_fields(void *context)
     return WB_OK;
 }
 
-/* Lets each allocation of a call fail, until the call succeeds; returns how many it has. */
+/* Lets each allocation of a call fail in turn, until the call succeeds; returns their number. */
 static int fail_everywhere(enum wb_status (*call)(void *context), struct attempt *attempt)
 {
     enum wb_status status;
@@ -75,7 +75,7 @@ static int fail_everywhere(enum wb_status (*call)(void *context), struct attempt
     return n;
 }
 
-static void every_missing_piece_of_memory_is_an_error(void **unused)
+static void every_failed_allocation_is_an_error(void **unused)
 {
     (void)unused;
     wb_log_set_sink(discard_message, NULL);
@@ -86,7 +86,7 @@ static void every_missing_piece_of_memory_is_an_error(void **unused)
         assert_true(fail_everywhere(create, &a) > 29);
         assert_int_equal(fail_everywhere(init_run, &a), 3);
 
-        /* Once more from the virgin state takes a solid's memory, stepping takes none: as much for
+        /* A new run from the virgin state allocates a solid, stepping nothing: the same number for
          * many rows as for one. */
         allocations = 0;
         assert_int_equal(run(&a), WB_OK);
@@ -109,7 +109,7 @@ static void every_missing_piece_of_memory_is_an_error(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_missing_piece_of_memory_is_an_error),
+        cmocka_unit_test(every_failed_allocation_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Paths of computed wires that are easily lost: strands that go slack within a row, arcs past
- * limit points, ends that turn round in one row, loads at the edge of round-off. */
+/* Difficult paths of computed wires: strands that become slack within a row, arcs past limit
+ * points, ends that make full turns in one row, loads near round-off. */
 #include "tests/fe/trial/computed_wires.h"
 
 #include "base/units.h"
@@ -26,7 +26,7 @@ static struct wb_wire_step to_deflection(double deflection, int rows, bool unloa
                                  .unloads = unloads};
 }
 
-/* Rows of the solid against those of the rod: deflection, tension, phase. */
+/* Compares rows of the solid with those of the rod: deflection, tension, phase. */
 static void assert_rows_alike(const struct computed *c, double most_apart)
 {
     struct wb_wire_run rod;
@@ -44,8 +44,9 @@ static void assert_rows_alike(const struct computed *c, double most_apart)
     wb_wire_run_release(&rod);
 }
 
-/* The strand is let go where it carries nothing, however far the row goes on: pushed down and then
- * let go, the wire would keep less. Pulled up again it is taut where it was before. */
+/* The strand is released where its tension becomes zero, for any length of the row: if the wire
+ * were pushed down and then released, its residual deflection would be smaller. Pulled up again,
+ * the strand becomes taut at the same position. */
 static void strand_goes_slack_within_a_long_row(void **state)
 {
     (void)state;
@@ -57,7 +58,7 @@ static void strand_goes_slack_within_a_long_row(void **state)
     c->model.step[1] = to_deflection(0.0, 1, true);
     c->model.step[2] = to_deflection(52e-3, 4, false);
     compute(c, NULL);
-    print_message("let go at %.3f mm\n", c->run.rows[6].tip[1] / WB_MM);
+    print_message("released at %.3f mm\n", c->run.rows[6].tip[1] / WB_MM);
     assert_int_equal(c->run.rows[6].phase, WB_PHASE_SLACK);
     assert_int_equal(c->run.rows[8].phase, WB_PHASE_SLACK);
     assert_int_equal(c->run.rows[9].phase, WB_PHASE_LOAD);
@@ -66,7 +67,7 @@ static void strand_goes_slack_within_a_long_row(void **state)
     end(c);
 }
 
-static void weight_upwards_lifts_the_wire_off_its_strand(void **state)
+static void upward_weight_makes_the_strand_slack(void **state)
 {
     (void)state;
     struct computed *c = begin_rod(85e-3, 1.4e-3, type3, 20);
@@ -86,7 +87,7 @@ static void weight_upwards_lifts_the_wire_off_its_strand(void **state)
     end(c);
 }
 
-static void slack_stays_until_there_is_tension_again(void **state)
+static void slack_lasts_until_there_is_tension_again(void **state)
 {
     (void)state;
     struct computed *c = begin_rod(85e-3, 1.4e-3, type3, 20);
@@ -105,7 +106,7 @@ static void slack_stays_until_there_is_tension_again(void **state)
     end(c);
 }
 
-/* Out of reach the strand's direction is not a number, never a plausible one. */
+/* Beyond the strand's reach its direction is NaN, never a plausible value. */
 static void strand_has_no_direction_beyond_its_reach(void **state)
 {
     (void)state;
@@ -142,7 +143,7 @@ static void tip_angle_counts_whole_turns_within_a_row(void **state)
     end(c);
 }
 
-/* Its deflection is 5 nm; the digits of positions next to it would be lost. */
+/* Its deflection is 5 nm: added to positions, it would lose its digits. */
 static void weight_of_a_short_stiff_wire_is_carried(void **state)
 {
     (void)state;
@@ -165,8 +166,8 @@ static void weight_of_a_short_stiff_wire_is_carried(void **state)
     end(c);
 }
 
-/* A load spread over a section is below the tolerance at each of its nodes long before it is
- * nothing. It must be carried all the same. */
+/* A load distributed over a section is below the tolerance at each of its nodes long before it is
+ * negligible. It must still be carried. */
 static void small_loads_after_large_ones_are_carried(void **state)
 {
     (void)state;
@@ -193,9 +194,9 @@ static bool count_increments(void *context, double fraction, int iterations)
     return true;
 }
 
-/* Next to a critical load what is left of the residual, divided by hardly any stiffness, leads
- * anywhere. The arc must set out along the path, as far as it was told. */
-static void arc_sets_out_along_the_path_next_to_buckling(void **state)
+/* Near a critical load the remaining residual divided by almost zero stiffness is arbitrary. The
+ * arc must start along the path, with its given length. */
+static void arc_starts_along_the_path_near_buckling(void **state)
 {
     (void)state;
     const double length = 0.03, diameter = 1e-3;
@@ -249,7 +250,7 @@ static void arc_sets_out_along_the_path_next_to_buckling(void **state)
     wb_solid_mesh_release(&mesh);
 }
 
-static void a_second_run_begins_anew(void **state)
+static void a_second_run_starts_from_the_virgin_state(void **state)
 {
     (void)state;
     struct computed *c = begin_rod(0.02, 1.4e-3, type3, 4);
@@ -269,9 +270,9 @@ static void a_second_run_begins_anew(void **state)
     end(c);
 }
 
-/* The core of a pulled wire yields, its jacket, half as stiff, does not: the core comes out at the
+/* The core of a pulled wire yields, its jacket, half as stiff, does not: the core slides out at the
  * end, by the difference of both strains over the length, without friction. */
-static void sliding_beyond_what_contact_is_made_for_is_told(void **state)
+static void sliding_beyond_the_limit_of_contact_is_reported(void **state)
 {
     (void)state;
     static const double strains[2] = {0.002, 0.05};
@@ -309,8 +310,8 @@ static void sliding_beyond_what_contact_is_made_for_is_told(void **state)
     }
 }
 
-/* Numbers that are none are refused; NaN in every other unknown hid behind finite ones. */
-static void impossible_solids_are_refused(void **state)
+/* Non-finite input is rejected; NaN in every second unknown would be hidden by finite ones. */
+static void invalid_solids_are_rejected(void **state)
 {
     (void)state;
     static const double none[] = {(double)NAN, (double)INFINITY};
@@ -333,16 +334,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strand_goes_slack_within_a_long_row),
-        cmocka_unit_test(weight_upwards_lifts_the_wire_off_its_strand),
-        cmocka_unit_test(slack_stays_until_there_is_tension_again),
+        cmocka_unit_test(upward_weight_makes_the_strand_slack),
+        cmocka_unit_test(slack_lasts_until_there_is_tension_again),
         cmocka_unit_test(strand_has_no_direction_beyond_its_reach),
         cmocka_unit_test(tip_angle_counts_whole_turns_within_a_row),
         cmocka_unit_test(weight_of_a_short_stiff_wire_is_carried),
         cmocka_unit_test(small_loads_after_large_ones_are_carried),
-        cmocka_unit_test(arc_sets_out_along_the_path_next_to_buckling),
-        cmocka_unit_test(a_second_run_begins_anew),
-        cmocka_unit_test(sliding_beyond_what_contact_is_made_for_is_told),
-        cmocka_unit_test(impossible_solids_are_refused),
+        cmocka_unit_test(arc_starts_along_the_path_near_buckling),
+        cmocka_unit_test(a_second_run_starts_from_the_virgin_state),
+        cmocka_unit_test(sliding_beyond_the_limit_of_contact_is_reported),
+        cmocka_unit_test(invalid_solids_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

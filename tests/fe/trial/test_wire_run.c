@@ -1,4 +1,4 @@
-/* Rows of a computed wire: what wb_wire_run_add() completes. */
+/* Rows of a computed wire: the values that wb_wire_run_add() fills in. */
 #include "tests/check.h"
 
 #include "fe/trial/wire_run.h"
@@ -57,7 +57,7 @@ static void positions_are_equally_spaced_over_the_length(void **state)
     wb_wire_run_release(&run);
 }
 
-static void impossible_numbers_of_positions_are_refused(void **state)
+static void invalid_numbers_of_positions_are_rejected(void **state)
 {
     (void)state;
     static const int refused[] = {-1, 1, 1001};
@@ -99,14 +99,14 @@ static void loading_after_unloading_is_a_new_cycle(void **state)
         assert_int_equal(run.rows[i].phase, rows[i].phase);
         assert_int_equal(run.rows[i].iterations, 3);
     }
-    /* There is room for some more than planned, and then no more. */
+    /* There is room for the spare rows, and no more. */
     for (int i = 0; i <= WB_WIRE_RUN_SPARE; i++)
         add(&run, 3, 0.0, 0.0, false);
     assert_int_equal(run.n_rows, 9 + WB_WIRE_RUN_SPARE);
     wb_wire_run_release(&run);
 }
 
-static void force_of_a_deflection_is_zeroed_at_its_begin(void **state)
+static void force_of_a_deflection_is_zeroed_at_its_start(void **state)
 {
     (void)state;
     struct wb_wire_run run;
@@ -152,7 +152,7 @@ static void force_of_a_follower_is_the_follower(void **state)
     wb_wire_run_release(&run);
 }
 
-static void angle_goes_on_past_pi_in_both_senses(void **state)
+static void angle_continues_past_pi_in_both_directions(void **state)
 {
     (void)state;
     for (int sense = -1; sense <= 1; sense += 2) {
@@ -199,13 +199,13 @@ static void a_target_lies_between_start_and_step(void **state)
     to = wb_wire_run_target(&step, &start, 0.25);
     assert_true(to.is_held);
     assert_close(to.deflection, 0.02, 1e-16);
-    /* The end is the step's own number. */
+    /* The end is exactly the step's own value. */
     step.deflection = 0.1 + 0.2;
     assert_close(wb_wire_run_target(&step, &start, 1.0).deflection, 0.1 + 0.2, 0.0);
 }
 
-/* What an observer was told. */
-struct told {
+/* Arguments of the observer's last call. */
+struct observed {
     int step, iterations, rows;
     double fraction, done;
     bool last;
@@ -214,48 +214,48 @@ struct told {
 static bool note_increment(void *context, const struct wb_wire_run *run, int step, double fraction,
                            int iterations, double done)
 {
-    struct told *told = context;
+    struct observed *observed = context;
     (void)run;
-    told->step = step;
-    told->fraction = fraction;
-    told->iterations = iterations;
-    told->done = done;
+    observed->step = step;
+    observed->fraction = fraction;
+    observed->iterations = iterations;
+    observed->done = done;
     return fraction < 0.9;
 }
 
 static enum wb_status note_row(void *context, const struct wb_wire_run *run, bool last)
 {
-    struct told *told = context;
-    told->rows = run->n_rows;
-    told->last = last;
+    struct observed *observed = context;
+    observed->rows = run->n_rows;
+    observed->last = last;
     return last ? WB_ERR_IO : WB_OK;
 }
 
-static void increments_are_counted_and_told_as_shares_of_the_step(void **state)
+static void increments_are_counted_and_reported_as_fractions_of_the_step(void **state)
 {
     (void)state;
-    struct told told = {0};
+    struct observed observed = {0};
     struct wb_wire_run run;
-    const struct wb_wire_observer observer = {note_increment, note_row, &told};
+    const struct wb_wire_observer observer = {note_increment, note_row, &observed};
     make_model(2);
     assert_int_equal(wb_wire_run_init(&run, &model, 0), WB_OK);
     struct wb_wire_progress at = {.run = &run, .model = &model, .observer = &observer};
 
-    /* Under its weight: no share of a step yet. */
-    assert_true(wb_wire_run_tell(&at, (double[3]){1.0, 0.0, 0.0}, 1.0, 4));
-    assert_close(told.fraction, 0.0, 0.0);
+    /* Under its weight: no fraction of a step yet. */
+    assert_true(wb_wire_run_end_increment(&at, (double[3]){1.0, 0.0, 0.0}, 1.0, 4));
+    assert_close(observed.fraction, 0.0, 0.0);
     struct wb_wire_row row = {.fraction = 0.0, .tangent = {1.0, 0.0, 0.0}};
     wb_wire_run_end_row(&at, &row, false, NULL);
     assert_int_equal(run.rows[0].iterations, 4);
 
     at.step = 1;
     at.row = 2;
-    assert_true(wb_wire_run_tell(&at, (double[3]){0.0, 1.0, 0.0}, 0.5, 3));
-    assert_int_equal(told.step, 1);
-    assert_close(told.fraction, 0.75, 1e-15);
-    assert_close(told.done, 1.5 / 5.0, 1e-15);
+    assert_true(wb_wire_run_end_increment(&at, (double[3]){0.0, 1.0, 0.0}, 0.5, 3));
+    assert_int_equal(observed.step, 1);
+    assert_close(observed.fraction, 0.75, 1e-15);
+    assert_close(observed.done, 1.5 / 5.0, 1e-15);
     assert_close(run.tip_angle, 0.5 * M_PI, 1e-15);
-    assert_false(wb_wire_run_tell(&at, (double[3]){0.0, 1.0, 0.0}, 1.0, 2));
+    assert_false(wb_wire_run_end_increment(&at, (double[3]){0.0, 1.0, 0.0}, 1.0, 2));
     assert_int_equal(run.increments, 3);
 
     row.fraction = 1.0;
@@ -264,7 +264,7 @@ static void increments_are_counted_and_told_as_shares_of_the_step(void **state)
     assert_int_equal(run.rows[1].increments, 2);
     assert_int_equal(run.rows[1].iterations, 5);
     assert_int_equal(at.increments + at.iterations, 0);
-    assert_true(told.last && told.rows == 2);
+    assert_true(observed.last && observed.rows == 2);
     assert_int_equal(at.status, WB_ERR_IO);
     wb_wire_run_release(&run);
 }
@@ -291,14 +291,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(positions_are_equally_spaced_over_the_length),
-        cmocka_unit_test(impossible_numbers_of_positions_are_refused),
+        cmocka_unit_test(invalid_numbers_of_positions_are_rejected),
         cmocka_unit_test(loading_after_unloading_is_a_new_cycle),
-        cmocka_unit_test(force_of_a_deflection_is_zeroed_at_its_begin),
+        cmocka_unit_test(force_of_a_deflection_is_zeroed_at_its_start),
         cmocka_unit_test(force_of_loads_is_not_zeroed),
         cmocka_unit_test(force_of_a_follower_is_the_follower),
-        cmocka_unit_test(angle_goes_on_past_pi_in_both_senses),
+        cmocka_unit_test(angle_continues_past_pi_in_both_directions),
         cmocka_unit_test(a_target_lies_between_start_and_step),
-        cmocka_unit_test(increments_are_counted_and_told_as_shares_of_the_step),
+        cmocka_unit_test(increments_are_counted_and_reported_as_fractions_of_the_step),
         cmocka_unit_test(forces_are_the_tensions_or_the_loads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,15 +1,15 @@
 /* Three-point bending by shooting, for tests: no finite elements, no springs. Half of a wire, from
- * its contact with the right roller back to its middle, or to the nose from which it parts.
+ * its contact with the right roller back to its middle, or to the point where it leaves the nose.
  *
  * Beyond a section only the roller acts: force R = N n + T t and moment T d/2 at the contact, where
- * the wire's slope is phi. So the moment of a section at (x, y) is known,
- * M = T d/2 + (x_c - x) R_y - (y_c - y) R_x, and (x, y, theta) follow from the contact back:
- * theta' = kappa_0 + kappa(M), (x, y)' = (1 + R_t / EA) t + R_n / GA n.
- * For a given phi: N and the arc length s meet x = 0 and theta = 0 in the middle (point contact),
- * or, with the angle alpha at which the wire parts from the nose, x = R_n sin(alpha), theta = alpha
- * and kappa_0 + kappa = 1 / R_n (wrapped; it needs tension in the arc), or, where the arc is
- * pressed together and springs off the nose between two lines of contact, a force normal to the
- * nose at alpha, behind which only an axial force is left, and another arc length to the middle.
+ * the wire's slope is phi. The moment of a section at (x, y) is therefore known, M = T d/2 + (x_c -
+ * x) R_y - (y_c - y) R_x, and (x, y, theta) follow by integration from the contact: theta' =
+ * kappa_0 + kappa(M), (x, y)' = (1 + R_t / EA) t + R_n / GA n. For a given phi there are three
+ * cases. Point contact: N and the arc length s satisfy x = 0 and theta = 0 in the middle. Wrapped,
+ * with tension in the arc: with the angle alpha at which the wire leaves the nose, x = R_n
+ * sin(alpha), theta = alpha and kappa_0 + kappa = 1 / R_n. Two lines of contact, if the arc is
+ * compressed and lifts off the nose between them: a force normal to the nose at alpha, behind which
+ * there is only an axial force, and a second arc length to the middle.
  */
 #ifndef WB_TESTS_FE_TRIAL_THREE_POINT_SHOOTING_H
 #define WB_TESTS_FE_TRIAL_THREE_POINT_SHOOTING_H
@@ -27,8 +27,8 @@ struct shooting {
     double span, diameter, support_radius, nose_radius;
     double friction; /* of a wire that is drawn in */
     double EI, EA, GA;
-    double natural; /* curvature, 1/m; positive hollow upwards */
-    /* Curvature beyond the natural one of a moment; NULL: M / EI. */
+    double natural; /* curvature, 1/m; positive concave upwards */
+    /* Curvature minus the natural one as a function of the moment; NULL: M / EI. */
     double (*curvature)(const void *context, double moment);
     const void *context;
 };
@@ -41,10 +41,10 @@ enum shooting_contact {
 
 struct shot {
     double deflection, force, draw_in; /* of the nose; of the wire over the roller */
-    double moment;                     /* where the wire parts from the nose, N m */
-    double axial;                      /* the same, N; positive is tension */
+    double moment;                     /* where the wire leaves the nose, N m */
+    double axial;                      /* at the same point, N; positive is tension */
     double alpha;                      /* 0: a point contact */
-    double gap;                        /* of two lines of contact: between nose and middle, m */
+    double gap;                        /* for two lines of contact: between nose and middle, m */
 };
 
 /* x, y, theta */
@@ -60,8 +60,8 @@ static inline void shooting_slope(const struct shooting *p, const double end[3],
     slope[2] = p->natural + (p->curvature ? p->curvature(p->context, M) : M / p->EI);
 }
 
-/* From a section on which R and *moment act back over an arc length: `at` and *moment become those
- * of the other end. */
+/* Integrates from a section where R and *moment act back over an arc length: `at` and *moment
+ * become those of the other end. */
 static inline void shoot_back(const struct shooting *p, const double R[2], double arc, double at[3],
                               double *moment)
 {
@@ -85,7 +85,7 @@ static inline void shoot_back(const struct shooting *p, const double R[2], doubl
     *moment = M + (end[0] - at[0]) * R[1] - (end[1] - at[1]) * R[0];
 }
 
-/* Where the wire's middle lies at rest. */
+/* y of the wire's middle at rest. */
 static inline double shooting_rest(const struct shooting *p)
 {
     if (p->natural == 0.0)
@@ -103,7 +103,7 @@ static inline double shooting_rest_arc(const struct shooting *p)
     return fabs(R) * asin(0.5 * p->span / fabs(R + r));
 }
 
-/* What is missed by u = (arc / span, N span^2 / EI, alpha, second arc / span). */
+/* Residuals of u = (arc / span, N span^2 / EI, alpha, second arc / span). */
 static inline void shooting_miss(const struct shooting *p, double phi,
                                  enum shooting_contact contact, const double u[4], double miss[4],
                                  struct shot *shot)
@@ -117,9 +117,9 @@ static inline void shooting_miss(const struct shooting *p, double phi,
     double moment = T * 0.5 * p->diameter;
 
     shoot_back(p, R, u[0] * p->span, at, &moment);
-    /* A wire that yields to shear lies on the nose with its axis, not with its section, and cannot
-     * be pressed at a point: on the nose section and axis part by sinh(s / l), l^2 = EI / GA. With
-     * GA without end both are the same, and the curvature is the nose's. */
+    /* A wire with shear compliance lies on the nose with its axis, not with its section, and cannot
+     * be pressed at a point: on the nose, section and axis differ by sinh(s / l), l^2 = EI / GA.
+     * For infinite GA both are the same, and the curvature is the nose's. */
     const double length = sqrt(p->EI / p->GA);
     const double shear = (R[1] * cos(at[2]) - R[0] * sin(at[2])) / p->GA;
     const double less = shear / length / tanh(rn * alpha / length);
@@ -150,7 +150,7 @@ static inline void shooting_miss(const struct shooting *p, double phi,
     shot->gap = nose - at[1] - rn;
 }
 
-/* The equilibrium in which the slope at the roller is phi, from the guess u, which becomes the
+/* The equilibrium with slope phi at the roller, from the initial guess u, which becomes the
  * solution. */
 static inline bool shoot(const struct shooting *p, double phi, enum shooting_contact contact,
                          double u[4], struct shot *shot)
