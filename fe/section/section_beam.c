@@ -82,8 +82,8 @@ static struct wb_section_beam_wall find_wall(const struct wb_section_beam *beam,
     return w;
 }
 
-/* Places of a segment's unknowns (b_1, b_2 and theta at an element's first and second station), and
- * derivatives of e and g by them. */
+/* A segment's unknowns (theta, b_1 and b_2 at an element's first and second station), and the
+ * derivatives of e and g with respect to them. */
 enum {
     SEGMENT = 6
 };
@@ -130,8 +130,8 @@ static void evaluate_segment(struct wb_section_beam *beam, int element, int s)
     beam->tape_plastic = fmax(beam->tape_plastic, beam->tape_after[at].accumulated);
 }
 
-/* Friction of a contact before its limit is looked at. */
-static double sticking(const struct wb_section_beam *beam, int station, int contact)
+/* Friction force of a contact if it sticks. */
+static double sticking_friction(const struct wb_section_beam *beam, int station, int contact)
 {
     const struct wb_section_contact *const c = &beam->layout.contacts[contact];
     const size_t at = (size_t)(station - 1) * (size_t)beam->layout.n_contacts + (size_t)contact;
@@ -150,7 +150,7 @@ static double limit_of(const struct wb_section_beam *beam, size_t contact)
     return beam->settings.is_glued ? (double)INFINITY : beam->limit[contact];
 }
 
-/* Whether wires that touch hold each other at all. */
+/* True if contacts transmit friction. */
 static bool has_friction(const struct wb_section_beam *beam)
 {
     return beam->friction > 0.0 || beam->settings.is_glued;
@@ -173,7 +173,7 @@ static void evaluate_station(struct wb_section_beam *beam, int station)
         const size_t at = (size_t)(station - 1) * (size_t)layout->n_contacts + (size_t)i;
         if (c->unknown[0] == c->unknown[1])
             continue;
-        const double trial = sticking(beam, station, i), limit = limit_of(beam, at);
+        const double trial = sticking_friction(beam, station, i), limit = limit_of(beam, at);
         const double force = fmax(-limit, fmin(limit, trial));
         beam->friction_now[at] = force;
         beam->n_slipping += force != trial;
@@ -182,7 +182,7 @@ static void evaluate_station(struct wb_section_beam *beam, int station)
     }
 }
 
-/* Places of the axis, and the direction of a strand. */
+/* Computes the position of the tip and the direction of a strand. */
 static void find_tip(struct wb_section_beam *beam, const struct wb_section_beam_loads *loads)
 {
     struct wb_section_beam_tip tip = {.vertical = loads->vertical, .weight = loads->weight};
@@ -200,7 +200,7 @@ static void find_tip(struct wb_section_beam *beam, const struct wb_section_beam_
     beam->tip = tip;
 }
 
-/* The vertical force that acts through an element: the tip's less the weight beyond its middle. */
+/* Vertical force transmitted by an element: the tip's minus the weight beyond its middle. */
 static double vertical_through(const struct wb_section_beam *beam,
                                const struct wb_section_beam_loads *loads, int element)
 {
@@ -226,7 +226,8 @@ static void evaluate_loads(struct wb_section_beam *beam, const struct wb_section
 
 /* --- pressure --- */
 
-/* What presses the wires of an element in the plane; the root of its sum of squares, N/m. */
+/* Computes the transverse loads on the wires of an element; returns the root of the sum of their
+ * squares, N/m. */
 static double find_load(struct wb_section_beam *beam, int element)
 {
     const struct wb_section_layout *const layout = &beam->layout;
@@ -262,7 +263,7 @@ static double find_load(struct wb_section_beam *beam, int element)
     return sqrt(sum);
 }
 
-/* Limits of friction, from the pressure of the elements beside a station. */
+/* Friction limits, from the contact forces of the two elements adjacent to a station. */
 static void find_limits(struct wb_section_beam *beam)
 {
     const int n = beam->layout.n_contacts;
@@ -288,7 +289,7 @@ static void find_limits(struct wb_section_beam *beam)
     }
 }
 
-/* --- whole --- */
+/* --- beam --- */
 
 void wb_section_beam_evaluate(struct wb_section_beam *beam,
                               const struct wb_section_beam_loads *loads, bool press)
@@ -320,8 +321,8 @@ enum {
     MOST = SEGMENT
 };
 
-/* Adds a part's matrix (row-major, n x n) at unknowns of stations. Those that share an index (the
- * cap's, or an image's) go together. */
+/* Adds a part's matrix (row-major, n x n) at unknowns of stations. Entries whose unknowns share an
+ * index (of the cap, or of an image) are summed. */
 static void add_matrix(struct wb_section_beam *beam, int n, const int *station, const int *unknown,
                        double matrix[MOST][MOST])
 {
@@ -413,7 +414,7 @@ static void add_station(struct wb_section_beam *beam, int station)
         const struct wb_section_contact *const c = &layout->contacts[i];
         const size_t at = (size_t)(station - 1) * (size_t)layout->n_contacts + (size_t)i;
         if (c->unknown[0] != c->unknown[1] &&
-            fabs(sticking(beam, station, i)) <= limit_of(beam, at))
+            fabs(sticking_friction(beam, station, i)) <= limit_of(beam, at))
             add_spring(beam, station, c->unknown,
                        c->weight * beam->settings.slip_stiffness *
                            wb_section_beam_share(beam, station));

@@ -1,4 +1,4 @@
-/* Memory, materials and matrix of the section model's beam. */
+/* Creation of the section model's beam: memory, materials and matrix. */
 #include <stdlib.h>
 
 #include "base/memory.h"

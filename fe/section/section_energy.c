@@ -1,7 +1,7 @@
 #include "fe/section/section_energy.h"
 
-/* What an element took up since the last commit. */
-static void spend(struct wb_section_beam *beam, int element)
+/* Adds the energies that an element took up since the last commit. */
+static void add_element_energies(struct wb_section_beam *beam, int element)
 {
     struct wb_section_beam_energies *const e = &beam->energies;
     const struct wb_section_layout *const layout = &beam->layout;
@@ -34,7 +34,7 @@ static void spend(struct wb_section_beam *beam, int element)
     }
 }
 
-static void spend_at(struct wb_section_beam *beam, int station)
+static void add_station_energies(struct wb_section_beam *beam, int station)
 {
     const struct wb_section_layout *const layout = &beam->layout;
 
@@ -69,7 +69,7 @@ void wb_section_energy_take(struct wb_section_beam *beam)
         0.5 * (now->weight + before->weight) * (now->height - before->height);
     beam->energies.bonds = 0.0;
     for (int m = 0; m < beam->n_elements; m++) {
-        spend(beam, m);
-        spend_at(beam, m + 1);
+        add_element_energies(beam, m);
+        add_station_energies(beam, m + 1);
     }
 }

@@ -3,13 +3,14 @@
 #include <math.h>
 
 enum {
-    PIECES = 400, /* of the length, for integration */
-    MOST_ITERATIONS = 30
+    PIECES = 400, /* integration steps along the length */
+    MAX_ITERATIONS = 30
 };
 
-static const double tolerance = 1e-10; /* rad, and of the length */
+static const double tolerance = 1e-10; /* rad; and relative to the length */
 
-/* Curvature over moment: straight from point to point, then on with a slope (1/(N m2)). */
+/* Curvature as a function of moment: piecewise linear through the points, then linear with a slope
+ * (1/(N m2)). */
 struct curve {
     int n;
     const struct wb_section_homogenise_point *points;
@@ -36,7 +37,8 @@ struct end {
     double bend;  /* 1/m, at the clamp */
 };
 
-/* From the tip, which has turned by `angle`, to the clamp under a tip force: midpoint rule. */
+/* Integrates from the tip, where the angle is `angle`, to the clamp under a tip force: midpoint
+ * rule. */
 static struct end integrate(const struct curve *curve, double force, double length, double angle)
 {
     const double h = length / PIECES;
@@ -55,11 +57,11 @@ static struct end integrate(const struct curve *curve, double force, double leng
     return at;
 }
 
-/* Newton's method in the slope and the tip's angle, by differences. */
+/* Newton's method for the slope and the tip's angle, with finite differences. */
 static int find_slope(struct curve *curve, const struct wb_section_homogenise_point *point,
                       double length, double *angle, struct end *end)
 {
-    for (int i = 0; i < MOST_ITERATIONS; i++) {
+    for (int i = 0; i < MAX_ITERATIONS; i++) {
         const double slope = curve->slope, more = 1e-6 * slope, turn = 1e-7;
         *end = integrate(curve, point->force, length, *angle);
         const double a = end->angle, y = (end->y - point->deflection) / length;
@@ -89,7 +91,7 @@ int wb_section_homogenise(int n, struct wb_section_homogenise_point *points, dou
         struct curve curve = {.n = i, .points = points};
         struct end end;
         if (i == 0) {
-            /* As if it were elastic. */
+            /* Initial guess: the elastic cantilever. */
             curve.slope = 3.0 * points[0].deflection / (points[0].force * length * length * length);
             angle = 1.5 * points[0].deflection / length;
         } else {

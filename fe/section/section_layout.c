@@ -10,88 +10,90 @@
 #define WB_LOG_DOMAIN "section"
 
 enum {
-    MOST_NODES = WB_SECTION_LAYOUT_MOST_NODES,
-    MOST_CONTACTS = 3 * WB_PACKING_MOST
+    MAX_NODES = WB_SECTION_LAYOUT_MOST_NODES,
+    MAX_CONTACTS = 3 * WB_PACKING_MOST
 };
 
-static const double most_gap = 0.01 * WB_MM; /* between neighbours */
+static const double max_gap = 0.01 * WB_MM; /* between neighbours */
 static const double longest_segment = 1.2 * WB_MM;
 static const double same_place = 1e-6 * WB_MM;
 static const double same_diameter = 1e-3; /* of the larger */
-/* Wires farther apart than this part of their radius are no neighbours: the hole between four wires
- * on a square is 0.83 of it wide, that in a row of the triangular lattice 1.46. */
+/* Wires with a larger gap than this fraction of their radius are not neighbours. For comparison:
+ * the hole between four wires on a square is 0.83 of the radius wide, that in a row of the
+ * triangular lattice 1.46. */
 static const double neighbour = 0.5;
 
-/* A node of the whole outline. */
+/* A node of the complete outline. */
 struct node {
     double y, z;
-    int wire;      /* on whose arc it lies; -1: on none */
-    double bond;   /* width of its bond to: */
-    int bonded_to; /* a wire; -1: none */
-    int image;     /* the node that stands for it */
+    int wire;      /* of the arc; -1: none */
+    double bond;   /* width of its bond, 0: none */
+    int bonded_to; /* wire; -1: none */
+    int image;     /* the node that represents it */
     int unknown;   /* of that one */
 };
 
-/* A segment of the whole outline, from its node to the next. */
+/* A segment of the complete outline, from its node to the next. */
 struct piece {
     double length;
-    int wire; /* on whose arc it lies; -1: a straight piece, from and to these: */
+    int wire; /* of the arc; -1: a straight piece between the wires `ends` */
     int ends[2];
-    bool first, last; /* of the straight piece */
+    bool first, last; /* first, last segment of a straight piece */
     double y, z;      /* unit vector along it */
-    int segment;      /* that stands for it */
+    int segment;      /* the segment that represents it */
 };
 
 struct outline {
     int n;
-    struct node node[MOST_NODES];
-    struct piece piece[MOST_NODES];
-    double thickness, offset; /* m, of the tape's middle from the outline */
+    struct node node[MAX_NODES];
+    struct piece piece[MAX_NODES];
+    double thickness, offset; /* m, offset: of the tape's middle from the outline */
 };
 
 struct layout_work {
     const struct wb_bundle_model *model;
     struct wb_section_layout *layout;
-    int image[WB_PACKING_MOST]; /* of a wire: the one that stands for it */
-    int place[WB_PACKING_MOST]; /* of that one in layout->wires */
+    int image[WB_PACKING_MOST]; /* of a wire: the wire that represents it */
+    int place[WB_PACKING_MOST]; /* index of that wire in layout->wires */
     struct outline outline;
 };
 
-/* --- what it cannot compute --- */
+/* --- bundles that are not supported --- */
 
-static const char way_out[] = "compute it with --model explicit";
+static const char advice[] = "compute it with --model explicit";
 
 static enum wb_status check_wires(const struct wb_bundle_model *model, struct wb_reason *why)
 {
     const struct wb_packing *const packing = &model->packing;
-    struct wb_packing_pair pair[MOST_CONTACTS];
+    struct wb_packing_pair pair[MAX_CONTACTS];
 
     for (int i = 1; i < packing->n; i++) {
         const double a = packing->wire[0].radius, b = packing->wire[i].radius;
         if (fabs(a - b) > same_diameter * fmax(a, b))
             return wb_fail_to(
                 why, WB_ERR_UNSUPPORTED,
-                "%s: wires of %g and %g mm: the section model is made for wires of one "
-                "diameter, in mixtures thin ones are loose; %s",
-                model->path, 2.0 * a / WB_MM, 2.0 * b / WB_MM, way_out);
+                "%s: wires of %g and %g mm: the section model supports only wires of one "
+                "diameter, because thin wires in a mixture are loose; %s",
+                model->path, 2.0 * a / WB_MM, 2.0 * b / WB_MM, advice);
     }
-    if (model->wire_gap > most_gap)
+    if (model->wire_gap > max_gap)
         return wb_fail_to(
             why, WB_ERR_UNSUPPORTED,
-            "%s: gaps: wires_mm: %g between wires: the section model is made for wires "
+            "%s: gaps: wires_mm: %g between wires: the section model supports only wires "
             "that touch (at most %g mm); %s",
-            model->path, model->wire_gap / WB_MM, most_gap / WB_MM, way_out);
+            model->path, model->wire_gap / WB_MM, max_gap / WB_MM, advice);
     const double reach = neighbour * packing->wire[0].radius;
-    const int n = wb_packing_pairs(packing, reach, MOST_CONTACTS, pair);
-    for (int i = 0; i < n && i < MOST_CONTACTS; i++)
-        if (pair[i].gap > most_gap)
-            return wb_fail_to(why, WB_ERR_UNSUPPORTED,
-                              "%s: the neighbours %d and %d of the packing are %.3g mm apart: the "
-                              "section model is made for wires that touch (at most %g mm); if they "
-                              "do on the bundle, 'touching_mm' beside places_mm closes what was "
-                              "read too wide; %s",
-                              model->path, pair[i].a + 1, pair[i].b + 1, pair[i].gap / WB_MM,
-                              most_gap / WB_MM, way_out);
+    const int n = wb_packing_pairs(packing, reach, MAX_CONTACTS, pair);
+    for (int i = 0; i < n && i < MAX_CONTACTS; i++)
+        if (pair[i].gap > max_gap)
+            return wb_fail_to(
+                why, WB_ERR_UNSUPPORTED,
+                "%s: neighbours %d and %d of the packing are %.3g mm apart: the "
+                "section model supports only wires that touch (at most %g mm); if they "
+                "touch in the bundle, set 'touching_mm' next to places_mm to close "
+                "gaps due to reading errors; %s",
+                model->path, pair[i].a + 1, pair[i].b + 1, pair[i].gap / WB_MM, max_gap / WB_MM,
+                advice);
     return WB_OK;
 }
 
@@ -100,26 +102,28 @@ enum wb_status wb_section_layout_check(const struct wb_bundle_model *model, stru
     WB_TRY(check_wires(model, why));
     if (model->potted_length > 0.0)
         return wb_fail_to(why, WB_ERR_UNSUPPORTED,
-                          "%s: ends: a potted length: the section model knows none; %s",
-                          model->path, way_out);
+                          "%s: ends: the section model does not support a potted length; %s",
+                          model->path, advice);
     if (!model->has_tape)
         return WB_OK;
     if (model->tape.taping.kind != WB_TAPING_SLEEVE)
         return wb_fail_to(
             why, WB_ERR_UNSUPPORTED,
-            "%s: taping: layout: helix: the section model knows the sleeve only, because "
+            "%s: taping: layout: helix: the section model supports only a sleeve, because "
             "the windings of a helix slide on each other; %s",
-            model->path, way_out);
+            model->path, advice);
     if (model->interface.has_damage)
-        return wb_fail_to(why, WB_ERR_UNSUPPORTED,
-                          "%s: interface: damage: bonds of the section model do not break; %s",
-                          model->path, way_out);
+        return wb_fail_to(
+            why, WB_ERR_UNSUPPORTED,
+            "%s: interface: damage: the section model does not support bonds that break; %s",
+            model->path, advice);
     return WB_OK;
 }
 
 /* --- wires --- */
 
-/* The wire at the image's place in the plane of bending, of the same law; -1: there is none. */
+/* The wire at the position mirrored in the plane of bending, with the same law; -1 if there is
+ * none. */
 static int find_image(const struct wb_bundle_model *model, int wire)
 {
     const struct wb_packing *const p = &model->packing;
@@ -139,7 +143,7 @@ static void find_images(struct layout_work *work, bool may_mirror)
     for (int i = 0; i < p->n; i++) {
         const int image = find_image(work->model, i);
         mirrored = mirrored && image >= 0;
-        /* Of two images that with positive z stands for both. */
+        /* Of two image wires, the one with positive z represents both. */
         work->image[i] = image >= 0 && p->wire[i].z < -same_place ? image : i;
     }
     for (int i = 0; i < p->n && !mirrored; i++)
@@ -172,7 +176,7 @@ static void place_wires(struct layout_work *work)
 
 /* --- contacts --- */
 
-/* What a contact does to the wires that stand for themselves. */
+/* Adds the forces of a contact on the wires that are represented. */
 static void add_balance(struct layout_work *work, const struct wb_packing_pair *pair, int contact)
 {
     struct wb_section_layout *const layout = work->layout;
@@ -182,13 +186,13 @@ static void add_balance(struct layout_work *work, const struct wb_packing_pair *
         if (work->image[ends[end]] != ends[end])
             continue;
         const double sign = end == 0 ? -1.0 : 1.0; /* pressed apart */
-        double *const row = layout->balance + (size_t)(2 * work->place[ends[end]]) * MOST_CONTACTS;
+        double *const row = layout->balance + (size_t)(2 * work->place[ends[end]]) * MAX_CONTACTS;
         row[contact] += sign * sin(pair->direction);
-        row[MOST_CONTACTS + contact] += sign * cos(pair->direction);
+        row[MAX_CONTACTS + contact] += sign * cos(pair->direction);
     }
 }
 
-/* Whether two pairs are images of each other. */
+/* True if two pairs of wires are images of each other. */
 static bool are_images(const struct layout_work *work, const struct wb_packing_pair *a,
                        const struct wb_packing_pair *b)
 {
@@ -201,10 +205,10 @@ static bool are_images(const struct layout_work *work, const struct wb_packing_p
 static void find_contacts(struct layout_work *work)
 {
     struct wb_section_layout *const layout = work->layout;
-    struct wb_packing_pair pair[MOST_CONTACTS];
-    const int most = wb_packing_pairs(&work->model->packing, most_gap, MOST_CONTACTS, pair);
-    const int n = most < MOST_CONTACTS ? most : MOST_CONTACTS;
-    int contact_of[MOST_CONTACTS];
+    struct wb_packing_pair pair[MAX_CONTACTS];
+    const int most = wb_packing_pairs(&work->model->packing, max_gap, MAX_CONTACTS, pair);
+    const int n = most < MAX_CONTACTS ? most : MAX_CONTACTS;
+    int contact_of[MAX_CONTACTS];
 
     for (int i = 0; i < n; i++) {
         contact_of[i] = -1;
@@ -219,10 +223,10 @@ static void find_contacts(struct layout_work *work)
         layout->contacts[contact_of[i]].weight += 1.0;
         add_balance(work, &pair[i], contact_of[i]);
     }
-    /* Rows as long as there are contacts. */
+    /* Shorten the rows to the number of contacts. */
     for (int row = 0; row < 2 * layout->n_wires; row++)
         memmove(layout->balance + (size_t)row * (size_t)layout->n_contacts,
-                layout->balance + (size_t)row * MOST_CONTACTS,
+                layout->balance + (size_t)row * MAX_CONTACTS,
                 (size_t)layout->n_contacts * sizeof *layout->balance);
 }
 
@@ -240,9 +244,9 @@ static int pieces_of(double length)
     return (int)fmax(1.0, ceil(length / longest_segment - 1e-9));
 }
 
-/* The nodes of an arc, all but those of an arc of no length with the widths of their bonds, and
- * those of the straight piece behind it. */
-static void lay_arc(struct layout_work *work, const struct wb_hull *hull, int index)
+/* Nodes of an arc, with the widths of their bonds, and of the straight piece after it; an arc of
+ * length zero has one node. */
+static void add_arc_nodes(struct layout_work *work, const struct wb_hull *hull, int index)
 {
     struct outline *const outline = &work->outline;
     const struct wb_hull_arc *const arc = &hull->arc[index];
@@ -283,8 +287,8 @@ static void lay_arc(struct layout_work *work, const struct wb_hull *hull, int in
     }
 }
 
-/* The only wire's: all round. */
-static void lay_ring(struct layout_work *work, const struct wb_packing_circle *wire)
+/* Nodes around the only wire. */
+static void add_ring_nodes(struct layout_work *work, const struct wb_packing_circle *wire)
 {
     struct outline *const outline = &work->outline;
     const double radius = wire->radius + outline->offset;
@@ -306,7 +310,7 @@ static int compare(const void *a, const void *b)
     return (difference > 0.0) - (difference < 0.0);
 }
 
-/* Directions of the wires that the circle is bonded to, in ascending order. */
+/* Directions of the wires that the circle is bonded to, ascending. */
 static int bonded_directions(const struct wb_bundle_model *model, double directions[])
 {
     const double radius = model->tape.hull.packing.wire[0].radius;
@@ -322,8 +326,8 @@ static int bonded_directions(const struct wb_bundle_model *model, double directi
     return n;
 }
 
-/* A line of contact between a wire and the circle is bonded as far as the gap is within reach:
- * w^2 / 8 (1 / r - 1 / R) beside the line. */
+/* Width of the bond at a line of contact between a wire and the circle: up to where the gap, w^2 /
+ * 8 (1 / r - 1 / R) at half the width w, exceeds the bond's reach. */
 static void bond_circle(struct layout_work *work, struct node *node, double direction)
 {
     const struct wb_bundle_model *const model = work->model;
@@ -366,7 +370,7 @@ static void lay_circle(struct layout_work *work)
     }
 }
 
-/* --- from the whole outline to what stands for images --- */
+/* --- from the complete outline to unknowns, nodes and segments that represent images --- */
 
 static void number_nodes(struct layout_work *work)
 {
@@ -393,7 +397,7 @@ static void add_segments(struct layout_work *work)
         const struct node *const from = &outline->node[i];
         const struct node *const to = &outline->node[(i + 1) % outline->n];
         int segment = -1;
-        /* An image runs the other way round, with the same shear strain but for its sign. */
+        /* An image has the opposite direction and the opposite shear strain. */
         for (int k = 0; k < layout->n_segments && layout->is_mirrored && segment < 0; k++)
             if (layout->segments[k].unknown[0] == to->unknown &&
                 layout->segments[k].unknown[1] == from->unknown)
@@ -469,25 +473,25 @@ static void lay_tape(struct layout_work *work)
     if (tape->round)
         lay_circle(work);
     else if (tape->hull.n_arcs == 1)
-        lay_ring(work, &tape->hull.packing.wire[0]);
+        add_ring_nodes(work, &tape->hull.packing.wire[0]);
     else
         for (int i = 0; i < tape->hull.n_arcs; i++)
-            lay_arc(work, &tape->hull, i);
+            add_arc_nodes(work, &tape->hull, i);
 }
 
-/* --- whole --- */
+/* --- layout --- */
 
 static void take_memory(struct wb_section_layout *layout)
 {
     struct wb_memory *const m = &layout->memory;
 
     layout->wires = wb_memory_take(m, WB_PACKING_MOST, sizeof *layout->wires);
-    layout->contacts = wb_memory_take(m, MOST_CONTACTS, sizeof *layout->contacts);
+    layout->contacts = wb_memory_take(m, MAX_CONTACTS, sizeof *layout->contacts);
     layout->balance =
-        wb_memory_take(m, 2 * WB_PACKING_MOST * MOST_CONTACTS, sizeof *layout->balance);
-    layout->segments = wb_memory_take(m, MOST_NODES, sizeof *layout->segments);
-    layout->bonds = wb_memory_take(m, MOST_NODES, sizeof *layout->bonds);
-    layout->pulls = wb_memory_take(m, 2 * MOST_NODES, sizeof *layout->pulls);
+        wb_memory_take(m, 2 * WB_PACKING_MOST * MAX_CONTACTS, sizeof *layout->balance);
+    layout->segments = wb_memory_take(m, MAX_NODES, sizeof *layout->segments);
+    layout->bonds = wb_memory_take(m, MAX_NODES, sizeof *layout->bonds);
+    layout->pulls = wb_memory_take(m, 2 * MAX_NODES, sizeof *layout->pulls);
 }
 
 enum wb_status wb_section_layout_create(struct wb_section_layout *layout,

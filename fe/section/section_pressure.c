@@ -7,22 +7,23 @@
 #include "base/memory.h"
 
 enum {
-    BLOCK_TRIES = 3, /* exchanges of all at once without progress before they go one by one */
-    MOST_EXCHANGES = 2000
+    BLOCK_TRIES = 3, /* exchanges of all wrong contacts without progress before single exchanges */
+    MAX_EXCHANGES = 2000
 };
 
-/* Of the matrix's largest entry: it decides among forces that balance the loads alike. */
+/* Added to the diagonal, relative to a unit entry: selects the forces with the smallest sum of
+ * squares when several balance the loads. */
 static const double ridge = 1e-9;
 static const double negligible = 1e-10; /* of the largest force */
 
 struct wb_section_pressure {
     int n, n_equations;
-    double *balance;               /* (n_equations x n), rows and columns scaled by their weights */
-    double *row_weight;            /* (n_equations) */
-    double *column_scale;          /* (n): force = scale times unknown */
-    double *matrix;                /* (n x n) balance^T balance + ridge */
+    double *balance;      /* (n_equations x n), scaled by the weights of rows and columns */
+    double *row_weight;   /* (n_equations) */
+    double *column_scale; /* (n): force = scale times unknown */
+    double *matrix;       /* (n x n) balance^T balance + ridge */
     double *right, *trial, *slope; /* (n) */
-    /* Of each place: which contacts are pressed, and the Cholesky factor of their part of the
+    /* For each place: which contacts are pressed, and the Cholesky factor of their part of the
      * matrix. */
     bool *pressed; /* (n_places x n) */
     int *n_pressed, *list;
@@ -38,7 +39,7 @@ void wb_section_pressure_destroy(struct wb_section_pressure *p)
     free(p);
 }
 
-/* --- the factor of a place --- */
+/* --- factor of a place --- */
 
 struct place {
     bool *pressed;
@@ -71,7 +72,7 @@ static void factor(const struct wb_section_pressure *p, const struct place *plac
     }
 }
 
-/* Forces of the pressed contacts, in `trial` at their places; zero of the others. */
+/* Forces of the pressed contacts, in `trial` at their indices; the other forces are zero. */
 static void solve_pressed(struct wb_section_pressure *p, const struct place *place, double *x)
 {
     for (int i = 0; i < *place->n; i++) {
@@ -94,7 +95,8 @@ static void solve_pressed(struct wb_section_pressure *p, const struct place *pla
 
 /* --- exchanges --- */
 
-/* The contacts that pull, and those left open that would press: how many; the last one. */
+/* Finds contacts with tensile forces, and open ones that would be pressed. Returns their number;
+ * *last receives the last one. */
 static int find_wrong(struct wb_section_pressure *p, const struct place *place, double tolerance,
                       bool *wrong, int *last)
 {
@@ -123,7 +125,7 @@ static void exchange(struct wb_section_pressure *p, const struct place *place, d
     double *const x = p->slope;
     int fewest = p->n + 1, tries = BLOCK_TRIES;
 
-    for (int i = 0; i < MOST_EXCHANGES; i++) {
+    for (int i = 0; i < MAX_EXCHANGES; i++) {
         int last = 0;
         solve_pressed(p, place, x);
         const int n = find_wrong(p, place, tolerance, wrong, &last);

@@ -8,17 +8,17 @@
 #define WB_LOG_DOMAIN "section"
 
 enum {
-    MOST_SHAPE = 1000,
+    MAX_SHAPE = 1000,
     BISECTIONS = 100,
-    CURVE_POINTS = 18 /* of M over kappa at most: that of a row weighs with the square of its
-                         distance to the one before, so that many rows are noisy */
+    CURVE_POINTS = 18 /* maximum number of points of M over kappa. Errors grow with the inverse
+                         square of the distance between points: more points make the curve noisy */
 };
 
-/* Plastic strain of a tape on a circle, where nothing but its stretch holds wires together. */
+/* Limit of the plastic strain of a tape on a circle, where only the tape's tension holds the wires
+ * together. */
 static const double circle_limit = 0.010;
-static const double fold_limit = 0.5; /* of half the depth over the radius of the bend */
-static const double small = 1e-5;     /* of the length: a deflection at which the elastic bundle is
-                                         linear */
+static const double fold_limit = 0.5; /* limit of half the depth over the bend radius */
+static const double small = 1e-5; /* over the length: deflection for linear elastic rigidities */
 
 /* --- memory --- */
 
@@ -26,9 +26,9 @@ enum wb_status wb_section_run_init(struct wb_section_run *run, const struct wb_b
                                    int n_shape)
 {
     *run = (struct wb_section_run){0};
-    if (n_shape < 2 || n_shape > MOST_SHAPE)
+    if (n_shape < 2 || n_shape > MAX_SHAPE)
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected 2 to %d", n_shape,
-                       MOST_SHAPE);
+                       MAX_SHAPE);
     const size_t rows = (size_t)wb_bundle_model_rows(model), n = (size_t)n_shape;
     run->rows = wb_memory_new(rows, sizeof *run->rows);
     run->shape_s = wb_memory_new(n, sizeof *run->shape_s);
@@ -50,7 +50,8 @@ void wb_section_run_release(struct wb_section_run *run)
     *run = (struct wb_section_run){0};
 }
 
-/* mu between the wires of a model; *is_mean whether its friction decays. */
+/* Friction coefficient between the wires of a model; *is_mean: true if it is a mean of static and
+ * kinetic friction. */
 static double find_friction(const struct wb_bundle_model *model, bool *is_mean)
 {
     const struct wb_friction *const f = &model->interface.friction;
@@ -60,9 +61,10 @@ static double find_friction(const struct wb_bundle_model *model, bool *is_mean)
 
 /* --- rigidities --- */
 
-/* The part of the loss by slip that Newmark's theory has at a = alpha L: of a cantilever whose
- * clamp does not slip and whose tip is free to, or is not. 1 (capped: 1/4) at a = 0, and falls. */
-static double slipping_part(double a, bool is_capped)
+/* Stiffness loss by slip at a = alpha L, relative to a = 0 with a free tip, in Newmark's theory: a
+ * cantilever without slip at the clamp, with free slip or none (capped) at the tip. 1 (capped: 1/4)
+ * at a = 0, decreasing with a. */
+static double slip_loss(double a, bool is_capped)
 {
     const double half = is_capped ? 0.5 * a : a;
     return 3.0 / (a * a) * (1.0 - tanh(half) / half);
@@ -76,11 +78,11 @@ static double find_alpha(const struct wb_bundle_model *model, double rigidity)
     const bool is_capped = model->tip == WB_BUNDLE_TIP_CAPPED;
     double low = log(1e-2), high = log(1e4);
 
-    if (!(slipping_part(exp(low), is_capped) > part && slipping_part(exp(high), is_capped) < part))
+    if (!(slip_loss(exp(low), is_capped) > part && slip_loss(exp(high), is_capped) < part))
         return (double)NAN;
     for (int i = 0; i < BISECTIONS; i++) {
         const double middle = 0.5 * (low + high);
-        *(slipping_part(exp(middle), is_capped) > part ? &low : &high) = middle;
+        *(slip_loss(exp(middle), is_capped) > part ? &low : &high) = middle;
     }
     return exp(low);
 }
@@ -113,7 +115,7 @@ static enum wb_status find_rigidity(struct wb_section_run_rigidity *out,
 /* --- rows --- */
 
 static void add_row(struct wb_section_run *run, const struct wb_section_beam *beam,
-                    const struct wb_section_solver_point *point, int way)
+                    const struct wb_section_solver_point *point, int branch)
 {
     struct wb_section_run_row *const row = &run->rows[run->n_rows];
     const struct wb_section_beam_energies e = beam->energies;
@@ -121,9 +123,9 @@ static void add_row(struct wb_section_run *run, const struct wb_section_beam *be
     if (run->n_rows == 0)
         run->zero_force = point->vertical;
     *row = (struct wb_section_run_row){
-        .cycle = way / 2 + 1,
+        .cycle = branch / 2 + 1,
         .phase = point->slack ? WB_PHASE_SLACK
-                 : way % 2    ? WB_PHASE_UNLOAD
+                 : branch % 2 ? WB_PHASE_UNLOAD
                               : WB_PHASE_LOAD,
         .force = point->vertical - run->zero_force,
         .point = *point,
@@ -163,9 +165,9 @@ static void make_rows(struct wb_section_run *run, const struct wb_bundle_model *
     const int rows = model->run.rows;
 
     for (int i = 0; i < run->capacity; i++) {
-        /* Rows 1 to `rows` are the first way, and so on. */
-        const int way = i > 0 ? (i - 1) / rows : 0, step = i > 0 ? (i - 1) % rows + 1 : 0;
-        const double part = (double)(way % 2 ? rows - step : step) / rows;
+        /* Rows 1 to `rows` are the first branch, the next `rows` the second, and so on. */
+        const int branch = i > 0 ? (i - 1) / rows : 0, step = i > 0 ? (i - 1) % rows + 1 : 0;
+        const double part = (double)(branch % 2 ? rows - step : step) / rows;
         struct wb_section_solver_point point;
 
         run->stopped = wanted->stop && wanted->stop(wanted->context);
@@ -177,8 +179,9 @@ static void make_rows(struct wb_section_run *run, const struct wb_bundle_model *
             run->lost = point;
             return;
         }
-        add_row(run, wb_section_solver_beam(solver), &point, way);
-        if (wanted->until_free && way == 2 * model->run.cycles - 1 && !(run->rows[i].force > 0.0))
+        add_row(run, wb_section_solver_beam(solver), &point, branch);
+        if (wanted->until_free && branch == 2 * model->run.cycles - 1 &&
+            !(run->rows[i].force > 0.0))
             return;
     }
 }
@@ -221,7 +224,8 @@ double wb_section_run_folds(const struct wb_section_run *run)
 
 /* --- the homogenised beam --- */
 
-/* Forces of a loading without weight by a vertical force: the run's own, or another one's. */
+/* Computes the moment-curvature curve from a loading without weight by a vertical force: the run's
+ * own rows if they are such a loading, otherwise another computation. */
 static enum wb_status find_curve(struct wb_section_run *run, const struct wb_bundle_model *model,
                                  const struct wb_section_solver_settings *settings)
 {

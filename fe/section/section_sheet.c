@@ -7,10 +7,10 @@
 #define WB_LOG_DOMAIN "section"
 
 enum {
-    MOST_ITERATIONS = 60
+    MAX_ITERATIONS = 60
 };
 
-static const double round_off = 1e-12; /* of the yield stress */
+static const double round_off = 1e-12; /* relative to the yield stress */
 
 enum wb_status wb_section_sheet_init(struct wb_section_sheet *sheet,
                                      const struct wb_material *material, bool is_tube)
@@ -20,8 +20,9 @@ enum wb_status wb_section_sheet_init(struct wb_section_sheet *sheet,
     const double G = wb_material_shear_modulus(material), bulk = E / (1.0 - nu);
 
     if (law->yields && !law->growth)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape's yield surface moves: expected isotropic hardening or none");
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "tape: kinematic hardening is not supported; expected isotropic or no hardening");
     *sheet = (struct wb_section_sheet){
         .material = material,
         .is_tube = is_tube,
@@ -55,8 +56,8 @@ static double slope_of(const struct wb_section_sheet *sheet, double p, double fl
     return p > 0.0 ? wb_hardening_exponent(sheet->material, p) * growth / p : 0.0;
 }
 
-/* The increment of p: the root of q(g) - flow(p + dp) with g = dp / flow, which falls with dp.
- * Newton's method between bounds. *g and *slope are those of the root. */
+/* The increment of p: the root of q(g) - flow(p + dp) with g = dp / flow, which decreases with dp.
+ * Newton's method with a bracket. *g and *slope belong to the root. */
 static double find_increment(const struct wb_section_sheet *sheet, const double trial[3], double p,
                              double guess, double *g, double *slope)
 {
@@ -66,7 +67,7 @@ static double find_increment(const struct wb_section_sheet *sheet, const double 
                     ? guess
                     : 0.5 * (mises(sheet, trial) - least_flow) / fmax(sheet->c[0], sheet->c[2]);
 
-    for (int i = 0; i < MOST_ITERATIONS; i++) {
+    for (int i = 0; i < MAX_ITERATIONS; i++) {
         const double flow = flow_of(sheet, p + at);
         double sum = 0.0, fall = 0.0;
         *slope = slope_of(sheet, p + at, flow);
@@ -91,7 +92,8 @@ static double find_increment(const struct wb_section_sheet *sheet, const double 
     return at;
 }
 
-/* The derivative of the shrunken t by one of them in the trial state: `k`, at the rate `rate`. */
+/* The derivative of the returned t with respect to component k of the trial t, where g changes at
+ * the rate `rate`. */
 static void derive(const struct wb_section_sheet *sheet, const double t[3], double g, double slope,
                    int k, double rate, double out[3])
 {
@@ -108,7 +110,7 @@ static void derive(const struct wb_section_sheet *sheet, const double t[3], doub
         out[i] = ((i == k ? rate : 0.0) - t[i] * sheet->c[i] * dg) / (1.0 + g * sheet->c[i]);
 }
 
-/* Stresses from t, and back what a strain does to t. */
+/* Stresses from t, and tangent from the derivatives of t with respect to strains. */
 static void put_stress(const struct wb_section_sheet *sheet, const double t[3], double stress[3])
 {
     stress[0] = sheet->is_tube ? t[0] : 0.5 * (t[0] + t[1]);
@@ -119,7 +121,7 @@ static void put_stress(const struct wb_section_sheet *sheet, const double t[3], 
 static void find_tangent(const struct wb_section_sheet *sheet, const double t[3], double g,
                          double slope, double tangent[3][3])
 {
-    double by[3][3]; /* t by its own trial value */
+    double by[3][3]; /* derivative of t with respect to its trial value */
 
     for (int k = 0; k < 3; k++) {
         if (g > 0.0)

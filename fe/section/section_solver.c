@@ -10,19 +10,20 @@
 
 enum {
     DEFAULT_ITERATIONS = 40,
-    MOST_CUTS = 8, /* of a search along a step */
+    MAX_CUTS = 8, /* of a line search */
     RIGHT_SIDES = 3
 };
 
 static const double default_tolerance = 1e-6;
 static const double default_smallest_step = 1.0 / 256.0;
-static const double jump = 2e-3; /* of the force: what may be the other way round than expected */
+static const double jump =
+    2e-3; /* relative force change in the unexpected direction that counts as a jump */
 static const double least_part = 1.0 / 128.0; /* of the weight, in an increment */
 static const double flat =
-    0.05; /* a search ends where the slope along the step fell to this part */
+    0.05; /* a line search ends when the slope along the step is reduced to this fraction */
 
-/* An equilibrium, to continue from. */
-struct place {
+/* An equilibrium. */
+struct equilibrium {
     double deflection, vertical, weight;
 };
 
@@ -30,11 +31,11 @@ struct wb_section_solver {
     struct wb_section_beam *beam;
     struct wb_section_solver_settings settings;
     struct wb_section_beam_loads loads;
-    struct place now, before;
+    struct equilibrium now, before;
     int n_committed;
     double weight;      /* N/m: all of it */
-    double weight_part; /* of it, at most, in an increment */
-    bool hangs;         /* the strand is slack, the tip is where the weight holds it */
+    double weight_part; /* maximum fraction of the weight in an increment */
+    bool is_slack;      /* the strand is slack and the tip free under the weight */
     double *step;       /* (n_unknowns) */
     double *right;      /* (RIGHT_SIDES x n_unknowns) */
     struct wb_section_solver_point point;
@@ -51,8 +52,9 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* The largest unbalanced force, moments over the length, over the largest force; or what lacks to
- * the tip's target over the length (NULL: it has none). */
+/* Relative residual: the larger of the largest unbalanced force (moments divided by the length)
+ * over the largest force, and of the tip's distance to its target over the length (target NULL: no
+ * target). */
 static double find_residual(const struct wb_section_solver *s, const double *target)
 {
     const struct wb_section_beam *const beam = s->beam;
@@ -63,7 +65,7 @@ static double find_residual(const struct wb_section_solver *s, const double *tar
     for (int i = 0; i < beam->n_unknowns; i++) {
         const bool turns = i % beam->per_station == 0;
         const double force = beam->residual[i] / (turns ? length : 1.0);
-        /* One that is no number is not forgotten, nor taken for the smaller one by fmax(). */
+        /* fmax() would drop a NaN. */
         if (isnan(force))
             return force;
         largest = fmax(largest, fabs(force));
@@ -72,9 +74,9 @@ static double find_residual(const struct wb_section_solver *s, const double *tar
     return fmax(gap / length, scale > 0.0 ? largest / scale : 0.0);
 }
 
-/* The step of all unknowns and of V that Newton's method asks for. The constraint of the tip's
- * height borders the matrix; so does the turn of a strand: the matrix lacks rho d d^T, with d the
- * derivative of x. Without a target V stays as it is. */
+/* Computes Newton's step of all unknowns and of V. The constraint of the tip's height borders the
+ * matrix. So does the rotation of a strand: the matrix lacks rho d d^T, with d the derivative of
+ * the tip's x. Without a target V is constant. */
 static bool find_step(struct wb_section_solver *s, const double *target, double *vertical)
 {
     struct wb_section_beam *const beam = s->beam;
@@ -90,7 +92,7 @@ static bool find_step(struct wb_section_solver *s, const double *target, double 
         by_turn[i] = beam->draw[i];
     }
     wb_layered_solve(beam->matrix, sides, s->right);
-    /* The rise of the tip by the unknowns: the lever without what a strand's slope adds. */
+    /* The rise of the tip per unknown: the lever without the part from the strand's slope. */
     double rise[3] = {0.0, 0.0, 0.0}, turn[3] = {0.0, 0.0, 0.0};
     for (int k = 0; k < sides; k++) {
         const double *const x = s->right + (size_t)k * (size_t)n;
@@ -116,18 +118,18 @@ static bool find_step(struct wb_section_solver *s, const double *target, double 
     return isfinite(*vertical) && isfinite(dot(n, s->step, s->step));
 }
 
-static void go(struct wb_section_solver *s, double part, double vertical)
+static void move_unknowns(struct wb_section_solver *s, double part, double vertical)
 {
     for (int i = 0; i < s->beam->n_unknowns; i++)
         s->beam->u[i] += part * s->step[i];
     s->loads.vertical += part * vertical;
 }
 
-/* A step that did not bring the residual down went too far: contacts that began to slip, or to
- * stick, on it make the tangent another one, and Newton's method may go to and fro between both.
- * With the limits of friction held there is a potential along the step, convex but for the tip's
- * rotation; its slope is brought down by secants between bounds. */
-static void search(struct wb_section_solver *s, double slope_before, double vertical)
+/* Line search after a step that did not reduce the residual. When contacts begin to slip or to
+ * stick within a step, the tangent changes, and Newton's method may alternate between two states.
+ * With constant friction limits there is a potential along the step, convex except for the tip's
+ * rotation; the search reduces its slope by secants with a bracket. */
+static void line_search(struct wb_section_solver *s, double slope_before, double vertical)
 {
     const int n = s->beam->n_unknowns;
     double part = 1.0, low = 0.0, high = 1.0, slope_low = slope_before;
@@ -136,11 +138,11 @@ static void search(struct wb_section_solver *s, double slope_before, double vert
     double slope_high = dot(n, s->step, s->beam->residual);
     if (!(slope_before < 0.0) || !(slope_high > 0.0))
         return;
-    for (int i = 0; i < MOST_CUTS; i++) {
+    for (int i = 0; i < MAX_CUTS; i++) {
         const double secant = (low * slope_high - high * slope_low) / (slope_high - slope_low);
         const double margin = 0.05 * (high - low);
         const double next = fmin(fmax(secant, low + margin), high - margin);
-        go(s, next - part, vertical);
+        move_unknowns(s, next - part, vertical);
         part = next;
         wb_section_beam_evaluate(s->beam, &s->loads, false);
         const double slope = dot(n, s->step, s->beam->residual);
@@ -151,7 +153,7 @@ static void search(struct wb_section_solver *s, double slope_before, double vert
     }
 }
 
-/* Newton's method at a target, from the trial state. */
+/* Newton's method for a target, from the trial state. */
 static bool iterate(struct wb_section_solver *s, const double *target)
 {
     struct wb_section_beam *const beam = s->beam;
@@ -167,11 +169,11 @@ static bool iterate(struct wb_section_solver *s, const double *target)
             return false;
         const double slope = dot(beam->n_unknowns, s->step, beam->residual);
         s->point.iterations++;
-        go(s, 1.0, vertical);
+        move_unknowns(s, 1.0, vertical);
         wb_section_beam_evaluate(beam, &s->loads, true);
         const double next = find_residual(s, target);
         if (i > 0 && !(next < residual)) {
-            search(s, slope, vertical);
+            line_search(s, slope, vertical);
             wb_section_beam_evaluate(beam, &s->loads, true);
         }
         residual = find_residual(s, target);
@@ -179,17 +181,17 @@ static bool iterate(struct wb_section_solver *s, const double *target)
     return false;
 }
 
-/* The line through the last two equilibria, at a target. */
+/* Extrapolates the last two equilibria linearly to a target. */
 static void extrapolate(struct wb_section_solver *s, double target)
 {
     struct wb_section_beam *const beam = s->beam;
-    const double way = s->now.deflection - s->before.deflection;
+    const double change = s->now.deflection - s->before.deflection;
 
     wb_section_beam_revert(beam);
     s->loads.vertical = s->now.vertical;
-    if (s->n_committed < 2 || way == 0.0)
+    if (s->n_committed < 2 || change == 0.0)
         return;
-    const double ratio = (target - s->now.deflection) / way;
+    const double ratio = (target - s->now.deflection) / change;
     for (int i = 0; i < beam->n_unknowns; i++)
         beam->u[i] += ratio * (beam->committed[i] - beam->before[i]);
     s->loads.vertical += ratio * (s->now.vertical - s->before.vertical);
@@ -200,7 +202,7 @@ static void commit(struct wb_section_solver *s, double target)
     wb_section_energy_take(s->beam);
     wb_section_beam_commit(s->beam);
     s->before = s->now;
-    s->now = (struct place){target, s->loads.vertical, s->loads.weight};
+    s->now = (struct equilibrium){target, s->loads.vertical, s->loads.weight};
     s->n_committed++;
 }
 
@@ -217,26 +219,27 @@ static void describe(struct wb_section_solver *s)
     p->tip_x = x;
     p->vertical = s->loads.vertical;
     p->tension = s->loads.vertical * sqrt(1.0 + beam->tip.slope * beam->tip.slope);
-    p->slack = s->hangs;
+    p->slack = s->is_slack;
     p->missing = beam->missing;
     p->tape_plastic = beam->tape_plastic;
     p->fold = beam->fold;
 }
 
-/* The strand would have to push: it is slack, and the tip hangs. False: that was not found. */
-static bool let_go(struct wb_section_solver *s)
+/* The strand would have to push: finds the equilibrium of the free tip with a slack strand. False
+ * if that does not converge. */
+static bool release_strand(struct wb_section_solver *s)
 {
     wb_section_beam_revert(s->beam);
     s->loads.vertical = 0.0;
     if (!iterate(s, NULL))
         return false;
-    s->hangs = true;
+    s->is_slack = true;
     commit(s, s->beam->tip.y);
     return true;
 }
 
-/* Whether the force fell where it was expected to rise, or rose for fall: Newton's method may end
- * at an equilibrium that the path does not lead to. */
+/* True if the force decreased although an increase was expected, or the reverse: Newton's method
+ * may converge to an equilibrium on another branch. */
 static bool has_jumped(const struct wb_section_solver *s, double expected)
 {
     const double change = s->loads.vertical - s->now.vertical;
@@ -244,7 +247,7 @@ static bool has_jumped(const struct wb_section_solver *s, double expected)
            fabs(change) > jump * fabs(s->now.vertical);
 }
 
-/* An increment to a target; of a strand that goes slack, to where the tip hangs. */
+/* Makes an increment to a target, or to the free tip if the strand becomes slack. */
 static bool advance(struct wb_section_solver *s, double target)
 {
     extrapolate(s, target);
@@ -253,14 +256,14 @@ static bool advance(struct wb_section_solver *s, double target)
     if (!iterate(s, &target) || has_jumped(s, expected))
         return false;
     if (s->loads.strand > 0.0 && s->loads.vertical < 0.0)
-        return let_go(s);
-    s->hangs = false;
+        return release_strand(s);
+    s->is_slack = false;
     commit(s, target);
     return true;
 }
 
-/* Back to the last equilibrium. */
-static void give_up(struct wb_section_solver *s)
+/* Returns to the last equilibrium. */
+static void return_to_last(struct wb_section_solver *s)
 {
     const double residual = s->point.residual;
     s->point.end = WB_SECTION_SOLVER_NOT_CONVERGED;
@@ -274,24 +277,25 @@ static void give_up(struct wb_section_solver *s)
 void wb_section_solver_move(struct wb_section_solver *s, double deflection,
                             struct wb_section_solver_point *point)
 {
-    const double from = s->now.deflection, way = deflection - from;
+    const double from = s->now.deflection, change = deflection - from;
     const double weight = s->now.weight, added = s->weight - weight;
     const double most = added > 0.0 ? s->weight_part : 1.0;
     double done = 0.0, part = most;
 
     s->point = (struct wb_section_solver_point){.end = WB_SECTION_SOLVER_CONVERGED};
-    /* Where the tip hangs already it stays until the strand pulls again. */
-    while (!(s->hangs && deflection <= s->now.deflection) && (done < 1.0 || s->n_committed == 0)) {
+    /* A free tip stays where it is until the strand becomes taut. */
+    while (!(s->is_slack && deflection <= s->now.deflection) &&
+           (done < 1.0 || s->n_committed == 0)) {
         const double next = fmin(done + part, 1.0);
         s->loads.weight = next < 1.0 ? weight + next * added : s->weight;
-        if (advance(s, next < 1.0 ? from + next * way : deflection)) {
+        if (advance(s, next < 1.0 ? from + next * change : deflection)) {
             done = next;
             part = fmin(2.0 * part, most);
             continue;
         }
         part *= 0.5;
         if (part < s->settings.smallest_step * most) {
-            give_up(s);
+            return_to_last(s);
             break;
         }
     }
@@ -327,8 +331,8 @@ static void fill_settings(struct wb_section_solver *s,
         s->settings.smallest_step = default_smallest_step;
 }
 
-/* The weight, and in how many parts it comes on: one where the wires alone, sliding freely, would
- * sag by no more than an eighth of their length (q L^3 / (8 E I)). */
+/* The weight, and the number of increments in which it is applied: one if the wires alone, sliding
+ * freely, would sag by at most an eighth of their length (q L^3 / (8 E I)). */
 static void set_weight(struct wb_section_solver *s, const struct wb_bundle_model *model)
 {
     s->weight =

@@ -32,7 +32,7 @@ static inline struct wb_section_solver_point move(double deflection)
     return point;
 }
 
-/* To a deflection in equal steps; the last point. */
+/* Moves to a deflection in equal steps; returns the last point. */
 static inline struct wb_section_solver_point load(double from, double to, int steps)
 {
     struct wb_section_solver_point point = {0};

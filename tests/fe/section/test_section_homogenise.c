@@ -1,4 +1,4 @@
-/* Moment over curvature of a homogenised beam, from curves of beams that have one. */
+/* Moment over curvature of a homogenised beam, from deflection curves of real beams. */
 #include "fe/section/section_homogenise.h"
 
 #include "fe/rod/fibres.h"
@@ -13,7 +13,7 @@ static const double length = 0.114;
 static const struct wb_material type3 = {
     WB_HARDENING_ISOTROPIC_POWER, 4528e6, 0.39, 4.52e6, 1327e6, 0.90};
 
-/* Force over deflection of a wire by the 1D beam. */
+/* Force over deflection of a wire from the 1D beam. */
 static void bend(const struct wb_section *section, struct wb_section_homogenise_point *points)
 {
     struct wb_cantilever_model beam;
@@ -70,14 +70,14 @@ static void a_plastic_wire_has_the_moments_of_its_fibres(void **unused)
         wb_fibres_respond(fibres, 0.0, points[i].curvature, before, after, &r);
         assert_close_relative(points[i].moment, r.M, 0.01);
     }
-    /* It has yielded by far. */
+    /* The wire has yielded far. */
     assert_true(points[ROWS - 1].moment / points[ROWS - 1].curvature <
                 0.5 * points[0].moment / points[0].curvature);
     wb_fibres_destroy(fibres);
     wb_section_release(&section);
 }
 
-static void a_curve_that_no_beam_has_ends_where_it_stops_growing(void **unused)
+static void a_curve_ends_where_its_moment_stops_increasing(void **unused)
 {
     (void)unused;
     struct wb_section_homogenise_point points[] = {
@@ -90,7 +90,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_elastic_beam_has_its_rigidity_at_every_curvature),
         cmocka_unit_test(a_plastic_wire_has_the_moments_of_its_fibres),
-        cmocka_unit_test(a_curve_that_no_beam_has_ends_where_it_stops_growing),
+        cmocka_unit_test(a_curve_ends_where_its_moment_stops_increasing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

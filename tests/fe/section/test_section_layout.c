@@ -1,4 +1,4 @@
-/* Unknowns, bonds and contacts of a section, and what is refused. */
+/* Unknowns, bonds and contacts of a section, and bundles that are rejected. */
 #include "fe/section/section_layout.h"
 
 #include "base/file.h"
@@ -54,21 +54,22 @@ static void segments_make_up_the_tape_and_bonds_the_arcs(void **unused)
         }
 }
 
-static void reach_widens_every_bond_and_holds_wires_that_are_touched_along_a_line(void **unused)
+static void reach_widens_bonds_and_bonds_wires_touched_along_a_line(void **unused)
 {
     (void)unused;
     create("12-type3", true);
     const double narrow = layout.bonded_width;
     create("12-type3-wider-bond", true);
-    /* Nine wires lie at the tape, on either side of each it holds sqrt(2 r reach) farther. */
+    /* Nine wires touch the tape; on either side of each, the bond reaches sqrt(2 r reach)
+     * farther. */
     assert_close(layout.bonded_width - narrow, 18.0 * sqrt(2.0 * 0.7e-3 * 0.005e-3), 1e-9);
     create("7-type3-circle", true);
     const double R = 2.1e-3, r = 0.7e-3;
     assert_close(layout.bonded_width, 6.0 * 2.0 * sqrt(2.0 * 0.005e-3 / (1.0 / r - 1.0 / R)), 1e-9);
 }
 
-/* Action and reaction: over all wires a contact adds nothing, wires that stand for two counted so.
- */
+/* Action and reaction: a contact's forces sum to zero over all wires, with wires that represent two
+ * counted twice. */
 static void contacts_push_wires_apart_and_balance_each_other(void **unused)
 {
     (void)unused;
@@ -93,7 +94,7 @@ static void contacts_push_wires_apart_and_balance_each_other(void **unused)
         }
 }
 
-static void assert_refused(const char *name, const char *reason)
+static void assert_rejected(const char *name, const char *reason)
 {
     read_bundle(name);
     keep_messages();
@@ -104,22 +105,22 @@ static void assert_refused(const char *name, const char *reason)
     assert_int_equal(kept.n, 1);
 }
 
-static void what_the_model_cannot_compute_is_refused_with_its_reason_and_a_way_out(void **unused)
+static void unsupported_bundles_are_rejected_with_reason_and_advice(void **unused)
 {
     (void)unused;
-    assert_refused("7-type3-helix", "helix");
-    assert_refused("19-mixed", "one diameter");
-    assert_refused("7-type3-gaps", "gaps: wires_mm: 0.05");
+    assert_rejected("7-type3-helix", "helix");
+    assert_rejected("19-mixed", "one diameter");
+    assert_rejected("7-type3-gaps", "gaps: wires_mm: 0.05");
 }
 
-static void assert_model_refused(const char *reason)
+static void assert_model_rejected(const char *reason)
 {
     keep_messages();
     assert_int_equal(wb_section_layout_create(&layout, &model, true), WB_ERR_UNSUPPORTED);
     assert_message(reason);
 }
 
-static void a_gap_between_neighbours_is_refused_from_a_hundredth_of_a_millimetre(void **unused)
+static void gaps_above_a_hundredth_of_a_millimetre_are_rejected(void **unused)
 {
     (void)unused;
     read_bundle("7-type3");
@@ -127,33 +128,30 @@ static void a_gap_between_neighbours_is_refused_from_a_hundredth_of_a_millimetre
     assert_int_equal(wb_section_layout_create(&layout, &model, true), WB_OK);
     wb_section_layout_release(&layout);
     model.packing.wire[1].z += 0.003e-3;
-    assert_model_refused("are 0.012 mm apart");
-    assert_model_refused("'touching_mm' beside places_mm");
+    assert_model_rejected("0.012 mm");
+    assert_model_rejected("'touching_mm'");
 }
 
-static void bonds_that_break_and_epoxy_are_refused(void **unused)
+static void breaking_bonds_and_potting_are_rejected(void **unused)
 {
     (void)unused;
     read_bundle("7-type3");
     model.interface.has_damage = true;
-    assert_model_refused("do not break");
+    assert_model_rejected("interface: damage");
     model.interface.has_damage = false;
     model.potted_length = 0.01;
-    assert_model_refused("potted");
+    assert_model_rejected("ends: ");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(segments_make_up_the_tape_and_bonds_the_arcs, release),
-        cmocka_unit_test_teardown(
-            reach_widens_every_bond_and_holds_wires_that_are_touched_along_a_line, release),
+        cmocka_unit_test_teardown(reach_widens_bonds_and_bonds_wires_touched_along_a_line, release),
         cmocka_unit_test_teardown(contacts_push_wires_apart_and_balance_each_other, release),
-        cmocka_unit_test_teardown(
-            what_the_model_cannot_compute_is_refused_with_its_reason_and_a_way_out, release),
-        cmocka_unit_test_teardown(
-            a_gap_between_neighbours_is_refused_from_a_hundredth_of_a_millimetre, release),
-        cmocka_unit_test_teardown(bonds_that_break_and_epoxy_are_refused, release),
+        cmocka_unit_test_teardown(unsupported_bundles_are_rejected_with_reason_and_advice, release),
+        cmocka_unit_test_teardown(gaps_above_a_hundredth_of_a_millimetre_are_rejected, release),
+        cmocka_unit_test_teardown(breaking_bonds_and_potting_are_rejected, release),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

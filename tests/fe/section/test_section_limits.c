@@ -1,5 +1,5 @@
-/* The section model where the tests of the paper's bundles do not reach: cycles of other packings,
- * long and short bundles, hardly any tape or friction; and what is said where it ends. */
+/* The section model outside the range of the paper's bundles: cycles of other packings, long and
+ * short bundles, very little tape or friction; and the reports at its limits. */
 #include "fe/section/section_run.h"
 
 #include "base/units.h"
@@ -22,7 +22,7 @@ static void compute(void)
     assert_int_equal(wb_section_run(&run, &model, &settings), WB_OK);
 }
 
-/* A bundle without weight, of one loading to its largest deflection. */
+/* A bundle without weight, with one loading to its largest deflection. */
 static void begin(const char *name, int rows)
 {
     read_bundle(name);
@@ -60,7 +60,7 @@ static void cycles_of_other_packings_balance_and_come_back(void **unused)
         assert_close_relative(run.rows[3 * ROWS].force, run.rows[ROWS].force, 0.03);
         for (int i = 1; i <= 2 * ROWS; i++) {
             const struct wb_section_run_row *const row = &run.rows[i];
-            /* The unloading is softer, and friction spends on both ways. */
+            /* Unloading is softer, and friction dissipates energy in both directions. */
             if (i > ROWS && row->phase == WB_PHASE_UNLOAD)
                 assert_true(row->force < run.rows[2 * ROWS - i].force);
             assert_true(row->energies.friction >
@@ -71,9 +71,9 @@ static void cycles_of_other_packings_balance_and_come_back(void **unused)
     }
 }
 
-/* The weight bends a long bundle far. In one increment the rule of sums would miss half of its
- * work, and of two metres there was no equilibrium at all. */
-static void the_weight_of_a_long_bundle_comes_on_in_parts(void **unused)
+/* The weight bends a long bundle strongly. In one increment the trapezoidal rule would miss half of
+ * its work, and a bundle of two metres would not converge. */
+static void weight_of_a_long_bundle_is_applied_in_parts(void **unused)
 {
     (void)unused;
     static const double lengths[] = {0.5, 2.0};
@@ -88,8 +88,8 @@ static void the_weight_of_a_long_bundle_comes_on_in_parts(void **unused)
                       run.imbalance);
         assert_true(run.converged);
         assert_true(run.imbalance < 2e-3);
-        /* It holds at least the half of what is between clamp and strand, less what leans on the
-         * clamp by its stiffness. */
+        /* At least half of the weight between clamp and strand, minus the part carried by
+         * bending. */
         const double weight =
             WB_STANDARD_GRAVITY * lengths[i] *
             (wb_bundle_model_wire_mass(&model) + wb_bundle_model_tape_mass(&model));
@@ -97,7 +97,7 @@ static void the_weight_of_a_long_bundle_comes_on_in_parts(void **unused)
     }
 }
 
-static void hardly_any_tape_or_friction_is_none(void **unused)
+static void very_little_tape_or_friction_equals_none(void **unused)
 {
     (void)unused;
     static const char *const names[] = {"7-type3", "12-type3-circle"};
@@ -124,25 +124,25 @@ static void hardly_any_tape_or_friction_is_none(void **unused)
     }
 }
 
-static void a_bend_below_the_depth_of_the_bundle_is_told(void **unused)
+static void bend_radius_below_the_depth_is_reported(void **unused)
 {
     (void)unused;
     begin("7-type3", 12);
     assert_true(last_force() > 2.0);
     assert_true(isnan(wb_section_run_folds(&run)));
-    /* Of 5 mm, thick as long. */
+    /* 5 mm long: as long as thick. */
     model.length *= 5.0 / 114.0;
     model.run.deflection *= 5.0 / 114.0;
     last_force();
     const double folds = wb_section_run_folds(&run);
     print_message("5 mm fold from %g mm on\n", folds * 1e3);
     assert_true(folds > 1e-3 && folds <= model.run.deflection);
-    /* Half of the depth, three radii of a wire, times the largest curvature. */
+    /* Half of the depth (three radii of a wire) times the largest curvature. */
     assert_close_relative(run.rows[1].point.fold / run.rows[1].point.tip_angle,
                           3.0 * 0.7e-3 * 2.0 / model.length, 0.5);
 }
 
-/* Friction that holds more than what presses: no state is found, and none is made up. */
+/* Friction larger than the contact forces allow: no state is found, and none is reported. */
 static void a_run_that_finds_no_equilibrium_has_no_rows(void **unused)
 {
     (void)unused;
@@ -156,20 +156,20 @@ static void a_run_that_finds_no_equilibrium_has_no_rows(void **unused)
     assert_true(!(run.lost.residual <= 1e-6));
 }
 
-static void what_is_no_number_is_no_equilibrium(void **unused)
+static void non_finite_states_do_not_converge(void **unused)
 {
     (void)unused;
     struct wb_section_solver_point point;
     const struct wb_section_solver_settings settings = {.friction = 0.2};
 
-    /* At rest, where all else is zero. */
+    /* At rest, where everything else is zero. */
     read_bundle("7-type3");
     model.interface.shear_stiffness = (double)NAN;
     create(&settings);
     wb_section_solver_move(solver, 0.0, &point);
     assert_int_equal(point.end, WB_SECTION_SOLVER_NOT_CONVERGED);
     destroy(NULL);
-    /* A strand of 20 mm lies level before the tip is at 90 mm. */
+    /* A strand of 20 mm becomes horizontal before the tip reaches 90 mm. */
     read_bundle("7-type3");
     model.loads.strand_length = 20e-3;
     create(&settings);
@@ -184,11 +184,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(cycles_of_other_packings_balance_and_come_back, release),
-        cmocka_unit_test_teardown(the_weight_of_a_long_bundle_comes_on_in_parts, release),
-        cmocka_unit_test_teardown(hardly_any_tape_or_friction_is_none, release),
-        cmocka_unit_test_teardown(a_bend_below_the_depth_of_the_bundle_is_told, release),
+        cmocka_unit_test_teardown(weight_of_a_long_bundle_is_applied_in_parts, release),
+        cmocka_unit_test_teardown(very_little_tape_or_friction_equals_none, release),
+        cmocka_unit_test_teardown(bend_radius_below_the_depth_is_reported, release),
         cmocka_unit_test_teardown(a_run_that_finds_no_equilibrium_has_no_rows, release),
-        TEST(what_is_no_number_is_no_equilibrium),
+        TEST(non_finite_states_do_not_converge),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Forces of contacts between the wires of a section. */
+/* Contact forces between the wires of a section. */
 #include "fe/section/section_pressure.h"
 
 #include <stdlib.h>
@@ -33,8 +33,8 @@ static int release(void **unused)
     return 0;
 }
 
-/* What is missing, squared and summed over all wires, plus a little of the forces' squares: what
- * the least of is looked for. */
+/* The minimised function: imbalance squared and summed over all wires, plus a small multiple of the
+ * sum of squared forces. */
 static double cost(const double *load, const double *force, double little)
 {
     double sum = 0.0;
@@ -54,7 +54,7 @@ static double noise(void)
     return 2.0 * rand() / RAND_MAX - 1.0;
 }
 
-/* As the model loads the wires: no force on the whole, nothing across on wires in the plane. */
+/* Loads as in the model: no resultant, and no lateral load on wires in the plane of bending. */
 static void make_load(double *load)
 {
     double mean = 0.0;
@@ -67,7 +67,7 @@ static void make_load(double *load)
         load[2 * w] -= mean;
 }
 
-static void forces_press_and_no_other_forces_that_press_balance_better(void **unused)
+static void forces_are_compressive_and_optimal(void **unused)
 {
     (void)unused;
     srand(7);
@@ -89,9 +89,9 @@ static void forces_press_and_no_other_forces_that_press_balance_better(void **un
     }
 }
 
-/* Wires pressed from all sides alike: each of six presses the centre and its neighbours. The forces
- * with the least sum of squares are equal by symmetry, p + 2 p cos 60 = the load. */
-static void a_ring_of_wires_pressed_inwards_shares_the_load_alike(void **unused)
+/* Wires loaded towards the centre: each of six presses on the centre and its neighbours. By
+ * symmetry the forces with the smallest sum of squares are equal, p + 2 p cos 60 = the load. */
+static void a_ring_pressed_inwards_shares_the_load_equally(void **unused)
 {
     (void)unused;
     double load[2 * MOST] = {0}, force[MOST];
@@ -105,7 +105,7 @@ static void a_ring_of_wires_pressed_inwards_shares_the_load_alike(void **unused)
         assert_close(force[c], 0.5, 1e-6);
 }
 
-static void what_pulls_apart_presses_nothing_and_is_missing_whole(void **unused)
+static void tensile_load_gives_no_force_and_is_reported_as_imbalance(void **unused)
 {
     (void)unused;
     double load[2 * MOST] = {0}, force[MOST], squares = 0.0;
@@ -123,9 +123,9 @@ static void what_pulls_apart_presses_nothing_and_is_missing_whole(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forces_press_and_no_other_forces_that_press_balance_better),
-        cmocka_unit_test(a_ring_of_wires_pressed_inwards_shares_the_load_alike),
-        cmocka_unit_test(what_pulls_apart_presses_nothing_and_is_missing_whole),
+        cmocka_unit_test(forces_are_compressive_and_optimal),
+        cmocka_unit_test(a_ring_pressed_inwards_shares_the_load_equally),
+        cmocka_unit_test(tensile_load_gives_no_force_and_is_reported_as_imbalance),
     };
     return cmocka_run_group_tests(tests, create, release);
 }

@@ -1,4 +1,4 @@
-/* A whole test in the section model: rows, phases, rigidities. */
+/* A complete test in the section model: rows, phases, rigidities. */
 #include "fe/section/section_run.h"
 
 #include "tests/fe/section/section_fixture.h"
@@ -48,7 +48,7 @@ static void cycles_have_rows_up_and_down_and_a_strand_goes_slack(void **unused)
     assert_int_equal(run.rows[41].phase, WB_PHASE_SLACK);
     assert_close(run.rows[20].point.deflection, 53e-3, 1e-9);
     assert_close(run.rows[60].point.deflection, 53e-3, 1e-9);
-    /* The second loading comes back to where the first one ended, nearly. */
+    /* The second loading returns approximately to the end of the first one. */
     assert_close_relative(run.rows[60].force, run.rows[20].force, 0.03);
     assert_true(run.imbalance < 2e-3);
 }
@@ -69,8 +69,7 @@ static void a_run_that_is_stopped_keeps_its_rows(void **unused)
     assert_int_equal(run.n_rows, 4);
 }
 
-/* The section's own alpha, whatever the length: with a tip that is free to slip, and a capped one.
- */
+/* alpha is a property of the section, for any length, with a free and a capped tip. */
 static void rigidities_of_three_lengths_have_one_alpha(void **unused)
 {
     (void)unused;
@@ -108,7 +107,7 @@ static void a_bundle_without_tape_has_the_rigidity_of_its_wires_and_no_alpha(voi
     assert_int_equal(run.n_curve, 18);
 }
 
-/* On a strand with weight it comes from a loading of its own. */
+/* With strand and weight the curve is computed by a loading of its own. */
 static void the_homogenised_curve_does_not_depend_on_how_the_test_is_loaded(void **unused)
 {
     (void)unused;
@@ -128,8 +127,8 @@ static void the_homogenised_curve_does_not_depend_on_how_the_test_is_loaded(void
     }
 }
 
-/* No row of either unloading lies where the force is zero. */
-static void a_run_until_free_ends_there_and_says_what_springs_back(void **unused)
+/* In neither unloading is the force zero at a row. */
+static void a_run_until_free_ends_there_and_reports_springback(void **unused)
 {
     (void)unused;
     static const struct wb_section_run_settings settings = {.until_free = true,
@@ -184,7 +183,7 @@ int main(void)
                                   release),
         cmocka_unit_test_teardown(the_homogenised_curve_does_not_depend_on_how_the_test_is_loaded,
                                   release),
-        cmocka_unit_test_teardown(a_run_until_free_ends_there_and_says_what_springs_back, release),
+        cmocka_unit_test_teardown(a_run_until_free_ends_there_and_reports_springback, release),
         cmocka_unit_test(friction_that_decays_becomes_the_geometric_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* The section model against closed forms, single wires and itself. */
+/* The section model compared with closed forms, single wires and itself. */
 #include "fe/section/section_solver.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 
 static const double small = 1e-6; /* m */
 
-/* Three times E I of an elastic cantilever by its force at a small deflection. */
+/* Three times E I of an elastic cantilever, from its force at a small deflection. */
 static double rigidity(const struct wb_section_solver_settings *settings, double length)
 {
     model.length = length;
@@ -22,7 +22,7 @@ static double rigidity(const struct wb_section_solver_settings *settings, double
 
 /* --- limits --- */
 
-/* With the law that the wires have in `model`. */
+/* With the law of the wires in `model`. */
 static void compare_with_single_wires(void)
 {
     static const double path[] = {5e-3, 20e-3, 40e-3, 53e-3, 40e-3, 20e-3};
@@ -49,7 +49,7 @@ static void compare_with_single_wires(void)
     wb_section_release(&section);
 }
 
-static void wires_without_tape_are_as_many_single_wires_on_the_way_and_back(void **unused)
+static void wires_without_tape_bend_like_single_wires(void **unused)
 {
     (void)unused;
     read_bundle("7-type3");
@@ -57,8 +57,8 @@ static void wires_without_tape_are_as_many_single_wires_on_the_way_and_back(void
     compare_with_single_wires();
 }
 
-/* Parallel parts with kinematic hardening, which the explicit model does not know. */
-static void wires_keep_the_law_of_their_file(void **unused)
+/* Parallel parts with kinematic hardening, which the explicit model does not support. */
+static void wires_use_the_law_of_their_file(void **unused)
 {
     (void)unused;
     static const struct wb_law_part parts[] = {
@@ -69,7 +69,7 @@ static void wires_keep_the_law_of_their_file(void **unused)
     compare_with_single_wires();
 }
 
-static void a_strand_lets_go_where_that_of_single_wires_does(void **unused)
+static void a_strand_becomes_slack_as_for_single_wires(void **unused)
 {
     (void)unused;
     static const double path[] = {0.0, 10e-3, 30e-3, 50e-3, 40e-3, 20e-3, 10e-3, 30e-3};
@@ -127,14 +127,14 @@ static void wires_and_tape_without_bonds_or_friction_add_up(void **unused)
 
     read_bundle("7-type3-circle");
     model.interface.shear_stiffness = 0.0;
-    /* The tube of the tape bends by itself, wires by themselves; the circle is a polygon here. */
+    /* The tape's tube and the wires bend independently; the circle is a polygon here. */
     assert_close_relative(rigidity(&settings, 0.114), wb_bundle_model_rigidity(&model).sliding[0],
                           0.01);
 }
 
-/* Seven wires whose tape lies on arcs of 60 degrees: by Newmark's theory of partial interaction,
- * with the bond of an arc and the shear of the tape to the next wire in series. */
-static void seven_wires_shear_on_each_other_as_newmark_says(void **unused)
+/* Seven wires with tape on arcs of 60 degrees: Newmark's theory of partial interaction, with the
+ * bond of an arc and the shear of the tape to the next wire in series. */
+static void seven_wires_follow_newmarks_theory(void **unused)
 {
     (void)unused;
     const struct wb_section_solver_settings settings = {
@@ -167,7 +167,7 @@ static void seven_wires_shear_on_each_other_as_newmark_says(void **unused)
     }
 }
 
-/* Elements, contact and the tape's wall are others there. */
+/* Elements, contact and the tape's wall are different in that reference. */
 static void forces_are_those_of_the_static_reference(void **unused)
 {
     (void)unused;
@@ -212,9 +212,9 @@ static void forces_are_those_of_the_static_reference(void **unused)
     }
 }
 
-/* --- friction, and what must hold for any --- */
+/* --- friction, and general properties --- */
 
-/* The energy that is spent differs from the work by the rule of summation alone. */
+/* The dissipated energy differs from the work only by the summation rule. */
 static double imbalance(int steps)
 {
     read_bundle("7-type3");
@@ -229,7 +229,7 @@ static double imbalance(int steps)
     return fabs(lost);
 }
 
-static void energies_add_up_to_the_work_and_better_with_smaller_steps(void **unused)
+static void energies_balance_and_converge_with_the_steps(void **unused)
 {
     (void)unused;
     const double coarse = imbalance(25), fine = imbalance(100);
@@ -250,7 +250,7 @@ static double force_at_53_mm(const char *name, const struct wb_section_solver_se
     return force;
 }
 
-static void friction_stiffens_and_does_so_more_with_more_of_it(void **unused)
+static void stiffness_increases_with_friction(void **unused)
 {
     (void)unused;
     double before = 0.0;
@@ -262,7 +262,7 @@ static void friction_stiffens_and_does_so_more_with_more_of_it(void **unused)
     }
 }
 
-static void elements_and_increments_as_they_are_by_default_are_fine_enough(void **unused)
+static void default_elements_and_increments_are_fine_enough(void **unused)
 {
     (void)unused;
     const double as_is =
@@ -281,7 +281,7 @@ static void elements_and_increments_as_they_are_by_default_are_fine_enough(void 
     assert_close_relative(as_is, tighter, 1e-5);
 }
 
-static void images_share_their_unknowns_without_a_change(void **unused)
+static void sharing_unknowns_of_images_changes_nothing(void **unused)
 {
     (void)unused;
     static const char *const bundles[] = {"7-type3", "7-type3-turned", "12-type3",
@@ -297,8 +297,8 @@ static void images_share_their_unknowns_without_a_change(void **unused)
     }
 }
 
-/* A hexagon has the same second moment about every axis, and its slips almost the same. */
-static void a_turn_about_the_axis_that_mirrors_nothing_changes_little(void **unused)
+/* A hexagon has the same second moment about every axis, and nearly the same slips. */
+static void rotation_that_breaks_symmetry_changes_little(void **unused)
 {
     (void)unused;
     const struct wb_section_solver_settings settings = {.friction = 0.4};
@@ -318,7 +318,7 @@ static void a_turn_about_the_axis_that_mirrors_nothing_changes_little(void **unu
     assert_close_relative(turned, force_at_53_mm("7-type3", &settings, 53), 0.03);
 }
 
-static void a_capped_tip_shears_nothing_at_its_end_and_is_stiffer(void **unused)
+static void a_capped_tip_has_no_slip_and_is_stiffer(void **unused)
 {
     (void)unused;
     const struct wb_section_solver_settings settings = {.friction = 0.2};
@@ -333,7 +333,7 @@ static void a_capped_tip_shears_nothing_at_its_end_and_is_stiffer(void **unused)
     const int last = beam->n_elements, first = wb_section_beam_index(beam, last, 1);
     for (int i = 2; i < beam->per_station; i++)
         assert_int_equal(wb_section_beam_index(beam, last, i), first);
-    /* As it is cut free nothing pulls at the cap: the axial forces of all its parts cancel. */
+    /* A free cap has no axial force: the axial forces of its parts cancel. */
     assert_close(beam->residual[first], 0.0, 1e-5 * beam->axial);
 }
 
@@ -353,8 +353,8 @@ static struct wb_section_solver_point count(const struct wb_section_solver_setti
     return sum;
 }
 
-/* Without a search along the step Newton's method goes to and fro between contacts that stick and
- * slip in rows of this one. */
+/* Without a line search Newton's method alternates between sticking and slipping contacts in some
+ * rows of this bundle. */
 static void friction_converges_in_every_row_without_smaller_increments(void **unused)
 {
     (void)unused;
@@ -366,7 +366,7 @@ static void friction_converges_in_every_row_without_smaller_increments(void **un
     assert_true(sum.iterations < 4 * 54);
 }
 
-static void a_strand_whose_slope_turns_far_costs_hardly_more_iterations_than_a_force(void **unused)
+static void an_inclined_strand_needs_hardly_more_iterations_than_a_force(void **unused)
 {
     (void)unused;
     read_bundle("7-type3");
@@ -378,8 +378,8 @@ static void a_strand_whose_slope_turns_far_costs_hardly_more_iterations_than_a_f
     assert_true(by_strand < 1.2 * by_force);
 }
 
-/* Residuals on either side of a state, along a random direction, against matrix and direction: the
- * solution of the tangent for the difference of the residuals is the direction. */
+/* Compares residuals on either side of a state, along a random direction, with the tangent: solving
+ * the tangent for the difference of the residuals gives the direction. */
 static void check_tangent(const char *name, bool is_slipping, double strand)
 {
     const struct wb_section_beam_settings settings = {.n_elements = 6};
@@ -414,7 +414,7 @@ static void check_tangent(const char *name, bool is_slipping, double strand)
     wb_section_beam_evaluate(beam, &loads, false);
     assert_true(beam->tape_plastic > 0.001);
     assert_int_equal(beam->n_slipping > 0, is_slipping);
-    /* What the turn of the strand adds is not in the matrix: V / (S cos^3 psi) draw draw^T. */
+    /* The matrix lacks the part from the strand's rotation: V / (S cos^3 psi) draw draw^T. */
     double drawn = 0.0;
     for (int i = 0; i < n; i++)
         drawn += beam->draw[i] * way[i];
@@ -441,7 +441,7 @@ static void the_tangent_is_the_derivative_of_the_residual(void **unused)
     check_tangent("7-type3-circle", true, 0.0);
 }
 
-static void what_does_not_converge_says_so_and_stays_where_it_was(void **unused)
+static void failed_move_is_reported_and_keeps_the_state(void **unused)
 {
     (void)unused;
     struct wb_section_solver_point point;
@@ -458,10 +458,10 @@ static void what_does_not_converge_says_so_and_stays_where_it_was(void **unused)
     assert_true(point.residual > 1e-6);
 }
 
-/* 61 wires press so hard on each other near 53 mm that the friction which their pressure allows
- * changes the pressure as much. Beyond, Newton's method finds an equilibrium with a smaller force,
- * to which the path does not lead. */
-static void an_equilibrium_beside_the_path_is_not_taken(void **unused)
+/* Near 53 mm 61 wires press on each other so much that a change of friction changes the contact
+ * forces by as much. Beyond, Newton's method finds an equilibrium with a smaller force on another
+ * branch. */
+static void equilibrium_on_another_branch_is_rejected(void **unused)
 {
     (void)unused;
     enum {
@@ -494,24 +494,24 @@ static void an_equilibrium_beside_the_path_is_not_taken(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(wires_without_tape_are_as_many_single_wires_on_the_way_and_back),
-        TEST(wires_keep_the_law_of_their_file),
-        TEST(a_strand_lets_go_where_that_of_single_wires_does),
+        TEST(wires_without_tape_bend_like_single_wires),
+        TEST(wires_use_the_law_of_their_file),
+        TEST(a_strand_becomes_slack_as_for_single_wires),
         TEST(glued_wires_bend_as_one_section_that_stays_plane),
         TEST(wires_and_tape_without_bonds_or_friction_add_up),
-        TEST(seven_wires_shear_on_each_other_as_newmark_says),
+        TEST(seven_wires_follow_newmarks_theory),
         TEST(forces_are_those_of_the_static_reference),
-        TEST(energies_add_up_to_the_work_and_better_with_smaller_steps),
-        TEST(friction_stiffens_and_does_so_more_with_more_of_it),
-        TEST(elements_and_increments_as_they_are_by_default_are_fine_enough),
-        TEST(images_share_their_unknowns_without_a_change),
-        TEST(a_turn_about_the_axis_that_mirrors_nothing_changes_little),
-        TEST(a_capped_tip_shears_nothing_at_its_end_and_is_stiffer),
+        TEST(energies_balance_and_converge_with_the_steps),
+        TEST(stiffness_increases_with_friction),
+        TEST(default_elements_and_increments_are_fine_enough),
+        TEST(sharing_unknowns_of_images_changes_nothing),
+        TEST(rotation_that_breaks_symmetry_changes_little),
+        TEST(a_capped_tip_has_no_slip_and_is_stiffer),
         TEST(friction_converges_in_every_row_without_smaller_increments),
-        TEST(a_strand_whose_slope_turns_far_costs_hardly_more_iterations_than_a_force),
+        TEST(an_inclined_strand_needs_hardly_more_iterations_than_a_force),
         TEST(the_tangent_is_the_derivative_of_the_residual),
-        TEST(an_equilibrium_beside_the_path_is_not_taken),
-        TEST(what_does_not_converge_says_so_and_stays_where_it_was),
+        TEST(equilibrium_on_another_branch_is_rejected),
+        TEST(failed_move_is_reported_and_keeps_the_state),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
