@@ -10,22 +10,22 @@ enum {
     UNKNOWNS = WB_HEX20_UNKNOWNS,
     CORNERS = WB_HEX20_CORNER_POINTS,
     FACE = 8,
-    MOST_RULE = 4, /* points along a line */
+    MAX_RULE = 4, /* points along a line */
     ALL_POINTS = WB_HEX20_MOST_POINTS + WB_HEX20_CORNER_POINTS
 };
 
 /* --- the reference shape: shape functions and integrals --- */
 
-/* Gauss' rules of 2, 3 and 4 points. */
+/* Gauss rules with 2, 3 and 4 points per coordinate. */
 struct rule {
     int n;
-    double place[MOST_RULE], weight[MOST_RULE];
+    double place[MAX_RULE], weight[MAX_RULE];
 };
 
 static const struct rule two = {2, {-0.57735026918962576451, 0.57735026918962576451}, {1.0, 1.0}};
 static const struct rule three = {
     3, {-0.77459666924148337704, 0.0, 0.77459666924148337704}, {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0}};
-/* Exact for the volume and face integrals of any shape: their integrands are of degree 7 along each
+/* Exact for the volume and face integrals of any shape, whose integrands have degree 7 in each
  * parent coordinate. */
 static const struct rule four = {4,
                                  {-0.86113631159405257522, -0.33998104358485626480,
@@ -42,16 +42,16 @@ static const double node_place[NODES][3] = {
 static const double face_place[FACE][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1},
                                            {0, -1},  {1, 0},  {0, 1}, {-1, 0}};
 
-/* Shares of corner points' values at a node that are too large to trust; of a box they are at most
- * 2.55. */
+/* Extrapolation weights above this limit are not trusted; for a box they are at most 2.55. */
 static const double large_share = 8.0;
 
-/* Serendipity shape functions and derivatives (at [3], [0..2]) at parent coordinates x. */
+/* Serendipity shape functions (in [3]) and their derivatives (in [0..2]) at parent coordinates
+ * x. */
 static void find_shapes(const double x[3], double shape[4][NODES])
 {
     for (int a = 0; a < NODES; a++) {
         const double *p = node_place[a];
-        double f[3], d[3]; /* factors along each coordinate, and their slopes */
+        double f[3], d[3]; /* factors along each coordinate, and their derivatives */
         int middle = -1;
         for (int i = 0; i < 3; i++) {
             if (p[i] == 0.0)
@@ -60,7 +60,7 @@ static void find_shapes(const double x[3], double shape[4][NODES])
             d[i] = p[i] == 0.0 ? -2.0 * x[i] : p[i];
         }
         const double scale = middle >= 0 ? 0.25 : 0.125;
-        /* At corners a further factor, p . x - 2. */
+        /* Corner functions have the additional factor p . x - 2. */
         const double sum = middle >= 0 ? 1.0 : p[0] * x[0] + p[1] * x[1] + p[2] * x[2] - 2.0;
         for (int i = 0; i < 3; i++) {
             const double others = f[(i + 1) % 3] * f[(i + 2) % 3];
@@ -85,7 +85,7 @@ static double find_cofactors(const double matrix[3][3], double cofactor[3][3])
            matrix[0][2] * cofactor[0][2];
 }
 
-/* The Jacobian's determinant at x; gradient (3 x 20, per metre) unless NULL. */
+/* The Jacobian's determinant at x; `gradient` (3 x 20, 1/m) may be NULL. */
 static double find_gradient(const double x[3], const double position[NODES][3],
                             double shape[4][NODES], double gradient[3][NODES])
 {
@@ -94,7 +94,7 @@ static double find_gradient(const double x[3], const double position[NODES][3],
     find_shapes(x, shape);
     for (int a = 1; a < NODES; a++) {
         for (int i = 0; i < 3; i++) {
-            /* Relative to node 0: far from the origin, too, the digits are those of the shape. */
+            /* Positions relative to node 0, so that no digits are lost far from the origin. */
             for (int j = 0; j < 3; j++)
                 jacobian[i][j] += shape[i][a] * (position[a][j] - position[0][j]);
         }
@@ -134,7 +134,7 @@ static bool fill_points(const struct rule *rule, const double position[NODES][3]
     return true;
 }
 
-/* Position relative to node 0 at parent coordinates x, and dX_j / dx_i. */
+/* Position relative to node 0 at parent coordinates x, and the Jacobian dX_j / dx_i. */
 static void find_place(const double x[3], const double position[NODES][3], double place[3],
                        double jacobian[3][3])
 {
@@ -161,7 +161,7 @@ static void find_trilinear(const double x[3], double value[CORNERS])
     memcpy(value, all, sizeof all);
 }
 
-/* Replaces the rows b by A^-1 b; false where A is singular. */
+/* Replaces the rows b by A^-1 b; false if A is singular. */
 static bool solve_corners(double A[CORNERS][CORNERS], double b[CORNERS][NODES])
 {
     for (int k = 0; k < CORNERS; k++) {
@@ -197,13 +197,13 @@ static bool solve_corners(double A[CORNERS][CORNERS], double b[CORNERS][NODES])
     return true;
 }
 
-/* Trilinear functions through the corner points' values, at the nodes: functions of the affine
- * coordinates at the centre, so that what is linear in X stays so however the edges are curved.
- * False where an element is so distorted that they grow far beyond the points' values. */
+/* Extrapolation weights from corner points to nodes: trilinear functions of the affine coordinates
+ * at the centre, so that fields linear in X are reproduced on elements with curved edges. False if
+ * the element is so distorted that the weights exceed large_share. */
 static bool find_affine_shares(const double position[NODES][3], double share[NODES][CORNERS])
 {
     double centre[3], at[3], jacobian[3][3], unused[3][3], cofactor[3][3];
-    double A[CORNERS][CORNERS], b[CORNERS][NODES]; /* function by point, function by node */
+    double A[CORNERS][CORNERS], b[CORNERS][NODES]; /* function x point, function x node */
 
     find_place((const double[3]){0.0}, position, centre, jacobian);
     const double determinant = find_cofactors((const double(*)[3])jacobian, cofactor);
@@ -233,7 +233,7 @@ static bool find_affine_shares(const double position[NODES][3], double share[NOD
     return true;
 }
 
-/* The same in parent coordinates, which any shape has. */
+/* The same with trilinear functions of parent coordinates, which exist for any shape. */
 static void find_parent_shares(double share[NODES][CORNERS])
 {
     for (int a = 0; a < NODES; a++) {
@@ -287,7 +287,7 @@ void wb_hex20_volume_weights(const double position[NODES][3], double weight[NODE
     }
 }
 
-/* Serendipity shape functions (at [2]) and derivatives of a face. */
+/* Serendipity shape functions (in [2]) and derivatives of a face. */
 static void find_face_shapes(const double x[2], double shape[3][FACE])
 {
     for (int a = 0; a < FACE; a++) {
@@ -345,8 +345,8 @@ void wb_hex20_face_integrals(const double position[FACE][3], struct wb_hex20_fac
 
 /* --- evaluation --- */
 
-/* Of an element under evaluation: the deviatoric points, then the volumetric ones where those are
- * others. */
+/* The points of an element during evaluation: deviatoric points, then volumetric points if they
+ * differ. */
 struct points {
     int n, n_deviatoric;
     struct wb_solid_point_motion motion[ALL_POINTS];
@@ -354,14 +354,15 @@ struct points {
     struct wb_hex20_kernel kernel;
 };
 
-/* Motions of all points; false when J <= 0 at one. */
+/* Computes the motions of all points; false if J <= 0 at a point. */
 static bool find_motions(struct points *points, const struct wb_hex20_geometry *geometry,
                          enum wb_integration integration, const double *restrict u)
 {
     double relative[3][NODES], h[ALL_POINTS][9];
     const int n = wb_hex20_points(integration);
 
-    /* Rigid translations leave before strains are formed: they may be large against the element. */
+    /* Subtract the displacement of node 0: rigid translations may be large compared with the
+     * element. */
     for (int a = 0; a < NODES; a++) {
         for (int i = 0; i < 3; i++)
             relative[i][a] = u[3 * a + i] - u[i];
@@ -380,7 +381,7 @@ static bool find_motions(struct points *points, const struct wb_hex20_geometry *
     return true;
 }
 
-/* Hands on what point p answers. */
+/* Passes the response of point p on to forces and stiffness. */
 static void take_response(struct points *points, int p, double weight, bool tangent,
                           const struct wb_solid_point_response *response,
                           struct wb_hex20_result *result)
@@ -425,7 +426,7 @@ static void respond(struct points *points, const struct wb_hex20_geometry *geome
     }
 }
 
-/* A product with zero is not a number where a factor is not finite. */
+/* Checks all values, because a product of zero and a non-finite value is NaN. */
 static bool all_finite(const double *x, int n)
 {
     double sum = 0.0;
@@ -466,13 +467,14 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry, enum wb_integra
     return all_finite(stiffness, UNKNOWNS * UNKNOWNS);
 }
 
-/* Values at 27 points go to the corner points by the trilinear function nearest to them in least
- * squares, weighted as by Gauss. Triquadratic functions keep their values there; and there the
- * derivatives of quadratic elements are most accurate. */
+/* Share of point p's value in corner point c. Values at 27 points are projected to the corner
+ * points by the trilinear function that fits them best in the least-squares sense with Gauss
+ * weights. Triquadratic functions keep their values at the corner points, where derivatives of
+ * quadratic elements are most accurate. */
 static double point_share(int points, int p, int c)
 {
-    /* Along a line: w (1 + sqrt 3 sign x) / 2 at w = 5/9, 8/9, 5/9, x = -sqrt(3/5), 0, sqrt(3/5).
-     */
+    /* Along a line: w (1 + sqrt 3 sign x) / 2 for w = 5/9, 8/9, 5/9 and x = -sqrt(3/5), 0,
+     * sqrt(3/5). */
     static const double line[3][2] = {
         {0.65045577402774279, -0.094900218472187187},
         {4.0 / 9.0, 4.0 / 9.0},
@@ -533,7 +535,7 @@ void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
                 sum[k] += good ? share * value[c][k] : (double)NAN;
         }
         memcpy(stress[a], sum, 6 * sizeof sum[0]);
-        /* Extrapolation must not make of a strain that never decreases one below zero. */
+        /* Extrapolation must not make the equivalent plastic strain negative. */
         plastic[a] = sum[6] < 0.0 ? 0.0 : sum[6];
     }
 }

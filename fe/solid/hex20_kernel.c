@@ -5,9 +5,9 @@
 #include "fe/linear/processor.h"
 #include "fe/solid/hex20_kernel_private.h"
 
-/* Sums here may be contracted: the stiffness steers Newton's method, and the equilibrium that it
- * finds is decided by the forces, which are not. Held to a slow twin by
- * tests/fe/solid/test_hex20.c. */
+/* Contraction of products and sums is allowed here: the stiffness only determines the convergence
+ * of Newton's method, while the equilibrium depends on the forces, which are computed without
+ * contraction. Compared with a reference implementation in tests/fe/solid/test_hex20.c. */
 #if defined(__clang__)
 #pragma clang fp contract(fast)
 #elif defined(__GNUC__)
@@ -19,11 +19,11 @@ enum {
     UNKNOWNS = WB_HEX20_UNKNOWNS,
     PAIRS = WB_HEX20_KERNEL_PAIRS,
     ROWS = 3 * WB_HEX20_KERNEL_POINTS,
-    PANEL_PAIRS = 2, /* a panel is the columns of two pairs: it stays in the nearest cache */
+    PANEL_PAIRS = 2, /* a panel holds the columns of two pairs, which fit into the L1 cache */
     COLUMNS = PANEL_PAIRS * NODES
 };
 
-/* The pairs ik, and the places of components among the six. */
+/* The pairs ik, and the indices of components among the six. */
 static const int pair_row[PAIRS] = {0, 1, 2, 0, 1, 2};
 static const int pair_column[PAIRS] = {0, 1, 2, 1, 2, 0};
 static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
@@ -47,7 +47,7 @@ void wb_hex20_kernel_add(struct wb_hex20_kernel *kernel, double weight,
 typedef double wide __attribute__((vector_size(64), aligned(8), may_alias));
 typedef double narrow __attribute__((vector_size(32), aligned(8), may_alias));
 
-/* The columns of a panel of Y. */
+/* Computes the columns of a panel of Y. */
 static WB_ALWAYS_INLINE void fill_panel(const struct wb_hex20_kernel *kernel, int panel,
                                         double y[ROWS][COLUMNS])
 {
@@ -89,7 +89,7 @@ static WB_ALWAYS_INLINE void multiply_wide(const double *g, int rows, double y[R
         memcpy(block[a], sum[a], sizeof sum[a]);
 }
 
-/* The same for two nodes and half the columns, in registers of four lanes. */
+/* As multiply_wide() for two nodes and half the columns, in registers of four lanes. */
 static WB_ALWAYS_INLINE void multiply_narrow(const double *g, int rows, const double *y,
                                              double block[2][COLUMNS])
 {
@@ -162,10 +162,10 @@ multiply_avx512(const struct wb_hex20_kernel *kernel, double *restrict stiffness
 }
 #endif
 
-bool wb_hex20_kernel_multiply_by(enum wb_hex20_kernel_way way, const struct wb_hex20_kernel *kernel,
-                                 double *restrict stiffness)
+bool wb_hex20_kernel_multiply_by(enum wb_hex20_kernel_variant variant,
+                                 const struct wb_hex20_kernel *kernel, double *restrict stiffness)
 {
-    switch (way) {
+    switch (variant) {
     case WB_HEX20_KERNEL_PORTABLE:
         multiply_portably(kernel, stiffness);
         return true;

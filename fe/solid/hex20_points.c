@@ -36,7 +36,7 @@ static WB_ALWAYS_INLINE void find_forces(int n, const double *restrict gradient,
                                          const struct wb_hex20_points_load *restrict load,
                                          double *restrict spatial, double *restrict force)
 {
-    /* Place of component ij among the six. */
+    /* Index of component ij among the six. */
     static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     lanes sum[3][PARTS];
 

@@ -8,10 +8,10 @@
 
 enum {
     NODES = 8, /* of a face */
-    LOCAL = 9  /* what a point depends on: distance, two base vectors */
+    LOCAL = 9  /* local variables of a point: distance, two base vectors */
 };
 
-/* Serendipity functions of the face with 8 nodes and their derivatives. */
+/* Serendipity functions of a face with 8 nodes, and their derivatives. */
 static void shape_functions(double r, double s, double N[NODES], double dr[NODES], double ds[NODES])
 {
     static const double corner[4][2] = {{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}};
@@ -162,8 +162,9 @@ static void add_curvature(const struct frame *frame, int i, const double q[LOCAL
 
 /* --- the law --- */
 
-/* Tractions that do work on the gaps (the third one is minus the pressure) and their derivatives;
- * touching also where a gap is not finite, so that it shows. */
+/* Tractions work-conjugate to the gaps (the third one is minus the pressure), and their
+ * derivatives. `touching` is also true for a gap that is not finite, so that the forces become NaN
+ * and the error is detected. */
 struct response {
     bool touching, slipping;
     double traction[3];
@@ -180,7 +181,7 @@ static void respond(const struct wb_jacket_contact_law *law, const double gap[3]
     memset(response, 0, sizeof *response);
     *after = (struct wb_jacket_contact_state){.gap = {gap[0], gap[1]}, .slip = old.slip};
     if (gap[2] > 0.0 && isfinite(gap[0] + gap[1] + gap[2]))
-        return; /* open: the friction is forgotten */
+        return; /* open: friction is reset */
 
     const double pressure = -kn * gap[2], bound = mu * pressure;
     double *t = response->traction, trial[2];
@@ -242,7 +243,8 @@ static void point_init(struct point *point, int number, const double X[2 * NODES
     point->weight = weight[i] * weight[j] * sqrt(wb_vec3_dot(normal, normal));
 }
 
-/* The distance is that of displacements: faces that coincide touch exactly. */
+/* The distance is computed from displacements only, so that coinciding faces have distance zero
+ * exactly. */
 static void local_variables(const struct point *point, const double X[2 * NODES][3],
                             const double *u, double q[LOCAL])
 {

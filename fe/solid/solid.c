@@ -17,7 +17,7 @@
 
 enum {
     Z = WB_SOLID_TIP_UNKNOWNS,
-    TENSION = Z, /* unknowns and equations beside z */
+    TENSION = Z, /* unknowns and equations in addition to z */
     SHARE = Z + 1,
     ALL = Z + 2
 };
@@ -25,25 +25,27 @@ enum {
 /* Columns of the right-hand sides. */
 enum {
     COLUMN_RESIDUAL,
-    COLUMN_LOADS, /* change of the body's loads with the share, for the arc length */
+    COLUMN_LOADS, /* derivative of the body's loads with respect to the share, for the arc length */
     COLUMN_TIP,
     COLUMNS = COLUMN_TIP + Z
 };
 
-/* What drives an increment, as numbers, to tell whether it continues the one before. */
+/* Changes of loads in an increment, as one vector: used to detect that an increment continues the
+ * one before. */
 enum {
     DRIVES = 3 + 9 + 2 /* factors, tip loads, deflection, tension */
 };
 
-/* One equilibrium to be found: a share of a move. */
+/* One equilibrium to solve for: a share of a move. */
 struct increment {
     const struct wb_solid_move *move;
-    struct wb_solid_loads start;  /* of the move */
-    double start_deflection;      /* m, of the move */
-    double from, share;           /* of the move: last equilibrium's, the one wanted */
-    double arc_length;            /* m; with WB_SOLID_ARC */
-    const double *last_direction; /* (9) change of z in the increment before; NULL: none */
-    double change[Z];             /* out: of z */
+    struct wb_solid_loads start; /* of the move */
+    double start_deflection;     /* m, of the move */
+    double from, share; /* shares of the move: at the last equilibrium, and the one to reach */
+    double arc_length;  /* m; for WB_SOLID_ARC */
+    /* (9) change of z in the previous increment; NULL: no direction. */
+    const double *last_direction;
+    double change[Z]; /* out: of z */
 };
 
 struct wb_solid {
@@ -54,20 +56,20 @@ struct wb_solid {
     struct wb_solid_tip_strand strand;
     int n_supports;
     struct wb_solid_support *supports;
-    double *nodal_force; /* (3 n_nodes); NULL: none */
+    double *nodal_force; /* (3 n_nodes); NULL: no nodal forces */
 
-    /* Displacements: trial, of the last equilibrium, of the one before. */
+    /* Displacements: trial state, last equilibrium, equilibrium before it. */
     double *u, *committed, *before;
     struct wb_solid_loads loads, committed_loads, before_loads;
     double *committed_force; /* (3 n_nodes) */
     double drive[DRIVES];
-    bool can_continue;     /* `before` and `drive` belong to the last equilibrium's own increment */
-    double last_change[Z]; /* of z, in the last increment */
-    bool on_arc;           /* the last increment was one of an arc towards arc_target */
+    bool can_continue;     /* `before` and `drive` belong to the last increment */
+    double last_change[Z]; /* change of z in the last increment */
+    bool on_arc;           /* the last increment was an arc towards arc_target */
     double arc_pace;       /* m: that increment's length */
     struct wb_solid_loads arc_target;
-    double largest_force; /* N: ever met at a node */
-    double pace;          /* share of a move that the last increment took */
+    double largest_force; /* largest at any node so far, N */
+    double pace;          /* share of its move that the last increment took */
     struct wb_solid_balance balance;
 
     /* Workspace of Newton's method. */
@@ -83,7 +85,7 @@ struct wb_solid {
     int worst_node;
     int iterations;
     int negative_pivots;
-    bool unstable; /* of the last equilibrium */
+    bool unstable; /* the last equilibrium is unstable */
     char problem[240];
     struct wb_memory memory; /* of all arrays */
 };
@@ -139,7 +141,7 @@ enum wb_status wb_solid_create(struct wb_solid **out, const struct wb_solid_mode
     if (!(isfinite(model->strand_length) && model->strand_length >= 0.0 &&
           isfinite(model->strand_x)))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the strand is %g m long above x = %g m: expected a length of 0 or more",
+                       "strand_length %g m, strand_x %g m: expected a length of 0 or more",
                        model->strand_length, model->strand_x);
 
     struct wb_solid_body body;
@@ -169,26 +171,29 @@ void wb_solid_destroy(struct wb_solid *solid)
 
 /* --- one equilibrium, by Newton's method --- */
 
-/* A relative residual below which the last factorisation is used again, and what it must bring. */
-static const double close_by = 1e-2;
+/* The last factorisation is reused below this relative residual, as long as the residual decreases
+ * by this factor. */
+static const double reuse_below = 1e-2;
 static const double good_reduction = 0.2;
 
-/* Share of the tolerance that a state is within before the first iteration. */
-static const double at_start = 1e-3;
+/* A state counts as equilibrium before the first iteration only below this fraction of the
+ * tolerance. */
+static const double initial_fraction = 1e-3;
 
-/* An iteration turns the tip by no more than this. */
-static const double most_turn = 0.5;
+/* An iteration rotates the tip by at most this, rad. */
+static const double max_iteration_rotation = 0.5;
 
-/* Forces below this share of the largest ever met count as none. */
+/* The residual is relative to at least this fraction of the largest force so far, so that unloaded
+ * states converge. */
 static const double small_force = 1e-3;
 
-/* What a Newton step changes besides the displacements. */
+/* Newton step of the unknowns other than displacements. */
 struct step {
     double z[Z];
     double tension, share;
 };
 
-/* Loads of a move at a share of it; the tension is that of `now` where it is an unknown. */
+/* Loads at a share of a move; `tension` is used where the tension is an unknown. */
 static struct wb_solid_loads loads_at(const struct increment *increment, double share,
                                       double tension)
 {
@@ -209,7 +214,7 @@ static struct wb_solid_loads loads_at(const struct increment *increment, double 
     return at;
 }
 
-/* How the loads grow with the share. */
+/* Derivative of the loads with respect to the share. */
 static struct wb_solid_loads rate_of_loads(const struct increment *increment)
 {
     const struct wb_solid_loads a = loads_at(increment, 0.0, 0.0);
@@ -232,7 +237,7 @@ static double *column(const struct wb_solid *solid, int c)
     return solid->right + (size_t)c * (size_t)solid->body.n_equations;
 }
 
-/* Puts the forces of the body (weight, nodal forces) times factors into a column, or adds them. */
+/* Adds the body's forces (weight, nodal forces) times factors to a column. */
 static void add_body_loads(const struct wb_solid *solid, double weight, double nodal, double *right)
 {
     for (int i = 0; i < 3 * solid->body.mesh->n_nodes; i++) {
@@ -253,7 +258,7 @@ static void add_tip_loads(const struct wb_solid *solid, const double phi[Z], dou
         }
 }
 
-/* z's rate for a column of displacements (equations): the patterns' transpose. */
+/* Rate of z for a column of displacements (equations): the transpose of the patterns. */
 static void tip_motion_of(const struct wb_solid *solid, const double *x, double z[Z])
 {
     memset(z, 0, Z * sizeof *z);
@@ -265,8 +270,9 @@ static void tip_motion_of(const struct wb_solid *solid, const double *x, double 
         }
 }
 
-/* Loads less internal forces of the trial state into the first column; the relative residual. */
-static void unbalance(struct wb_solid *solid)
+/* Computes loads minus internal forces of the trial state in the first column, and the relative
+ * residual. */
+static void compute_residual(struct wb_solid *solid)
 {
     const struct wb_solid_body *body = &solid->body;
     double *right = column(solid, COLUMN_RESIDUAL);
@@ -287,7 +293,8 @@ static void unbalance(struct wb_solid *solid)
         largest = fmax(largest, fabs(body->force[i]));
         if (q < 0)
             continue;
-        largest = fmax(largest, fabs(right[q])); /* a first step's loads, not yet carried */
+        largest =
+            fmax(largest, fabs(right[q])); /* external loads not yet balanced by internal forces */
         right[q] -= body->force[i];
         if (!(fabs(right[q]) <= worst) && !isnan(worst)) {
             worst = fabs(right[q]);
@@ -298,7 +305,8 @@ static void unbalance(struct wb_solid *solid)
     solid->residual = scale > 0.0 ? worst / scale : 0.0;
 }
 
-/* Forces, and with `stiffness` the factored tangent with its answers to the tip's loads. */
+/* Computes forces and, with `stiffness`, the factored tangent and its compliance for the tip's
+ * loads. */
 static bool evaluate(struct wb_solid *solid, const struct increment *increment, bool stiffness,
                      bool change_supports)
 {
@@ -312,7 +320,7 @@ static bool evaluate(struct wb_solid *solid, const struct increment *increment, 
     }
     if (!solid->found.possible)
         return false;
-    unbalance(solid);
+    compute_residual(solid);
     for (int i = 0; change_supports && i < 3 * body->mesh->n_nodes; i++)
         if (body->equation[i] >= 0)
             column(solid, COLUMN_RESIDUAL)[body->equation[i]] -= solid->held_force[i];
@@ -346,7 +354,7 @@ static bool evaluate(struct wb_solid *solid, const struct increment *increment, 
     return isfinite(solid->residual);
 }
 
-/* Length of a change of z, m: the way of the tip and the turning of its frame. */
+/* Length of a change of z, m: translation of the tip and rotation of its frame. */
 static double length_of(const struct wb_solid *solid, const double change[Z])
 {
     double sum = 0.0;
@@ -357,11 +365,11 @@ static double length_of(const struct wb_solid *solid, const double change[Z])
     return sqrt(sum);
 }
 
-/* The equations of z, tension and share in one small matrix. `A` is column-major. */
+/* Sets up the linear system of z, tension and share. `A` is column-major. */
 static void tip_equations(const struct wb_solid *solid, const struct increment *increment,
                           double *A, double *b)
 {
-    const double *C = solid->compliance; /* symmetric but for friction; row k: answer to load k */
+    const double *C = solid->compliance; /* symmetric without friction; row k: response to load k */
     const enum wb_solid_control control = increment->move->control;
     double z[Z], along[Z], rate_phi[Z] = {0}, rate_body[Z] = {0};
 
@@ -399,7 +407,8 @@ static void tip_equations(const struct wb_solid *solid, const struct increment *
     b[SHARE] = 0.0;
 }
 
-/* The arc's equation: a first step of unit share, to be scaled, then its linearised length. */
+/* Equation of the arc: for the first step a share of 1, which is scaled later; then the linearised
+ * arc length. */
 static void arc_equation(const struct wb_solid *solid, const struct increment *increment,
                          bool first, double *A, double *b)
 {
@@ -415,7 +424,7 @@ static void arc_equation(const struct wb_solid *solid, const struct increment *i
     b[SHARE] = increment->arc_length * increment->arc_length - length * length;
 }
 
-/* Scales the first step of an arc to its length, forwards. */
+/* Scales the first step of an arc to its length, in the forward direction. */
 static void scale_first(const struct wb_solid *solid, const struct increment *increment, double *x)
 {
     double sign = 1.0;
@@ -431,7 +440,7 @@ static void scale_first(const struct wb_solid *solid, const struct increment *in
         x[i] *= scale;
 }
 
-/* The Newton step of the whole system; the displacements' into solid->step. */
+/* Computes the Newton step of the complete system; displacements go to solid->step. */
 static bool solve_step(struct wb_solid *solid, const struct increment *increment, bool first,
                        struct step *step)
 {
@@ -439,8 +448,8 @@ static bool solve_step(struct wb_solid *solid, const struct increment *increment
     double *x = column(solid, COLUMN_RESIDUAL);
     double coefficient[COLUMNS] = {1.0};
 
-    /* An arc sets out along the path alone: next to a critical point what is left of the residual
-     * would lead far away, and it is not scaled to the arc's length. */
+    /* The first step of an arc ignores the residual: near a critical point the residual's step
+     * would be very large, and it must not be scaled to the arc's length. */
     if (increment->move->control == WB_SOLID_ARC && first)
         memset(x, 0, (size_t)body->n_equations * sizeof *x);
     else
@@ -494,7 +503,7 @@ static void set_supports(struct wb_solid *solid)
     }
 }
 
-/* The trial state at `scale` times the step from solid->base. */
+/* Sets the trial state to solid->base plus `scale` times the step. */
 static void take_step(struct wb_solid *solid, struct increment *increment, const struct step *step,
                       const struct wb_solid_loads *loads, double share, double scale)
 {
@@ -515,9 +524,9 @@ static void take_step(struct wb_solid *solid, struct increment *increment, const
     }
 }
 
-/* Whether the equilibrium just found is unstable under its control (with an arc: under its loads).
- * Of conservative loads by the signature of the tangent; of loads that turn with the tip, and with
- * contact, by the sign of its determinant, which two critical points at once leave as it is. */
+/* True if the equilibrium is unstable under its control (for an arc: under its loads). Conservative
+ * loads use the number of negative pivots. Loads that rotate with the tip, and contact, use the
+ * sign of the determinant, which does not detect two critical points in one increment. */
 static bool is_unstable(const struct wb_solid *solid, const struct increment *increment)
 {
     const struct wb_tip_loads *tip = &solid->loads.tip;
@@ -546,13 +555,13 @@ static double first_scale(const struct step *step)
     for (int i = 3; i < Z; i++)
         turn += step->z[i] * step->z[i];
     turn = sqrt(turn);
-    return turn > most_turn ? most_turn / turn : 1.0;
+    return turn > max_iteration_rotation ? max_iteration_rotation / turn : 1.0;
 }
 
-/* Takes the step, shortened where it leads to an impossible state or, past the first iteration, to
- * a much larger residual. */
-static bool search_line(struct wb_solid *solid, struct increment *increment,
-                        const struct step *step, bool stiffness, bool guard)
+/* Takes the step; halves it while the state is impossible or, after the first iteration, the
+ * residual grows much. */
+static bool take_damped_step(struct wb_solid *solid, struct increment *increment,
+                             const struct step *step, bool stiffness, bool guard)
 {
     const struct wb_solid_loads loads = solid->loads;
     const double share = increment->share, before = solid->residual;
@@ -570,15 +579,15 @@ static bool search_line(struct wb_solid *solid, struct increment *increment,
     return false;
 }
 
-/* Where the imbalance is largest, in words. */
-static void describe(struct wb_solid *solid, const char *what)
+/* Writes the reason and the place of the largest residual to solid->problem. */
+static void describe_problem(struct wb_solid *solid, const char *reason)
 {
     const double *X = solid->body.mesh->node[solid->worst_node];
 
     if (!solid->found.possible && solid->found.worst_element >= 0) {
         const int node = solid->body.mesh->element[solid->found.worst_element][0];
         snprintf(solid->problem, sizeof solid->problem,
-                 "element %d at %.4g mm along the wire is turned inside out (after %d iterations)",
+                 "element %d at %.4g mm along the wire is inverted (after %d iterations)",
                  solid->found.worst_element, solid->body.mesh->node[node][0] / WB_MM,
                  solid->iterations);
         return;
@@ -586,7 +595,7 @@ static void describe(struct wb_solid *solid, const char *what)
     snprintf(solid->problem, sizeof solid->problem,
              "%s: after %d iterations the relative residual is %.2g, largest at (%.4g, %.4g, %.4g) "
              "mm",
-             what, solid->iterations, solid->residual, X[0] / WB_MM, X[1] / WB_MM, X[2] / WB_MM);
+             reason, solid->iterations, solid->residual, X[0] / WB_MM, X[1] / WB_MM, X[2] / WB_MM);
 }
 
 static bool has_converged(const struct wb_solid *solid, const struct increment *increment)
@@ -604,7 +613,7 @@ static bool has_converged(const struct wb_solid *solid, const struct increment *
            1e-4 * solid->settings.force_tolerance * solid->tip.radius + 1e-12 * fabs(wanted);
 }
 
-/* Prepares solid->held: how the held components must still move. */
+/* Computes the remaining motion of supports in solid->held; false if there is none. */
 static bool supports_change(struct wb_solid *solid)
 {
     bool any = false;
@@ -619,10 +628,10 @@ static bool supports_change(struct wb_solid *solid)
     return any;
 }
 
-/* Finds the equilibrium, from the trial state that the caller has set: solid->u and solid->loads.
- * `predicted` says that the trial state already holds the new supports. True when it converged: the
- * trial state, histories and solid->found are then those of the equilibrium, and increment->share
- * the share that was reached. Otherwise solid->problem says why. */
+/* Solves for equilibrium from the trial state in solid->u and solid->loads, which the caller has
+ * set. `predicted`: the trial state already includes the new support displacements. True if it
+ * converged: trial state, histories and solid->found are then those of the equilibrium, and
+ * increment->share is the share reached. Otherwise solid->problem gives the reason. */
 static bool find_equilibrium(struct wb_solid *solid, struct increment *increment, bool predicted)
 {
     const bool arc = increment->move->control == WB_SOLID_ARC;
@@ -632,40 +641,40 @@ static bool find_equilibrium(struct wb_solid *solid, struct increment *increment
     memset(increment->change, 0, sizeof increment->change);
     const bool move_supports = !predicted && supports_change(solid);
     if (!evaluate(solid, increment, true, move_supports)) {
-        describe(solid, "the tangent stiffness is singular");
+        describe_problem(solid, "the tangent stiffness is singular");
         return false;
     }
-    /* Many small imbalances of one sign are a load: a start is not taken for the end unless it is
-     * far below the tolerance, as an iteration is cheap there. */
-    const bool at_once =
-        !arc && !move_supports && solid->residual <= at_start * solid->settings.force_tolerance;
+    /* Many small residuals of one sign are a load: accept the initial state only if its residual is
+     * far below the tolerance; an iteration is cheap there. */
+    const bool at_once = !arc && !move_supports &&
+                         solid->residual <= initial_fraction * solid->settings.force_tolerance;
     while (!has_converged(solid, increment) || (solid->iterations == 0 && !at_once)) {
         struct step step;
         const double before = solid->residual;
         if (solid->iterations++ == solid->settings.max_iterations) {
-            describe(solid, "no convergence");
+            describe_problem(solid, "no convergence");
             return false;
         }
         const bool first = solid->iterations == 1;
         if (!solve_step(solid, increment, first, &step)) {
-            describe(solid, "the tip's equations are singular");
+            describe_problem(solid, "the tip's equations are singular");
             return false;
         }
         if (first && move_supports)
             for (int i = 0; i < 3 * solid->body.mesh->n_nodes; i++)
                 solid->step[i] += solid->held[i];
 
-        /* Near the end forces alone may show that it is there, and the old tangent still serves. */
-        const bool near = before < close_by && !first;
-        if (!search_line(solid, increment, &step, !near, !first)) {
-            describe(solid, "no convergence");
+        /* Near convergence evaluate only the forces and reuse the tangent. */
+        const bool near = before < reuse_below && !first;
+        if (!take_damped_step(solid, increment, &step, !near, !first)) {
+            describe_problem(solid, "no convergence");
             return false;
         }
         if (has_converged(solid, increment))
             break;
         if (near && (!fresh || solid->residual > good_reduction * before)) {
             if (!evaluate(solid, increment, true, false)) {
-                describe(solid, "the tangent stiffness is singular");
+                describe_problem(solid, "the tangent stiffness is singular");
                 return false;
             }
             fresh = true;
@@ -678,20 +687,21 @@ static bool find_equilibrium(struct wb_solid *solid, struct increment *increment
 
 /* --- moves, in increments --- */
 
-/* Iterations that an increment should take: it grows below, shrinks above. */
+/* Wanted number of iterations per increment: increments grow if fewer are needed and shrink if
+ * more. */
 static const double wanted_iterations = 6.0;
 
-/* Share of the largest force at any node below which a strand's tension is none. */
-static const double no_tension = 1e-6;
+/* A strand's tension above minus this fraction of the largest nodal force counts as zero. */
+static const double tension_tolerance = 1e-6;
 
-/* Arcs shorter than this share of the wanted length lead nowhere. */
+/* Smallest arc length, over the requested one. */
 static const double shortest_arc = 1.0 / 256.0;
 
-/* Share of a move that an arc may go beyond its end. */
-static const double most_overshoot = 1e-3;
+/* An arc may exceed the end of a move by this share. */
+static const double max_overshoot = 1e-3;
 
-/* Arc increments allowed in a move that names no number. */
-static const int usual_arc_increments = 1;
+/* Default number of arc increments in a move. */
+static const int default_arc_increments = 1;
 
 static size_t vector_bytes(const struct wb_solid *solid)
 {
@@ -707,7 +717,7 @@ static double deflection_of(const struct wb_solid *solid, const double *u)
     return z[1];
 }
 
-/* What drives an increment, as one vector. */
+/* Changes of loads in an increment, as one vector. */
 static void drive_of(const struct wb_solid *solid, const struct increment *increment,
                      double drive[DRIVES])
 {
@@ -722,7 +732,7 @@ static void drive_of(const struct wb_solid *solid, const struct increment *incre
     for (int i = 0; i < 3; i++) {
         drive[n++] = b.tip.force[i] - a.tip.force[i];
         drive[n++] = b.tip.follower[i] - a.tip.follower[i];
-        /* As forces, over a length of the section's size. */
+        /* Moments as forces, divided by the section's radius of gyration. */
         drive[n++] =
             solid->tip.n_nodes > 0 ? (b.tip.moment[i] - a.tip.moment[i]) / solid->tip.radius : 0.0;
     }
@@ -732,7 +742,7 @@ static void drive_of(const struct wb_solid *solid, const struct increment *incre
     drive[n] = deflection ? 0.0 : b.tension - a.tension;
 }
 
-/* How many times the last increment's drive this one's is; 0 where it is no multiple. */
+/* Ratio of this increment's drive to the last one's; 0 if they are not parallel. */
 static double ratio_of(const double *last, const double *now)
 {
     double ll = 0.0, ln = 0.0, nn = 0.0;
@@ -746,7 +756,7 @@ static double ratio_of(const double *last, const double *now)
     return parallel && ratio <= 3.0 ? ratio : 0.0;
 }
 
-/* Sets the trial state of an increment; true where it is the last increment's continuation. */
+/* Sets the trial state of an increment; true if it was extrapolated from the last increment. */
 static bool predict(struct wb_solid *solid, const struct increment *increment)
 {
     double drive[DRIVES];
@@ -769,7 +779,7 @@ static bool predict(struct wb_solid *solid, const struct increment *increment)
     return ratio > 0.0;
 }
 
-/* The trial state becomes the last equilibrium. */
+/* Makes the trial state the last equilibrium. */
 static void accept(struct wb_solid *solid, const struct increment *increment)
 {
     const struct wb_solid_body *body = &solid->body;
@@ -799,9 +809,9 @@ static void accept(struct wb_solid *solid, const struct increment *increment)
     wb_solid_body_commit(&solid->body);
 }
 
-/* A stable equilibrium has no business to become an unstable one by growing loads: the increment
- * stepped over a critical point, perhaps to another branch. */
-static bool steps_over(struct wb_solid *solid, const struct increment *increment)
+/* True if the increment led from a stable equilibrium to an unstable one: it passed a critical
+ * point, perhaps to another branch. */
+static bool passes_critical_point(struct wb_solid *solid, const struct increment *increment)
 {
     const bool unstable = is_unstable(solid, increment);
 
@@ -810,7 +820,7 @@ static bool steps_over(struct wb_solid *solid, const struct increment *increment
         return false;
     }
     snprintf(solid->problem, sizeof solid->problem,
-             "a critical point (a limit load or buckling) lies between %.4g and %.4g of the way",
+             "a critical point (a limit load or buckling) lies between %.4g and %.4g of the move",
              increment->from, increment->share);
     return true;
 }
@@ -821,7 +831,7 @@ static void revert(struct wb_solid *solid)
     solid->loads = solid->committed_loads;
 }
 
-static double turned(const struct increment *increment)
+static double tip_rotation(const struct increment *increment)
 {
     double sum = 0.0;
     for (int i = 3; i < Z; i++)
@@ -829,15 +839,15 @@ static double turned(const struct increment *increment)
     return sqrt(0.5 * sum);
 }
 
-/* The next increment's share from how the last one went. */
+/* The next increment's share, from iterations and rotation of the last one. */
 static double next_pace(const struct wb_solid *solid, const struct increment *increment)
 {
     const double pace = increment->share - increment->from;
     double growth = sqrt(wanted_iterations / fmax(1.0, solid->iterations));
 
     growth = fmin(2.0, fmax(0.5, growth));
-    if (turned(increment) * growth > solid->settings.most_rotation)
-        growth = fmax(0.5, solid->settings.most_rotation / turned(increment));
+    if (tip_rotation(increment) * growth > solid->settings.most_rotation)
+        growth = fmax(0.5, solid->settings.most_rotation / tip_rotation(increment));
     return fmin(solid->settings.largest_increment, pace * growth);
 }
 
@@ -857,7 +867,7 @@ static void finish(const struct wb_solid *solid, struct wb_solid_point *point,
         snprintf(point->problem, sizeof point->problem, "%s", solid->problem);
 }
 
-/* Whether a strand would have to push at the equilibrium just found. */
+/* True if the strand would have to push at this equilibrium. */
 static bool pushes(const struct wb_solid *solid, const struct increment *increment)
 {
     double largest = solid->largest_force;
@@ -867,12 +877,11 @@ static bool pushes(const struct wb_solid *solid, const struct increment *increme
         return false;
     for (int i = 0; i < 3 * solid->body.mesh->n_nodes; i++)
         largest = fmax(largest, fabs(solid->body.force[i]));
-    return solid->loads.tension < -no_tension * largest;
+    return solid->loads.tension < -tension_tolerance * largest;
 }
 
-/* The increment after which the strand would carry nothing, by the straight line through the
- * tensions of both ends. */
-static double pace_to_slack(const struct wb_solid *solid, const struct increment *increment)
+/* The increment at which the tension becomes zero, by linear interpolation. */
+static double increment_to_slack(const struct wb_solid *solid, const struct increment *increment)
 {
     const double from = fmax(0.0, solid->committed_loads.tension), to = solid->loads.tension;
     return (increment->share - increment->from) * from / (from - to);
@@ -885,7 +894,7 @@ static void move_by_shares(struct wb_solid *solid, struct increment *increment,
     double pace = fmin(1.0, solid->pace);
 
     while (point->fraction < 1.0) {
-        /* No crumb is left for a last increment. */
+        /* Avoid a very small last increment. */
         const double rest = 1.0 - point->fraction;
         increment->from = point->fraction;
         increment->share = rest <= pace * 1.01 ? 1.0 : point->fraction + fmin(pace, 0.5 * rest);
@@ -893,13 +902,13 @@ static void move_by_shares(struct wb_solid *solid, struct increment *increment,
         bool converged = find_equilibrium(solid, increment, predicted);
         point->iterations += solid->iterations;
         if (!converged && predicted) {
-            /* Once more from the equilibrium itself. */
+            /* Retry without extrapolation. */
             solid->can_continue = false;
             (void)predict(solid, increment);
             converged = find_equilibrium(solid, increment, false);
             point->iterations += solid->iterations;
         }
-        if (!converged || steps_over(solid, increment)) {
+        if (!converged || passes_critical_point(solid, increment)) {
             revert(solid);
             point->cutbacks++;
             pace = 0.5 * (increment->share - increment->from);
@@ -909,14 +918,15 @@ static void move_by_shares(struct wb_solid *solid, struct increment *increment,
             }
             continue;
         }
-        if (turned(increment) > 2.0 * solid->settings.most_rotation) {
-            /* Too far for the path of a plastic material. */
+        if (tip_rotation(increment) > 2.0 * solid->settings.most_rotation) {
+            /* Rotation too large for path-dependent plasticity. */
             pace = (increment->share - increment->from) * solid->settings.most_rotation /
-                   turned(increment);
-            snprintf(solid->problem, sizeof solid->problem,
-                     "the end turns by %.2g rad between %.6g and %.6g of the way: no equilibrium "
-                     "is near",
-                     turned(increment), increment->from, increment->share);
+                   tip_rotation(increment);
+            snprintf(
+                solid->problem, sizeof solid->problem,
+                "the tip rotates by %.2g rad between %.6g and %.6g of the move: no equilibrium "
+                "nearby",
+                tip_rotation(increment), increment->from, increment->share);
             revert(solid);
             point->cutbacks++;
             if (pace < smallest) {
@@ -926,7 +936,7 @@ static void move_by_shares(struct wb_solid *solid, struct increment *increment,
             continue;
         }
         if (pushes(solid, increment)) {
-            pace = pace_to_slack(solid, increment);
+            pace = increment_to_slack(solid, increment);
             revert(solid);
             if (pace < smallest) {
                 finish(solid, point, WB_SOLID_SLACK);
@@ -951,10 +961,11 @@ static void move_by_arc(struct wb_solid *solid, struct increment *increment,
                         struct wb_solid_point *point)
 {
     const struct wb_solid_move *move = increment->move;
-    const int most = move->most_increments > 0 ? move->most_increments : usual_arc_increments;
+    const int most = move->most_increments > 0 ? move->most_increments : default_arc_increments;
     double length = move->arc_length;
 
-    /* A path goes on as it went; towards new loads it begins with their growth. */
+    /* A continued path keeps its direction; a path to new loads starts in the direction of
+     * increasing loads. */
     if (solid->on_arc && memcmp(&solid->arc_target, &move->target, sizeof move->target) == 0) {
         increment->last_direction = solid->last_change;
         length = fmin(length, 2.0 * solid->arc_pace);
@@ -977,10 +988,10 @@ static void move_by_arc(struct wb_solid *solid, struct increment *increment,
             continue;
         }
         const bool unstable = is_unstable(solid, increment);
-        if (!unstable && increment->share > 1.0 + most_overshoot &&
+        if (!unstable && increment->share > 1.0 + max_overshoot &&
             length >= shortest_arc * move->arc_length) {
-            /* Not past the loads that are wanted, from which a plastic body would return otherwise.
-             */
+            /* Do not exceed the target loads: unloading from there would change the plastic
+             * history. */
             length *= fmax(0.1, (1.0 - increment->from) / (increment->share - increment->from));
             revert(solid);
             continue;
@@ -1018,11 +1029,12 @@ enum wb_status wb_solid_move(struct wb_solid *solid, const struct wb_solid_move 
     if (!is_finite(move))
         return wb_fail(WB_ERR_ARGUMENT, "a load or deflection is not a finite number");
     if (move->control != WB_SOLID_LOADS && solid->tip.n_nodes == 0)
-        return wb_fail(WB_ERR_ARGUMENT, "this mesh has no free end to control");
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "a mesh without tip faces cannot have tip loads or controls");
     if (move->control == WB_SOLID_ARC &&
         !(move->arc_length > 0.0 && move->target.supports == solid->committed_loads.supports))
-        return wb_fail(WB_ERR_ARGUMENT, "a move along the path needs an arc length above 0, and "
-                                        "supports that stay where they are");
+        return wb_fail(WB_ERR_ARGUMENT, "arc control needs an arc_length above 0, and "
+                                        "supports that do not move");
 
     struct increment increment = {
         .move = move,

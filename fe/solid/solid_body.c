@@ -20,7 +20,7 @@ static enum wb_status number_equations(struct wb_solid_body *body,
     for (int i = 0; i < model->n_supports; i++) {
         const struct wb_solid_support *s = &model->supports[i];
         if (s->node < 0 || s->node >= mesh->n_nodes || s->axis < 0 || s->axis > 2)
-            return wb_fail(WB_ERR_ARGUMENT, "support %d: there is no axis %d of node %d", i,
+            return wb_fail(WB_ERR_ARGUMENT, "support %d: axis %d of node %d does not exist", i,
                            s->axis, s->node);
         body->equation[3 * s->node + s->axis] = -1;
     }
@@ -29,10 +29,11 @@ static enum wb_status number_equations(struct wb_solid_body *body,
             body->equation[i] = n++;
     body->n_equations = n;
     return n > 0 ? WB_OK
-                 : wb_fail(WB_ERR_ARGUMENT, "every node is held: there is nothing to solve");
+                 : wb_fail(WB_ERR_ARGUMENT,
+                           "all displacements are prescribed: the body has no unknowns");
 }
 
-/* How many equations belong to nodes before `node`. */
+/* Number of equations of nodes before `node`. */
 static int equations_before(const struct wb_solid_body *body, int node)
 {
     for (int i = 3 * node; i < 3 * body->mesh->n_nodes; i++)
@@ -76,7 +77,7 @@ static enum wb_status prepare_elements(struct wb_solid_body *body,
         gather_positions(mesh, e, position);
         if (!wb_hex20_geometry_init(&body->geometry[e], body->integration,
                                     (const double(*)[3])position))
-            return wb_fail(WB_ERR_ARGUMENT, "element %d near (%g, %g, %g) m is folded", e,
+            return wb_fail(WB_ERR_ARGUMENT, "element %d near (%g, %g, %g) m is inverted", e,
                            position[0][0], position[0][1], position[0][2]);
         wb_hex20_volume_weights((const double(*)[3])position, share);
         const double density = body->parts[mesh->part[e]].density;
@@ -177,7 +178,7 @@ void wb_solid_body_release(struct wb_solid_body *body)
     *body = (struct wb_solid_body){0};
 }
 
-/* What the assembly of one evaluation shares. */
+/* Data of one assembly. */
 struct assembly {
     struct wb_solid_body *body;
     const double *u;
@@ -187,7 +188,8 @@ struct assembly {
     struct wb_solid_body_result *result;
 };
 
-/* Tangent times the change of held components, for the nodes of one element or pair. */
+/* Adds the tangent times the change of prescribed displacements, for the nodes of one element or
+ * pair. */
 static void add_held(const struct assembly *a, int n_nodes, const int *node, const double *matrix)
 {
     const int n = 3 * n_nodes;

@@ -1,8 +1,8 @@
-/* The discrete body behind fe/solid/solid.h: elements with their histories, equations, assembly.
+/* The discrete body of fe/solid/solid.h: elements with their histories, equations, assembly.
  *
- * Displacements are full vectors (3 n_nodes); held components keep what they are given. Free ones
- * have equation numbers in the order of the nodes, so that the layers of the mesh are the blocks of
- * the stiffness.
+ * Displacements are full vectors (3 n_nodes); prescribed components keep the value given by the
+ * caller. Free components have equation numbers in the order of the nodes, so that the layers of
+ * the mesh are the blocks of the stiffness.
  */
 #ifndef WB_FE_SOLID_SOLID_BODY_H
 #define WB_FE_SOLID_SOLID_BODY_H
@@ -28,18 +28,18 @@ struct wb_solid_body {
     bool has_contact;                               /* its tangent is unsymmetric */
     struct wb_jacket_contact_law jacket_contact;
     struct wb_jacket_contact_state *committed_pairs, *trial_pairs; /* (n_pairs x 9) */
-    double *weight;             /* (3 n_nodes) N: forces of gravity */
+    double *weight;             /* (3 n_nodes) N: gravity forces */
     struct wb_layered *tangent; /* of the last evaluation with stiffness */
-    double *force;              /* (3 n_nodes) N: internal, of the last evaluation */
+    double *force;              /* (3 n_nodes) N: internal forces of the last evaluation */
     double *element_stiffness;  /* workspace */
     struct wb_memory memory;    /* of all arrays */
 };
 
-/* What an evaluation found. */
+/* Result of an evaluation. */
 struct wb_solid_body_result {
-    bool possible;     /* false: an element is inverted or a number is not finite */
-    int worst_element; /* where it is impossible */
-    double elastic, dissipated, friction; /* J; the latter two of the step */
+    bool possible;     /* false: an element is inverted or a value is not finite */
+    int worst_element; /* index of the element that failed */
+    double elastic, dissipated, friction; /* J; dissipated and friction: of the step */
     struct wb_jacket_contact_result jacket_contact;
 };
 
@@ -47,16 +47,16 @@ WB_MUST_CHECK enum wb_status wb_solid_body_init(struct wb_solid_body *body,
                                                 const struct wb_solid_model *model);
 void wb_solid_body_release(struct wb_solid_body *body); /* accepts a zeroed one */
 
-/* Internal forces for displacements u, from the committed histories to the trial ones; with
- * `stiffness` also the tangent, and where `held_change` is not NULL, tangent times that change of
- * displacements (held components only) is added to `held_force` (3 n_nodes). */
+/* Computes internal forces for displacements u, from the committed histories to the trial ones;
+ * with `stiffness` also the tangent. wb_solid_body_evaluate_held() also adds the tangent times
+ * `held_change`, a change of prescribed displacements, to `held_force` (3 n_nodes). */
 void wb_solid_body_evaluate(struct wb_solid_body *body, const double *u, bool stiffness,
                             struct wb_solid_body_result *result);
 void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
                                  const double *held_change, double *held_force,
                                  struct wb_solid_body_result *result);
 
-/* Committed histories = trial ones. */
+/* Commits the trial histories. */
 void wb_solid_body_commit(struct wb_solid_body *body);
 
 #endif

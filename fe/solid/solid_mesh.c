@@ -13,24 +13,24 @@
 
 enum {
     FACES = 6,
-    MOST_NODES = 10000000 /* node and unknown numbers stay far from the range of int */
+    MAX_NODES = 10000000 /* keeps node and unknown numbers far below the range of int */
 };
 
-/* Nodes of the faces of an element, normals outward. */
+/* Nodes of an element's faces, normals outward. */
 static const int face_node[FACES][WB_SOLID_MESH_FACE] = {
     {0, 3, 2, 1, 11, 10, 9, 8},  {4, 5, 6, 7, 12, 13, 14, 15}, {0, 1, 5, 4, 8, 17, 12, 16},
     {1, 2, 6, 5, 9, 18, 13, 17}, {2, 3, 7, 6, 10, 19, 14, 18}, {3, 0, 4, 7, 11, 16, 15, 19},
 };
 
-/* The side at the start of a slice, running around as the side at its end (the face 1). */
+/* The face at the start of a slice, in the same order as the face at its end (face 1). */
 static const int start_face[WB_SOLID_MESH_FACE] = {0, 1, 2, 3, 8, 9, 10, 11};
 
 enum wb_status wb_solid_mesh_init(struct wb_solid_mesh *mesh, int n_nodes, int n_elements)
 {
-    if (n_nodes < 1 || n_nodes > MOST_NODES || n_elements < 1 || n_elements > MOST_NODES)
+    if (n_nodes < 1 || n_nodes > MAX_NODES || n_elements < 1 || n_elements > MAX_NODES)
         return wb_fail(WB_ERR_ARGUMENT,
                        "the mesh has %d nodes and %d elements: expected 1 to %d of each", n_nodes,
-                       n_elements, MOST_NODES);
+                       n_elements, MAX_NODES);
 
     struct wb_solid_mesh made = {
         .n_nodes = n_nodes, .n_elements = n_elements, .n_parts = 1, .n_layers = 1};
@@ -58,7 +58,7 @@ static void take_face(struct wb_solid_face *face, const struct wb_solid_mesh *me
         face->node[k] = mesh->element[e][which[k]];
 }
 
-/* Whether a face lies on z = 0 and its element on the side z > 0. */
+/* True if a face lies on z = 0 and its element on the side z > 0. */
 static bool is_on_plane(const struct wb_solid_mesh *mesh, int e, const int which[], double near)
 {
     double above = 0.0;
@@ -108,7 +108,7 @@ enum wb_status wb_solid_mesh_section(const struct wb_solid_mesh *mesh, double x,
             WB_ERR_ARGUMENT,
             "the mesh has no section at x = %g m: expected the mesh of a wire and a finite x", x);
 
-    /* Every other node of the axis lies in a section. */
+    /* Every second node of the axis lies in a section. */
     int section = 0;
     for (int i = 0; i < mesh->n_axis; i += 2) {
         if (fabs(mesh->node[mesh->axis[i]][0] - x) <
@@ -129,21 +129,21 @@ enum wb_status wb_solid_mesh_section(const struct wb_solid_mesh *mesh, double x,
 /* --- sections of 8-node quadrilaterals swept along x --- */
 
 enum {
-    MOST_DENSITY = 64,
-    MOST_ALONG = 100000,
+    MAX_DENSITY = 64,
+    MAX_ALONG = 100000,
     PARTS = 2
 };
 
-/* The inner square of a circle of radius 1: half its side, and how far the sides bulge. Its corners
- * have angles of 117 degrees inside and 121 degrees in the ring. */
+/* Half side of the inner square of a circle of radius 1, and bulge of its sides. Its corners have
+ * angles of 117 degrees inside and 121 degrees in the ring. */
 static const double square_side = 0.495;
 static const double square_bulge = 0.12;
 
-/* Nodes of a section, numbered as they are added; those at corners of quadrilaterals have a node
- * halfway to the next section too. */
+/* Nodes of a section, numbered in the order of addition; corners of quadrilaterals also have a node
+ * halfway to the next section. */
 struct section {
     int n, n_corners;
-    double (*at)[2]; /* (n), first and second coordinate of the section */
+    double (*at)[2]; /* (n), first and second coordinate in the section */
     int *halfway;    /* (n), number among the corners, or -1 */
     int n_quads;
     int (*quad)[8]; /* (n_quads): corners, counter-clockwise from first to second coordinate, then
@@ -154,8 +154,8 @@ struct section {
     struct wb_memory memory; /* of all arrays */
 };
 
-/* Node numbers on a grid of half element steps; -1 in the middle of elements, where these elements
- * have no node. A ring closes in j. */
+/* Node numbers on a grid of half element steps; -1 in the middle of elements, which have no node
+ * there. A ring is periodic in j. */
 struct lattice {
     int ni, nj;
     int *id; /* (ni x nj) */
@@ -188,7 +188,8 @@ static void lattice_init(struct lattice *lattice, int ni, int nj)
     lattice->id = wb_memory_new((size_t)ni * (size_t)nj, sizeof *lattice->id);
 }
 
-/* Adds the node at grid point (i, j), if elements have one there, and returns its number. */
+/* Adds the node at grid point (i, j), unless it is the middle of an element, and returns its
+ * number. */
 static int add_node(struct section *s, int i, int j, double first, double second)
 {
     const bool is_corner = i % 2 == 0 && j % 2 == 0;
@@ -214,7 +215,7 @@ static void add_quads(struct section *s, const struct lattice *lattice, int cell
     }
 }
 
-/* Turns (y, z) by `quarters` of a turn, exactly: mesh lines on y = 0 and z = 0 stay there. */
+/* Rotates (y, z) by `quarters` right angles, exactly: mesh lines on y = 0 and z = 0 stay there. */
 static void turn(double at[2], int quarters)
 {
     for (int k = 0; k < quarters; k++) {
@@ -224,7 +225,7 @@ static void turn(double at[2], int quarters)
     }
 }
 
-/* A point of the square, coordinates from -1 to 1, in a circle of radius 1. */
+/* Maps a point of the square, coordinates from -1 to 1, into a circle of radius 1. */
 static void square_point(double at[2], double s, double t)
 {
     at[0] = square_side * s * (1.0 + square_bulge * (1.0 - t * t));
@@ -243,7 +244,7 @@ static void add_square(struct section *s, const struct lattice *square, int m, d
     add_quads(s, square, 2 * m, 2 * m, 0);
 }
 
-/* Node of the square's outline; j runs around from the corner at -45 degrees. */
+/* Node on the square's outline; j counts around from the corner at -45 degrees. */
 static int outline(const struct lattice *square, int m, int j)
 {
     const int most = 4 * m, k = j % most;
@@ -261,7 +262,7 @@ static int outline(const struct lattice *square, int m, int j)
 
 struct ring {
     int part, m;
-    double inner, outer; /* radii; inner 0: from the outline of the square */
+    double inner, outer; /* radii; inner 0: starts at the outline of the square */
 };
 
 static void ring_point(double at[2], const struct ring *ring, int i, int j)
@@ -280,7 +281,7 @@ static void ring_point(double at[2], const struct ring *ring, int i, int j)
     turn(at, side);
 }
 
-/* The row i = 0 of the lattice is there already where the ring shares nodes; -1 where not. */
+/* If rings share nodes, row i = 0 of the lattice is already filled; otherwise it is -1. */
 static void add_ring(struct section *s, const struct lattice *lattice, const struct ring *ring)
 {
     for (int i = 0; i <= 2 * ring->m; i++) {
@@ -360,7 +361,7 @@ static void block_section(struct section *s, int ny, int nz)
     free(lattice.id);
 }
 
-/* Node numbers in the sweep: node i of section l, and halfway between section l - 1 and l. */
+/* Node numbers in the sweep: node i of section l, and halfway between sections l - 1 and l. */
 static int section_node(const struct section *s, int l, int i)
 {
     return l * (s->n + s->n_corners) + i;
@@ -402,7 +403,7 @@ static void side_face(int face[WB_SOLID_MESH_FACE], const struct section *s, int
     face[7] = halfway_node(s, l + 1, edge[0]);
 }
 
-/* Where a point of the unit length times the section lies. */
+/* Maps a point of the unit length times the section into space. */
 struct placement {
     void (*place)(void *context, const double unit[3], double position[3]);
     void *context;
@@ -467,7 +468,7 @@ static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s,
     return WB_OK;
 }
 
-/* Clamp, tip faces and axis of a swept wire; `centre` is the axis' node in the section. */
+/* Marks clamp, tip faces and axis of a swept wire; `centre` is the axis' node in the section. */
 static void mark_wire(struct wb_solid_mesh *mesh, const struct section *s, int slices, int centre)
 {
     mesh->clamp = wb_memory_take(&mesh->memory, (size_t)s->n, sizeof *mesh->clamp);
@@ -514,12 +515,12 @@ static enum wb_status check_wire(const struct wb_solid_mesh_wire *wire)
                            "part %d has a diameter of %g m: expected more than the %g m inside it",
                            p, wire->outer_diameter[p], inside);
     }
-    if (wire->elements_along < 1 || wire->elements_along > MOST_ALONG)
+    if (wire->elements_along < 1 || wire->elements_along > MAX_ALONG)
         return wb_fail(WB_ERR_ARGUMENT, "the mesh has %d elements along the wire: expected 1 to %d",
-                       wire->elements_along, MOST_ALONG);
-    if (wire->section_density < 1 || wire->section_density > MOST_DENSITY)
+                       wire->elements_along, MAX_ALONG);
+    if (wire->section_density < 1 || wire->section_density > MAX_DENSITY)
         return wb_fail(WB_ERR_ARGUMENT, "the section's density is %d: expected 1 to %d",
-                       wire->section_density, MOST_DENSITY);
+                       wire->section_density, MAX_DENSITY);
     return WB_OK;
 }
 
@@ -560,10 +561,10 @@ enum wb_status wb_solid_mesh_block(struct wb_solid_mesh *mesh, int nx, int ny, i
 {
     const int most = 1000;
     struct section section;
-    if (nx < 1 || ny < 1 || nz < 1 || nx > MOST_ALONG || ny > most || nz > most)
+    if (nx < 1 || ny < 1 || nz < 1 || nx > MAX_ALONG || ny > most || nz > most)
         return wb_fail(WB_ERR_ARGUMENT,
                        "the block has %d x %d x %d elements: expected 1 to %d, 1 to %d and 1 to %d",
-                       nx, ny, nz, MOST_ALONG, most, most);
+                       nx, ny, nz, MAX_ALONG, most, most);
     block_section(&section, ny, nz);
     const struct placement to = {map ? map : place_unit, context};
     const enum wb_status status = sweep(mesh, &section, nx, &to);

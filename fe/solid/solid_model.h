@@ -1,4 +1,4 @@
-/* A body to be computed: its mesh, materials, supports and dead loads.
+/* Input of fe/solid/solid.h: mesh, materials, supports and dead loads of a body.
  */
 #ifndef WB_FE_SOLID_SOLID_MODEL_H
 #define WB_FE_SOLID_SOLID_MODEL_H
@@ -12,7 +12,7 @@ struct wb_solid_part {
     double density; /* kg/m3 */
 };
 
-/* A held displacement component; `displacement` (m) is that at support factor 1. */
+/* A prescribed displacement component; `displacement` (m) is its value at support factor 1. */
 struct wb_solid_support {
     int node, axis;
     double displacement;
@@ -26,9 +26,9 @@ struct wb_solid_model {
     int n_supports;
     const struct wb_solid_support *supports; /* copied */
     const double (*nodal_force)[3];          /* (n_nodes) N at nodal factor 1, copied; NULL: none */
-    const struct wb_jacket_contact_law
-        *jacket_contact;  /* of the mesh's pairs, copied; NULL: none */
-    double strand_length; /* m; 0: a deflection is made by a vertical force */
+    /* For the mesh's pairs, copied; NULL: no contact. */
+    const struct wb_jacket_contact_law *jacket_contact;
+    double strand_length; /* m; 0: a vertical force prescribes the deflection */
     double strand_x;      /* m: x of the strand's upper end */
 };
 

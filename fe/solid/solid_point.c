@@ -5,16 +5,17 @@
 
 #include "fe/material/hardening.h"
 
-/* Place of component ij among the six. */
+/* Index of component ij among the six. */
 static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 static const int row_of[6] = {0, 1, 2, 0, 1, 2};
 static const int column_of[6] = {0, 1, 2, 1, 2, 0};
 
-/* See fe/material/material.c. */
+/* Relative distance to the yield surface below which a point counts as elastic; see
+ * fe/material/material.c. */
 static const double on_surface = 1e-12;
 
-/* A step of plastic flow: T = trial - 2 mu sqrt(3/2) increment n, and its tangent
- * 2 mu (shrink Idev - along n n). */
+/* Result of a return mapping: T = trial - 2 mu sqrt(3/2) increment n, and its tangent 2 mu (shrink
+ * Idev - along n n). */
 struct flow {
     double direction[6]; /* n, of unit norm */
     double increment;    /* of the equivalent plastic strain */
@@ -51,7 +52,7 @@ bool wb_solid_point_motion_init(struct wb_solid_point_motion *motion, const doub
         }
     }
 
-    /* J - 1 from the invariants of H, so that small strains keep their digits. */
+    /* J - 1 from the invariants of H, which keeps the digits of small strains. */
     const double first = h[0][0] + h[1][1] + h[2][2];
     const double second = (h[0][0] * h[1][1] - h[0][1] * h[1][0]) +
                           (h[1][1] * h[2][2] - h[1][2] * h[2][1]) +
@@ -128,10 +129,10 @@ static double squared_norm(const double t[6])
            2.0 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
 }
 
-/* The equivalent plastic strain of a step from p0, which solves q - 3 mu (p - p0) = sigma_Y + H(p)
- * by Newton's method from the tangent at p0; `growth` is H(p), at p0 on entry, at p on return. Far
- * from p0, above all from p0 = 0 where the law may be infinitely steep, the equation is solved in
- * its logarithm. */
+/* The equivalent plastic strain increment from p0, which solves q - 3 mu (p - p0) = sigma_Y + H(p)
+ * by Newton's method from the tangent at p0; `growth` is H(p), at p0 on entry, at p on return. If
+ * that does not converge, or p0 = 0, where the law's slope may be infinite, wb_hardening_ratio()
+ * solves the equation in logarithms. */
 static double find_increment(const struct wb_material *m, double q, double p0, double *growth)
 {
     const struct wb_hardening_law *law = wb_hardening_law(m);
@@ -153,7 +154,7 @@ static double find_increment(const struct wb_material *m, double q, double p0, d
     return fmax(0.0, r * c / three_mu - p0);
 }
 
-/* From the trial value of T - X. False while elastic. */
+/* Return mapping from the trial value of T - X. False while elastic. */
 static bool find_flow(const struct wb_solid_point_law *law, const double trial[6],
                       double accumulated, struct flow *flow)
 {
@@ -213,12 +214,12 @@ static double log_difference2(double a, double b, double c)
 }
 
 enum {
-    TRIPLES = 8 /* seven, and one that fills the vectors */
+    TRIPLES = 8 /* seven, and one to fill the vectors */
 };
 
 /* Second divided differences of ln at 1 + x[.][t]. For close arguments by the power series about
- * their mean, whose terms are the complete homogeneous symmetric polynomials h_k; with the mean the
- * first of these vanishes. The loops over triples are for the compiler's vectors. */
+ * their mean, whose terms are the complete homogeneous symmetric polynomials h_k; about the mean
+ * the first of these vanishes. The loops over triples are written for vectorisation. */
 static void log_differences2(double x[3][TRIPLES], double f3[TRIPLES])
 {
     enum {
@@ -256,7 +257,7 @@ static void log_differences2(double x[3][TRIPLES], double f3[TRIPLES])
 static void add_curvature(const struct wb_solid_point_spectrum *s, const double T[6],
                           double c[6][6])
 {
-    /* The triple of c_i, c_i, c_k; that of all three is 6. */
+    /* Index of the triple c_i, c_i, c_k; 6 is the triple of all three. */
     static const int triple[3][3] = {{7, 0, 1}, {2, 7, 3}, {4, 5, 7}};
     const double *e = s->excess, *l = s->stretch;
     double x[3][TRIPLES], f3[TRIPLES];
@@ -292,7 +293,7 @@ static void add_curvature(const struct wb_solid_point_spectrum *s, const double 
     }
 }
 
-/* c in the eigenvectors: (theta d):D:(theta d) and the curvature; D of the return mapping. */
+/* c in the eigenvectors: (theta d):D:(theta d) and the curvature, with D of the return mapping. */
 static void find_tangent(const struct wb_solid_point_law *law,
                          const struct wb_solid_point_spectrum *s, const double theta[6],
                          const double T[6], const struct flow *flow, double c[6][6])
@@ -316,7 +317,8 @@ static void find_tangent(const struct wb_solid_point_law *law,
     add_curvature(s, T, c);
 }
 
-/* out = M c M^T, where M takes the components of a stress in the basis n (rows) to the frame's. */
+/* out = M c M^T, where M transforms the components of a stress in the basis n (rows) to the
+ * frame's. */
 static void rotate_tangent(double c[6][6], const struct wb_solid_point_basis *basis,
                            double out[6][6])
 {

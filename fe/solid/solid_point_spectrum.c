@@ -1,6 +1,6 @@
-/* Eigenvalues and -vectors of C for the points of an element at once: Jacobi's method waits for
- * its square roots and divisions, and eight points wait no longer than one. Nothing is contracted:
- * all processors give the same bits. */
+/* Eigenvalues and eigenvectors of C for eight points of an element at once: Jacobi's method is
+ * limited by the latency of square roots and divisions, so eight points take as long as one.
+ * Products and sums are not contracted: all processors give identical bits. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ enum {
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
 typedef long long masks __attribute__((vector_size(LANES * sizeof(long long))));
 
-/* Symmetric matrices whose components are 11, 22, 33, 12, 23, 31, and orthogonal ones whose rows
+/* Symmetric matrices with components 11, 22, 33, 12, 23, 31, and orthogonal matrices whose rows
  * become the eigenvectors. */
 struct batch {
     lanes a[6];
@@ -28,7 +28,7 @@ static WB_ALWAYS_INLINE void take_absolute(lanes *x)
     *x = (lanes)((masks)*x & ~sign_bit);
 }
 
-/* This file is compiled without math's errno, so that the loop becomes one instruction. */
+/* This file is compiled with -fno-math-errno, so that the loop becomes one instruction. */
 static WB_ALWAYS_INLINE void take_root(lanes *x)
 {
     double root[LANES];
@@ -38,7 +38,7 @@ static WB_ALWAYS_INLINE void take_root(lanes *x)
         (*x)[i] = root[i];
 }
 
-/* One rotation, which makes component pq vanish. */
+/* One Jacobi rotation, which zeroes component pq. */
 static WB_ALWAYS_INLINE void rotate(struct batch *m, int p, int q)
 {
     static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
@@ -47,7 +47,7 @@ static WB_ALWAYS_INLINE void rotate(struct batch *m, int p, int q)
     lanes x = m->a[pq], size = x;
 
     take_absolute(&size);
-    x = (lanes)((masks)x & (size > 1e-150)); /* its square must not vanish */
+    x = (lanes)((masks)x & (size > 1e-150)); /* smaller values would underflow when squared */
 
     /* t = tan of the angle = 2 x / (gap +- root), with the sign of gap. */
     const lanes gap = m->a[q] - m->a[p];
@@ -80,7 +80,8 @@ static WB_ALWAYS_INLINE bool is_diagonal(const struct batch *m)
         a[k] = m->a[k];
         take_absolute(&a[k]);
     }
-    /* What is not a number is not diagonal: it spreads to all eigenvalues, where it is seen. */
+    /* The comparison is false for NaN, which then spreads to all eigenvalues, where the caller
+     * detects it. */
     const masks done = a[3] + a[4] + a[5] <= 1e-18 * (a[0] + a[1] + a[2]);
     long long all = -1;
     for (int i = 0; i < LANES; i++)

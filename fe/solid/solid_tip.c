@@ -121,11 +121,11 @@ void wb_solid_tip_frame(const double z[WB_SOLID_TIP_UNKNOWNS], double frame[3][3
     }
 }
 
-/* The forces once more in complex numbers: an imaginary step in z gives their derivative without
- * any loss of digits. */
+/* Complex numbers for complex-step differentiation: an imaginary step in z gives the derivative
+ * without cancellation. */
 typedef double complex number;
 
-/* CMPLX() of C11, which clang does not have with this C library. */
+/* CMPLX() of C11, which clang lacks with this C library. */
 static number with_step(double real, double imaginary)
 {
     const union {
@@ -199,7 +199,8 @@ static void pull(const number *z, const struct wb_solid_tip_strand *strand, numb
     const number x = (strand->x - z[0]) / strand->length, w = -z[2] / strand->length;
     const number up = 1.0 - x * x - w * w;
     phi[0] += tension * x;
-    phi[1] += creal(up) > 0.0 ? tension * csqrt(up) : (double)NAN; /* out of its reach */
+    phi[1] +=
+        creal(up) > 0.0 ? tension * csqrt(up) : (double)NAN; /* the strand cannot reach the tip */
     phi[2] += tension * w;
 }
 

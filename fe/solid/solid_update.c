@@ -13,7 +13,7 @@ static double inner(const double *a, const double *b)
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* What turning by the rotation vector w (Rodrigues) changes in v; `change` may be v. */
+/* Change of v when rotated by the rotation vector w (Rodrigues); `change` may be v. */
 static void find_turn(const double w[3], const double v[3], double change[3])
 {
     const double angle2 = inner(w, w), angle = sqrt(angle2);
@@ -29,7 +29,7 @@ static void find_turn(const double w[3], const double v[3], double change[3])
         change[i] = s * once[i] + c * twice[i];
 }
 
-/* v turned by w; out may be v. */
+/* v rotated by w; out may be v. */
 static void turn(const double w[3], const double v[3], double out[3])
 {
     double change[3];
@@ -53,7 +53,7 @@ void wb_solid_update_init(struct wb_solid_update *update, const struct wb_solid_
     update->section = wb_memory_new((size_t)n, sizeof *update->section);
     update->n_sections = n;
 
-    /* Counting sort by section; first[s + 1] is where section s goes on, and in the end its end. */
+    /* Counting sort by section; first[s + 1] is the next index of section s, finally its end. */
     for (int pass = 0; pass < 2; pass++)
         for (int a = 0; a < mesh->n_nodes; a++) {
             const int s = (int)lround((mesh->node[a][0] - start) / length * (n - 1));
@@ -78,7 +78,7 @@ void wb_solid_update_release(struct wb_solid_update *update)
     *update = (struct wb_solid_update){0};
 }
 
-/* Mean of a vector field (3 n_nodes) over a section's nodes; of positions with u added. */
+/* Mean of a vector field (3 n_nodes) over a section's nodes; with `positions` of X + u. */
 static void mean(const struct wb_solid_update *update, int s, const double *field, bool positions,
                  double result[3])
 {
@@ -123,9 +123,8 @@ static void add_inertia(const double r[3], double J[6])
     J[5] -= r[2] * r[0];
 }
 
-/* How a vector v changes that turns by w and grows by `growth`, of which the turn's linear part is
- * already a part. Changes alone are summed up: next to positions a small one would lose its digits.
- */
+/* Change of a vector v that rotates by w and grows by `growth`, which includes the linear part of
+ * the rotation. Only changes are summed: added to positions, small changes would lose digits. */
 static void change_vector(const double w[3], const double v[3], const double growth[3],
                           double change[3])
 {
@@ -167,7 +166,7 @@ void wb_solid_update_advance(struct wb_solid_update *update, double *u, const do
         }
         solve_rotation(J, moment, section->rotation);
 
-        /* The chord from the section before turns by the mean rotation of its two ends. */
+        /* The chord from the previous section rotates by the mean rotation of its two ends. */
         for (int i = 0; i < 3; i++)
             section->shift[i] = scale * step[i];
         if (s > 0) {
@@ -197,8 +196,8 @@ void wb_solid_update_advance(struct wb_solid_update *update, double *u, const do
     }
 }
 
-/* Finite rotation that takes a section's offsets at `before` to those at `now`, by least squares:
- * Gauss-Newton on the rotation vector, from zero. */
+/* Finite rotation from a section's offsets at `before` to those at `now`, by least squares:
+ * Gauss-Newton on the rotation vector, starting from zero. */
 static void find_rotation(const struct wb_solid_update *update, int s, const double *before,
                           const double *now, double w[3])
 {
@@ -225,7 +224,7 @@ static void find_rotation(const struct wb_solid_update *update, int s, const dou
     }
 }
 
-/* now + ratio (now - R(w) before), turned on by ratio w. */
+/* now + ratio (now - R(w) before), rotated by ratio w. */
 static void continue_vector(const double before[3], const double now[3], const double w[3],
                             double ratio, double next[3])
 {

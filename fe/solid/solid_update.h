@@ -1,11 +1,11 @@
-/* Adding an increment to the displacements of a slender wire without stretching it.
+/* Adds an increment to the displacements of a slender wire without stretching it.
  *
- * A linear increment moves a turning section along its tangent: it lengthens everything by half the
- * square of the rotation, and the next Newton iteration sees huge axial forces. So a swept wire's
- * increment is split, section by section, into a rotation and a remainder; the rotations are
- * applied as finite ones to the sections and to the chords between them. To first order this is the
- * linear increment, so Newton's method keeps its order; it needs about half the iterations. Other
- * meshes are updated linearly.
+ * A linear increment moves a rotating section along its tangent, which lengthens the wire by half
+ * the square of the rotation and causes very large axial forces in the next Newton iteration. A
+ * swept wire's increment is therefore split, section by section, into a rotation and a remainder;
+ * rotations are applied as finite rotations to the sections and to the chords between them. To
+ * first order this is the linear increment, so Newton's method keeps its order; it needs about half
+ * the iterations. Other meshes are updated linearly.
  */
 #ifndef WB_FE_SOLID_SOLID_UPDATE_H
 #define WB_FE_SOLID_SOLID_UPDATE_H
@@ -15,8 +15,8 @@
 struct wb_solid_update_section {
     double centre[3];   /* m */
     double rotation[3]; /* rad */
-    double moved[3];    /* m: the centre after an extrapolation */
-    double shift[3];    /* m: of the centre, in an update */
+    double moved[3];    /* the centre after an extrapolation, m */
+    double shift[3];    /* of the centre, in an update, m */
 };
 
 struct wb_solid_update {
@@ -34,7 +34,7 @@ void wb_solid_update_release(struct wb_solid_update *update); /* accepts a zeroe
 void wb_solid_update_advance(struct wb_solid_update *update, double *u, const double *increment,
                              double scale);
 
-/* `next` = the motion from `before` to `now`, continued by `ratio` times itself. */
+/* `next` = the motion from `before` to `now`, extrapolated by `ratio` times itself. */
 void wb_solid_update_extrapolate(struct wb_solid_update *update, const double *before,
                                  const double *now, double ratio, double *next);
 

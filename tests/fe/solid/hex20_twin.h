@@ -1,5 +1,5 @@
 /* The slow twin of fe/solid/hex20.c: point by point, B^T c B with a full B, and the geometric term.
- * What a material point answers is held to a slow twin of its own in test_solid_point.c. */
+ * Material points are compared with their own slow twin in test_solid_point.c. */
 #ifndef WB_TESTS_FE_SOLID_HEX20_TWIN_H
 #define WB_TESTS_FE_SOLID_HEX20_TWIN_H
 
@@ -70,7 +70,7 @@ static bool twin_motion(const double *u, const double *gradient,
 }
 
 /* As wb_hex20_evaluate(), always with stiffness. With `full` the volumetric part is integrated at
- * the deviatoric points: the element that locks. */
+ * the deviatoric points: an element that locks. */
 static inline bool twin_evaluate(const struct wb_hex20_geometry *geometry, int points, bool full,
                                  const struct wb_material *material, const double *u,
                                  const struct wb_solid_point_state *before,

@@ -184,7 +184,7 @@ static inline void test_solid_create(struct test_solid *t)
     assert_int_equal(wb_solid_create(&t->solid, &model, &t->settings), WB_OK);
 }
 
-/* Moves to the factors; false when it did not converge. */
+/* Moves to the factors; false if it did not converge. */
 static inline bool test_solid_try(struct test_solid *t, double supports, double nodal)
 {
     const struct wb_solid_move move = {.control = WB_SOLID_LOADS,
@@ -199,7 +199,7 @@ static inline void test_solid_go(struct test_solid *t, double supports, double n
         fail_msg("%s", t->point.problem);
 }
 
-/* Work of the nodal forces at factor 1 on the present displacements. */
+/* Work of the nodal forces at factor 1 on the current displacements. */
 static inline double test_solid_compliance(const struct test_solid *t)
 {
     const double *u = wb_solid_displacement(t->solid);

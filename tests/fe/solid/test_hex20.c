@@ -28,7 +28,7 @@ static double largest(const double *x, int n)
     return size;
 }
 
-/* --- Against the slow twin and differences --- */
+/* --- comparison with the slow twin and finite differences --- */
 
 /* A history that belongs to the element, with all points yielding at some time. */
 static bool make_history(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
@@ -135,7 +135,7 @@ static void stiffness_is_the_derivative_of_the_force(void **unused)
         make_displacement(position, 1.3, 0.1, 1e-5, u);
         assert_true(wb_hex20_evaluate(&geometry, integrations[k % 2], m, u, before, after, force,
                                       NULL, &result));
-        /* All points flow, so that none changes its branch by the differences. */
+        /* All points yield, so that differences cross no branch. */
         assert_int_equal(result.yielding, m == &elastic ? 0 : wb_hex20_points(integrations[k % 2]));
         worst =
             fmax(worst, largest_tangent_error(&geometry, integrations[k % 2], m, u, before, 2e-8));
@@ -144,7 +144,7 @@ static void stiffness_is_the_derivative_of_the_force(void **unused)
     assert_true(worst < 1e-9);
 }
 
-/* --- Rigid motions and constant strain --- */
+/* --- rigid motions and constant strain --- */
 
 static void rigid_motions_give_no_force(void **unused)
 {
@@ -218,7 +218,7 @@ static void constant_strain_gives_the_exact_stress_at_any_distortion(void **unus
         assert_close_relative(result.elastic_energy, energy, 1e-12);
         assert_close_relative(result.smallest_jacobian, J, 1e-13);
 
-        /* Forces and moments are in balance, at the moved nodes. */
+        /* Forces and moments balance at the displaced nodes. */
         double sum[6] = {0.0};
         for (int a = 0; a < 20; a++) {
             for (int i = 0; i < 3; i++) {
@@ -316,7 +316,7 @@ static void energy_is_stored_or_dissipated(void **unused)
         const double fine = energy_error(m, integrations[k % 2], 800);
         print_message("energy error in 400 and 800 steps: %.2g %.2g\n", coarse, fine);
         assert_true(fabs(fine) < 5e-3);
-        /* First order while plastic, second while elastic; extrapolated it vanishes. */
+        /* First order if plastic, second if elastic; extrapolation removes the error. */
         const double rest = m == &elastic ? (4.0 * fine - coarse) / 3.0 : 2.0 * fine - coarse;
         assert_true(fabs(rest) < 1e-4);
     }
@@ -375,8 +375,8 @@ static int zero_modes(enum wb_integration integration)
     return n;
 }
 
-/* 2 x 2 x 2 points have 48 strains for 60 unknowns: beside the rigid motions 6 modes are free in a
- * single element. */
+/* 2 x 2 x 2 points have 48 strains for 60 unknowns: besides the rigid motions, a single element has
+ * 6 modes without energy. */
 static void only_rigid_modes_are_free_unless_reduced(void **unused)
 {
     (void)unused;
@@ -469,7 +469,7 @@ static double bending_compliance(double nu, bool full)
                 load[3 * a] = side * face.y[k];
         }
     }
-    /* The loads balance, so soft springs everywhere hold the rigid motions and nothing else. */
+    /* The loads balance, so that weak springs everywhere only prevent rigid motions. */
     for (int i = 0; i < n; i++) {
         A[n * i + i] += 1e-9;
         b[i] = load[i];
@@ -499,7 +499,7 @@ static void nearly_incompressible_bending_does_not_lock(void **unused)
     assert_true(full < 0.9);
 }
 
-/* --- Stress at the nodes --- */
+/* --- stress at the nodes --- */
 
 static void linear_stress_fields_reach_the_nodes(void **unused)
 {
@@ -518,7 +518,7 @@ static void linear_stress_fields_reach_the_nodes(void **unused)
             u[3 * a + 1] = -0.5 * k * (x[0] * x[0] + nu * (x[1] * x[1] - x[2] * x[2]));
             u[3 * a + 2] = -nu * k * x[1] * x[2];
         }
-        /* And a linear plastic strain that makes no stress: p = 1 + y + z, in m. */
+        /* And a linear plastic strain without stress: p = 1 + y + z, in m. */
         const int n = integration == 0 ? 3 : 2;
         const double at = integration == 0 ? sqrt(0.6) : sqrt(1.0 / 3.0);
         for (int p = 0; p < n * n * n; p++) {
@@ -538,7 +538,7 @@ static void linear_stress_fields_reach_the_nodes(void **unused)
     }
 }
 
-/* Positions of the n x n x n points of Gauss' rule. */
+/* Positions of the n x n x n Gauss points. */
 static void find_positions(int n, double position[20][3], double at[27][3])
 {
     const double end = n == 3 ? sqrt(0.6) : sqrt(1.0 / 3.0);
@@ -561,9 +561,9 @@ static void find_positions(int n, double position[20][3], double at[27][3])
     }
 }
 
-/* An eighth of a round section, 0 to 1 mm, 2 mm long: a wedge whose outer face is curved, as the
- * elements of a wire. A plastic strain linear in y and z, put at the points, comes out at the
- * nodes, above all at the surface. */
+/* An eighth of a round section, 0 to 1 mm, 2 mm long: a wedge with a curved outer face, as in a
+ * wire. A plastic strain linear in y and z at the points must be reproduced at the nodes,
+ * especially at the surface. */
 static void linear_fields_reach_the_nodes_of_curved_elements(void **unused)
 {
     (void)unused;
@@ -594,7 +594,7 @@ static void linear_fields_reach_the_nodes_of_curved_elements(void **unused)
     }
 }
 
-/* Plastic strain at one end only: the line through the points falls below zero at the other. */
+/* Plastic strain at one end only: linear extrapolation would be negative at the other end. */
 static void plastic_strain_at_nodes_is_not_negative(void **unused)
 {
     (void)unused;
@@ -612,7 +612,7 @@ static void plastic_strain_at_nodes_is_not_negative(void **unused)
 
 /* --- Refusals --- */
 
-static void inverted_elements_and_nonsense_are_refused(void **unused)
+static void inverted_elements_and_invalid_input_are_rejected(void **unused)
 {
     (void)unused;
     static double K[3600];
@@ -675,7 +675,7 @@ int main(void)
         cmocka_unit_test(linear_stress_fields_reach_the_nodes),
         cmocka_unit_test(linear_fields_reach_the_nodes_of_curved_elements),
         cmocka_unit_test(plastic_strain_at_nodes_is_not_negative),
-        cmocka_unit_test(inverted_elements_and_nonsense_are_refused),
+        cmocka_unit_test(inverted_elements_and_invalid_input_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,7 +4,7 @@
 static const enum wb_integration integrations[] = {WB_INTEGRATION_SELECTIVE,
                                                    WB_INTEGRATION_REDUCED};
 
-/* The shape functions span 20 monomials: the derivatives of each come out exactly. */
+/* The shape functions span 20 monomials, whose derivatives must be exact. */
 static void gradients_are_those_of_the_serendipity_functions(void **unused)
 {
     (void)unused;
@@ -90,8 +90,8 @@ static void volumes_of_curved_elements_are_exact(void **unused)
 static void face_integrals_are_exact(void **unused)
 {
     (void)unused;
-    /* The vault's front, standing in the plane of y and z: its length along y, its height along z,
-     * both moved away from the axis. */
+    /* The vault's front in the plane of y and z: its length along y, its height along z, both away
+     * from the axis. */
     static const double place[8][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1},
                                        {0, -1},  {1, 0},  {0, 1}, {-1, 0}};
     const double b = 0.3, y0 = 0.7, z0 = -0.4;
@@ -126,8 +126,8 @@ static void face_integrals_are_exact(void **unused)
     assert_close(sums[4], face.zz, 1e-13);
 }
 
-/* Constant stress then does the same work at both sets of points, which is what makes a patch of
- * distorted elements exact. With curved edges the corner points integrate gradients but nearly. */
+/* Constant stress then does the same work at both sets of points, which makes a patch of distorted
+ * elements exact. With curved edges the corner points integrate gradients only approximately. */
 static void both_rules_integrate_gradients_alike_between_straight_edges(void **unused)
 {
     (void)unused;
@@ -156,7 +156,7 @@ static void both_rules_integrate_gradients_alike_between_straight_edges(void **u
     }
 }
 
-/* Position at parent coordinates x, by the textbook's shape functions. */
+/* Position at parent coordinates x, with the standard shape functions. */
 static void find_position(const double x[3], double position[20][3], double at[3])
 {
     at[0] = at[1] = at[2] = 0.0;
@@ -181,7 +181,7 @@ static void find_corner_points(double position[20][3], double at[8][3])
     }
 }
 
-/* What is linear in the position at the corner points is so at the nodes, on any shape. */
+/* Values linear in the position at the corner points are linear at the nodes, for any shape. */
 static void linear_values_reach_the_nodes_of_curved_elements(void **unused)
 {
     (void)unused;
@@ -209,8 +209,8 @@ static void linear_values_reach_the_nodes_of_curved_elements(void **unused)
     }
 }
 
-/* Bent so far that functions of the affine coordinates through the points grow between them: the
- * parent's serve. Constants stay what they are, and nothing grows beyond measure. */
+/* Distorted so much that the affine extrapolation is rejected: parent coordinates are used.
+ * Constants stay constant, and the weights stay moderate. */
 static void far_distorted_elements_keep_moderate_shares(void **unused)
 {
     (void)unused;
@@ -237,7 +237,7 @@ static void far_distorted_elements_keep_moderate_shares(void **unused)
     }
 }
 
-static void impossible_shapes_are_refused(void **unused)
+static void invalid_shapes_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_hex20_geometry geometry;
@@ -266,7 +266,7 @@ int main(void)
         cmocka_unit_test(both_rules_integrate_gradients_alike_between_straight_edges),
         cmocka_unit_test(linear_values_reach_the_nodes_of_curved_elements),
         cmocka_unit_test(far_distorted_elements_keep_moderate_shares),
-        cmocka_unit_test(impossible_shapes_are_refused),
+        cmocka_unit_test(invalid_shapes_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

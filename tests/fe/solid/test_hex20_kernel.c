@@ -25,7 +25,7 @@ static double entry(const struct wb_hex20_kernel *kernel,
     return sum;
 }
 
-static void check_way(enum wb_hex20_kernel_way way, const char *name)
+static void check_variant(enum wb_hex20_kernel_variant variant, const char *name)
 {
     static struct wb_hex20_kernel kernel;
     static double K[3600], by_default[3600];
@@ -49,7 +49,7 @@ static void check_way(enum wb_hex20_kernel_way way, const char *name)
             wb_hex20_kernel_add(&kernel, weight[p], &response[p]);
         }
         assert_int_equal(kernel.points, counts[n]);
-        if (!wb_hex20_kernel_multiply_by(way, &kernel, K)) {
+        if (!wb_hex20_kernel_multiply_by(variant, &kernel, K)) {
             print_message("this processor does not have %s\n", name);
             return;
         }
@@ -67,19 +67,19 @@ static void check_way(enum wb_hex20_kernel_way way, const char *name)
 static void portable_product_is_exact(void **unused)
 {
     (void)unused;
-    check_way(WB_HEX20_KERNEL_PORTABLE, "");
+    check_variant(WB_HEX20_KERNEL_PORTABLE, "");
 }
 
 static void product_with_avx2_is_exact(void **unused)
 {
     (void)unused;
-    check_way(WB_HEX20_KERNEL_AVX2, "AVX2");
+    check_variant(WB_HEX20_KERNEL_AVX2, "AVX2");
 }
 
 static void product_with_avx512_is_exact(void **unused)
 {
     (void)unused;
-    check_way(WB_HEX20_KERNEL_AVX512, "AVX-512");
+    check_variant(WB_HEX20_KERNEL_AVX512, "AVX-512");
 }
 
 int main(void)

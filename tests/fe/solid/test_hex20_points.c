@@ -1,4 +1,4 @@
-/* The source itself, for its variants: only one of them is this processor's. */
+/* Includes the source to test all its variants, of which the program uses one per processor. */
 #include "fe/solid/hex20_points.c"
 
 #include "tests/check.h"
@@ -31,7 +31,7 @@ static void make_input(void)
 }
 
 /* h_ij = sum u_ia g_ja; force_ia = 1 + sum t_ij (F^-T g)_ja. */
-static void sums_are_those_of_the_formulas(void **unused)
+static void sums_agree_with_the_formulas(void **unused)
 {
     (void)unused;
     static const int component[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
@@ -91,7 +91,7 @@ static void all_processors_give_the_same_bits(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sums_are_those_of_the_formulas),
+        cmocka_unit_test(sums_agree_with_the_formulas),
         cmocka_unit_test(all_processors_give_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,7 +11,7 @@ enum {
 
 static const struct wb_jacket_contact_law law = {4e11, 1.5e11, 0.3};
 
-/* A face, its history and what an evaluation gives. */
+/* A face pair, its history and the results of an evaluation. */
 struct contact {
     double X[2 * NODES][3], u[ALL];
     struct wb_jacket_contact_state before[POINTS], after[POINTS];
@@ -32,8 +32,8 @@ static void make_flat(struct contact *contact, double a, double b)
     }
 }
 
-/* Sector of +-angle of a cylinder about z, of 2 b length, normal outwards (along x in its middle);
- * nodes moved about a bit where `distorted`. */
+/* Sector of +-angle of a cylinder about z, 2 b long, normal outwards (along x in its middle); if
+ * `distorted` with randomly moved nodes. */
 static void make_curved(struct contact *contact, double radius, double angle, double b,
                         double distorted)
 {
@@ -69,7 +69,7 @@ static void turn(const double R[3][3], const double *v, double *turned)
         turned[i] = R[i][0] * v[0] + R[i][1] * v[1] + R[i][2] * v[2];
 }
 
-/* u becomes that of the deformed faces turned as a whole and moved. */
+/* Sets u to that of the deformed faces, rotated and translated as a rigid body. */
 static void turn_faces(struct contact *contact, const double R[3][3], double moved)
 {
     for (int k = 0; k < 2 * NODES; k++) {
@@ -125,7 +125,7 @@ static void sum_forces(const struct contact *contact, int from, double sum[3])
 static void pressure_is_stiffness_times_penetration(void **unused)
 {
     (void)unused;
-    /* A flat face, inclined: exactly uniform. */
+    /* A flat face, inclined: exactly uniform pressure. */
     const double axis[3] = {0.3, -1.0, 0.4}, a = 0.4e-3, b = 0.7e-3, depth = 2e-6;
     struct contact contact;
     double R[3][3], normal[3], sum[3];
@@ -152,11 +152,11 @@ static void pressure_is_stiffness_times_penetration(void **unused)
     assert_true(contact.result.opening == 0.0 && contact.result.dissipated == 0.0);
 }
 
-static void curved_face_bears_pressure_over_its_projection(void **unused)
+static void curved_face_carries_pressure_over_its_projection(void **unused)
 {
     (void)unused;
     /* Radial penetration of a cylinder's sector: the force is the pressure times the projected
-     * area, to the accuracy of the quadratic interpolation. */
+     * area, to the accuracy of quadratic interpolation. */
     const double radius = 1.63e-3, b = 0.8e-3, depth = 1e-6;
     double error[2];
     for (int half = 0; half < 2; half++) {
@@ -179,7 +179,7 @@ static void curved_face_bears_pressure_over_its_projection(void **unused)
     assert_true(error[1] < error[0] / 12.0); /* fourth order: 16 */
 }
 
-static void opening_bears_nothing_and_forgets_the_friction(void **unused)
+static void opening_carries_nothing_and_resets_friction(void **unused)
 {
     (void)unused;
     struct contact contact;
@@ -201,7 +201,7 @@ static void opening_bears_nothing_and_forgets_the_friction(void **unused)
     assert_true(contact.result.stored == 0.0);
     accept_step(&contact);
 
-    /* Moved while open, and closed again: no shear, although far from where it began. */
+    /* Moved while open, and closed again: no shear, although far from the initial position. */
     move_outer(&contact, 0.0, 30e-6, -12e-6);
     evaluate(&contact);
     accept_step(&contact);
@@ -266,7 +266,7 @@ static void shear_sticks_below_the_bound_and_slips_at_it(void **unused)
     assert_close_relative(contact.result.dissipated, law.friction * pressure * area * 4.0 * limit,
                           1e-9);
 
-    /* With more pressure the same face holds again. */
+    /* With more pressure the same face sticks again. */
     accept_step(&contact);
     move_outer(&contact, -depth, 0.5 * limit * way[0], 0.5 * limit * way[1]);
     evaluate(&contact);
@@ -275,7 +275,7 @@ static void shear_sticks_below_the_bound_and_slips_at_it(void **unused)
     assert_close(hypot(sum[1], sum[2]), 1.5 * law.friction * pressure * area, 1e-12);
 }
 
-static void frictionless_face_bears_no_shear(void **unused)
+static void frictionless_face_carries_no_shear(void **unused)
 {
     (void)unused;
     const struct wb_jacket_contact_law smooth = {4e11, 1.5e11, 0.0};
@@ -291,7 +291,7 @@ static void frictionless_face_bears_no_shear(void **unused)
     assert_close_relative(contact.result.slip, 5e-6, 1e-12);
     assert_true(contact.result.dissipated == 0.0);
 
-    /* Nor does it hold anything where it just touches. */
+    /* A face that just touches does not stick either. */
     make_flat(&contact, 0.5e-3, 0.5e-3);
     evaluate_with(&contact, &smooth);
     for (int i = 0; i < ALL; i++) {
@@ -301,8 +301,8 @@ static void frictionless_face_bears_no_shear(void **unused)
     assert_int_equal(contact.result.touching, POINTS);
 }
 
-/* Work of the forces over a closed path, back and forth past slipping, is what friction took. */
-static void hysteresis_loop_encloses_what_is_dissipated(void **unused)
+/* Work of the forces over a closed path with slip is the friction work. */
+static void hysteresis_loop_encloses_the_dissipated_energy(void **unused)
 {
     (void)unused;
     const double area = 1e-6, depth = 2e-6, amplitude = 10e-6;
@@ -332,7 +332,7 @@ static void hysteresis_loop_encloses_what_is_dissipated(void **unused)
         reversed += i < STEPS && contact.result.slipping == 0;
         accept_step(&contact);
     }
-    /* Two slides at the bound, of the stroke less the elastic reversal. */
+    /* Two slides at the limit, each over the stroke minus the elastic reversal. */
     const double expected = 2.0 * bound * (2.0 * amplitude - 2.0 * limit);
     assert_close_relative(dissipated, expected, 1e-9);
     assert_close_relative(work, expected, 1e-4);
@@ -341,8 +341,8 @@ static void hysteresis_loop_encloses_what_is_dissipated(void **unused)
                           1e-9);
 }
 
-/* A block on a slope, the outer face moving as a whole: with the tangent summed over the face
- * Newton finds where it rests, below the angle of friction only. */
+/* A block on a slope, with the outer face moving as a rigid body: with the tangent summed over the
+ * face Newton's method finds equilibrium only below the angle of friction. */
 static void block_rests_on_a_slope_up_to_the_angle_of_friction(void **unused)
 {
     (void)unused;
@@ -384,7 +384,7 @@ static void block_rests_on_a_slope_up_to_the_angle_of_friction(void **unused)
 
 /* --- frames --- */
 
-static void rigid_rotation_turns_forces_and_changes_nothing_else(void **unused)
+static void rigid_rotation_only_rotates_the_forces(void **unused)
 {
     (void)unused;
     const double axes[3][3] = {{0, 0, 1}, {1, 0, 0}, {0.3, -0.8, 0.5}};
@@ -394,14 +394,14 @@ static void rigid_rotation_turns_forces_and_changes_nothing_else(void **unused)
             double R[3][3];
             make_rotation(axes[a], 0.5 * M_PI * by, R);
 
-            /* Virgin faces turned together: no force at all. */
+            /* Virgin faces rotated together: no force. */
             make_curved(&turned, 1.63e-3, 0.4, 0.8e-3, 0.1e-3);
             turn_faces(&turned, (const double(*)[3])R, 3e-3);
             evaluate(&turned);
             for (int i = 0; i < ALL; i++)
                 assert_close(turned.force[i], 0.0, 1e-12);
 
-            /* A step that partly slips, then turned: the same histories, forces turned. */
+            /* A step with partial slip, then rotated: the same histories, rotated forces. */
             make_curved(&still, 1.63e-3, 0.4, 0.8e-3, 0.1e-3);
             move_outer(&still, -1.5e-6, 0.8e-6, 0.0);
             shake(&still, 0.5e-6, 7);
@@ -430,9 +430,9 @@ static void rigid_rotation_turns_forces_and_changes_nothing_else(void **unused)
     }
 }
 
-/* Traction stays in the face's frame: what was sheared along the wire is so after a turn of 90
- * degrees, and further slip adds to it as if it had not turned. */
-static void friction_goes_on_in_the_turned_frame(void **unused)
+/* Traction rotates with the face's frame: shear along the wire stays so after a rotation by 90
+ * degrees, and further slip adds to it as without the rotation. */
+static void friction_continues_in_the_rotated_frame(void **unused)
 {
     (void)unused;
     const double z[3] = {0, 0, 1}, depth = 2e-6;
@@ -456,7 +456,7 @@ static void friction_goes_on_in_the_turned_frame(void **unused)
     assert_int_equal(contact.result.slipping, 0);
 }
 
-static void both_faces_bear_equal_forces_and_moments(void **unused)
+static void both_faces_have_equal_forces_and_moments(void **unused)
 {
     (void)unused;
     struct contact contact;
@@ -491,7 +491,7 @@ static void both_faces_bear_equal_forces_and_moments(void **unused)
 
 /* --- tangent --- */
 
-/* Against central differences of the forces. */
+/* Comparison with central differences of the forces. */
 static void check_tangent(struct contact *contact)
 {
     const double step = 2e-10;
@@ -580,7 +580,7 @@ static void tangent_is_the_derivative_of_the_forces(void **unused)
     }
 }
 
-/* The forces of sticking and pressing are the derivative of what is stored. */
+/* The forces of sticking and pressing are the derivative of the stored energy. */
 static void sticking_forces_have_a_potential(void **unused)
 {
     (void)unused;
@@ -609,7 +609,7 @@ static void sticking_forces_have_a_potential(void **unused)
 
 /* --- refusals and defaults --- */
 
-static void not_a_number_in_gives_not_a_number_out(void **unused)
+static void nan_input_gives_nan_output(void **unused)
 {
     (void)unused;
     const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
@@ -648,7 +648,7 @@ static void history_may_be_updated_in_place(void **unused)
 static void default_law_is_as_stiff_as_the_layer(void **unused)
 {
     (void)unused;
-    /* A layer of PVC, 0.8 mm, that cannot spread: squeezed by p it gets thinner by p h / M. */
+    /* A laterally constrained layer of PVC, 0.8 mm thick: a pressure p compresses it by p h / M. */
     struct wb_jacket_contact_law its;
     wb_trial_default_jacket_contact(&its, 41e6, 0.43, 0.8e-3, 0.1);
     const double bulk = 41e6 / (3.0 * (1.0 - 0.86)), shear = 41e6 / (2.0 * 1.43);
@@ -662,19 +662,19 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pressure_is_stiffness_times_penetration),
-        cmocka_unit_test(curved_face_bears_pressure_over_its_projection),
-        cmocka_unit_test(opening_bears_nothing_and_forgets_the_friction),
+        cmocka_unit_test(curved_face_carries_pressure_over_its_projection),
+        cmocka_unit_test(opening_carries_nothing_and_resets_friction),
         cmocka_unit_test(nothing_adheres),
         cmocka_unit_test(shear_sticks_below_the_bound_and_slips_at_it),
-        cmocka_unit_test(frictionless_face_bears_no_shear),
-        cmocka_unit_test(hysteresis_loop_encloses_what_is_dissipated),
+        cmocka_unit_test(frictionless_face_carries_no_shear),
+        cmocka_unit_test(hysteresis_loop_encloses_the_dissipated_energy),
         cmocka_unit_test(block_rests_on_a_slope_up_to_the_angle_of_friction),
-        cmocka_unit_test(rigid_rotation_turns_forces_and_changes_nothing_else),
-        cmocka_unit_test(friction_goes_on_in_the_turned_frame),
-        cmocka_unit_test(both_faces_bear_equal_forces_and_moments),
+        cmocka_unit_test(rigid_rotation_only_rotates_the_forces),
+        cmocka_unit_test(friction_continues_in_the_rotated_frame),
+        cmocka_unit_test(both_faces_have_equal_forces_and_moments),
         cmocka_unit_test(tangent_is_the_derivative_of_the_forces),
         cmocka_unit_test(sticking_forces_have_a_potential),
-        cmocka_unit_test(not_a_number_in_gives_not_a_number_out),
+        cmocka_unit_test(nan_input_gives_nan_output),
         cmocka_unit_test(history_may_be_updated_in_place),
         cmocka_unit_test(default_law_is_as_stiff_as_the_layer),
     };

@@ -1,7 +1,8 @@
 /* A bar of the 3D solid: pure bending, rigid rotation after it has yielded, balance of energy. */
 #include "tests/fe/solid/solids.h"
 
-/* Tractions along x that bend a block whose middle is at y = 5 mm, opposite at its two ends. */
+/* Tractions along x for bending of a block whose middle is at y = 5 mm, opposite at its two
+ * ends. */
 static void bend(void *context, const double at[3], const double normal[3], double force[3])
 {
     const double slope = *(const double *)context;
@@ -17,7 +18,7 @@ static void bar_map(void *context, const double unit[3], double at[3])
     at[2] = 10e-3 * unit[2];
 }
 
-/* Six supports that leave the bar free to deform; the last one lifts its far corner, which is
+/* Six supports that prevent only rigid motions; the last one lifts the far corner, which is
  * returned, by `lift` at factor 1. */
 static int hold_as_a_body(struct test_solid *t, double lift)
 {
@@ -32,17 +33,18 @@ static int hold_as_a_body(struct test_solid *t, double lift)
     return far_corner;
 }
 
-/* On bricks the exact displacements are quadratic, which these elements have in full. */
+/* On bricks the exact displacements are quadratic, and these elements contain all quadratic
+ * functions. */
 static void stress_of_pure_bending_is_exact(void **unused)
 {
     (void)unused;
     const struct wb_material material = test_solid_elastic(68.2e9, 0.34);
     const int n[3] = {4, 2, 2};
-    for (int how = 0; how < 2; how++) {
+    for (int integration = 0; integration < 2; integration++) {
         double slope = 1e5 / 5e-3;
         struct test_solid t;
         test_solid_block(&t, n, bar_map, NULL);
-        test_solid_init(&t, &material, test_solid_rules[how]);
+        test_solid_init(&t, &material, test_solid_rules[integration]);
         (void)hold_as_a_body(&t, 0.0);
         for (int last = 0; last < 2; last++)
             test_solid_load_end(&t, last, bend, &slope, t.force);
@@ -61,7 +63,7 @@ static void stress_of_pure_bending_is_exact(void **unused)
     }
 }
 
-/* Stress of an element's nodes turned about z by (c, s). */
+/* Stress of an element's nodes rotated about z by (c, s). */
 static void turn_stress(double stress[6], double c, double s)
 {
     const double xx = stress[0], yy = stress[1], xy = stress[3], yz = stress[4], zx = stress[5];
@@ -72,18 +74,18 @@ static void turn_stress(double stress[6], double c, double s)
     stress[5] = c * zx - s * yz;
 }
 
-/* A bar is bent until it yields and let go, and then turned as a rigid body by six supports. */
-static void turning_a_yielded_body_turns_its_residual_stress(void **unused)
+/* A bar is bent until it yields, unloaded, and then rotated as a rigid body by six supports. */
+static void rotating_a_yielded_body_rotates_its_residual_stress(void **unused)
 {
     (void)unused;
     const struct wb_material copper = {
         WB_HARDENING_ISOTROPIC_POWER, 68.2e9, 0.34, 182e6, 300e6, 0.5};
     const int n[3] = {4, 2, 2};
-    for (int how = 0; how < 2; how++) {
+    for (int integration = 0; integration < 2; integration++) {
         double slope = 1.4 * copper.yield_stress / 5e-3;
         struct test_solid t;
         test_solid_block(&t, n, bar_map, NULL);
-        test_solid_init(&t, &copper, test_solid_rules[how]);
+        test_solid_init(&t, &copper, test_solid_rules[integration]);
         const int B = hold_as_a_body(&t, 35e-3);
         for (int last = 0; last < 2; last++)
             test_solid_load_end(&t, last, bend, &slope, t.force);
@@ -137,17 +139,17 @@ static void turning_a_yielded_body_turns_its_residual_stress(void **unused)
     }
 }
 
-/* A cantilever bar is loaded beyond yield and unloaded, in increments of a share; what is missing
- * in the balance at either end, over the work of loading. */
-static void missing_work(const struct wb_material *material, enum wb_integration how,
-                         double increment, double missing[2])
+/* A cantilever bar is loaded beyond yield and unloaded, in increments of a share; returns the
+ * energy imbalance at either end, over the work of loading. */
+static void energy_imbalance(const struct wb_material *material, enum wb_integration integration,
+                             double increment, double missing[2])
 {
     const int n[3] = {4, 2, 1};
     struct test_solid_pull pull = {{0.0, 1600.0, 0.0}, 1e-4};
     struct wb_solid_balance b[2];
     struct test_solid t;
     test_solid_block(&t, n, bar_map, NULL);
-    test_solid_init(&t, material, how);
+    test_solid_init(&t, material, integration);
     t.settings.first_increment = t.settings.largest_increment = increment;
     test_solid_clamp(&t);
     test_solid_load_end(&t, true, test_solid_pull, &pull, t.force);
@@ -165,7 +167,7 @@ static void missing_work(const struct wb_material *material, enum wb_integration
     test_solid_release(&t);
 }
 
-/* The dissipation of backward Euler errs by at least the first order of the increment. */
+/* The error of backward Euler's dissipation is of first order in the increment. */
 static void work_is_stored_and_dissipated(void **unused)
 {
     (void)unused;
@@ -177,8 +179,8 @@ static void work_is_stored_and_dissipated(void **unused)
         double coarse[2], fine[2];
         print_message("%s hardening, %s\n", k / 2 ? "kinematic" : "isotropic",
                       test_solid_rule_names[k % 2]);
-        missing_work(&materials[k / 2], test_solid_rules[k % 2], 0.05, coarse);
-        missing_work(&materials[k / 2], test_solid_rules[k % 2], 0.025, fine);
+        energy_imbalance(&materials[k / 2], test_solid_rules[k % 2], 0.05, coarse);
+        energy_imbalance(&materials[k / 2], test_solid_rules[k % 2], 0.025, fine);
         for (int end = 0; end < 2; end++) {
             assert_close(fine[end], 0.0, 0.01);
             assert_true(fabs(fine[end]) < 0.6 * fabs(coarse[end]));
@@ -190,7 +192,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stress_of_pure_bending_is_exact),
-        cmocka_unit_test(turning_a_yielded_body_turns_its_residual_stress),
+        cmocka_unit_test(rotating_a_yielded_body_rotates_its_residual_stress),
         cmocka_unit_test(work_is_stored_and_dissipated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* Contact with friction in bodies: blocks pressed together and sheared against Coulomb's law, and
- * wires of a core and a jacket against bonded ones and beam theory. */
+/* Contact with friction in bodies: blocks pressed together and sheared, compared with Coulomb's
+ * law; wires of a core and a jacket, compared with bonded ones and beam theory. */
 #include "tests/check.h"
 
 #include <stdlib.h>
@@ -15,12 +15,12 @@ enum {
     SIDE = 2 /* elements a block has along y and z; one through its height */
 };
 
-/* Two flat blocks, one on the other along `up`, of the same material. The lower one is held at its
- * bottom. Dead forces on the top. */
+/* Two flat blocks of the same material, stacked along `up`. The lower one is fixed at its bottom.
+ * Dead forces on the top. */
 struct stack {
     struct wb_solid_mesh mesh;
     int n_lower;       /* nodes of the lower block */
-    double axis[3][3]; /* up, and two directions across */
+    double axis[3][3]; /* up, and two perpendicular directions */
     struct wb_solid_part parts[2];
     struct wb_jacket_contact_law law;
     struct wb_solid_settings settings;
@@ -69,7 +69,7 @@ static bool is_at(const struct stack *s, int node, double level)
     return fabs(X[0] * up[0] + X[1] * up[1] + X[2] * up[2] - level) < 1e-9;
 }
 
-/* `up` and a direction across it, as columns of any rotation; friction mu. */
+/* `up` and a perpendicular direction, columns of any rotation; friction mu. */
 static struct stack *stack_begin(const double up[3], const double across[3], double mu)
 {
     static const int top[8] = {4, 5, 6, 7, 12, 13, 14, 15}, bottom[8] = {0, 1, 2, 3, 8, 9, 10, 11};
@@ -107,7 +107,8 @@ static struct stack *stack_begin(const double up[3], const double across[3], dou
     return s;
 }
 
-/* Spreads a force per area over the top: corners -1/12, midsides 1/3 of an element's area each. */
+/* Distributes a force per area over the top: corners -1/12, midsides 1/3 of an element's area
+ * each. */
 static void load_top(struct stack *s, const double traction[3])
 {
     const int n = s->mesh.n_elements / 2;
@@ -156,7 +157,7 @@ static void stack_go(struct stack *s, double supports, double nodal)
         fail_msg("%s", s->point.problem);
 }
 
-/* What the upper block pushes the lower one by: the reactions of the bottom, reversed. */
+/* Force of the upper block on the lower one: the reversed reactions of the bottom. */
 static void pushed(const struct stack *s, double force[3])
 {
     const double *f = wb_solid_internal_force(s->solid);
@@ -202,7 +203,7 @@ static void pressed_blocks_stick_then_slip_at_mu_times_the_force(void **unused)
     assert_close(force[0], -pressure * area, 1e-8);
     assert_close(force[1], 0.0, 1e-8);
 
-    /* Sticking: both blocks and the interface are springs in a row, the interface by far the
+    /* Sticking: the blocks and the interface are springs in series, the interface by far the
      * softest. */
     stack_go(s, 0.1, 1.0);
     wb_solid_balance(s->solid, &balance);
@@ -221,11 +222,11 @@ static void pressed_blocks_stick_then_slip_at_mu_times_the_force(void **unused)
     assert_close_relative(force[1], mu * pressure * area, 3e-4);
     assert_close(force[2], 0.0, 1e-4 * mu * pressure * area);
     assert_int_equal(balance.jacket_contact.slipping, 9 * SIDE * SIDE);
-    /* The largest slip is at an edge that is pressed on less than the mean. */
+    /* The largest slip is at an edge where the pressure is below the mean. */
     assert_true(balance.jacket_contact.slip > full - mu * pressure * compliance);
     assert_true(balance.jacket_contact.slip < full);
 
-    /* And back the other way. */
+    /* And in the reverse direction. */
     stack_go(s, -1.0, 1.0);
     pushed(s, force);
     assert_close_relative(force[1], -mu * pressure * area, 3e-4);
@@ -244,8 +245,8 @@ static void slip_follows_the_pull_in_any_direction(void **unused)
     stack_end(s);
 }
 
-/* Work of press and shear, back and forth, is what is stored and what friction took. */
-static void work_is_stored_or_rubbed_away(void **unused)
+/* Work of pressing and shearing back and forth is stored or dissipated by friction. */
+static void work_is_stored_or_dissipated_by_friction(void **unused)
 {
     (void)unused;
     const double mu = 0.2;
@@ -287,8 +288,8 @@ static double top_moves(const struct stack *s, const double direction[3])
     return sum / n;
 }
 
-/* A block on a slope under dead forces (its weight): it rests while the slope is below the angle of
- * friction, however the slope lies in space, and no equilibrium is found above. */
+/* A block on a slope under dead forces (its weight): in equilibrium while the slope is below the
+ * angle of friction, for any orientation in space; no equilibrium is found above. */
 static void block_rests_on_a_slope_below_the_angle_of_friction(void **unused)
 {
     (void)unused;
@@ -322,7 +323,7 @@ static void block_rests_on_a_slope_below_the_angle_of_friction(void **unused)
     assert_close_relative(moved[1], moved[0], 1e-6);
 }
 
-static void lifted_block_lets_go_and_comes_back(void **unused)
+static void lifted_block_separates_and_comes_back(void **unused)
 {
     (void)unused;
     struct stack *s = stack_begin(x_axis, y_axis, 0.2);
@@ -357,7 +358,7 @@ static void lifted_block_lets_go_and_comes_back(void **unused)
     stack_end(s);
 }
 
-/* --- wires of a core and a jacket of equal Young's modulus --- */
+/* --- wires of a core and a jacket with equal Young's moduli --- */
 
 static const double core = 3.26e-3, jacket = 4.86e-3, length = 40e-3, wire_young = 1e9;
 
@@ -366,8 +367,8 @@ struct bent {
     struct wb_wire3d_balance balance;
 };
 
-/* Bends a wire by a transverse dead force at its tip, after pulling it by an axial one; mu < 0 is
- * bonded; `stiffer` than the default interface. */
+/* Bends a wire by a transverse dead force at its tip, after pulling it by an axial one; mu < 0:
+ * bonded; `stiffer`: than the default interface. */
 static struct bent bend(double mu, const double poissons_ratio[2], double pull, double force,
                         double stiffer)
 {
@@ -407,9 +408,9 @@ static struct bent bend(double mu, const double poissons_ratio[2], double pull, 
     return bent;
 }
 
-/* Timoshenko's rod of two parts that share the deflection. Bonded they share the shear angle;
- * sliding, each has its own from its share of the force, which goes by flexural rigidity, and they
- * turn by different angles. k by Cowper, of a circle and a ring. */
+/* Timoshenko beam of two parts with the same deflection. Bonded parts have the same shear angle;
+ * sliding parts each have their own, from their share of the force, which is proportional to the
+ * flexural rigidity, and so different rotations. k by Cowper, for a circle and a ring. */
 struct rod {
     double bending, bonded_shear, sliding_shear; /* m, deflections at the tip */
     double slip;                                 /* m, by the difference of the angles */
@@ -456,7 +457,7 @@ static void sliding_parts_bend_like_bonded_ones_but_for_shear(void **unused)
         100.0 * (rod.sliding_shear - rod.bonded_shear) / bonded.deflection,
         1e6 * sliding.balance.slip);
 
-    /* Slip is that of the sections' different angles and warping, far below the limit. */
+    /* Slip comes from the sections' different rotations and warping, far below the limit. */
     assert_in_range((int)(100.0 * sliding.balance.slip / rod.slip), 100, 250);
     assert_true(rubbing.balance.slip < sliding.balance.slip);
     assert_true(sliding.balance.slip < 0.01 * sliding.balance.slip_limit);
@@ -466,7 +467,7 @@ static void sliding_parts_bend_like_bonded_ones_but_for_shear(void **unused)
 }
 
 /* A jacket that contracts more than the core when the wire is pulled presses on it everywhere; with
- * enough friction it then is as if bonded, up to the interface's own give. */
+ * enough friction the wire behaves as if bonded, except for the interface's compliance. */
 static void pressed_jacket_with_much_friction_is_as_if_bonded(void **unused)
 {
     (void)unused;
@@ -493,9 +494,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pressed_blocks_stick_then_slip_at_mu_times_the_force),
         cmocka_unit_test(slip_follows_the_pull_in_any_direction),
-        cmocka_unit_test(work_is_stored_or_rubbed_away),
+        cmocka_unit_test(work_is_stored_or_dissipated_by_friction),
         cmocka_unit_test(block_rests_on_a_slope_below_the_angle_of_friction),
-        cmocka_unit_test(lifted_block_lets_go_and_comes_back),
+        cmocka_unit_test(lifted_block_separates_and_comes_back),
         cmocka_unit_test(sliding_parts_bend_like_bonded_ones_but_for_shear),
         cmocka_unit_test(pressed_jacket_with_much_friction_is_as_if_bonded),
     };

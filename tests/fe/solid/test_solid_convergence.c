@@ -18,7 +18,7 @@ static void cook_map(void *context, const double unit[3], double at[3])
 
 /* n x n elements, E = 1; deflection at the middle of the loaded edge for a load of 1 per thickness
  * of 1. Plane strain: held in z everywhere. */
-static double cook(int n, double nu, bool plane_strain, enum wb_integration how)
+static double cook(int n, double nu, bool plane_strain, enum wb_integration integration)
 {
     const struct wb_material material = test_solid_elastic(1.0, nu);
     const int elements[3] = {n, n, 1};
@@ -26,7 +26,7 @@ static double cook(int n, double nu, bool plane_strain, enum wb_integration how)
     struct test_solid_pull pull = {{0.0, scale * cook_thickness, 0.0}, 16.0 * cook_thickness};
     struct test_solid t;
     test_solid_block(&t, elements, cook_map, NULL);
-    test_solid_init(&t, &material, how);
+    test_solid_init(&t, &material, integration);
     for (int i = 0; i < t.mesh.n_nodes; i++) {
         const double *at = t.mesh.node[i];
         for (int k = 0; k < 2 && at[0] == 0.0; k++)
@@ -45,30 +45,30 @@ static double cook(int n, double nu, bool plane_strain, enum wb_integration how)
 }
 
 /* Errors of 2 x 2, 4 x 4, 8 x 8 and 16 x 16 elements. */
-static void cook_errors(double nu, bool plane_strain, double reference, enum wb_integration how,
-                        double error[4])
+static void cook_errors(double nu, bool plane_strain, double reference,
+                        enum wb_integration integration, double error[4])
 {
     for (int k = 0; k < 4; k++) {
-        const double answer = cook(2 << k, nu, plane_strain, how);
+        const double answer = cook(2 << k, nu, plane_strain, integration);
         error[k] = answer / reference - 1.0;
         print_message("Cook, nu = %g, %s, %d x %d, %s: %.4f, %+.2f %% of %.4f\n", nu,
                       plane_strain ? "plane strain" : "plane stress", 2 << k, 2 << k,
-                      test_solid_rule_names[how == WB_INTEGRATION_REDUCED], answer,
+                      test_solid_rule_names[integration == WB_INTEGRATION_REDUCED], answer,
                       100.0 * error[k], reference);
     }
     print_message("orders of convergence %.2f, %.2f, %.2f\n", log2(error[0] / error[1]),
                   log2(error[1] / error[2]), log2(error[2] / error[3]));
 }
 
-/* References are limits of 9-node elements, in plane strain with continuous bilinear pressures, of
- * 16 x 16, 32 x 32 and 64 x 64 elements; 23.96 is the known one. The stress at the upper clamped
- * corner is singular, which bounds the order. */
+/* References are extrapolated from 9-node elements, in plane strain with continuous bilinear
+ * pressures, of 16 x 16, 32 x 32 and 64 x 64 elements; 23.96 is the known value. The stress at the
+ * upper clamped corner is singular, which limits the order. */
 static void cook_membrane_converges(void **unused)
 {
     (void)unused;
-    for (int how = 0; how < 2; how++) {
+    for (int integration = 0; integration < 2; integration++) {
         double e[4];
-        cook_errors(1.0 / 3.0, false, 23.968, test_solid_rules[how], e);
+        cook_errors(1.0 / 3.0, false, 23.968, test_solid_rules[integration], e);
         for (int k = 0; k < 4; k++)
             assert_true(e[k] < 0.0);
         assert_close(e[0], 0.0, 0.045);
@@ -78,15 +78,15 @@ static void cook_membrane_converges(void **unused)
     }
 }
 
-/* Eight constraints of volume to twelve unknowns of an element make the convergence slow, but its
- * error does not grow any more towards incompressibility. */
+/* Eight volume constraints for twelve unknowns of an element make convergence slow, but the error
+ * does not grow further towards incompressibility. */
 static void cook_membrane_does_not_lock(void **unused)
 {
     (void)unused;
-    for (int how = 0; how < 2; how++) {
+    for (int integration = 0; integration < 2; integration++) {
         double nearly[4], more[4];
-        cook_errors(0.4999, true, 18.511, test_solid_rules[how], nearly);
-        cook_errors(0.499999, true, 18.509, test_solid_rules[how], more);
+        cook_errors(0.4999, true, 18.511, test_solid_rules[integration], nearly);
+        cook_errors(0.499999, true, 18.509, test_solid_rules[integration], more);
         for (int k = 0; k < 4; k++)
             assert_close(more[k], nearly[k], 0.002);
         assert_close(nearly[3], 0.0, 0.015);
@@ -119,10 +119,11 @@ static void push(void *context, const double at[3], const double normal[3], doub
 /* A quarter of the ring; its inner side moves outward by `displacement` at factor 1. The forces for
  * a pressure of 1 are in `unit_pressure` (n_nodes), allocated. */
 static void ring_begin(struct test_solid *t, const int n[3], const struct wb_material *material,
-                       enum wb_integration how, double displacement, double (**unit_pressure)[3])
+                       enum wb_integration integration, double displacement,
+                       double (**unit_pressure)[3])
 {
     test_solid_block(t, n, ring_map, NULL);
-    test_solid_init(t, material, how);
+    test_solid_init(t, material, integration);
     for (int i = 0; i < t->mesh.n_nodes; i++) {
         const double *at = t->mesh.node[i], r = hypot(at[0], at[1]);
         const bool inside = fabs(r - inner_radius) < 1e-12;
@@ -138,7 +139,7 @@ static void ring_begin(struct test_solid *t, const int n[3], const struct wb_mat
     test_solid_create(t);
 }
 
-/* The pressure that does the same work on a motion of the inner side as the reactions do. */
+/* The pressure that does the same work as the reactions for a displacement of the inner side. */
 static double ring_pressure(const struct test_solid *t, const double (*unit_pressure)[3])
 {
     const double *force = wb_solid_internal_force(t->solid);
@@ -154,7 +155,7 @@ static double ring_pressure(const struct test_solid *t, const double (*unit_pres
 }
 
 /* Lame: u(a) = p (1 + nu) a / E / (b^2 - a^2) ((1 - 2 nu) a^2 + b^2). */
-static double ring_error(int m, double nu, enum wb_integration how)
+static double ring_error(int m, double nu, enum wb_integration integration)
 {
     const double E = 210e9, a = inner_radius, b = outer_radius, u = 1e-8;
     const double exact =
@@ -163,18 +164,18 @@ static double ring_error(int m, double nu, enum wb_integration how)
     const int n[3] = {m, 2 * m, 1};
     double(*unit)[3];
     struct test_solid t;
-    ring_begin(&t, n, &material, how, u, &unit);
+    ring_begin(&t, n, &material, integration, u, &unit);
     test_solid_go(&t, 1.0, 0.0);
     const double error = ring_pressure(&t, (const double(*)[3])unit) / exact - 1.0;
     print_message("elastic ring, nu = %g, %d x %d, %s: %+.2e\n", nu, n[0], n[1],
-                  test_solid_rule_names[how == WB_INTEGRATION_REDUCED], error);
+                  test_solid_rule_names[integration == WB_INTEGRATION_REDUCED], error);
     free(unit);
     test_solid_release(&t);
     return error;
 }
 
-/* Order 4 of the energy, of which the pressure at a given displacement is one; the reduced rule is
- * better still. */
+/* Order 4 of the energy and so of the pressure at a given displacement; the reduced rule is better
+ * still. */
 static void elastic_ring_converges_with_fourth_order(void **unused)
 {
     (void)unused;
@@ -197,21 +198,21 @@ static void elastic_ring_converges_with_fourth_order(void **unused)
 static void thick_cylinder_reaches_its_limit_pressure(void **unused)
 {
     (void)unused;
-    /* Stiff, so that the limit comes before the ring has changed its shape. */
+    /* Stiff, so that the limit load is reached before the ring has changed its shape. */
     const struct wb_material material = {
         WB_HARDENING_ISOTROPIC_POWER, 21e12, 0.3, 0.24e9, 0.0, 1.0};
     const double limit = 2.0 / sqrt(3.0) * 0.24e9 * log(2.0), steps = 10.0;
-    for (int how = 0; how < 2; how++) {
+    for (int integration = 0; integration < 2; integration++) {
         const int n[3] = {4, 4, 1};
         double(*unit)[3], p = 0.0;
         struct test_solid t;
-        ring_begin(&t, n, &material, test_solid_rules[how], 1e-5, &unit);
+        ring_begin(&t, n, &material, test_solid_rules[integration], 1e-5, &unit);
         for (int k = 1; k <= (int)steps; k++) {
             const double before = p;
             test_solid_go(&t, k / steps, 0.0);
             p = ring_pressure(&t, (const double(*)[3])unit);
             print_message("limit of the thick cylinder, %s: %.5f GPa at %.0f um, %+.3f %%\n",
-                          test_solid_rule_names[how], 1e-9 * p, 1e6 * 1e-5 * k / steps,
+                          test_solid_rule_names[integration], 1e-9 * p, 1e6 * 1e-5 * k / steps,
                           100.0 * (p / limit - 1.0));
             assert_true(p > before && p < limit);
         }
@@ -231,14 +232,14 @@ static void block_map(void *context, const double unit[3], double at[3])
     at[2] = unit[2];
 }
 
-static double block(int m, enum wb_integration how)
+static double block(int m, enum wb_integration integration)
 {
     const struct wb_material material = test_solid_elastic(1e9, 0.3);
     const int n[3] = {4 * m, m, m};
     struct test_solid_pull pull = {{0.0, 1e4, 0.0}, 1.0};
     struct test_solid t;
     test_solid_block(&t, n, block_map, NULL);
-    test_solid_init(&t, &material, how);
+    test_solid_init(&t, &material, integration);
     test_solid_clamp(&t);
     test_solid_load_end(&t, true, test_solid_pull, &pull, t.force);
     test_solid_create(&t);
@@ -248,7 +249,7 @@ static double block(int m, enum wb_integration how)
     return answer;
 }
 
-/* Against the finest; the stresses along the edges of the clamp are singular. */
+/* Relative to the finest mesh; the stresses along the clamped edges are singular. */
 static void cantilever_block_converges(void **unused)
 {
     (void)unused;

@@ -22,7 +22,7 @@ static const struct wb_solid_mesh_wire jacketed = {
     .split = 1,
 };
 
-/* Local coordinates of the nodes, from the header's description of their order. */
+/* Local coordinates of the nodes, from the description in the header. */
 static const double local[20][3] = {
     {-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
     {-1, 1, 1},   {0, -1, -1}, {1, 0, -1},  {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
@@ -65,7 +65,8 @@ static double jacobian(const struct wb_solid_mesh *mesh, int e, const double x[3
            J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
 }
 
-/* Volume of a part, -1 for all; least Jacobian over the mean one at Gauss points and corners. */
+/* Volume of a part, -1 for all; *worst: the smallest Jacobian over the mean one at Gauss points and
+ * corners. */
 static double volume(const struct wb_solid_mesh *mesh, int part, double *worst)
 {
     static const double point[3] = {-0.7745966692414834, 0.0, 0.7745966692414834};
@@ -117,8 +118,8 @@ static double face_area(const struct wb_solid_mesh *mesh, const int node[8], dou
     return area;
 }
 
-/* Area within parabolas through the two corners and the midside node of n equal parts of a circle
- * of radius 1, which is what these elements can be of it. */
+/* Area within parabolas through the corners and midside nodes of n equal parts of a circle of
+ * radius 1, as represented by these elements. */
 static double parabolic_area(int n)
 {
     const double half = M_PI / n;
@@ -156,7 +157,7 @@ static int layer_of(const struct wb_solid_mesh *mesh, int node)
     return l;
 }
 
-/* What the header promises of layers and links, for any list of nodes that are coupled. */
+/* Checks the header's statements about layers and links for a list of coupled nodes. */
 static void check_coupling(const struct wb_solid_mesh *mesh, const int *node, int n)
 {
     int least = mesh->n_layers, most = -1;
@@ -232,7 +233,7 @@ static void coarsest_section_is_the_one_of_the_reference(void **unused)
     wb_solid_mesh_release(&mesh);
 }
 
-static void layers_hold_the_halfway_nodes_and_then_the_section(void **unused)
+static void layers_contain_the_halfway_nodes_and_then_the_section(void **unused)
 {
     (void)unused;
     struct wb_solid_mesh mesh;
@@ -347,7 +348,7 @@ static void tip_faces_cover_the_free_end(void **unused)
     wb_solid_mesh_release(&mesh);
 }
 
-static void clamp_and_axis_are_where_they_should_be(void **unused)
+static void clamp_and_axis_nodes_have_their_positions(void **unused)
 {
     (void)unused;
     struct wb_solid_mesh mesh;
@@ -482,7 +483,7 @@ static void block_is_mapped_with_its_midside_nodes(void **unused)
     wb_solid_mesh_release(&mesh);
 }
 
-static void mesh_to_fill_in_has_one_layer(void **unused)
+static void empty_mesh_has_one_layer(void **unused)
 {
     (void)unused;
     struct wb_solid_mesh mesh;
@@ -501,7 +502,7 @@ static void nowhere(void *context, const double unit[3], double position[3])
     position[0] = position[1] = position[2] = 1.0 / (unit[0] - 1.0);
 }
 
-static void impossible_meshes_are_refused(void **unused)
+static void invalid_meshes_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_solid_mesh_wire bad[12];
@@ -542,18 +543,18 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(volume_converges_to_the_cylinder),
         cmocka_unit_test(coarsest_section_is_the_one_of_the_reference),
-        cmocka_unit_test(layers_hold_the_halfway_nodes_and_then_the_section),
+        cmocka_unit_test(layers_contain_the_halfway_nodes_and_then_the_section),
         cmocka_unit_test(bonded_parts_share_their_nodes),
         cmocka_unit_test(parts_have_their_volumes_and_own_circles),
         cmocka_unit_test(pairs_coincide_and_point_outward),
         cmocka_unit_test(tip_faces_cover_the_free_end),
-        cmocka_unit_test(clamp_and_axis_are_where_they_should_be),
+        cmocka_unit_test(clamp_and_axis_nodes_have_their_positions),
         cmocka_unit_test(longitudinal_section_is_a_rectangle),
         cmocka_unit_test(every_side_of_an_element_can_lie_in_the_longitudinal_section),
         cmocka_unit_test(cross_section_is_taken_nearest_to_x),
         cmocka_unit_test(block_is_mapped_with_its_midside_nodes),
-        cmocka_unit_test(mesh_to_fill_in_has_one_layer),
-        cmocka_unit_test(impossible_meshes_are_refused),
+        cmocka_unit_test(empty_mesh_has_one_layer),
+        cmocka_unit_test(invalid_meshes_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -79,7 +79,7 @@ enum {
     N_STRETCHES = sizeof stretches / sizeof stretches[0]
 };
 
-/* A history whose axes are not those of the deformation. */
+/* A history whose axes differ from those of the deformation. */
 static void some_history(struct wb_solid_point_state *state, double size)
 {
     memset(state, 0, sizeof *state);
@@ -262,7 +262,7 @@ static void volumetric_part_is_exact(void **unused)
 
 /* --- Closed forms --- */
 
-/* F = exp(diag(e)): the log strain is what is prescribed. */
+/* F = exp(diag(e)): prescribes the logarithmic strain. */
 static void stretch_along_axes(const double e[3], double h[9])
 {
     memset(h, 0, 9 * sizeof *h);
@@ -270,7 +270,7 @@ static void stretch_along_axes(const double e[3], double h[9])
         h[4 * i] = expm1(e[i]);
 }
 
-/* Kirchhoff stresses along the axes at each corner of the path, with so many steps a side. */
+/* Kirchhoff stresses along the axes at each corner of the path, with `steps` steps per side. */
 static void run_path(const struct wb_material *m, int steps, double stress[8][3])
 {
     static const double side[8][2] = {{1, 0},  {1, 0},  {0, 1},  {0, 1},
@@ -343,8 +343,8 @@ static void one_step_a_side_is_the_radial_return(void **unused)
         assert_close(stress[3][i], expected[i], 6e-5);
 }
 
-/* In uniaxial stress the log space sees the 1D law exactly, at strains of any size; its plastic
- * strain gives the lateral strain. */
+/* In uniaxial stress the logarithmic formulation gives the 1D law exactly, for any strain; its
+ * plastic strain gives the lateral strain. */
 static void uniaxial_stress_is_the_1d_law(void **unused)
 {
     (void)unused;
@@ -497,7 +497,7 @@ static void tiny_strains_keep_their_digits(void **unused)
     }
 }
 
-/* At p = 0 the power law rises infinitely steeply: yielding begins gently, and is found. */
+/* At p = 0 the power law has an infinite slope: yielding begins gradually, and must be detected. */
 static void yielding_ends_on_the_yield_surface(void **unused)
 {
     (void)unused;
@@ -518,7 +518,7 @@ static void yielding_ends_on_the_yield_surface(void **unused)
             assert_true(response.yields && p > 0.0);
             assert_close(q / limit, 1.0, 1e-13);
             assert_close(p, after.plastic_strain[1], 1e-15 * p + 1e-18);
-            /* Where it is, it does not yield again. */
+            /* On the yield surface it does not yield again. */
             respond(law, h, &after, &again, &response);
             assert_false(response.yields);
             assert_memory_equal(&after, &again, sizeof after);
@@ -526,7 +526,7 @@ static void yielding_ends_on_the_yield_surface(void **unused)
     }
 }
 
-static void what_is_no_deformation_is_refused(void **unused)
+static void invalid_deformations_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_solid_point_motion motion;
@@ -557,7 +557,7 @@ int main(void)
         cmocka_unit_test(a_rotated_yielding_point_only_rotates),
         cmocka_unit_test(tiny_strains_keep_their_digits),
         cmocka_unit_test(yielding_ends_on_the_yield_surface),
-        cmocka_unit_test(what_is_no_deformation_is_refused),
+        cmocka_unit_test(invalid_deformations_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The source itself, for its variants: only one of them is this processor's. */
+/* Includes the source to test all its variants, of which the program uses one per processor. */
 #include "fe/solid/solid_point_spectrum.c"
 
 #include "tests/check.h"
@@ -8,7 +8,7 @@ enum {
     MOST = 27
 };
 
-/* Displacement gradients of very different sizes, some with equal eigenvalues, some without any. */
+/* Displacement gradients of very different sizes, some with equal eigenvalues, some zero. */
 static void make_motions(struct wb_solid_point_motion *motion)
 {
     srand(1);
@@ -29,7 +29,7 @@ static void make_motions(struct wb_solid_point_motion *motion)
     }
 }
 
-static void spectrum_rebuilds_its_tensor(void **unused)
+static void spectrum_reproduces_its_tensor(void **unused)
 {
     (void)unused;
     struct wb_solid_point_motion motion[MOST];
@@ -58,8 +58,8 @@ static void spectrum_rebuilds_its_tensor(void **unused)
     }
 }
 
-/* However many are asked for at once, and whatever stands beside a point. */
-static void every_number_of_points_will_do(void **unused)
+/* For any number of points per call, and any neighbouring points. */
+static void any_number_of_points_is_supported(void **unused)
 {
     (void)unused;
     struct wb_solid_point_motion all[MOST], some[MOST];
@@ -107,7 +107,7 @@ static void all_processors_give_the_same_bits(void **unused)
 #endif
 }
 
-static void what_is_not_finite_is_seen(void **unused)
+static void non_finite_input_is_reported(void **unused)
 {
     (void)unused;
     struct wb_solid_point_motion motion[2];
@@ -124,10 +124,10 @@ static void what_is_not_finite_is_seen(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spectrum_rebuilds_its_tensor),
-        cmocka_unit_test(every_number_of_points_will_do),
+        cmocka_unit_test(spectrum_reproduces_its_tensor),
+        cmocka_unit_test(any_number_of_points_is_supported),
         cmocka_unit_test(all_processors_give_the_same_bits),
-        cmocka_unit_test(what_is_not_finite_is_seen),
+        cmocka_unit_test(non_finite_input_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -72,9 +72,9 @@ static int patch_hold(struct test_solid *t, const double H[3][3])
     return free_nodes;
 }
 
-/* Solves a patch of MacNeal and Harder's field times `scale`; checks that all displacements are the
- * field's and that stress is the same everywhere, which it returns, with the plastic strain. */
-static double patch_stress(const struct wb_material *material, enum wb_integration how,
+/* Solves a patch of MacNeal and Harder's field times `scale`; checks that all displacements agree
+ * with the field and that the stress is uniform; returns the stress and the plastic strain. */
+static double patch_stress(const struct wb_material *material, enum wb_integration integration,
                            double scale, double stress[6])
 {
     struct test_solid t;
@@ -82,7 +82,7 @@ static double patch_stress(const struct wb_material *material, enum wb_integrati
     for (int i = 0; i < 9; i++)
         H[i / 3][i % 3] = scale * 1e-3 * (i / 3 == i % 3 ? 1.0 : 0.5);
     patch_mesh(&t.mesh);
-    test_solid_init(&t, material, how);
+    test_solid_init(&t, material, integration);
     assert_int_equal(patch_hold(&t, (const double(*)[3])H), PATCH_NODES - 20);
     test_solid_create(&t);
     test_solid_go(&t, 0.5, 0.0);
@@ -113,11 +113,11 @@ static void patch_of_small_strain_is_exact(void **unused)
 {
     (void)unused;
     const struct wb_material material = test_solid_elastic(1e6, 0.25);
-    for (int how = 0; how < 2; how++) {
+    for (int integration = 0; integration < 2; integration++) {
         double s[6];
-        (void)patch_stress(&material, test_solid_rules[how], 1e-4, s);
-        print_message("patch, %s: sigma %.6f, tau %.6f\n", test_solid_rule_names[how], 1e4 * s[0],
-                      1e4 * s[3]);
+        (void)patch_stress(&material, test_solid_rules[integration], 1e-4, s);
+        print_message("patch, %s: sigma %.6f, tau %.6f\n", test_solid_rule_names[integration],
+                      1e4 * s[0], 1e4 * s[3]);
         for (int k = 0; k < 6; k++)
             assert_close_relative(1e4 * s[k], k < 3 ? 2000.0 : 400.0, 1e-6);
     }
@@ -132,11 +132,11 @@ static void patch_of_large_strain_is_exact(void **unused)
     const double along = log(1.0 + 2e-3 * scale), across = log(1.0 + 0.5e-3 * scale);
     const double volume = along + 2.0 * across;
     const double pressure = K * volume, deviator = 2.0 * G * (along - volume / 3.0);
-    for (int how = 0; how < 2; how++) {
+    for (int integration = 0; integration < 2; integration++) {
         double s[6];
-        (void)patch_stress(&material, test_solid_rules[how], scale, s);
+        (void)patch_stress(&material, test_solid_rules[integration], scale, s);
         for (int k = 0; k < 6; k++) {
-            /* Deviator along n n^T, and minus half of it across. */
+            /* Deviator along n n^T, and minus half of it perpendicular to it. */
             const double expected = k < 3 ? pressure : deviator * 1.5 / 3.0;
             assert_close_relative(s[k], expected / exp(volume), 1e-9);
         }
@@ -160,8 +160,8 @@ static void patch_that_yields_is_exact(void **unused)
         const double G = m->youngs_modulus / (2.0 + 2.0 * m->poissons_ratio);
         const double yield =
             m->yield_stress + m->strength_coefficient * pow(p, m->hardening_exponent);
-        /* What of the equivalent strain is not plastic makes the stress; its deviator is
-         * proportional to n n^T - I / 3, n = (1, 1, 1) / sqrt 3. */
+        /* The elastic part of the equivalent strain gives the stress; its deviator is proportional
+         * to n n^T - I / 3, n = (1, 1, 1) / sqrt 3. */
         assert_close_relative(3.0 * G * (equivalent - p), yield, 1e-9);
         assert_close_relative(3.0 * J * s[3], yield, 1e-9);
     }
@@ -178,17 +178,17 @@ struct beam {
     double load[3]; /* N, small enough to keep the problem linear */
     double reference;
     int n[3];
-    double allowed[2]; /* selective, reduced: how far from the reference, as a fraction */
+    double allowed[2]; /* selective, reduced: allowed relative deviation from the reference */
 };
 
 /* Displacement of the loads' points along the load, over the load. */
-static double beam_answer(const struct beam *beam, enum wb_integration how)
+static double beam_answer(const struct beam *beam, enum wb_integration integration)
 {
     const struct wb_material material = test_solid_elastic(beam->E, beam->nu);
     struct test_solid_pull pull = {{beam->load[0], beam->load[1], beam->load[2]}, beam->area};
     struct test_solid t;
     test_solid_block(&t, beam->n, beam->map, (void *)beam);
-    test_solid_init(&t, &material, how);
+    test_solid_init(&t, &material, integration);
     test_solid_clamp(&t);
     test_solid_load_end(&t, true, test_solid_pull, &pull, t.force);
     test_solid_create(&t);
@@ -236,15 +236,15 @@ static void twisted_map(void *context, const double unit[3], double at[3])
 
 static void check_beam(const struct beam *beam)
 {
-    for (int how = 0; how < 2; how++) {
-        /* Reduced integration leaves a column one element wide modes without energy. */
+    for (int integration = 0; integration < 2; integration++) {
+        /* With reduced integration a column one element wide has modes without energy. */
         struct beam own = *beam;
-        own.n[1] += how == 1 && own.n[1] == 1;
-        const double answer = beam_answer(&own, test_solid_rules[how]);
+        own.n[1] += integration == 1 && own.n[1] == 1;
+        const double answer = beam_answer(&own, test_solid_rules[integration]);
         print_message("%s, %d x %d x %d, %s: %.6g, %.4f of %.6g\n", own.name, own.n[0], own.n[1],
-                      own.n[2], test_solid_rule_names[how], answer, answer / own.reference,
+                      own.n[2], test_solid_rule_names[integration], answer, answer / own.reference,
                       own.reference);
-        assert_close_relative(answer, own.reference, own.allowed[how]);
+        assert_close_relative(answer, own.reference, own.allowed[integration]);
     }
 }
 
@@ -267,9 +267,9 @@ static void check_beam(const struct beam *beam)
         0.0, 0.0, 1e-2                                                                             \
     }
 
-/* Allowed is what these meshes can do: the same elements fully integrated reach 0.97, 0.89 and 0.97
- * in plane and 0.96, 0.92 and 0.94 out of plane. */
-static void straight_beams_of_six_elements_bend_as_known(void **unused)
+/* The accuracy of these meshes: the same elements fully integrated reach 0.97, 0.89 and 0.97 in
+ * plane and 0.96, 0.92 and 0.94 out of plane. */
+static void straight_beams_of_six_elements_agree_with_the_reference(void **unused)
 {
     (void)unused;
     static const struct beam beams[] = {
@@ -310,11 +310,11 @@ static void finer_straight_beams_approach_the_reference(void **unused)
         check_beam(&beams[k]);
 }
 
-/* The reference in plane, 0.08734, is 1.4 % below the exact solution in plane stress, pi P (a^2 +
+/* The in-plane reference, 0.08734, is 1.4 % below the exact solution in plane stress, pi P (a^2 +
  * b^2) / (E t ((a^2 - b^2) + (a^2 + b^2) ln(b/a))) = 0.088566 (Timoshenko and Goodier). Out of
- * plane the limit stays 1 % below the reference: the clamp keeps the section from warping, which
- * takes 0.04 of the length off where the torque is largest, and beam theory does not know that. */
-static void curved_beams_bend_as_known(void **unused)
+ * plane the limit is 1 % below the reference: the clamp prevents warping of the section, which
+ * shortens the beam by an effective 0.04 where the torque is largest; beam theory neglects this. */
+static void curved_beams_agree_with_the_reference(void **unused)
 {
     (void)unused;
     static const struct beam beams[] = {
@@ -327,7 +327,7 @@ static void curved_beams_bend_as_known(void **unused)
         check_beam(&beams[k]);
 }
 
-static void twisted_beams_bend_as_known(void **unused)
+static void twisted_beams_agree_with_the_reference(void **unused)
 {
     (void)unused;
     static const struct beam beams[] = {
@@ -341,7 +341,7 @@ static void twisted_beams_bend_as_known(void **unused)
 }
 
 /* Saint-Venant's torsion of the straight beam: ends turned, free to warp. Torsion constant. */
-static double torsion_constant(const int n[3], enum wb_integration how)
+static double torsion_constant(const int n[3], enum wb_integration integration)
 {
     const struct wb_material material = test_solid_elastic(1e7, 0.3);
     const struct beam beam = {"", STRAIGHT, REGULAR, ALONG, 0.0, {n[0], n[1], n[2]}, {0.0, 0.0}};
@@ -349,7 +349,7 @@ static double torsion_constant(const int n[3], enum wb_integration how)
     struct test_solid t;
     int begin, end;
     test_solid_block(&t, n, straight_map, (void *)&beam);
-    test_solid_init(&t, &material, how);
+    test_solid_init(&t, &material, integration);
     for (int last = 0; last < 2; last++) {
         test_solid_end(&t, last, &begin, &end);
         for (int i = begin; i < end; i++) {
@@ -383,13 +383,13 @@ static void torsion_converges_to_saint_venant(void **unused)
 {
     (void)unused;
     const double exact = saint_venant();
-    for (int how = 0; how < 2; how++) {
+    for (int integration = 0; integration < 2; integration++) {
         double error[3];
         for (int k = 0; k < 3; k++) {
             const int n[3] = {2, 2 << k, 1 << k};
-            const double found = torsion_constant(n, test_solid_rules[how]);
+            const double found = torsion_constant(n, test_solid_rules[integration]);
             print_message("torsion constant, %d x %d, %s: %.6g, %.4f of %.6g\n", n[1], n[2],
-                          test_solid_rule_names[how], found, found / exact, exact);
+                          test_solid_rule_names[integration], found, found / exact, exact);
             error[k] = found / exact - 1.0;
         }
         assert_true(error[2] > 0.0 && error[2] < 5e-4);
@@ -397,7 +397,7 @@ static void torsion_converges_to_saint_venant(void **unused)
     }
 }
 
-/* Shear that turns the end of the straight beam about its axis. */
+/* Shear traction that twists the end of the straight beam about its axis. */
 static void twist(void *context, const double at[3], const double normal[3], double force[3])
 {
     const double per_moment = *(const double *)context;
@@ -406,9 +406,9 @@ static void twist(void *context, const double at[3], const double normal[3], dou
     force[2] = per_moment * (at[1] - 0.1) * normal[0];
 }
 
-/* The reference, 0.03208, is 6 % below Saint-Venant's 6 / (G J) = 0.03411, from which a clamp that
- * keeps the section from warping takes 0.04 of the length. */
-static void straight_beams_twist_nearly_as_saint_venant_says(void **unused)
+/* The reference, 0.03208, is 6 % below Saint-Venant's 6 / (G J) = 0.03411, which a clamp that
+ * prevents warping reduces by an effective 0.04 of the length. */
+static void straight_beams_twist_nearly_as_in_saint_venants_theory(void **unused)
 {
     (void)unused;
     const double exact = 6.0 / (1e7 / 2.6 * saint_venant());
@@ -442,12 +442,12 @@ int main(void)
         cmocka_unit_test(patch_of_small_strain_is_exact),
         cmocka_unit_test(patch_of_large_strain_is_exact),
         cmocka_unit_test(patch_that_yields_is_exact),
-        cmocka_unit_test(straight_beams_of_six_elements_bend_as_known),
+        cmocka_unit_test(straight_beams_of_six_elements_agree_with_the_reference),
         cmocka_unit_test(finer_straight_beams_approach_the_reference),
-        cmocka_unit_test(curved_beams_bend_as_known),
-        cmocka_unit_test(twisted_beams_bend_as_known),
+        cmocka_unit_test(curved_beams_agree_with_the_reference),
+        cmocka_unit_test(twisted_beams_agree_with_the_reference),
         cmocka_unit_test(torsion_converges_to_saint_venant),
-        cmocka_unit_test(straight_beams_twist_nearly_as_saint_venant_says),
+        cmocka_unit_test(straight_beams_twist_nearly_as_in_saint_venants_theory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
