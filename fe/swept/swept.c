@@ -57,9 +57,10 @@ enum wb_status wb_swept_choose_instructions(enum wb_swept_instructions *chosen,
 {
     const enum wb_swept_instructions set = wanted == WB_SWEPT_BEST ? best_supported() : wanted;
     if (!is_supported(set))
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "this processor, or this build, does not have the vector instructions "
-                       "that were asked for");
+        return wb_fail(
+            WB_ERR_UNSUPPORTED,
+            "the requested vector instructions are not supported by this processor or this "
+            "build");
     *chosen = set;
     return WB_OK;
 }

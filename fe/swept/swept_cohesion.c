@@ -27,14 +27,14 @@ struct wb_swept_cohesion {
     int n_wires;
     int n_strips, room;
     struct wb_swept_cohesion_strip *strip;
-    double *numbers; /* of each strip (ROWS x LANES) */
+    double *numbers; /* rows of each strip (ROWS x LANES) */
     int *first;      /* (n_blocks + 1) */
     int *strip_of;   /* (n_nodes x n_stations); -1: not bonded */
     void *rows, *damage;
-    struct wb_memory memory; /* of all arrays but strip and numbers, which grow */
+    struct wb_memory memory; /* owns all arrays except strip and numbers, which grow */
 };
 
-/* Where a node of the ring is bonded in the reference state. */
+/* The bond point of a ring node in the reference state. */
 struct facing {
     int to, partner[2];
     double weight, offset, area, outwards;
@@ -65,8 +65,8 @@ static struct ray ray_of(const struct wb_swept_cohesion *c, int k, int j)
     return (struct ray){x[stride], x[2 * stride], d[stride], d[2 * stride]};
 }
 
-/* Takes the segment from a to b when the ray meets it nearer than what it met before, at x - o d.
- */
+/* Takes the intersection of the ray with the segment from a to b, at x - o d, if it is nearer than
+ * the one found before. */
 static void try_segment(const struct ray *ray, const double a[2], const double b[2],
                         const int nodes[2], double least, struct facing *best)
 {
@@ -96,9 +96,9 @@ static void face_wire(const struct ray *ray, const struct wb_swept_cohesion_wire
     }
 }
 
-/* The next winding inside: directors point outwards. */
-static void face_tape(const struct wb_swept_cohesion *c, int k, int j, const struct ray *ray,
-                      struct facing *best)
+/* Finds the next winding inside; directors point outwards. */
+static void find_winding_below(const struct wb_swept_cohesion *c, int k, int j,
+                               const struct ray *ray, struct facing *best)
 {
     const int n = layout_of(c)->n_nodes, last = c->tape_model->closed ? n : n - 1;
 
@@ -120,12 +120,12 @@ static enum wb_status find_facing(const struct wb_swept_cohesion *c,
 
     *out = (struct facing){.to = bond->to, .offset = (double)INFINITY};
     if (bond->to == WB_SWEPT_COHESION_TAPE)
-        face_tape(c, k, j, &ray, out);
+        find_winding_below(c, k, j, &ray, out);
     else
         face_wire(&ray, &wires[bond->to], out);
     if (!isfinite(out->offset))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape's node %d faces no surface at station %d: expected one on the "
+                       "tape node %d has no surface below it at station %d: expected one on the "
                        "line along its director",
                        k, j);
     out->area = bond->share * wb_swept_tape_area(c->tape, k, j);
@@ -135,7 +135,7 @@ static enum wb_status find_facing(const struct wb_swept_cohesion *c,
 
 /* --- strips --- */
 
-/* The strip of the block of station j that goes where `f` does: one there is, or a new one. */
+/* Finds the strip in the block of station j that has the same bond nodes as `f`, or adds one. */
 static int find_strip(struct wb_swept_cohesion *c, int k, const struct facing *f, int from)
 {
     for (int s = c->n_strips - 1; s >= from; s--) {
@@ -168,10 +168,11 @@ static enum wb_status add_bond(struct wb_swept_cohesion *c,
         return WB_OK;
     if (bond->to < WB_SWEPT_COHESION_TAPE || bond->to >= c->n_wires ||
         !(bond->share > 0.0 && bond->share <= 1.0))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape's node %d is bonded to wire %d with a share of %g: expected a "
-                       "wire from 0 to %d, or %d for the tape, and a share above 0, at most 1",
-                       k, bond->to, bond->share, c->n_wires - 1, WB_SWEPT_COHESION_TAPE);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "tape node %d: wire %d, share %g: expected a wire from 0 to %d, or %d for the "
+            "tape, and a share above 0, at most 1",
+            k, bond->to, bond->share, c->n_wires - 1, WB_SWEPT_COHESION_TAPE);
     WB_TRY(find_facing(c, wires, bond, k, j, &f));
     const int s = find_strip(c, k, &f, from);
     double *rows = c->numbers + (size_t)s * ROWS * LANES + j % LANES;
@@ -226,10 +227,11 @@ static enum wb_status check(const struct wb_swept_cohesion_settings *s)
             "above 0, or a normal strength of 0 for a bond that never breaks",
             s->strength, s->shear_strength);
     if (!(s->fracture_energy > 1.001 * stored && isfinite(s->fracture_energy)))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "cohesion: the fracture energy is %g J/m2: expected more than 1.001 times "
-                       "the %g J/m2 that are stored when damage begins",
-                       s->fracture_energy, stored);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "cohesion: fracture energy %g J/m2: expected more than 1.001 times the %g J/m2 "
+            "stored at the onset of damage",
+            s->fracture_energy, stored);
     return WB_OK;
 }
 
@@ -322,7 +324,7 @@ void wb_swept_cohesion_add_forces(struct wb_swept_cohesion *cohesion,
     cohesion->kernel->add_forces(&call);
 }
 
-/* --- what it is like --- */
+/* --- queries --- */
 
 static double number(const struct wb_swept_cohesion *c, int strip, int row, int lane)
 {
@@ -362,8 +364,8 @@ static double largest_stiffness(const struct wb_swept_cohesion *c)
     return fmax(c->settings.normal_stiffness, c->settings.shear_stiffness);
 }
 
-/* A bond's energy is at most what either of its sides, moved alone, makes of it, twice: hence the
- * factor. End stations have half the area and half the mass. */
+/* A bond's energy is at most twice the sum of the energies with either of its sides moved alone:
+ * hence the factor. End stations have half the area and half the mass. */
 static const double both_sides = 2.0;
 
 double wb_swept_cohesion_wire_stiffness_per_mass(const struct wb_swept_cohesion *cohesion, int wire,
@@ -409,7 +411,7 @@ double wb_swept_cohesion_tape_stiffness_per_mass(const struct wb_swept_cohesion 
             const double o = number(cohesion, s, WB_SWEPT_COHESION_OFFSET, j % LANES);
             const double area = number(cohesion, s, WB_SWEPT_COHESION_BONDED, j % LANES);
             double flexibility = 1.0 / x[strip->node] + o * o / inertia[strip->node];
-            /* Windings bonded to each other: as lower ones, too. */
+            /* A winding that is bonded to others is also the lower side of bonds. */
             if (strip->to == WB_SWEPT_COHESION_TAPE)
                 flexibility += 2.0 / fmin(x[strip->partner[0]], x[strip->partner[1]]);
             most = fmax(most, area * flexibility / length);

@@ -1,9 +1,9 @@
 /* Forces of cohesion, compiled once for each type and instruction set (see
  * fe/swept/swept_cohesion.h and swept_cohesion_kernel.h). Lanes are stations.
  *
- * With n = g.d, p = (1 - D) K_nn or, when pressed together, K_nn, and q = (1 - D) K_ss, the energy
- * is A / 2 (q (g.g - n^2) + p n^2); force on the node is less A t, t = q g + (p - q) n d, on the
- * director A (o t - (p - q) n g). */
+ * With n = g.d, p = (1 - D) K_nn or, in compression, K_nn, and q = (1 - D) K_ss, the energy is A /
+ * 2 (q (g.g - n^2) + p n^2); the force on the node is -A t, t = q g + (p - q) n d, on the director
+ * A (o t - (p - q) n g). */
 #include "fe/swept/swept_cohesion_kernel.h"
 #include "fe/swept/swept_simd.h"
 
@@ -54,7 +54,8 @@ INLINE void find_opening(const struct wb_swept_cohesion_kernel_model *m,
     }
 }
 
-/* Damage at the energy `Y` stored without it and the square of l; *dissipated by its growth. */
+/* Damage for the undamaged energy `Y` and the square of l; *dissipated receives the energy of its
+ * growth. */
 INLINE vec grow(const struct wb_swept_cohesion_kernel_model *m, const struct opening *open, vec Y,
                 vec square, vec before, vec *dissipated)
 {
@@ -70,7 +71,7 @@ INLINE vec grow(const struct wb_swept_cohesion_kernel_model *m, const struct ope
     const vec reached = minimum(last * (1 - inverse) / (last - 1), splat(1));
     const mask grows = above(choose(beyond, reached, (vec){0}), before);
     const vec after = choose(grows, reached, before);
-    /* The damage before is that of l = from. */
+    /* The previous damage corresponds to l = from. */
     const vec from = 1 / (1 - before * (1 - 1 / last));
     const vec to = minimum(l2 * inverse, last);
     *dissipated = choose(grows, open->area * at_onset * from * to * (after - before), (vec){0});

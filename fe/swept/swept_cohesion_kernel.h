@@ -1,8 +1,7 @@
-/* The kernels behind fe/swept/swept_cohesion.h: the forces of the bonds. Lanes are
- * stations.
+/* The kernels behind fe/swept/swept_cohesion.h: the forces of the bonds. Lanes are stations.
  *
- * A strip is those bonds of a ring node in one block of stations that go to the same pair of
- * surface nodes; at the other stations of the block its area is zero.
+ * A strip contains the bonds of a ring node in one block of stations to the same pair of surface
+ * nodes; at the other stations of the block its area is zero.
  */
 #ifndef WB_FE_SWEPT_SWEPT_COHESION_KERNEL_H
 #define WB_FE_SWEPT_SWEPT_COHESION_KERNEL_H
@@ -24,7 +23,7 @@ struct wb_swept_cohesion_strip {
     int node;        /* of the ring */
     int to;          /* a wire or WB_SWEPT_COHESION_TAPE */
     int partner[2];  /* nodes a and b there */
-    double outwards; /* 1 or -1: how directors point */
+    double outwards; /* 1 or -1: direction of directors */
 };
 
 struct wb_swept_cohesion_kernel_model {
@@ -44,7 +43,7 @@ struct wb_swept_cohesion_kernel_call {
     const struct wb_swept_cohesion_fields *fields;
     void *damage; /* of each strip (LANES) */
     int first_block, end_block;
-    struct wb_swept_cohesion_sums *sums; /* added to; NULL: none wanted */
+    struct wb_swept_cohesion_sums *sums; /* added to; may be NULL */
 };
 
 struct wb_swept_cohesion_kernel {

@@ -12,26 +12,26 @@
 
 enum {
     BLOCK = WB_SWEPT_LANES,
-    MOST_ITERATIONS = 60,
+    MAX_ITERATIONS = 60,
     FEWEST_NEIGHBOURS = 6,
-    MOST_WIRES = 1024,
-    MOST_STATIONS = 1 << 20,
-    MOST_SURFACE = 1 << 16
+    MAX_WIRES = 1024,
+    MAX_STATIONS = 1 << 20,
+    MAX_SURFACE = 1 << 16
 };
 
 static const struct wb_swept_contact_kernel *const kernels[][2] =
     WB_SWEPT_KERNEL_VERSIONS(wb_swept_contact_kernel);
 
-/* Beyond this part of the smallest radius the penalty is no contact any more. */
+/* Penetration, as a fraction of the smallest radius, above which the run fails. */
 static const double deepest_part = 0.5;
 
-/* Shifts are found to this part of a station; the energy is stationary there. Of pairs that are
- * new as exactly as can be: then it is of no account where one began, so that parts of a bundle
- * find what the whole does. */
+/* Tolerance of shifts, in stations; the contact energy is stationary there. New pairs use the
+ * smaller one, so that their shift does not depend on the initial guess and parts of a bundle
+ * compute the same as the complete bundle. */
 static const double shift_tolerance = 1e-4, first_tolerance = 1e-12;
 
-/* Neighbours are searched anew when a centre moved by this part of the reach. Two of them then are
- * nearer by at most twice that, and half of the reach is left for what follows till the next
+/* Neighbours are searched again when a centre has moved by this fraction of the reach. Two wires
+ * have then approached by at most twice that, and half of the reach remains until the next
  * refresh. */
 static const double moved_part = 0.25;
 
@@ -67,7 +67,7 @@ static size_t real_size(const struct wb_swept_contact *contact)
     return wb_swept_kernel_real_size(contact->settings.double_precision);
 }
 
-/* Element i of an array of the kernel's type. */
+/* Sets element i of an array in the kernel's type. */
 static void set(const struct wb_swept_contact *contact, void *array, ptrdiff_t i, double value)
 {
     wb_swept_kernel_put(contact->settings.double_precision, array, i, value);
@@ -83,7 +83,7 @@ static void *address(const struct wb_swept_contact *contact, void *array, ptrdif
     return (unsigned char *)array + i * (ptrdiff_t)real_size(contact);
 }
 
-/* Row `i` of a pair, and of a wire's centres and fixed rows. */
+/* Row `i` of a pair; of a wire's centres; of its fixed rows. */
 static double *pair_row(const struct wb_swept_contact *contact,
                         const struct wb_swept_contact_pair_rows *pair, int i)
 {
@@ -100,7 +100,7 @@ static double *fixed_row(const struct wb_swept_contact *contact, int wire, int i
     return contact->model.wire[wire].fixed + (ptrdiff_t)i * contact->model.stride;
 }
 
-/* A row's value at a place between stations. */
+/* A row's value at a position between stations. */
 static double value_between(const struct wb_swept_contact *contact, const double *row, double place)
 {
     const int last = contact->model.n_stations - 2;
@@ -133,22 +133,22 @@ static enum wb_status check_settings(const struct wb_swept_contact_settings *s)
 
     if (!(in_range(s->stiffness, 1e-12, 1e6) && in_range(s->tangential_ratio, 1e-6, 1e6)))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the contact stiffness is %g E, and the tangential one %g times that: "
+                       "contact: stiffness %g E, tangential stiffness %g times that: "
                        "expected 1e-12 to 1e6 and 1e-6 to 1e6",
                        s->stiffness, s->tangential_ratio);
     if (!(in_range(s->friction.mu_static, 0.0, 1e3) && in_range(s->friction.mu_kinetic, 0.0, 1e3) &&
           in_range(s->friction.decay, 0.0, most) && in_range(s->damping_time, 0.0, most)))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "friction: the static coefficient is %g, the kinetic one %g, the decay %g "
-                       "s/m and the damping time %g s: expected coefficients from 0 to 1000, and a "
-                       "decay and a time from 0 to 1e12",
-                       s->friction.mu_static, s->friction.mu_kinetic, s->friction.decay,
-                       s->damping_time);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "friction: static coefficient %g, kinetic coefficient %g, decay %g s/m, damping "
+            "time %g s: expected coefficients from 0 to 1000, decay and damping time from 0 "
+            "to 1e12",
+            s->friction.mu_static, s->friction.mu_kinetic, s->friction.decay, s->damping_time);
     if (!(in_range(s->reach, 1e-3, 10.0)) || s->refresh_interval < 1 || s->most_pairs < 0)
         return wb_fail(
             WB_ERR_ARGUMENT,
-            "contact: the reach is %g radii, the refresh interval %d steps and the largest number "
-            "of pairs %d: expected 0.001 to 10, at least 1, and 0 or more",
+            "contact: reach %g radii, refresh interval %d steps, largest number of pairs %d: "
+            "expected 0.001 to 10, at least 1, and 0 or more",
             s->reach, s->refresh_interval, s->most_pairs);
     return WB_OK;
 }
@@ -157,27 +157,28 @@ static enum wb_status check_wire(const struct wb_swept_contact_wire *wire, int w
 {
     if (!(in_range(wire->radius, 1e-12, 1e12) && in_range(wire->youngs_modulus, 1e-12, 1e30)))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "wire %d has a radius of %g m and a Young's modulus of %g Pa: expected "
+                       "wire %d: radius %g m, Young's modulus %g Pa: expected "
                        "1e-12 to 1e12 m and 1e-12 to 1e30 Pa",
                        w, wire->radius, wire->youngs_modulus);
-    if (wire->n_surface < 3 || wire->n_surface > MOST_SURFACE)
+    if (wire->n_surface < 3 || wire->n_surface > MAX_SURFACE)
         return wb_fail(WB_ERR_ARGUMENT, "wire %d has %d surface nodes: expected 3 to %d", w,
-                       wire->n_surface, MOST_SURFACE);
+                       wire->n_surface, MAX_SURFACE);
     for (int k = 0; k < wire->n_surface; k++) {
         const int node = wire->surface[k];
         if (node < 0 || node >= wire->n_nodes ||
             !(in_range(fabs(wire->node[node][0]), 0.0, 1e12) &&
               in_range(fabs(wire->node[node][1]), 0.0, 1e12)))
-            return wb_fail(WB_ERR_ARGUMENT,
-                           "wire %d: surface node %d is none of its %d nodes, or not within 1e12 "
-                           "m",
-                           w, node, wire->n_nodes);
+            return wb_fail(
+                WB_ERR_ARGUMENT,
+                "wire %d: surface node %d is not one of its %d nodes, or not within 1e12 "
+                "m",
+                w, node, wire->n_nodes);
     }
     return WB_OK;
 }
 
-/* Least squares of a linear function of y and z: its value at 0 and its two slopes as weights of
- * the nodes' values. */
+/* Least-squares fit of a linear function of y and z: its value at 0 and its two slopes, as weights
+ * of the nodes' values. */
 static enum wb_status find_weights(const struct wb_swept_contact_wire *wire, int w,
                                    double (*weight)[3])
 {
@@ -199,7 +200,7 @@ static enum wb_status find_weights(const struct wb_swept_contact_wire *wire, int
         det += A[0][j] * inverse[j][0];
     if (!(det > 1e-9 * A[0][0] * A[1][1] * A[2][2]))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "wire %d: its surface nodes lie on a line: expected nodes round its circle",
+                       "wire %d: the surface nodes lie on a line: expected nodes around a circle",
                        w);
     for (int k = 0; k < wire->n_surface; k++) {
         const double *at = wire->node[wire->surface[k]];
@@ -321,12 +322,12 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
     enum wb_swept_instructions instructions;
     int n_surface = 0;
 
-    if (n_wires < 1 || n_wires > MOST_WIRES || n_stations < 2 || n_stations > MOST_STATIONS ||
+    if (n_wires < 1 || n_wires > MAX_WIRES || n_stations < 2 || n_stations > MAX_STATIONS ||
         !(in_range(spacing, 1e-12, 1e12)))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "contact: %d wires have %d stations %g m apart: expected 1 to %d wires, 2 "
+                       "contact: %d wires, %d stations, spacing %g m: expected 1 to %d wires, 2 "
                        "to %d stations, and 1e-12 to 1e12 m",
-                       n_wires, n_stations, spacing, MOST_WIRES, MOST_STATIONS);
+                       n_wires, n_stations, spacing, MAX_WIRES, MAX_STATIONS);
     WB_TRY(check_settings(settings));
     WB_TRY(wb_swept_choose_instructions(&instructions, settings->instructions));
     for (int w = 0; w < n_wires; w++) {
@@ -370,9 +371,9 @@ const char *wb_swept_contact_instructions(const struct wb_swept_contact *contact
     return wb_swept_instructions_name(contact->settings.instructions);
 }
 
-/* --- neighbours, and where they are opposite each other --- */
+/* --- neighbours and shifts --- */
 
-/* Library functions are calls here. */
+/* fmax() and fmin() are slow calls here. */
 static inline double larger(double a, double b)
 {
     return a > b ? a : b;
@@ -399,8 +400,8 @@ static void find_tangents(const struct wb_swept_contact *contact)
     }
 }
 
-/* The places on both wires for a shift: half of it either way from the station, or from as near to
- * it as both have a place. */
+/* The contact positions on both wires for a shift: half of it to either side of the station, or of
+ * the nearest station where both wires have a position. */
 static void place_of(const struct wb_swept_contact *contact, int j, double shift, double place[2])
 {
     const double end = contact->model.n_stations - 1, half = 0.5 * fabs(shift);
@@ -416,7 +417,7 @@ static double solve_shift(const struct wb_swept_contact *contact, const int wire
 {
     const double end = contact->model.n_stations - 1;
 
-    for (int i = 0; i < MOST_ITERATIONS; i++) {
+    for (int i = 0; i < MAX_ITERATIONS; i++) {
         double place[2], apart = 0.0, square = 0.0;
         place_of(contact, j, shift, place);
         for (int c = 0; c < 3; c++) {
@@ -440,7 +441,7 @@ static double solve_shift(const struct wb_swept_contact *contact, const int wire
     return shift;
 }
 
-/* Of the station's cell, what both wires have beside each other. */
+/* The length within the station's cell where both wires are side by side. */
 static double length_of(const struct wb_swept_contact *contact, int j, double shift)
 {
     const double half = 0.5 * fabs(shift);
@@ -449,10 +450,10 @@ static double length_of(const struct wb_swept_contact *contact, int j, double sh
     return contact->spacing * larger(0.0, end - begin);
 }
 
-/* Sets the vector between the places of the step before. Returns the gap, less what it may close
- * until the next refresh (with a factor of safety of two). What leaves is as fast as far: before
- * its block becomes inactive it has been pressed once apart, which left its forces and springs at
- * 0. */
+/* Sets the vector between the contact positions of the previous step. Returns the gap minus the
+ * distance by which it may close until the next refresh (with a safety factor of two). A wire that
+ * leaves contact was at least one step without contact before its block becomes inactive, so its
+ * forces and springs are 0. */
 static double begin_between(const struct wb_swept_contact *contact,
                             const struct wb_swept_contact_pair_rows *pair, int j,
                             const double place[2])
@@ -489,7 +490,7 @@ static void widen(struct wb_swept_contact_window *window, int low, int high)
     window->last = high > window->last ? high : window->last;
 }
 
-/* Which whole offsets occur, from a pair's rows. */
+/* Finds the integer offsets that occur in a pair's rows. */
 static void find_windows(const struct wb_swept_contact *contact,
                          struct wb_swept_contact_pair_rows *pair)
 {
@@ -556,7 +557,8 @@ static bool moved_far(const struct wb_swept_contact *contact)
     return false;
 }
 
-/* Whether the centre lines come so near to each other, across them, at any station. */
+/* True if the centre lines come as near as the reach to each other, perpendicular to them, at any
+ * station. */
 static bool are_neighbours(const struct wb_swept_contact *contact, int a, int b)
 {
     const double near = contact->radius[a] + contact->radius[b] + reach_of(contact);
@@ -599,7 +601,7 @@ static void drop_pairs(struct wb_swept_contact *contact)
     }
 }
 
-/* What a pair of two wires has from the start. */
+/* Initialises a pair of two wires. */
 static void begin_pair(const struct wb_swept_contact *contact,
                        struct wb_swept_contact_pair_rows *pair, int a, int b)
 {
@@ -626,7 +628,7 @@ static void add_pair(struct wb_swept_contact *contact, int a, int b)
     refresh_pair(contact, pair, true);
 }
 
-/* Which pairs each wire has. */
+/* Lists the pairs of each wire. */
 static void list_sides(struct wb_swept_contact *contact)
 {
     const struct wb_swept_contact_model *m = &contact->model;
@@ -659,7 +661,7 @@ static enum wb_status find_neighbours(struct wb_swept_contact *contact)
                 continue;
             if (contact->model.n_pairs == contact->most_pairs)
                 return wb_fail(WB_ERR_MEMORY,
-                               "contact: more pairs of wires are neighbours than the %d allowed",
+                               "contact: more than the allowed %d pairs of wires are neighbours",
                                contact->most_pairs);
             add_pair(contact, a, b);
         }
@@ -668,7 +670,7 @@ static enum wb_status find_neighbours(struct wb_swept_contact *contact)
     return WB_OK;
 }
 
-/* Neighbours, shifts, lengths and windows at the frames present. */
+/* Finds neighbours, shifts, lengths and windows for the current frames. */
 static enum wb_status search(struct wb_swept_contact *contact)
 {
     find_tangents(contact);
@@ -755,7 +757,7 @@ enum wb_status wb_swept_contact_add_forces(struct wb_swept_contact *contact,
     const int n = contact->model.n_blocks;
 
     if (!(time_step > 0.0 && isfinite(time_step)))
-        return wb_fail(WB_ERR_ARGUMENT, "contact: the time step is %g s: expected a number above 0",
+        return wb_fail(WB_ERR_ARGUMENT, "contact: time step %g s: expected a number above 0",
                        time_step);
     wb_swept_contact_gather(contact, position, 0, n);
     WB_TRY(wb_swept_contact_refresh(contact));
@@ -764,14 +766,14 @@ enum wb_status wb_swept_contact_add_forces(struct wb_swept_contact *contact,
     return wb_swept_contact_finish(contact, energies);
 }
 
-/* --- stable step and neighbours --- */
+/* --- stable step, and queries --- */
 
 /* The energy of a pair's springs is at most that of springs of twice the stiffness to either wire:
  * k (u_a - u_b)^2 <= 2 k u_a^2 + 2 k u_b^2. On a wire, a displacement u = sum w x has u^2 <= |w|^2
- * sum m x^2 with |w|^2 = sum w^2 / m; selective mass scaling makes it that below. Towards a
- * neighbour w = a; along the axis w = a + r (b cos + e sin); around it a, and of the turn about the
- * axis half the square of the slopes' at most. Of n neighbours all round, every direction in the
- * section takes n / 2. Stiffnesses and masses are per length. */
+ * sum m x^2 with |w|^2 = sum w^2 / m; selective mass scaling changes it as below. Towards a
+ * neighbour w = a; along the axis w = a + r (b cos + e sin); around it w = a, plus for the rotation
+ * about the axis at most half the square of the slopes. Of n neighbours around a wire, each
+ * direction in the section has the stiffness of n / 2. Stiffnesses and masses are per length. */
 double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contact, int wire,
                                            const double *node_mass, double selective)
 {
@@ -867,7 +869,7 @@ void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
 
 /* --- checkpoints --- */
 
-/* All pairs there is room for: those that are unused now have memory that later ones get. */
+/* Includes unused pairs: their memory is used by later pairs, so sizes are fixed. */
 void wb_swept_contact_visit(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint)
 {
     struct wb_swept_contact_model *m = &contact->model;

@@ -1,30 +1,30 @@
 /* Contact with friction between neighbouring wires of a bundle, for explicit dynamics.
  *
  * Wires are swept bodies with the same stations, about parallel to their neighbours. At each
- * station a wire is a rigid circle of its contact radius round the centre of its surface nodes,
- * turning as these do (see fe/swept/swept_contact_kernel.h). For every pair of neighbours and every
- * station j there is one point of contact, between the place j - s/2 on one centre line and j + s/2
- * on the other, which are linear between stations; the shift s, updated every refresh_interval
- * steps, puts them opposite each other. Both wires are treated alike: curvature then cuts the
- * corners of both lines by the same amount. Points of contact stand for the length between them,
- * that at the ends for half of it; of wires that have slipped past each other, only what lies side
- * by side is in contact.
+ * station a wire is a rigid circle of its contact radius around the centre of its surface nodes,
+ * which rotates with them (see fe/swept/swept_contact_kernel.h). For every pair of neighbours and
+ * every station j there is one contact point, between the position j - s/2 on one centre line and j
+ * + s/2 on the other, which are linear between stations; the shift s, updated every
+ * refresh_interval steps, places them opposite each other. Both wires are treated alike, so the
+ * chords of curved centre lines cause the same error on both. A contact point represents the length
+ * of a station, half of it at the ends; if wires have slipped past each other, only their common
+ * length is in contact.
  *
  * Normal force per length: k (r_a + r_b - distance) where positive, along the line between the two
- * places: exactly the derivative of an energy of the nodes' positions while s rests, and s rests
- * where that energy is stationary. Slip d along the wires between two refreshes tilts that line by
- * d / (r_a + r_b) until the next; keep it far below mu times that. Friction per length: an elastic
- * spring for the slip of the surfaces since they touched, k_t, returned to mu N (Coulomb), with
+ * positions: the exact derivative of an energy of the nodes' positions for constant s, and s makes
+ * that energy stationary. Slip d along the wires between two refreshes tilts that line by the angle
+ * d / (r_a + r_b); keep this angle far below mu. Friction per length: an elastic spring k_t for the
+ * slip of the surfaces since first contact, returned to mu N (Coulomb), with
  *
  *     mu = mu_k + (mu_s - mu_k) exp(-decay slip rate)                               (eq. 20),
  *
- * the rate being that of the surfaces' relative tangential motion in the model's own time. Slip
- * includes what the wires' turning, twisting and rolling do. Forces on either wire act at one point
- * of space: they cancel in sum and moment to round-off, and a rigid motion of wires that touch
- * makes neither slip nor force.
+ * where the slip rate is the surfaces' relative tangential velocity in model time. Slip includes
+ * the contributions of rotation, twist and rolling. The forces on both wires act at one point of
+ * space: their sum and moment vanish to round-off, and rigid motions of touching wires cause
+ * neither slip nor force.
  *
- * Sections are not squeezed: a normal force goes to all surface nodes alike, a couple by least
- * squares. The stiffness k stands for the flattening of two cylinders.
+ * Contact does not deform sections: a normal force is distributed equally over all surface nodes, a
+ * couple by least squares. The stiffness k represents the flattening of two cylinders.
  *
  * Stations are numbered from 0; blocks are WB_SWEPT_LANES of them.
  */
@@ -43,25 +43,27 @@
 struct wb_swept_contact_wire {
     int n_nodes;             /* of the section */
     int n_surface;           /* at least 3 */
-    const int *surface;      /* (n_surface): nodes that carry contact; copied */
+    const int *surface;      /* (n_surface): surface nodes; copied */
     const double (*node)[2]; /* (n_nodes): y, z in the section, m; copied */
     double radius;           /* of contact, m */
     double youngs_modulus;   /* Pa */
 };
 
 struct wb_swept_contact_settings {
-    double stiffness;        /* k / E, with the harmonic mean of the two wires' moduli; 0.25, about
-                                that of two cylinders pressed together */
-    double tangential_ratio; /* k_t / k; 0.5 */
-    struct wb_friction friction; /* 0.4 at any rate */
-    double damping_time;  /* s; 0: none. The normal force is k (depth + damping_time d(depth)/dt),
-                             never a pull */
-    double reach;         /* gap at which wires become neighbours, of the smallest radius; 0.5 */
-    int refresh_interval; /* steps between refreshes of the shifts; 50 */
-    struct wb_swept_range counted; /* points of contact, in energies; all are computed */
-    struct wb_reason *reason;      /* borrowed; holds why a step failed. NULL: that is logged */
-    int most_pairs;        /* of neighbours; 0: 4 a wire (touching circles have at most 3) */
-    bool double_precision; /* of the forces; else float */
+    double stiffness; /* k / E, with the harmonic mean of the two wires' moduli; default 0.25, about
+                         that of two cylinders pressed together */
+    double tangential_ratio;     /* k_t / k; default 0.5 */
+    struct wb_friction friction; /* default: 0.4, static and kinetic */
+    double damping_time;         /* s; 0: no damping. The normal force is k (depth + damping_time
+                                    d(depth)/dt), never tensile */
+    /* Gap below which wires become neighbours, over the smallest radius; default 0.5. */
+    double reach;
+    int refresh_interval;          /* steps between refreshes of the shifts; default 50 */
+    struct wb_swept_range counted; /* contact points in energies; all are computed */
+    /* Borrowed; receives the reason of a failed step. NULL: the reason is logged. */
+    struct wb_reason *reason;
+    int most_pairs;        /* of neighbours; 0: 4 per wire (touching circles have at most 3) */
+    bool double_precision; /* forces are double instead of float */
     enum wb_swept_instructions instructions;
 };
 
@@ -69,8 +71,8 @@ void wb_swept_contact_default_settings(struct wb_swept_contact_settings *setting
 
 struct wb_swept_contact; /* opaque */
 
-/* Of wires with `n_stations` (at least 2) stations, `spacing` (m) apart in the reference state.
- * WB_ERR_UNSUPPORTED when the processor does not have the instructions. */
+/* For wires with `n_stations` (at least 2) stations, `spacing` (m) apart in the reference state.
+ * WB_ERR_UNSUPPORTED if the processor does not have the instructions. */
 WB_MUST_CHECK enum wb_status
 wb_swept_contact_create(struct wb_swept_contact **out,
                         const struct wb_swept_contact_settings *settings, int n_wires,
@@ -83,30 +85,32 @@ struct wb_swept_contact_energies {
     double deepest;            /* penetration, m */
 };
 
-/* One step: adds to `force` (of each wire; float, or double of double precision) what contact does
- * at the positions given (of each wire). `time_step` (s) is the time since the positions of the
- * step before; between them friction follows slip. The first step after creation has none.
+/* One step: adds the contact forces at the given positions (of each wire) to `force` (of each wire;
+ * float, or double in double precision). `time_step` (s) is the time since the positions of the
+ * previous step, over which friction integrates slip. The first step after creation has no
+ * friction.
  *
- * WB_ERR_DATA when a surface node's position is not finite or wires penetrate by half the smallest
- * radius (too soft, or too long a step): the run is lost. WB_ERR_MEMORY when more pairs of wires
- * are neighbours than there is room for. */
+ * WB_ERR_DATA if a surface node's position is not finite or wires penetrate by half the smallest
+ * radius (stiffness too low, or step too long): the run has failed. WB_ERR_MEMORY if more pairs of
+ * wires are neighbours than most_pairs. */
 WB_MUST_CHECK enum wb_status
 wb_swept_contact_add_forces(struct wb_swept_contact *contact, const double *const *position,
                             void *const *force, double time_step,
                             struct wb_swept_contact_energies *energies);
 
-/* For the stable step: a bound of what contact of a wire adds to the largest eigenvalue of M^-1 K,
- * 1/s2. So omega_max^2 is at most that of the wires' elements + the largest of these. `node_mass`
- * is kg/m, one a section node; `selective` is beta of fe/swept/swept_step.h, 1 is none; mass
- * scaling by f_m divides it by f_m. Of the neighbours there are, and at least six, all round the
- * wire. Infinite where a mass is not positive. */
+/* For the stable step: an upper bound of the contribution of a wire's contact to the largest
+ * eigenvalue of M^-1 K, 1/s2, so that omega_max^2 is at most that of the wires' elements + the
+ * largest of these. `node_mass`, kg/m, one per section node; `selective` is beta of
+ * fe/swept/swept_step.h, 1: none; mass scaling by f_m divides the bound by f_m. Uses the current
+ * number of neighbours, but at least six, all around the wire. Infinite if a mass is not
+ * positive. */
 double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contact, int wire,
                                            const double *node_mass, double selective);
 
-/* Neighbours, and what acts between them at the last step's positions. */
+/* Contact between neighbours at the last step's positions. */
 struct wb_swept_contact_point {
     double gap;    /* m */
-    double length; /* that it stands for, m; 0 where one wire has no neighbour opposite */
+    double length; /* length represented by the point, m; 0 if one wire has no position opposite */
     double shift;  /* s, in stations */
     double normal; /* N/m, without damping */
     double normal_direction[3]; /* from the first wire to the second */
@@ -116,7 +120,8 @@ int wb_swept_contact_pairs(const struct wb_swept_contact *contact);
 void wb_swept_contact_get_point(const struct wb_swept_contact *contact, int pair, int station,
                                 struct wb_swept_contact_point *out);
 
-/* Saves or restores what a contact of the same wires and settings needs to continue bit for bit. */
+/* Saves or restores the state that a contact of the same wires and settings needs to continue bit
+ * for bit. */
 void wb_swept_contact_visit(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -1,15 +1,15 @@
 /* Contact of swept wires, compiled once for each type and instruction set (see
  * swept_contact_kernel.h).
  *
- * Three passes over blocks of stations: gather reads nodes and makes frames, press goes over pairs
- * of wires and leaves forces at the pairs' own stations, scatter sums them for each wire and
- * spreads them to its nodes. All loads are along rows: the places in contact lie between stations,
- * and offsets to these differ from lane to lane, so one goes over the whole offsets of a block
- * (few, as slip varies slowly along wires) with the weights max(0, 1 - |offset - whole|), which are
- * zero in most lanes.
+ * Three passes over blocks of stations: gather reads nodes and computes frames; press computes the
+ * forces of all pairs of wires at the pairs' own stations; scatter sums them for each wire and
+ * distributes them to its nodes. All loads are along rows: contact positions lie between stations,
+ * at offsets that differ from lane to lane. The kernel therefore loops over the integer offsets of
+ * a block (few, because slip varies slowly along wires) with the weights max(0, 1 - |offset -
+ * integer|), which are zero in most lanes.
  *
  * Gather and press are long chains of dependent operations. They prepare several vectors before
- * they work these out, so that no branch keeps the processor from overlapping them. */
+ * computing them, so that branches do not prevent the processor from overlapping them. */
 #include "fe/swept/swept_contact_kernel.h"
 #include "fe/swept/swept_contact_law.h"
 #include "fe/swept/swept_simd.h"
@@ -18,8 +18,8 @@ typedef long long part_bits __attribute__((vector_size(BYTES), may_alias));
 
 enum {
     BLOCK = WB_SWEPT_LANES,
-    MOST_FRAMES = 8,
-    MOST_MEETINGS = 16
+    MAX_FRAMES = 8,
+    MAX_MEETINGS = 16
 };
 
 /* A wire's centre and its two vectors. */
@@ -69,7 +69,7 @@ INLINE void read_frame(const struct wb_swept_contact_frames *wire, const double 
     }
 }
 
-/* J's inverse, zero where it has none. */
+/* J's inverse, zero if it is singular. */
 INLINE void invert(const vec pq[6], vec out[6])
 {
     const vec *p = pq, *q = pq + 3, size = dot(p, p) + dot(q, q);
@@ -96,7 +96,7 @@ INLINE void multiply(const vec m[6], const vec v[3], vec out[3])
     out[2] = m[4] * v[0] + m[5] * v[1] + m[2] * v[2];
 }
 
-/* Writes the frame and its change; returns a number that is finite if the frame is. */
+/* Writes the frame and its change; returns a value that is finite if the frame is. */
 INLINE vec write_frame(const struct wb_swept_contact_model *m,
                        const struct wb_swept_contact_frames *wire, int j, const struct frame *frame)
 {
@@ -142,7 +142,7 @@ static double sum_of(vec v)
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* What lies behind the last station must not enter by way of 0 x NaN. */
+/* Clears lanes after the last station, because 0 x NaN would spread. */
 static void clear_padding(struct frame *frame, int lanes)
 {
     for (int i = 0; i < LANES; i++) {
@@ -153,16 +153,16 @@ static void clear_padding(struct frame *frame, int lanes)
     }
 }
 
-/* Vectors of a wire from station `first` to `end`, a few at a time. */
+/* Gathers vectors of a wire from station `first` to `end`, several at a time. */
 INLINE vec gather_wire(const struct wb_swept_contact_model *m,
                        const struct wb_swept_contact_frames *wire, const double *position,
                        int first, int end)
 {
-    struct frame frame[MOST_FRAMES];
+    struct frame frame[MAX_FRAMES];
     vec check = splat(0);
 
-    for (int j = first; j < end; j += MOST_FRAMES * LANES) {
-        const int left = (end - j + LANES - 1) / LANES, n = left < MOST_FRAMES ? left : MOST_FRAMES;
+    for (int j = first; j < end; j += MAX_FRAMES * LANES) {
+        const int left = (end - j + LANES - 1) / LANES, n = left < MAX_FRAMES ? left : MAX_FRAMES;
         for (int i = 0; i < n; i++)
             read_frame(wire, position + j + i * LANES, m->stride, &frame[i]);
         if (j + n * LANES > end)
@@ -197,7 +197,7 @@ INLINE struct wide share_at(struct wide offset, double whole)
     return out;
 }
 
-/* A wire's centre and turn at places between stations. */
+/* A wire's centre and rotation at positions between stations. */
 INLINE void interpolate(const struct wb_swept_contact_model *m,
                         const struct wb_swept_contact_frames *wire, int j, struct wide offset,
                         const struct wb_swept_contact_window *window, struct wide centre[3],
@@ -220,17 +220,17 @@ INLINE void interpolate(const struct wb_swept_contact_model *m,
     }
 }
 
-/* Meetings made ready to be worked out. */
+/* Contact points prepared for computation. */
 struct queue {
     int n;
-    struct meeting at[MOST_MEETINGS];
-    const struct wb_swept_contact_pair_rows *pair[MOST_MEETINGS];
-    int station[MOST_MEETINGS];
+    struct meeting at[MAX_MEETINGS];
+    const struct wb_swept_contact_pair_rows *pair[MAX_MEETINGS];
+    int station[MAX_MEETINGS];
 };
 
 /* The surfaces meet at c_a + share_a D = c_b - share_b D, one point in space, which moves with
- * either wire's turn: a rigid motion of both makes no slip (exactly so with D in the middle of the
- * step), and forces have no moment. */
+ * either wire's rotation: a rigid motion of both causes no slip (exactly, with D at the middle of
+ * the step), and forces cause no net moment. */
 INLINE void meet(const struct wb_swept_contact_model *m,
                  const struct wb_swept_contact_pair_rows *pair, int j, struct meeting *at)
 {
@@ -319,7 +319,7 @@ static void press_queue(const struct wb_swept_contact_model *m, const struct con
     queue->n = 0;
 }
 
-/* Meetings of all pairs in the block, the last of them left in the queue. */
+/* Computes the contact points of all pairs in the block; the last ones stay in the queue. */
 static void press_block(const struct wb_swept_contact_model *m, const struct contact_law *law,
                         int block, struct queue *queue, struct contact_energy *sums, vec *deepest)
 {
@@ -327,7 +327,7 @@ static void press_block(const struct wb_swept_contact_model *m, const struct con
         if (!m->pair[p].active[block])
             continue;
         for (int j = block * BLOCK; j < block_end(m, block); j += LANES) {
-            if (queue->n == MOST_MEETINGS)
+            if (queue->n == MAX_MEETINGS)
                 press_queue(m, law, queue, sums, deepest);
             meet(m, &m->pair[p], j, &queue->at[queue->n]);
             queue->pair[queue->n] = &m->pair[p];
@@ -336,7 +336,7 @@ static void press_block(const struct wb_swept_contact_model *m, const struct con
     }
 }
 
-/* The first block of a call has the sums of all. */
+/* The first block of a call receives the sums of all blocks. */
 static void press(const struct wb_swept_contact_call *call)
 {
     const struct wb_swept_contact_model *m = call->model;
@@ -359,7 +359,7 @@ static void press(const struct wb_swept_contact_call *call)
         out->deepest = (double)deepest[i] > out->deepest ? (double)deepest[i] : out->deepest;
 }
 
-/* Force and couple on a wire's stations from a pair. */
+/* Collects force and couple on a wire's stations from a pair. */
 INLINE void collect(const struct wb_swept_contact_model *m,
                     const struct wb_swept_contact_pair_rows *pair, int side, int j, vec force[3],
                     vec couple[3])

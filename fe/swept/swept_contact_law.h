@@ -1,5 +1,5 @@
-/* For kernels: the law of contact with friction for vectors of points, a penalty on the distance of
- * two places, and an elastic tangential spring that is returned to Coulomb's limit. */
+/* For kernels: contact law with friction for vectors of points: a penalty on the distance of two
+ * points, and an elastic tangential spring returned to Coulomb's limit. */
 #ifndef WB_FE_SWEPT_SWEPT_CONTACT_LAW_H
 #define WB_FE_SWEPT_SWEPT_CONTACT_LAW_H
 
@@ -19,7 +19,8 @@ INLINE vec positive_part(vec x)
     return maximum(x, splat(0));
 }
 
-/* Of a square that may be 0: then a large number, whose product with the square is 0. */
+/* Inverse root of a square that may be 0: then a large number, whose product with the square is
+ * 0. */
 INLINE vec safe_inverse_root(vec square)
 {
     return inverse_root(maximum(square, splat((real)1e-30)));
@@ -39,7 +40,8 @@ INLINE void store_wide(double *at, struct wide x)
         *(part_anywhere *)(at + i * PART_LANES) = x.of[i];
 }
 
-/* exp(-x) for x >= 0 to 2e-7: powers of two, and a polynomial for 2^f, |f| <= 1/2. */
+/* exp(-x) for x >= 0 with a relative error of 2e-7: powers of two, and a polynomial for 2^f, |f| <=
+ * 1/2. */
 INLINE vec decay_of(vec x)
 {
     const real magic = (real)1.5 * (real)(1LL << MANTISSA);
@@ -55,15 +57,15 @@ INLINE vec decay_of(vec x)
     return (vec)((vec_bits)(low + f2 * (middle + f2 * high)) + exponent);
 }
 
-/* Two places whose surfaces may touch; forces are those on the first, per unit of what the
- * stiffnesses are for. */
+/* Two points whose surfaces may touch; forces act on the first one, per unit of length or area like
+ * the stiffnesses. */
 struct meeting {
-    vec between[3]; /* from the first place to the second */
-    vec depth;      /* by which they are too near, 0 if not */
+    vec between[3]; /* from the first point to the second */
+    vec depth;      /* penetration, 0 if apart */
     vec step[3];    /* change of `between` in this step */
-    vec slip[3];    /* change in this step of the distance of the two surface points that touch; its
-                       part along the normal is not used */
-    vec turn[3];    /* of the tangent plane, in this step */
+    vec slip[3];    /* relative displacement in this step of the two touching surface points; its
+                       normal part is ignored */
+    vec turn[3];    /* rotation of the tangent plane in this step */
 };
 
 struct contact_law {
@@ -86,7 +88,7 @@ INLINE void set_friction(struct contact_law *law, const struct wb_friction *fric
     law->decay = splat((real)(friction->decay / time_step));
 }
 
-/* N = k (depth - tau d(gap)/dt), never a pull. `unit` is the normal, from first to second. */
+/* N = k (depth - tau d(gap)/dt), never tensile. `unit` is the normal, from first to second. */
 INLINE vec normal_force(const struct contact_law *law, const struct meeting *at, vec unit[3],
                         struct contact_energy *energy)
 {
@@ -103,11 +105,11 @@ INLINE vec normal_force(const struct contact_law *law, const struct meeting *at,
     return force;
 }
 
-/* Turns the spring's force `drag` with the tangent plane, stretches it by this step's slip and
- * returns it to mu N. What a sum loses by rounding is kept for the next (Kahan): slip of a step may
- * be far below the force's last digit. Dissipated is the mean of the forces before and after times
- * the plastic slip: what the forces take in a step of central differences is then what is stored
- * and dissipated. */
+/* Rotates the spring's force `drag` with the tangent plane, adds this step's slip and returns it to
+ * mu N. The rounding error of the sum is kept for the next step (Kahan), because the slip of a step
+ * may be far below the force's last digit. The dissipated energy is the mean of the forces before
+ * and after times the plastic slip: the work of central differences in a step is then the energy
+ * stored and dissipated. */
 INLINE void friction_force(const struct contact_law *law, const struct meeting *at,
                            const vec unit[3], vec normal, vec drag[3], vec lost[3],
                            struct contact_energy *energy)

@@ -10,7 +10,7 @@
 
 #define WB_LOG_DOMAIN "swept"
 
-/* A linear function of the displacements of an element: by station, corner, component. */
+/* A linear function of an element's displacements: by station, corner, component. */
 struct row {
     double at[2][4][3];
 };
@@ -34,7 +34,7 @@ static struct row along(const double N[4], double h, int i)
     return out;
 }
 
-/* Component `i` of the mean gradient, or other weighted sum, over the section. */
+/* Component `i` of the mean gradient, or another weighted sum, over the section. */
 static struct row across(const double B[4], int i)
 {
     struct row out = {{{{0.0}}}};
@@ -49,7 +49,7 @@ struct assembly {
     double *stiffness;
 };
 
-/* The energy weight / 2 (row u)^2. */
+/* Adds the energy weight / 2 (row u)^2. */
 static void add_square(const struct assembly *to, double weight, const struct row *row)
 {
     const size_t n = 6 * (size_t)to->n_nodes;
@@ -66,7 +66,7 @@ static void add_square(const struct assembly *to, double weight, const struct ro
     }
 }
 
-/* The deviator of the mean strain, with what varies over the section at one point. */
+/* Adds the deviator of the mean strain plus its variation over the section at one point. */
 static void add_point(const struct assembly *to, double k, const struct row mean[6],
                       const struct row *axial, const struct row shear[2])
 {
@@ -154,9 +154,9 @@ void wb_swept_frequency_layer(const struct wb_swept_hex *hex, double *stiffness)
     }
 }
 
-/* K to M'^-1/2 K M'^-1/2, both sides of one station's freedoms of one component. With u the roots
- * of the masses, a unit vector, M^-1/2 M' M^-1/2 = beta + (1 - beta) u u^T, whose inverse root is
- * beta^-1/2 + (1 - beta^-1/2) u u^T. */
+/* K to M'^-1/2 K M'^-1/2, for both sides of one station's degrees of freedom of one component. With
+ * u the unit vector of the roots of the masses, M^-1/2 M' M^-1/2 = beta + (1 - beta) u u^T, whose
+ * inverse root is beta^-1/2 + (1 - beta^-1/2) u u^T. */
 static void scale_lines(double *K, size_t n, size_t step, const double *roots, int n_nodes,
                         double selective)
 {
@@ -193,8 +193,7 @@ static enum wb_status largest_eigenvalue(double *K, int n, double *value)
     *value = values[0];
     free(values);
     if (info != 0 || found != 1 || !(*value > 0.0 && isfinite(*value)))
-        return wb_fail(WB_ERR_CONVERGENCE,
-                       "the largest frequency of a layer of the wire was not found");
+        return wb_fail(WB_ERR_CONVERGENCE, "the eigenvalue solver failed for a layer of the wire");
     return WB_OK;
 }
 
@@ -207,11 +206,10 @@ enum wb_status wb_swept_frequency_bound(const struct wb_swept_hex *hex, const do
 
     if (n_nodes > WB_SWEPT_FREQUENCY_MOST_NODES)
         return wb_fail(WB_ERR_UNSUPPORTED,
-                       "the section has %d nodes: its frequencies can be found with at most %d",
+                       "the section has %d nodes: frequencies are supported for at most %d",
                        n_nodes, WB_SWEPT_FREQUENCY_MOST_NODES);
     if (!(selective >= 1.0 && isfinite(selective)))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the factor of selective mass scaling is %g: expected 1 or more", selective);
+        return wb_fail(WB_ERR_ARGUMENT, "selective mass scaling %g: expected 1 or more", selective);
     for (int k = 0; k < n_nodes; k++) {
         if (!(node_mass[k] > 0.0 && isfinite(node_mass[k])))
             return wb_fail(WB_ERR_ARGUMENT,

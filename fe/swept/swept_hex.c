@@ -16,7 +16,7 @@
 enum {
     CONSTANTS = WB_SWEPT_HEX_KERNEL_CONSTANTS,
     TERMS = WB_SWEPT_HEX_KERNEL_TERMS,
-    MOST_ELEMENTS = 1 << 20
+    MAX_ELEMENTS = 1 << 20
 };
 
 static const double default_hourglass = 0.05;
@@ -115,11 +115,11 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
     const struct wb_material *material = &m->material;
     char why[120];
 
-    if (m->n_elements < 1 || m->n_elements > MOST_ELEMENTS)
-        return wb_fail(WB_ERR_ARGUMENT, "the wire has %d elements along it: expected 1 to %d",
-                       m->n_elements, MOST_ELEMENTS);
+    if (m->n_elements < 1 || m->n_elements > MAX_ELEMENTS)
+        return wb_fail(WB_ERR_ARGUMENT, "elements along the wire: %d: expected 1 to %d",
+                       m->n_elements, MAX_ELEMENTS);
     if (!(m->element_length > 0.0 && isfinite(m->element_length)))
-        return wb_fail(WB_ERR_ARGUMENT, "the elements are %g m long: expected a number above 0",
+        return wb_fail(WB_ERR_ARGUMENT, "element length %g m: expected a number above 0",
                        m->element_length);
     if (!(m->hourglass > 0.0 && m->hourglass <= 1.0))
         return wb_fail(WB_ERR_ARGUMENT,
@@ -128,11 +128,11 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
     if (wb_hardening_law(material)->moves)
         return wb_fail(
             WB_ERR_UNSUPPORTED,
-            "the hardening law has kinematic hardening: hexahedra have isotropic hardening only");
+            "kinematic hardening is not supported by hexahedra; expected isotropic hardening");
     if (!(material->youngs_modulus > 0.0 && isfinite(material->youngs_modulus)) ||
         !(material->poissons_ratio > -1.0 && material->poissons_ratio < 0.5))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the wire's Young's modulus is %g Pa and its Poisson's ratio %g: expected "
+                       "wire: Young's modulus %g Pa, Poisson's ratio %g: expected "
                        "a modulus above 0, and a ratio above -1 and below 0.5",
                        material->youngs_modulus, material->poissons_ratio);
     if (!wb_hardening_is_possible(material, why, sizeof why))
@@ -140,7 +140,7 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
     return WB_OK;
 }
 
-/* From the central node. */
+/* Node farthest from the central node. */
 static int farthest_node(const struct wb_swept_section *section)
 {
     const double *centre = section->node[section->centre];
@@ -373,8 +373,8 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
     return work;
 }
 
-/* Sum of weight (y - mean)^2 over the points, and its like for the three hourglass fields of one
- * point: xi^2 and eta^2 are 1/3 in the mean, (xi eta)^2 is 1/9. */
+/* Sum of weight (y - mean)^2 over the points, and the corresponding moment of the three hourglass
+ * fields for one point: the means of xi^2 and eta^2 are 1/3, that of (xi eta)^2 is 1/9. */
 static double varying_moment(const struct wb_swept_section *section, int e,
                              const struct wb_swept_quad *quad, double mean,
                              enum wb_swept_hex_formulation formulation)
@@ -392,9 +392,10 @@ static double varying_moment(const struct wb_swept_section *section, int e,
     return (xi * xi + eta * eta) / 3.0 + both * both / 9.0;
 }
 
-/* The second moment of area, m4, with which elements of this section bend elastically about the z
- * axis: what the mean axial strains add, sum A y^2 of the centres, and what these vary, of four
- * points 3 mu / E of it, of one point the hourglass stiffness with the default coefficient. */
+/* The second moment of area about the z axis, m4, that the section's elements have in elastic
+ * bending: from mean axial strains, sum A y^2 of the centres; from their variation within elements,
+ * with four points 3 mu / E of it, with one point the hourglass stiffness with the default
+ * coefficient. */
 static double second_moment(const struct wb_swept_section *section,
                             enum wb_swept_hex_formulation formulation,
                             const struct wb_material *material)

@@ -1,24 +1,25 @@
 /* Internal forces of a wire of 8-node hexahedra swept along its axis, for explicit dynamics.
  *
  * Total Lagrangian, logarithmic strain, J2 plasticity with isotropic hardening. Only the plastic
- * strain is integrated in time, so a rigid motion makes no stress in any number of steps. There are
+ * strain is integrated in time, so rigid motions cause no stress in any number of steps. There are
  * two formulations:
  *
  * - four points (2x2x1, the default): the axial strain and the two shears with the axis are taken
- *   at 2 x 2 points, each with a plastic history of its own; the strains within the section are
- *   taken at the centre. One hourglass vector is left, that of the section.
+ *   at 2 x 2 points, each with its own plastic history; the strains within the section are taken at
+ *   the centre. One hourglass vector remains, that of the section.
  * - one point: mean gradients (Flanagan and Belytschko 1981), four hourglass vectors.
  *
- * The hourglass stiffness is elastic. With four points a few elements a section yield in bending as
- * they should; with one point that takes about 60. Details are in swept_hex_kernel.c.
+ * The hourglass stiffness is elastic. Plastic bending is accurate with a few elements per section
+ * with four points, but needs about 60 with one point. Details are in swept_hex_kernel.c.
  *
- * The logarithm is a polynomial: at a strain of 5 % along the axes forces are 0.2 % off, with a
- * shear strain of 5 % 1.3 %, and with strains of 3 % 0.04 and 0.5 %. Elements with a component of
- * Green's strain beyond WB_SWEPT_HEX_STRAIN_LIMIT are counted; the caller reports their number.
+ * The logarithm is approximated by a polynomial: forces are wrong by 0.2 % at an axial strain of 5
+ * %, by 1.3 % at a shear strain of 5 %, and by 0.04 and 0.5 % at strains of 3 %. Elements with a
+ * component of Green's strain beyond WB_SWEPT_HEX_STRAIN_LIMIT are counted; the caller reports
+ * their number.
  *
  * Node fields are those of fe/swept/swept.h, stations `element_length` apart in the reference
- * state, forces float or, of a model of double precision, double. Fields must come from
- * wb_swept_allocate(): what lies behind the last number is read.
+ * state, forces float or, in double precision, double. Fields must be allocated by
+ * wb_swept_allocate(), because entries after the last value are read.
  */
 #ifndef WB_FE_SWEPT_SWEPT_HEX_H
 #define WB_FE_SWEPT_SWEPT_HEX_H
@@ -40,35 +41,35 @@ enum wb_swept_hex_formulation {
 
 struct wb_swept_hex_model {
     const struct wb_swept_section *section; /* borrowed; must outlive the hex */
-    struct wb_material material;            /* one whose yield surface does not move */
+    struct wb_material material;            /* with isotropic hardening or none */
     int n_elements;                         /* along the axis */
     double element_length;                  /* m */
     enum wb_swept_hex_formulation formulation;
     struct wb_swept_range counted; /* elements in sums and the plastic work; all are computed */
-    double hourglass; /* coefficient; 0: 0.05. With one point, 1 gives the fields that bend
-                         an element their elastic stiffness */
+    double hourglass; /* coefficient; 0: 0.05. With one point, 1 gives the bending fields of an
+                         element their elastic stiffness */
     bool double_precision;
     enum wb_swept_instructions instructions;
 };
 
 struct wb_swept_hex_fields {
     const double *position;
-    void *force;        /* float, or double of double precision */
+    void *force;        /* float, or double in double precision */
     const double *soon; /* NULL, or a field that the caller reads next, block by block, such as
-                           velocities: it is fetched into the processor's cache meanwhile */
+                           velocities: it is prefetched into the cache */
 };
 
 struct wb_swept_hex_sums {
-    double stored, artificial; /* J: elastic and of the hourglass stiffness */
-    double largest_strain;     /* largest component of Green's strain in size */
-    long long beyond_limit;    /* elements with one beyond the limit, or not finite */
+    double stored, artificial; /* J: elastic, and of the hourglass stiffness */
+    double largest_strain;     /* largest magnitude of a component of Green's strain */
+    long long beyond_limit;    /* number of elements beyond the strain limit, or not finite */
 };
 
 struct wb_swept_hex;       /* opaque: model, constants; not changed after creation */
 struct wb_swept_hex_state; /* opaque: plastic histories of one wire, workspace */
 
-/* WB_ERR_UNSUPPORTED when the processor does not have the instructions, or the table of the
- * hardening law is not as good as 1e-5 of the stress (exponents below about 0.15). */
+/* WB_ERR_UNSUPPORTED if the processor does not have the instructions, or the table of the hardening
+ * law is less accurate than 1e-5 of the stress (exponents below about 0.15). */
 WB_MUST_CHECK enum wb_status wb_swept_hex_create(struct wb_swept_hex **out,
                                                  const struct wb_swept_hex_model *model);
 void wb_swept_hex_destroy(struct wb_swept_hex *hex);
@@ -76,38 +77,38 @@ void wb_swept_hex_destroy(struct wb_swept_hex *hex);
 const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_hex *hex);
 struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex);
 int wb_swept_hex_blocks(const struct wb_swept_hex *hex); /* of WB_SWEPT_LANES stations */
-/* The best of those that this processor has. */
+/* Name of the best instruction set that this processor has. */
 const char *wb_swept_hex_best_instructions(void);
 
-/* Stiffness of the section's hourglass vector, N/m, and of the three along, xi, eta, xi eta, which
- * are 0 of four points. */
+/* Stiffness of the section's hourglass vector, N/m, and of the three axial ones, xi, eta, xi eta,
+ * which are 0 for four points. */
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4]);
 
-/* One wire's histories, virgin. The hex must outlive it. */
+/* One wire's virgin histories. The hex must outlive the state. */
 struct wb_swept_hex_state *wb_swept_hex_state_create(const struct wb_swept_hex *hex);
 void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
 
-/* What a checkpoint keeps of a state: `bytes` at the address returned. */
+/* State for a checkpoint: `bytes` at the returned address. */
 void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
 
-/* Computes the forces on the nodes (the energy's derivatives with the opposite sign) at the
- * stations of blocks `first` to `end` - 1, and takes the plastic histories there to the present
- * positions. Forces on nodes before wb_swept_hex_first_added() are written; on those from there on,
- * the section's outline among them, they are added to what contact has put there. The blocks of a
- * step go in order, each once, in one call or several: forces of a block are complete when it is
- * done, and its positions are not read again. `sums`, when not NULL, are added to. Threads may work
- * on different states. */
+/* Computes the forces on the nodes (negative derivatives of the energy) at the stations of blocks
+ * `first` to `end` - 1, and updates the plastic histories there to the current positions. Forces on
+ * nodes before wb_swept_hex_first_added() are overwritten; forces on nodes from there on, which
+ * include the section's outline, are added to those of contact. The blocks of a step are computed
+ * in order, each once, in one call or several: the forces of a block are complete after its call,
+ * and its positions are not read again. `sums`, if not NULL, are added to. Threads may work on
+ * different states. */
 int wb_swept_hex_first_added(const struct wb_swept_hex *hex);
 void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
                              const struct wb_swept_hex_fields *fields, int first, int end,
                              struct wb_swept_hex_sums *sums);
 
-/* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
+/* Plastic work so far, hardening included, J. Costs as much as ten steps. */
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);
 
-/* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not
- * pi d^2 / 4: of four points 1.2 % less with 4 elements, 0.5 % less with 12, 0.1 % less with 84; of
- * one point 17, 4.8 and 0.6 % more. The caller corrects the masses for that. */
+/* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not pi d^2 /
+ * 4: with four points 1.2 % smaller for 4 elements, 0.5 % for 12, 0.1 % for 84; with one point 17,
+ * 4.8 and 0.6 % larger. The caller corrects the masses for that. */
 void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
                              enum wb_swept_hex_formulation formulation,
                              const struct wb_material *material);

@@ -6,33 +6,33 @@
  *
  *     F1(q) = sum N_a(q) d_a / h,  F2 = 1/2 sum B_ya s_a,  F3 = 1/2 sum B_za s_a,
  *
- * where B are mean gradients of the section's quadrilateral, which only the diagonals s_2 - s_0 and
- * s_3 - s_1 enter. E are Green's strains of F1(mean), F2 and F3; L = E - E^2 + 4/3 diag(E_ii^3)
- * approximates the logarithmic strain. With four points, in the section,
+ * where B are mean gradients of the section's quadrilateral, which depend only on the diagonals s_2
+ * - s_0 and s_3 - s_1. E are Green's strains of F1(mean), F2 and F3; L = E - E^2 + 4/3 diag(E_ii^3)
+ *   approximates the logarithmic strain. With four points, in the section,
  *
  *     L(q) = L + (l(E11(q)) - l(E11)) diag(1, -1/2, -1/2) + (E12(q) - E12, E13(q) - E13),
  *
- * l(e) = e - e^2 + 4/3 e^3: what F1 varies carries bending and torsion, at constant volume, so that
- * the points neither lock nor hinder the flow. The energy is
+ * l(e) = e - e^2 + 4/3 e^3: the variation of F1 represents bending and torsion, at constant volume,
+ * so that there is no volumetric locking. The energy is
  *
  *     1/2 kappa V (tr L)^2 + mu V sum_q w_q |dev L(q) - Ep(q)|^2 + hourglass,
  *
- * and forces are its derivatives, exactly. With T = dW/dL, what conjugates to E is
- * S = T - T E - E T + 4 diag(E_ii^2 T_ii). Hourglass energies are 1/2 k |q|^2 of vectors
- * q = sum gamma_a x_a that no linear field has: a rotation turns them (D. P. Flanagan,
- * T. Belytschko, IJNME 17 (1981) 679).
+ * and forces are its derivatives, exactly. With T = dW/dL, the stress conjugate to E is S = T - T E
+ * - E T + 4 diag(E_ii^2 T_ii). Hourglass energies are 1/2 k |q|^2 of vectors q = sum gamma_a x_a,
+ *   which vanish for linear fields and rotate with the element (D. P. Flanagan, T. Belytschko,
+ *   IJNME 17 (1981) 679).
  *
- * All this does not change in a turned frame. So each section's own frame is taken, s and d less
- * its rigid motion are formed in double and turned into it: F is 1 + H with H of the size of the
- * strain, and round-off is a part of the strain, not of 1. (In float it would otherwise stir a
- * slender wire by strains of 1e-7.)
+ * All this is invariant to rotations of the frame. Each section therefore has its own frame; s and
+ * d minus its rigid motion are computed in double and rotated into it: F is 1 + H with H of the
+ * order of the strain, and round-off is relative to the strain, not to 1. (In float it would
+ * otherwise excite a slender wire with strains of 1e-7.)
  */
 #include "fe/swept/swept_hex_kernel.h"
 #include "fe/swept/swept_simd.h"
 #include "fe/swept/swept_yield.h"
 
 enum {
-    GROUP_OF_ONE = 4, /* elements at a time: with one point each, and with four */
+    GROUP_OF_ONE = 4, /* elements computed together: with one point each, and with four */
     GROUP_OF_FOUR = 1,
     HISTORY = WB_SWEPT_HEX_KERNEL_HISTORY,
     TERMS = WB_SWEPT_HEX_KERNEL_TERMS,
@@ -45,11 +45,11 @@ enum {
     YZ
 };
 
-/* A section node between two stations, in the section's frame: what its elements read, less the
- * rigid motion, and what they add to. */
+/* A section node between two stations, in the section's frame: input of its elements, minus the
+ * rigid motion, and their forces. */
 struct node {
     vec s[3], d[3];
-    vec fs[3], fd[3]; /* less the derivatives of the energy */
+    vec fs[3], fd[3]; /* negative derivatives of the energy */
 };
 
 /* The frame's three axes. */
@@ -95,8 +95,8 @@ INLINE void read_node(const struct wb_swept_hex_kernel_model *m, const double *p
     }
 }
 
-/* The section's frame: the first axis along the central node's line, the others turned with the
- * line from there to the node beside it. To round-off of double they are orthonormal. */
+/* The section's frame: the first axis along the central node's line, the others rotate with the
+ * line from there to the node beside it. Orthonormal to round-off of double. */
 INLINE void find_axes(const struct wb_swept_hex_kernel_model *m, const struct wide centre[3],
                       const struct wide along[3], const struct wide beside[3],
                       struct wide axes[3][3])
@@ -130,7 +130,7 @@ INLINE void find_axes(const struct wb_swept_hex_kernel_model *m, const struct wi
     }
 }
 
-/* s and d of all nodes from station j on. The lanes behind the last element are at rest. */
+/* s and d of all nodes from station j on. Lanes after the last element are at rest. */
 INLINE void read_nodes(const struct wb_swept_hex_kernel_model *m, const double *position, int j,
                        struct node *nodes, struct frame *frame)
 {
@@ -170,8 +170,8 @@ INLINE void read_nodes(const struct wb_swept_hex_kernel_model *m, const double *
     }
 }
 
-/* Forces at stations j to j + LANES - 1: of the elements that begin there, and of those that end
- * there, whose last comes with the next vector. */
+/* Writes forces at stations j to j + LANES - 1: of the elements that begin there, and of those that
+ * end there, of which the last ones come with the next vector. */
 INLINE void put(real *at, vec value, bool adds)
 {
     if (adds)
@@ -207,7 +207,7 @@ INLINE void write_forces(const struct wb_swept_hex_kernel_model *m, real *force,
     }
 }
 
-/* Behind the last element. */
+/* Forces after the last element. */
 INLINE void write_last_force(const struct wb_swept_hex_kernel_model *m, real *force,
                              int first_added, int j, vec (*carry)[3])
 {
@@ -222,20 +222,20 @@ INLINE void write_last_force(const struct wb_swept_hex_kernel_model *m, real *fo
 
 struct law {
     const real *table;
-    real yield, yield_norm; /* sigma_Y / (3 mu), and half_norm() where it is reached */
+    real yield, yield_norm; /* sigma_Y / (3 mu), and half_norm() at that strain */
 };
 
 struct totals {
     vec stored, artificial, largest;
 };
 
-/* The strains of an element that its section shares. */
+/* Strains of an element that are constant over its section. */
 struct strain {
     vec H1[3], H2[3], H3[3]; /* columns of F - 1 */
     vec E[6];                /* Green's */
-    vec L[6];                /* logarithmic, its diagonal less a third of the trace */
+    vec L[6];                /* logarithmic; its diagonal minus a third of the trace */
     vec trace;               /* of L */
-    vec warp[3];             /* the section's hourglass vector, eight times */
+    vec warp[3];             /* eight times the section's hourglass vector */
 };
 
 struct element {
@@ -244,7 +244,7 @@ struct element {
     real *history;
     struct strain mean;
     vec H1[4][3], axial[4]; /* of the points, and Green's axial strain */
-    vec t[4][6];            /* deviators of their elastic strains */
+    vec t[4][6];            /* deviators of the points' elastic strains */
 };
 
 INLINE vec log_strain(vec e)
@@ -319,9 +319,9 @@ INLINE void pull_back(const vec E[6], vec T[6])
         T[i] = S[i];
 }
 
-/* The plastic strain p at which a point yields: x = e - sigma_Y / (3 mu) + p0, where e is the
- * elastic trial strain that goes with its trial stress, p + K / (3 mu) p^n = x (see hardening.h).
- * p / x is in the table; of smaller x than that has p is wrong, and negligible. */
+/* The plastic strain p of a yielding point: p + K / (3 mu) p^n = x (see hardening.h) with x = e -
+ * sigma_Y / (3 mu) + p0, where e is the elastic trial strain that belongs to its trial stress. The
+ * table gives p / x; for x below its range p is wrong, but negligible. */
 INLINE vec yielded_strain(const struct law *law, vec x)
 {
     x = minimum(x, splat((real)BELOW_TWO));
@@ -334,8 +334,8 @@ INLINE vec half_norm(const vec e[6])
     return e[XX] * (e[XX] + e[YY]) + e[YY] * e[YY] + e[XY] * e[XY] + e[XZ] * e[XZ] + e[YZ] * e[YZ];
 }
 
-/* Takes the plastic strain from a deviator, and returns it to the yield surface. ZZ is neither read
- * nor written: it is less the sum of XX and YY. */
+/* Subtracts the plastic strain from a deviator, and returns it to the yield surface. ZZ, which is
+ * minus the sum of XX and YY, is neither read nor written. */
 INLINE void return_to_yield(const struct law *law, real *history, vec e[6])
 {
     const vec xx = load(history), yy = load(history + BLOCK), xy = load(history + 2 * BLOCK);
@@ -366,8 +366,8 @@ INLINE void return_to_yield(const struct law *law, real *history, vec e[6])
         e[i] -= flow * e[i];
 }
 
-/* Adds the nodes' forces of P2, P3 (energies' derivatives by F2 and F3) and the section's
- * hourglass vector. */
+/* Adds the nodes' forces of P2, P3 (derivatives of the energy with respect to F2 and F3) and of the
+ * section's hourglass vector. */
 INLINE void add_section_forces(const real *c, struct node *const n[4], const struct strain *e,
                                const vec P2[3], const vec P3[3])
 {
@@ -384,7 +384,8 @@ INLINE void add_section_forces(const real *c, struct node *const n[4], const str
     }
 }
 
-/* Energies' derivatives by F1, F2 and F3, the columns of F S; added to P2 and P3. */
+/* Derivatives of the energy with respect to F1, F2 and F3, the columns of F S; added to P2 and
+ * P3. */
 INLINE void mean_stress(const struct strain *e, const vec S[6], vec P1[3], vec P2[3], vec P3[3])
 {
     const vec F1[3] = {1 + e->H1[0], e->H1[1], e->H1[2]};
@@ -398,7 +399,7 @@ INLINE void mean_stress(const struct strain *e, const vec S[6], vec P1[3], vec P
     }
 }
 
-/* One point: the three other hourglass vectors, those of d. */
+/* One point: adds the forces of the three other hourglass vectors, those of d. */
 INLINE void add_along(const real *c, struct node *const n[4], const vec P1[3],
                       struct totals *totals)
 {
@@ -421,7 +422,7 @@ INLINE void add_along(const real *c, struct node *const n[4], const vec P1[3],
     }
 }
 
-/* To a deviator whose ZZ is not there. */
+/* Adds a pressure to a deviator without ZZ. */
 INLINE void add_pressure(vec pressure, vec T[6])
 {
     T[ZZ] = pressure - T[XX] - T[YY];
@@ -429,8 +430,8 @@ INLINE void add_pressure(vec pressure, vec T[6])
     T[YY] += pressure;
 }
 
-/* The strains of the points less the plastic strain: the mean one, or what the section's axial
- * vectors make of it. */
+/* Strains of the points minus the plastic strain: the mean strain, modified by the section's axial
+ * vectors. */
 INLINE void strain_points(struct element *e, int points)
 {
     const struct strain *mean = &e->mean;
@@ -464,8 +465,8 @@ INLINE void strain_points(struct element *e, int points)
     }
 }
 
-/* What the points of four add to the forces by themselves: P of each, their parts of P2 and P3, and
- * the sum T of their deviators times stiffness. */
+/* Forces of the four points: P of each, their contributions to P2 and P3, and the sum T of their
+ * deviators times stiffness. */
 INLINE void point_stress(const struct element *e, vec P[4][3], vec P2[3], vec P3[3], vec T[6])
 {
     const struct strain *mean = &e->mean;
@@ -512,7 +513,7 @@ INLINE void add_forces_of_four(const struct element *e)
     const vec along = (real)1.5 * T[XX] * log_slope(e->mean.E[XX]), xy = T[XY], xz = T[XZ];
     add_pressure(e->c[WB_SWEPT_HEX_K_VOLUME] * e->mean.trace, T);
     pull_back(e->mean.E, T);
-    /* What the points have of it, each at its own place. */
+    /* Subtract the parts that the points have themselves. */
     T[XX] -= along;
     T[XY] -= xy;
     T[XZ] -= xz;
@@ -528,7 +529,7 @@ INLINE void add_forces_of_four(const struct element *e)
     add_section_forces(e->c, e->n, &e->mean, P2, P3);
 }
 
-/* All but the energy of the hourglass vectors along. */
+/* All except for the energy of the axial hourglass vectors. */
 INLINE void add_totals(const struct element *e, int points, struct totals *totals)
 {
     vec largest = {0};
@@ -547,7 +548,7 @@ INLINE void add_totals(const struct element *e, int points, struct totals *total
     totals->largest = maximum(largest, totals->largest);
 }
 
-/* Adds the totals of the lanes that count. */
+/* Adds the totals of the counted lanes. */
 static void add_sums(const struct totals *totals, const struct wb_swept_range *counted,
                      double limit, struct wb_swept_hex_sums *sums)
 {
@@ -555,7 +556,7 @@ static void add_sums(const struct totals *totals, const struct wb_swept_range *c
         sums->stored += (double)totals->stored[i];
         sums->artificial += (double)totals->artificial[i];
         sums->largest_strain = fmax(sums->largest_strain, (double)totals->largest[i]);
-        /* Maxima do not keep NaN, sums do. */
+        /* Maxima drop NaN, sums do not: use a sum to count NaN as beyond the limit. */
         sums->beyond_limit +=
             !((double)totals->largest[i] <= limit && isfinite((double)totals->stored[i]));
     }
@@ -571,7 +572,7 @@ struct slab {
 };
 
 /* Elements `first` to `first` + n - 1 of the section, stage by stage: each stage is a short chain
- * of operations, of which the processor then works on several at once. */
+ * of operations, of which the processor overlaps several. */
 INLINE void add_group(const struct slab *slab, int first, int n, int points)
 {
     const struct wb_swept_hex_kernel_model *m = slab->m;
@@ -604,9 +605,9 @@ INLINE void add_group(const struct slab *slab, int first, int n, int points)
     }
 }
 
-/* Asks for the lines of rows `first` to `end` - 1 that the block at station j has in the field
- * which is gone through next, and of the forces, so that they are near by then. Lines of one block
- * lie a stride apart, which no processor foresees. */
+/* Prefetches the cache lines of rows `first` to `end` - 1 in the block at station j, of the field
+ * that is used next and of the forces. The lines of one block are a stride apart, which hardware
+ * prefetchers do not predict. */
 INLINE void fetch(const struct wb_swept_hex_kernel_call *call, int first, int end, int j)
 {
     enum {

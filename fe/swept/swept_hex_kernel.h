@@ -1,8 +1,8 @@
 /* The force kernels behind fe/swept/swept_hex.h. Lanes are elements along the wire.
  *
- * All that a kernel multiplies with is prepared in the kernel's type: the constants of the
- * section's elements, a row of WB_SWEPT_HEX_KERNEL_CONSTANTS each, and the table of the hardening
- * law. Histories are in blocks of WB_SWEPT_LANES elements along the wire:
+ * All factors are prepared in the kernel's type: the constants of the section's elements, a row of
+ * WB_SWEPT_HEX_KERNEL_CONSTANTS each, and the table of the hardening law. Histories are in blocks
+ * of WB_SWEPT_LANES elements along the wire:
  *
  *     history[(((block n_quads + quad) n_points + point) 6 + component) WB_SWEPT_LANES + lane],
  *
@@ -19,12 +19,12 @@
 enum {
     WB_SWEPT_HEX_KERNEL_CONSTANTS = 48, /* a row */
     WB_SWEPT_HEX_KERNEL_HISTORY = 6,    /* numbers of a point */
-    WB_SWEPT_HEX_KERNEL_NODE = 12,      /* vectors of a node in the workspace, */
-    WB_SWEPT_HEX_KERNEL_CARRY = 3,      /* and those from block to block */
-    WB_SWEPT_HEX_KERNEL_TERMS = 7       /* of an octave of the hardening law's table */
+    WB_SWEPT_HEX_KERNEL_NODE = 12,      /* vectors of a node in the workspace */
+    WB_SWEPT_HEX_KERNEL_CARRY = 3,      /* vectors of a node carried from block to block */
+    WB_SWEPT_HEX_KERNEL_TERMS = 7       /* terms per octave of the hardening law's table */
 };
 
-/* Places in a row of constants. h is the element's length, V its volume, mu the shear modulus,
+/* Positions in a row of constants. h is the element's length, V its volume, mu the shear modulus,
  * kappa the bulk modulus. */
 enum {
     WB_SWEPT_HEX_B = 0,          /* half the mean dN/dy at corners 2 and 3, then of dN/dz; 1/m */
@@ -42,13 +42,13 @@ struct wb_swept_hex_kernel_model {
     struct wb_swept_layout layout;
     int n_quads;
     int n_elements;                /* along */
-    int centre, beside;            /* two nodes whose line turns with the section */
+    int centre, beside;            /* two nodes whose line rotates with the section */
     const int (*quad)[4];          /* (n_quads) */
     const double (*node)[2];       /* (layout.n_nodes) */
     double length;                 /* h, m */
-    double yield_strain;           /* sigma_Y / (3 mu); infinite when elastic */
+    double yield_strain;           /* sigma_Y / (3 mu); infinite if elastic */
     struct wb_swept_range counted; /* elements, in sums */
-    double strain_limit;           /* beyond it elements are counted */
+    double strain_limit;           /* elements with larger strains are counted */
     const void *constants;         /* (n_quads x WB_SWEPT_HEX_KERNEL_CONSTANTS) */
     const void *table;             /* of the hardening law (fe/material/hardening.h) */
 };
@@ -56,11 +56,11 @@ struct wb_swept_hex_kernel_model {
 struct wb_swept_hex_kernel_call {
     const struct wb_swept_hex_kernel_model *model;
     struct wb_swept_hex_fields fields;
-    int first_added; /* node: from here on forces are added to what is there */
+    int first_added; /* first node whose forces are added to existing ones */
     void *history;
     void *workspace; /* ((NODE + CARRY) x n_nodes x WB_SWEPT_LANES), kept between calls */
     int first_block, end_block;
-    struct wb_swept_hex_sums *sums; /* added to; NULL: none wanted */
+    struct wb_swept_hex_sums *sums; /* added to; may be NULL */
 };
 
 struct wb_swept_hex_kernel {

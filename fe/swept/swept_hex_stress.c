@@ -27,13 +27,13 @@ static double log_strain(double e)
     return e - e * e * (1.0 - 4.0 / 3.0 * e);
 }
 
-/* An element as the kernels see it: columns of F, Green's strain, and its logarithm (swept_hex_
- * kernel.c has the formulas). */
+/* The element of the kernels: columns of F, Green's strain, and its logarithm (formulas in
+ * swept_hex_kernel.c). */
 struct element {
     struct wb_swept_quad quad;
     double along[4][3]; /* d_a / h */
     double F[3][3];     /* columns: by x, y, z */
-    double E[6], L[6];  /* the diagonal of L less a third of the trace */
+    double E[6], L[6];  /* the diagonal of L minus a third of the trace */
     double trace;
 };
 
@@ -80,7 +80,7 @@ static void find_strain(struct element *e)
         L[i] -= e->trace / 3.0;
 }
 
-/* What the axial vectors of the corners make of the deviator at a point of four. */
+/* Adds the contribution of the corners' axial vectors to the deviator at one of four points. */
 static void vary(const struct element *e, int q, double t[6])
 {
     double F1[3] = {0.0};
@@ -96,7 +96,7 @@ static void vary(const struct element *e, int q, double t[6])
     t[XZ] += 0.5 * wb_vec3_dot(F1, e->F[2]) - e->E[XZ];
 }
 
-/* A number of the history at a point. */
+/* A component of the history at a point. */
 static double kept(const struct wb_swept_hex_model *m, const void *history, size_t point,
                    int element, int component)
 {
@@ -110,7 +110,7 @@ void wb_swept_hex_stress_find(const struct wb_swept_hex *hex, struct wb_swept_he
                               const double *position, int quad, int element,
                               struct wb_swept_hex_stress *out)
 {
-    static const int place[5] = {XX, YY, XY, XZ, YZ}; /* of what the history has */
+    static const int place[5] = {XX, YY, XY, XZ, YZ}; /* components stored in the history */
     const struct wb_swept_hex_model *m = wb_swept_hex_get_model(hex);
     const double nu = m->material.poissons_ratio, E = m->material.youngs_modulus;
     const double two_mu = E / (1.0 + nu), kappa = E / (3.0 * (1.0 - 2.0 * nu));
@@ -123,7 +123,7 @@ void wb_swept_hex_stress_find(const struct wb_swept_hex *hex, struct wb_swept_he
 
     find_gradient(&e, hex, position, quad, element);
     find_strain(&e);
-    /* Of Kirchhoff over the change of volume. */
+    /* Kirchhoff stress over the change of volume. */
     const double per_volume = exp(-e.trace);
     for (int q = 0; q < n; q++) {
         const size_t point = place_of_quad * (size_t)n + (size_t)q;
@@ -145,7 +145,7 @@ void wb_swept_hex_stress_at_corners(const struct wb_swept_hex *hex,
                                     const struct wb_swept_hex_stress *points,
                                     struct wb_swept_hex_stress corners[4])
 {
-    /* Points of Gauss lie at 1/sqrt(3) of the way to the corners, in the same order. */
+    /* The Gauss points are at 1/sqrt(3) of the distance to the corners, in the same order. */
     static const double root = 1.7320508075688772;
     const double factor[3] = {0.25 * (1.0 + root) * (1.0 + root), -0.5,
                               0.25 * (1.0 - root) * (1.0 - root)};

@@ -1,4 +1,4 @@
-/* What the headers of all kernels share.
+/* Common declarations of all kernels.
  *
  * A kernel is one source, swept_..._kernel.c, which meson.build compiles for float and double and
  * for each instruction set. Each of these versions is an object of the kernel's struct, whose name
@@ -35,7 +35,7 @@
     }
 #endif
 
-/* Numbers of a kernel's type: double or float. */
+/* Size of a value in the kernel's type: double or float. */
 static inline size_t wb_swept_kernel_real_size(bool is_double)
 {
     return is_double ? sizeof(double) : sizeof(float);
@@ -54,7 +54,7 @@ static inline double wb_swept_kernel_get(bool is_double, const void *numbers, pt
     return is_double ? ((const double *)numbers)[at] : (double)((const float *)numbers)[at];
 }
 
-/* A copy of `count` numbers in a kernel's type, as wb_swept_take() gives memory. */
+/* A copy of `count` values in a kernel's type, in memory as from wb_swept_take(). */
 void *wb_swept_kernel_convert(struct wb_memory *memory, bool is_double, const double *numbers,
                               size_t count);
 

@@ -1,4 +1,4 @@
-/* What tests see of the swept bodies beside their interfaces: parts of a step, numbers inside. */
+/* Functions of the swept bodies that only tests use: parts of a step, internal values. */
 #ifndef WB_FE_SWEPT_SWEPT_PRIVATE_H
 #define WB_FE_SWEPT_SWEPT_PRIVATE_H
 
@@ -11,7 +11,7 @@
 
 /* --- sections --- */
 
-/* Any mesh; `node` and `quad` are copied. WB_ERR_ARGUMENT when a quadrilateral is not convex and
+/* Any mesh; `node` and `quad` are copied. WB_ERR_ARGUMENT if a quadrilateral is not convex and
  * counter-clockwise or a node does not exist. */
 WB_MUST_CHECK enum wb_status wb_swept_section_init(struct wb_swept_section *section, int n_nodes,
                                                    const double (*node)[2], int n_quads,
@@ -21,40 +21,41 @@ WB_MUST_CHECK enum wb_status wb_swept_section_init(struct wb_swept_section *sect
 
 const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex);
 
-/* wb_swept_hex_add_forces() with the forces of all nodes written, none added to. */
+/* As wb_swept_hex_add_forces(), but overwrites the forces of all nodes. */
 void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
                          int first, int end, struct wb_swept_hex_sums *sums);
 
-/* Virgin, as after creation. */
+/* Returns to the virgin state. */
 void wb_swept_hex_state_reset(struct wb_swept_hex_state *state);
 
 /* Accumulated plastic strain at a point (0 to 3, or 0) of a section's element. */
 double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,
                                    int point);
 
-/* Points of an element whose stresses can be asked: 4, those of Gauss in the section, or 1. */
+/* Number of points of an element with stresses: 4 Gauss points in the section, or 1. */
 int wb_swept_hex_stress_points(const struct wb_swept_hex *hex);
 
-/* The stiffness of a layer (fe/swept/swept_frequency.h), N/m, in the reference state: (6 n x 6 n)
- * of n section nodes, freedoms (station n + node) 3 + component. Added to `stiffness`. */
+/* Adds the stiffness of a layer (fe/swept/swept_frequency.h), N/m, in the reference state, to
+ * `stiffness`: (6 n x 6 n) for n section nodes, degree of freedom (station n + node) 3 +
+ * component. */
 void wb_swept_frequency_layer(const struct wb_swept_hex *hex, double *stiffness);
 
-/* Spreads a mass (kg, not scaled by f_m) over the nodes of a station. */
+/* Distributes a mass (kg, not scaled by f_m) over the nodes of a station. */
 void wb_swept_step_add_mass(struct wb_swept_step *step, int station, double mass);
 
 double wb_swept_step_station_mass(const struct wb_swept_step *step, int station); /* kg, scaled */
 
 /* --- contact of wires --- */
 
-/* No frames, pairs or friction, as after creation. */
+/* Returns to the state after creation: no frames, pairs or friction. */
 void wb_swept_contact_reset(struct wb_swept_contact *contact);
 
 const char *wb_swept_contact_instructions(const struct wb_swept_contact *contact);
 
 /* wb_swept_contact_add_forces() in parts, for threads: gather all blocks, then refresh once, press
  * all blocks, scatter all blocks (each time all threads before the next), and finish once. Calls
- * for different blocks may run at the same time. A block's forces may be written by others before
- * it is scattered. */
+ * for different blocks may run at the same time. Other code may write a block's forces until it is
+ * scattered. */
 int wb_swept_contact_blocks(const struct wb_swept_contact *contact);
 void wb_swept_contact_gather(struct wb_swept_contact *contact, const double *const *position,
                              int first, int end);
@@ -68,7 +69,7 @@ WB_MUST_CHECK enum wb_status wb_swept_contact_finish(struct wb_swept_contact *co
 struct wb_swept_contact_pair {
     int wire[2];
     double stiffness; /* k, N/m2 */
-    double normal;    /* N, sum over the stations */
+    double normal;    /* sum over the stations, N */
     double smallest;  /* gap, m; negative: penetration */
 };
 void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
@@ -83,16 +84,16 @@ const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape);
 double wb_swept_tape_plastic_strain(const struct wb_swept_tape_state *state, int element, int along,
                                     int point);
 
-/* No damage, as after creation. */
+/* Returns to the state after creation: no damage. */
 void wb_swept_cohesion_reset(struct wb_swept_cohesion *cohesion);
 
-/* Area that is bonded, m2. */
+/* Bonded area, m2. */
 double wb_swept_cohesion_area(const struct wb_swept_cohesion *cohesion);
 
-/* No friction, as after creation. */
+/* Returns to the state after creation: no friction. */
 void wb_swept_tape_contact_reset(struct wb_swept_tape_contact *contact);
 
-/* Nodes that are looked after now: within the margin of a wire, and not bonded to it. */
+/* Number of nodes that are tracked: within the margin of a wire, and not bonded to it. */
 int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact);
 
 #endif

@@ -10,13 +10,13 @@
 #define WB_LOG_DOMAIN "swept"
 
 enum {
-    MOST_DENSITY = 32,
-    MOST_NODES = 1 << 20
+    MAX_DENSITY = 32,
+    MAX_NODES = 1 << 20
 };
 
-/* The core's corners are this much farther out than equal widths of core elements and rings would
- * have them, and its sides bulge by this part of a circle's: within a few percent the largest
- * stable step of all meshes from 12 to 84 elements. */
+/* Factors on the distance of the core's corners from the centre, relative to equal widths of core
+ * elements and rings, and on the bulge of its sides, relative to a circle's: they give within a few
+ * percent the largest stable step of all meshes from 12 to 84 elements. */
 static const double core_reach = 1.12;
 static const double core_bulge = 0.5;
 
@@ -34,7 +34,7 @@ static void shape_slope(int a, double xi, double eta, double slope[2])
     slope[1] = 0.25 * corner[a][1] * (1.0 + corner[a][0] * xi);
 }
 
-/* Gradients in y and z of the shape functions and of xi eta; the map's determinant. */
+/* Gradients in y and z of the shape functions and of xi eta; returns the map's determinant. */
 static double gradients(double at[4][2], double xi, double eta, double gradient[2][4],
                         double product[2])
 {
@@ -165,16 +165,15 @@ static void integrate(struct wb_swept_section *section)
 enum wb_status wb_swept_section_init(struct wb_swept_section *section, int n_nodes,
                                      const double (*node)[2], int n_quads, const int (*quad)[4])
 {
-    if (n_nodes < 4 || n_nodes > MOST_NODES || n_quads < 1 || n_quads > MOST_NODES)
+    if (n_nodes < 4 || n_nodes > MAX_NODES || n_quads < 1 || n_quads > MAX_NODES)
         return wb_fail(
             WB_ERR_ARGUMENT,
             "the section has %d nodes and %d elements: expected 4 to %d nodes and 1 to %d elements",
-            n_nodes, n_quads, MOST_NODES, MOST_NODES);
+            n_nodes, n_quads, MAX_NODES, MAX_NODES);
     for (int i = 0; i < 4 * n_quads; i++) {
         if (quad[i / 4][i % 4] < 0 || quad[i / 4][i % 4] >= n_nodes)
-            return wb_fail(WB_ERR_ARGUMENT,
-                           "element %d of the section has node %d: expected 0 to %d", i / 4,
-                           quad[i / 4][i % 4], n_nodes - 1);
+            return wb_fail(WB_ERR_ARGUMENT, "element %d of the section: node %d: expected 0 to %d",
+                           i / 4, quad[i / 4][i % 4], n_nodes - 1);
     }
     allocate(section, n_nodes, n_quads, 0);
     memcpy(section->node, node, (size_t)n_nodes * sizeof *node);
@@ -189,8 +188,8 @@ enum wb_status wb_swept_section_init(struct wb_swept_section *section, int n_nod
     return WB_OK;
 }
 
-/* A point of the core's grid, u and v from -1 to 1: between a square and a disc, whose corners are
- * at `reach` from the centre. */
+/* A point of the core's grid, u and v from -1 to 1: between a square and a disc, with corners at
+ * `reach` from the centre. */
 static void core_point(double u, double v, double bulge, double reach, double at[2])
 {
     double disc[2];
@@ -208,7 +207,7 @@ static void core_point(double u, double v, double bulge, double reach, double at
     at[1] = reach * (bulge * disc[1] + (1.0 - bulge) * M_SQRT1_2 * v);
 }
 
-/* Grid place of the core's perimeter, counter-clockwise from the +y axis. */
+/* Grid index of the core's perimeter, counter-clockwise from the +y axis. */
 static int perimeter(int core, int place)
 {
     const int side = (place + core / 2) / core % 4, along = (place + core / 2) % core;
@@ -248,13 +247,13 @@ static void number_circle(struct wb_swept_section *section, int core, int rings)
 enum wb_status wb_swept_section_init_circle(struct wb_swept_section *section, double diameter,
                                             int core, int rings)
 {
-    if (core < 2 || core > MOST_DENSITY || core % 2 != 0 || rings < 0 || rings > MOST_DENSITY)
+    if (core < 2 || core > MAX_DENSITY || core % 2 != 0 || rings < 0 || rings > MAX_DENSITY)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the circle's mesh has a core of %d and %d rings: expected an even core "
-                       "from 2 to %d, and 0 to %d rings",
-                       core, rings, MOST_DENSITY, MOST_DENSITY);
+                       "circle: core %d, rings %d: expected an even core from 2 to %d, and 0 to %d "
+                       "rings",
+                       core, rings, MAX_DENSITY, MAX_DENSITY);
     if (!(diameter > 0.0 && isfinite(diameter)))
-        return wb_fail(WB_ERR_ARGUMENT, "the circle's diameter is %g m: expected a number above 0",
+        return wb_fail(WB_ERR_ARGUMENT, "circle: diameter %g m: expected a number above 0",
                        diameter);
     allocate(section, (core + 1) * (core + 1) + 4 * core * rings, core * core + 4 * core * rings,
              4 * core);

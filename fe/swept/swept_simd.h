@@ -1,9 +1,8 @@
-/* Vectors of numbers for kernels: what the compiler's vector types lack.
+/* Vector operations for kernels that the compiler's vector types lack.
  *
- * For kernels only (swept_..._kernel.c): its names are short. meson.build defines REAL_IS_DOUBLE (0
- * or 1) and INSTRUCTIONS (the name of the instruction set whose flags it gives to the compiler);
- * the width of a vector is the widest of that set. Without these definitions the header is that of
- * float and the baseline.
+ * For kernels only (swept_..._kernel.c): names are short. meson.build defines REAL_IS_DOUBLE (0 or
+ * 1) and INSTRUCTIONS (the name of the instruction set that it compiles for); vectors have the
+ * largest width of that set. Without these definitions the header is for float and the baseline.
  */
 #ifndef WB_FE_SWEPT_SWEPT_SIMD_H
 #define WB_FE_SWEPT_SWEPT_SIMD_H
@@ -68,14 +67,14 @@ typedef bits vec_bits __attribute__((vector_size(BYTES), may_alias));
 typedef double part __attribute__((vector_size(BYTES), may_alias));
 typedef double part_anywhere __attribute__((vector_size(BYTES), may_alias, aligned(8)));
 
-/* Numbers of double precision on their way to real. */
+/* Values in double precision, before conversion to real. */
 struct wide {
     part of[PARTS];
 };
 
 #if defined(__SSE2__)
 /* The registers of these vectors, and the processor's operations on them: OF_REAL(max) is
- * _mm256_max_ps of 8 floats. */
+ * _mm256_max_ps for 8 floats. */
 #if BYTES == 64
 typedef __m512 register_float;
 typedef __m512d register_double;
@@ -139,7 +138,7 @@ INLINE struct wide subtract(struct wide a, struct wide b)
     return a;
 }
 
-/* 1 / sqrt(x) for x > 0, to about round-off. */
+/* 1 / sqrt(x) for x > 0, with an error of about round-off. */
 INLINE vec inverse_root(vec x)
 {
 #if BYTES == 64 && !REAL_IS_DOUBLE
@@ -166,7 +165,7 @@ INLINE part part_root(part x)
 #endif
 }
 
-/* What comparisons give, and how it chooses. A comparison with NaN is false. */
+/* Result type of comparisons, and selection by it. A comparison with NaN is false. */
 #if BYTES == 64 && !REAL_IS_DOUBLE
 typedef __mmask16 mask;
 #elif BYTES == 64
@@ -269,7 +268,7 @@ INLINE vec dot(const vec a[3], const vec b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Which lanes are elements: the first `n`. */
+/* Mask of the first `n` lanes, which are elements. */
 INLINE mask first_lanes(int n)
 {
     vec lane;
@@ -278,14 +277,14 @@ INLINE mask first_lanes(int n)
     return above(splat((real)n - (real)0.5), lane);
 }
 
-/* Of the lanes that are stations from `j` on, those in a range. */
+/* Lanes in a range of stations; lane 0 is station `j`. */
 INLINE struct wb_swept_range lanes_counted(const struct wb_swept_range *range, int j)
 {
     const int first = range->first - j, end = range->end - j;
     return (struct wb_swept_range){first > 0 ? first : 0, end < LANES ? end : LANES};
 }
 
-/* v where lanes, stations from `j` on, are in the range, else 0. */
+/* v in lanes whose station, from `j` on, is in the range, otherwise 0. */
 INLINE vec only_counted(const struct wb_swept_range *range, int j, vec v)
 {
     vec lane;
@@ -296,7 +295,7 @@ INLINE vec only_counted(const struct wb_swept_range *range, int j, vec v)
     return choose(above(lane, begin), choose(above(end, lane), v, (vec){0}), (vec){0});
 }
 
-/* The last lane of `before`, then v without its last. */
+/* The last lane of `before`, followed by v without its last lane. */
 INLINE vec shift_in(vec before, vec v)
 {
 #if BYTES == 64 && !REAL_IS_DOUBLE

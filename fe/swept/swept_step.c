@@ -9,7 +9,7 @@
 
 #define WB_LOG_DOMAIN "swept"
 
-/* Vectors wider than the target's are passed between inlined functions only. */
+/* Warns about passing wide vectors to functions, which does not happen because they are inlined. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
@@ -25,17 +25,17 @@ typedef float narrow __attribute__((vector_size(WIDE * sizeof(float)), may_alias
 struct wb_swept_step {
     struct wb_swept_step_model model;
     double *node_mass, *inverse_node; /* (n_nodes) */
-    double total;                     /* kg/m, of the section */
-    double *length;  /* (stride) of a station, m; extra, inverse and weight follow */
-    double *extra;   /* (stride) mass added, kg */
+    double total;                     /* of the section, kg/m */
+    double *length;  /* (stride) of a station, m; extra, inverse and weight follow it */
+    double *extra;   /* (stride) added mass, kg */
     bool *held;      /* (3 stride) */
-    double *inverse; /* (3 stride): 1 / scaled length, 1/m; 0: held or padding */
+    double *inverse; /* (3 stride): 1 / scaled length, 1/m; 0: fixed or padding */
     double *weight;  /* (3 stride): acceleration by gravity, m/s2 */
     void (*advance)(const struct wb_swept_step *step, const struct wb_swept_step_fields *fields,
                     const double times[2], const int range[2], struct wb_swept_step_sums *sums);
 };
 
-/* What one component adds to the sums at a vector of stations. */
+/* Contribution of one component to the sums at a vector of stations. */
 struct partial {
     wide both, half; /* sum m v- v+, sum m v+ v+ */
     wide before, after;
@@ -48,8 +48,8 @@ static ALWAYS_INLINE wide read_force(const void *force, size_t at, bool is_doubl
     return __builtin_convertvector(*(const narrow *)((const float *)force + at), wide);
 }
 
-/* What all nodes of a station have in common: the weight, and the part of the mean acceleration
- * that selective scaling leaves. */
+/* The acceleration common to all nodes of a station: gravity, and the mean acceleration that
+ * selective scaling does not reduce. */
 static ALWAYS_INLINE wide common_acceleration(const struct wb_swept_step *step, const void *force,
                                               size_t at, bool is_double)
 {
@@ -65,7 +65,7 @@ static ALWAYS_INLINE wide common_acceleration(const struct wb_swept_step *step, 
     return weight + part * sum * *(const wide *)(step->inverse + at);
 }
 
-/* v.M'v = beta v.M v - (beta - 1) (sum m v)^2 / sum m, per station; `at` is the first's place. */
+/* v.M'v = beta v.M v - (beta - 1) (sum m v)^2 / sum m, per station; `at` is the first's index. */
 static void add_sums(const struct wb_swept_step *step, const struct partial *p, size_t at,
                      double dt, struct wb_swept_step_sums *sums)
 {
@@ -119,7 +119,7 @@ static ALWAYS_INLINE void advance(const struct wb_swept_step *step,
     }
 }
 
-/* With what is known at compile time. */
+/* Inlined with compile-time constants. */
 static ALWAYS_INLINE void advance_any(const struct wb_swept_step *step,
                                       const struct wb_swept_step_fields *fields,
                                       const double times[2], const int range[2],
@@ -178,7 +178,7 @@ void wb_swept_step_update(const struct wb_swept_step *step,
     step->advance(step, fields, times, range, sums);
 }
 
-/* The numbers of a station from its length, extra mass and what is held. */
+/* Updates the values of a station from its length, extra mass and fixed components. */
 static void refresh(struct wb_swept_step *step, int station)
 {
     const struct wb_swept_step_model *m = &step->model;
@@ -219,15 +219,13 @@ static enum wb_status check(const struct wb_swept_step_model *m)
                        "node, at least 2 stations and the stride that belongs to them",
                        m->layout.n_nodes, m->layout.n_stations, m->layout.stride);
     if (!(m->spacing > 0.0 && isfinite(m->spacing)))
-        return wb_fail(WB_ERR_ARGUMENT, "the stations are %g m apart: expected a number above 0",
+        return wb_fail(WB_ERR_ARGUMENT, "station spacing %g m: expected a number above 0",
                        m->spacing);
     if (!(m->mass_scaling > 0.0 && isfinite(m->mass_scaling)))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the factor of mass scaling is %g: expected a number above 0",
+        return wb_fail(WB_ERR_ARGUMENT, "mass scaling %g: expected a number above 0",
                        m->mass_scaling);
     if (!(m->selective >= 1.0 && isfinite(m->selective)))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the factor of selective mass scaling is %g: expected 1 or more",
+        return wb_fail(WB_ERR_ARGUMENT, "selective mass scaling %g: expected 1 or more",
                        m->selective);
     for (int k = 0; k < m->layout.n_nodes; k++) {
         if (!(m->node_mass[k] > 0.0 && isfinite(m->node_mass[k])))

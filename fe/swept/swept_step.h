@@ -3,15 +3,16 @@
  *
  * Masses are lumped: a node's mass per length times its station's length, half at the ends, times
  * f_m (eq. 29). The weight is not scaled: gravity accelerates by g / f_m. Selective mass scaling by
- * beta leaves the mean acceleration of a station alone and divides what nodes do beside it,
+ * beta keeps the mean acceleration of a station and divides the nodes' deviations from it,
  *
  *     a = mean + (a - mean) / beta,  mean = sum f / sum m,
  *
  * which corresponds to a mass matrix M' = beta M - (beta - 1) M 1 1^T M / (1^T M 1): the section
- * deforms and turns more slowly, the wire's axis moves as before.
+ * deforms and rotates more slowly, the motion of the wire's axis is unchanged.
  *
- * A held component of a station keeps its velocity, whatever the force: to prescribe a motion, the
- * caller holds the component and writes its velocity into the field. It has no part in the sums.
+ * A fixed component of a station keeps its velocity for any force: to prescribe a motion, the
+ * caller fixes the component and writes its velocity into the field. Fixed components are excluded
+ * from the sums.
  */
 #ifndef WB_FE_SWEPT_SWEPT_STEP_H
 #define WB_FE_SWEPT_SWEPT_STEP_H
@@ -36,13 +37,13 @@ struct wb_swept_step_fields {
     const void *force;
 };
 
-/* At the time of the forces, all of them sums over the body. */
+/* Sums over the body at the time of the forces. */
 struct wb_swept_step_sums {
-    double kinetic;      /* J, 1/2 v-.M v+ of the velocities half a step before and after: with an
-                            elastic energy its sum is constant to round-off */
+    double kinetic; /* J, 1/2 v-.M v+ of the velocities half a step before and after: its sum with
+                       an elastic energy is constant to round-off */
     double kinetic_half; /* J, 1/2 v+.M v+ */
     double momentum[3];  /* kg m/s, of v+ */
-    double gravity_work; /* J, done from here to the end of the step */
+    double gravity_work; /* J, work from this time to the end of the step */
 };
 
 struct wb_swept_step; /* opaque */
@@ -51,11 +52,12 @@ WB_MUST_CHECK enum wb_status wb_swept_step_create(struct wb_swept_step **out,
                                                   const struct wb_swept_step_model *model);
 void wb_swept_step_destroy(struct wb_swept_step *step);
 
-/* Holds, or lets go, one component of a station. */
+/* Fixes or releases one component of a station. */
 void wb_swept_step_hold(struct wb_swept_step *step, int station, int component, bool held);
 
-/* Velocities by `times[0]` (mean of the steps before and after; half a step at first), positions by
- * `times[1]`, s, at the stations of blocks `first` to `end` - 1. `sums` are added to, or NULL. */
+/* Advances velocities by `times[0]` (mean of the steps before and after; half a step at first) and
+ * positions by `times[1]`, s, at the stations of blocks `first` to `end` - 1. `sums` are added to;
+ * may be NULL. */
 void wb_swept_step_update(const struct wb_swept_step *step,
                           const struct wb_swept_step_fields *fields, const double times[2],
                           int first, int end, struct wb_swept_step_sums *sums);

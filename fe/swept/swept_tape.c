@@ -15,7 +15,7 @@
 
 enum {
     LANES = WB_SWEPT_LANES,
-    MOST_NODES = 1 << 16,
+    MAX_NODES = 1 << 16,
     UNKNOWNS = 24, /* of an element: 4 positions, then 4 directors */
     LENGTHS = WB_SWEPT_TAPE_N_MEASURES,
     ALL_MEASURES = LENGTHS + 4
@@ -33,7 +33,7 @@ static const struct wb_swept_tape_kernel *const kernels[][2] =
 /* An element of the reference state. */
 struct element {
     double node[4][3], director[4][3]; /* (k, j), (k, j + 1), (k + 1, j), (k + 1, j + 1) */
-    double area;                       /* m2; of the plane through the middle */
+    double area;                       /* of the plane through the middle, m2 */
     double B[3];                       /* 11, 21, 22 */
     double hourglass[2];               /* in the frame, m */
     double normal[3];
@@ -57,7 +57,7 @@ struct wb_swept_tape_state {
     struct wb_memory memory; /* of both */
 };
 
-/* Gauss points from -1 to 1 and weights whose sum is 1, of 2 to 5 points. */
+/* Gauss points from -1 to 1 and weights whose sum is 1, for 2 to 5 points. */
 static const double gauss_point[4][WB_SWEPT_TAPE_MOST_POINTS] = {
     {-0.57735026918962576, 0.57735026918962576},
     {-0.77459666924148338, 0.0, 0.77459666924148338},
@@ -72,7 +72,7 @@ static const double gauss_weight[4][WB_SWEPT_TAPE_MOST_POINTS] = {
      0.11846344252809454},
 };
 
-/* Numbers in the kernel's type. */
+/* Writes a value in the kernel's type. */
 static void put(const struct wb_swept_tape *tape, void *numbers, size_t at, double value)
 {
     wb_swept_kernel_put(tape->model.double_precision, numbers, (ptrdiff_t)at, value);
@@ -103,8 +103,8 @@ static bool is_convex(const struct element *e)
     return true;
 }
 
-/* Positions of an element's nodes, and what follows from them; directors are zero before they are
- * made. False when it is not convex. */
+/* Computes the positions of an element's nodes and its geometry; directors are zero before they
+ * exist. False if it is not convex. */
 static bool find_element(const struct wb_swept_tape *tape, int k, int j, struct element *element)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
@@ -144,14 +144,14 @@ static bool find_element(const struct wb_swept_tape *tape, int k, int j, struct 
     return is_convex(element);
 }
 
-/* Squared radius of gyration that an element's directors get, m2. */
+/* Squared radius of gyration for the inertia of an element's directors, m2. */
 static double gyration(const struct wb_swept_tape *tape, const struct element *element)
 {
     const double thickness = tape->model.thickness / tape->model.sheets;
     return element->area / 8.0 + thickness * thickness / 6.0;
 }
 
-/* Walks over all elements; `use` gets each with its place. */
+/* Calls `use` for each element with its indices. */
 static enum wb_status for_elements(struct wb_swept_tape *tape,
                                    void (*use)(struct wb_swept_tape *tape, int k, int j,
                                                const struct element *element))
@@ -160,15 +160,15 @@ static enum wb_status for_elements(struct wb_swept_tape *tape,
         for (int j = 0; j < tape->numbers.n_along; j++) {
             struct element element;
             if (!find_element(tape, k, j, &element))
-                return wb_fail(WB_ERR_ARGUMENT,
-                               "the tape's element at node %d, station %d is not convex", k, j);
+                return wb_fail(WB_ERR_ARGUMENT, "tape element at node %d, station %d is not convex",
+                               k, j);
             use(tape, k, j, &element);
         }
     }
     return WB_OK;
 }
 
-/* Adds what an element gives to its nodes. */
+/* Adds an element's area and masses to its nodes. */
 static void lump(struct wb_swept_tape *tape, int k, int j, const struct element *element)
 {
     const struct wb_swept_tape_model *m = &tape->model;
@@ -206,9 +206,8 @@ static void fill_reference(struct wb_swept_tape *tape, int k, int j, const struc
         element->area * tape->model.thickness);
 }
 
-/* Directors lie in the plane of their section: so that what they face does
- * (fe/swept/swept_cohesion.h).
- */
+/* Directors are projected into the plane of their section, so that the surface they point to is in
+ * the same section (fe/swept/swept_cohesion.h). */
 static enum wb_status normalise_directors(struct wb_swept_tape *tape)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
@@ -219,9 +218,10 @@ static enum wb_status normalise_directors(struct wb_swept_tape *tape)
             double *d = tape->director + 3 * (size_t)k * stride + (size_t)j;
             const double length = hypot(d[stride], d[2 * stride]);
             if (!(length > 0.1))
-                return wb_fail(WB_ERR_ARGUMENT,
-                               "the tape is folded, or not along the axis, at node %d, station %d",
-                               k, j);
+                return wb_fail(
+                    WB_ERR_ARGUMENT,
+                    "the tape is folded, or not aligned with the axis, at node %d, station %d", k,
+                    j);
             d[0] = 0.0;
             d[stride] /= length;
             d[2 * stride] /= length;
@@ -230,8 +230,8 @@ static enum wb_status normalise_directors(struct wb_swept_tape *tape)
     return WB_OK;
 }
 
-/* Geometry, masses, and the measures of the reference state as the kernel finds them, so that it
- * has no strain at all there. */
+/* Geometry, masses, and the measures of the reference state as computed by the kernel, so that its
+ * strains there are exactly zero. */
 static enum wb_status make_reference(struct wb_swept_tape *tape)
 {
     WB_TRY(for_elements(tape, lump));
@@ -252,11 +252,11 @@ static enum wb_status check_material(const struct wb_material *m)
     if (wb_hardening_law(m)->moves)
         return wb_fail(
             WB_ERR_UNSUPPORTED,
-            "the hardening law has kinematic hardening: the tape has isotropic hardening only");
+            "kinematic hardening is not supported by the tape; expected isotropic hardening");
     if (!(m->youngs_modulus > 0.0 && isfinite(m->youngs_modulus)) ||
         !(m->poissons_ratio > -1.0 && m->poissons_ratio <= 0.5))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape's Young's modulus is %g Pa and its Poisson's ratio %g: expected "
+                       "tape: Young's modulus %g Pa, Poisson's ratio %g: expected "
                        "a modulus above 0, and a ratio above -1 and at most 0.5",
                        m->youngs_modulus, m->poissons_ratio);
     if (!wb_hardening_is_possible(m, why, sizeof why))
@@ -269,30 +269,30 @@ static enum wb_status check(const struct wb_swept_tape_model *m)
     const struct wb_swept_layout *layout = &m->layout;
 
     WB_TRY(check_material(&m->material));
-    if (layout->n_nodes < (m->closed ? 3 : 2) || layout->n_nodes > MOST_NODES ||
+    if (layout->n_nodes < (m->closed ? 3 : 2) || layout->n_nodes > MAX_NODES ||
         layout->n_stations < 2 ||
         layout->stride != wb_swept_layout(layout->n_nodes, layout->n_stations).stride)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape has %d nodes, %d stations and a stride of %d: expected %d to %d "
-                       "nodes, at least 2 stations and the stride that belongs to them",
+                       "tape: %d nodes, %d stations, stride %d: expected %d to %d "
+                       "nodes, at least 2 stations and the stride of their layout",
                        layout->n_nodes, layout->n_stations, layout->stride, m->closed ? 3 : 2,
-                       MOST_NODES);
+                       MAX_NODES);
     if (!(m->density > 0.0 && isfinite(m->density)) ||
         !(m->thickness > 0.0 && isfinite(m->thickness)) ||
         !(m->spacing > 0.0 && isfinite(m->spacing)))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape has a density of %g kg/m3, a thickness of %g m and stations %g m "
-                       "apart: expected numbers above 0",
-                       m->density, m->thickness, m->spacing);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "tape: density %g kg/m3, thickness %g m, station spacing %g m: expected numbers "
+            "above 0",
+            m->density, m->thickness, m->spacing);
     if (m->sheets < 1 || m->points < 2 || m->points > WB_SWEPT_TAPE_MOST_POINTS)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape has %d sheets and %d points through its thickness: expected at "
+                       "tape: %d sheets, %d points through the thickness: expected at "
                        "least 1 sheet, and 2 to %d points",
                        m->sheets, m->points, WB_SWEPT_TAPE_MOST_POINTS);
     if (!(m->hourglass > 0.0 && m->hourglass <= 1.0))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape's hourglass coefficient is %g: expected above 0, at most 1",
-                       m->hourglass);
+                       "tape: hourglass coefficient %g: expected above 0, at most 1", m->hourglass);
     return WB_OK;
 }
 
@@ -529,8 +529,8 @@ double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state)
 
 /* --- stable step --- */
 
-/* The measures of swept_tape_kernel.c and the directors' lengths, all quadratic in `u`: the plain
- * version of what the kernel does. */
+/* The measures of swept_tape_kernel.c and the directors' lengths, all quadratic in `u`: a simple
+ * version of the kernel's computation. */
 static void find_measures(const struct element *element, const double *u, double *e)
 {
     const double *B = element->B, *c = element->hourglass;
@@ -599,7 +599,7 @@ static void find_stiffnesses(const struct wb_swept_tape *tape, const struct elem
         k[LENGTHS + a] = 0.25 * V * m->shear;
 }
 
-/* The largest eigenvalue of M^-1 K with masses `mass`, `inertia` at each of its nodes. */
+/* The largest eigenvalue of M^-1 K with masses `mass`, `inertia` at each node of the element. */
 static enum wb_status element_eigenvalue(const struct wb_swept_tape *tape,
                                          const struct element *element, double mass, double inertia,
                                          double *value)
@@ -614,7 +614,7 @@ static enum wb_status element_eigenvalue(const struct wb_swept_tape *tape,
         memcpy(u + 12 + 3 * a, element->director[a], sizeof element->director[a]);
     }
     for (int b = 0; b < UNKNOWNS; b++) {
-        /* Differences are exact for quadratic functions, but for round-off. */
+        /* Central differences are exact for quadratic functions, except for round-off. */
         const double step = b < 12 ? 0.1 * length : 0.1, saved = u[b];
         double above[ALL_MEASURES], below[ALL_MEASURES];
         u[b] = saved + step;
@@ -637,12 +637,12 @@ static enum wb_status element_eigenvalue(const struct wb_swept_tape *tape,
                        UNKNOWNS, 0.0, &found, values, &vector, 1, &ignored);
     if (info != 0 || found != 1 || !(values[0] > 0.0 && isfinite(values[0])))
         return wb_fail(WB_ERR_CONVERGENCE,
-                       "the largest frequency of an element of the tape was not found");
+                       "the eigenvalue solver failed for an element of the tape");
     *value = values[0] * (1.0 + 1e-9);
     return WB_OK;
 }
 
-/* Whether an element is the other moved and turned, to 1e-9. */
+/* True if one element is the other one moved and rotated, to 1e-9. */
 static bool is_same(const struct element *a, const struct element *b)
 {
     for (int p = 0; p < 4; p++) {
@@ -667,8 +667,8 @@ static bool is_same(const struct element *a, const struct element *b)
            fabs(a->B[2] - b->B[2]) <= 1e-9 * fabs(a->B[2]);
 }
 
-/* How much larger a node's share of the elements, at the most, is than what it is given: masses are
- * means over the stations. */
+/* Largest ratios of a node's share of the elements to the mean that it is given: masses are means
+ * over the stations. */
 static void largest_shares(const struct wb_swept_tape *tape, double *of_mass, double *of_inertia)
 {
     const struct wb_swept_tape_model *m = &tape->model;
@@ -761,7 +761,7 @@ static void find_gradient(const struct wb_swept_tape *tape, const double *field,
     }
 }
 
-/* 1/2 a_i.b_j, symmetric, less `reference` of it. */
+/* 1/2 a_i.b_j, symmetrised, minus `reference`. */
 static struct symmetric products(double a[2][3], double b[2][3], double factor,
                                  const double reference[3])
 {
@@ -793,7 +793,7 @@ static void find_strains(const struct wb_swept_tape *tape, const double *positio
     *K = products(a, d, 1.0, bending);
 }
 
-/* f(E), f(e) = e - e^2 + 4/3 e^3 - 2 e^4, by its eigenvalues. */
+/* f(E) by eigenvalues, f(e) = e - e^2 + 4/3 e^3 - 2 e^4. */
 static struct symmetric logarithm(const struct symmetric *E)
 {
     const double r = hypot(E->difference, E->both), e[2] = {E->mean + r, E->mean - r};

@@ -20,15 +20,15 @@ enum {
 static const struct wb_swept_tape_contact_kernel *const kernels[][2] =
     WB_SWEPT_KERNEL_VERSIONS(wb_swept_tape_contact_kernel);
 
-static const double default_margin = 0.05; /* of the smallest radius */
+static const double default_margin = 0.05; /* over the smallest radius */
 static const int default_interval = 100;
-/* A wire that is farther from a node than this times what would be near is far off beyond doubt,
- * even when it bends as sharply as to so many of its radii. */
+/* Factor on the near distance beyond which a wire is skipped without further checks, valid even for
+ * a bend radius of this many wire radii. */
 static const double far_off = 1.25;
 static const double sharpest_bend = 10.0;
-/* Radii that a node may slide before its place is found anew. Each time the gap along the director
- * becomes that to the circle again, which is no work of the forces: a tape that vibrates on its
- * contact would draw energy from that. */
+/* Radii that a node may slide before its contact point is updated. Each update resets the gap along
+ * the director to that of the circle without work of the forces: if it happened in every vibration,
+ * a tape would draw energy from it. */
 static const double kept_slip = 0.02;
 
 struct surface {
@@ -37,28 +37,28 @@ struct surface {
     double radius; /* m */
 };
 
-/* Where a node is near a wire. */
+/* Contact point of a node on a wire. */
 struct near_place {
     int wire, partner[2], station;
     double gap, round, along, offset;
-    double aside, inwards; /* the centre, seen from between the partners */
+    double aside, inwards; /* the centre, relative to the middle between the two surface nodes */
 };
 
 struct wb_swept_tape_contact {
     const struct wb_swept_tape *tape;             /* borrowed */
     const struct wb_swept_tape_model *tape_model; /* the tape's */
-    const struct wb_swept_cohesion *cohesion;     /* borrowed; NULL: nothing is bonded */
+    const struct wb_swept_cohesion *cohesion;     /* borrowed; NULL: no bonds */
     struct wb_swept_tape_contact_settings settings;
     const struct wb_swept_tape_contact_kernel *kernel;
     struct wb_swept_tape_contact_kernel_model model;
     int n_wires;
     struct surface *surface;                   /* (n_wires) */
     int *surface_nodes;                        /* of all wires */
-    double *centre, *axis;                     /* (n_wires x 3 x n_stations), when refreshed */
+    double *centre, *axis;                     /* (n_wires x 3 x n_stations), at the last refresh */
     int *first;                                /* (n_blocks + 1) */
-    struct wb_swept_tape_contact_strip *strip; /* room for one a node and station */
+    struct wb_swept_tape_contact_strip *strip; /* capacity: one per node and station */
     void *rows, *history;
-    struct near_place *near; /* (n_nodes x n_stations); wire -1: none */
+    struct near_place *near; /* (n_nodes x n_stations); wire -1: no contact */
     int n_strips, n_near;
     long long steps;
     struct wb_memory memory; /* of all arrays */
@@ -87,7 +87,7 @@ static void put(const struct wb_swept_tape_contact *c, void *numbers, size_t at,
     wb_swept_kernel_put(c->tape_model->double_precision, numbers, (ptrdiff_t)at, value);
 }
 
-/* --- what is near --- */
+/* --- search --- */
 
 static void read_node(const struct wb_swept_tape_contact *c, const double *field, int k, int j,
                       double out[3])
@@ -107,7 +107,7 @@ static double *axis_row(const struct wb_swept_tape_contact *c, int wire, int i)
     return c->axis + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
 }
 
-/* Tangents to the centre lines, m a station. */
+/* Tangents to the centre lines, m per station. */
 static void find_axes(struct wb_swept_tape_contact *c)
 {
     const int last = layout_of(c)->n_stations - 1;
@@ -150,8 +150,8 @@ static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double
     return WB_OK;
 }
 
-/* The place along a wire opposite x at station j: whole stations into near->station and the rest
- * into near->along; the centre there and the axis, a unit vector. False beyond the ends. */
+/* The position along a wire opposite to x at station j: integer part in near->station, fraction in
+ * near->along; computes the centre there and the axis, a unit vector. False beyond the ends. */
 static bool find_place_along(const struct wb_swept_tape_contact *c, const double x[3], int j,
                              struct near_place *near, double centre[3], double axis[3])
 {
@@ -163,7 +163,7 @@ static bool find_place_along(const struct wb_swept_tape_contact *c, const double
         from[i] = x[i] - centre_row(c, near->wire, i)[j];
     }
     const double length = wb_vec3_dot(axis, axis), shift = wb_vec3_dot(from, axis) / length;
-    const double slack = 0.01; /* beyond the ends, in stations */
+    const double slack = 0.01; /* tolerance at the ends, in stations */
     double at = j + shift;
     if (!(at >= -slack && at <= last + slack))
         return false;
@@ -179,7 +179,7 @@ static bool find_place_along(const struct wb_swept_tape_contact *c, const double
     return true;
 }
 
-/* A surface node of a wire there. */
+/* Position of a wire's surface node there. */
 static void read_surface(const struct wb_swept_tape_contact *c, const double *position, int node,
                          int j, const struct near_place *near, double out[3])
 {
@@ -191,8 +191,8 @@ static void read_surface(const struct wb_swept_tape_contact *c, const double *po
         out[i] = (1.0 - near->along) * here[i] + near->along * there[i];
 }
 
-/* The two surface nodes between which the line through x in a direction (across the axis) passes,
- * and where: the farther in that direction of two places. */
+/* The two surface nodes between which the line through x in a direction (perpendicular to the axis)
+ * passes, and the weight; of two intersections the farther one in that direction. */
 static bool find_place_round(const struct wb_swept_tape_contact *c, const double *position,
                              const double x[3], const double direction[3], const double axis[3],
                              int j, struct near_place *near, double place[3])
@@ -234,8 +234,8 @@ static bool is_bonded(const struct wb_swept_tape_contact *c, int k, int j, int w
            wb_swept_cohesion_damage(c->cohesion, k, j) < 1.0;
 }
 
-/* Whether a wire's centre line may come as near to x as `reach`: seen from its station j, from
- * where it runs on along its axis and bends away by no more than it can. */
+/* True if a wire's centre line may come as near to x as `reach`, judged from its station j: the
+ * line may bend at most with its largest curvature. */
 static bool may_be_near(const struct wb_swept_tape_contact *c, const double x[3], int w, int j,
                         double reach)
 {
@@ -310,8 +310,8 @@ static void clear_friction(struct wb_swept_tape_contact *c, int k, int j)
         put(c, c->history, (size_t)(k * HISTORY + i) * stride + (size_t)j, 0.0);
 }
 
-/* Numbers of a node that is near, into its strip. */
-static void look_after(struct wb_swept_tape_contact *c, int k, int j, const struct near_place *near,
+/* Writes the values of a node near a wire to its strip. */
+static void track_node(struct wb_swept_tape_contact *c, int k, int j, const struct near_place *near,
                        int s)
 {
     const size_t at = (size_t)s * ROWS * LANES + (size_t)(j % LANES);
@@ -335,7 +335,7 @@ static void begin_slip(struct wb_swept_tape_contact *c, int k, int j, const doub
             aside[i]);
 }
 
-/* A vector without its part along a unit vector, and its length. */
+/* Subtracts a vector's component along a unit vector; returns the length of the rest. */
 static double take_out(double v[3], const double unit[3])
 {
     const double along = wb_vec3_dot(v, unit);
@@ -345,10 +345,10 @@ static double take_out(double v[3], const double unit[3])
     return sqrt(wb_vec3_dot(v, v));
 }
 
-/* Whether a node is still near the place found before. */
-static bool is_still_there(const struct wb_swept_tape_contact *c, const double *position,
-                           const struct near_place *near, int j, const double x[3],
-                           const double d[3])
+/* True if a node is still close enough to its last contact point. */
+static bool is_still_near(const struct wb_swept_tape_contact *c, const double *position,
+                          const struct near_place *near, int j, const double x[3],
+                          const double d[3])
 {
     const double size = sqrt(wb_vec3_dot(d, d));
     double a[3], b[3], g[3], unit[3];
@@ -362,8 +362,8 @@ static bool is_still_there(const struct wb_swept_tape_contact *c, const double *
     return take_out(g, unit) < kept_slip * c->surface[near->wire].radius;
 }
 
-/* The centre seen from the middle between the two surface nodes, in the frame that turns with them
- * (as the kernel's find_depth() has it). */
+/* The centre relative to the middle between the two surface nodes, in the frame that rotates with
+ * them (as find_depth() of the kernel uses it). */
 static void find_centre_beside(const struct wb_swept_tape_contact *c, const double *position, int j,
                                const double centre[3], const double axis[3],
                                struct near_place *near)
@@ -382,8 +382,9 @@ static void find_centre_beside(const struct wb_swept_tape_contact *c, const doub
     near->inwards = wb_vec3_dot(from, across) / length;
 }
 
-/* The place on the wire that a node faces. It is sought against the director, so that g has no part
- * across it at first, or failing that towards the centre. False where there is none. */
+/* The point on the wire below a node. It is searched for along the inward director, so that g
+ * initially has no component across it; if there is none, towards the centre. False if there is
+ * none. */
 static bool find_place(const struct wb_swept_tape_contact *c, const double *position, int j,
                        const double x[3], const double d[3], const double centre[3],
                        const double axis[3], struct near_place *near, double aside[3])
@@ -412,10 +413,11 @@ static bool find_place(const struct wb_swept_tape_contact *c, const double *posi
     return true;
 }
 
-/* Looks at a node at a station, and after it if it is near a wire. Strips of the node in this block
- * begin at `from`. */
-static enum wb_status look_at(struct wb_swept_tape_contact *c,
-                              const struct wb_swept_cohesion_fields *fields, int k, int j, int from)
+/* Searches for contact of a node at a station, and tracks it if it is near a wire. Strips of the
+ * node in this block begin at `from`. */
+static enum wb_status search_node(struct wb_swept_tape_contact *c,
+                                  const struct wb_swept_cohesion_fields *fields, int k, int j,
+                                  int from)
 {
     struct near_place *now = &c->near[k * layout_of(c)->n_stations + j];
     const struct near_place before = *now;
@@ -430,10 +432,10 @@ static enum wb_status look_at(struct wb_swept_tape_contact *c,
     if (!find_wire(c, x, k, j, &near, centre, axis))
         return WB_OK;
     if (near.gap < -0.5 * c->surface[near.wire].radius)
-        return wb_fail_to(c->settings.reason, WB_ERR_DATA, "the tape is %.3g mm deep in wire %d",
-                          -1e3 * near.gap, near.wire + 1);
+        return wb_fail_to(c->settings.reason, WB_ERR_DATA, "the tape penetrates wire %d by %.3g mm",
+                          near.wire + 1, -1e3 * near.gap);
     const double *position = fields->position[near.wire];
-    if (before.wire == near.wire && is_still_there(c, position, &before, j, x, d)) {
+    if (before.wire == near.wire && is_still_near(c, position, &before, j, x, d)) {
         near = before;
     } else if (find_place(c, position, j, x, d, centre, axis, &near, aside)) {
         if (before.wire != near.wire)
@@ -442,7 +444,7 @@ static enum wb_status look_at(struct wb_swept_tape_contact *c,
     } else {
         return WB_OK;
     }
-    look_after(c, k, j, &near, find_strip(c, k, &near, from));
+    track_node(c, k, j, &near, find_strip(c, k, &near, from));
     *now = near;
     return WB_OK;
 }
@@ -460,7 +462,7 @@ static enum wb_status refresh(struct wb_swept_tape_contact *c,
         for (int k = 0; k < layout->n_nodes; k++) {
             const int from = c->n_strips;
             for (int j = b * LANES; j < (b + 1) * LANES && j < layout->n_stations; j++)
-                WB_TRY(look_at(c, fields, k, j, from));
+                WB_TRY(search_node(c, fields, k, j, from));
         }
     }
     c->first[n_blocks] = c->n_strips;
@@ -483,8 +485,8 @@ static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int 
         !(s->friction.decay >= 0.0 && isfinite(s->friction.decay)))
         return wb_fail(
             WB_ERR_ARGUMENT,
-            "friction of the tape: the static coefficient is %g, the kinetic one %g and the decay "
-            "%g s/m: expected 0 or more, and the static coefficient not below the kinetic one",
+            "friction of the tape: static coefficient %g, kinetic coefficient %g, decay %g s/m: "
+            "expected 0 or more, and the static coefficient not below the kinetic one",
             s->friction.mu_static, s->friction.mu_kinetic, s->friction.decay);
     if (!(s->margin >= 0.0 && isfinite(s->margin)) || s->refresh_interval < 0)
         return wb_fail(WB_ERR_ARGUMENT,
@@ -614,7 +616,7 @@ enum wb_status wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *co
     if (contact->steps == 0)
         WB_TRY(refresh(contact, fields));
     contact->kernel->add_forces(&call);
-    /* After the forces: so the slip of every step is seen with one place from begin to end. */
+    /* Refresh after the forces: the slip of each step then refers to one contact point. */
     if (++contact->steps % contact->settings.refresh_interval == 0)
         WB_TRY(refresh(contact, fields));
     return WB_OK;
@@ -627,7 +629,7 @@ int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact)
 
 /* --- checkpoints --- */
 
-/* All there is room for, so that the sizes are fixed. */
+/* Includes unused capacity, so that sizes are fixed. */
 void wb_swept_tape_contact_visit(struct wb_swept_tape_contact *contact,
                                  struct wb_checkpoint *checkpoint)
 {
@@ -655,7 +657,7 @@ static double largest_stiffness(const struct wb_swept_tape_contact *c)
     return fmax(c->settings.normal_stiffness, c->settings.shear_stiffness);
 }
 
-/* See fe/swept/swept_cohesion.c. */
+/* Factor for moving both sides; see fe/swept/swept_cohesion.c. */
 static const double both_sides = 2.0;
 
 static double largest_area(const struct wb_swept_tape_contact *c)
@@ -678,7 +680,7 @@ double wb_swept_tape_contact_stiffness_per_mass(const struct wb_swept_tape_conta
     double most = 0.0;
 
     for (int w = 0; w < contact->n_wires; w++) {
-        /* The place lies on a chord, at most so far below the circle. */
+        /* The contact point lies on a chord, at most this far below the circle. */
         const double below = contact->surface[w].radius * (1.0 - cos(M_PI / contact->surface[w].n));
         const double o = 0.5 * contact->tape_model->thickness + below;
         for (int k = 0; k < layout_of(contact)->n_nodes; k++)
@@ -692,8 +694,8 @@ double wb_swept_tape_contact_wire_stiffness_per_mass(const struct wb_swept_tape_
 {
     const struct surface *surface = &contact->surface[wire];
     const double spacing = contact->tape_model->spacing, area = largest_area(contact);
-    /* A surface node has the tape's nodes on the two chords beside it, by weights from 0 to 1: at
-     * most one more than those of a chord. */
+    /* A surface node carries the tape's nodes on its two chords, with weights from 0 to 1: at most
+     * one more than the nodes of a chord. */
     const double chord = 2.0 * surface->radius * sin(M_PI / surface->n);
     const double nodes = chord * spacing / area + 1.0;
     double least = (double)INFINITY;

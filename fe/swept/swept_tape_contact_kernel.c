@@ -10,7 +10,8 @@ enum {
 
 struct place {
     vec g[3], director[3], round, along, offset, area;
-    vec out[3], depth; /* a unit vector from the wire's centre to the node; below zero: apart */
+    vec out[3],
+        depth; /* unit vector from the wire's centre to the node; penetration, negative if apart */
     vec across[3], aside, inwards, turn, lever, shear; /* see find_depth() */
     mask is_near;
 };
@@ -19,7 +20,7 @@ struct totals {
     vec normal, tangential, friction, deepest;
 };
 
-/* Whether stations from `j` on are all in a row; else lanes go one by one. */
+/* True if stations from `j` on are all within a row; otherwise lanes are read one by one. */
 INLINE bool is_inside(const struct wb_swept_tape_contact_kernel_model *m, int j)
 {
     return j >= 0 && j + LANES <= m->stride;
@@ -59,9 +60,9 @@ INLINE void add_to(const struct wb_swept_tape_contact_kernel_model *m, void *fie
         row[station_of(m, j + l)] += v[l];
 }
 
-/* Where the wire's centre is, from the two surface nodes: beside their middle, in a frame that
- * turns with them; and how far the node is from there, across the axis. `chord` is from one to the
- * other, `edge` from station to station, `from` the node seen from the first. */
+/* Computes the wire's centre from the two surface nodes (relative to their middle, in a frame that
+ * rotates with them) and the node's distance from there, perpendicular to the axis. `chord` is from
+ * one node to the other, `edge` from station to station, `from` the node relative to the first. */
 INLINE void find_depth(real radius, const vec chord[3], const vec edge[3], const vec from[3],
                        struct place *p)
 {
@@ -89,10 +90,10 @@ INLINE void find_depth(real radius, const vec chord[3], const vec edge[3], const
     for (int i = 0; i < 3; i++)
         p->out[i] = inverse * v[i];
     p->depth = splat(radius) - square * inverse;
-    /* What the axis turns, and with it the frame, when the first node's edge does. */
+    /* Rotation of the axis, and of the frame, with the first node's edge. */
     p->lever = shift * per_edge;
     p->shear = tilt * per_edge;
-    /* How the centre follows when the two nodes turn. */
+    /* Motion of the centre when the two nodes rotate. */
     p->turn = span * (p->aside * dot(p->out, p->across) - p->inwards * dot(p->out, beside));
 }
 
@@ -126,8 +127,8 @@ INLINE void find_place(const struct wb_swept_tape_contact_kernel_model *m,
     find_depth((real)strip->radius, chord, edge, from, out);
 }
 
-/* The node is pushed out by A p, the wire's centre in; friction takes A t from the node, which is
- * o of its director away from where it acts. */
+/* Pressure pushes the node outwards by A p and the wire's centre inwards; friction subtracts A t
+ * from the node, with the lever o along its director. */
 INLINE void add_forces_at(const struct wb_swept_tape_contact_kernel_model *m,
                           const struct wb_swept_cohesion_fields *fields,
                           const struct wb_swept_tape_contact_strip *strip,
@@ -154,9 +155,9 @@ INLINE void add_forces_at(const struct wb_swept_tape_contact_kernel_model *m,
     }
 }
 
-/* A node's friction at LANES stations. */
+/* Friction of a node at LANES stations. */
 struct friction {
-    vec drag[3], lost[3], aside[3]; /* aside: g across the director */
+    vec drag[3], lost[3], aside[3]; /* aside: g perpendicular to the director */
 };
 
 INLINE void store_friction(const struct wb_swept_tape_contact_kernel_model *m, mask where,
@@ -194,11 +195,12 @@ INLINE void run_strip(const struct wb_swept_tape_contact_kernel_model *m,
     for (int i = 0; i < 3; i++) {
         const real *row = history + (size_t)i * stride;
         unit[i] = inverse * place.director[i];
-        /* Without the part along the director, which turning alone would make slide. */
+        /* Without the component along the director, because pure rotation would otherwise cause
+         * slip. */
         f.aside[i] = place.g[i] - n * inverse * unit[i];
         f.drag[i] = load(row + WB_SWEPT_TAPE_CONTACT_DRAG * stride);
         f.lost[i] = load(row + WB_SWEPT_TAPE_CONTACT_LOST * stride);
-        /* Of the wire's surface against the tape's. */
+        /* Of the wire's surface relative to the tape's. */
         at.slip[i] = load(row + WB_SWEPT_TAPE_CONTACT_BEFORE * stride) - f.aside[i];
         at.turn[i] = splat(0);
     }

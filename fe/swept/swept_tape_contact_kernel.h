@@ -1,8 +1,9 @@
 /* The kernels behind fe/swept/swept_tape_contact.h: forces between tape and wires. Lanes are
  * stations.
  *
- * A strip is those stations of a ring node in one block that face the same pair of surface nodes of
- * a wire, at stations as far ahead; at the other stations of the block its area is zero.
+ * A strip contains the stations of a ring node in one block whose contact points lie between the
+ * same pair of surface nodes of a wire, with the same offset of stations; at the other stations of
+ * the block its area is zero.
  */
 #ifndef WB_FE_SWEPT_SWEPT_TAPE_CONTACT_KERNEL_H
 #define WB_FE_SWEPT_SWEPT_TAPE_CONTACT_KERNEL_H
@@ -19,23 +20,24 @@ enum {
     WB_SWEPT_TAPE_CONTACT_ALONG,     /* weight of the second station */
     WB_SWEPT_TAPE_CONTACT_OFFSET,    /* o, m */
     WB_SWEPT_TAPE_CONTACT_AREA,      /* m2 */
-    WB_SWEPT_TAPE_CONTACT_ASIDE, /* the centre from between the two nodes, m: towards the second, */
-    WB_SWEPT_TAPE_CONTACT_INWARDS, /* and across, by the axis times that direction */
+    WB_SWEPT_TAPE_CONTACT_ASIDE, /* the centre from the middle between the two nodes, m: towards the
+                                    second */
+    WB_SWEPT_TAPE_CONTACT_INWARDS, /* and perpendicular, by the axis times that direction */
     WB_SWEPT_TAPE_CONTACT_ROWS
 };
 
 /* Rows of a ring node, a stride each. */
 enum {
-    WB_SWEPT_TAPE_CONTACT_DRAG = 0, /* friction, Pa, and what its sums have lost by rounding */
+    WB_SWEPT_TAPE_CONTACT_DRAG = 0, /* friction, Pa, and the rounding error of its sum (Kahan) */
     WB_SWEPT_TAPE_CONTACT_LOST = 3,
-    WB_SWEPT_TAPE_CONTACT_BEFORE = 6, /* g across the director in the step before, m */
+    WB_SWEPT_TAPE_CONTACT_BEFORE = 6, /* g perpendicular to the director in the previous step, m */
     WB_SWEPT_TAPE_CONTACT_HISTORY = 9
 };
 
 struct wb_swept_tape_contact_strip {
     int node, wire, partner[2];
-    int station;   /* of the first, beside the node's own */
-    double radius; /* m: distance from the wire's centre to the tape's middle surface in touch */
+    int station;   /* of the first, relative to the node's own station */
+    double radius; /* distance from the wire's centre to the tape's middle surface in contact, m */
 };
 
 struct wb_swept_tape_contact_kernel_model {

@@ -1,18 +1,18 @@
 /* Forces of a tape of 4-node shells, compiled once for each type and instruction set (see
  * swept_tape_kernel.h). Lanes are consecutive elements along the axis.
  *
- * Positions x and directors D of an element are bilinear in xi (along the axis) and eta (round the
+ * Positions x and directors D of an element are bilinear in xi (along the axis) and eta (around the
  * ring), each from -1/2 to 1/2:
  *
  *     x = x0 + X1 xi + X2 eta + 2 XH xi eta,  d = D0 + D1 xi + D2 eta + 2 DH xi eta.
  *
- * At the middle, in the orthonormal frame of the reference state (B turns derivatives to it),
+ * At the middle, in the orthonormal frame of the reference state (B transforms derivatives to it),
  *
  *     a_1, a_2 = dx,  d_1, d_2 = dd,
  *     E(z) = (1/2 (a_i.a_j) - reference) + z (sym(a_i.d_j) - reference),
  *
- * z from the middle surface (z^2 d_i.d_j / 2 and what curvature does to volumes are left out). Each
- * point through the thickness has the logarithmic strain E - E^2 + 4/3 E^3 - 2 E^4 and plane
+ * z from the middle surface (z^2 d_i.d_j / 2 and the effect of curvature on volumes are neglected).
+ * Each point through the thickness has the logarithmic strain E - E^2 + 4/3 E^3 - 2 E^4 and plane
  * stress. All symmetric 2 x 2 matrices are kept as mean (11 + 22) / 2, half difference (11 - 22) /
  * 2 and 12.
  *
@@ -23,12 +23,12 @@
  *     g_1 = X1.D0 + XH.D2 / 2,  g_2 = X2.D0 + XH.D1 / 2,
  *     w_1 = X1.D2 / 2 + XH.D0,  w_2 = X2.D1 / 2 + XH.D0,
  *
- * whose energies are those of shear that is linear between the edges. What is left are hourglass
- * vectors, with their parts that linear fields have taken out: h = XH - c_1 a_1 - c_2 a_2 and the
- * same of d. Their energies are 1/2 k (h.a_i)^2: no rotation changes them, and h out of the plane
- * is shear. Directors keep their length by 1/2 k ((d.d - 1) / 2)^2 at the nodes.
+ * whose energies are those of shear that is linear between the edges. The remaining vectors are
+ * hourglass vectors, without the parts of linear fields: h = XH - c_1 a_1 - c_2 a_2, and the same
+ * for d. Their energies 1/2 k (h.a_i)^2 are invariant to rotations; h out of the plane is shear.
+ * Directors keep their length by 1/2 k ((d.d - 1) / 2)^2 at the nodes.
  *
- * Forces are less the derivatives of all that, exactly, at given plastic strains.
+ * Forces are the exact negative derivatives of this energy at constant plastic strains.
  */
 #include "fe/swept/swept_tape_kernel.h"
 #include "fe/swept/swept_simd.h"
@@ -41,15 +41,16 @@ enum {
     BLOCK = WB_SWEPT_LANES
 };
 
-/* A node of the ring between two stations: sums and differences of position (sums as they are) and
- * director, and less the derivatives of the energy by them. */
+/* A node of the ring between two stations: sums and differences of position (sums in double) and
+ * director, and the negative derivatives of the energy with respect to them. */
 struct line {
     struct wide sum[3];
     vec along[3], director[3], turn[3];
     vec f_sum[3], f_along[3], f_director[3], f_turn[3];
 };
 
-/* The seven vectors of an element, and less the energy's derivatives by them. */
+/* The seven vectors of an element, and the negative derivatives of the energy with respect to
+ * them. */
 struct modes {
     vec X1[3], X2[3], XH[3], D0[3], D1[3], D2[3], DH[3];
 };
@@ -74,7 +75,7 @@ struct totals {
     vec stored, artificial, largest;
 };
 
-/* The node's numbers from station j on. */
+/* Reads a node from station j on. */
 INLINE void read_line(const struct wb_swept_tape_kernel_call *call, int k, int j, struct line *line)
 {
     const size_t stride = (size_t)call->model->layout.stride;
@@ -145,7 +146,7 @@ INLINE void find_gradients(const real *c, const struct modes *m, struct gradient
     }
 }
 
-/* Places are those of swept_tape_kernel.h. */
+/* Indices are those of swept_tape_kernel.h. */
 INLINE void find_measures(const real *c, const struct modes *m, const struct gradients *g,
                           vec e[WB_SWEPT_TAPE_N_MEASURES])
 {
@@ -208,15 +209,15 @@ INLINE vec part_of(const struct law *law, vec x)
     return yielded_part(law->table, WB_SWEPT_TAPE_TERMS, x);
 }
 
-/* Takes the plastic strain from a strain, and returns the rest to the yield surface.
+/* Subtracts the plastic strain from a strain, and returns it to the yield surface.
  *
- * With the trial's stresses over 3 mu, t of the mean and s of the deviator in the plane, the length
- * l = p - p0 and the yield stress q = y + x - p, the stress on the surface is t q / A and s q / B,
+ * With the trial stresses over 3 mu, t of the mean and s of the deviator in the plane, the length l
+ * = p - p0 and the yield stress q = y + x - p, the stress on the surface is t q / A and s q / B,
  *
  *     A = q + mean_slope l,  B = q + l = y + x - p0,  S = (t / A)^2 + (s / B)^2 = 1.
  *
- * Newton's method for x on 1/sqrt(S) = 1, from the x that were right if mean_slope were 1: mostly
- * one step, as increments are small. With r = p / x, dp/dx = r / (r + n (1 - r)). */
+ * Newton's method for x on 1/sqrt(S) = 1; the initial guess is exact for mean_slope = 1. Usually
+ * one step suffices, as increments are small. With r = p / x, dp/dx = r / (r + n (1 - r)). */
 INLINE void return_to_yield(const struct law *law, real *history, struct symmetric *e)
 {
     const real enough = sizeof(real) == 4 ? (real)3e-4 : (real)1e-7;
@@ -259,7 +260,7 @@ INLINE void return_to_yield(const struct law *law, real *history, struct symmetr
         p = x * r;
         A = B - less * (p - p0);
     }
-    /* A and B have moved by little since their inverses. */
+    /* A and B changed little since their inverses were computed. */
     const vec length = maximum(p - p0, (vec){0});
     const vec of_mean =
         choose(yields, law->mean_slope * length * per_A * (2 - A * per_A), (vec){0});
@@ -304,8 +305,8 @@ INLINE void find_stresses(const struct wb_swept_tape_kernel_model *m, const stru
     }
 }
 
-/* Less the derivatives by a, d of membrane and bending, and of the hourglass energies with the
- * forces `q` on these measures. */
+/* Negative derivatives with respect to a and d of membrane and bending, and of the hourglass
+ * energies with the forces `q` on these measures. */
 INLINE void gradient_forces(const struct gradients *g, const struct symmetric *N,
                             const struct symmetric *M, const vec q[4], struct gradients *f)
 {
@@ -324,7 +325,8 @@ INLINE void gradient_forces(const struct gradients *g, const struct symmetric *N
     }
 }
 
-/* From those by gradients and shear (forces `s` by g_1, g_2, `w` by w_1, w_2) to those by modes. */
+/* Transforms derivatives with respect to gradients and shear (forces `s` for g_1, g_2, `w` for w_1,
+ * w_2) to those with respect to modes. */
 INLINE void mode_forces(const real *c, const struct modes *m, const struct gradients *g,
                         const vec s[2], const vec w[2], struct modes *f)
 {
@@ -396,7 +398,7 @@ INLINE void run_element(const struct wb_swept_tape_kernel_model *model, const st
     add_forces(&f, a, b);
 }
 
-/* Adds the totals of elements of the lanes that count. */
+/* Adds the totals of the counted lanes. */
 static void add_sums(const struct totals *totals, const struct wb_swept_range *lanes, double limit,
                      struct wb_swept_tape_sums *sums)
 {
@@ -408,7 +410,7 @@ static void add_sums(const struct totals *totals, const struct wb_swept_range *l
     }
 }
 
-/* Padding, whose positions are of no meaning, has no forces. */
+/* Padding has undefined positions: clear its forces. */
 INLINE void clear_padding(int left, struct line *line)
 {
     const mask active = first_lanes(left);
@@ -420,8 +422,8 @@ INLINE void clear_padding(int left, struct line *line)
     }
 }
 
-/* Forces and moments at stations j to j + LANES - 1: of the elements that begin there, and of those
- * that end there, whose last comes with the next vector. */
+/* Writes forces and moments at stations j to j + LANES - 1: of the elements that begin there, and
+ * of those that end there, of which the last ones come with the next vector. */
 INLINE void write_line(const struct wb_swept_tape_kernel_call *call, int k, int j,
                        struct line *line, struct wb_swept_tape_sums *sums)
 {
@@ -455,8 +457,8 @@ INLINE void write_line(const struct wb_swept_tape_kernel_call *call, int k, int 
     }
 }
 
-/* One vector of stations. Nodes are read and written one after the other; the first of a closed
- * ring is written last. */
+/* One vector of stations. Nodes are read and written in order; the first node of a closed ring is
+ * written last. */
 INLINE void run_stations(const struct wb_swept_tape_kernel_call *call, const struct law *law, int j,
                          struct wb_swept_tape_sums *sums)
 {
@@ -511,8 +513,8 @@ INLINE void run(const struct wb_swept_tape_kernel_call *call, struct wb_swept_ta
         run_stations(call, &law, j, sums);
 }
 
-/* Numbers too small for the type's full precision are taken as zero meanwhile: products of strains
- * near zero otherwise double the time. */
+/* Flush denormal numbers to zero during the kernel: products of strains near zero would otherwise
+ * double its time. */
 static void forces(const struct wb_swept_tape_kernel_call *call)
 {
 #if defined(__SSE2__)

@@ -7,7 +7,8 @@
  *     history[(((block n_elements + k) n_points + point) WB_SWEPT_TAPE_HISTORY + component) ...]
  *
  * Components of history: plastic strain (11 + 22) / 2, (11 - 22) / 2, 12, and accumulated plastic
- * strain. Where no element is, all constants are zero: there are no strains and no forces there.
+ * strain. In lanes without an element all constants are zero, so that there are no strains and no
+ * forces.
  */
 #ifndef WB_FE_SWEPT_SWEPT_TAPE_KERNEL_H
 #define WB_FE_SWEPT_SWEPT_TAPE_KERNEL_H
@@ -20,11 +21,12 @@
 enum {
     WB_SWEPT_TAPE_MOST_POINTS = 5,
     WB_SWEPT_TAPE_HISTORY = 4,
-    WB_SWEPT_TAPE_TERMS = 6, /* of an octave of the hardening law's table */
-    WB_SWEPT_TAPE_CARRY = 6  /* vectors of a node from block to block */
+    WB_SWEPT_TAPE_TERMS = 6, /* terms per octave of the hardening law's table */
+    WB_SWEPT_TAPE_CARRY = 6  /* vectors of a node carried from block to block */
 };
 
-/* Constants of an element. B turns derivatives by the parameters to those along its frame. */
+/* Constants of an element. B transforms derivatives with respect to the parameters to those along
+ * its frame. */
 enum {
     WB_SWEPT_TAPE_B11 = 0,
     WB_SWEPT_TAPE_B21,
@@ -33,11 +35,11 @@ enum {
                        */
     WB_SWEPT_TAPE_C2,
     WB_SWEPT_TAPE_VOLUME,   /* m3 */
-    WB_SWEPT_TAPE_MEASURES, /* of the reference state, from here */
+    WB_SWEPT_TAPE_MEASURES, /* measures of the reference state, from here on */
 
-    /* Places among the measures. */
+    /* Indices of the measures. */
     WB_SWEPT_TAPE_MEMBRANE = 0,   /* (a11 + a22) / 4, (a11 - a22) / 4, a12 / 2 */
-    WB_SWEPT_TAPE_BENDING = 3,    /* the same of (11), (22), 2 (12) of a.d: halves, half */
+    WB_SWEPT_TAPE_BENDING = 3,    /* the same components of (11), (22), 2 (12) of a.d */
     WB_SWEPT_TAPE_SHEAR = 6,      /* mean, along the frame */
     WB_SWEPT_TAPE_WARP = 8,       /* half differences of shear between opposite edges, m */
     WB_SWEPT_TAPE_HOURGLASS = 10, /* membrane (2), m, and bending (2), 1 */
@@ -57,15 +59,15 @@ struct wb_swept_tape_kernel_model {
     double shear;                             /* 5/6 mu, Pa */
     double membrane_hourglass;                /* coefficient times E / 3, Pa */
     double bending_hourglass;                 /* that times h^2 / 12, N */
-    double yield_strain;                      /* sigma_Y / (3 mu); infinite when elastic */
-    double exponent;   /* of the hardening law: n; Newton's method takes it as constant */
-    double mean_share; /* E / (1 - nu) / (3 mu), of a mean strain */
+    double yield_strain;                      /* sigma_Y / (3 mu); infinite if elastic */
+    double exponent;   /* n of the hardening law; taken as constant by Newton's method */
+    double mean_share; /* E / (1 - nu) / (3 mu), for a mean strain */
     double mean_slope; /* E / (2 (1 - nu)) / (3 mu) */
     double strain_limit;
-    struct wb_swept_range counted; /* stations, in sums; of the elements those that begin there */
+    struct wb_swept_range counted; /* stations in sums; elements that begin there */
     const void *table;             /* of the hardening law, octaves of WB_SWEPT_TAPE_TERMS terms */
-    void *reference;               /* written by measure only */
-    const void *length_stiffness;  /* (n_nodes x stride) of directors, N m */
+    void *reference;               /* written by measure() only */
+    const void *length_stiffness;  /* (n_nodes x stride), of directors, N m */
 };
 
 struct wb_swept_tape_kernel_call {
@@ -75,12 +77,12 @@ struct wb_swept_tape_kernel_call {
     void *history;
     void *carry; /* (n_nodes x CARRY x WB_SWEPT_LANES), kept between calls */
     int first_block, end_block;
-    struct wb_swept_tape_sums *sums; /* added to; NULL: none wanted */
+    struct wb_swept_tape_sums *sums; /* added to; may be NULL */
 };
 
 struct wb_swept_tape_kernel {
     void (*forces)(const struct wb_swept_tape_kernel_call *call);
-    /* Makes the measures of the present state those of reference. */
+    /* Stores the measures of the current state as those of the reference state. */
     void (*measure)(const struct wb_swept_tape_kernel_call *call);
 };
 

@@ -11,7 +11,7 @@ enum {
 };
 
 /* Term `row` of the table for each lane's octave. Exponents are biased by 31 and a multiple of 32,
- * so that their last five bits count the octaves from 2^-31. */
+ * so their last five bits count the octaves from 2^-31. */
 INLINE vec look_up(const real *row, vec_bits exponent)
 {
 #if BYTES == 64 && !REAL_IS_DOUBLE
@@ -36,7 +36,7 @@ INLINE vec look_up(const real *row, vec_bits exponent)
 #endif
 }
 
-/* The part p / x of 2^-31 <= x < 2, from a table of so many terms. */
+/* The ratio p / x for 2^-31 <= x < 2, from a table with this many terms. */
 INLINE vec yielded_part(const real *table, int terms, vec x)
 {
     const vec_bits exponent = (vec_bits)x >> MANTISSA;

@@ -1,4 +1,4 @@
-/* Wires as rings of nodes for the tests of contact: placed section by section, moved by hand. */
+/* Wires as rings of nodes for the tests of contact, with prescribed positions. */
 #ifndef WB_TESTS_FE_SWEPT_CONTACTS_H
 #define WB_TESTS_FE_SWEPT_CONTACTS_H
 
@@ -9,7 +9,7 @@
 #include "fe/swept/swept_contact.h"
 
 enum {
-    CONTACTS_NODES = 8, /* of a section: a node in the middle is the last, without contact */
+    CONTACTS_NODES = 8, /* of a section; the last one is a node in the middle, without contact */
     CONTACTS_SURFACE = 7,
     CONTACTS_MOST_WIRES = 8
 };
@@ -29,7 +29,7 @@ struct contacts {
     double friction, damping;                  /* dissipated so far */
 };
 
-/* Surface nodes lie at uneven angles and a little within the radius of contact. */
+/* Surface nodes are at uneven angles and slightly inside the contact radius. */
 static inline void contacts_init(struct contacts *c,
                                  const struct wb_swept_contact_settings *settings, int n_wires,
                                  const double *radius, int n_stations, double spacing)
@@ -107,7 +107,8 @@ static inline void contacts_place_straight(struct contacts *c, int w, const doub
         contacts_place(c, w, j, (double[3]){start[0] + c->spacing * j, start[1], start[2]}, R);
 }
 
-/* Two wires along x that penetrate by `depth`, the second at `angle` from +y and shifted along. */
+/* Two wires along x that penetrate by `depth`, the second at `angle` from +y and shifted along
+ * x. */
 static inline void contacts_make_pair(struct contacts *c,
                                       const struct wb_swept_contact_settings *settings,
                                       const double radius[2], double depth, double angle,

@@ -1,4 +1,4 @@
-/* Wires of swept hexahedra for the tests: fields, and what is put into them. */
+/* Wires of swept hexahedra for the tests: fields and their initial values. */
 #ifndef WB_TESTS_FE_SWEPT_SWEPT_BODIES_H
 #define WB_TESTS_FE_SWEPT_SWEPT_BODIES_H
 

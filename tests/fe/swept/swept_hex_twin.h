@@ -1,5 +1,5 @@
-/* The slow twin of fe/swept/swept_hex.c, and the textbook's way: 8-node elements one by one, nodes
- * gathered and forces scattered, shape functions in three dimensions, the whole deformation
+/* The slow twin of fe/swept/swept_hex.c, in textbook form: 8-node elements one by one, nodes
+ * gathered and forces scattered, shape functions in three dimensions, the complete deformation
  * gradient, the exact logarithm by eigenvectors, the yield stress by Newton's method; all in
  * double. Node fields are plain: [(station n_nodes + node) 3 + component]. */
 #ifndef WB_TESTS_FE_SWEPT_SWEPT_HEX_TWIN_H
@@ -23,8 +23,9 @@ struct twin_sums {
 static const double twin_corner[8][3] = {{-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}, {-1, -1, 1},
                                          {1, -1, -1},  {1, 1, -1},  {1, 1, 1},  {1, -1, 1}};
 
-/* Gradients of the eight shape functions by the reference position, and of the field
- * (eta zeta); returns the map's determinant. Local coordinates: along, and the section's two. */
+/* Gradients of the eight shape functions with respect to the reference position, and of the field
+ * (eta zeta); returns the map's determinant. Local coordinates: along the axis, and the section's
+ * two. */
 static inline double twin_gradients(const double X[8][3], const double at[3], double grad[8][3],
                                     double field[3])
 {
@@ -61,7 +62,7 @@ static inline double twin_gradients(const double X[8][3], const double at[3], do
     return det;
 }
 
-/* The reference element: mean gradients, volume, gradients on the four lines along. */
+/* The reference element: mean gradients, volume, gradients on the four lines along the axis. */
 struct twin_element {
     double volume, mean[8][3], hourglass[4][8], stiffness[4];
     double axial[4][8], weight[4];
@@ -191,7 +192,7 @@ static inline void twin_logarithm(double E[3][3], struct twin_spectrum *s, doubl
     double C[3][3];
     for (int i = 0; i < 9; i++)
         C[i / 3][i % 3] = 2 * E[i / 3][i % 3];
-    twin_eigen(C, s->V); /* of C - 1: digits of small strains stay */
+    twin_eigen(C, s->V); /* of C - 1, which keeps the digits of small strains */
     for (int k = 0; k < 3; k++)
         s->c[k] = C[k][k];
     for (int i = 0; i < 9; i++) {
@@ -219,7 +220,7 @@ static inline void twin_pull_back(const struct twin_spectrum *s, double T[3][3],
     }
 }
 
-/* Returns a trial deviator to the yield surface; e becomes the elastic one. */
+/* Returns a trial deviator to the yield surface; e becomes the elastic deviator. */
 static inline void twin_return(const struct wb_material *m, struct twin_point *p, double e[3][3])
 {
     const double three_mu = 1.5 * m->youngs_modulus / (1 + m->poissons_ratio);
@@ -233,7 +234,7 @@ static inline void twin_return(const struct wb_material *m, struct twin_point *p
         three_mu * size <=
             m->yield_stress + m->strength_coefficient * pow(p->accumulated, m->hardening_exponent))
         return;
-    /* Newton's method between bounds: where it leaves them, or p is 0, they are halved. */
+    /* Newton's method with a bracket, bisected if a step leaves it or p is 0. */
     double low = 0.0, high = size, step = 0.0;
     for (int k = 0; k < 200; k++) {
         const double now = p->accumulated + step;
@@ -296,7 +297,8 @@ static inline void twin_element_forces(const struct wb_swept_hex_model *m,
     twin_logarithm(E, &spectrum, L);
     const double trace = L[0][0] + L[1][1] + L[2][2];
     sums->stored += 0.5 * kappa * e->volume * trace * trace;
-    double shared[3] = {0.0, 0.0, 0.0}; /* of axial strain and shears: what the points have */
+    double shared[3] = {0.0, 0.0,
+                        0.0}; /* of axial strain and shears, which the points have individually */
     for (int q = 0; q < (one ? 1 : 4); q++) {
         const double volume = e->volume * (one ? 1.0 : e->weight[q]);
         double t[3][3], F1[3] = {0.0, 0.0, 0.0}, axial = 0.0;
@@ -368,7 +370,7 @@ static inline void twin_element_forces(const struct wb_swept_hex_model *m,
     }
 }
 
-/* Writes less the energy's derivatives into `force`. */
+/* Writes the negative derivatives of the energy to `force`. */
 static inline struct twin_sums twin_forces(struct twin *twin, const double *position, double *force)
 {
     const struct wb_swept_hex_model *m = &twin->model;

@@ -1,4 +1,4 @@
-/* A wire of swept hexahedra that moves: body, masses and velocities together. */
+/* A moving wire of swept hexahedra: body, masses and velocities. */
 #ifndef WB_TESTS_FE_SWEPT_SWEPT_RUNS_H
 #define WB_TESTS_FE_SWEPT_SWEPT_RUNS_H
 
@@ -38,7 +38,7 @@ static inline struct swept_setup swept_type3(int core, int rings, int elements, 
                                 .selective = 1.0};
 }
 
-/* The mass per length is the circle's, whatever the area of the mesh. */
+/* The mass per length is the circle's, for any area of the mesh. */
 static inline void swept_run_init(struct swept_run *run, const struct swept_setup *s)
 {
     *run = (struct swept_run){0};
@@ -89,7 +89,7 @@ static inline double *swept_velocity(const struct swept_run *run, int node, int 
     return &run->fields.velocity[swept_at(&run->body.layout, node, c, station)];
 }
 
-/* Forces, then velocities by `first` and positions by `dt`. */
+/* Computes forces, then advances velocities by `first` and positions by `dt`. */
 static inline void swept_advance(struct swept_run *run, double first, double dt,
                                  struct wb_swept_step_sums *sums)
 {

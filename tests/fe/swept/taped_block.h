@@ -164,7 +164,7 @@ static inline void sum_tape(const struct pair *p, double sum[3])
 
 static const double whole_area = 2e-3 * 0.5e-3 * (STATIONS - 1);
 
-/* Positions, directors and wire off by much, turned. */
+/* Positions, directors and wire randomly displaced by a large amount, and rotated. */
 static inline struct pair shaken(const struct wb_swept_cohesion_settings *settings, bool is_double,
                                  enum wb_swept_instructions instructions)
 {

@@ -1,4 +1,4 @@
-/* Tapes for the tests: fields, shapes, and statics by relaxation. */
+/* Tapes for the tests: fields, shapes, and statics by dynamic relaxation. */
 #ifndef WB_TESTS_FE_SWEPT_TAPES_H
 #define WB_TESTS_FE_SWEPT_TAPES_H
 
@@ -23,7 +23,7 @@ struct test_tape {
     void *force, *moment;
 };
 
-/* A model of double precision; its positions are made by the caller and freed with the tape. */
+/* A model in double precision; the caller sets its positions, which are freed with the tape. */
 static inline struct wb_swept_tape_model tape_model(const struct wb_material *material, int nodes,
                                                     int stations, bool closed, double spacing)
 {
@@ -123,8 +123,8 @@ static inline void make_sheet(struct wb_swept_tape_model *model, double a, doubl
     }
 }
 
-/* A tube about x whose nodes wind by `winding` radians a station. The ring of a closed one spans a
- * turn, of an open one `turns`. */
+/* A tube about x whose nodes wind by `winding` radians per station. The ring of a closed tube spans
+ * one turn, that of an open one `turns`. */
 static inline void make_tube(struct wb_swept_tape_model *model, double radius, double winding,
                              double turns)
 {

@@ -1,9 +1,9 @@
-/* Forces of cohesion that does not break: tractions, balance, energy, stable step. */
+/* Forces of cohesion without damage: tractions, balance, energy, stable step. */
 #include "fe/swept/swept_private.h"
 
 #include "tests/fe/swept/taped_block.h"
 
-static void opening_is_borne_by_the_normal_stiffness_alone(void **unused)
+static void opening_uses_only_the_normal_stiffness(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
@@ -22,7 +22,7 @@ static void opening_is_borne_by_the_normal_stiffness_alone(void **unused)
         assert_close(sum[2], 0.0, 1e-12 * fabs(sum[1]));
         assert_close_relative(sums.stored, 0.5 * 30e9 * open * open * whole_area, 1e-9);
         assert_true(sums.dissipated == 0.0);
-        /* A node inside: its own area; half at the ends. */
+        /* An inner node has its full area; half at the ends. */
         assert_close_relative(tape_load(&p.tape, p.tape.force, 2, 1, 7),
                               -30e9 * open * width / 4.0 * spacing, 1e-9);
         assert_close_relative(tape_load(&p.tape, p.tape.force, 2, 1, 19),
@@ -31,7 +31,7 @@ static void opening_is_borne_by_the_normal_stiffness_alone(void **unused)
     pair_destroy(&p);
 }
 
-static void shear_is_borne_by_the_shear_stiffness_alone(void **unused)
+static void shear_uses_only_the_shear_stiffness(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
@@ -45,13 +45,13 @@ static void shear_is_borne_by_the_shear_stiffness_alone(void **unused)
     assert_close_relative(sum[2], 10e9 * 4e-6 * whole_area, 1e-9);
     assert_close(sum[1], 0.0, 1e-12 * sum[2]);
     assert_close_relative(sums.stored, 0.5 * 10e9 * 25e-12 * whole_area, 1e-9);
-    /* The shear acts at the tape's lower side: o times it turns the directors. */
+    /* The shear acts at the tape's lower side, with the lever o on the directors. */
     assert_close_relative(tape_load(&p.tape, p.tape.moment, 2, 0, 7),
                           gap * 10e9 * 3e-6 * width / 4.0 * spacing, 1e-9);
     pair_destroy(&p);
 }
 
-static void shear_of_a_turned_pair_follows_it(void **unused)
+static void shear_rotates_with_the_pair(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
@@ -73,7 +73,7 @@ static void shear_of_a_turned_pair_follows_it(void **unused)
                          whole_area * (R[i][0] * traction[0] + R[i][1] * traction[1] +
                                        R[i][2] * traction[2]),
                          (is_double ? 1e-9 : 2e-5) * whole_area * 150e3);
-        /* At rest when turned: to round-off of an offset, 1e-4 m. */
+        /* Zero after rotation, to the round-off of an offset of 1e-4 m. */
         set_tape(&p, 0.0, 0.0, 0.0);
         turn_field(&p.tape.layout, p.tape.position, angle);
         assert_close(pair_forces(&p).stored, 0.0, is_double ? 1e-20 : 1e-14);
@@ -246,7 +246,7 @@ static double fastest(struct pair *p, const double *mass, const double *inertia,
     return value;
 }
 
-static void bound_of_what_it_adds_to_frequencies_holds(void **unused)
+static void frequency_bound_of_cohesion_holds(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
@@ -275,13 +275,13 @@ static void bound_of_what_it_adds_to_frequencies_holds(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(opening_is_borne_by_the_normal_stiffness_alone),
-        cmocka_unit_test(shear_is_borne_by_the_shear_stiffness_alone),
-        cmocka_unit_test(shear_of_a_turned_pair_follows_it),
+        cmocka_unit_test(opening_uses_only_the_normal_stiffness),
+        cmocka_unit_test(shear_uses_only_the_shear_stiffness),
+        cmocka_unit_test(shear_rotates_with_the_pair),
         cmocka_unit_test(forces_are_the_derivatives_of_the_energy),
         cmocka_unit_test(forces_and_their_moments_balance),
         cmocka_unit_test(instruction_sets_and_precisions_agree),
-        cmocka_unit_test(bound_of_what_it_adds_to_frequencies_holds),
+        cmocka_unit_test(frequency_bound_of_cohesion_holds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,11 @@
-/* Where a tape is bonded, and what is refused. */
+/* Bond partners of a tape, and bonds that are rejected. */
 #include "fe/swept/swept_private.h"
 
 #include "tests/fe/swept/taped_block.h"
 
-/* --- where it is bonded --- */
+/* --- bond partners --- */
 
-/* A sleeve round a wire of twelve surface nodes. */
+/* A sleeve around a wire with twelve surface nodes. */
 static void sleeve_faces_the_wire_it_lies_on(void **unused)
 {
     (void)unused;
@@ -39,7 +39,7 @@ static void sleeve_faces_the_wire_it_lies_on(void **unused)
                           0.5 * 20 * 2.0 * around * sin(M_PI / 30) * 8 * spacing, 1e-9);
     assert_close(wb_swept_cohesion_damage(cohesion, 0, 3), 1.0, 0.0);
     assert_close(wb_swept_cohesion_damage(cohesion, 1, 3), 0.0, 0.0);
-    /* At rest in the reference state; then the wire grows by 1 %, all round. */
+    /* No force in the reference state; then the wire grows by 1 % radially. */
     const struct wb_swept_layout layout = wb_swept_layout(13, 9);
     double *position = swept_field(&layout), *force = swept_field(&layout);
     for (int grown = 0; grown < 2; grown++) {
@@ -54,7 +54,8 @@ static void sleeve_faces_the_wire_it_lies_on(void **unused)
                                                         (void *const[]){force}};
         struct wb_swept_cohesion_sums sums = {0};
         wb_swept_cohesion_add_forces(cohesion, &fields, 0, 1, &sums);
-        /* All squeezed by 1 % of the chord's distance, on average about cos(pi / 12)... of r. */
+        /* All bonds are compressed by 1 % of the chord's distance, on average about cos(pi / 12)...
+         * of r. */
         const double area = wb_swept_cohesion_area(cohesion);
         const double squeezed = 0.5 * 30e9 * area * 7e-6 * 7e-6;
         if (grown) {
@@ -99,7 +100,7 @@ static void windings_are_bonded_to_the_one_inside(void **unused)
     struct wb_swept_cohesion_sums sums = {0};
     wb_swept_cohesion_add_forces(cohesion, &fields, 0, 2, &sums);
     assert_close(sums.stored, 0.0, 1e-22);
-    /* The outer turn lifted by 1 um: nodes one beside the seam pull between themselves. */
+    /* The outer turn is lifted by 1 um: nodes next to the seam share the force. */
     for (int k = RING / 2 + 1; k < RING; k++) {
         for (int j = 0; j < LONG; j++) {
             for (int i = 0; i < 3; i++)
@@ -116,7 +117,7 @@ static void windings_are_bonded_to_the_one_inside(void **unused)
 
 /* --- refusals --- */
 
-static void impossible_bonds_are_refused(void **unused)
+static void invalid_bonds_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings good, bad;
@@ -160,7 +161,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sleeve_faces_the_wire_it_lies_on),
         cmocka_unit_test(windings_are_bonded_to_the_one_inside),
-        cmocka_unit_test(impossible_bonds_are_refused),
+        cmocka_unit_test(invalid_bonds_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

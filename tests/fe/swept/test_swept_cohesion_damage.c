@@ -3,7 +3,7 @@
 
 #include "tests/fe/swept/taped_block.h"
 
-/* Opens by `n` and slides by `s` m in so many steps, and takes the work. */
+/* Opens by `n` and slides by `s` m in `steps` steps, and returns the work. */
 static double work_of(struct pair *p, double n, double s, int steps, double *dissipated)
 {
     double work = 0.0, before[3] = {0.0}, sum[3];
@@ -25,7 +25,7 @@ static void area_below_the_curve_is_the_fracture_energy(void **unused)
 {
     (void)unused;
     const struct wb_swept_cohesion_settings settings = brittle();
-    /* Of bilinear curves: final opening 2 G / strength = 100 um, final slip 250 um. */
+    /* Bilinear curves: final opening 2 G / strength = 100 um, final slip 250 um. */
     const double way[3][2] = {{110e-6, 0.0}, {0.0, 260e-6}, {80e-6, 200e-6}};
     for (int is_double = 0; is_double < 2; is_double++) {
         for (int mode = 0; mode < 3; mode++) {
@@ -77,7 +77,7 @@ static void unloading_goes_back_to_the_origin(void **unused)
     set_tape(&p, 0.0, 50e-6, 0.0);
     const struct wb_swept_cohesion_sums first = pair_forces(&p);
     sum_tape(&p, sum);
-    /* Half way down: G (l - 1) / (l_f - 1) of a bilinear curve, in one step. */
+    /* Half of the softening branch: G (l - 1) / (l_f - 1) of a bilinear curve, in one step. */
     const double onset = 0.5e6 / 30e9, end = 100e-6;
     assert_close_relative(-sum[1] / whole_area, 0.5e6 * (end - 50e-6) / (end - onset), 1e-9);
     assert_close_relative(first.dissipated, 25.0 * whole_area * (50e-6 - onset) / (end - onset),
@@ -86,7 +86,7 @@ static void unloading_goes_back_to_the_origin(void **unused)
     assert_true(pair_forces(&p).dissipated == 0.0);
     sum_tape(&p, again);
     assert_close_relative(again[1], 0.5 * sum[1], 1e-12);
-    /* Pressed together it is as stiff as ever. */
+    /* In compression the stiffness is undamaged. */
     set_tape(&p, 0.0, -2e-6, 0.0);
     (void)pair_forces(&p);
     sum_tape(&p, again);

@@ -69,8 +69,8 @@ static double hertz_approach(double load, double R, double E, double nu)
     return 2.0 * load * soft * (2.0 * log(4.0 * R / b) - 1.0);
 }
 
-/* One stiffness stands for what grows slowly with the load: it is Hertz's at 3e-3 E R (10 N/mm
- * between wires of type 3), 1.6 times as stiff a hundred times below. */
+/* The constant stiffness approximates Hertz's, which increases slowly with the load: equal at 3e-3
+ * E R (10 N/mm between wires of type 3), 1.6 times as stiff at a hundredth of that load. */
 static void stiffness_is_about_that_of_hertz_line_contact(void **state)
 {
     const double E = 1e9, nu = 0.39, radius[2] = {0.7e-3, 0.7e-3};
@@ -96,7 +96,7 @@ static void stiffness_is_about_that_of_hertz_line_contact(void **state)
         assert_true(ratio[i] > ratio[i - 1] && ratio[i] < 1.7);
 }
 
-/* Trapezoids: what lies within is a half station longer on either side. */
+/* Trapezoidal rule: inner stations have half a station more on either side. */
 static void stations_at_the_ends_weigh_half(void **state)
 {
     const double radius[2] = {0.7e-3, 0.7e-3}, depth = 1e-6;
@@ -116,9 +116,9 @@ static void stations_at_the_ends_weigh_half(void **state)
     contacts_release(&c);
 }
 
-/* Wires shifted along press on the length they have in common, where it is: also the moment is
- * right. */
-static void wires_that_slipped_past_press_side_by_side_only(void **state)
+/* Wires shifted along each other press only over their common length, and at its position: the
+ * moment is also checked. */
+static void slipped_wires_press_over_their_common_length(void **state)
 {
     const double radius[2] = {0.7e-3, 0.7e-3}, depth = 1e-6, p = 0.25e9 * depth;
     static const double shifts[] = {0.0, 0.2e-3, 0.5e-3, 1.0e-3, 2.3e-3, -3.9e-3};
@@ -134,7 +134,8 @@ static void wires_that_slipped_past_press_side_by_side_only(void **state)
         const double common = 20e-3 - fabs(shifts[i]);
         const double middle = 10e-3 + 0.5 * shifts[i];
         assert_close_relative(f[1], -p * common, 1e-8);
-        /* Cells at the ends press where they end, not in their middle: within a quarter of one. */
+        /* Cells at the ends press at their ends instead of their middles: an error below a quarter
+         * of a cell. */
         assert_close(m[2] / f[1], middle, 0.25e-3 * 1e-3 / common + 1e-9);
         contacts_total(&c, 1, origin, f, m);
         assert_close(m[2] / f[1], middle, 0.25e-3 * 1e-3 / common + 1e-9);
@@ -142,10 +143,10 @@ static void wires_that_slipped_past_press_side_by_side_only(void **state)
     }
 }
 
-/* A bundle bent into an arc: chords cut corners, on both wires alike. Of the chord's height h^2/8R
- * = 2 um, a wire's station against the other's chord would see all; here the gap sees what is left
- * for different radii of bending. */
-static void chords_of_bent_wires_do_not_show_in_the_gap(void **state)
+/* A bundle bent into an arc: chords cut corners on both wires equally. A wire's station relative to
+ * the other's chord would have an error of the chord's height h^2/8R = 2 um; here the gap only has
+ * the difference for the two bend radii. */
+static void chords_of_bent_wires_do_not_affect_the_gap(void **state)
 {
     const double radius[2] = {0.7e-3, 0.7e-3}, R = 60e-3, depth = 1e-6, h = 1e-3;
     const double arm[2] = {0.0, 1.4e-3 - depth};
@@ -172,8 +173,8 @@ static void chords_of_bent_wires_do_not_show_in_the_gap(void **state)
     contacts_release(&c);
 }
 
-/* Three wires, bent, twisted, not parallel, slipped by some stations, sections deformed: nothing
- * about them is special. */
+/* Three wires, bent, twisted, not parallel, slipped by some stations, with deformed sections: a
+ * general case. */
 static void make_tangle(struct contacts *c, struct wb_swept_contact_settings *settings)
 {
     static const double radius[3] = {0.7e-3, 0.55e-3, 0.8e-3};
@@ -206,7 +207,7 @@ static void jitter(struct contacts *c, double size)
     }
 }
 
-/* Between refreshes, also where shifts are no longer the best. */
+/* Between refreshes, also where shifts are no longer optimal. */
 static void forces_without_friction_are_the_derivative_of_the_energy(void **state)
 {
     struct wb_swept_contact_settings settings = contacts_settings();
@@ -241,7 +242,7 @@ static void forces_without_friction_are_the_derivative_of_the_energy(void **stat
     contacts_release(&c);
 }
 
-/* At a refresh the energy changes in second order of what the shift was wrong. */
+/* A refresh changes the energy by second order in the error of the shift. */
 static void refreshing_shifts_hardly_changes_the_energy(void **state)
 {
     double change[2];
@@ -270,7 +271,7 @@ static void refreshing_shifts_hardly_changes_the_energy(void **state)
     assert_close_relative(change[0], 4.0 * change[1], 0.01);
 }
 
-/* Sum and moment over both wires of each pair, with friction, at stations between each other, of
+/* Sum and moment over both wires of each pair, with friction, positions between stations, and
  * deformed sections. */
 static void forces_cancel_in_sum_and_moment(void **state)
 {
@@ -302,7 +303,7 @@ static void forces_cancel_in_sum_and_moment(void **state)
     contacts_release(&c);
 }
 
-/* The same of forces in float: to their digits. */
+/* The same with forces in float, to their precision. */
 static void forces_in_float_cancel_to_their_digits(void **state)
 {
     struct wb_swept_contact_settings settings = contacts_settings();
@@ -332,9 +333,9 @@ static void forces_in_float_cancel_to_their_digits(void **state)
     contacts_release(&c);
 }
 
-/* One radian about any axis: normal forces and the friction that was there turn with the wires,
- * none is added. */
-static void rigid_rotation_makes_no_friction(void **state)
+/* One radian about any axis: normal forces and existing friction rotate with the wires, and no
+ * friction is added. */
+static void rigid_rotation_causes_no_friction(void **state)
 {
     const double radius[2] = {0.7e-3, 0.5e-3};
     struct wb_swept_contact_settings settings = contacts_settings();
@@ -354,7 +355,7 @@ static void rigid_rotation_makes_no_friction(void **state)
         contacts_rotation(axis, all);
         contacts_make_pair(&c, &settings, radius, 1e-6, 0.6, 0.35e-3);
         contacts_step(&c, dt);
-        /* Half of what friction can carry; in every second case none. */
+        /* Half of the friction limit; no friction in every second case. */
         if (n % 2 == 0) {
             contacts_place_straight(&c, 0, (double[3]){0.3e-6, 0.0, 0.0}, 0.3 - 0.3e-3);
             contacts_step(&c, dt);
@@ -382,9 +383,9 @@ static void rigid_rotation_makes_no_friction(void **state)
     }
 }
 
-/* The third wire is met when the second comes to it, at another place along; the first is let go,
- * and friction that was there is gone when it is met again. */
-static void wires_part_and_touch_again_elsewhere(void **state)
+/* The second wire moves to the third, at another axial position; it leaves the first, and the old
+ * friction is gone when it touches the first again. */
+static void wires_separate_and_touch_again_elsewhere(void **state)
 {
     const double radius[3] = {0.7e-3, 0.7e-3, 0.7e-3}, depth = 1e-6, near = 1.4e-3 - depth;
     struct wb_swept_contact_settings settings = contacts_settings();
@@ -398,7 +399,7 @@ static void wires_part_and_touch_again_elsewhere(void **state)
     contacts_init(&c, &settings, 3, radius, 21, 1e-3);
     contacts_place_straight(&c, 0, origin, 0.0);
     contacts_place_straight(&c, 2, (double[3]){0.0, 6e-3, 0.0}, 0.0);
-    /* Down at the first, slid along it; up to the third by 7 mm shifted; back by 4 mm shifted. */
+    /* Down on the first and slide; up to the third, shifted by 7 mm; back, shifted by 4 mm. */
     const double stages[4][2] = {{0.0, near}, {5e-6, near}, {7e-3, 6e-3 - near}, {4e-3, near}};
     for (int stage = 0; stage < 4; stage++) {
         const double *from = stages[stage > 0 ? stage - 1 : 0], *to = stages[stage];
@@ -426,8 +427,8 @@ static void wires_part_and_touch_again_elsewhere(void **state)
     contacts_release(&c);
 }
 
-/* From one step to the next, beyond a block's end: what was there must not act on. */
-static void stations_that_leave_carry_nothing(void **state)
+/* From one step to the next, beyond a block's end: the old friction must not act. */
+static void stations_that_leave_contact_carry_nothing(void **state)
 {
     const double radius[2] = {0.7e-3, 0.7e-3}, depth = 2e-6, h = 1e-3;
     const double straight[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
@@ -442,7 +443,7 @@ static void stations_that_leave_carry_nothing(void **state)
         memcpy(R, straight, sizeof R);
         contacts_place_straight(&c, 0, origin, 0.0);
         for (int j = 0; j < 48; j++) {
-            /* Stuck, with half of what it can carry; then the rear two thirds far (the wire rises
+            /* Sticking with half of the limit; then the rear two thirds lifted (the wire rises
              * between stations 15 and 16); then back. */
             const double slip = step == 0 ? 0.0 : 0.8e-6, away = step == 2 && j > 15 ? 2e-3 : 0.0;
             contacts_place(&c, 1, j, (double[3]){h * j + 0.4e-3 + slip, 1.4e-3 - depth + away, 0.0},
@@ -466,7 +467,7 @@ static void stations_that_leave_carry_nothing(void **state)
     contacts_release(&c);
 }
 
-static void impossible_input_is_refused(void **state)
+static void invalid_input_is_rejected(void **state)
 {
     const double radius[3] = {0.7e-3, 0.7e-3, 0.7e-3};
     struct wb_swept_contact_settings settings = contacts_settings();
@@ -478,7 +479,7 @@ static void impossible_input_is_refused(void **state)
     assert_int_equal(contacts_try(&c, 0.0), WB_ERR_ARGUMENT);
     assert_int_equal(contacts_try(&c, (double)NAN), WB_ERR_ARGUMENT);
     assert_int_equal(contacts_try(&c, dt), WB_OK);
-    /* A node that carries no contact may be anywhere; the others must be somewhere. */
+    /* A node without contact may have any position; surface nodes must be finite. */
     c.position[1][contacts_index(&c, CONTACTS_NODES - 1, 1, 20)] = (double)NAN;
     assert_int_equal(contacts_try(&c, dt), WB_OK);
     const double old = c.position[1][contacts_index(&c, 3, 1, 20)];
@@ -555,7 +556,7 @@ CHANGE(no_radius, wire->radius = 0.0)
 CHANGE(modulus_nan, wire->youngs_modulus = (double)NAN)
 CHANGE(frictionless, settings->friction.mu_static = settings->friction.mu_kinetic = 0.0)
 
-static void bad_settings_are_refused(void **state)
+static void invalid_settings_are_rejected(void **state)
 {
     (void)state;
     wb_log_set_sink(discard_message, NULL);
@@ -586,17 +587,17 @@ int main(void)
         cmocka_unit_test(parallel_wires_press_with_stiffness_times_depth),
         cmocka_unit_test(stiffness_is_about_that_of_hertz_line_contact),
         cmocka_unit_test(stations_at_the_ends_weigh_half),
-        cmocka_unit_test(wires_that_slipped_past_press_side_by_side_only),
-        cmocka_unit_test(chords_of_bent_wires_do_not_show_in_the_gap),
+        cmocka_unit_test(slipped_wires_press_over_their_common_length),
+        cmocka_unit_test(chords_of_bent_wires_do_not_affect_the_gap),
         cmocka_unit_test(forces_without_friction_are_the_derivative_of_the_energy),
         cmocka_unit_test(refreshing_shifts_hardly_changes_the_energy),
         cmocka_unit_test(forces_cancel_in_sum_and_moment),
         cmocka_unit_test(forces_in_float_cancel_to_their_digits),
-        cmocka_unit_test(rigid_rotation_makes_no_friction),
-        cmocka_unit_test(wires_part_and_touch_again_elsewhere),
-        cmocka_unit_test(stations_that_leave_carry_nothing),
-        cmocka_unit_test(impossible_input_is_refused),
-        cmocka_unit_test(bad_settings_are_refused),
+        cmocka_unit_test(rigid_rotation_causes_no_friction),
+        cmocka_unit_test(wires_separate_and_touch_again_elsewhere),
+        cmocka_unit_test(stations_that_leave_contact_carry_nothing),
+        cmocka_unit_test(invalid_input_is_rejected),
+        cmocka_unit_test(invalid_settings_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

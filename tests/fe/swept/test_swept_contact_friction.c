@@ -11,8 +11,8 @@
 static const double origin[3] = {0.0, 0.0, 0.0};
 static const double dt = 1e-6;
 
-/* Force of friction per length after a small motion of the first wire (small: it sticks): k_t times
- * the slip of its surface at the contact, opposed. */
+/* Friction force per length after a small motion of the first wire (it sticks): k_t times the slip
+ * of its surface at the contact, opposed. */
 static void check_stuck(const double move[3], const double turn[3], double turn_of_other)
 {
     const double radius[2] = {0.7e-3, 0.5e-3}, k_t = 0.5 * 0.25e9, depth = 2e-6;
@@ -25,7 +25,7 @@ static void check_stuck(const double move[3], const double turn[3], double turn_
 
     contacts_make_pair(&c, &settings, radius, depth, 0.0, 0.0);
     contacts_step(&c, dt);
-    /* All stations turn about their own centres, as with a wire that bends or shears. */
+    /* All stations rotate about their own centres, as in a wire that bends or shears. */
     contacts_rotation(turn, T);
     for (int j = 0; j < c.n_stations; j++) {
         double twisted[3][3], R[3][3];
@@ -44,12 +44,12 @@ static void check_stuck(const double move[3], const double turn[3], double turn_
                             move[2] + turn[0] * arm[1] - turn_of_other * other};
     for (int i = 0; i < 3; i += 2)
         assert_close(point.friction[i], -k_t * slip[i], 5e-3);
-    /* The line between the centres has turned by up to 1.7e-4. */
+    /* The line between the centres has rotated by up to 1.7e-4. */
     assert_close(point.friction[1], 0.0, 5e-3);
     contacts_release(&c);
 }
 
-static void a_wire_that_sticks_feels_the_slip_of_its_surface(void **state)
+static void friction_of_a_sticking_wire_follows_the_slip_of_its_surface(void **state)
 {
     const double rest[3] = {0.0, 0.0, 0.0};
 
@@ -65,7 +65,7 @@ static void a_wire_that_sticks_feels_the_slip_of_its_surface(void **state)
     check_stuck(rest, (double[3]){0.5e-4, 0.0, 0.0}, -0.7e-4);
 }
 
-/* Slips the second wire along by `amplitude` to and fro, and gives the work done on it. */
+/* Slips the second wire along by `amplitude` back and forth, and returns the work done on it. */
 static double slip_to_and_fro(struct contacts *c, double amplitude, int cycles, int steps)
 {
     const double height = 1.4e-3 - 2e-6;
@@ -84,7 +84,7 @@ static double slip_to_and_fro(struct contacts *c, double amplitude, int cycles, 
     return work;
 }
 
-/* Elastic to mu N / k_t, then sliding. Of the loop, the area. Work is what is stored and
+/* Elastic up to mu N / k_t, then sliding; checks the area of the loop. Work is stored or
  * dissipated, to round-off. */
 static void friction_loops_have_coulombs_area(void **state)
 {
@@ -100,7 +100,7 @@ static void friction_loops_have_coulombs_area(void **state)
     settings.refresh_interval = 1;
     contacts_make_pair(&c, &settings, radius, depth, 0.0, 0.0);
     contacts_step(&c, dt);
-    /* One quarter: stretched by `reach`, then slid. */
+    /* One quarter: elastic over `reach`, then sliding. */
     for (int n = 1; n <= 100; n++) {
         contacts_place_straight(&c, 1, (double[3]){0.02 * reach * n, 1.4e-3 - depth, 0.0}, -1.1);
         contacts_step(&c, dt);
@@ -112,7 +112,8 @@ static void friction_loops_have_coulombs_area(void **state)
     contacts_place_straight(&c, 1, (double[3]){0.0, 1.4e-3 - depth, 0.0}, -1.1);
     contacts_step(&c, dt);
     const double work = slip_to_and_fro(&c, amplitude, 3, 400);
-    /* Slid from the middle to the first end, five times from end to end, back to the middle. */
+    /* Slides from the middle to the first end, five times from end to end, and back to the
+     * middle. */
     const double slid =
         (amplitude - reach) + 5.0 * 2.0 * (amplitude - reach) + (amplitude - 2.0 * reach);
     assert_close_relative(c.friction, limit * length * slid, 5e-4);
@@ -155,7 +156,7 @@ static void friction_decays_with_the_rate_of_slip(void **state)
     }
 }
 
-/* Slip of a step far below the last digit of a force in float adds up. */
+/* The slip of a step, far below the last digit of a force in float, must accumulate. */
 static void slow_slip_is_not_lost_in_float(void **state)
 {
     const double radius[2] = {0.7e-3, 0.7e-3}, depth = 2e-6, height = 1.4e-3 - depth;
@@ -181,8 +182,8 @@ static void slow_slip_is_not_lost_in_float(void **state)
     contacts_release(&c);
 }
 
-/* k (depth + tau d(depth)/dt), never a pull; what it dissipates. */
-static void damping_acts_on_approach_and_never_pulls(void **state)
+/* k (depth + tau d(depth)/dt), never tensile; and its dissipation. */
+static void damping_acts_on_approach_and_is_never_tensile(void **state)
 {
     const double radius[2] = {0.7e-3, 0.7e-3}, tau = 1e-5, k = 0.25e9;
     static const double rates[] = {0.05, -0.05, -0.5};
@@ -207,7 +208,7 @@ static void damping_acts_on_approach_and_never_pulls(void **state)
     }
 }
 
-static void a_wire_that_leaves_takes_no_friction_with_it(void **state)
+static void separation_resets_friction(void **state)
 {
     const double radius[2] = {0.7e-3, 0.7e-3}, near = 1.398e-3;
     struct wb_swept_contact_settings settings = contacts_settings();
@@ -233,8 +234,8 @@ static void a_wire_that_leaves_takes_no_friction_with_it(void **state)
     contacts_release(&c);
 }
 
-/* A spinning wire slides along without friction along, nearly: its friction is across. */
-static void friction_opposes_the_whole_slip(void **state)
+/* A spinning wire slides along almost without axial friction: its friction acts across. */
+static void friction_opposes_the_slip_vector(void **state)
 {
     const double radius[2] = {0.7e-3, 0.7e-3}, depth = 2e-6;
     const double slip[2] = {0.3, 0.4}; /* m/s along and across */
@@ -260,13 +261,13 @@ static void friction_opposes_the_whole_slip(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_wire_that_sticks_feels_the_slip_of_its_surface),
+        cmocka_unit_test(friction_of_a_sticking_wire_follows_the_slip_of_its_surface),
         cmocka_unit_test(friction_loops_have_coulombs_area),
         cmocka_unit_test(friction_decays_with_the_rate_of_slip),
         cmocka_unit_test(slow_slip_is_not_lost_in_float),
-        cmocka_unit_test(damping_acts_on_approach_and_never_pulls),
-        cmocka_unit_test(a_wire_that_leaves_takes_no_friction_with_it),
-        cmocka_unit_test(friction_opposes_the_whole_slip),
+        cmocka_unit_test(damping_acts_on_approach_and_is_never_tensile),
+        cmocka_unit_test(separation_resets_friction),
+        cmocka_unit_test(friction_opposes_the_slip_vector),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

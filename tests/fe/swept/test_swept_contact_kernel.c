@@ -1,5 +1,5 @@
-/* The kernels of contact against a slow twin, against each other, in parts, and over a checkpoint;
- * the bound for the stable step against the largest eigenvalue. */
+/* The contact kernels compared with a slow twin and with each other, in parts, and across a
+ * checkpoint; the bound for the stable step compared with the largest eigenvalue. */
 #include "base/vec3.h"
 #include "fe/swept/swept_contact.h"
 #include "fe/swept/swept_private.h"
@@ -11,7 +11,7 @@
 enum {
     WIRES = 7,
     STATIONS = 37,
-    MOST_PAIRS = 16
+    MAX_PAIRS = 16
 };
 
 static const double dt = 1e-6;
@@ -24,7 +24,7 @@ static double random_number(void)
     return (double)(seed >> 11) * 0x1p-52 - 1.0;
 }
 
-/* Seven wires of three diameters round one, bent, twisted and slipped. */
+/* Seven wires of three diameters around one, bent, twisted and slipped. */
 static void make_bundle(struct contacts *c, const struct wb_swept_contact_settings *settings,
                         double depth)
 {
@@ -64,7 +64,7 @@ static void slide(struct contacts *c, double size)
     }
 }
 
-/* ---- The twin: one station of one pair after the other, in the plainest way. ---- */
+/* ---- The twin: one station of one pair after another, in the simplest form. ---- */
 
 struct twin {
     const struct contacts *c;
@@ -100,7 +100,7 @@ static void solve3(double A[3][3], const double right[3], double x[3])
     }
 }
 
-/* The weights with which the fit value + slope_y y + slope_z z sees node k: the fit to a unit. */
+/* Weights of node k in the least-squares fit value + slope_y y + slope_z z. */
 static void weights_of(const struct contacts *c, int w, int k, double weight[3])
 {
     double A[3][3] = {{0.0}}, right[3];
@@ -136,7 +136,7 @@ static void inertia(double p[3], double q[3], double J[3][3])
                           p[i / 3] * p[i % 3] - q[i / 3] * q[i % 3];
 }
 
-/* Centre now, and its move and the turn of the section in this step. */
+/* Current centre, its motion and the section's rotation in this step. */
 static void motion_of(const struct twin *twin, int w, int j, double now[3], double step[3],
                       double turn[3])
 {
@@ -383,7 +383,7 @@ static bool has_instructions(enum wb_swept_instructions set)
     return status == WB_OK;
 }
 
-static void every_kernel_equals_the_slow_twin(void **state)
+static void every_kernel_agrees_with_the_slow_twin(void **state)
 {
     (void)state;
     assert_true(has_instructions(WB_SWEPT_BASELINE));
@@ -403,8 +403,8 @@ static void every_kernel_equals_the_slow_twin(void **state)
     }
 }
 
-/* Blocks apart, in any order within a pass. */
-static void blocks_may_be_worked_on_apart(void **state)
+/* Blocks one by one, in any order within a pass. */
+static void blocks_can_be_computed_separately(void **state)
 {
     struct wb_swept_contact_settings settings = contacts_settings();
     struct wb_swept_contact_energies energies;
@@ -443,7 +443,7 @@ static void blocks_may_be_worked_on_apart(void **state)
     contacts_release(&parts);
 }
 
-static void padding_may_hold_anything(void **state)
+static void padding_has_no_effect(void **state)
 {
     struct contacts clean, dirty;
 
@@ -477,7 +477,7 @@ static void padding_may_hold_anything(void **state)
     }
 }
 
-static void a_checkpoint_goes_on_bit_for_bit(void **state)
+static void a_checkpoint_continues_bit_for_bit(void **state)
 {
     (void)state;
     for (int type = 0; type < 2; type++) {
@@ -526,7 +526,7 @@ struct vibration {
     struct wb_checkpoint saved;
 };
 
-/* -M^-1 df for a small displacement along the mode, with friction that sticks. */
+/* -M^-1 df for a small displacement along the mode, with sticking friction. */
 static void accelerate(struct vibration *v)
 {
     const double h = 1e-9;
@@ -622,7 +622,7 @@ static void check_bound(double selective)
     contacts_release(&v.c);
 }
 
-static void the_bound_holds_and_is_not_far(void **state)
+static void the_bound_holds_and_is_close(void **state)
 {
     (void)state;
     check_bound(1.0);
@@ -632,11 +632,11 @@ static void the_bound_holds_and_is_not_far(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kernel_equals_the_slow_twin),
-        cmocka_unit_test(blocks_may_be_worked_on_apart),
-        cmocka_unit_test(padding_may_hold_anything),
-        cmocka_unit_test(a_checkpoint_goes_on_bit_for_bit),
-        cmocka_unit_test(the_bound_holds_and_is_not_far),
+        cmocka_unit_test(every_kernel_agrees_with_the_slow_twin),
+        cmocka_unit_test(blocks_can_be_computed_separately),
+        cmocka_unit_test(padding_has_no_effect),
+        cmocka_unit_test(a_checkpoint_continues_bit_for_bit),
+        cmocka_unit_test(the_bound_holds_and_is_close),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

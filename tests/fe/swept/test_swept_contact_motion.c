@@ -1,4 +1,4 @@
-/* Contact in motion: what is known of colliding, sliding, rolling bodies and of ropes. */
+/* Contact in motion: known solutions for colliding, sliding and rolling bodies and for ropes. */
 #include "fe/swept/swept_contact.h"
 
 #include "tests/fe/swept/contacts.h"
@@ -7,7 +7,8 @@
 
 static const double origin[3] = {0.0, 0.0, 0.0};
 
-/* A straight rigid wire along x, of density 5000: place of its start, angle about its axis. */
+/* A straight rigid wire along x with a density of 5000: position of its start, angle about its
+ * axis. */
 struct body {
     double mass, inertia;
     double x[3], v[3], angle, spin;
@@ -20,7 +21,7 @@ static struct body make_body(double radius, double length)
     return (struct body){.mass = mass, .inertia = 0.5 * mass * radius * radius};
 }
 
-/* Central differences: forces at these positions, then the next. */
+/* Central differences: forces at these positions, then the next positions. */
 static void move(struct contacts *c, struct body *bodies, const double weight[3], double dt)
 {
     for (int w = 0; w < c->n_wires; w++)
@@ -64,8 +65,9 @@ static void momentum(const struct body *bodies, int n, double linear[3], double 
     }
 }
 
-/* Two wires meet off their centres, spinning and slipping along; returns the energy lost beyond
- * what friction took, as part of that at first. Momentum, also angular, is kept throughout. */
+/* Eccentric collision of two wires that spin and slip along each other; returns the energy lost in
+ * addition to friction, over the initial energy. Linear and angular momentum are conserved
+ * throughout. */
 static double collide(double mu, double dt)
 {
     const double radius[2] = {0.7e-3, 0.5e-3}, length = 20e-3;
@@ -105,15 +107,14 @@ static double collide(double mu, double dt)
     return loss;
 }
 
-static void collisions_keep_momentum_and_energy(void **state)
+static void collisions_conserve_momentum_and_energy(void **state)
 {
     static const double friction[] = {0.0, 0.4};
 
     (void)state;
     for (int n = 0; n < 2; n++) {
         for (double dt = 1e-6; dt > 0.05e-6; dt /= 4.0) {
-            /* Where between two steps they touch and part is chance, what it changes is of second
-             * order. */
+            /* The time of contact within a step is random; its effect is of second order. */
             const double loss = collide(friction[n], dt), frequency = 2.9e5;
             printf("friction %g, step %.4f us: energy lost without a cause %.2e\n", friction[n],
                    1e6 * dt, loss);
@@ -126,7 +127,7 @@ static void collisions_keep_momentum_and_energy(void **state)
 struct slide {
     double way;          /* at the end */
     double acceleration; /* mean of the second half */
-    double stretch;      /* of the spring that would hold the wire */
+    double stretch;      /* of an equivalent spring that holds the wire */
 };
 
 static struct slide slide(double mu, double angle, double g, double time)
@@ -166,8 +167,8 @@ static void a_wire_on_a_slope_slides_or_sticks(void **state)
         const struct slide result = slide(friction[n], angle, g, time);
         assert_close(result.acceleration, g * (sin(angle) - friction[n] * cos(angle)), 1e-3 * g);
     }
-    /* Let go at once, an undamped spring swings to twice its stretch at rest, so up to twice the
-     * friction is asked for; less, and it is slid till it holds. */
+    /* An undamped spring that is loaded suddenly stretches to twice its static value, so up to
+     * twice the friction is needed; if less is available, it slides until it sticks. */
     struct slide result = slide(1.24, angle, g, time);
     assert_true(result.way < 2.05 * result.stretch);
     result = slide(0.7, angle, g, time);
@@ -200,13 +201,13 @@ static void a_wire_rolls_down_another(void **state)
     }
     assert_true(theta > 0.5);
     assert_close(atan2(bodies[1].x[2], bodies[1].x[1]), theta, 0.003 * (theta - 0.3));
-    /* From y towards z the wire goes round by theta and turns by theta (R + r) / r. */
+    /* From y towards z the wire moves around by theta and rotates by theta (R + r) / r. */
     assert_close(bodies[1].angle, (theta - 0.3) * away / radius[1], 0.004 * away / radius[1]);
     assert_close(c.friction, 0.0, 1e-6 * kinetic(bodies, 2));
     contacts_release(&c);
 }
 
-/* ---- A rope of masses and springs round a fixed bent wire. ---- */
+/* ---- A rope of masses and springs around a fixed bent wire. ---- */
 
 enum {
     LINKS = 41
@@ -227,8 +228,8 @@ static void place_arc(struct contacts *c, int w, int j, const double at[2])
     contacts_place(c, w, j, (double[3]){at[0], at[1], 0.0}, T);
 }
 
-/* Springs between masses; at the first end a constant pull along -`start`, at the last a spring to
- * an anchor that moves away. */
+/* Springs between masses; at the first end a constant tension along -`start`, at the last a spring
+ * to a moving anchor. */
 static void rope_forces(struct rope *rope, double angle, double radius, double time,
                         double force[LINKS][2])
 {
@@ -310,7 +311,7 @@ static void check_capstan(double mu, double angle)
     contacts_release(&c);
 }
 
-static void a_rope_round_a_wire_pulls_as_the_capstan_says(void **state)
+static void a_rope_around_a_wire_follows_the_capstan_equation(void **state)
 {
     (void)state;
     check_capstan(0.4, 2.0);
@@ -320,10 +321,10 @@ static void a_rope_round_a_wire_pulls_as_the_capstan_says(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(collisions_keep_momentum_and_energy),
+        cmocka_unit_test(collisions_conserve_momentum_and_energy),
         cmocka_unit_test(a_wire_on_a_slope_slides_or_sticks),
         cmocka_unit_test(a_wire_rolls_down_another),
-        cmocka_unit_test(a_rope_round_a_wire_pulls_as_the_capstan_says),
+        cmocka_unit_test(a_rope_around_a_wire_follows_the_capstan_equation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,7 +18,7 @@ static struct wb_swept_hex_model small_model(const struct wb_swept_section *sect
                                        .double_precision = true};
 }
 
-/* Positions off the reference by up to `size` of an element, turned by an angle. */
+/* Displaces positions randomly by up to `size` of an element, and rotates them by an angle. */
 static void shake(struct swept_body *body, double size, double angle, uint64_t *seed)
 {
     double R[3][3];
@@ -50,7 +50,7 @@ static double *plain_copy(const struct swept_body *body, const double *field)
     return out;
 }
 
-/* Largest difference of the forces, as a part of the largest force of the twin. */
+/* Largest difference of the forces, over the largest force of the twin. */
 static double difference(const struct swept_body *body, const double *twin_force)
 {
     const struct wb_swept_layout *l = &body->layout;
@@ -105,8 +105,8 @@ static void forces_equal_the_twin_at_small_strain(void **unused)
     }
 }
 
-/* Energies of the twin and of the kernel at a strain of the header's promise. */
-static void logarithm_is_as_good_as_promised(void **unused)
+/* Compares energies of the twin and of the kernel at the strains documented in the header. */
+static void logarithm_has_the_documented_accuracy(void **unused)
 {
     (void)unused;
     struct wb_swept_section section = swept_distorted_section(1e-3);
@@ -138,8 +138,8 @@ static double energy(struct swept_body *body)
     return sums.stored + sums.artificial;
 }
 
-/* By fourth-order differences, in an elastic state at large strain: no approximation of the strain
- * may show. */
+/* By fourth-order differences, in an elastic state at large strain: the strain's approximation must
+ * not matter. */
 static void forces_are_the_derivative_of_the_energy(void **unused)
 {
     (void)unused;
@@ -175,7 +175,7 @@ static void forces_are_the_derivative_of_the_energy(void **unused)
     wb_swept_section_release(&section);
 }
 
-static void rigid_motion_makes_no_force(void **unused)
+static void rigid_motion_causes_no_force(void **unused)
 {
     (void)unused;
     struct wb_swept_section section = swept_circle(1.4e-3, 2, 1);
@@ -183,7 +183,7 @@ static void rigid_motion_makes_no_force(void **unused)
         struct wb_swept_hex_model model = small_model(&section, 20, formulations[f / 2]);
         model.double_precision = f % 2;
         struct swept_body body = swept_body_create(&model);
-        /* The force of one strain over the section. Float must not show. */
+        /* Scale: the force of a strain of 1 on the section. Float precision must be sufficient. */
         const double scale = model.material.youngs_modulus * section.area;
         const double c[3] = {0.3, -0.2, 0.05};
         for (int turn = 0; turn < 50; turn++) {
@@ -206,8 +206,8 @@ static void rigid_motion_makes_no_force(void **unused)
     wb_swept_section_release(&section);
 }
 
-/* A linear field in a distorted mesh: nodes inside have no force, those of the end face the first
- * Piola stress times their area, and strains are the field's. */
+/* A linear field in a distorted mesh: inner nodes have no force, nodes of the end have the first
+ * Piola stress times their area, and strains agree with the field. */
 static void linear_fields_pass_the_patch_test(void **unused)
 {
     (void)unused;
@@ -241,7 +241,7 @@ static void linear_fields_pass_the_patch_test(void **unused)
                 assert_close(swept_force(&body, k, i, 3), total[i] * section.share[k],
                              1e-13 * scale);
         }
-        /* The stress is that of one element, whose exact value the twin knows to the logarithm. */
+        /* The stress is that of one element, which the twin computes with the exact logarithm. */
         struct twin twin = twin_create(&model);
         assert_true(compare_with_twin(&body, &twin) < 4e-5);
         twin_destroy(&twin);
@@ -250,7 +250,7 @@ static void linear_fields_pass_the_patch_test(void **unused)
     wb_swept_section_release(&section);
 }
 
-/* Uniaxial stress: the lateral stretch is sought, and stress compared with the law. */
+/* Uniaxial stress: solves for the lateral stretch, and compares stress with the law. */
 static double bar_stress(struct swept_body *body, double stretch, double *lateral)
 {
     const struct wb_swept_section *section = wb_swept_hex_get_model(body->hex)->section;
@@ -282,8 +282,8 @@ static double bar_stress(struct swept_body *body, double stretch, double *latera
     return force / section->area;
 }
 
-/* The hardening law, and its table, over four decades of plastic strain, to 1e-5. Kirchhoff's
- * stress is P F; the polynomial for the logarithm is that good at strains below 0.5 %. */
+/* The hardening law and its table over four decades of plastic strain, to 1e-5. Kirchhoff's stress
+ * is P F; the polynomial for the logarithm has this accuracy at strains below 0.5 %. */
 static void bar_in_tension_follows_the_power_law(void **unused)
 {
     (void)unused;
@@ -346,7 +346,7 @@ static void all_instructions_agree(void **unused)
                     force = plain_copy(&body, body.position);
                     twin_forces(&twin, plain, force);
                 }
-                /* In two calls, and what lies behind the last station must not matter. */
+                /* In two calls; entries after the last station must have no effect. */
                 const struct wb_swept_layout *l = &body.layout;
                 for (int row = 0; row < 3 * l->n_nodes; row++) {
                     for (int j = l->n_stations; j < l->stride; j++)
@@ -373,8 +373,8 @@ static void all_instructions_agree(void **unused)
     wb_swept_section_release(&section);
 }
 
-/* What is added to the same forces doubles them, to the bit. */
-static void forces_are_added_to_what_is_there(void **unused)
+/* Adding the same forces twice doubles them exactly. */
+static void forces_are_added_to_existing_ones(void **unused)
 {
     (void)unused;
     struct wb_swept_section section = swept_distorted_section(1e-3);
@@ -405,8 +405,9 @@ static void forces_are_added_to_what_is_there(void **unused)
     wb_swept_section_release(&section);
 }
 
-/* Of a circle's section only the outline's are added to, and what is inside is written. */
-static void forces_inside_a_circle_are_written(void **unused)
+/* In a circle's section only the outline's forces are added to existing ones; inner ones are
+ * overwritten. */
+static void forces_inside_a_circle_are_overwritten(void **unused)
 {
     (void)unused;
     struct wb_swept_section section;
@@ -431,8 +432,8 @@ static void forces_inside_a_circle_are_written(void **unused)
     wb_swept_section_release(&section);
 }
 
-/* Along a path through yielding and back: work of the nodes' forces (trapezoidal) is what is
- * stored, plastic and artificial. */
+/* Along a path with yielding and unloading: work of the nodes' forces (trapezoidal) is stored,
+ * plastic and artificial energy. */
 static void work_is_stored_or_plastic(void **unused)
 {
     (void)unused;
@@ -479,7 +480,7 @@ static void work_is_stored_or_plastic(void **unused)
     wb_swept_section_release(&section);
 }
 
-/* Stiffness of one element by differences: 6 motions without force, and no more. */
+/* Stiffness of one element by differences: exactly 6 motions without force. */
 static void hourglass_modes_are_stiff(void **unused)
 {
     (void)unused;
@@ -505,7 +506,7 @@ static void hourglass_modes_are_stiff(void **unused)
             }
             *x = here;
         }
-        /* Pivots of Gauss' elimination: rank. */
+        /* Rank from the pivots of Gaussian elimination. */
         int rank = 0;
         double first = 0.0;
         for (int k = 0; k < 24; k++) {
@@ -565,7 +566,7 @@ static void strains_beyond_the_limit_are_counted(void **unused)
     wb_swept_section_release(&section);
 }
 
-static void impossible_models_are_refused(void **unused)
+static void invalid_models_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_swept_section section = swept_circle(1.4e-3, 2, 1), broken;
@@ -618,18 +619,18 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(forces_equal_the_twin_at_small_strain),
-        cmocka_unit_test(logarithm_is_as_good_as_promised),
+        cmocka_unit_test(logarithm_has_the_documented_accuracy),
         cmocka_unit_test(forces_are_the_derivative_of_the_energy),
-        cmocka_unit_test(rigid_motion_makes_no_force),
+        cmocka_unit_test(rigid_motion_causes_no_force),
         cmocka_unit_test(linear_fields_pass_the_patch_test),
         cmocka_unit_test(bar_in_tension_follows_the_power_law),
         cmocka_unit_test(all_instructions_agree),
-        cmocka_unit_test(forces_are_added_to_what_is_there),
-        cmocka_unit_test(forces_inside_a_circle_are_written),
+        cmocka_unit_test(forces_are_added_to_existing_ones),
+        cmocka_unit_test(forces_inside_a_circle_are_overwritten),
         cmocka_unit_test(work_is_stored_or_plastic),
         cmocka_unit_test(hourglass_modes_are_stiff),
         cmocka_unit_test(strains_beyond_the_limit_are_counted),
-        cmocka_unit_test(impossible_models_are_refused),
+        cmocka_unit_test(invalid_models_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

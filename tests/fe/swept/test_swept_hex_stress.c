@@ -1,5 +1,5 @@
-/* Stresses of swept hexahedra asked from outside, against the kernels' energies, the flow stress
- * and closed forms. */
+/* Queried stresses of swept hexahedra compared with the kernels' energies, the flow stress and
+ * closed forms. */
 #include "fe/swept/swept_hex_stress.h"
 #include "fe/swept/swept_private.h"
 
@@ -30,7 +30,7 @@ static struct swept_body make(const struct wb_swept_section *section,
     return swept_body_create(&model);
 }
 
-/* Lateral strains as those of a bar: only the axial stress is left, on its turned section. */
+/* Lateral strains as in a bar: only the axial stress remains, on its rotated section. */
 static void a_turned_and_stretched_bar_has_axial_stress_only(void **unused)
 {
     (void)unused;
@@ -79,7 +79,7 @@ static void deform(struct swept_body *body, double size)
     }
 }
 
-/* Elastic energy of the points' stresses, and how many lie off the flow stress. */
+/* Elastic energy of the points' stresses, and the number of points away from the flow stress. */
 static double energy_of(struct swept_body *body, int *off, double *most_plastic)
 {
     const struct wb_swept_hex_model *m = wb_swept_hex_get_model(body->hex);
@@ -102,7 +102,7 @@ static double energy_of(struct swept_body *body, int *off, double *most_plastic)
                 const double flow =
                     m->material.yield_stress +
                     m->material.strength_coefficient * pow(p, m->material.hardening_exponent);
-                /* Of Kirchhoff: Cauchy's times the volume's ratio exp(trace). */
+                /* Kirchhoff stress: Cauchy's times the volume ratio exp(trace). */
                 const double pressure =
                     (out[q].stress[0] + out[q].stress[1] + out[q].stress[2]) / 3.0;
                 double trace = pressure / kappa;
@@ -120,7 +120,7 @@ static double energy_of(struct swept_body *body, int *off, double *most_plastic)
     return sum;
 }
 
-static void points_store_what_the_kernel_stores_and_yield_at_the_flow_stress(void **unused)
+static void points_have_the_kernels_energy_and_the_flow_stress(void **unused)
 {
     (void)unused;
     struct wb_swept_section section = swept_distorted_section(1e-3);
@@ -141,9 +141,8 @@ static void points_store_what_the_kernel_stores_and_yield_at_the_flow_stress(voi
     wb_swept_section_release(&section);
 }
 
-/* Stretched along, by an amount that is linear in the section: so is the stress, up to the corners.
- */
-static void corners_continue_what_is_linear(void **unused)
+/* Axial stretch that is linear over the section: the stress is also linear, up to the corners. */
+static void corners_extrapolate_linear_fields(void **unused)
 {
     (void)unused;
     struct wb_swept_section section = swept_circle(1.4e-3, 6, 2);
@@ -161,7 +160,7 @@ static void corners_continue_what_is_linear(void **unused)
         for (int a = 0; a < 4; a++)
             mean += 0.25 * section.node[section.quad[e][a]][0];
         for (int a = 0; a < 4; a++) {
-            /* Within an element 2 mu of the variation: the volume stays. */
+            /* Within an element 2 mu times the variation: constant volume. */
             const double off = section.node[section.quad[e][a]][0] - mean;
             const double all = -curvature * mean * 4e9 * 0.6 / (1.4 * 0.2);
             const double expected = all - curvature * off * 4e9 / 1.4;
@@ -176,8 +175,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_turned_and_stretched_bar_has_axial_stress_only),
-        cmocka_unit_test(points_store_what_the_kernel_stores_and_yield_at_the_flow_stress),
-        cmocka_unit_test(corners_continue_what_is_linear),
+        cmocka_unit_test(points_have_the_kernels_energy_and_the_flow_stress),
+        cmocka_unit_test(corners_extrapolate_linear_fields),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

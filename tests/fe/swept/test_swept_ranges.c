@@ -1,5 +1,5 @@
-/* Energies over ranges of stations: those of parts that border on each other are the whole's, and
- * what is not counted is computed all the same. */
+/* Energies over ranges of stations: the sums of adjacent parts equal those of the complete body,
+ * and stations that are not counted are still computed. */
 #include "tests/fe/swept/contacts.h"
 #include "tests/fe/swept/tapes.h"
 
@@ -16,7 +16,7 @@ static struct wb_swept_range part(int i)
     return (struct wb_swept_range){border[i], border[i + 1]};
 }
 
-static void a_range_is_cut_to_what_there_is(void **unused)
+static void a_range_is_limited_to_the_stations(void **unused)
 {
     (void)unused;
     const struct wb_swept_range all = {0, 0}, far = {50, 60}, over = {5, 90};
@@ -178,7 +178,7 @@ static void parts_of_a_contact_sum_to_the_whole(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_range_is_cut_to_what_there_is),
+        cmocka_unit_test(a_range_is_limited_to_the_stations),
         cmocka_unit_test(parts_of_a_wire_sum_to_the_whole),
         cmocka_unit_test(parts_of_a_tape_sum_to_the_whole),
         cmocka_unit_test(parts_of_a_contact_sum_to_the_whole),

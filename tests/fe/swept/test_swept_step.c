@@ -4,7 +4,7 @@
 #include "fe/swept/swept_frequency.h"
 #include "tests/fe/swept/swept_runs.h"
 
-/* A stubby elastic wire of few elements. */
+/* A short elastic wire of few elements. */
 static struct swept_setup stub(enum wb_swept_hex_formulation formulation, double selective)
 {
     struct swept_setup s = swept_type3(2, 0, 6, 3e-3);
@@ -61,7 +61,8 @@ static void layer_is_the_derivative_of_the_forces(void **unused)
     }
 }
 
-/* y = M'^-1 K x for the whole wire, from the layers; freedoms (station n + node) 3 + component. */
+/* y = M'^-1 K x for the complete wire, from the layers; degrees of freedom (station n + node) 3 +
+ * component. */
 static void multiply(const struct swept_run *run, const double *K, double selective,
                      const double *x, double *y)
 {
@@ -87,7 +88,7 @@ static void multiply(const struct swept_run *run, const double *K, double select
     }
 }
 
-/* The wire's largest frequency by powers of M'^-1 K, and its mode. */
+/* The wire's largest frequency by power iteration of M'^-1 K, and its mode. */
 static double largest_frequency(const struct swept_run *run, double selective, double *mode)
 {
     const int n = 3 * run->section.n_nodes * run->body.layout.n_stations;
@@ -113,7 +114,7 @@ static double largest_frequency(const struct swept_run *run, double selective, d
     return sqrt(value);
 }
 
-/* Largest displacement after steps of dt, started in a mode with an amplitude of 1 pm. */
+/* Largest displacement after steps of dt, starting in a mode with an amplitude of 1 pm. */
 static double grown(struct swept_run *run, const double *mode, double dt, int steps)
 {
     const int n = run->section.n_nodes;
@@ -162,8 +163,8 @@ static void step_is_stable_up_to_the_bound_and_not_far_above(void **unused)
     }
 }
 
-/* A single freedom: all held but the axial motion of one end. Its stiffness is (lambda + 2 mu) A /
- * h, its mass half an element's. */
+/* A single degree of freedom: only the axial motion of one end is free. Its stiffness is (lambda +
+ * 2 mu) A / h, its mass half an element's. */
 static void oscillator_has_the_frequency_of_central_differences(void **unused)
 {
     (void)unused;
@@ -215,9 +216,9 @@ static struct motion motion_of(const struct swept_run *run)
     return m;
 }
 
-/* Spins, flies and vibrates, elastic or plastic, in float and in double; and with selective mass
- * scaling, whose inertia is another against turning. */
-static void free_body_keeps_momentum_and_energy(void **unused)
+/* Rotates, translates and vibrates, elastic or plastic, in float and in double; and with selective
+ * mass scaling, which changes the rotary inertia. */
+static void free_body_conserves_momentum_and_energy(void **unused)
 {
     (void)unused;
     for (int variant = 0; variant < 5; variant++) {
@@ -237,7 +238,7 @@ static void free_body_keeps_momentum_and_energy(void **unused)
                 *swept_velocity(&run, k, 2, j) = 0.5;
             }
         }
-        /* Yielding within a step makes an error of its order. */
+        /* Yielding within a step causes an error of first order in the step. */
         const double dt = (plastic ? 0.9 : 1.8) / run.omega;
         const int steps = selective ? 10000 : 100000;
         double first = 0.0, lowest = 1e30, highest = -1e30, kinetic = 0.0;
@@ -311,7 +312,7 @@ static void weight_is_not_scaled_with_the_mass(void **unused)
     assert_close_relative(sums.momentum[1], -(wire + 1e-6) * 9.81 * 99.5 * dt, 1e-9);
     assert_close_relative(swept_mean(&run, run.fields.velocity, 1, 2), -9.81 / 25.0 * 99.5 * dt,
                           1e-3);
-    /* All of it is motion: strains are of the order of 1e-15. */
+    /* Only rigid motion: strains are of the order of 1e-15. */
     double fallen = 0.0;
     for (int step = 0; step < 100; step++)
         fallen += (step + 0.5) * dt;
@@ -320,9 +321,9 @@ static void weight_is_not_scaled_with_the_mass(void **unused)
     swept_run_release(&run);
 }
 
-/* Forces at random on one station: its mean accelerates as ever, the rest beta times less; what is
- * held keeps its velocity. */
-static void selective_scaling_leaves_the_mean_alone(void **unused)
+/* Random forces on one station: its mean acceleration is unchanged, the rest is beta times smaller;
+ * fixed components keep their velocity. */
+static void selective_scaling_keeps_the_mean_acceleration(void **unused)
 {
     (void)unused;
     struct swept_setup setup = stub(WB_SWEPT_HEX_FOUR_POINTS, 1.0);
@@ -361,7 +362,7 @@ static void selective_scaling_leaves_the_mean_alone(void **unused)
     assert_close_relative(beside[1], beside[0] / 50.0, 1e-9);
 }
 
-/* nu = 0: plane waves. The bar is stopped at one end until its end is pulled. */
+/* nu = 0: plane waves. The bar hits a wall and stays until the wave returns. */
 static void bar_impact_has_its_stress_and_contact_time(void **unused)
 {
     (void)unused;
@@ -370,7 +371,7 @@ static void bar_impact_has_its_stress_and_contact_time(void **unused)
     setup.material.hardening = WB_HARDENING_NONE_ELASTIC;
     setup.material.poissons_ratio = 0.0;
     swept_run_init(&run, &setup);
-    /* The mesh has the circle's second moment, not its area: the wave speed is its own. */
+    /* The mesh has the circle's second moment but not its area: it has its own wave speed. */
     const double mass = setup.density * M_PI / 4 * 1.4e-3 * 1.4e-3;
     const double c = sqrt(setup.material.youngs_modulus * run.section.area / mass), v = 1.0;
     const double dt = 1.8 / run.omega;
@@ -416,7 +417,7 @@ static double first_mode(double s)
     return 0.5 * (cosh(b * s) - cos(b * s) - r * (sinh(b * s) - sin(b * s)));
 }
 
-/* A quarter of a period from the straight wire, thrown upwards in its first mode. */
+/* A quarter of a period from the straight wire, with initial velocities of its first mode. */
 static double cantilever_frequency(const struct swept_setup *setup)
 {
     struct swept_run run;
@@ -435,7 +436,7 @@ static double cantilever_frequency(const struct swept_setup *setup)
         double now = 0.0;
         for (int j = 1; j <= last; j++)
             now += first_mode((double)j / last) * *swept_velocity(&run, 0, 1, j);
-        /* The velocity is that of half a step before. */
+        /* The velocity is half a step behind. */
         if (now < 0.0) {
             time -= dt * (0.5 + now / (now - before));
             break;
@@ -464,8 +465,7 @@ static void cantilever_has_its_first_frequency(void **unused)
     }
 }
 
-/* The layer's energy, twisted as a circle is, without warping; the section was scaled for bending.
- */
+/* Energy of a layer twisted like a circle, without warping; the section was scaled for bending. */
 static void wire_twists_as_a_circle(void **unused)
 {
     (void)unused;
@@ -498,7 +498,7 @@ static void wire_twists_as_a_circle(void **unused)
     }
 }
 
-static void impossible_bodies_are_refused(void **unused)
+static void invalid_bodies_are_rejected(void **unused)
 {
     (void)unused;
     const double mass[2] = {1.0, 2.0}, none[2] = {1.0, 0.0};
@@ -534,13 +534,13 @@ int main(void)
         cmocka_unit_test(layer_is_the_derivative_of_the_forces),
         cmocka_unit_test(step_is_stable_up_to_the_bound_and_not_far_above),
         cmocka_unit_test(oscillator_has_the_frequency_of_central_differences),
-        cmocka_unit_test(free_body_keeps_momentum_and_energy),
+        cmocka_unit_test(free_body_conserves_momentum_and_energy),
         cmocka_unit_test(weight_is_not_scaled_with_the_mass),
-        cmocka_unit_test(selective_scaling_leaves_the_mean_alone),
+        cmocka_unit_test(selective_scaling_keeps_the_mean_acceleration),
         cmocka_unit_test(bar_impact_has_its_stress_and_contact_time),
         cmocka_unit_test(cantilever_has_its_first_frequency),
         cmocka_unit_test(wire_twists_as_a_circle),
-        cmocka_unit_test(impossible_bodies_are_refused),
+        cmocka_unit_test(invalid_bodies_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

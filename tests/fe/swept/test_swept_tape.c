@@ -8,7 +8,7 @@ enum {
     FIELDS = 2 /* positions and directors */
 };
 
-/* A winding tube of a twisted, uneven mesh. */
+/* A winding tube with a twisted, uneven mesh. */
 static struct test_tape uneven_tube(const struct wb_material *material, bool is_double)
 {
     struct wb_swept_tape_model model = tape_model(material, 7, 20, true, 1e-3);
@@ -25,7 +25,7 @@ static struct test_tape uneven_tube(const struct wb_material *material, bool is_
     return test_tape_create(&model);
 }
 
-/* Moves positions by up to `size` m, directors by up to `turn`. */
+/* Displaces positions by up to `size` m, directors by up to `turn`. */
 static void shake(struct test_tape *t, double size, double turn, uint64_t *seed)
 {
     for (int k = 0; k < t->layout.n_nodes; k++) {
@@ -88,10 +88,10 @@ static void reference_state_has_no_force(void **unused)
     }
 }
 
-static void rigid_motion_makes_no_force(void **unused)
+static void rigid_motion_causes_no_force(void **unused)
 {
     (void)unused;
-    /* Beside the forces at a strain of 1: E h times an element's side. */
+    /* Scale: forces at a strain of 1, E h times an element's side. */
     const double unit = 119e6 * 0.2e-3 * 1e-3;
     for (int is_double = 0; is_double < 2; is_double++) {
         /* Positions are 20 times as large as elements. */
@@ -110,7 +110,7 @@ static void rigid_motion_makes_no_force(void **unused)
 static void forces_are_the_derivatives_of_the_energy(void **unused)
 {
     (void)unused;
-    /* Of an elastic tape, at strains of 5 %; every component of some nodes, by fourth-order
+    /* An elastic tape at strains of 5 %; every component of some nodes, by fourth-order
      * differences. */
     struct test_tape t = uneven_tube(&elastic_tape, true);
     uint64_t seed = 5;
@@ -183,7 +183,7 @@ static void forces_and_their_moments_balance(void **unused)
     }
 }
 
-static void blocks_give_the_same_in_parts(void **unused)
+static void blocks_give_the_same_in_several_calls(void **unused)
 {
     (void)unused;
     struct test_tape t = uneven_tube(&tape_law, false), u = uneven_tube(&tape_law, false);
@@ -290,13 +290,13 @@ static int element_eigenvalues(double warp, double values[24])
     return zero;
 }
 
-static void element_has_no_free_motion_but_rigid_ones(void **unused)
+static void element_has_only_rigid_motions_without_energy(void **unused)
 {
     (void)unused;
     double values[24];
     assert_int_equal(element_eigenvalues(0.0, values), 6);
     assert_true(values[0] > -1e-6 * values[23]);
-    /* The weakest are the hourglass motions of directors: h^2 / 12 / A of the membrane's, and the
+    /* The smallest are the hourglass motions of directors: h^2 / 12 / A of the membrane's, and the
      * coefficient. */
     assert_true(values[6] > 1e-5 * values[23]);
     assert_int_equal(element_eigenvalues(0.2e-3, values), 6);
@@ -311,7 +311,7 @@ static void constant_strain_is_exact_on_a_distorted_sheet(void **unused)
     const double a = 7e-3, b = 4e-3;
     make_sheet(&model, a, b, 0.25);
     struct test_tape t = test_tape_create(&model);
-    /* U and then a rotation; lengths are changed by 3 %. */
+    /* U and then a rotation; lengths change by 3 %. */
     const double U[2][2] = {{1.03, 0.015}, {0.015, 0.99}};
     for (int k = 0; k < 6; k++) {
         for (int j = 0; j < 8; j++) {
@@ -355,7 +355,7 @@ static void constant_strain_is_exact_on_a_distorted_sheet(void **unused)
     test_tape_destroy(&t);
 }
 
-static void logarithm_is_as_good_as_promised(void **unused)
+static void logarithm_has_the_documented_accuracy(void **unused)
 {
     (void)unused;
     const double E = 119e6, nu = 0.3;
@@ -422,7 +422,7 @@ static void pure_bending_is_exact_on_a_distorted_sheet(void **unused)
 
 /* --- masses and steps --- */
 
-static void masses_are_those_of_the_sheet(void **unused)
+static void masses_agree_with_the_sheet(void **unused)
 {
     (void)unused;
     struct wb_swept_tape_model model = tape_model(&elastic_tape, 24, 33, true, 0.5e-3);
@@ -516,7 +516,7 @@ static void bound_of_frequencies_holds_and_is_close(void **unused)
 
 /* --- refusals --- */
 
-static void impossible_tapes_are_refused(void **unused)
+static void invalid_tapes_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_swept_tape_model good = tape_model(&tape_law, 6, 5, true, 1e-3);
@@ -563,7 +563,7 @@ static void impossible_tapes_are_refused(void **unused)
     free((void *)good.position);
 }
 
-static void what_is_not_finite_comes_out(void **unused)
+static void non_finite_input_gives_non_finite_output(void **unused)
 {
     (void)unused;
     struct test_tape t = uneven_tube(&tape_law, false);
@@ -579,19 +579,19 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reference_state_has_no_force),
-        cmocka_unit_test(rigid_motion_makes_no_force),
+        cmocka_unit_test(rigid_motion_causes_no_force),
         cmocka_unit_test(forces_are_the_derivatives_of_the_energy),
         cmocka_unit_test(forces_and_their_moments_balance),
-        cmocka_unit_test(blocks_give_the_same_in_parts),
+        cmocka_unit_test(blocks_give_the_same_in_several_calls),
         cmocka_unit_test(instruction_sets_agree),
-        cmocka_unit_test(element_has_no_free_motion_but_rigid_ones),
+        cmocka_unit_test(element_has_only_rigid_motions_without_energy),
         cmocka_unit_test(constant_strain_is_exact_on_a_distorted_sheet),
-        cmocka_unit_test(logarithm_is_as_good_as_promised),
+        cmocka_unit_test(logarithm_has_the_documented_accuracy),
         cmocka_unit_test(pure_bending_is_exact_on_a_distorted_sheet),
-        cmocka_unit_test(masses_are_those_of_the_sheet),
+        cmocka_unit_test(masses_agree_with_the_sheet),
         cmocka_unit_test(bound_of_frequencies_holds_and_is_close),
-        cmocka_unit_test(impossible_tapes_are_refused),
-        cmocka_unit_test(what_is_not_finite_comes_out),
+        cmocka_unit_test(invalid_tapes_are_rejected),
+        cmocka_unit_test(non_finite_input_gives_non_finite_output),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

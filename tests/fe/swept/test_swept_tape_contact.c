@@ -11,7 +11,7 @@ enum {
 
 static const double radius = 0.7e-3, spacing = 0.5e-3, thickness = 0.2e-3;
 
-/* A sleeve round one wire, both straight along x. */
+/* A sleeve around one wire, both straight along x. */
 struct grip {
     struct test_tape tape;
     struct wb_swept_layout layout; /* of the wire */
@@ -184,7 +184,7 @@ static void pressure_is_stiffness_times_depth(void **unused)
     }
 }
 
-static void nothing_acts_across_a_gap(void **unused)
+static void no_force_acts_across_a_gap(void **unused)
 {
     (void)unused;
     const struct wb_swept_tape_contact_settings settings = usual();
@@ -242,7 +242,7 @@ static void forces_are_the_derivatives_of_the_pressures_energy(void **unused)
     grip_destroy(&g);
 }
 
-/* The sleeve, turned round the wire by `angle` and moved across it, with directors that lean. */
+/* The sleeve, rotated around the wire by `angle` and moved across it, with inclined directors. */
 static void move_sleeve(struct grip *g, const double *start, double angle, double y, double z)
 {
     const double lean = 0.3;
@@ -260,9 +260,9 @@ static void move_sleeve(struct grip *g, const double *start, double angle, doubl
     }
 }
 
-/* Without friction the work on a closed way is nothing, whatever places are found anew on it, and
- * on the way there it is what is stored: a sleeve slides round a wire on which it lies askew. */
-static void a_tape_that_slides_round_a_wire_gets_no_energy(void **unused)
+/* Without friction the work on a closed path is zero, regardless of updated contact points, and on
+ * the way there it is the stored energy: a sleeve slides around a wire on which it is skew. */
+static void sliding_around_a_wire_adds_no_energy(void **unused)
 {
     (void)unused;
     struct wb_swept_tape_contact_settings settings = usual();
@@ -306,7 +306,7 @@ static void a_tape_that_slides_round_a_wire_gets_no_energy(void **unused)
 
 /* --- friction --- */
 
-static void sliding_is_resisted_by_mu_times_the_pressure(void **unused)
+static void sliding_friction_is_mu_times_the_pressure(void **unused)
 {
     (void)unused;
     /* The wire is drawn through the sleeve by more than a station. */
@@ -332,7 +332,7 @@ static void sliding_is_resisted_by_mu_times_the_pressure(void **unused)
                 within = force;
         }
         const double mu = 0.1 + 0.3 * exp(-50.0 * speed);
-        /* Where wire and sleeve lie side by side: 0.64 mm of 11.5 mm are out at the end. */
+        /* Common length of wire and sleeve: 0.64 mm of 11.5 mm are outside at the end. */
         const double whole = 30e9 * depth * area_of(&g);
         const double beside = 1.0 - 0.3e-3 / (spacing * (STATIONS - 1));
         assert_close_relative(within, -mu * whole * beside, 0.01);
@@ -346,7 +346,7 @@ static void sliding_is_resisted_by_mu_times_the_pressure(void **unused)
     }
 }
 
-/* Slip after `begin` steps up to `end`; the force in the last. */
+/* Slips in steps `begin` to `end`; returns the force in the last one. */
 static double slide_on(struct grip *g, int begin, int end)
 {
     for (int i = begin; i < end; i++) {
@@ -356,7 +356,7 @@ static double slide_on(struct grip *g, int begin, int end)
     return sum_on_wire(g, 0);
 }
 
-static void a_checkpoint_goes_on_bit_for_bit(void **unused)
+static void a_checkpoint_continues_bit_for_bit(void **unused)
 {
     (void)unused;
     const struct wb_swept_tape_contact_settings settings = usual();
@@ -396,7 +396,7 @@ static void sticking_is_elastic(void **unused)
     const double force = 10e9 * slip * area_of(&g);
     assert_close_relative(sum_on_wire(&g, 0), -force, 0.002); /* the end nodes have slipped off */
     assert_true(dissipated == 0.0);
-    /* It pulls at the tape's lower side: moments are o times the forces. */
+    /* The force acts at the tape's lower side: moments are o times the forces. */
     const double pull = tape_load(&g.tape, g.tape.force, 3, 0, 9);
     const double below = 1.0 - cos(M_PI / SURFACE);
     const double turning = -tape_load(&g.tape, g.tape.moment, 3, 0, 9) / pull;
@@ -424,7 +424,7 @@ static void turn_field(const struct wb_swept_layout *layout, double *field, doub
     }
 }
 
-static void turning_together_makes_no_friction(void **unused)
+static void common_rotation_causes_no_friction(void **unused)
 {
     (void)unused;
     const struct wb_swept_tape_contact_settings settings = usual();
@@ -487,7 +487,7 @@ static void forces_and_their_moments_balance(void **unused)
     assert_true(fabs(sum_on_wire(&g, 0)) > 0.05 * size);
     for (int i = 0; i < 3; i++) {
         assert_close(force[i], 0.0, 1e-13 * size);
-        /* Friction at g beside the place: micrometres. */
+        /* Friction acts at a distance g from the contact point: micrometres. */
         assert_close(moment[i], 0.0, 5e-6 * size);
     }
     grip_destroy(&g);
@@ -510,7 +510,7 @@ static void contact_takes_over_from_a_broken_bond(void **unused)
     struct wb_swept_tape_contact_sums sums = step(&g, 1e-6);
     assert_int_equal(wb_swept_tape_contact_near(g.contact), 0);
     assert_true(sums.normal == 0.0);
-    /* A slip that breaks all: 2 G / shear_strength = 0.25 mm. */
+    /* A slip that breaks all bonds: 2 G / shear_strength = 0.25 mm. */
     const struct wb_swept_cohesion_fields fields = {
         {g.tape.position, g.tape.director, g.tape.force, g.tape.moment},
         (const double *const[]){g.position},
@@ -520,9 +520,9 @@ static void contact_takes_over_from_a_broken_bond(void **unused)
     wb_swept_cohesion_add_forces(g.cohesion, &fields, 0, wb_swept_tape_blocks(g.tape.tape),
                                  &of_bond);
     assert_close_relative(of_bond.dissipated, 25.0 * wb_swept_cohesion_area(g.cohesion), 1e-9);
-    (void)step(&g, 1e-6); /* sees what is broken */
+    (void)step(&g, 1e-6); /* detects broken bonds */
     sums = step(&g, 1e-6);
-    /* The first station's nodes have no wire under them any more. */
+    /* The first station's nodes no longer have a wire below them. */
     assert_int_equal(wb_swept_tape_contact_near(g.contact), RING * (STATIONS - 1));
     assert_close_relative(sums.normal, 0.5 * 30e9 * 4e-12 * area_of(&g) * 22.5 / 23.0, 1e-4);
     grip_destroy(&g);
@@ -530,7 +530,7 @@ static void contact_takes_over_from_a_broken_bond(void **unused)
 
 /* --- stable step, refusals --- */
 
-static void bounds_are_above_the_springs_they_are_for(void **unused)
+static void bounds_exceed_the_springs_stiffness(void **unused)
 {
     (void)unused;
     const struct wb_swept_tape_contact_settings settings = usual();
@@ -548,13 +548,13 @@ static void bounds_are_above_the_springs_they_are_for(void **unused)
     const double alone = 30e9 * area / mass[0];
     const double tape = wb_swept_tape_contact_stiffness_per_mass(g.contact, mass, inertia);
     const double wire = wb_swept_tape_contact_wire_stiffness_per_mass(g.contact, 0, wire_mass);
-    /* A spring has two sides, the tape's with a lever to its director. */
+    /* A spring acts on both sides, on the tape's with a lever to its director. */
     assert_true(tape > 2.0 * alone && tape < 6.0 * alone);
     assert_true(wire > 2.0 * alone * RING / SURFACE && wire < 6.0 * alone);
     grip_destroy(&g);
 }
 
-static void what_is_lost_or_impossible_is_refused(void **unused)
+static void failed_steps_and_invalid_input_are_reported(void **unused)
 {
     (void)unused;
     struct wb_swept_tape_contact_settings settings = usual();
@@ -595,17 +595,17 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pressure_is_stiffness_times_depth),
-        cmocka_unit_test(nothing_acts_across_a_gap),
+        cmocka_unit_test(no_force_acts_across_a_gap),
         cmocka_unit_test(forces_are_the_derivatives_of_the_pressures_energy),
-        cmocka_unit_test(a_tape_that_slides_round_a_wire_gets_no_energy),
-        cmocka_unit_test(sliding_is_resisted_by_mu_times_the_pressure),
-        cmocka_unit_test(a_checkpoint_goes_on_bit_for_bit),
+        cmocka_unit_test(sliding_around_a_wire_adds_no_energy),
+        cmocka_unit_test(sliding_friction_is_mu_times_the_pressure),
+        cmocka_unit_test(a_checkpoint_continues_bit_for_bit),
         cmocka_unit_test(sticking_is_elastic),
-        cmocka_unit_test(turning_together_makes_no_friction),
+        cmocka_unit_test(common_rotation_causes_no_friction),
         cmocka_unit_test(forces_and_their_moments_balance),
         cmocka_unit_test(contact_takes_over_from_a_broken_bond),
-        cmocka_unit_test(bounds_are_above_the_springs_they_are_for),
-        cmocka_unit_test(what_is_lost_or_impossible_is_refused),
+        cmocka_unit_test(bounds_exceed_the_springs_stiffness),
+        cmocka_unit_test(failed_steps_and_invalid_input_are_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

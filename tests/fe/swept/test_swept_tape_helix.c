@@ -1,4 +1,5 @@
-/* A real winding, half-lapped, one layer bonded to the one below, against the sleeve of both. */
+/* A real winding, half-lapped, each layer bonded to the one below, compared with the sleeve of both
+ * layers. */
 #include "fe/swept/swept_cohesion.h"
 #include "tests/fe/swept/tapes.h"
 
@@ -78,7 +79,7 @@ static double advance_field(const struct helix *h, const double *mass, const voi
     return kinetic;
 }
 
-/* As in test_swept_tape_problems.c; ends are held. */
+/* As in test_swept_tape_problems.c; the ends are fixed. */
 static void relax(struct helix *h, int steps)
 {
     const size_t size = wb_swept_size(&h->tape.layout);
@@ -112,7 +113,8 @@ static void relax(struct helix *h, int steps)
     free(v);
 }
 
-/* Force for a stretch over that of the sleeve of two layers, ends held as plane sections. */
+/* Force for a stretch over that of the sleeve of two layers, with the ends fixed as plane
+ * sections. */
 static double stiffness(const struct wb_swept_cohesion_settings *bonded)
 {
     const double strain = 1e-4, nu = 0.3;
@@ -137,15 +139,16 @@ static double stiffness(const struct wb_swept_cohesion_settings *bonded)
     return force / (E * 2.0 * layer * 2.0 * M_PI * radius * polygon * strain);
 }
 
-/* Shear lag. Along the axis, every `advance` one winding ends where the next but one begins, and
- * the one between bears all; the load goes over within l = sqrt(E t / (2 K_ss)). */
+/* Shear lag. Along the axis, at every `advance` one winding ends where the next but one begins, and
+ * the one between carries the total load; the load is transferred within l = sqrt(E t / (2
+ * K_ss)). */
 static double lapped(double shear_stiffness)
 {
     const double l = sqrt(E * layer / (2.0 * shear_stiffness));
     return 1.0 / (1.0 + 2.0 * l / advance * tanh(0.5 * advance / l));
 }
 
-static void bonded_windings_are_as_stiff_as_shear_lag_lets_them(void **unused)
+static void bonded_windings_follow_shear_lag(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
@@ -167,7 +170,7 @@ static void bonded_windings_are_as_stiff_as_shear_lag_lets_them(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bonded_windings_are_as_stiff_as_shear_lag_lets_them),
+        cmocka_unit_test(bonded_windings_follow_shear_lag),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

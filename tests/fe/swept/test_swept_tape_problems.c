@@ -1,4 +1,5 @@
-/* Tapes under load, against closed forms: statics by relaxation, plastic flow, long runs. */
+/* Tapes under load compared with closed forms: statics by dynamic relaxation, plastic flow, long
+ * runs. */
 #include "fe/material/hardening.h"
 #include "fe/material/material_private.h"
 #include "fe/swept/swept_private.h"
@@ -9,7 +10,8 @@ static const double E = 119e6, nu = 0.3, h = 0.2e-3;
 
 /* --- statics --- */
 
-/* Loads beside the tape's own forces (N), and what is held: (3 n_nodes x stride), as fields. */
+/* Loads in addition to the tape's own forces (N), and fixed components: (3 n_nodes x stride), as
+ * fields. */
 struct statics {
     double *load, *load_moment;
     unsigned char *held, *held_director;
@@ -32,7 +34,7 @@ static void statics_destroy(struct statics *s)
     free(s->held_director);
 }
 
-/* One field's part of a step, of velocities by `kick`; returns its kinetic energy. */
+/* A step of one field, with velocities advanced by `kick`; returns its kinetic energy. */
 struct motion {
     const double *mass;
     const void *force;
@@ -61,7 +63,7 @@ static double move(const struct test_tape *t, const struct motion *field, double
     return kinetic;
 }
 
-/* To rest: motion is stopped whenever its energy has passed a maximum. */
+/* Kinetic damping: motion is stopped whenever its energy has passed a maximum. */
 static void relax(struct test_tape *t, const struct statics *s, int steps)
 {
     const size_t size = wb_swept_size(&t->layout);
@@ -73,12 +75,12 @@ static void relax(struct test_tape *t, const struct statics *s, int steps)
     const struct motion own = {mass, t->force, s->load, s->held, t->position, v};
     const struct motion turns = {inertia,          t->moment,   s->load_moment,
                                  s->held_director, t->director, v + size};
-    /* Near the stable step the fastest motions would be stopped in every third step, for ever. */
+    /* Near the stable step the highest modes would be stopped in every third step, without end. */
     const double dt = 0.5 * 2.0 / sqrt(bound);
     bool at_rest = true;
     for (int i = 0; i < steps; i++) {
-        /* From rest it is half a step to the next velocity: a whole one would feed the fastest
-         * motions. */
+        /* From rest the next velocity is half a step ahead: a whole step would excite the highest
+         * modes. */
         const double kick = at_rest ? 0.5 * dt : dt;
         (void)tape_forces(t);
         const double kinetic = move(t, &own, kick, dt) + move(t, &turns, kick, dt);
@@ -91,7 +93,7 @@ static void relax(struct test_tape *t, const struct statics *s, int steps)
     free(v);
 }
 
-/* Forces of a station on what holds it: along an axis, and moment about z or x. */
+/* Forces of a station on its supports: along an axis, and moment about z or x. */
 static double station_force(const struct test_tape *t, int j, int i)
 {
     double sum = 0.0;
@@ -154,7 +156,7 @@ static void pressure_widens_a_sleeve(void **unused)
     test_tape_destroy(&t);
 }
 
-/* Force for a stretch of a sleeve, over E h times its circumference and the stretch. */
+/* Force for a stretch of a sleeve, over E h times its circumference times the stretch. */
 static double stretched(int nodes, int along, double winding)
 {
     const double radius = 2.3e-3, spacing = 8e-3 / along, strain = 1e-5;
@@ -185,7 +187,7 @@ static void sleeve_in_tension_has_its_stiffness(void **unused)
         const double polygon = nodes / M_PI * sin(M_PI / nodes);
         assert_close_relative(stretched(nodes, 16, 0.0), polygon, 1e-4); /* nu^2 (h / r)^2 / 12 */
     }
-    /* Its nodes may wind: the elements are then skew, and not flat. */
+    /* With winding nodes the elements are skew and not flat. */
     const double coarse = 1.0 - stretched(16, 16, 0.15), fine = 1.0 - stretched(32, 32, 0.075);
     print_message("winding sleeve in tension: %.2e and %.2e short of E A\n", coarse, fine);
     assert_true(fabs(fine) < 3e-3 && fabs(fine) < 0.35 * fabs(coarse));
@@ -228,7 +230,8 @@ static void sleeve_in_bending_has_its_stiffness(void **unused)
                   order);
     assert_true(fine > 0.0 && fine < 0.015);
     assert_true(order > 1.8 && order < 2.3);
-    /* What one point in the plane leaves out, hourglass stiffness gives back in full at 1. */
+    /* With a coefficient of 1 the hourglass stiffness fully replaces the bending that one point
+     * neglects. */
     const double polygon = 16 / M_PI * sin(M_PI / 16) * pow(cos(M_PI / 16), 2);
     const double of_chords = 16 / M_PI * pow(sin(M_PI / 16), 3) / 3.0;
     assert_close(1.0 - coarse, polygon + 0.1 * of_chords, 2e-3);
@@ -274,7 +277,7 @@ static void sleeve_in_torsion_has_its_stiffness(void **unused)
     assert_true(log2(coarse / fine) > 1.8 && log2(coarse / fine) < 2.2);
 }
 
-/* Deflection of a clamped strip's tip over P L^3 / (3 E I), with so many elements along. */
+/* Deflection of a clamped strip's tip over P L^3 / (3 E I), with `along` elements along. */
 static double strip(int along, double poisson, int sheets)
 {
     const double length = 8e-3, width = 2e-3, force = 1e-8;
@@ -311,9 +314,9 @@ static void strip_bends_as_a_beam(void **unused)
                   log2(coarse / fine));
     assert_true(fabs(fine) < 5e-3);
     assert_true(log2(coarse / fine) > 1.9 && log2(coarse / fine) < 2.1);
-    /* Two sheets that slide: four times as soft. */
+    /* Two sliding sheets: four times as soft. */
     assert_close(strip(8, 0.0, 2), 1.0 - fine, 2e-3);
-    /* Free edges bend the other way: E I, and not E / (1 - nu^2), but for the clamp. */
+    /* Free edges have anticlastic curvature: E I instead of E / (1 - nu^2), except at the clamp. */
     const double free_edges = strip(8, 0.3, 1);
     assert_true(free_edges > 0.965 && free_edges < 1.0);
 }
@@ -397,7 +400,7 @@ static void tension_follows_the_uniaxial_law(void **unused)
                 for (int i = 1; i <= steps; i++) {
                     const double e = last + (way[leg] - last) * i / steps;
                     wb_material_stress(&tape_law, e, &state, &state, &stress, &tangent);
-                    /* The plastic strain across is half of that along, the other way. */
+                    /* The lateral plastic strain is minus half of the axial one. */
                     const double across = -nu * stress / E - 0.5 * state.plastic_strain;
                     strain_element(&t, e, across, 0.0);
                     (void)tape_forces(&t);
@@ -455,7 +458,7 @@ static void shear_follows_its_closed_form(void **unused)
     const double g = 0.06, G = 0.5 * E / (1.0 + nu);
     const double p = plastic_strain_of(3.0 * G, sqrt(3.0) * G * g);
     struct test_tape t = element(&tape_law, true);
-    /* Equal and opposite stretches along the diagonals: no volume change in the plane. */
+    /* Equal and opposite stretches along the diagonals: no area change in the plane. */
     strain_element(&t, 0.5 * g, -0.5 * g, 0.0);
     double found[2];
     (void)tape_forces(&t);
@@ -473,10 +476,10 @@ static void shear_follows_its_closed_form(void **unused)
     test_tape_destroy(&u);
 }
 
-static void laws_of_any_kind_are_followed(void **unused)
+static void laws_of_any_kind_are_reproduced(void **unused)
 {
     (void)unused;
-    /* Perfect plasticity, linear and steep hardening, no Poisson's ratio and the largest. */
+    /* Perfect plasticity, linear and steep hardening, Poisson's ratio zero and maximal. */
     static const double laws[][3] = {
         {0.0, 1.0, 0.3}, {50e6, 1.0, 0.0}, {300e6, 1.8, 0.5}, {6e6, 0.5, 0.45}};
     for (int l = 0; l < 4; l++) {
@@ -498,7 +501,7 @@ static void laws_of_any_kind_are_followed(void **unused)
     }
 }
 
-static void a_million_steps_end_where_one_does(void **unused)
+static void a_million_steps_end_in_the_same_state_as_one(void **unused)
 {
     (void)unused;
     /* In single precision, to a strain of 6 %: increments are 1e-7 of the plastic strain. */
@@ -541,7 +544,7 @@ static struct wb_swept_step *step_of(const struct test_tape *t, const double *ma
     return step;
 }
 
-static void free_motion_keeps_its_energy_and_momentum(void **unused)
+static void free_motion_conserves_energy_and_momentum(void **unused)
 {
     (void)unused;
     for (int plastic = 0; plastic < 2; plastic++) {
@@ -555,7 +558,7 @@ static void free_motion_keeps_its_energy_and_momentum(void **unused)
         wb_swept_tape_masses(t.tape, mass, inertia);
         assert_int_equal(wb_swept_tape_stiffness_per_mass(t.tape, &bound), WB_OK);
         struct wb_swept_step *own = step_of(&t, mass), *turns = step_of(&t, inertia);
-        /* A bending and an oval motion, fast enough to yield, and a spin. */
+        /* Bending and ovalisation, fast enough to yield, and a rotation. */
         for (int k = 0; k < 16; k++) {
             for (int j = 0; j < 20; j++) {
                 double x[3];
@@ -574,7 +577,7 @@ static void free_motion_keeps_its_energy_and_momentum(void **unused)
             const struct wb_swept_tape_sums sums = tape_forces(&t);
             struct wb_swept_step_sums a = {0}, b = {0};
             if (i == 0 || i == 3999) {
-                /* Moment of momentum half a step on, with positions there. */
+                /* Angular momentum half a step later, with the positions there. */
                 memset(spin[i > 0], 0, sizeof spin[0]);
             }
             wb_swept_step_update(own, &fields, times, 0, 2, &a);
@@ -635,9 +638,9 @@ int main(void)
         cmocka_unit_test(tension_follows_the_uniaxial_law),
         cmocka_unit_test(equal_biaxial_tension_follows_its_closed_form),
         cmocka_unit_test(shear_follows_its_closed_form),
-        cmocka_unit_test(laws_of_any_kind_are_followed),
-        cmocka_unit_test(a_million_steps_end_where_one_does),
-        cmocka_unit_test(free_motion_keeps_its_energy_and_momentum),
+        cmocka_unit_test(laws_of_any_kind_are_reproduced),
+        cmocka_unit_test(a_million_steps_end_in_the_same_state_as_one),
+        cmocka_unit_test(free_motion_conserves_energy_and_momentum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Stresses of tapes asked from outside, against closed forms, the flow stress and the energy. */
+/* Queried stresses of tapes compared with closed forms, the flow stress and the energy. */
 #include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape.h"
 
@@ -17,7 +17,7 @@ static struct test_tape sheet(const struct wb_material *material, bool is_double
     return test_tape_create(&model);
 }
 
-/* Stretches the reference state along x and y, and turns all. */
+/* Stretches the reference state along x and y, and rotates it. */
 static void stretch(struct test_tape *t, double along, double across, double angle)
 {
     const double by[3] = {exp(along), exp(across), 1.0};
@@ -52,7 +52,7 @@ static void a_stretched_sheet_has_stress_along_only(void **unused)
                 for (int q = 0; q < 3; q++) {
                     const double *s = out[q].stress;
                     assert_close_relative(s[0] + s[1], expected, 1e-4);
-                    /* The only one: no determinant in any frame. */
+                    /* The only stress component: zero determinant in any frame. */
                     assert_close(s[0] * s[1] - s[2] * s[2], 0.0, 1e-4 * expected * expected);
                     assert_close_relative(wb_swept_tape_stress_von_mises(s), expected, 1e-4);
                     assert_close(out[q].plastic, 0.0, 0.0);
@@ -104,8 +104,8 @@ static void a_yielding_sheet_has_the_flow_stress_and_the_kernels_energy(void **u
     test_tape_destroy(&t);
 }
 
-/* A flat sheet rolled up along x: E z / R / (1 - nu^2) along, nu of it across, at the points of
- * Gauss. Chords are shorter than arcs by a millionth, which is 0.3 % of it. */
+/* A flat sheet rolled up along x: E z / R / (1 - nu^2) along, nu times that across, at the Gauss
+ * points. Chords are shorter than arcs by a millionth, which is 0.3 % of it. */
 static void a_rolled_sheet_has_bending_stress(void **unused)
 {
     (void)unused;

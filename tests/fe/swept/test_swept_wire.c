@@ -1,4 +1,4 @@
-/* Slow: whole runs of one wire. */
+/* Slow: complete runs of one wire. */
 #include "fe/swept/swept_private.h"
 #include "fe/trial/cantilever.h"
 #include "tests/fe/swept/swept_hex_twin.h"
@@ -9,8 +9,8 @@ static double smooth_step(double t)
     return t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
 }
 
-/* Leads the mean height of the tip by a vertical force, which it returns: as a beam of which one
- * prescribes the deflection. */
+/* Prescribes the mean height of the tip by a vertical force, which is returned: as a beam with
+ * prescribed deflection. */
 static double lead_tip(struct swept_run *run, double height, double dt)
 {
     const int tip = run->model.n_elements;
@@ -23,8 +23,8 @@ static double lead_tip(struct swept_run *run, double height, double dt)
     return wb_swept_step_station_mass(run->step, tip) * off / (dt * dt);
 }
 
-/* Type 3, L = 85 mm, to 53 mm: four points, few elements, against the fibre beam. Forces are means
- * over 15 ms, which is what waves along the wire need, at the mean deflection. */
+/* Type 3, L = 85 mm, to 53 mm: four points, few elements, compared with the fibre beam. Forces are
+ * means over 15 ms, to remove waves along the wire, at the mean deflection. */
 static void bent_wire_agrees_with_the_beam(void **unused)
 {
     (void)unused;
@@ -132,7 +132,7 @@ static void taylor_create(struct taylor *bar)
 {
     bar->section = quarter_of_circle(6.4e-3, 6, 1);
     const struct wb_swept_section *s = &bar->section;
-    /* The polygon's area is the circle's. */
+    /* Scales the polygon's area to the circle's. */
     wb_swept_section_scale(&bar->section, sqrt(M_PI / 4 * 3.2e-3 * 3.2e-3 / s->area));
     bar->model = (struct wb_swept_hex_model){
         .section = s,
@@ -162,7 +162,8 @@ static void taylor_create(struct taylor *bar)
     wb_swept_hex_destroy(hex);
 }
 
-/* The shortest line between stations, of its first length: the step goes with it. */
+/* The shortest distance between stations, over its initial value: the stable step is proportional
+ * to it. */
 static double shortest(const struct taylor *bar)
 {
     const int n = bar->section.n_nodes;
@@ -178,8 +179,8 @@ static double shortest(const struct taylor *bar)
     return least;
 }
 
-/* Velocities by `times[0]`, positions by `times[1]`; the wall and the planes of symmetry hold.
- * Returns the kinetic energy. */
+/* Advances velocities by `times[0]`, positions by `times[1]`, with the wall and the planes of
+ * symmetry. Returns the kinetic energy. */
 static double taylor_step(struct taylor *bar, const double times[2])
 {
     const int n = bar->section.n_nodes;
@@ -201,7 +202,7 @@ static double taylor_step(struct taylor *bar, const double times[2])
     return kinetic;
 }
 
-/* Copper at 227 m/s, 80 us: the slow twin with its exact logarithm. */
+/* Copper at 227 m/s, 80 us; the slow twin with its exact logarithm. */
 static void taylor_bar_has_the_length_and_radius_of_the_literature(void **unused)
 {
     (void)unused;
