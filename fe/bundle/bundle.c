@@ -13,21 +13,21 @@
 #define WB_LOG_DOMAIN "bundle"
 
 enum {
-    SETTLE_BLOCK = 20,    /* steps between looks at the kinetic energy */
-    SETTLE_WATCH = 200,   /* steps between looks of the caller */
+    SETTLE_BLOCK = 20,    /* steps between checks of the kinetic energy */
+    SETTLE_WATCH = 200,   /* steps between calls of the caller's watch */
     SETTLE_MOST = 400000, /* steps */
-    SETTLE_QUIET = 10     /* stops in a row with little motion */
+    SETTLE_QUIET = 10     /* consecutive stops with little motion that count as rest */
 };
 
 /* At rest: kinetic energy over the weight's work. */
-static const double settled = 1e-7;
+static const double rest_ratio = 1e-7;
 
-/* Of the stable step's bound, which is that of the straight, stress-free bundle. */
-static const double usual_safety = 0.9;
+/* Default time step over the stable one of the straight, stress-free bundle. */
+static const double default_safety = 0.9;
 
 struct wb_bundle {
     struct wb_bundle_part *whole;  /* all stations */
-    struct wb_bundle_parts *parts; /* that it is computed in */
+    struct wb_bundle_parts *parts; /* cut into parts for computation */
     double weight_zero;            /* J: potential of the weight at the start */
 };
 
@@ -48,19 +48,19 @@ enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_m
 {
     const char *name = settings->mesh ? settings->mesh : model->run.mesh;
     const struct wb_bundle_mesh *mesh = wb_bundle_model_mesh(model, name);
-    const double safety = settings->step_safety > 0.0 ? settings->step_safety : usual_safety;
+    const double safety = settings->step_safety > 0.0 ? settings->step_safety : default_safety;
 
     *out = NULL;
     if (!mesh)
-        return wb_fail(WB_ERR_NOT_FOUND, "%s: there is no mesh '%s'", model->path, name);
+        return wb_fail(WB_ERR_NOT_FOUND, "%s: mesh '%s' does not exist", model->path, name);
     if (!(settings->duration > 0.0 && isfinite(settings->duration)))
-        return wb_fail(WB_ERR_ARGUMENT, "the duration is %g s: expected a number above 0",
+        return wb_fail(WB_ERR_ARGUMENT, "duration %g s: expected a number above 0",
                        settings->duration);
     struct wb_bundle *const bundle = wb_memory_new(1, sizeof *bundle);
     enum wb_status status =
         wb_team_agree(wb_bundle_part_create_whole(&bundle->whole, model, mesh, safety));
     if (status == WB_OK) {
-        bundle->whole->way.duration = settings->duration;
+        bundle->whole->tip_path.duration = settings->duration;
         status = wb_bundle_parts_create(&bundle->parts, bundle->whole,
                                         wb_bundle_parts_of(model, name, settings->threads));
     }
@@ -122,11 +122,11 @@ enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n, struct wb_reas
     return wb_bundle_parts_advance(bundle->parts, n, reason);
 }
 
-void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration)
+void wb_bundle_move_tip(struct wb_bundle *bundle, double deflection, double duration)
 {
     const double now = bundle->whole->clock.time;
 
-    bundle->whole->way = (struct wb_bundle_way){
+    bundle->whole->tip_path = (struct wb_bundle_tip_path){
         .from = wb_bundle_part_target(bundle->whole, now),
         .to = deflection,
         .start = now,
@@ -134,9 +134,10 @@ void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration
     };
 }
 
-/* Motion is stopped whenever its energy begins to fall, until it is small beside the work that was
- * done; whoever stops it takes its energy away. */
-static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bundle_watch *watch,
+/* Kinetic damping: velocities are set to zero whenever the kinetic energy begins to decrease, until
+ * its maxima are small compared with the work done. The energy removed counts as negative external
+ * work. */
+static enum wb_status damp_to_rest(struct wb_bundle *bundle, const struct wb_bundle_watch *watch,
                                    struct wb_reason *reason)
 {
     struct wb_bundle_account *account = &bundle->whole->account;
@@ -148,7 +149,7 @@ static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bun
             return wb_fail_to(reason, WB_ERR_CONVERGENCE,
                               "%s: the bundle does not come to rest within %d steps",
                               bundle->whole->bodies.model->path, SETTLE_MOST);
-        if (watch && done % SETTLE_WATCH == 0 && !watch->goes_on(watch->context))
+        if (watch && done % SETTLE_WATCH == 0 && !watch->should_continue(watch->context))
             return WB_OK;
         WB_TRY(wb_bundle_advance(bundle, SETTLE_BLOCK, reason));
         if (account->kinetic >= last) {
@@ -157,7 +158,7 @@ static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bun
         }
         const double work = fabs(bundle->weight_zero - wb_bundle_parts_potential(bundle->parts)) +
                             fabs(account->tip_work);
-        quiet = last < settled * work ? quiet + 1 : 0;
+        quiet = last < rest_ratio * work ? quiet + 1 : 0;
         wb_bundle_parts_stop(bundle->parts);
         account->tip_work -= account->kinetic;
         account->kinetic = last = 0.0;
@@ -171,35 +172,35 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle, const struct wb_bundle
     struct wb_bundle_part *whole = bundle->whole;
     struct wb_bundle_energies now;
 
-    whole->way.from = whole->way.to = 0.0;
-    whole->way.start = 0.0;
-    whole->way.duration = 1.0;
+    whole->tip_path.from = whole->tip_path.to = 0.0;
+    whole->tip_path.start = 0.0;
+    whole->tip_path.duration = 1.0;
     bundle->weight_zero = wb_bundle_parts_potential(bundle->parts);
     if (whole->bodies.gravity == 0.0)
         return WB_OK;
-    WB_TRY(come_to_rest(bundle, watch, reason));
-    /* The account begins here. */
+    WB_TRY(damp_to_rest(bundle, watch, reason));
+    /* Energies are balanced from here on. */
     wb_bundle_get_energies(bundle, &now);
     whole->account.tip_work +=
         now.kinetic + wb_bundle_internal(&now) + now.artificial + now.friction - now.external;
     whole->clock.time = 0.0;
-    whole->way.start = 0.0;
+    whole->tip_path.start = 0.0;
     return WB_OK;
 }
 
-enum wb_status wb_bundle_let_go(struct wb_bundle *bundle, const struct wb_bundle_watch *watch,
-                                struct wb_reason *reason)
+enum wb_status wb_bundle_release_tip(struct wb_bundle *bundle, const struct wb_bundle_watch *watch,
+                                     struct wb_reason *reason)
 {
     struct wb_bundle_state state;
 
-    bundle->whole->way.let_go = true;
-    WB_TRY(come_to_rest(bundle, watch, reason));
+    bundle->whole->tip_path.tip_is_free = true;
+    WB_TRY(damp_to_rest(bundle, watch, reason));
     wb_bundle_get_state(bundle, &state);
-    bundle->whole->way.from = bundle->whole->way.to = state.deflection;
+    bundle->whole->tip_path.from = bundle->whole->tip_path.to = state.deflection;
     return WB_OK;
 }
 
-/* --- what it tells --- */
+/* --- results --- */
 
 void wb_bundle_get_state(const struct wb_bundle *bundle, struct wb_bundle_state *state)
 {

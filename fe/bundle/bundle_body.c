@@ -52,7 +52,8 @@ static enum wb_swept_hex_formulation formulation_of(const struct wb_bundle_mesh 
                                                     : WB_SWEPT_HEX_FOUR_POINTS;
 }
 
-/* The section's area errs where its second moment is fitted; mass is the wire's own. */
+/* Masses use the wire's own area: that of the section's mesh differs, because its second moment is
+ * fitted. */
 static void share_mass(struct wb_bundle_type *type, const struct wb_wire *wire)
 {
     const double mass = wb_wire_mass_per_length(wire);
@@ -114,7 +115,7 @@ void wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
     body->force = wb_swept_allocate(n, wb_bundle_body_force_size(body));
 }
 
-/* A straight body: section points at every station, padding too. */
+/* A straight body: positions of the section points at all stations, including padding. */
 static void place(const struct wb_bundle_bodies *bodies, struct wb_bundle_body *body, int node,
                   double y, double z)
 {
@@ -149,8 +150,8 @@ static void make_wire(struct wb_bundle_bodies *bodies, int w)
     bodies->forces[w] = body->force;
 }
 
-/* Smaller ones gain nothing by fetching ahead: seven wires of the engineering mesh, 0.7 MB, lose
- * 3 %. */
+/* Prefetching helps only large bodies: seven wires of the engineering mesh, 0.7 MB, become 3 %
+ * slower. */
 static bool is_large(const struct wb_bundle_bodies *bodies)
 {
     const size_t near = 4u << 20; /* bytes */
@@ -261,7 +262,7 @@ void wb_bundle_bodies_stop(struct wb_bundle_bodies *bodies)
         memset(body[b]->velocity, 0, wb_swept_size(&body[b]->layout) * sizeof *body[b]->velocity);
 }
 
-/* A body's part of the weight's potential, J. */
+/* A body's contribution to the weight's potential, J. */
 static double potential_of(const struct wb_bundle_bodies *bodies, const struct wb_bundle_body *body)
 {
     const struct wb_bundle_extent *extent = &bodies->extent;

@@ -1,8 +1,8 @@
 /* The bodies of a bundle, or of a part of it along its axis: wires, and the tape's ring with its
  * directors, as swept meshes with their fields and steps.
  *
- * Contact, bonds and the capped end act on them and are made from them; they know nothing of each
- * other, nor of parts (fe/bundle/bundle_part.h).
+ * Contact, bonds and the capped end are separate objects that act on bodies. Bodies are independent
+ * of each other and of parts (fe/bundle/bundle_part.h).
  */
 #ifndef WB_FE_BUNDLE_BUNDLE_BODY_H
 #define WB_FE_BUNDLE_BUNDLE_BODY_H
@@ -25,23 +25,23 @@ enum {
 
 struct wb_bundle_body {
     struct wb_swept_layout layout;
-    double *position, *velocity; /* owned, as the force */
-    void *force;                 /* float, or double of a run in double precision */
+    double *position, *velocity; /* owned, like the force */
+    void *force;                 /* float; double in a run with double precision */
     bool is_double;
     const struct wb_swept_step *step; /* owned elsewhere */
     const double *node_mass;          /* (n_nodes) kg/m, unscaled; owned elsewhere */
     double mass;                      /* kg/m, unscaled */
-    double start;                     /* m: mean height of the section, unscaled masses */
+    double start;                     /* m: mean height of the section, by unscaled masses */
 };
 
-/* The force at an index of the field, N; the bytes of one force. */
+/* The force at an index of the field, N; the size of one force in bytes. */
 double wb_bundle_body_force(const struct wb_bundle_body *body, size_t at);
 void wb_bundle_body_add_force(struct wb_bundle_body *body, size_t at, double force);
 size_t wb_bundle_body_force_size(const struct wb_bundle_body *body);
 
 /* --- all bodies --- */
 
-/* What the wires of one type share. */
+/* Data shared by the wires of one type. */
 struct wb_bundle_type {
     struct wb_swept_section section;
     struct wb_swept_hex *hex;
@@ -49,11 +49,12 @@ struct wb_bundle_type {
     double *node_mass; /* (n_nodes) kg/m */
 };
 
-/* Which stations of the whole bundle the bodies have. */
+/* The stations that the bodies have, out of those of the complete bundle. */
 struct wb_bundle_extent {
-    int first, n_stations;     /* the first, of the whole; how many */
-    int n_whole;               /* stations of the whole */
-    struct wb_swept_range own; /* of these: those that are counted and moved. The others belong to
+    /* First station, in numbers of the complete bundle; number of stations. */
+    int first, n_stations;
+    int n_whole;               /* number of stations of the complete bundle */
+    struct wb_swept_range own; /* stations of these that are counted and moved. The others belong to
                                   neighbours and are only computed */
 };
 
@@ -69,9 +70,9 @@ struct wb_bundle_bodies {
     int n_wires;
     struct wb_bundle_body wire[WB_PACKING_MOST];
     struct wb_swept_hex_state *wire_state[WB_PACKING_MOST]; /* of their material */
-    const double *positions[WB_PACKING_MOST];               /* the wires' fields, side by side */
+    const double *positions[WB_PACKING_MOST]; /* the wires' positions, one pointer each */
     void *forces[WB_PACKING_MOST];
-    bool is_large; /* the fields do not stay in a core's cache from step to step */
+    bool is_large; /* the fields do not fit into a core's cache */
 
     bool has_tape;
     struct wb_swept_tape *tape;
@@ -81,8 +82,8 @@ struct wb_bundle_bodies {
     struct wb_bundle_body ring, directors;
 };
 
-/* Makes the wires, straight and at rest; wb_bundle_tape_create() adds the tape. The bodies must be
- * released also after a failure. */
+/* Creates the wires, straight and at rest; wb_bundle_tape_create() adds the tape. Release the
+ * bodies also after a failure. */
 WB_MUST_CHECK enum wb_status wb_bundle_bodies_init(struct wb_bundle_bodies *bodies,
                                                    const struct wb_bundle_model *model,
                                                    const struct wb_bundle_mesh *mesh,
@@ -90,8 +91,8 @@ WB_MUST_CHECK enum wb_status wb_bundle_bodies_init(struct wb_bundle_bodies *bodi
 /* Frees wires and tape; accepts zeroed bodies. */
 void wb_bundle_bodies_release(struct wb_bundle_bodies *bodies);
 
-/* Makes zeroed fields for another body; makes the integrator of a body, which the caller destroys.
- */
+/* Creates zeroed fields for another body; creates the integrator of a body, which the caller
+ * destroys. */
 void wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
                                     struct wb_bundle_body *body, struct wb_swept_layout layout);
 WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_step(const struct wb_bundle_bodies *bodies,
@@ -99,20 +100,20 @@ WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_step(const struct wb_bundle
                                                           const double *node_mass, double gravity,
                                                           struct wb_swept_step **out);
 
-/* Holds all nodes of a station. */
+/* Fixes all nodes of a station. */
 void wb_bundle_bodies_hold(const struct wb_bundle_bodies *bodies, int station);
 
 /* Lists wires, ring and directors; returns their number. */
 int wb_bundle_bodies_list(struct wb_bundle_bodies *bodies,
                           struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES]);
 
-/* The last station of the whole bundle that the clamp holds. */
+/* The last station of the complete bundle that the clamp fixes. */
 int wb_bundle_bodies_last_held(const struct wb_bundle_bodies *bodies);
 
-/* Whether the tip is one of their own stations. */
+/* True if the tip is one of their own stations. */
 bool wb_bundle_bodies_have_tip(const struct wb_bundle_bodies *bodies);
 
-/* Mass of a body at a station, kg, scaled; half of it at the ends of the bundle. */
+/* Mass of a body at a station, kg, scaled; half at the ends of the bundle. */
 double wb_bundle_bodies_station_mass(const struct wb_bundle_bodies *bodies,
                                      const struct wb_bundle_body *body, int station);
 
@@ -123,7 +124,7 @@ void wb_bundle_bodies_stop(struct wb_bundle_bodies *bodies);
 double wb_bundle_bodies_potential(const struct wb_bundle_bodies *bodies);
 double wb_bundle_bodies_plastic_work(const struct wb_bundle_bodies *bodies);
 
-/* Saves or restores fields and the states of materials. */
+/* Saves or restores fields and material states. */
 void wb_bundle_bodies_visit(struct wb_bundle_bodies *bodies, struct wb_checkpoint *checkpoint);
 
 #endif

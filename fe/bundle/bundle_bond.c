@@ -9,21 +9,21 @@
 #include "fe/swept/swept_tape_contact.h"
 
 enum {
-    SAMPLES = 64,      /* of the outline, for each node of the ring */
-    LOOK_INTERVAL = 20 /* steps between searches for contact, about those of a vibration of the tape
+    SAMPLES = 64,      /* points on the outline for each node of the ring */
+    LOOK_INTERVAL = 20 /* steps between searches for contact; shorter than a vibration of the tape
                           on its contact */
 };
 
 struct wb_bundle_bond {
     struct wb_bundle_bodies *bodies; /* borrowed */
     struct wb_swept_cohesion *cohesion;
-    struct wb_swept_cohesion *windings; /* of a helix, to each other; NULL of a sleeve */
+    struct wb_swept_cohesion *windings; /* between windings of a helix; NULL for a sleeve */
     struct wb_swept_tape_contact *contact;
     double *ring_mass, *ring_inertia; /* (ring nodes) kg, kg m2: at an inner station, scaled */
 };
 
-/* What most of a ring node's part of the tape lies on, and how much of it: a wire, or the winding
- * below. Where the strip climbs on itself it lies on neither. */
+/* The wire or lower winding that carries most of a ring node's tape, and the fraction it carries.
+ * Where the strip climbs onto itself it has neither. */
 static struct wb_swept_cohesion_bond find_partner(const struct wb_bundle_bodies *bodies, int node,
                                                   int station)
 {
@@ -72,7 +72,7 @@ static void describe_wires(const struct wb_bundle_bodies *bodies,
     }
 }
 
-/* Bonds to wires, which may break, or those of windings to each other. */
+/* Creates bonds to wires, which may break, or bonds between windings. */
 static enum wb_status make_cohesion(const struct wb_bundle_bodies *bodies,
                                     const struct wb_swept_cohesion_wire *wires, bool windings,
                                     struct wb_swept_cohesion **out)
@@ -218,7 +218,7 @@ void wb_bundle_bond_add_areas(const struct wb_bundle_bond *bond, double area[2])
         }
 }
 
-/* The bonds between windings do not break: they have no state. */
+/* Bonds between windings do not break: they have no state. */
 void wb_bundle_bond_visit(struct wb_bundle_bond *bond, struct wb_checkpoint *checkpoint)
 {
     size_t bytes;

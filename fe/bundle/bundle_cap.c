@@ -7,23 +7,23 @@
 #include "base/vec3.h"
 
 enum {
-    MOST_ITERATIONS = 20
+    MAX_ITERATIONS = 20
 };
 
-/* A body's nodes at the end. */
+/* A body's nodes at the last station. */
 struct part {
     const struct wb_bundle_body *body;
-    const double *node_mass; /* (n_nodes) kg/m, or kg m of directors */
-    bool turns_only;         /* directors have no place */
-    double (*arm)[3];        /* (n_nodes) m: from the centre, of the straight bundle */
+    const double *node_mass; /* (n_nodes) kg/m, or kg m for directors */
+    bool turns_only;         /* directors only rotate */
+    double (*arm)[3];        /* (n_nodes) m: from the centre of the straight bundle */
 };
 
-/* What changes. */
+/* The state of the cap. */
 struct motion {
     double centre[3], velocity[3]; /* m, m/s */
-    double turned[4];              /* since creation: a unit quaternion, its real part first */
-    double turn[3];                /* rad: in the last step */
-    double kinetic;                /* J */
+    double turned[4]; /* rotation since creation: a unit quaternion, its real part first */
+    double turn[3];   /* rotation in the last step, rad */
+    double kinetic;   /* J */
 };
 
 struct wb_bundle_cap {
@@ -43,7 +43,7 @@ static void apply(double m[3][3], const double v[3], double out[3])
         out[i] = wb_vec3_dot(m[i], v);
 }
 
-/* x of m x = v, m symmetric and positive. */
+/* Solves m x = v, m symmetric and positive definite. */
 static void solve(double m[3][3], const double v[3], double x[3])
 {
     double c[3][3];
@@ -81,8 +81,8 @@ static void rotation_of(const double q[4], double out[3][3])
         out[i / 3][i % 3] = m[i / 3][i % 3];
 }
 
-/* Turns on by a rotation vector. */
-static void turn_on(double q[4], const double turn[3])
+/* Rotates q by a rotation vector. */
+static void rotate_quaternion(double q[4], const double turn[3])
 {
     const double t = sqrt(wb_vec3_dot(turn, turn)), c = cos(0.5 * t);
     const double s = t > 1e-8 ? sin(0.5 * t) / t : 0.5;
@@ -114,8 +114,8 @@ static void turn_moment(double r[3][3], double s[3][3], double out[3][3])
 
 /* --- the motion --- */
 
-/* sum r x of what a turn moves r by, forwards (1) or from where it was (-1). */
-static void angular(double S[3][3], const double turn[3], double way, double out[3])
+/* sum r x (change of r by a rotation), for the next step (direction = 1) or the last one (-1). */
+static void angular(double S[3][3], const double turn[3], double direction, double out[3])
 {
     const double trace = S[0][0] + S[1][1] + S[2][2];
     double a, b, St[3], gyration[3];
@@ -124,10 +124,11 @@ static void angular(double S[3][3], const double turn[3], double way, double out
     apply(S, turn, St);
     wb_vec3_cross(St, turn, gyration);
     for (int i = 0; i < 3; i++)
-        out[i] = a * (trace * turn[i] - St[i]) + way * b * gyration[i];
+        out[i] = a * (trace * turn[i] - St[i]) + direction * b * gyration[i];
 }
 
-/* The turn to which `momentum` (times the step) belongs; a step's is small: a few iterations. */
+/* The rotation that gives the angular momentum `momentum` (times the step). It is small in one
+ * step, so a few iterations suffice. */
 static void find_turn(double S[3][3], const double momentum[3], double turn[3])
 {
     const double trace = S[0][0] + S[1][1] + S[2][2];
@@ -137,7 +138,7 @@ static void find_turn(double S[3][3], const double momentum[3], double turn[3])
         for (int j = 0; j < 3; j++)
             J[i][j] = (i == j ? trace : 0.0) - S[i][j];
     solve(J, momentum, turn);
-    for (int n = 0; n < MOST_ITERATIONS; n++) {
+    for (int n = 0; n < MAX_ITERATIONS; n++) {
         double now[3], rest[3], more[3];
         angular(S, turn, 1.0, now);
         for (int i = 0; i < 3; i++)
@@ -150,7 +151,7 @@ static void find_turn(double S[3][3], const double momentum[3], double turn[3])
     }
 }
 
-/* 1/2 v-.M' v+ of turning, times the square of the step: (exp(t x) - 1) S (1 - exp(-t x))^T. */
+/* 1/2 v-.M' v+ of rotation, times the square of the step: (exp(t x) - 1) S (1 - exp(-t x))^T. */
 static double turning_energy(double S[3][3], const double before[3], const double after[3])
 {
     double A[3][3], B[3][3], sum = 0.0;
@@ -196,8 +197,8 @@ static void add_loads(const struct part *part, double R[3][3], double force[3], 
     }
 }
 
-/* Velocities that take all nodes to their places. */
-static void lead_nodes(const struct wb_bundle_cap *cap, double R[3][3])
+/* Sets the velocities that move all nodes to their new positions. */
+static void set_node_velocities(const struct wb_bundle_cap *cap, double R[3][3])
 {
     for (int p = 0; p < cap->n_parts; p++) {
         const struct part *part = &cap->part[p];
@@ -237,9 +238,9 @@ void wb_bundle_cap_advance(struct wb_bundle_cap *cap, double half)
         m->centre[i] += dt * m->velocity[i];
         m->turn[i] = next[i];
     }
-    turn_on(m->turned, m->turn);
+    rotate_quaternion(m->turned, m->turn);
     rotation_of(m->turned, R);
-    lead_nodes(cap, R);
+    set_node_velocities(cap, R);
 }
 
 double wb_bundle_cap_kinetic(const struct wb_bundle_cap *cap)

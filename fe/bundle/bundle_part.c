@@ -43,7 +43,7 @@ static enum wb_status make_contact(struct wb_bundle_part *part)
                                    bodies->extent.n_stations, bodies->spacing);
 }
 
-/* What the clamp holds, and what belongs to other parts: their positions come from there. */
+/* Fixes the clamp's stations, and those of other parts, whose positions are received. */
 static void hold_stations(const struct wb_bundle_bodies *bodies)
 {
     const struct wb_bundle_extent *extent = &bodies->extent;
@@ -54,7 +54,7 @@ static void hold_stations(const struct wb_bundle_bodies *bodies)
             wb_bundle_bodies_hold(bodies, j);
 }
 
-/* `whole` is NULL where this is the whole. */
+/* `whole` is NULL for the complete bundle. */
 static enum wb_status build(struct wb_bundle_part *part, const struct wb_bundle_part *whole)
 {
     struct wb_bundle_bodies *bodies = &part->bodies;
@@ -66,7 +66,7 @@ static enum wb_status build(struct wb_bundle_part *part, const struct wb_bundle_
         WB_TRY(wb_bundle_bond_create(&part->bond, bodies, &part->reason));
     }
     hold_stations(bodies);
-    /* Not where it is only in the halo. */
+    /* Only the part that owns the tip has the cap, not one with the tip in its halo. */
     if (model->tip == WB_BUNDLE_TIP_CAPPED && wb_bundle_bodies_have_tip(bodies))
         part->cap = wb_bundle_cap_create(bodies);
     return WB_OK;
@@ -89,7 +89,7 @@ static enum wb_status create(struct wb_bundle_part **out, const struct wb_bundle
     return status;
 }
 
-/* Largest omega^2 of a wire with f_m, with what contact and bonds add. */
+/* Largest omega^2 of a wire with mass scaling, contact and bonds. */
 static enum wb_status bound_wire(const struct wb_bundle_part *part, int w, double *square)
 {
     const struct wb_bundle_bodies *bodies = &part->bodies;
@@ -166,7 +166,7 @@ enum wb_status wb_bundle_part_create(struct wb_bundle_part **out,
 
     WB_TRY(create(out, bodies->model, bodies->mesh, &extent, whole));
     (*out)->bodies.time_step = bodies->time_step;
-    (*out)->way = whole->way;
+    (*out)->tip_path = whole->tip_path;
     return WB_OK;
 }
 
@@ -183,7 +183,7 @@ void wb_bundle_part_destroy(struct wb_bundle_part *part)
 
 /* --- the tip --- */
 
-/* Mean over the end station's nodes, weighted by masses: of a field's component. */
+/* Mass-weighted mean of a field's component over the end station's nodes. */
 static double tip_mean(const struct wb_bundle_body *body, const double *field, int component)
 {
     const int j = body->layout.n_stations - 1, stride = body->layout.stride;
@@ -204,8 +204,8 @@ static double tip_force(const struct wb_bundle_body *body, int component)
     return sum;
 }
 
-/* Spreads a force over the end by its masses, so that it accelerates all of it alike. */
-static void push_tip(struct wb_bundle_body *body, const double force[3], double whole)
+/* Distributes a force over the end in proportion to its masses, for uniform acceleration. */
+static void distribute_tip_force(struct wb_bundle_body *body, const double force[3], double whole)
 {
     const int j = body->layout.n_stations - 1, stride = body->layout.stride;
 
@@ -215,7 +215,7 @@ static void push_tip(struct wb_bundle_body *body, const double force[3], double 
                                      force[c] * body->node_mass[k] / whole);
 }
 
-/* Bodies that have mass at the tip: the i-th, NULL behind the last. */
+/* Bodies that have mass at the tip: the i-th, NULL after the last. */
 static const struct wb_bundle_body *tip_body(const struct wb_bundle_bodies *bodies, int i)
 {
     if (i < bodies->n_wires)
@@ -224,10 +224,10 @@ static const struct wb_bundle_body *tip_body(const struct wb_bundle_bodies *bodi
 }
 
 struct tip {
-    double mass;                  /* kg, scaled, of the end station */
+    double mass;                  /* of the end station, scaled, kg */
     double weight;                /* sum of unscaled masses per length, kg/m */
-    double position[3], velocity; /* means; of the height */
-    double force;                 /* N, vertical, of all that acts */
+    double position[3], velocity; /* means; velocity: of the height */
+    double force;                 /* vertical, of all forces, N */
 };
 
 static void look_at_tip(const struct wb_bundle_bodies *bodies, struct tip *tip)
@@ -268,13 +268,14 @@ static double smooth(double t)
 
 double wb_bundle_part_target(const struct wb_bundle_part *part, double time)
 {
-    const struct wb_bundle_way *way = &part->way;
-    return way->from + (way->to - way->from) * smooth((time - way->start) / way->duration);
+    const struct wb_bundle_tip_path *tip_path = &part->tip_path;
+    return tip_path->from +
+           (tip_path->to - tip_path->from) * smooth((time - tip_path->start) / tip_path->duration);
 }
 
-/* The force that brings the tip's mean height to its target in this step. A strand leans as the
- * tip comes nearer and only pulls. */
-static enum wb_status lead_tip(struct wb_bundle_part *part, double half)
+/* Computes the force that moves the tip's mean height to its target in this step. A strand inclines
+ * as the tip moves towards the clamp, and only pulls. */
+static enum wb_status drive_tip(struct wb_bundle_part *part, double half)
 {
     const double least_upright = 0.1;
     struct wb_bundle_bodies *bodies = &part->bodies;
@@ -284,7 +285,7 @@ static enum wb_status lead_tip(struct wb_bundle_part *part, double half)
     struct tip tip;
     double lean[2] = {0.0, 0.0}, upright = 1.0;
 
-    if (part->way.let_go) {
+    if (part->tip_path.tip_is_free) {
         account->slack = true;
         account->tension = account->vertical = 0.0;
         memset(account->pull, 0, sizeof account->pull);
@@ -303,8 +304,8 @@ static enum wb_status lead_tip(struct wb_bundle_part *part, double half)
         if (upright < least_upright)
             return wb_fail_to(
                 &part->reason, WB_ERR_DATA,
-                "%s: the run is lost after %lld steps: the tip is %.3g mm from where the "
-                "strand of %.3g mm would hang upright; it has to be longer",
+                "%s: the run failed after %lld steps: the tip is %.3g mm away from the vertical "
+                "below the strand's upper end; strand length %.3g mm is too short",
                 model->path, part->clock.steps, hypot(lean[0], lean[1]) * length / WB_MM,
                 length / WB_MM);
     }
@@ -316,9 +317,9 @@ static enum wb_status lead_tip(struct wb_bundle_part *part, double half)
     account->pull[1] = account->vertical;
     account->pull[2] = account->tension * lean[1];
     for (int w = 0; w < bodies->n_wires; w++)
-        push_tip(&bodies->wire[w], account->pull, tip.weight);
+        distribute_tip_force(&bodies->wire[w], account->pull, tip.weight);
     if (bodies->has_tape)
-        push_tip(&bodies->ring, account->pull, tip.weight);
+        distribute_tip_force(&bodies->ring, account->pull, tip.weight);
     return WB_OK;
 }
 
@@ -335,7 +336,7 @@ static void count_tip_work(struct wb_bundle_part *part, const struct tip *before
 
 /* --- a step --- */
 
-/* Nothing but the elements acts on nodes inside a section. */
+/* Only element forces act on nodes inside a section, which need no clearing. */
 static void clear_outline(struct wb_bundle_bodies *bodies, int w)
 {
     struct wb_bundle_body *body = &bodies->wire[w];
@@ -347,7 +348,7 @@ static void clear_outline(struct wb_bundle_bodies *bodies, int w)
            (wb_swept_size(&body->layout) - inside) * size);
 }
 
-/* Of all but the wires' elements, which add theirs (advance_wire()). */
+/* Forces of everything but the wires' elements, which advance_wire() adds. */
 static enum wb_status find_forces(struct wb_bundle_part *part, bool look)
 {
     struct wb_bundle_bodies *bodies = &part->bodies;
@@ -379,7 +380,7 @@ static enum wb_status find_forces(struct wb_bundle_part *part, bool look)
     return WB_OK;
 }
 
-/* Blocks of the stations that are its own. */
+/* Blocks of the part's own stations. */
 static struct wb_swept_range own_blocks(const struct wb_bundle_bodies *bodies)
 {
     const struct wb_swept_range own = bodies->extent.own;
@@ -396,8 +397,8 @@ static void update(const struct wb_bundle_bodies *bodies, struct wb_bundle_body 
     wb_swept_step_update(body->step, &fields, times, blocks.first, blocks.end, sums);
 }
 
-/* The elements' forces of one wire, and its step, block by block: each is read and written while it
- * is near. The blocks from `last` on wait for the tip's force. */
+/* Computes the elements' forces of one wire and makes its step, block by block, while each block is
+ * in the cache. Blocks from `last` on wait for the tip's force. */
 static void advance_wire(struct wb_bundle_part *part, int w, double half, int last, bool look,
                          struct wb_swept_step_sums *sums)
 {
@@ -433,7 +434,7 @@ enum wb_status wb_bundle_part_step(struct wb_bundle_part *part, bool look)
         advance_wire(part, w, half, last, look, wanted);
     if (has_tip) {
         look_at_tip(bodies, &before);
-        WB_TRY(lead_tip(part, half));
+        WB_TRY(drive_tip(part, half));
     }
     if (part->cap)
         wb_bundle_cap_advance(part->cap, half);
@@ -454,7 +455,7 @@ enum wb_status wb_bundle_part_step(struct wb_bundle_part *part, bool look)
     return isfinite(account->vertical)
                ? WB_OK
                : wb_fail_to(&part->reason, WB_ERR_DATA,
-                            "%s: the run is lost after %lld steps: the tip's force is not finite",
+                            "%s: the run failed after %lld steps: the tip's force is not finite",
                             bodies->model->path, part->clock.steps);
 }
 
@@ -481,15 +482,15 @@ void wb_bundle_part_visit_fields(struct wb_bundle_part *part, struct wb_checkpoi
 
 void wb_bundle_part_visit_progress(struct wb_bundle_part *part, struct wb_checkpoint *c)
 {
-    struct wb_bundle_way *way = &part->way;
+    struct wb_bundle_tip_path *tip_path = &part->tip_path;
     struct wb_bundle_clock *clock = &part->clock;
     struct wb_bundle_account *account = &part->account;
 
-    wb_checkpoint_visit_member(c, way, from);
-    wb_checkpoint_visit_member(c, way, to);
-    wb_checkpoint_visit_member(c, way, start);
-    wb_checkpoint_visit_member(c, way, duration);
-    wb_checkpoint_visit_member(c, way, let_go);
+    wb_checkpoint_visit_member(c, tip_path, from);
+    wb_checkpoint_visit_member(c, tip_path, to);
+    wb_checkpoint_visit_member(c, tip_path, start);
+    wb_checkpoint_visit_member(c, tip_path, duration);
+    wb_checkpoint_visit_member(c, tip_path, tip_is_free);
     wb_checkpoint_visit_member(c, clock, time);
     wb_checkpoint_visit_member(c, clock, steps);
     wb_checkpoint_visit_member(c, clock, has_moved);

@@ -12,12 +12,12 @@
 
 enum {
     LANES = WB_SWEPT_LANES,
-    MOST_PARTS = 1024,
+    MAX_PARTS = 1024,
     LEAST_HALO = 8,
-    BEYOND_SLIP = 3 /* stations that contact needs beyond the slip */
+    BEYOND_SLIP = 3 /* stations that contact needs in addition to the slip */
 };
 
-/* A part in this process. */
+/* A part computed by this process. */
 struct member {
     struct wb_bundle_part *part;
     enum wb_status status;
@@ -27,18 +27,20 @@ struct member {
 struct wb_bundle_parts {
     struct wb_bundle_part *whole; /* borrowed */
     struct wb_team *team;
-    int count, n_here, first; /* of all ranks; in this one, the first of which */
-    int halo;                 /* stations */
-    int *border;              /* (count + 1): first stations, and the end */
-    struct member *here;      /* (n_here) */
-    int steps;                /* of the present advance */
-    bool is_stale;            /* the whole's fields */
+    /* Number of parts in all ranks; in this rank; number of this rank's first part. */
+    int count, n_here, first;
+    int halo;            /* stations */
+    int *border;         /* (count + 1): first stations, and the end */
+    struct member *here; /* (n_here) */
+    int steps;           /* of the current advance */
+    bool is_stale;       /* the complete bundle's fields are out of date */
 };
 
-/* --- where to cut --- */
+/* --- borders of parts --- */
 
-/* Wires beside each other slip by their distance times the angle by which they turn; the halo's
- * width and the first border after it make vectors begin where they do in the whole. */
+/* The slip between adjacent wires is their distance times their angle. The halo's width and the
+ * position of the first border keep the vectors of the kernels aligned as in the complete
+ * bundle. */
 static int halo_of(const struct wb_bundle_model *model, const struct wb_bundle_mesh *mesh)
 {
     const double turn = fmin(0.5 * M_PI, 2.0 * model->run.deflection / model->length);
@@ -51,7 +53,7 @@ static int halo_of(const struct wb_bundle_model *model, const struct wb_bundle_m
     return LEAST_HALO * ((needed + LEAST_HALO - 1) / LEAST_HALO);
 }
 
-/* The border that is nearest to a share of the stations; -1 where there is none. */
+/* The border nearest to a fraction of the stations; -1 if there is none. */
 static int border_at(int halo, int n_stations, double share)
 {
     const int phase = halo % LANES;
@@ -64,7 +66,7 @@ static int border_at(int halo, int n_stations, double share)
     return at >= halo ? at : -1;
 }
 
-/* Fills border (count + 1); false when parts were too small. */
+/* Sets border (count + 1); false if parts would be too small. */
 static bool find_borders(int halo, int n_stations, int count, int *border)
 {
     border[0] = 0;
@@ -81,13 +83,13 @@ int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *name, in
 {
     const struct wb_bundle_mesh *mesh = wb_bundle_model_mesh(model, name ? name : model->run.mesh);
     const int ranks = wb_team_ranks();
-    int border[MOST_PARTS + 1];
+    int border[MAX_PARTS + 1];
 
     if (!mesh)
         return ranks;
     const int halo = halo_of(model, mesh);
     int each = threads < 1 ? 1 : threads;
-    while (each > 1 && (each * ranks > MOST_PARTS ||
+    while (each > 1 && (each * ranks > MAX_PARTS ||
                         !find_borders(halo, mesh->elements_along + 1, each * ranks, border)))
         each--;
     return each * ranks;
@@ -96,9 +98,9 @@ int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *name, in
 int wb_bundle_parts_largest(const struct wb_bundle_model *model, const char *name, int count)
 {
     const struct wb_bundle_mesh *mesh = wb_bundle_model_mesh(model, name);
-    int border[MOST_PARTS + 1], largest = 0;
+    int border[MAX_PARTS + 1], largest = 0;
 
-    if (!mesh || count < 1 || count > MOST_PARTS)
+    if (!mesh || count < 1 || count > MAX_PARTS)
         return 0;
     const int halo = halo_of(model, mesh);
     if (count > 1 && !find_borders(halo, mesh->elements_along + 1, count, border))
@@ -113,7 +115,8 @@ int wb_bundle_parts_largest(const struct wb_bundle_model *model, const char *nam
 
 /* --- one part --- */
 
-/* Positions of a halo's width of stations into a packet, or from there. No packet: nothing. */
+/* Copies positions of one halo width of stations into a packet, or from it. NULL packet: no
+ * neighbour. */
 static void pack(struct wb_bundle_bodies *bodies, int from, int n, double *packet)
 {
     struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES];
@@ -136,7 +139,7 @@ static void unpack(struct wb_bundle_bodies *bodies, int to, int n, const double 
                    (size_t)n * sizeof *packet);
 }
 
-/* Numbers in a packet: positions of wires, ring and directors. */
+/* Number of values in a packet: positions of wires, ring and directors. */
 static size_t packet_size(const struct wb_bundle_bodies *bodies, int halo)
 {
     size_t nodes = 2 * (size_t)bodies->ring.layout.n_nodes;
@@ -158,8 +161,8 @@ static struct member *member_of(const struct wb_bundle_parts *parts, int number)
     return is_here ? &parts->here[number - parts->first] : NULL;
 }
 
-/* With the neighbours; a row of one has none. */
-static void swap(struct wb_bundle_parts *parts, int number)
+/* Exchanges halos with the neighbours; a single part has none. */
+static void exchange_halos(struct wb_bundle_parts *parts, int number)
 {
     struct wb_bundle_bodies *bodies = &member_of(parts, number)->part->bodies;
     const struct wb_swept_range own = bodies->extent.own;
@@ -175,7 +178,7 @@ static void swap(struct wb_bundle_parts *parts, int number)
     unpack(bodies, own.end, n, wb_team_await(team, number, WB_TEAM_AFTER));
 }
 
-/* Slip at the borders, which varies slowly along wires. */
+/* Checks the slip at the borders only, because it varies slowly along wires. */
 static enum wb_status check_slip(struct wb_bundle_part *part, int halo)
 {
     const struct wb_swept_range own = part->bodies.extent.own;
@@ -191,14 +194,13 @@ static enum wb_status check_slip(struct wb_bundle_part *part, int halo)
     }
     if (most <= halo - BEYOND_SLIP)
         return WB_OK;
-    return wb_fail_to(
-        &part->reason, WB_ERR_DATA,
-        "%s: wires slip past each other by %.1f stations, more than the %d that parts "
-        "of the bundle know of their neighbours; compute it with one thread",
-        part->bodies.model->path, most, halo - BEYOND_SLIP);
+    return wb_fail_to(&part->reason, WB_ERR_DATA,
+                      "%s: wires slip past each other by %.1f stations, more than the %d that "
+                      "the halo between parts allows; use one thread",
+                      part->bodies.model->path, most, halo - BEYOND_SLIP);
 }
 
-/* A part that is lost goes on swapping: the others count on it. */
+/* A part that failed keeps exchanging packets, because its neighbours wait for them. */
 static void advance_part(void *context, int number)
 {
     struct wb_bundle_parts *parts = context;
@@ -209,15 +211,15 @@ static void advance_part(void *context, int number)
     for (int i = 0; i < parts->steps; i++) {
         if (member->status == WB_OK)
             member->status = wb_bundle_part_step(member->part, i == parts->steps - 1);
-        swap(parts, number);
+        exchange_halos(parts, number);
     }
     if (member->status == WB_OK && parts->count > 1)
         member->status = check_slip(member->part, parts->halo);
 }
 
-/* --- what the whole learns --- */
+/* --- results of all parts --- */
 
-/* Sums of the last step, and the tip's forces, of which all parts but the last have zeros. */
+/* Sums of the last step, and the tip's forces, which are zero in all parts but the last. */
 enum {
     KINETIC,
     STORED,
@@ -326,36 +328,36 @@ static void take_sums(struct wb_bundle_account *whole, const double sum[N_SUMS],
     whole->slack = sum[SLACK] > 0.0;
 }
 
-/* --- fields and states of materials --- */
+/* --- fields and material states --- */
 
-/* Stations' columns on their way to the whole. */
-struct cargo {
-    unsigned char *bytes; /* NULL: they are only counted */
+/* Serialised columns of stations, on their way to the complete bundle. */
+struct column_buffer {
+    unsigned char *bytes; /* NULL: only count the size */
     size_t size;
     bool unloads;
 };
 
-static void load_column(struct cargo *cargo, void *data, size_t size)
+static void load_column(struct column_buffer *buffer, void *data, size_t size)
 {
-    if (cargo->bytes && cargo->unloads)
-        memcpy(data, cargo->bytes + cargo->size, size);
-    else if (cargo->bytes)
-        memcpy(cargo->bytes + cargo->size, data, size);
-    cargo->size += size;
+    if (buffer->bytes && buffer->unloads)
+        memcpy(data, buffer->bytes + buffer->size, size);
+    else if (buffer->bytes)
+        memcpy(buffer->bytes + buffer->size, data, size);
+    buffer->size += size;
 }
 
-static void load_field(struct cargo *cargo, void *field, size_t size,
+static void load_field(struct column_buffer *buffer, void *field, size_t size,
                        const struct wb_swept_layout *layout, struct wb_swept_range range)
 {
     for (int row = 0; row < 3 * layout->n_nodes; row++) {
         const size_t at = (size_t)row * (size_t)layout->stride + (size_t)range.first;
-        load_column(cargo, (unsigned char *)field + at * size,
+        load_column(buffer, (unsigned char *)field + at * size,
                     (size_t)(range.end - range.first) * size);
     }
 }
 
-/* States are in rows of as many elements as a block has stations, block by block. */
-static void load_state(struct cargo *cargo, void *state, size_t bytes,
+/* Material states are stored block by block, in rows with one element per station of a block. */
+static void load_state(struct column_buffer *buffer, void *state, size_t bytes,
                        const struct wb_bundle_body *body, struct wb_swept_range range)
 {
     const size_t size = wb_bundle_body_force_size(body), row = LANES * size;
@@ -366,14 +368,14 @@ static void load_state(struct cargo *cargo, void *state, size_t bytes,
         const int n = range.end - j < left ? range.end - j : left;
         unsigned char *at = (unsigned char *)state + (size_t)block * per_block;
         for (size_t i = 0; i < per_block; i += row)
-            load_column(cargo, at + i + (size_t)(j % LANES) * size, (size_t)n * size);
+            load_column(buffer, at + i + (size_t)(j % LANES) * size, (size_t)n * size);
         j += n;
     }
 }
 
-/* Columns of all fields, and of the states of materials where they are asked for. */
+/* Serialises the columns of all fields, and of material states if `states`. */
 static void load(struct wb_bundle_bodies *bodies, struct wb_swept_range range, bool states,
-                 struct cargo *cargo)
+                 struct column_buffer *buffer)
 {
     struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES];
     const int n_bodies = wb_bundle_bodies_list(bodies, body);
@@ -381,71 +383,72 @@ static void load(struct wb_bundle_bodies *bodies, struct wb_swept_range range, b
 
     for (int b = 0; b < n_bodies; b++) {
         const struct wb_swept_layout *layout = &body[b]->layout;
-        load_field(cargo, body[b]->position, sizeof(double), layout, range);
-        load_field(cargo, body[b]->velocity, sizeof(double), layout, range);
-        load_field(cargo, body[b]->force, wb_bundle_body_force_size(body[b]), layout, range);
+        load_field(buffer, body[b]->position, sizeof(double), layout, range);
+        load_field(buffer, body[b]->velocity, sizeof(double), layout, range);
+        load_field(buffer, body[b]->force, wb_bundle_body_force_size(body[b]), layout, range);
     }
     for (int w = 0; states && w < bodies->n_wires; w++) {
         void *state = wb_swept_hex_state_data(bodies->wire_state[w], &bytes);
-        load_state(cargo, state, bytes, &bodies->wire[w], range);
+        load_state(buffer, state, bytes, &bodies->wire[w], range);
     }
     if (states && bodies->has_tape) {
         void *state = wb_swept_tape_state_data(bodies->tape_state, &bytes);
-        load_state(cargo, state, bytes, &bodies->ring, range);
+        load_state(buffer, state, bytes, &bodies->ring, range);
     }
 }
 
-/* Own stations `from` to `end` - 1 (of the whole) of a part into the whole of every rank. */
-static void bring(struct wb_bundle_parts *parts, int number, int from, int end, bool states)
+/* Copies own stations `from` to `end` - 1 (numbers of the complete bundle) of a part into the
+ * complete bundle of every rank. */
+static void copy_to_whole(struct wb_bundle_parts *parts, int number, int from, int end, bool states)
 {
     const struct member *member = member_of(parts, number);
     struct wb_bundle_bodies *whole = &parts->whole->bodies;
     const struct wb_swept_range there = {from, end};
-    struct cargo cargo = {.bytes = NULL};
+    struct column_buffer buffer = {.bytes = NULL};
 
-    load(whole, there, states, &cargo);
-    const size_t size = cargo.size;
-    cargo = (struct cargo){.bytes = wb_memory_resize(NULL, size, 1)};
+    load(whole, there, states, &buffer);
+    const size_t size = buffer.size;
+    buffer = (struct column_buffer){.bytes = wb_memory_resize(NULL, size, 1)};
     if (member) {
         struct wb_bundle_bodies *bodies = &member->part->bodies;
         const int first = bodies->extent.first;
-        load(bodies, (struct wb_swept_range){from - first, end - first}, states, &cargo);
+        load(bodies, (struct wb_swept_range){from - first, end - first}, states, &buffer);
     }
-    wb_team_share(cargo.bytes, size, number / parts->n_here);
-    cargo.size = 0;
-    cargo.unloads = true;
-    load(whole, there, states, &cargo);
-    free(cargo.bytes);
+    wb_team_share(buffer.bytes, size, number / parts->n_here);
+    buffer.size = 0;
+    buffer.unloads = true;
+    load(whole, there, states, &buffer);
+    free(buffer.bytes);
 }
 
-static void bring_tip(struct wb_bundle_parts *parts)
+static void copy_tip_to_whole(struct wb_bundle_parts *parts)
 {
     const int end = parts->whole->bodies.extent.n_stations;
-    bring(parts, parts->count - 1, end - 1, end, false);
+    copy_to_whole(parts, parts->count - 1, end - 1, end, false);
 }
 
 void wb_bundle_parts_gather(struct wb_bundle_parts *parts)
 {
     for (int i = 0; parts->is_stale && i < parts->count; i++)
-        bring(parts, i, parts->border[i], parts->border[i + 1], true);
+        copy_to_whole(parts, i, parts->border[i], parts->border[i + 1], true);
     parts->is_stale = false;
 }
 
 /* --- all parts --- */
 
-/* Several parts begin an account of their own with every advance. */
-static void hand_down(struct wb_bundle_parts *parts)
+/* Each part starts its own account for every advance. */
+static void start_accounts(struct wb_bundle_parts *parts)
 {
     for (int i = 0; i < parts->n_here; i++) {
         struct wb_bundle_part *part = parts->here[i].part;
         struct wb_bundle_account *account = &part->account;
-        part->way = parts->whole->way;
+        part->tip_path = parts->whole->tip_path;
         part->clock = parts->whole->clock;
         account->friction_work = account->damage_work = account->tip_work = 0.0;
     }
 }
 
-static void sum_up(struct wb_bundle_parts *parts)
+static void sum_accounts(struct wb_bundle_parts *parts)
 {
     double sum[N_SUMS] = {0.0}, most[N_MOST] = {0.0};
 
@@ -455,10 +458,10 @@ static void sum_up(struct wb_bundle_parts *parts)
     wb_team_greatest(most, N_MOST);
     take_sums(&parts->whole->account, sum, most);
     parts->whole->clock = parts->here[0].part->clock;
-    bring_tip(parts);
+    copy_tip_to_whole(parts);
 }
 
-/* The first failure along the bundle; its reason is told on all ranks. */
+/* The first failure along the bundle; its reason is the same on all ranks. */
 static enum wb_status agree(struct wb_bundle_parts *parts, struct wb_reason *reason)
 {
     const struct member *lost = NULL;
@@ -479,7 +482,7 @@ static enum wb_status agree(struct wb_bundle_parts *parts, struct wb_reason *rea
     if (lost)
         of_first = lost->part->reason;
     wb_team_share(&of_first, sizeof of_first, (int)-first / parts->n_here);
-    /* Failures that are not of the run, as a lack of memory, are in the log already. */
+    /* Failures without a reason, e.g. lack of memory, are already logged. */
     return of_first.text[0] ? wb_fail_to(reason, status, "%s", of_first.text) : status;
 }
 
@@ -491,13 +494,13 @@ enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n,
     if (n < 1)
         return WB_OK;
     if (!is_one)
-        hand_down(parts);
+        start_accounts(parts);
     parts->steps = n;
     parts->is_stale = !is_one;
     wb_team_run(parts->team, advance_part, parts);
     WB_TRY(agree(parts, reason));
     if (!is_one)
-        sum_up(parts);
+        sum_accounts(parts);
     return WB_OK;
 }
 
@@ -557,7 +560,7 @@ int wb_bundle_parts_count(const struct wb_bundle_parts *parts)
 
 /* --- checkpoints --- */
 
-/* A part's state, from its rank to all. */
+/* Saves a part's state, from its rank to all ranks. */
 static void save_part(struct wb_bundle_parts *parts, int number, struct wb_checkpoint *out)
 {
     const struct member *member = member_of(parts, number);
@@ -570,7 +573,7 @@ static void save_part(struct wb_bundle_parts *parts, int number, struct wb_check
     enum wb_status status = own.status;
     wb_team_share(&status, sizeof status, number / parts->n_here);
     if (status != WB_OK) {
-        /* A checkpoint without this part must not replace the last whole one. */
+        /* An incomplete checkpoint must not replace the last complete one. */
         if (out->status == WB_OK)
             out->status = status;
         wb_checkpoint_release(&own);
@@ -586,7 +589,7 @@ static void save_part(struct wb_bundle_parts *parts, int number, struct wb_check
     wb_checkpoint_release(&own);
 }
 
-/* A rank passes over the parts of others. */
+/* Each rank skips the parts of other ranks. */
 static void restore_part(struct wb_bundle_parts *parts, int number, struct wb_checkpoint *in)
 {
     const struct member *member = member_of(parts, number);
@@ -611,12 +614,12 @@ void wb_bundle_parts_visit(struct wb_bundle_parts *parts, struct wb_checkpoint *
     if (!checkpoint->restores || parts->count == 1)
         return;
     parts->is_stale = true;
-    bring_tip(parts);
+    copy_tip_to_whole(parts);
 }
 
 /* --- memory --- */
 
-/* In a row of one the whole is the part. */
+/* A single part is the complete bundle itself. */
 static enum wb_status make_parts(struct wb_bundle_parts *parts)
 {
     struct wb_bundle_part *whole = parts->whole;
@@ -658,7 +661,7 @@ enum wb_status wb_bundle_parts_create(struct wb_bundle_parts **out, struct wb_bu
     parts->halo = halo_of(bodies->model, bodies->mesh);
     parts->border = wb_memory_new((size_t)count + 1, sizeof *parts->border);
     parts->here = wb_memory_new((size_t)parts->n_here, sizeof *parts->here);
-    /* The threads last: none may have been started where an allocation fails. */
+    /* Start threads last: no threads may run while an allocation can fail. */
     enum wb_status status = make_parts(parts);
     if (status == WB_OK)
         status = wb_team_create(&parts->team, parts->n_here, packet_size(bodies, parts->halo));

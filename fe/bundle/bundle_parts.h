@@ -2,20 +2,20 @@
  * (fe/team/team.h).
  *
  * A part (fe/bundle/bundle_part.h) has the stations that it owns and, towards each neighbour, a
- * halo of stations that the neighbour owns. It computes all of them, and counts only its own. After
- * every step neighbours send each other the positions of the stations in the other's halo, and
- * nothing else: both sides compute elements, friction and bonds in a halo, each with its own state.
+ * halo of stations that the neighbour owns. It computes all of them, but counts only its own. After
+ * every step neighbours send each other only the positions of the stations in the other's halo:
+ * both sides compute elements, friction and bonds in a halo, each with its own state.
  *
- * The halo is so wide that the forces on a part's own stations are those of the whole bundle.
- * Elements need one station. Wires that have slipped past each other by s stations need s + 3
- * (places of contact lie s / 2 away on either wire, between two stations, and their tangents are
- * differences to the next one). The tape's contact needs six. The slip is estimated from the
- * deflection, and checked. Parts begin where a vector of the kernels begins in the whole, so that
- * the arithmetic is the same but for a few vectors at borders, and sums.
+ * The halo is wide enough for the forces on a part's own stations to be those of the complete
+ * bundle. Elements need one station. Wires that have slipped past each other by s stations need s +
+ * 3 (contact points are s / 2 away on either wire, between two stations, and their tangents are
+ * differences to the next station). The tape's contact needs six. The slip is estimated from the
+ * deflection, and checked. Parts begin where a vector of the kernels begins in the complete bundle,
+ * so that the arithmetic is the same except for a few vectors at borders, and sums.
  *
- * The row belongs to a part that has all stations, the whole. After each advance the whole has the
- * account of the last step and the fields at the tip; wb_bundle_parts_gather() brings all other
- * fields. In a row of one the whole itself is computed.
+ * The row belongs to a part with all stations, called the whole. After each advance the whole has
+ * the account of the last step and the fields at the tip; wb_bundle_parts_gather() copies all other
+ * fields. With one part the whole itself is computed.
  */
 #ifndef WB_FE_BUNDLE_BUNDLE_PARTS_H
 #define WB_FE_BUNDLE_BUNDLE_PARTS_H
@@ -27,12 +27,10 @@
 
 struct wb_bundle_parts; /* opaque */
 
-/* The number of parts, in all ranks, into which a bundle would be cut. `mesh` NULL: the model's
- * own.
- */
+/* Number of parts, in all ranks, into which a bundle would be cut. `mesh` NULL: the model's own. */
 int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *mesh, int threads);
 
-/* Cuts a whole that has not moved yet and must outlive the row. `count` is that of
+/* Cuts a whole that has not moved yet and must outlive the row. `count` is the result of
  * wb_bundle_parts_of(). */
 WB_MUST_CHECK enum wb_status wb_bundle_parts_create(struct wb_bundle_parts **out,
                                                     struct wb_bundle_part *whole, int count);
@@ -40,8 +38,8 @@ void wb_bundle_parts_destroy(struct wb_bundle_parts *parts); /* accepts NULL */
 
 int wb_bundle_parts_count(const struct wb_bundle_parts *parts);
 
-/* Makes `n` steps with all parts; the whole's clock and account follow. On failure
- * `reason` holds the reason; where it is NULL, that is logged. */
+/* Makes `n` steps with all parts; updates the whole's clock and account. On failure `reason`
+ * receives the reason; if it is NULL, the reason is logged. */
 WB_MUST_CHECK enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n,
                                                      struct wb_reason *reason);
 
@@ -52,11 +50,11 @@ void wb_bundle_parts_stop(struct wb_bundle_parts *parts);
 double wb_bundle_parts_potential(struct wb_bundle_parts *parts);
 double wb_bundle_parts_plastic_work(struct wb_bundle_parts *parts);
 
-/* Share of the tape's bonded area whose bond is broken. */
+/* Fraction of the tape's bonded area whose bond is broken. */
 double wb_bundle_parts_debonded(struct wb_bundle_parts *parts);
 
-/* Copies fields and the states of materials from all parts into the whole, if there was a step
- * since the last call. */
+/* Copies fields and material states from all parts into the whole, if there was a step since the
+ * last call. */
 void wb_bundle_parts_gather(struct wb_bundle_parts *parts);
 
 /* Saves or restores the state of all parts in all ranks. */

@@ -21,24 +21,30 @@
 #define WB_LOG_DOMAIN "bundle"
 
 enum {
-    MOST_SHAPE = 1000,
-    MOST_BLOCK = 50,       /* steps between two samples of the force */
-    SAMPLES_OF_A_ROW = 40, /* at least, where its steps allow it */
+    MAX_SHAPE = 1000,
+    MAX_BLOCK = 50,        /* maximum steps between two samples of the force */
+    SAMPLES_OF_A_ROW = 40, /* minimum number of samples in a row, if the steps allow it */
     LOOKS_OF_A_ROW = 4,    /* at all energies */
-    REST_SAMPLES = 40,     /* of the force at zero */
-    MOST_IDENTITY = 512
+    REST_SAMPLES = 40,     /* samples of the force in row 0 */
+    MAX_IDENTITY = 512
 };
 
-static const double usual_from = 2.0 * WB_MM; /* where ratios begin to count */
-static const double pilot_share = 1.5;        /* of that, where a duration is judged */
-static const double margin = 1.06;            /* on a duration that follows from a ratio */
-static const double late_margin = 1.1;        /* on one that follows from a later ratio */
-static const double too_slow = 0.75;          /* a needed duration over the present one */
-static const double usual_interval = 600.0;   /* s between checkpoints */
-static const double slack_gap = 1e-3;         /* over the deflection: the strand is slack, surely */
-static const double lost_balance = 0.05;      /* imbalance over work: the run is no solution */
+static const double default_from =
+    2.0 *
+    WB_MM; /* deflection from which energy ratios count, unless it exceeds half the final one */
+static const double pilot_share =
+    1.5;                           /* times that deflection: where a chosen duration is checked */
+static const double margin = 1.06; /* on a duration estimated from the first ratio */
+static const double late_margin = 1.1; /* on a duration estimated from a later ratio */
+static const double too_slow =
+    0.75; /* restart if the duration needed is below this fraction of the current one */
+static const double default_interval = 600.0; /* s between checkpoints */
+static const double slack_gap =
+    1e-3; /* deflection minus target over the deflection that marks a slack strand */
+static const double lost_balance =
+    0.05; /* energy imbalance over work above which the run is invalid */
 
-/* The straight line through forces against the target, of one row. */
+/* Linear regression of a force over the target, for one row. */
 struct line {
     double n, x, y, xx, xy, yy;
 };
@@ -48,7 +54,7 @@ struct clocks {
     double wall, cpu;
 };
 
-/* A test under way. */
+/* A test in progress. */
 struct run {
     struct wb_bundle_result *result;
     const struct wb_bundle_model *model;
@@ -56,34 +62,34 @@ struct run {
     struct wb_bundle *bundle;
     enum wb_status status;
     struct clocks begun, saved; /* clocks of this process */
-    double wall_before;         /* s, in the processes before */
+    double wall_before;         /* s, in earlier processes */
     double cpu_before;
     bool may_resume;
-    char program[WB_SHA256_TEXT]; /* this binary's, where there are checkpoints */
+    char program[WB_SHA256_TEXT]; /* hash of this binary, if there are checkpoints */
 
-    /* From here on all is in a checkpoint: visit_place(). */
+    /* Everything from here on is saved in checkpoints: visit_progress(). */
     struct wb_bundle_state state;
-    double from;   /* m: ratios count from here on */
-    bool counting; /* the tip was there */
+    double from;   /* m: deflection from which energy ratios count */
+    bool counting; /* that deflection was reached */
     bool judged;   /* the duration is accepted */
-    double begin;  /* s of the bundle's time: the loading's */
+    double begin;  /* s of the bundle's time: start of the loading */
     double next;   /* s: duration of the next attempt */
     double kinetic, artificial;
     double most_external;
 
-    int branch;      /* ways made so far */
-    bool under_way;  /* on another */
-    int place;       /* the row that is passed, from 1; 0: the half step before them */
-    int looks;       /* the next look in it, from 1 */
-    long long left;  /* steps to there; -1: not begun */
-    double way[2];   /* m: from, to */
-    bool hangs;      /* the strand went slack on this way, the tip rests */
-    double way_time; /* s: its begin */
-    int block;       /* steps between samples */
+    int branch;              /* number of completed branches */
+    bool under_way;          /* a branch is in progress */
+    int place;               /* current row, from 1; 0: the half step before the first */
+    int looks;               /* next part of the row, from 1 */
+    long long left;          /* steps to the end of that part; -1: not started */
+    double branch_target[2]; /* m: target at its start and end */
+    bool tip_released;       /* the strand became slack on this branch; the tip is at rest */
+    double branch_start;     /* s: start of the branch */
+    int block;               /* steps between samples */
     struct line vertical, tension;
-    int slack_samples;        /* beside these */
-    bool samples_before;      /* the row's place */
-    struct wb_bundle_row row; /* passed, its mean not complete */
+    int slack_samples;        /* not in these lines */
+    bool samples_before;      /* there were samples before the row's target */
+    struct wb_bundle_row row; /* the row was passed, its mean force is not complete */
 };
 
 /* --- memory --- */
@@ -92,9 +98,9 @@ enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,
                                      const struct wb_bundle_model *model, int n_shape)
 {
     *result = (struct wb_bundle_result){0};
-    if (n_shape < 0 || n_shape == 1 || n_shape > MOST_SHAPE)
+    if (n_shape < 0 || n_shape == 1 || n_shape > MAX_SHAPE)
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
-                       n_shape, MOST_SHAPE);
+                       n_shape, MAX_SHAPE);
 
     const size_t rows = (size_t)wb_bundle_model_rows(model), n = (size_t)n_shape;
     result->rows = wb_memory_new(rows, sizeof *result->rows);
@@ -131,7 +137,7 @@ static struct clocks read_clocks(void)
     return (struct clocks){seconds_of(CLOCK_MONOTONIC), seconds_of(CLOCK_PROCESS_CPUTIME_ID)};
 }
 
-/* Into the result, what was spent so far. */
+/* Writes the time used so far to the result. */
 static void take_time(struct run *r)
 {
     const struct clocks at = read_clocks();
@@ -144,8 +150,8 @@ static void take_time(struct run *r)
 
 /* --- checkpoints --- */
 
-/* What a checkpoint belongs to: all that decides a single bit of the result. */
-static void identify(const struct run *r, char text[MOST_IDENTITY])
+/* Identity of a checkpoint: everything that influences any bit of the result. */
+static void identify(const struct run *r, char text[MAX_IDENTITY])
 {
     const struct wb_bundle_model *m = r->model;
     const char *mesh = r->options.mesh ? r->options.mesh : m->run.mesh;
@@ -155,7 +161,7 @@ static void identify(const struct run *r, char text[MOST_IDENTITY])
     wb_model_inputs_bundle(inputs, m, wb_bundle_model_mesh(m, mesh));
     wb_model_inputs_sum(inputs, hash);
     wb_json_destroy(inputs);
-    snprintf(text, MOST_IDENTITY,
+    snprintf(text, MAX_IDENTITY,
              "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
              "%s precision, %s, wirebench %s, program %.12s",
              m->name, mesh, hash, r->result->n_shape,
@@ -164,7 +170,7 @@ static void identify(const struct run *r, char text[MOST_IDENTITY])
              wb_version_revision(), r->program);
 }
 
-/* Its memory stays; what it holds is saved or restored. */
+/* Saves or restores the contents of the result; its memory stays. */
 static void visit_result(struct wb_bundle_result *h, struct wb_checkpoint *c)
 {
     const size_t rows = (size_t)h->capacity, places = rows * (size_t)h->n_shape;
@@ -187,8 +193,8 @@ static void visit_result(struct wb_bundle_result *h, struct wb_checkpoint *c)
     wb_checkpoint_leave(c);
 }
 
-/* How far the test has come. */
-static void visit_place(struct run *r, struct wb_checkpoint *c)
+/* Saves or restores the progress of the test. */
+static void visit_progress(struct run *r, struct wb_checkpoint *c)
 {
     wb_checkpoint_visit_member(c, r, state);
     wb_checkpoint_visit_member(c, r, from);
@@ -204,9 +210,9 @@ static void visit_place(struct run *r, struct wb_checkpoint *c)
     wb_checkpoint_visit_member(c, r, place);
     wb_checkpoint_visit_member(c, r, looks);
     wb_checkpoint_visit_member(c, r, left);
-    wb_checkpoint_visit_member(c, r, way);
-    wb_checkpoint_visit_member(c, r, hangs);
-    wb_checkpoint_visit_member(c, r, way_time);
+    wb_checkpoint_visit_member(c, r, branch_target);
+    wb_checkpoint_visit_member(c, r, tip_released);
+    wb_checkpoint_visit_member(c, r, branch_start);
     wb_checkpoint_visit_member(c, r, block);
     wb_checkpoint_visit_member(c, r, vertical);
     wb_checkpoint_visit_member(c, r, tension);
@@ -215,7 +221,7 @@ static void visit_place(struct run *r, struct wb_checkpoint *c)
     wb_checkpoint_visit_member(c, r, row);
 }
 
-/* All but the bundle. */
+/* Saves or restores everything except the bundle. */
 static void visit_run(struct run *r, struct wb_checkpoint *c)
 {
     const struct wb_bundle_observer *observer = r->options.observer;
@@ -226,13 +232,13 @@ static void visit_run(struct run *r, struct wb_checkpoint *c)
         observer->visit(observer->context, c);
         wb_checkpoint_leave(c);
     }
-    visit_place(r, c);
+    visit_progress(r, c);
 }
 
 static enum wb_status save(struct run *r)
 {
     struct wb_checkpoint c;
-    char identity[MOST_IDENTITY];
+    char identity[MAX_IDENTITY];
 
     wb_checkpoint_init(&c);
     take_time(r);
@@ -247,11 +253,11 @@ static enum wb_status save(struct run *r)
     return wb_team_agree(status);
 }
 
-/* Reads what an earlier process left into `c`, which restores then; nothing where there is none.
- * All ranks get what rank 0 reads. */
+/* Reads the checkpoint of an earlier process into `c`, which then restores; leaves `c` empty if
+ * there is none. All ranks receive what rank 0 reads. */
 static enum wb_status find_checkpoint(struct run *r, struct wb_checkpoint *c)
 {
-    char identity[MOST_IDENTITY];
+    char identity[MAX_IDENTITY];
     enum wb_status status = WB_OK;
     size_t size = 0;
 
@@ -274,7 +280,7 @@ static enum wb_status find_checkpoint(struct run *r, struct wb_checkpoint *c)
     return WB_OK;
 }
 
-/* Restores the bundle, after all else. */
+/* Restores the bundle, after everything else. */
 static enum wb_status resume(struct run *r, struct wb_checkpoint *c)
 {
     struct wb_bundle_result *h = r->result;
@@ -292,10 +298,10 @@ static enum wb_status resume(struct run *r, struct wb_checkpoint *c)
 /* --- one attempt --- */
 
 enum verdict {
-    GO_ON,
-    DONE,  /* or stopped, or lost: nothing more is to be done */
-    ANEW,  /* with another duration */
-    FAILED /* an error that is not the run's */
+    CONTINUE,
+    DONE,    /* also stopped, or failed */
+    RESTART, /* with another duration */
+    FAILED   /* an error of the program or system */
 };
 
 static int branches_of(const struct wb_bundle_model *model)
@@ -303,7 +309,7 @@ static int branches_of(const struct wb_bundle_model *model)
     return model->run.cycles == 0 ? 1 : 2 * model->run.cycles;
 }
 
-static enum verdict lose(struct run *r)
+static enum verdict handle_failure(struct run *r)
 {
     const struct wb_reason *const reason = &r->result->reason;
 
@@ -317,8 +323,8 @@ static enum verdict lose(struct run *r)
     return DONE;
 }
 
-/* Whether the caller wants to go on. */
-static bool is_wanted(const struct run *r, bool rests)
+/* Asks the caller whether to continue. */
+static bool should_continue(const struct run *r, bool rests)
 {
     const struct wb_bundle_result *h = r->result;
     const struct wb_bundle_observer *observer = r->options.observer;
@@ -336,51 +342,51 @@ static bool is_wanted(const struct run *r, bool rests)
     return !observer || !observer->progress || observer->progress(observer->context, &progress);
 }
 
-/* While it comes to rest there are no checkpoints: with rows behind it, it stops at the next place
- * where there are. Rank 0 decides. */
-static bool rest_is_wanted(void *context)
+/* There are no checkpoints during damping: if rows would be lost, the run continues to the next
+ * point where a checkpoint can be written. Rank 0 decides. */
+static bool damping_should_continue(void *context)
 {
     struct run *r = context;
 
     wb_bundle_get_state(r->bundle, &r->state);
-    bool wanted = is_wanted(r, true) || r->result->n_rows > 0;
+    bool wanted = should_continue(r, true) || r->result->n_rows > 0;
     wb_team_share(&wanted, sizeof wanted, 0);
     r->result->stopped = !wanted;
     return wanted;
 }
 
 enum motion {
-    STEPS,
+    STEPPING,
     SETTLING,
-    LETTING_GO
+    RELEASING
 };
 
 static enum verdict move(struct run *r, enum motion motion, int n)
 {
-    const struct wb_bundle_watch watch = {rest_is_wanted, r};
+    const struct wb_bundle_watch watch = {damping_should_continue, r};
     struct wb_reason *const reason = &r->result->reason;
 
     *reason = (struct wb_reason){0};
     switch (motion) {
-    case STEPS:
+    case STEPPING:
         r->status = wb_bundle_advance(r->bundle, n, reason);
         break;
     case SETTLING:
         r->status = wb_bundle_settle(r->bundle, &watch, reason);
         break;
-    case LETTING_GO:
-        r->status = wb_bundle_let_go(r->bundle, &watch, reason);
+    case RELEASING:
+        r->status = wb_bundle_release_tip(r->bundle, &watch, reason);
         break;
     }
     if (r->status != WB_OK)
-        return lose(r);
+        return handle_failure(r);
     wb_bundle_get_state(r->bundle, &r->state);
-    return r->result->stopped ? DONE : GO_ON;
+    return r->result->stopped ? DONE : CONTINUE;
 }
 
 static enum verdict advance(struct run *r, int n)
 {
-    return move(r, STEPS, n);
+    return move(r, STEPPING, n);
 }
 
 /* --- energies --- */
@@ -401,8 +407,8 @@ static void count_limits(struct run *r)
     largest->beyond = largest->beyond || limits.beyond > 0;
 }
 
-/* What a ratio says of the duration while the first loading goes on. */
-static enum verdict judge(struct run *r)
+/* Checks the chosen duration by the energy ratio, during the first loading. */
+static enum verdict check_duration(struct run *r)
 {
     struct wb_bundle_result *h = r->result;
     const double limit = r->model->run.kinetic_limit;
@@ -410,21 +416,21 @@ static enum verdict judge(struct run *r)
     const bool last = h->attempts == WB_BUNDLE_RUN_ATTEMPTS;
 
     if (!h->chosen || (!r->judged && r->state.target < pilot_share * r->from))
-        return GO_ON;
+        return CONTINUE;
     h->exceeded = h->largest.kinetic > limit;
     if (h->exceeded && !last) {
         r->next = needed * (r->judged ? late_margin : margin);
-        return ANEW;
+        return RESTART;
     }
     if (!r->judged && h->attempts == 1 && needed * margin < too_slow * h->duration) {
         r->next = needed * margin;
-        return ANEW;
+        return RESTART;
     }
     r->judged = true;
-    return GO_ON;
+    return CONTINUE;
 }
 
-static enum verdict look(struct run *r, struct wb_bundle_energies *e)
+static enum verdict check_energies(struct run *r, struct wb_bundle_energies *e)
 {
     struct wb_bundle_extremes *largest = &r->result->largest;
 
@@ -437,20 +443,20 @@ static enum verdict look(struct run *r, struct wb_bundle_energies *e)
     r->counting = r->counting || r->state.target >= r->from;
     const double imbalance = over(fabs(wb_bundle_imbalance(e)), r->most_external);
     if (!r->counting)
-        return GO_ON;
+        return CONTINUE;
 
     largest->kinetic = fmax(largest->kinetic, r->kinetic);
     largest->artificial = fmax(largest->artificial, r->artificial);
     largest->imbalance = fmax(largest->imbalance, imbalance);
     if (!(imbalance <= lost_balance)) {
         wb_reason_set(&r->result->reason,
-                      "energy is not kept: at %.3g mm, after %lld steps, %.3g of the external work "
-                      "are missing or too much",
+                      "energy balance violated at %.3g mm, after %lld steps: the imbalance is %.3g "
+                      "of the external work",
                       r->state.deflection / WB_MM, r->state.steps, imbalance);
         r->status = WB_ERR_DATA;
-        return lose(r);
+        return handle_failure(r);
     }
-    return r->branch == 0 ? judge(r) : GO_ON;
+    return r->branch == 0 ? check_duration(r) : CONTINUE;
 }
 
 /* --- rows --- */
@@ -465,7 +471,7 @@ static void add_to_line(struct line *line, double x, double y)
     line->yy += y * y;
 }
 
-/* Its value at x; at one place only, or with too few points, the mean. */
+/* The line's value at x; the mean if there are too few points or only one x. */
 static double value_at(const struct line *line, double x, double *deviation)
 {
     const double mean = line->y / line->n, at = line->x / line->n;
@@ -483,7 +489,7 @@ static enum wb_phase phase_of(const struct run *r)
     return r->branch % 2 == 0 ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
 }
 
-static void take_place(struct run *r)
+static void record_state(struct run *r)
 {
     struct wb_bundle_row *row = &r->row;
     const double length = r->model->length, last = 0.01 * length;
@@ -527,15 +533,15 @@ static void finish_row(struct run *r)
     struct wb_bundle_row *row = &r->row;
     double ignored;
 
-    /* A strand that swings about zero is slack for a step and taut for the next. Where the tip
-     * hangs there are no samples: it was slack there, whatever comes after. */
-    if (!r->hangs && r->samples_before)
+    /* A strand that oscillates about zero tension is slack and taut in turn: the majority of
+     * samples decides. While the tip is at rest with a slack strand there are no samples. */
+    if (!r->tip_released && r->samples_before)
         row->phase = r->slack_samples > r->vertical.n ? WB_PHASE_SLACK : phase_of(r);
     if (r->vertical.n == 0.0)
         sample(r);
     if (r->vertical.n == 0.0)
         row->phase = WB_PHASE_SLACK;
-    /* Where the strand is taut the target is the deflection. */
+    /* While the strand is taut, the deflection equals the target. */
     if (row->phase != WB_PHASE_SLACK) {
         row->vertical_force = value_at(&r->vertical, row->deflection, &row->standard_deviation);
         row->tension = value_at(&r->tension, row->deflection, &ignored);
@@ -547,20 +553,20 @@ static void finish_row(struct run *r)
     begin_line(r);
 }
 
-/* Rank 0 decides: clocks and signals differ. */
-static enum verdict report(struct run *r)
+/* Rank 0 decides, because clocks and signals differ between ranks. */
+static enum verdict report_progress(struct run *r)
 {
     const char *file = r->options.checkpoint;
-    const bool wanted = is_wanted(r, false);
+    const bool wanted = should_continue(r, false);
     bool choice[2] = {wanted, file && (!wanted || read_clocks().wall - r->saved.wall >=
                                                       r->options.checkpoint_interval)};
 
     wb_team_share(choice, sizeof choice, 0);
     const bool saved = choice[1] && save(r) == WB_OK;
     if (choice[1] && !saved)
-        wb_warn("%s: this checkpoint is not written", file);
+        wb_warn("%s: checkpoint not written; the run continues", file);
     if (choice[0])
-        return GO_ON;
+        return CONTINUE;
     r->result->stopped = true;
     r->result->kept = saved;
     return DONE;
@@ -568,7 +574,7 @@ static enum verdict report(struct run *r)
 
 /* --- ways --- */
 
-/* Time over duration at which a fifth-order smooth step has made the share of its way. */
+/* Time over duration at which a fifth-order smooth step has completed a fraction of its path. */
 static double time_of(double share)
 {
     double low = 0.0, high = 1.0;
@@ -588,158 +594,159 @@ static bool unloads(const struct run *r)
     return r->branch % 2 == 1;
 }
 
-/* The target at a place of the way, m: 0 is its begin, the rows are at 1, 2, ... */
+/* The target at a position of the branch, m: 0 is its start, the rows are at 1, 2, ... */
 static double target_of(const struct run *r, double place)
 {
     const double share = place / r->model->run.rows;
     return r->model->run.deflection * (unloads(r) ? 1.0 - share : share);
 }
 
-/* During unloading a strand is slack when the tip stays behind the target; a single force below
- * zero is an oscillation. */
+/* During unloading a strand is slack if the tip stays behind the target; a single negative force is
+ * an oscillation. */
 static bool went_slack(const struct run *r)
 {
-    return unloads(r) && r->model->loads.strand_length > 0.0 && !r->hangs &&
+    return unloads(r) && r->model->loads.strand_length > 0.0 && !r->tip_released &&
            r->state.deflection - r->state.target > slack_gap * r->model->run.deflection;
 }
 
-/* Goes on to a place of the way, sampling; energies are looked at four times a row. Here, between
- * two blocks of steps, checkpoints are made, and here a run goes on from one. Where the strand goes
- * slack the tip comes to rest, and nothing moves any more on this way. */
-static enum verdict go_to(struct run *r, double place, bool look_there)
+/* Advances to a position of the branch, with samples of the force. Between two blocks of steps
+ * checkpoints are written, and here a restored run continues. When the strand becomes slack the tip
+ * is damped to rest, and nothing moves for the rest of the branch. */
+static enum verdict advance_to(struct run *r, double place, bool look_there)
 {
     const double dt = r->result->time_step;
-    const double share =
-        fmin(1.0, fmax(0.0, (target_of(r, place) - r->way[0]) / (r->way[1] - r->way[0])));
-    const double end = r->way_time + r->result->duration * time_of(share);
+    const double share = fmin(1.0, fmax(0.0, (target_of(r, place) - r->branch_target[0]) /
+                                                 (r->branch_target[1] - r->branch_target[0])));
+    const double end = r->branch_start + r->result->duration * time_of(share);
     struct wb_bundle_energies energies;
 
     if (r->left < 0)
-        r->left = r->hangs ? 0 : llround((end - r->state.time) / dt);
+        r->left = r->tip_released ? 0 : llround((end - r->state.time) / dt);
     while (r->left > 0) {
         const int n = (int)(r->left < r->block ? r->left : r->block);
         enum verdict verdict = advance(r, n);
-        if (verdict != GO_ON)
+        if (verdict != CONTINUE)
             return verdict;
         sample(r);
         r->left -= n;
         if (went_slack(r)) {
-            verdict = move(r, LETTING_GO, 0);
-            if (verdict != GO_ON)
+            verdict = move(r, RELEASING, 0);
+            if (verdict != CONTINUE)
                 return verdict;
-            r->hangs = true;
+            r->tip_released = true;
             r->left = 0;
         }
-        verdict = report(r);
-        if (verdict != GO_ON)
+        verdict = report_progress(r);
+        if (verdict != CONTINUE)
             return verdict;
     }
     r->left = -1;
-    return look_there ? look(r, &energies) : GO_ON;
+    return look_there ? check_energies(r, &energies) : CONTINUE;
 }
 
-static enum verdict show_place(struct run *r)
+static enum verdict call_observer(struct run *r)
 {
     const struct wb_bundle_observer *observer = r->options.observer;
 
     if (!observer || !observer->place)
-        return GO_ON;
-    (void)wb_bundle_whole(r->bundle); /* all ranks take part in that */
+        return CONTINUE;
+    (void)wb_bundle_whole(r->bundle); /* collective: called on all ranks */
     r->status = wb_team_agree(observer->place(observer->context, r->result, &r->row, r->bundle));
-    return r->status == WB_OK ? GO_ON : FAILED;
+    return r->status == WB_OK ? CONTINUE : FAILED;
 }
 
-/* From half a step before a row's place to half a step after it. */
+/* Advances from half a row before a row's target to half a row after it. */
 static enum verdict pass_row(struct run *r)
 {
-    enum verdict verdict = GO_ON;
+    enum verdict verdict = CONTINUE;
 
-    for (; r->looks <= LOOKS_OF_A_ROW && verdict == GO_ON; r->looks++) {
+    for (; r->looks <= LOOKS_OF_A_ROW && verdict == CONTINUE; r->looks++) {
         const double at = r->place - 0.5 + (double)r->looks / LOOKS_OF_A_ROW;
         const bool there = 2 * r->looks == LOOKS_OF_A_ROW;
         if (at > r->model->run.rows)
             break;
-        verdict = go_to(r, at, !there);
-        if (verdict == GO_ON && there) {
-            take_place(r);
-            verdict = look(r, &r->row.energies);
-            if (verdict == GO_ON)
-                verdict = show_place(r);
+        verdict = advance_to(r, at, !there);
+        if (verdict == CONTINUE && there) {
+            record_state(r);
+            verdict = check_energies(r, &r->row.energies);
+            if (verdict == CONTINUE)
+                verdict = call_observer(r);
         }
     }
-    if (verdict == GO_ON)
+    if (verdict == CONTINUE)
         finish_row(r);
     return verdict;
 }
 
-static void begin_way(struct run *r)
+static void begin_branch(struct run *r)
 {
     const double duration = r->result->duration;
     const double steps =
         duration / (1.875 * r->model->run.rows * r->result->time_step * SAMPLES_OF_A_ROW);
 
-    r->block = (int)fmin(fmax(steps, 1.0), MOST_BLOCK);
-    r->way_time = r->state.time;
-    r->way[0] = r->hangs ? r->state.target : target_of(r, 0.0);
-    r->way[1] = target_of(r, r->model->run.rows);
-    wb_bundle_lead(r->bundle, r->way[1], duration);
-    r->hangs = false;
+    r->block = (int)fmin(fmax(steps, 1.0), MAX_BLOCK);
+    r->branch_start = r->state.time;
+    r->branch_target[0] = r->tip_released ? r->state.target : target_of(r, 0.0);
+    r->branch_target[1] = target_of(r, r->model->run.rows);
+    wb_bundle_move_tip(r->bundle, r->branch_target[1], duration);
+    r->tip_released = false;
     r->under_way = true;
     r->place = 0;
     r->left = -1;
 }
 
-static enum verdict make_way(struct run *r)
+static enum verdict run_branch(struct run *r)
 {
     const int rows = r->model->run.rows;
-    enum verdict verdict = GO_ON;
+    enum verdict verdict = CONTINUE;
 
     if (!r->under_way)
-        begin_way(r);
+        begin_branch(r);
     if (r->place == 0) {
-        verdict = go_to(r, 0.5, false);
-        if (verdict != GO_ON)
+        verdict = advance_to(r, 0.5, false);
+        if (verdict != CONTINUE)
             return verdict;
-        /* What is nearer to where the last way ended belongs to its last row, not to the first. */
+        /* Samples nearer to the end of the last branch belong to its last row, not to the first row
+         * of this branch. */
         begin_line(r);
         r->place = r->looks = 1;
     }
-    while (r->place <= rows && verdict == GO_ON) {
+    while (r->place <= rows && verdict == CONTINUE) {
         verdict = pass_row(r);
-        if (verdict == GO_ON) {
+        if (verdict == CONTINUE) {
             r->place++;
             r->looks = 1;
         }
     }
-    if (verdict == GO_ON)
+    if (verdict == CONTINUE)
         r->under_way = false;
     return verdict;
 }
 
-/* Row 0: at rest, with the weight on. The strand is taut: it carries part of it. */
-static enum verdict rest(struct run *r)
+/* Row 0: at rest, with the weight applied. The strand is taut and carries part of it. */
+static enum verdict settle(struct run *r)
 {
     enum verdict verdict = move(r, SETTLING, 0);
 
-    if (verdict != GO_ON)
+    if (verdict != CONTINUE)
         return verdict;
     r->begin = r->state.time;
-    take_place(r);
-    verdict = show_place(r);
-    if (verdict != GO_ON)
+    record_state(r);
+    verdict = call_observer(r);
+    if (verdict != CONTINUE)
         return verdict;
     for (int i = 0; i < REST_SAMPLES && r->model->loads.weight; i++) {
-        verdict = advance(r, MOST_BLOCK);
-        if (verdict != GO_ON)
+        verdict = advance(r, MAX_BLOCK);
+        if (verdict != CONTINUE)
             return verdict;
         sample(r);
     }
-    if (!r->model->loads.weight) /* nothing has moved, nothing acts */
+    if (!r->model->loads.weight) /* no motion and no load */
         sample(r);
     wb_bundle_get_energies(r->bundle, &r->row.energies);
     finish_row(r);
     r->begin = r->state.time;
-    return GO_ON;
+    return CONTINUE;
 }
 
 static void begin_attempt(struct run *r)
@@ -750,7 +757,7 @@ static void begin_attempt(struct run *r)
     h->exceeded = false;
     h->largest = (struct wb_bundle_extremes){0};
     h->attempts++;
-    r->counting = r->judged = r->under_way = r->hangs = false;
+    r->counting = r->judged = r->under_way = r->tip_released = false;
     r->kinetic = r->artificial = (double)NAN;
     r->most_external = 0.0;
     begin_line(r);
@@ -761,7 +768,7 @@ static enum verdict attempt(struct run *r)
 {
     struct wb_bundle_result *h = r->result;
     struct wb_checkpoint checkpoint = {.bytes = NULL};
-    enum verdict verdict = GO_ON;
+    enum verdict verdict = CONTINUE;
 
     r->status = find_checkpoint(r, &checkpoint);
     const bool resumes = r->status == WB_OK && checkpoint.restores;
@@ -787,10 +794,10 @@ static enum verdict attempt(struct run *r)
     h->parts = wb_bundle_parts(r->bundle);
 
     if (!resumes)
-        verdict = rest(r);
-    while (r->branch < branches_of(r->model) && verdict == GO_ON) {
-        verdict = make_way(r);
-        r->branch += verdict == GO_ON;
+        verdict = settle(r);
+    while (r->branch < branches_of(r->model) && verdict == CONTINUE) {
+        verdict = run_branch(r);
+        r->branch += verdict == CONTINUE;
     }
     wb_bundle_get_state(r->bundle, &r->state);
     h->steps = r->state.steps;
@@ -803,9 +810,9 @@ static enum verdict attempt(struct run *r)
 
 /* --- the duration --- */
 
-/* A guess, s: the ratio where it begins to count, of a tip that follows the smooth step while the
- * beam keeps its static shape. Its rigidity is between sliding and bonded wires. Half the time that
- * would do: what is too short is soon found. */
+/* Initial guess of the duration, s: the ratio at the deflection where it begins to count, for a tip
+ * that follows the smooth step and a beam that keeps its static shape, with a rigidity between
+ * sliding and bonded wires. Half that duration, because too short a duration is detected early. */
 static double guess_duration(const struct wb_bundle_model *model, double from)
 {
     const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(model);
@@ -842,7 +849,7 @@ enum wb_status wb_bundle_run(struct wb_bundle_result *result, const struct wb_bu
         .begun = read_clocks(),
         .saved = read_clocks(),
         .may_resume = true,
-        .from = fmin(usual_from, 0.5 * model->run.deflection),
+        .from = fmin(default_from, 0.5 * model->run.deflection),
         .left = -1,
     };
     enum verdict verdict;
@@ -850,7 +857,7 @@ enum wb_status wb_bundle_run(struct wb_bundle_result *result, const struct wb_bu
     if (options)
         r.options = *options;
     if (r.options.checkpoint_interval == 0.0)
-        r.options.checkpoint_interval = usual_interval;
+        r.options.checkpoint_interval = default_interval;
     if (result->capacity < wb_bundle_model_rows(model))
         return wb_fail(WB_ERR_ARGUMENT,
                        "the result has room for %d rows: expected the %d of the test",
@@ -860,9 +867,9 @@ enum wb_status wb_bundle_run(struct wb_bundle_result *result, const struct wb_bu
     begin_result(&r);
     do {
         verdict = attempt(&r);
-        if (verdict == ANEW)
+        if (verdict == RESTART)
             result->duration = r.next;
-    } while (verdict == ANEW);
+    } while (verdict == RESTART);
     take_time(&r);
     return r.status;
 }

@@ -8,14 +8,16 @@
 
 #define WB_LOG_DOMAIN "bundle"
 
-static const double most_turned = 1.0 / 12.0;  /* turns of a helix from station to station */
-static const double most_lacking = 0.02;       /* of a helix's mass */
-static const double usual_turned = 1.0 / 25.0; /* with which that much is lacking of the paper's */
-static const double lacking_power = 1.3;       /* of elements' length, found for these */
+static const double max_turned = 1.0 / 12.0; /* maximum turns of a helix from station to station */
+static const double max_missing_mass = 0.02; /* of a helix's mass */
+static const double usual_turned =
+    1.0 / 25.0; /* suggested turns from station to station if the mesh is too coarse */
+static const double mass_order =
+    1.3; /* exponent of the missing mass over the element length, found for the paper's bundles */
 
 /* --- geometry --- */
 
-/* Elements round the ring; a strip has one node more. */
+/* Number of elements around the ring; a strip has one more node. */
 static int elements_of(const struct wb_bundle_bodies *bodies)
 {
     const int round = wb_bundle_model_tape_quads(bodies->model, bodies->mesh);
@@ -31,8 +33,8 @@ static double layer_thickness(const struct wb_taping *taping)
     return taping->kind == WB_TAPING_SLEEVE ? wb_taping_thickness(taping) : taping->layer_thickness;
 }
 
-/* Layers below: 0, then 1 from one turn on, and so on; within `ramp` turns of a step the tape
- * climbs it. No step where the strip ends. */
+/* Number of layers below: 0, 1 from one turn on, and so on; the tape climbs from layer to layer
+ * within `ramp` turns. The end of the strip has no step. */
 static double layers_below(double level, double layers, double ramp)
 {
     double below = 0.0;
@@ -51,7 +53,8 @@ struct wb_bundle_tape_place wb_bundle_tape_place(const struct wb_bundle_bodies *
     const double around = wb_hull_length(&tape->hull, middle), part = node / elements_of(bodies);
     struct wb_bundle_tape_place place = {.is_tape = true};
 
-    /* The outline runs from z towards y, a right-handed strip the other way as it goes along. */
+    /* The outline runs from z towards y; a right-handed strip runs the opposite way along the
+     * bundle. */
     if (taping->kind == WB_TAPING_SLEEVE) {
         place.point = wb_hull_at(&tape->hull, middle, around * part);
         return place;
@@ -88,32 +91,32 @@ static void place_ring(struct wb_bundle_bodies *bodies)
 
 /* --- creation --- */
 
-/* Elements along for which the strip's facets, which cut the outline's corners, are nearly as large
- * as it is. */
+/* Number of elements along the bundle for which the mass of the strip's facets, which cut the
+ * outline's corners, is accurate enough. */
 static int elements_needed(const struct wb_bundle_bodies *bodies, double lacking)
 {
     return (int)ceil(1.05 * bodies->mesh->elements_along *
-                     pow(lacking / most_lacking, 1.0 / lacking_power));
+                     pow(lacking / max_missing_mass, 1.0 / mass_order));
 }
 
-static enum wb_status refuse_mesh(const struct wb_bundle_bodies *bodies, int needed)
+static enum wb_status reject_mesh(const struct wb_bundle_bodies *bodies, int needed)
 {
     return wb_fail(
         WB_ERR_ARGUMENT,
-        "%s: mesh '%s', %d elements along, is too coarse for a helix that is wound by %.3g "
-        "mm a turn: use a mesh with elements_along: %d or more",
+        "%s: mesh '%s' with %d elements along is too coarse for a helix with a lead of %.3g "
+        "mm per turn: use a mesh with elements_along: %d or more",
         bodies->model->path, bodies->mesh->name, bodies->mesh->elements_along,
         bodies->model->tape.taping.advance / WB_MM, needed);
 }
 
-/* Before the tape is made: elements that turn by more are not convex. */
+/* Checked before the tape is created: elements with more rotation are not convex. */
 static enum wb_status check_twist(const struct wb_bundle_bodies *bodies)
 {
     const double turned = bodies->spacing / bodies->model->tape.taping.advance;
 
-    if (turned <= most_turned)
+    if (turned <= max_turned)
         return WB_OK;
-    return refuse_mesh(bodies, (int)ceil(bodies->mesh->elements_along * turned / usual_turned));
+    return reject_mesh(bodies, (int)ceil(bodies->mesh->elements_along * turned / usual_turned));
 }
 
 static enum wb_status check_mass(const struct wb_bundle_bodies *bodies)
@@ -121,9 +124,9 @@ static enum wb_status check_mass(const struct wb_bundle_bodies *bodies)
     const double whole = wb_bundle_model_tape_mass(bodies->model);
     const double lacking = 1.0 - bodies->ring.mass / whole;
 
-    if (lacking <= most_lacking)
+    if (lacking <= max_missing_mass)
         return WB_OK;
-    return refuse_mesh(bodies, elements_needed(bodies, lacking));
+    return reject_mesh(bodies, elements_needed(bodies, lacking));
 }
 
 static enum wb_status make_ring(struct wb_bundle_bodies *bodies)

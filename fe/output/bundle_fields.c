@@ -14,7 +14,7 @@ enum {
     TENSOR = 6
 };
 
-/* What is summed up at a point. */
+/* Sums at a point, for averages. */
 struct sum {
     double stress[TENSOR], plastic;
     int n;
@@ -84,7 +84,7 @@ static void read_points(const struct wb_bundle_fields_body *body, int stride, co
         }
 }
 
-/* A wire: its straight place, and its hexahedra from `cell` on; returns the next. */
+/* Adds a wire's straight positions, and its hexahedra starting at `cell`; returns the next cell. */
 static int mesh_wire(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies, int w,
                      int cell)
 {

@@ -108,7 +108,7 @@ enum wb_status wb_bundle_vtk_add(struct wb_vtk_file_series *series, double time,
     char path[WB_PATH];
 
     if (!isfinite(deflection))
-        return wb_fail(WB_ERR_ARGUMENT, "a state of a VTK series has no finite deflection");
+        return wb_fail(WB_ERR_ARGUMENT, "VTK series: the deflection of a state is not finite");
     WB_TRY(wb_vtk_file_series_path(series, time, path));
     WB_TRY(wb_bundle_vtk_write(path, fields, deflection));
     return wb_vtk_file_series_count(series, time);

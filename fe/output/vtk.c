@@ -12,16 +12,16 @@
 
 enum {
     CELL_NODES = WB_SOLID_MESH_NODES,
-    QUADRATIC_HEXAHEDRON = 25 /* VTK's number; its order of nodes is ours */
+    QUADRATIC_HEXAHEDRON = 25 /* VTK's cell type; its order of nodes is the same as ours */
 };
 
-/* A state and the points of its file: a node once for each part that has it. */
+/* A state and the points of its file: a node appears once for each part that it belongs to. */
 struct state {
     const struct wb_solid_mesh *mesh;
     const struct wb_wire3d_fields *fields;
     int n;
-    int *number;                /* (n_parts x n_nodes), -1 where a part does not have the node */
-    int *node, *element, *slot; /* (n): where a point's values come from */
+    int *number; /* (n_parts x n_nodes), -1 if the node does not belong to the part */
+    int *node, *element, *slot; /* (n): source of a point's values */
     struct wb_memory memory;    /* of all arrays */
 };
 
@@ -56,7 +56,7 @@ static bool are_finite(const double *values, size_t n)
     return true;
 }
 
-/* Also at the nodes of elements whose values no point takes. */
+/* Checks all values, including those that no point of the file uses. */
 static enum wb_status check_fields(const struct wb_solid_mesh *mesh,
                                    const struct wb_wire3d_fields *fields)
 {

@@ -13,8 +13,8 @@
 #define WB_LOG_DOMAIN "vtk"
 
 enum {
-    BLOCK_HEAD = 8,                   /* length of an array before its bytes, UInt64 */
-    FILE_NAME = WB_VTK_FILE_NAME + 24 /* with the number of a state */
+    BLOCK_HEAD = 8,                   /* bytes of the length (UInt64) before each array */
+    FILE_NAME = WB_VTK_FILE_NAME + 24 /* including the number of a state */
 };
 
 /* --- one file --- */
@@ -40,8 +40,8 @@ static size_t size_of(const struct wb_vtk_file_array *array)
     return array->count * (size_t)types[array->type].bytes;
 }
 
-/* Declares the arrays of a section; `offset` is where the next one begins. A state without arrays
- * of its own has no such section. */
+/* Declares the arrays of a section; `offset` is the position of the next array. A state without
+ * arrays of its own has no such section. */
 static void put_section(struct wb_text *text, int section, const struct wb_vtk_file_array *arrays,
                         size_t n, size_t *offset)
 {
@@ -111,7 +111,7 @@ static void put_number(struct wb_text *text, enum wb_vtk_file_type type, double 
     put_integer(text, bits, types[type].bytes);
 }
 
-/* The size of the array's numbers in bytes, then these. False where one is not finite. */
+/* Appends the array's size in bytes, then its values. False if a value is not finite. */
 static bool put_array(struct wb_text *text, const struct wb_vtk_file_array *array,
                       const void *state)
 {
@@ -191,12 +191,12 @@ enum wb_status wb_vtk_file_series_path(const struct wb_vtk_file_series *series, 
 {
     char file[FILE_NAME];
     if (!isfinite(time))
-        return wb_fail(WB_ERR_ARGUMENT, "a state of a VTK series has no finite time");
+        return wb_fail(WB_ERR_ARGUMENT, "VTK series: the time of a state is not finite");
     name_state(series, series->n, file);
     return wb_file_join(path, series->folder, file);
 }
 
-/* The .pvd file with the states so far. */
+/* Writes the .pvd file with the states so far. */
 static enum wb_status write_list(const struct wb_vtk_file_series *series)
 {
     char path[WB_PATH];

@@ -1,8 +1,8 @@
-/* VTK's XML files with appended raw data, and series of them. What a state holds is the matter of
- * fe/output/vtk.c and fe/output/bundle_vtk.c: each lists its arrays in a table.
+/* VTK's XML files with appended raw data, and series of them. fe/output/vtk.c and
+ * fe/output/bundle_vtk.c define the contents of a state: each lists its arrays in a table.
  *
- * The XML head declares the arrays and tells where in the bytes behind it each of them begins.
- * Numbers stand least byte first on any machine.
+ * The XML head declares the arrays and their positions in the appended bytes. Numbers are
+ * little-endian on any machine.
  */
 #ifndef WB_FE_OUTPUT_VTK_FILE_H
 #define WB_FE_OUTPUT_VTK_FILE_H
@@ -14,18 +14,18 @@
 #include "base/text.h"
 
 enum {
-    WB_VTK_FILE_NAME = 100 /* longest name of a series, with the NUL */
+    WB_VTK_FILE_NAME = 100 /* maximum length of a series' name, including the NUL */
 };
 
 /* --- one file --- */
 
 enum wb_vtk_file_section {
-    WB_VTK_FILE_STATE, /* of the state as a whole */
+    WB_VTK_FILE_STATE, /* data of the complete state */
     WB_VTK_FILE_POINTS,
     WB_VTK_FILE_CELLS,
     WB_VTK_FILE_POSITIONS,
-    WB_VTK_FILE_TOPOLOGY, /* of the cells: their points, ends and types */
-    WB_VTK_FILE_SECTIONS  /* how many */
+    WB_VTK_FILE_TOPOLOGY, /* the cells' points, offsets and types */
+    WB_VTK_FILE_SECTIONS  /* number of sections */
 };
 
 enum wb_vtk_file_type {
@@ -39,13 +39,13 @@ struct wb_vtk_file_array {
     enum wb_vtk_file_section section;
     enum wb_vtk_file_type type;
     const char *name;
-    const char *more; /* further attributes, with a blank before each; NULL: none */
+    const char *more; /* further attributes, each preceded by a space; NULL: none */
     size_t count;     /* of its numbers */
     double (*value)(const void *state, size_t i); /* the number i */
 };
 
-/* Writes a state, whole or not at all: its `n` arrays in the order of their sections. WB_ERR_DATA
- * when a number is not finite. */
+/* Writes a state completely or not at all: its `n` arrays in the order of their sections.
+ * WB_ERR_DATA if a value is not finite. */
 WB_MUST_CHECK enum wb_status wb_vtk_file_write(const char *path, int n_points, int n_cells,
                                                const struct wb_vtk_file_array *arrays, size_t n,
                                                const void *state);
@@ -60,19 +60,18 @@ struct wb_vtk_file_series {
     struct wb_text states; /* their lines in the .pvd file */
 };
 
-/* Writes nothing yet; the folder must exist when states are added. WB_ERR_ARGUMENT when the name is
- * empty, too long or holds a slash. */
+/* Initialises a series; writes nothing yet. The folder must exist when states are added.
+ * WB_ERR_ARGUMENT if the name is empty, too long or contains a slash. */
 WB_MUST_CHECK enum wb_status wb_vtk_file_series_init(struct wb_vtk_file_series *series,
                                                      const char *folder, const char *name);
 void wb_vtk_file_series_release(struct wb_vtk_file_series *series); /* accepts a zeroed one */
 
-/* Where the next state belongs. WB_ERR_ARGUMENT when `time`, which ParaView's clock will show, is
- * not finite. */
+/* Path of the next state. WB_ERR_ARGUMENT if `time`, which ParaView displays, is not finite. */
 WB_MUST_CHECK enum wb_status wb_vtk_file_series_path(const struct wb_vtk_file_series *series,
                                                      double time, char path[WB_PATH]);
 
-/* Counts that state, which is written, and writes the series up to it, so that a run that stops
- * leaves one that can be read. */
+/* Adds that state, which must have been written, to the series and writes the .pvd file, so that an
+ * interrupted run leaves a readable series. */
 WB_MUST_CHECK enum wb_status wb_vtk_file_series_count(struct wb_vtk_file_series *series,
                                                       double time);
 

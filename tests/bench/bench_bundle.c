@@ -73,7 +73,7 @@ static double step_cost(clockid_t clock, const struct wb_bundle_settings *settin
     if (wb_bundle_create(&bundle, &model, settings) != WB_OK)
         return -1.0;
     *time_step = wb_bundle_time_step(bundle);
-    wb_bundle_lead(bundle, model.run.deflection, settings->duration);
+    wb_bundle_move_tip(bundle, model.run.deflection, settings->duration);
     if (wb_bundle_advance(bundle, (int)(after / *time_step), NULL) != WB_OK) {
         wb_bundle_destroy(bundle);
         return -1.0;

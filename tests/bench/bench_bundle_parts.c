@@ -59,7 +59,7 @@ static int make(struct wb_bundle **out, int threads)
     const struct wb_bundle_settings settings = {.duration = 1.0, .threads = threads};
     if (wb_bundle_create(out, &model, &settings) != WB_OK)
         return 1;
-    wb_bundle_lead(*out, model.run.deflection, settings.duration);
+    wb_bundle_move_tip(*out, model.run.deflection, settings.duration);
     return wb_bundle_advance(*out, steps, NULL) != WB_OK;
 }
 

@@ -1,4 +1,4 @@
-/* Bundles of type 3 for the tests of explicit bundles: their files in a folder of the test. */
+/* Bundles of type 3 for the tests of explicit bundles: model files in a folder of the test. */
 #ifndef WB_TESTS_FE_BUNDLE_BUNDLES_H
 #define WB_TESTS_FE_BUNDLE_BUNDLES_H
 
@@ -19,7 +19,7 @@ static inline int release(void **state)
     return 0;
 }
 
-/* A bundle of type 3, 114 mm long; further lines of its file. */
+/* A bundle of type 3, 114 mm long, plus further lines of its file. */
 static inline void read_model(const char *lines)
 {
     char path[64];
@@ -63,7 +63,7 @@ static inline struct wb_cantilever_model bundle_beam(const struct test_wire *wir
     return beam;
 }
 
-/* The external work is the area under the rows' forces. */
+/* Checks that the external work is the area under the rows' forces. */
 static inline void check_work(const struct wb_bundle_result *h)
 {
     double work = 0.0;

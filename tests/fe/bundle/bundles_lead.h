@@ -1,13 +1,13 @@
-/* A bundle whose energies and momentum are watched in every step. */
+/* A bundle whose energies and momentum are checked in every step. */
 #ifndef WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
 #define WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
 
 #include "fe/bundle/bundle_private.h"
 #include "tests/fe/bundle/bundles.h"
 
-/* Leads the tip to a deflection. Energies are kept to the part given of the largest work, momentum
- * to what single precision leaves. */
-static inline void lead_and_check(struct wb_bundle *bundle, double deflection, double duration,
+/* Moves the tip to a deflection. Energies balance to the given fraction of the largest work,
+ * momentum to single precision. */
+static inline void move_and_check(struct wb_bundle *bundle, double deflection, double duration,
                                   double tolerance)
 {
     const int steps = (int)(duration / wb_bundle_time_step(bundle));
@@ -15,7 +15,7 @@ static inline void lead_and_check(struct wb_bundle *bundle, double deflection, d
     struct wb_bundle_energies e;
     double impulse[3] = {0.0}, size = 0.0, most = 0.0, worst = 0.0;
 
-    wb_bundle_lead(bundle, deflection, duration);
+    wb_bundle_move_tip(bundle, deflection, duration);
     for (int i = 0; i < steps; i++) {
         const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
         assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
@@ -35,7 +35,7 @@ static inline void lead_and_check(struct wb_bundle *bundle, double deflection, d
         for (int c = 0; c < 3; c++)
             assert_close(outside.momentum[c], impulse[c], 1e-5 * size);
     }
-    print_message("energies are kept to %.3g %% in %d steps\n", 100.0 * worst, steps);
+    print_message("energy imbalance at most %.3g %% in %d steps\n", 100.0 * worst, steps);
     assert_true(worst < tolerance);
 }
 

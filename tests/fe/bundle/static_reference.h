@@ -53,14 +53,14 @@ static const struct static_point static_7_frictionless[] = {
     {53, 2.16869, 98.9222},
 };
 
-/* 7-type3 without tape, wires that do not touch. */
+/* 7-type3 without tape, with wires that do not touch. */
 static const struct static_point static_7_apart[] = {
     {2, 0.0242125, 113.979}, {10, 0.117715, 113.476}, {20, 0.191061, 111.937},
     {30, 0.252471, 109.319}, {40, 0.317698, 105.515}, {50, 0.395432, 100.367},
     {53, 0.4227, 98.5271},
 };
 
-/* 7-type3 without tape, wires that neither part nor slip. */
+/* 7-type3 without tape, with wires that neither separate nor slip. */
 static const struct static_point static_7_glued[] = {
     {2, 0.189881, 113.979}, {10, 0.637348, 113.491}, {20, 1.00722, 111.94},  {30, 1.3824, 109.28},
     {40, 1.80527, 105.415}, {50, 2.31983, 100.187},  {53, 2.50159, 98.3184},

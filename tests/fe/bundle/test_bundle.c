@@ -1,5 +1,5 @@
-/* Bundles in explicit dynamics, on meshes that are coarse so that it is fast: against the 1D beam,
- * statics, and what has to be kept. */
+/* Bundles in explicit dynamics, on coarse meshes for speed: comparison with the 1D beam and
+ * statics, and conservation laws. */
 #include "fe/bundle/bundle_private.h"
 #include "tests/fe/bundle/bundles.h"
 
@@ -32,10 +32,9 @@ static void one_wire_bends_as_the_beam(void **unused)
     wb_section_release(&section);
 }
 
-/* The wire hangs between clamp and tip, an elastic beam held at one end and supported at the
- * other (15 elements are 2.2 % stiffer): v = w x^2 (3 L^2 - 5 L x + 2 x^2) / (48 E I), reactions
- * 5/8 and 3/8 w L. */
-static void under_its_weight_it_hangs_as_a_propped_beam(void **unused)
+/* The wire is an elastic beam clamped at one end and supported at the other (15 elements are 2.2 %
+ * stiffer): v = w x^2 (3 L^2 - 5 L x + 2 x^2) / (48 E I), reactions 5/8 and 3/8 w L. */
+static void weight_deflects_the_wire_like_a_propped_beam(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(3);
@@ -68,9 +67,9 @@ static void under_its_weight_it_hangs_as_a_propped_beam(void **unused)
 
 /* --- several --- */
 
-/* Contact, cohesion and elements give no force to the whole: in every step the momentum changes by
- * clamp, tip and weight alone. */
-static void momentum_comes_from_outside_alone(void **unused)
+/* Contact, cohesion and elements are internal forces: in every step only clamp, tip and weight
+ * change the momentum. */
+static void only_external_forces_change_the_momentum(void **unused)
 {
     (void)unused;
     const struct wb_bundle_settings settings = {.duration = 0.05};
@@ -81,7 +80,7 @@ static void momentum_comes_from_outside_alone(void **unused)
     read_model(SEVEN "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 20}\n"
                      "loads: {strand_mm: 760, weight: true}\n");
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    wb_bundle_lead(bundle, 20e-3, settings.duration);
+    wb_bundle_move_tip(bundle, 20e-3, settings.duration);
     for (int i = 0; i < 2000; i++) {
         const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
         assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
@@ -131,7 +130,7 @@ static bool stop_at_rest(void *context, const struct wb_bundle_progress *progres
     return ++rest->looks < 3;
 }
 
-static void a_run_can_be_stopped_while_its_weight_comes_on(void **unused)
+static void a_run_can_be_stopped_while_settling(void **unused)
 {
     (void)unused;
     struct rest rest = {0};
@@ -143,7 +142,7 @@ static void a_run_can_be_stopped_while_its_weight_comes_on(void **unused)
     assert_int_equal(result.n_rows, 0);
 }
 
-static void a_strand_that_is_too_short_is_told(void **unused)
+static void too_short_strand_is_reported(void **unused)
 {
     (void)unused;
     read_model(ONE "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 60, rows: 4, "
@@ -152,11 +151,11 @@ static void a_strand_that_is_too_short_is_told(void **unused)
     run_model(NULL);
     wb_log_set_sink(NULL, NULL);
     assert_false(result.converged);
-    assert_non_null(strstr(result.reason.text, "the strand of 10 mm"));
+    assert_non_null(strstr(result.reason.text, "strand length 10 mm"));
 }
 
-/* As a wire that is shorter by what the epoxy holds. */
-static void a_potted_wire_is_a_shorter_one(void **unused)
+/* Equivalent to a wire shortened by the potted length. */
+static void a_potted_wire_bends_like_a_shorter_one(void **unused)
 {
     (void)unused;
     double force[2][5], clamp[2];
@@ -179,8 +178,8 @@ static void a_potted_wire_is_a_shorter_one(void **unused)
     assert_close(clamp[1], clamp[0], 1e-7);
 }
 
-/* Positions are double anyway; forces in float move the curve by their round-off. */
-static void in_double_the_curve_is_the_same(void **unused)
+/* Positions are always double; float forces change the curve by round-off. */
+static void double_precision_gives_the_same_curve(void **unused)
 {
     (void)unused;
     double force[2][5];
@@ -200,7 +199,7 @@ static void in_double_the_curve_is_the_same(void **unused)
     assert_true(force[1][4] != force[0][4]);
 }
 
-static void what_cannot_be_computed_is_refused(void **unused)
+static void unsupported_models_are_rejected(void **unused)
 {
     (void)unused;
     const struct wb_bundle_settings settings = {.duration = 1.0, .mesh = "none"};
@@ -222,14 +221,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(one_wire_bends_as_the_beam, release),
-        cmocka_unit_test(under_its_weight_it_hangs_as_a_propped_beam),
-        cmocka_unit_test(momentum_comes_from_outside_alone),
+        cmocka_unit_test(weight_deflects_the_wire_like_a_propped_beam),
+        cmocka_unit_test(only_external_forces_change_the_momentum),
         cmocka_unit_test_teardown(a_stopped_run_keeps_its_rows, release),
-        cmocka_unit_test_teardown(a_run_can_be_stopped_while_its_weight_comes_on, release),
-        cmocka_unit_test_teardown(a_strand_that_is_too_short_is_told, release),
-        cmocka_unit_test_teardown(a_potted_wire_is_a_shorter_one, release),
-        cmocka_unit_test_teardown(in_double_the_curve_is_the_same, release),
-        cmocka_unit_test_teardown(what_cannot_be_computed_is_refused, release),
+        cmocka_unit_test_teardown(a_run_can_be_stopped_while_settling, release),
+        cmocka_unit_test_teardown(too_short_strand_is_reported, release),
+        cmocka_unit_test_teardown(a_potted_wire_bends_like_a_shorter_one, release),
+        cmocka_unit_test_teardown(double_precision_gives_the_same_curve, release),
+        cmocka_unit_test_teardown(unsupported_models_are_rejected, release),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

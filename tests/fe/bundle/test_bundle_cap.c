@@ -1,12 +1,12 @@
-/* The capped tip: a frame in closed form, and what has to be kept. */
+/* The capped tip: a frame in closed form, and conservation laws. */
 #include "fe/bundle/bundle_part.h"
 #include "tests/fe/bundle/bundles_lead.h"
 
-/* Two wires, one above the other, that do not touch: by the cap they are a frame. With the slope t
- * of the tip, one is E A t h / (2 L) in tension, the other in compression, and either gets the
- * moment -E A t h^2 / (4 L): F L^3 / (E I d) = 1 / (1/6 - k / (8 (1 + k))), k = A h^2 / (4 I); 6
- * without the cap. */
-static void a_cap_makes_two_wires_a_frame(void **unused)
+/* Two wires, one above the other, that do not touch: the cap makes them a frame. With the slope t
+ * of the tip, one is E A t h / (2 L) in tension, the other in compression, and each gets the moment
+ * -E A t h^2 / (4 L): F L^3 / (E I d) = 1 / (1/6 - k / (8 (1 + k))), k = A h^2 / (4 I); 6 without
+ * the cap. */
+static void cap_makes_two_wires_a_frame(void **unused)
 {
     (void)unused;
     const struct test_wire wire = test_wire_type(3);
@@ -30,7 +30,7 @@ static void a_cap_makes_two_wires_a_frame(void **unused)
     }
 }
 
-static void a_capped_bundle_keeps_energy_and_momentum(void **unused)
+static void capped_bundle_conserves_energy_and_momentum(void **unused)
 {
     (void)unused;
     const struct wb_bundle_settings settings = {.duration = 0.1};
@@ -40,13 +40,13 @@ static void a_capped_bundle_keeps_energy_and_momentum(void **unused)
                      "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 15}\n"
                      "loads: {strand_mm: 760, weight: true}\n");
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    lead_and_check(bundle, 15e-3, settings.duration, 0.003);
+    move_and_check(bundle, 15e-3, settings.duration, 0.003);
     wb_bundle_destroy(bundle);
 }
 
 /* --- on its own --- */
 
-/* Sums over the wires' nodes at the end, which know nothing of a rigid body. */
+/* Sums over the wires' nodes at the end, independent of the rigid-body code. */
 struct sums {
     double momentum[3], angular[3], kinetic; /* angular: about the origin */
 };
@@ -89,10 +89,10 @@ static void move_end(struct wb_bundle_bodies *bodies)
     }
 }
 
-/* Struck once at one node, the end flies on and tumbles: what it gets is the impulse and its
- * moment; both and, of a step of 0.01 rad and less, a thousandth of the energy are kept; nodes keep
- * their distance. */
-static void an_end_that_is_struck_tumbles_as_a_rigid_body(void **unused)
+/* After an impulse at one node the end translates and rotates: impulse and angular impulse are
+ * conserved, the energy to a thousandth in steps of at most 0.01 rad, and nodes keep their
+ * distances. */
+static void an_impulse_moves_the_end_as_a_rigid_body(void **unused)
 {
     (void)unused;
     const double force[3] = {3000.0, -200.0, 400.0};
@@ -151,9 +151,9 @@ static void an_end_that_is_struck_tumbles_as_a_rigid_body(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(a_cap_makes_two_wires_a_frame, release),
-        cmocka_unit_test(a_capped_bundle_keeps_energy_and_momentum),
-        cmocka_unit_test(an_end_that_is_struck_tumbles_as_a_rigid_body),
+        cmocka_unit_test_teardown(cap_makes_two_wires_a_frame, release),
+        cmocka_unit_test(capped_bundle_conserves_energy_and_momentum),
+        cmocka_unit_test(an_impulse_moves_the_end_as_a_rigid_body),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,12 +1,12 @@
-/* How results of explicit bundles converge with the mesh, along and over the section, and with the
- * duration; prints forces and orders. */
+/* Convergence of explicit bundles with the mesh, along and over the section, and with the duration;
+ * prints forces and orders. */
 #include "tests/fe/bundle/bundles.h"
 
 enum {
-    MOST_ROWS = 16
+    MAX_ROWS = 16
 };
 
-/* The model on a mesh of its own, to `deflection`. */
+/* The model with its own mesh, to `deflection`. */
 static void set_mesh(int core, int rings, int along)
 {
     struct wb_bundle_mesh *mesh = &model.mesh[0];
@@ -16,16 +16,17 @@ static void set_mesh(int core, int rings, int along)
     mesh->elements_along = along;
 }
 
-static void get_forces(double force[MOST_ROWS])
+static void get_forces(double force[MAX_ROWS])
 {
     run_model(NULL);
-    assert_true(result.converged && result.n_rows <= MOST_ROWS);
+    assert_true(result.converged && result.n_rows <= MAX_ROWS);
     assert_true(result.largest.imbalance < 0.01);
     for (int i = 0; i < result.n_rows; i++)
         force[i] = result.rows[i].force;
 }
 
-/* Of three results, each with half the size (or twice the duration) of the one before. */
+/* Order of convergence from three results, each with half the size (or twice the duration) of the
+ * one before. */
 static double order_of(double a, double b, double c)
 {
     return log2((a - b) / (b - c));
@@ -33,13 +34,13 @@ static double order_of(double a, double b, double c)
 
 /* --- one wire --- */
 
-/* Elastic, where only the mesh along matters. Without Poisson's ratio: else finer elements also see
- * more of what the clamp does to the section. Of elements whose shear is that of their middle
- * F = 3 E I v / L^3 (1 + 1 / (4 n^2)). */
+/* Elastic, so that only the mesh along the wire matters. Poisson's ratio is 0, because finer
+ * elements would also resolve the effect of the clamp on the section. Elements with the shear of
+ * their middle give F = 3 E I v / L^3 (1 + 1 / (4 n^2)). */
 static void an_elastic_wire_converges_with_the_square_of_the_elements_length(void **unused)
 {
     (void)unused;
-    double force[4][MOST_ROWS];
+    double force[4][MAX_ROWS];
 
     for (int m = 0; m < 4; m++) {
         read_model(ONE "run: {mesh: engineering, selective_mass_scaling: 100, deflection_mm: 4, "
@@ -60,8 +61,8 @@ static void an_elastic_wire_converges_with_the_square_of_the_elements_length(voi
     print_message("\n");
 }
 
-/* Yielding: against the fibre beam, over the section by halves: 4, 16 and 64 elements. To 20 mm
- * inertia counts as much. */
+/* Yielding: comparison with the fibre beam, with 4, 16 and 64 elements over the section. Up to 20
+ * mm inertia has a similar effect. */
 static void a_yielding_wire_converges_with_the_section(void **unused)
 {
     (void)unused;
@@ -71,7 +72,7 @@ static void a_yielding_wire_converges_with_the_section(void **unused)
     struct wb_section section = test_section(&wire);
     const struct wb_cantilever_model beam = bundle_beam(&wire, &section);
     struct wb_cantilever *cantilever = test_cantilever(&beam);
-    double exact[MOST_ROWS] = {0.0};
+    double exact[MAX_ROWS] = {0.0};
 
     for (int i = 1; i <= 5; i++) {
         struct wb_cantilever_point point;
@@ -80,7 +81,7 @@ static void a_yielding_wire_converges_with_the_section(void **unused)
         exact[i] = point.tension;
     }
     for (int m = 0; m < 3; m++) {
-        double force[MOST_ROWS];
+        double force[MAX_ROWS];
         read_model(ONE "run: {mesh: engineering, selective_mass_scaling: 100, deflection_mm: 50, "
                        "rows: 5, duration_s: 4}\nloads: {weight: false}\n");
         set_mesh(core[m], 0, 40);
@@ -101,13 +102,14 @@ static void a_yielding_wire_converges_with_the_section(void **unused)
     wb_section_release(&section);
 }
 
-/* Motion takes force: what it adds, and its energy, go as the duration's inverse square. The first
- * rows are elastic; where the wire begins to yield the sign changes, and no order can be told. */
-static void inertia_goes_with_the_square_of_the_duration(void **unused)
+/* The force of inertia, and its energy, are proportional to the inverse square of the duration. The
+ * first rows are elastic; where the wire begins to yield the sign changes, and the order cannot be
+ * determined. */
+static void inertia_decreases_with_the_square_of_the_duration(void **unused)
 {
     (void)unused;
     static const double duration[] = {1.0, 2.0, 4.0, 8.0};
-    double force[4][MOST_ROWS], kinetic[4];
+    double force[4][MAX_ROWS], kinetic[4];
 
     for (int m = 0; m < 4; m++) {
         read_model(ONE "run: {mesh: twelve, selective_mass_scaling: 100, deflection_mm: 20, "
@@ -132,13 +134,13 @@ static void inertia_goes_with_the_square_of_the_duration(void **unused)
     assert_close(log2(kinetic[2] / kinetic[3]), 2.0, 0.1);
 }
 
-/* --- wires that touch, in a tape --- */
+/* --- touching wires in a tape --- */
 
 static void three_taped_wires_converge_along(void **unused)
 {
     (void)unused;
     static const int along[] = {10, 20, 40, 80};
-    double force[4][MOST_ROWS];
+    double force[4][MAX_ROWS];
 
     for (int m = 0; m < 4; m++) {
         read_model("wires: [{wire: type3, count: 3}]\npacking: triangle\ntape: tape\n"
@@ -151,7 +153,7 @@ static void three_taped_wires_converge_along(void **unused)
             print_message(" %.5f", force[m][i]);
         print_message("\n");
     }
-    double change[3] = {0.0}; /* largest, of the force at the end */
+    double change[3] = {0.0}; /* largest change, relative to the force at the end */
     for (int m = 0; m < 3; m++) {
         for (int i = 1; i <= 6; i++)
             change[m] = fmax(change[m], fabs(force[m][i] - force[m + 1][i]) / force[3][6]);
@@ -167,7 +169,7 @@ int main(void)
         cmocka_unit_test_teardown(an_elastic_wire_converges_with_the_square_of_the_elements_length,
                                   release),
         cmocka_unit_test_teardown(a_yielding_wire_converges_with_the_section, release),
-        cmocka_unit_test_teardown(inertia_goes_with_the_square_of_the_duration, release),
+        cmocka_unit_test_teardown(inertia_decreases_with_the_square_of_the_duration, release),
         cmocka_unit_test_teardown(three_taped_wires_converge_along, release),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

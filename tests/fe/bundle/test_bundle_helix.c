@@ -1,14 +1,14 @@
-/* Sleeve and helix of the same tape round seven wires: what the winding changes. Printed. */
+/* Sleeve and helix of the same tape around seven wires: prints the effect of the winding. */
 #include "tests/fe/bundle/bundles.h"
 
 enum {
-    ALONG = 213, /* elements, as a helix of this width asks for */
+    ALONG = 213, /* number of elements that a helix of this width needs */
     FORCES = 4
 };
 
 static const double deflection = 8e-3, duration = 0.16;
 
-/* Mean forces over a twentieth of the way each, round every quarter of it. */
+/* Mean forces, each over a twentieth of the path, centred at every quarter. */
 static void bend(const char *taping, double force[FORCES], double *imbalance)
 {
     const struct wb_bundle_settings settings = {.duration = duration, .mesh = "four"};
@@ -24,7 +24,7 @@ static void bend(const char *taping, double force[FORCES], double *imbalance)
     for (int m = 0; m < model.n_meshes; m++)
         model.mesh[m].elements_along = ALONG;
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    wb_bundle_lead(bundle, deflection, duration);
+    wb_bundle_move_tip(bundle, deflection, duration);
     for (int i = 0; i < FORCES; i++) {
         double sum = 0.0, to = 0.0;
         int n = 0;
@@ -42,13 +42,13 @@ static void bend(const char *taping, double force[FORCES], double *imbalance)
     }
     wb_bundle_get_energies(bundle, &e);
     *imbalance = wb_bundle_imbalance(&e) / e.external;
-    print_message("%s: %d shells, %lld steps; energies are kept to %.2g %%\n", taping,
+    print_message("%s: %d shells, %lld steps; energy imbalance at most %.2g %%\n", taping,
                   wb_bundle_shells(bundle), state.steps, 100.0 * fabs(*imbalance));
     wb_bundle_destroy(bundle);
 }
 
-/* Both have two layers everywhere, and the windings are glued to each other: in bending they differ
- * little. */
+/* Both have two layers everywhere, and the windings are bonded to each other: in bending they
+ * differ little. */
 static void a_helix_is_about_as_stiff_as_the_sleeve(void **unused)
 {
     (void)unused;

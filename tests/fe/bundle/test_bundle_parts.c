@@ -1,5 +1,6 @@
-/* A bundle in parts is the whole; a run that goes on from a checkpoint is the run. With an argument
- * it prints what such a bundle comes to, for ranks that mpirun starts to be held against threads.
+/* A bundle in parts equals the complete one; a run continued from a checkpoint equals an
+ * uninterrupted run. With an argument it prints the results of such a bundle, to compare ranks
+ * started by mpirun with threads.
  */
 #include "tests/fe/bundle/bundles.h"
 
@@ -17,8 +18,8 @@ enum {
     SHAPE = 57
 };
 
-/* All that meets at a seam: contact, friction, bonds, the tape, plastic strain; strand and weight.
- * Bent so fast that wires yield and slip in so few steps. */
+/* Everything that exists at a border: contact, friction, bonds, tape, plastic strain; strand and
+ * weight. Moved so fast that wires yield and slip within few steps. */
 #define FINE                                                                                       \
     "  - {name: fine, core_quads: 2, rings: 0, elements_along: 57}\n" SEVEN                        \
     "run: {mesh: fine, selective_mass_scaling: 100, deflection_mm: 10}\n"                          \
@@ -26,7 +27,7 @@ enum {
 
 static const double way = 10e-3, duration = 6e-3;
 
-/* What a bundle has come to. */
+/* State of a bundle. */
 struct result {
     struct wb_bundle_state state;
     struct wb_bundle_energies energies;
@@ -66,14 +67,14 @@ static void bend(int threads, struct result *out)
 {
     struct wb_bundle *bundle = create(threads);
     assert_int_equal(wb_bundle_parts(bundle), threads * wb_team_ranks());
-    wb_bundle_lead(bundle, way, duration);
+    wb_bundle_move_tip(bundle, way, duration);
     advance(bundle, ROUNDS);
     take(bundle, out);
     wb_bundle_destroy(bundle);
 }
 
-/* Forces are float, and a stiff whole: what is round-off in the first steps has grown a thousand
- * times after some hundred. Positions are within 1e-11 m. */
+/* Forces are float and the bundle is stiff: round-off in the first steps grows by a factor of a
+ * thousand in a few hundred. Positions agree to 1e-11 m. */
 static void check_same_within(const struct result *a, const struct result *b, double place)
 {
     const double size = fabs(b->energies.external);
@@ -104,7 +105,7 @@ static void check_same(const struct result *a, const struct result *b)
     check_same_within(a, b, 1e-10);
 }
 
-static void parts_are_the_whole(void **unused)
+static void parts_equal_the_complete_bundle(void **unused)
 {
     (void)unused;
     struct result whole, parted;
@@ -118,8 +119,9 @@ static void parts_are_the_whole(void **unused)
     }
 }
 
-/* With forces in double, too, round-off is smaller: nothing else is between parts and the whole. */
-static void parts_in_double_are_the_whole_to_its_round_off(void **unused)
+/* With forces in double, round-off is smaller, and it is the only difference between parts and the
+ * complete bundle. */
+static void parts_in_double_agree_to_round_off(void **unused)
 {
     (void)unused;
     struct result whole, parted, single;
@@ -157,7 +159,7 @@ static void one_wire_is_the_same_bit_for_bit_in_any_parts(void **unused)
     }
 }
 
-/* The tape comes off where it bends most, and lies on the wires. */
+/* The tape debonds where it bends most, and stays in contact with the wires. */
 static void weaken(void)
 {
     model.interface.has_damage = true;
@@ -173,8 +175,8 @@ static void parts_break_the_same_bonds(void **unused)
     weaken();
     bend(1, &whole);
     bend(2, &parted);
-    /* A bond that softens follows its opening steeply, and round-off grows with it: on some
-     * processors to 1.6e-10 m, 8e-8 of the deflection. */
+    /* A softening bond depends strongly on its opening, so round-off grows: on some processors to
+     * 1.6e-10 m, 8e-8 of the deflection. */
     check_same_within(&parted, &whole, 1e-9);
     assert_true(whole.limits.debonded > 0.0 && whole.limits.tape_deepest > 0.0);
     assert_close_relative(parted.limits.debonded, whole.limits.debonded, 1e-9);
@@ -191,15 +193,15 @@ static void the_same_parts_are_the_same_bit_for_bit(void **unused)
     assert_memory_equal(&once, &again, sizeof once);
 }
 
-/* The momentum of every part is what crosses its seams: none of it is lost there. */
-static void momentum_comes_from_outside_alone(void **unused)
+/* The sum of the parts' momenta changes only by external forces: nothing is lost at borders. */
+static void only_external_forces_change_the_momentum(void **unused)
 {
     (void)unused;
     struct wb_bundle_outside outside;
     double impulse = 0.0, size = 0.0;
     read_model(FINE);
     struct wb_bundle *bundle = create(3);
-    wb_bundle_lead(bundle, way, duration);
+    wb_bundle_move_tip(bundle, way, duration);
     for (int i = 0; i < 400; i++) {
         assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
         wb_bundle_get_outside(bundle, &outside);
@@ -226,8 +228,8 @@ static void a_capped_end_belongs_to_the_last_part(void **unused)
     check_same(&parted, &whole);
 }
 
-/* The last part is as long as the halo of the one before, which sees the end, too. */
-static void a_capped_end_in_a_halo_is_none(void **unused)
+/* The last part is as long as the halo of the one before, which therefore also contains the end. */
+static void a_capped_end_in_a_halo_is_ignored(void **unused)
 {
     (void)unused;
     struct result whole, parted;
@@ -240,7 +242,7 @@ static void a_capped_end_in_a_halo_is_none(void **unused)
     check_same(&parted, &whole);
 }
 
-/* When motion is stopped depends on round-off; where all comes to rest does not. */
+/* The times of stopping depend on round-off; the state of rest does not. */
 static void parts_settle_under_the_weight(void **unused)
 {
     (void)unused;
@@ -258,7 +260,7 @@ static void parts_settle_under_the_weight(void **unused)
         assert_close(settled[1].shape[i][1], settled[0].shape[i][1], 1e-7);
 }
 
-static void there_are_no_more_parts_than_there_is_room_for(void **unused)
+static void number_of_parts_is_limited_by_the_length(void **unused)
 {
     (void)unused;
     read_model(FINE);
@@ -269,7 +271,7 @@ static void there_are_no_more_parts_than_there_is_room_for(void **unused)
     assert_int_equal(wb_bundle_parts_of(&model, "paper", 2), 2);
     struct wb_bundle *bundle = create(100);
     assert_int_equal(wb_bundle_parts(bundle), 4);
-    wb_bundle_lead(bundle, way, duration);
+    wb_bundle_move_tip(bundle, way, duration);
     advance(bundle, 1);
     wb_bundle_destroy(bundle);
 }
@@ -289,37 +291,37 @@ static enum wb_status advance_to_the_end(struct wb_reason *reason)
     struct wb_bundle *bundle;
     enum wb_status status = WB_OK;
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    wb_bundle_lead(bundle, way, duration);
+    wb_bundle_move_tip(bundle, way, duration);
     for (int i = 0; i < 100 && status == WB_OK; i++)
         status = wb_bundle_advance(bundle, STEPS, reason);
     wb_bundle_destroy(bundle);
     return status;
 }
 
-/* A part that is lost keeps nobody waiting; its reason is told once, to the log or to the caller.
- */
-static void a_lost_part_ends_the_run(void **unused)
+/* A part that fails does not block others; its reason is reported once, to the log or to the
+ * caller. */
+static void a_failed_part_ends_the_run(void **unused)
 {
     (void)unused;
     struct wb_reason reason = {0};
-    char messages[1024] = "", none[1024] = "";
+    char messages[1024] = "", no_messages[1024] = "";
     read_model(FINE);
     wb_log_set_sink(keep_message, messages);
     assert_int_equal(advance_to_the_end(NULL), WB_ERR_DATA);
-    wb_log_set_sink(keep_message, none);
+    wb_log_set_sink(keep_message, no_messages);
     assert_int_equal(advance_to_the_end(&reason), WB_ERR_DATA);
     wb_log_set_sink(NULL, NULL);
     assert_non_null(strchr(messages, '\n'));
     assert_string_equal(strchr(messages, '\n'), "\n");
     assert_true(strlen(messages) > 10);
-    assert_string_equal(none, "");
+    assert_string_equal(no_messages, "");
     assert_memory_equal(reason.text, messages, strlen(messages) - 1);
 }
 
 /* --- checkpoints --- */
 
-/* With bonds that break, so that the tape's contact has something to keep, too. */
-static void a_checkpoint_goes_on_bit_for_bit(void **unused)
+/* With bonds that break, so that the tape's contact also has a state to save. */
+static void a_checkpoint_continues_bit_for_bit(void **unused)
 {
     (void)unused;
     read_model(FINE);
@@ -328,7 +330,7 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
         struct result straight, resumed;
         struct wb_checkpoint checkpoint;
         struct wb_bundle *bundle = create(threads);
-        wb_bundle_lead(bundle, way, duration);
+        wb_bundle_move_tip(bundle, way, duration);
         assert_int_equal(wb_bundle_advance(bundle, 137, NULL), WB_OK);
         wb_checkpoint_init(&checkpoint);
         wb_bundle_visit(bundle, &checkpoint);
@@ -350,13 +352,13 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
     }
 }
 
-static void a_checkpoint_that_ends_early_is_refused(void **unused)
+static void truncated_checkpoint_is_rejected(void **unused)
 {
     (void)unused;
     struct wb_checkpoint checkpoint;
     read_model(FINE);
     struct wb_bundle *bundle = create(2);
-    wb_bundle_lead(bundle, way, duration);
+    wb_bundle_move_tip(bundle, way, duration);
     wb_checkpoint_init(&checkpoint);
     wb_bundle_visit(bundle, &checkpoint);
     assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
@@ -373,7 +375,7 @@ static void a_checkpoint_that_ends_early_is_refused(void **unused)
     wb_checkpoint_release(&checkpoint);
 }
 
-/* Stops a run as a signal does, after so many looks of the observer. */
+/* Stops a run like a signal, after this many calls of the observer. */
 static bool stop_after(void *context, const struct wb_bundle_progress *progress)
 {
     (void)progress;
@@ -388,7 +390,7 @@ static void run_with(const struct wb_bundle_run_options *options)
     assert_true(result.converged);
 }
 
-static void a_lost_run_tells_its_reason(void **unused)
+static void a_failed_run_reports_its_reason(void **unused)
 {
     (void)unused;
     for (int threads = 1; threads <= 2; threads++) {
@@ -404,7 +406,7 @@ static void a_lost_run_tells_its_reason(void **unused)
     }
 }
 
-/* Rows and shapes; the times it took differ. */
+/* Compares rows and shapes; computing times differ. */
 static void check_result(const struct wb_bundle_result *a, const struct wb_bundle_result *b)
 {
     assert_int_equal(a->n_rows, b->n_rows);
@@ -427,7 +429,7 @@ static void quiet(void *context, enum wb_log_level level, const char *domain, co
     (void)context, (void)level, (void)domain, (void)message;
 }
 
-/* Again and again, in the way up and in the way down. */
+/* Stopped repeatedly, during loading and unloading. */
 static void a_stopped_run_ends_with_the_same_result(void **unused)
 {
     (void)unused;
@@ -467,7 +469,7 @@ static void a_stopped_run_ends_with_the_same_result(void **unused)
     wb_log_set_sink(NULL, NULL);
 }
 
-static void another_models_checkpoint_is_refused(void **unused)
+static void checkpoint_of_another_model_is_rejected(void **unused)
 {
     (void)unused;
     char file[64], messages[1024] = "";
@@ -487,7 +489,7 @@ static void another_models_checkpoint_is_refused(void **unused)
     assert_int_equal(unlink(file), 0);
 }
 
-static void a_stop_without_its_checkpoint_is_told(void **unused)
+static void failed_checkpoint_is_reported(void **unused)
 {
     (void)unused;
     char file[64], messages[1024] = "";
@@ -526,23 +528,23 @@ static int print_result(int threads)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_are_the_whole),
+        cmocka_unit_test(parts_equal_the_complete_bundle),
         cmocka_unit_test(parts_break_the_same_bonds),
         cmocka_unit_test(the_same_parts_are_the_same_bit_for_bit),
-        cmocka_unit_test(momentum_comes_from_outside_alone),
+        cmocka_unit_test(only_external_forces_change_the_momentum),
         cmocka_unit_test(a_capped_end_belongs_to_the_last_part),
-        cmocka_unit_test(a_capped_end_in_a_halo_is_none),
+        cmocka_unit_test(a_capped_end_in_a_halo_is_ignored),
         cmocka_unit_test(parts_settle_under_the_weight),
-        cmocka_unit_test(parts_in_double_are_the_whole_to_its_round_off),
+        cmocka_unit_test(parts_in_double_agree_to_round_off),
         cmocka_unit_test(one_wire_is_the_same_bit_for_bit_in_any_parts),
-        cmocka_unit_test(there_are_no_more_parts_than_there_is_room_for),
-        cmocka_unit_test(a_lost_part_ends_the_run),
-        cmocka_unit_test(a_lost_run_tells_its_reason),
-        cmocka_unit_test(a_checkpoint_goes_on_bit_for_bit),
-        cmocka_unit_test(a_checkpoint_that_ends_early_is_refused),
+        cmocka_unit_test(number_of_parts_is_limited_by_the_length),
+        cmocka_unit_test(a_failed_part_ends_the_run),
+        cmocka_unit_test(a_failed_run_reports_its_reason),
+        cmocka_unit_test(a_checkpoint_continues_bit_for_bit),
+        cmocka_unit_test(truncated_checkpoint_is_rejected),
         cmocka_unit_test_teardown(a_stopped_run_ends_with_the_same_result, release),
-        cmocka_unit_test_teardown(another_models_checkpoint_is_refused, release),
-        cmocka_unit_test_teardown(a_stop_without_its_checkpoint_is_told, release),
+        cmocka_unit_test_teardown(checkpoint_of_another_model_is_rejected, release),
+        cmocka_unit_test_teardown(failed_checkpoint_is_reported, release),
     };
     int failed;
     if (wb_team_start() != WB_OK)

@@ -1,9 +1,9 @@
-/* Bundles in explicit dynamics, where it takes minutes. */
+/* Bundles in explicit dynamics, tests that take minutes. */
 #include "tests/fe/bundle/bundles.h"
 #include "tests/fe/bundle/static_reference.h"
 
-/* Runs the model and, with the 1D beam, the same loading: each row's force is within `limit` of
- * the largest. Returns the slack rows. */
+/* Runs the model and, with the 1D beam, the same loading; the force of each row must agree within
+ * `limit` of the largest. Returns the number of slack rows. */
 static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles, double limit)
 {
     enum {
@@ -43,7 +43,8 @@ static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles,
     return slack;
 }
 
-/* Up, down past the point where the strand goes slack, and again from where it is taut. */
+/* Loading, unloading beyond the point where the strand becomes slack, and reloading from where it
+ * is taut. */
 static void cycles_with_a_strand_follow_the_beam(void **unused)
 {
     (void)unused;
@@ -60,7 +61,7 @@ static void cycles_with_a_strand_follow_the_beam(void **unused)
     wb_section_release(&section);
 }
 
-/* A vertical force pulls down as well, back to zero: the wire yields both ways. */
+/* A vertical force also pulls down, back to zero: the wire yields in both directions. */
 static void cycles_follow_the_beam(void **unused)
 {
     (void)unused;
@@ -75,8 +76,8 @@ static void cycles_follow_the_beam(void **unused)
     wb_section_release(&section);
 }
 
-/* The ratio of energies goes as duration^-2. */
-static void energies_are_kept_and_motion_is_slow_enough(void **unused)
+/* The ratio of energies is proportional to duration^-2. */
+static void energies_balance_and_motion_is_slow_enough(void **unused)
 {
     (void)unused;
     read_model(SEVEN "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 8, rows: 16}\n"
@@ -99,8 +100,8 @@ static void energies_are_kept_and_motion_is_slow_enough(void **unused)
     assert_close_relative(result.largest.kinetic, 4.0 * ratio, 0.3);
 }
 
-/* Side by side two wires are twice as stiff as one; one above the other they slide on each
- * other, as nothing presses them together, and are far from plane sections. */
+/* Side by side two wires are twice as stiff as one; one above the other they slide on each other,
+ * because nothing presses them together, and their sections do not stay plane. */
 static void two_wires_are_twice_as_stiff_as_one(void **unused)
 {
     (void)unused;
@@ -130,7 +131,7 @@ static void two_wires_are_twice_as_stiff_as_one(void **unused)
     assert_true(force[2] < 2.0 * force[0] * rigidity.bonded[0] / rigidity.sliding[0]);
 }
 
-/* The engineering mesh, alone: within 1.5 % of the beam from 10 to 53 mm. */
+/* The engineering mesh: within 1.5 % of the beam from 10 to 53 mm. */
 static void one_wire_is_within_the_mesh_error_of_the_beam(void **unused)
 {
     (void)unused;
@@ -159,8 +160,8 @@ static void one_wire_is_within_the_mesh_error_of_the_beam(void **unused)
     wb_section_release(&section);
 }
 
-/* The shipped bundle of seven, while it is elastic: force over deflection between those of wires
- * and tape that slide freely and of plane sections. */
+/* The shipped bundle of seven in the elastic range: force over deflection lies between those for
+ * freely sliding wires and tape and for plane sections. */
 static void seven_wires_are_between_sliding_and_bonded(void **unused)
 {
     (void)unused;
@@ -185,7 +186,7 @@ static void seven_wires_are_between_sliding_and_bonded(void **unused)
     }
 }
 
-/* Friction of 0.1, as wires roll in the explicit model only. */
+/* Friction of 0.1, because only in the explicit model do wires roll. */
 static void curve_is_within_five_percent_of_the_static_reference(void **unused)
 {
     (void)unused;
@@ -216,7 +217,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(cycles_with_a_strand_follow_the_beam, release),
         cmocka_unit_test_teardown(cycles_follow_the_beam, release),
-        cmocka_unit_test_teardown(energies_are_kept_and_motion_is_slow_enough, release),
+        cmocka_unit_test_teardown(energies_balance_and_motion_is_slow_enough, release),
         cmocka_unit_test_teardown(one_wire_is_within_the_mesh_error_of_the_beam, release),
         cmocka_unit_test_teardown(two_wires_are_twice_as_stiff_as_one, release),
         cmocka_unit_test_teardown(seven_wires_are_between_sliding_and_bonded, release),

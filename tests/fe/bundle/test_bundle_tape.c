@@ -1,4 +1,4 @@
-/* Tape and wires: bonds, bonds that break, contact, and a helix. */
+/* Tape and wires: bonds, breaking bonds, contact, and a helix. */
 #include "tests/fe/bundle/bundles_lead.h"
 
 static void break_bonds_at(double strength, double fracture_energy)
@@ -8,7 +8,7 @@ static void break_bonds_at(double strength, double fracture_energy)
         .strength = strength, .shear_strength = strength, .fracture_energy = fracture_energy};
 }
 
-static void a_tape_that_came_loose_stays_round_its_wire(void **unused)
+static void debonded_tape_stays_around_its_wire(void **unused)
 {
     (void)unused;
     const struct wb_bundle_settings settings = {.duration = 0.15};
@@ -19,18 +19,18 @@ static void a_tape_that_came_loose_stays_round_its_wire(void **unused)
     read_model(ONE "tape: tape\n" RUN("deflection_mm: 30") "loads: {weight: false}\n");
     break_bonds_at(300.0, 1e-4);
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    lead_and_check(bundle, 30e-3, settings.duration, 0.005);
+    move_and_check(bundle, 30e-3, settings.duration, 0.005);
     wb_bundle_get_limits(bundle, &limits);
     wb_bundle_get_energies(bundle, &e);
-    assert_true(limits.debonded > 0.7); /* what is pressed on it stays */
+    assert_true(limits.debonded > 0.7); /* nodes under pressure stay bonded */
     assert_true(limits.tape_deepest > 0.0 && limits.tape_deepest < 1e-6);
     assert_true(e.contact > 0.0 && e.friction > 0.0 && e.cohesive > 0.0);
     wb_bundle_destroy(bundle);
 }
 
-/* Adhesive that shear breaks where wires and tape slide most: the bundle gets softer, what was
- * dissipated is no more than the fracture energy of the area that broke. */
-static void seven_wires_come_loose_and_energies_are_kept(void **unused)
+/* Adhesive that fails in shear where wires and tape slide most: the bundle becomes softer, and the
+ * dissipated energy is at most the fracture energy of the broken area. */
+static void seven_wires_debond_and_energies_balance(void **unused)
 {
     (void)unused;
     const struct wb_bundle_settings settings = {.duration = 0.1};
@@ -44,7 +44,7 @@ static void seven_wires_come_loose_and_energies_are_kept(void **unused)
         if (i == 1)
             break_bonds_at(8e3, 0.1);
         assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-        lead_and_check(bundle, 10e-3, settings.duration, 0.01);
+        move_and_check(bundle, 10e-3, settings.duration, 0.01);
         wb_bundle_get_limits(bundle, &limits[i]);
         wb_bundle_get_energies(bundle, &e[i]);
         wb_bundle_destroy(bundle);
@@ -55,9 +55,9 @@ static void seven_wires_come_loose_and_energies_are_kept(void **unused)
     assert_true(e[1].cohesive < 0.1 * model.tape.taping.circumference * model.length);
 }
 
-/* A real winding, half-lapped: its mass is the tape's, nothing pulls before the bundle bends, and
- * energy and momentum are kept; either hand. */
-static void a_helix_keeps_energy_and_momentum(void **unused)
+/* A real winding, half-lapped: its mass is the tape's, there are no forces before the bundle bends,
+ * and energy and momentum are conserved; either hand. */
+static void a_helix_conserves_energy_and_momentum(void **unused)
 {
     (void)unused;
     static const char *const hands[2] = {"left", "right"};
@@ -88,7 +88,7 @@ static void a_helix_keeps_energy_and_momentum(void **unused)
 
         model.loads.weight = false;
         assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-        lead_and_check(bundle, 1e-3, settings.duration, 0.005);
+        move_and_check(bundle, 1e-3, settings.duration, 0.005);
         wb_bundle_get_energies(bundle, &e[i]);
         wb_bundle_destroy(bundle);
     }
@@ -98,9 +98,9 @@ static void a_helix_keeps_energy_and_momentum(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_tape_that_came_loose_stays_round_its_wire),
-        cmocka_unit_test(seven_wires_come_loose_and_energies_are_kept),
-        cmocka_unit_test(a_helix_keeps_energy_and_momentum),
+        cmocka_unit_test(debonded_tape_stays_around_its_wire),
+        cmocka_unit_test(seven_wires_debond_and_energies_balance),
+        cmocka_unit_test(a_helix_conserves_energy_and_momentum),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,4 +1,5 @@
-/* Meshes and stresses of bundles: geometry, bent wires against the beam, what yields. */
+/* Meshes and stresses of bundles: geometry, stresses of bent wires compared with the beam, flow
+ * stress. */
 #include "fe/output/bundle_fields.h"
 
 #include "tests/fe/bundle/bundles.h"
@@ -7,7 +8,7 @@
     "wires: [{wire: type3, count: 3}]\npacking: triangle\ntape: tape\n"                            \
     "taping: {layout: sleeve, layers: 2}\n"
 
-/* A bundle led to a deflection within a time. */
+/* A bundle moved to a deflection within a duration. */
 static struct wb_bundle *bend(const char *lines, double deflection, double duration)
 {
     const struct wb_bundle_settings settings = {.duration = duration};
@@ -15,7 +16,7 @@ static struct wb_bundle *bend(const char *lines, double deflection, double durat
     read_model(lines);
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
     assert_int_equal(wb_bundle_settle(bundle, NULL, NULL), WB_OK);
-    wb_bundle_lead(bundle, deflection, duration);
+    wb_bundle_move_tip(bundle, deflection, duration);
     const double steps = duration / wb_bundle_time_step(bundle);
     assert_int_equal(wb_bundle_advance(bundle, (int)steps, NULL), WB_OK);
     return bundle;
@@ -27,7 +28,8 @@ static double triple(const double a[3], const double b[3], const double c[3])
            a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/* Its mean edges span a prism whose map is bilinear in the section and linear along: as V. */
+/* Volume of the prism spanned by the cell's mean edges, whose map is bilinear in the section and
+ * linear along the axis. */
 static double volume_of(const struct wb_bundle_fields *f, const int node[8])
 {
     double along[3], first[3], second[3];
@@ -42,7 +44,7 @@ static double volume_of(const struct wb_bundle_fields *f, const int node[8])
     return 0.5 * triple(along, first, second);
 }
 
-static void a_mesh_has_all_that_the_bundle_is_made_of(void **unused)
+static void mesh_contains_all_bodies_of_the_bundle(void **unused)
 {
     (void)unused;
     const struct wb_bundle_settings settings = {.duration = 1.0};
@@ -100,10 +102,9 @@ static void a_mesh_has_all_that_the_bundle_is_made_of(void **unused)
     wb_bundle_destroy(bundle);
 }
 
-/* 3 mm, where it is elastic: M y / I at the top and the bottom, with M = 3 E I v / L^3 (L - x);
- * nothing on the neutral axis. The coarser section is 5 % wider than the wire, so that its second
- * moment is the wire's. Elements answer the strain's variation within themselves by 3 mu in place
- * of E, 8 % more. */
+/* At 3 mm, in the elastic range: M y / I at top and bottom, with M = 3 E I v / L^3 (L - x); zero on
+ * the neutral axis. The coarse section is 5 % wider than the wire, so that its second moment is the
+ * wire's. Within an element the strain's variation has the modulus 3 mu instead of E, 8 % more. */
 static void outer_fibres_of_a_bent_wire_have_the_beams_stress(void **unused)
 {
     (void)unused;
@@ -138,9 +139,9 @@ static void outer_fibres_of_a_bent_wire_have_the_beams_stress(void **unused)
     }
 }
 
-/* At 40 mm: largest next to the clamp, and where it yields not beyond the law, near to it on the
- * outer fibres. */
-static void what_yields_has_the_flow_stress(void **unused)
+/* At 40 mm: largest next to the clamp; where it yields, at most the flow stress, and close to it on
+ * the outer fibres. */
+static void yielding_points_have_the_flow_stress(void **unused)
 {
     (void)unused;
     struct wb_bundle *bundle =
@@ -162,7 +163,7 @@ static void what_yields_has_the_flow_stress(void **unused)
     const int top = body->first + body->n_nodes + body->outline[0];
     assert_true(f.plastic[top] > 3e-3);
     assert_close_relative(f.von_mises[top], 4.52e6 + 1327e6 * pow(f.plastic[top], 0.9), 0.03);
-    /* The tip is nearly without stress, and did not yield. */
+    /* The tip is nearly stress-free and has not yielded. */
     const int tip = body->first + 15 * body->n_nodes + body->outline[0];
     assert_close(f.plastic[tip], 0.0, 0.0);
     assert_true(f.von_mises[tip] < 0.1 * largest);
@@ -170,8 +171,8 @@ static void what_yields_has_the_flow_stress(void **unused)
     wb_bundle_destroy(bundle);
 }
 
-/* A later state through the same mesh is that of a mesh made then. */
-static void taking_again_is_as_beginning_anew(void **unused)
+/* Updating a mesh with a later state gives the same as creating it from that state. */
+static void update_equals_a_new_mesh(void **unused)
 {
     (void)unused;
     const struct wb_bundle_settings settings = {.duration = 0.2};
@@ -181,7 +182,7 @@ static void taking_again_is_as_beginning_anew(void **unused)
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
     wb_bundle_fields_init(&again, bundle);
     assert_int_equal(wb_bundle_settle(bundle, NULL, NULL), WB_OK);
-    wb_bundle_lead(bundle, 20e-3, 0.2);
+    wb_bundle_move_tip(bundle, 20e-3, 0.2);
     assert_int_equal(wb_bundle_advance(bundle, (int)(0.1 / wb_bundle_time_step(bundle)), NULL),
                      WB_OK);
     wb_bundle_fields_take(&again, bundle);
@@ -190,7 +191,7 @@ static void taking_again_is_as_beginning_anew(void **unused)
     assert_memory_equal(once.position, again.position, n * sizeof *once.position);
     assert_memory_equal(once.von_mises, again.von_mises, n * sizeof *once.von_mises);
     assert_memory_equal(once.plastic, again.plastic, n * sizeof *once.plastic);
-    /* The tape has stress, too. */
+    /* The tape also has stress. */
     double tape = 0.0;
     for (int i = once.bodies[3].first; i < once.n_points; i++)
         tape = fmax(tape, once.von_mises[i]);
@@ -203,10 +204,10 @@ static void taking_again_is_as_beginning_anew(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_mesh_has_all_that_the_bundle_is_made_of),
+        cmocka_unit_test(mesh_contains_all_bodies_of_the_bundle),
         cmocka_unit_test(outer_fibres_of_a_bent_wire_have_the_beams_stress),
-        cmocka_unit_test(what_yields_has_the_flow_stress),
-        cmocka_unit_test(taking_again_is_as_beginning_anew),
+        cmocka_unit_test(yielding_points_have_the_flow_stress),
+        cmocka_unit_test(update_equals_a_new_mesh),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

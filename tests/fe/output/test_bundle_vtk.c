@@ -1,4 +1,4 @@
-/* States of bundles as files of VTK, read back by their own heads. */
+/* States of bundles as VTK files, read back by means of their XML heads. */
 #include "fe/output/bundle_vtk.h"
 
 #include "fe/output/bundle_vtk_private.h"
@@ -11,7 +11,7 @@
 
 static struct wb_bundle_fields fields;
 
-/* Fields of a real mesh, with values that tell their places. */
+/* Fields of a real mesh, with values that identify their positions. */
 static int set_up(void **state)
 {
     const struct wb_bundle_settings settings = {.duration = 1.0};
@@ -49,7 +49,7 @@ struct vtu {
     char *bytes;
     size_t size;
     const unsigned char *data; /* behind the underscore */
-    size_t used;               /* of data, by the arrays that were asked for */
+    size_t used;               /* bytes of data, summed over the arrays that were read */
 };
 
 static uint64_t unsigned_at(const unsigned char *p, int n)
@@ -74,7 +74,8 @@ static void read_vtu(struct vtu *vtu, const char *path)
     vtu->data = (const unsigned char *)appended + strlen(opening);
 }
 
-/* Values of an array that has `values` numbers of `bytes` bytes, where its head says. */
+/* Values of an array that has `values` numbers of `bytes` bytes, at the position given in the
+ * head. */
 static const unsigned char *array_of(struct vtu *vtu, const char *type, const char *name,
                                      int values, int bytes)
 {
@@ -163,7 +164,7 @@ static void files_read_back(void **unused)
     check_file(path, 12.5);
 }
 
-/* The .pvd file names `n` states that are there, and no more. */
+/* The .pvd file lists exactly `n` existing states. */
 static void check_series(int n, const double *times)
 {
     char *text, *at;
@@ -188,7 +189,7 @@ static void check_series(int n, const double *times)
     free(text);
 }
 
-static void series_grow_and_begin_anew(void **unused)
+static void series_grow_and_restart(void **unused)
 {
     (void)unused;
     static const double times[3] = {0.0, 0.1, 2.5}, later[1] = {0.7};
@@ -210,7 +211,7 @@ static void series_grow_and_begin_anew(void **unused)
     wb_vtk_file_series_release(&series);
 }
 
-static void what_is_not_finite_is_refused(void **unused)
+static void non_finite_values_are_rejected(void **unused)
 {
     (void)unused;
     const char *path = path_of("bad.vtu");
@@ -230,7 +231,7 @@ static void what_is_not_finite_is_refused(void **unused)
     wb_vtk_file_series_release(&series);
 }
 
-static void impossible_names_are_refused(void **unused)
+static void invalid_names_are_rejected(void **unused)
 {
     (void)unused;
     char lengthy[WB_VTK_FILE_NAME + 1] = {0};
@@ -246,7 +247,7 @@ static void impossible_names_are_refused(void **unused)
     wb_vtk_file_series_release(&series);
 }
 
-/* What is said of the size, so that the paper's mesh of 225,792 hexahedra and its tape take 19 MB a
+/* The documented size, by which the paper's mesh of 225,792 hexahedra and its tape take 19 MB per
  * state. */
 static void a_hexahedron_takes_eighty_bytes(void **unused)
 {
@@ -273,9 +274,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(files_read_back, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(series_grow_and_begin_anew, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_is_not_finite_is_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(impossible_names_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(series_grow_and_restart, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(non_finite_values_are_rejected, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(invalid_names_are_rejected, set_up, tear_down),
         cmocka_unit_test(a_hexahedron_takes_eighty_bytes),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

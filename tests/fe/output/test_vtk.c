@@ -8,7 +8,7 @@
 static struct wb_solid_mesh mesh;
 static struct wb_wire3d_fields fields;
 
-/* Fields that are smooth in each part and jump at the interface. */
+/* Fields that are smooth in each part and discontinuous at the interface. */
 static void fill_fields(void)
 {
     for (int i = 0; i < mesh.n_nodes; i++) {
@@ -71,12 +71,12 @@ static char *path_of(const char *name)
     return path;
 }
 
-/* A .vtu file read back by its own head. */
+/* A .vtu file read back by means of its XML head. */
 struct vtu {
     char *bytes;
     size_t size;
     const unsigned char *data; /* behind the underscore */
-    size_t used;               /* of data, by the arrays that were asked for */
+    size_t used;               /* bytes of data, summed over the arrays that were read */
     int n_points, n_cells;
 };
 
@@ -148,7 +148,7 @@ static double mises_of(const double s[6])
     return sqrt(1.5 * sum);
 }
 
-/* Each cell has its nodes' positions and its own part's values, through the connectivity. */
+/* Each cell must have its nodes' positions and its own part's values, through the connectivity. */
 static void check_file(const char *path, int expected_points)
 {
     struct vtu v;
@@ -233,7 +233,7 @@ static void equal_states_give_equal_files(void **unused)
     free(b);
 }
 
-/* The .pvd file names `n` states that are there, and no more. */
+/* The .pvd file lists exactly `n` existing states. */
 static void check_series(int n, const double *times)
 {
     char *text, *at;
@@ -274,7 +274,7 @@ static void series_can_be_read_after_each_state(void **unused)
     wb_vtk_file_series_release(&series);
 }
 
-static void values_that_are_not_finite_are_refused(void **unused)
+static void non_finite_values_are_rejected(void **unused)
 {
     (void)unused;
     const char *path = path_of("bad.vtu");
@@ -294,7 +294,7 @@ static void values_that_are_not_finite_are_refused(void **unused)
     wb_vtk_file_series_release(&series);
 }
 
-static void impossible_names_are_refused(void **unused)
+static void invalid_names_are_rejected(void **unused)
 {
     (void)unused;
     char lengthy[WB_VTK_FILE_NAME + 1] = {0};
@@ -318,8 +318,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(split_parts_need_no_more_points, set_up, tear_down),
         cmocka_unit_test_setup_teardown(equal_states_give_equal_files, set_up, tear_down),
         cmocka_unit_test_setup_teardown(series_can_be_read_after_each_state, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(values_that_are_not_finite_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(impossible_names_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(non_finite_values_are_rejected, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(invalid_names_are_rejected, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
