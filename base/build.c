@@ -13,22 +13,22 @@
 #define WB_LOG_DOMAIN "build"
 
 enum {
-    MOST_LIBRARIES = 400
+    MAX_LIBRARIES = 400
 };
 
 struct libraries {
     int n;
-    char *path[MOST_LIBRARIES]; /* owned */
+    char *path[MAX_LIBRARIES]; /* owned */
 };
 
-/* The program itself has no name here, and the kernel's page is no file. */
+/* Skips the program itself, which has no name here, and the kernel's vDSO, which has no file. */
 static int take_library(struct dl_phdr_info *info, size_t size, void *context)
 {
     struct libraries *const all = context;
     (void)size;
-    /* A link (libX.so.1) names what it stands for (libX.so.1.2.3), which says the version. */
+    /* Resolves a link (libX.so.1) to its file (libX.so.1.2.3), whose name contains the version. */
     char *const path = info->dlpi_name[0] ? realpath(info->dlpi_name, NULL) : NULL;
-    if (path && all->n < MOST_LIBRARIES)
+    if (path && all->n < MAX_LIBRARIES)
         all->path[all->n++] = path;
     else
         free(path);
@@ -61,7 +61,7 @@ static enum wb_status put_libraries(struct wb_json *object)
     return status;
 }
 
-/* The class that kernels, libm and BLAS choose their code by. */
+/* The processor class by which kernels, libm and BLAS choose their code. */
 static void describe_processor(char text[96])
 {
     const char *vectors = "baseline";
@@ -74,7 +74,7 @@ static void describe_processor(char text[96])
     else if (__builtin_cpu_supports("avx2"))
         vectors = "avx2";
 #endif
-    /* Looked up, so that what does not link BLAS need not. */
+    /* Looked up with dlsym(), so that this file does not link BLAS. */
     char *(*core)(void);
     void *const found = dlsym(RTLD_DEFAULT, "openblas_get_corename");
     memcpy(&core, &found, sizeof core);

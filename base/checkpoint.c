@@ -18,14 +18,13 @@
  *     SIZE
  *     end
  *
- * A field is its name, which ends in a zero, its size (size_t) and its bytes.
- */
+ * A field is its zero-terminated name, its size (size_t) and its bytes. */
 static const char first_words[] = "wirebench checkpoint ";
 
 enum {
     VERSION = 2,
-    MOST_HEAD = 4096,
-    MOST_NAME = 256
+    MAX_HEAD = 4096,
+    MAX_NAME = 256
 };
 
 void wb_checkpoint_init(struct wb_checkpoint *checkpoint)
@@ -59,7 +58,8 @@ void wb_checkpoint_enter(struct wb_checkpoint *c, const char *format, ...)
     va_end(arguments);
     if (n < 0 || (size_t)n + 1 >= room) {
         if (c->status == WB_OK)
-            c->status = wb_fail(WB_ERR_ARGUMENT, "too many groups in a checkpoint: %s", c->group);
+            c->status = wb_fail(WB_ERR_ARGUMENT, "checkpoint: the name of group '%s' is too long",
+                                c->group);
         c->group[used] = '\0';
         return;
     }
@@ -95,7 +95,7 @@ struct field {
     const unsigned char *data;
 };
 
-/* The field at the present place; false where there is none, or only a part of one. */
+/* The field at the current position; false if there is none, or only a part of one. */
 static bool find_field(const struct wb_checkpoint *c, struct field *field)
 {
     const unsigned char *at = c->at < c->size ? c->bytes + c->at : NULL;
@@ -121,19 +121,19 @@ static void restore(struct wb_checkpoint *c, const char *name, void *data, size_
 
     if (!find_field(c, &field)) {
         c->status = wb_fail(WB_ERR_DATA,
-                            "the checkpoint has no field '%s': it ends early, after "
+                            "checkpoint: field '%s' is missing: the data end after "
                             "%zu bytes",
                             name, c->size);
         return;
     }
     if (strcmp(field.name, name) != 0) {
-        c->status = wb_fail(WB_ERR_DATA, "the checkpoint has no field '%s': '%s' is in its place",
-                            name, field.name);
+        c->status =
+            wb_fail(WB_ERR_DATA, "checkpoint: expected field '%s', found '%s'", name, field.name);
         return;
     }
     if (field.size != size) {
-        c->status = wb_fail(WB_ERR_DATA, "the checkpoint's field '%s' has %zu bytes: expected %zu",
-                            name, field.size, size);
+        c->status = wb_fail(WB_ERR_DATA, "checkpoint: field '%s' has %zu bytes: expected %zu", name,
+                            field.size, size);
         return;
     }
     if (size > 0)
@@ -143,16 +143,16 @@ static void restore(struct wb_checkpoint *c, const char *name, void *data, size_
 
 void wb_checkpoint_visit(struct wb_checkpoint *c, const char *name, void *data, size_t size)
 {
-    char whole[MOST_NAME];
+    char whole[MAX_NAME];
 
     if (c->status != WB_OK)
         return;
     const int n = snprintf(whole, sizeof whole, "%s%s", c->group, name);
-    if (n < 0 || n >= MOST_NAME) {
-        c->status = wb_fail(
-            WB_ERR_ARGUMENT,
-            "the name of the checkpoint's field '%s%s' is too long: expected at most %d bytes",
-            c->group, name, MOST_NAME - 1);
+    if (n < 0 || n >= MAX_NAME) {
+        c->status =
+            wb_fail(WB_ERR_ARGUMENT,
+                    "checkpoint: the name of field '%s%s' is too long: expected at most %d bytes",
+                    c->group, name, MAX_NAME - 1);
         return;
     }
     if (c->restores) {
@@ -187,8 +187,8 @@ enum wb_status wb_checkpoint_finish(struct wb_checkpoint *c)
         return c->status;
     c->status =
         find_field(c, &field)
-            ? wb_fail(WB_ERR_DATA, "the checkpoint has a field too many: '%s'", field.name)
-            : wb_fail(WB_ERR_DATA, "the checkpoint has %zu bytes too many", c->size - c->at);
+            ? wb_fail(WB_ERR_DATA, "checkpoint: unexpected field '%s' at the end", field.name)
+            : wb_fail(WB_ERR_DATA, "checkpoint: %zu unexpected bytes at the end", c->size - c->at);
     return c->status;
 }
 
@@ -197,16 +197,17 @@ enum wb_status wb_checkpoint_finish(struct wb_checkpoint *c)
 enum wb_status wb_checkpoint_write(const struct wb_checkpoint *c, const char *path,
                                    const char *identity)
 {
-    char head[MOST_HEAD], hash[WB_SHA256_TEXT];
+    char head[MAX_HEAD], hash[WB_SHA256_TEXT];
 
     wb_hash_bytes(c->bytes, c->size, hash);
     const int n = snprintf(head, sizeof head, "%s%d\n%s\n%s\n%zu\nend\n", first_words, VERSION,
                            identity, hash, c->size);
-    if (n < 0 || n >= MOST_HEAD)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "%s: the checkpoint's identity has %zu bytes: more than its head of %d "
-                       "bytes has room for",
-                       path, strlen(identity), MOST_HEAD);
+    if (n < 0 || n >= MAX_HEAD)
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "%s: the checkpoint's identity of %zu bytes does not fit into the head of %d "
+            "bytes",
+            path, strlen(identity), MAX_HEAD);
     unsigned char *const all = wb_memory_resize(NULL, (size_t)n + c->size, 1);
     memcpy(all, head, (size_t)n);
     if (c->size > 0)
@@ -216,7 +217,7 @@ enum wb_status wb_checkpoint_write(const struct wb_checkpoint *c, const char *pa
     return status;
 }
 
-/* A line of the head, and on to the next. NULL behind the head. */
+/* A line of the head; moves *at to the next line. NULL after the head. */
 static const char *take_line(char **at, const char *end)
 {
     char *begin = *at;
@@ -237,8 +238,7 @@ static enum wb_status check_head(const char *path, char **at, const char *end, c
     char actual[WB_SHA256_TEXT];
 
     if (!last || strncmp(first, first_words, strlen(first_words)) != 0 || strcmp(last, "end") != 0)
-        return wb_fail(WB_ERR_FORMAT,
-                       "%s: not a checkpoint of this program; remove it to start over", path);
+        return wb_fail(WB_ERR_FORMAT, "%s: not a checkpoint file; remove it to start over", path);
     const char *const version = first + strlen(first_words);
     if (strtol(version, NULL, 10) != VERSION)
         return wb_fail(WB_ERR_FORMAT,
@@ -246,10 +246,11 @@ static enum wb_status check_head(const char *path, char **at, const char *end, c
                        "to start over",
                        path, version, VERSION);
     if (strcmp(whose, identity) != 0)
-        return wb_fail(WB_ERR_DATA,
-                       "%s: the checkpoint is of another run; remove it to start over. It is of: "
-                       "%s. This run is: %s",
-                       path, whose, identity);
+        return wb_fail(
+            WB_ERR_DATA,
+            "%s: the checkpoint belongs to another run; remove it to start over; checkpoint: "
+            "%s; this run: %s",
+            path, whose, identity);
     wb_hash_bytes(*at, (size_t)(end - *at), actual);
     if (strtoull(size, NULL, 10) != (unsigned long long)(end - *at) || strcmp(hash, actual) != 0)
         return wb_fail(WB_ERR_FORMAT, "%s: the checkpoint is damaged; remove it to start over",

@@ -1,7 +1,7 @@
-/* Checkpoints of long computations: fields with their names, to a file and back.
+/* Checkpoints of long computations: named fields, saved to a file and restored.
  *
  * Each module provides one function that visits its state field by field, always in the same order;
- * it both saves and restores:
+ * the same function saves and restores:
  *
  *     void wb_engine_visit(struct wb_engine *engine, struct wb_checkpoint *checkpoint)
  *     {
@@ -9,12 +9,12 @@
  *         wb_checkpoint_visit(checkpoint, "speed", engine->speed, engine->n * sizeof(double));
  *     }
  *
- * A checkpoint holds the name, the size and the bytes of each field. Restoring fails at the first
- * field whose name or size differs from what the visitor asks for, and the message says which.
+ * A checkpoint contains name, size and bytes of each field. Restoring fails at the first field
+ * whose name or size differs from the visitor's, and the message names it.
  *
- * A file holds what it belongs to (an identity), the fields as they lie in memory, and their
- * SHA-256. It can be read by the machine and the program that wrote it, and by no other. It is
- * written beside its place and then renamed.
+ * A file contains an identity of the run, the fields in memory representation, and their SHA-256.
+ * Only the program and the kind of machine that wrote it can read it. It is written to a temporary
+ * file and then renamed.
  */
 #ifndef WB_BASE_CHECKPOINT_H
 #define WB_BASE_CHECKPOINT_H
@@ -29,47 +29,49 @@ struct wb_checkpoint {
     bool restores;        /* else it saves */
     unsigned char *bytes; /* owned */
     size_t size, room;
-    size_t at;             /* where the next field is */
-    enum wb_status status; /* of the first failure; then nothing is visited any more */
-    char group[128];       /* "part 1/wire 2/": stands before the names of fields */
+    size_t at;             /* position of the next field */
+    enum wb_status status; /* of the first failure, after which no field is visited */
+    char group[128];       /* "part 1/wire 2/": prefix of the fields' names */
 };
 
-/* An empty one that saves. */
+/* An empty checkpoint that saves. */
 void wb_checkpoint_init(struct wb_checkpoint *checkpoint);
 void wb_checkpoint_release(struct wb_checkpoint *checkpoint); /* accepts a zeroed one */
 
-/* Saves or restores `size` bytes at `data`. A failure is kept in `status`; `data` stays as it is
- * then. */
+/* Saves or restores `size` bytes at `data`. A failure is stored in `status`; `data` is then
+ * unchanged. */
 void wb_checkpoint_visit(struct wb_checkpoint *checkpoint, const char *name, void *data,
                          size_t size);
 
-/* The same for a member of a structure, under the member's name. */
+/* As wb_checkpoint_visit(), for a member of a structure, with the member's name. */
 #define wb_checkpoint_visit_member(checkpoint, structure, member)                                  \
     wb_checkpoint_visit((checkpoint), #member, &(structure)->member, sizeof(structure)->member)
 
-/* Begins a group of fields, whose name stands before theirs, within the present group; ends it. */
+/* Begins a group of fields within the current group, whose name is a prefix of theirs;
+ * wb_checkpoint_leave() ends it. */
 void wb_checkpoint_enter(struct wb_checkpoint *checkpoint, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void wb_checkpoint_leave(struct wb_checkpoint *checkpoint);
 
-/* Passes over the fields of the present group when it restores; nothing when it saves. */
+/* When restoring: skips the fields of the current group. When saving: no effect. */
 void wb_checkpoint_skip(struct wb_checkpoint *checkpoint);
 
-/* Adds fields that were saved elsewhere, `size` bytes of another checkpoint. */
+/* Appends fields that were saved in another checkpoint, `size` bytes. */
 void wb_checkpoint_append(struct wb_checkpoint *checkpoint, const void *fields, size_t size);
 
-/* From now on it restores, from its first field on. */
+/* Switches to restoring, starting at the first field. */
 void wb_checkpoint_rewind(struct wb_checkpoint *checkpoint);
 
-/* Any failure so far; WB_ERR_DATA where not all fields were restored. */
+/* Returns any failure so far; WB_ERR_DATA if not all fields were restored. */
 WB_MUST_CHECK enum wb_status wb_checkpoint_finish(struct wb_checkpoint *checkpoint);
 
-/* `identity` says in a few words what the state belongs to; it is compared byte for byte. */
+/* Writes the file. `identity` describes the run in a few words and is compared byte for byte on
+ * reading. */
 WB_MUST_CHECK enum wb_status wb_checkpoint_write(const struct wb_checkpoint *checkpoint,
                                                  const char *path, const char *identity);
-/* Reads into one that was released or never used. WB_ERR_FORMAT for a file that is no checkpoint,
- * of another version, or damaged; WB_ERR_DATA for one with another identity, and the message shows
- * both. */
+/* Reads a file into a released or unused checkpoint. WB_ERR_FORMAT for a file that is not a
+ * checkpoint, has another version, or is damaged; WB_ERR_DATA for another identity, with both
+ * identities in the message. */
 WB_MUST_CHECK enum wb_status wb_checkpoint_read(struct wb_checkpoint *checkpoint, const char *path,
                                                 const char *identity);
 

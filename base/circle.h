@@ -1,4 +1,4 @@
-/* The full circle, by its diameter. */
+/* Area and second moment of a full circle of given diameter. */
 #ifndef WB_BASE_CIRCLE_H
 #define WB_BASE_CIRCLE_H
 

@@ -17,7 +17,7 @@ void wb_columns_init(struct wb_columns *table, const char *name, const struct wb
         table->items[i].kind = &kinds[i];
 }
 
-/* All three kinds of values are as large. */
+/* All three kinds of values have the same size. */
 _Static_assert(sizeof(double) == sizeof(int64_t), "doubles of 64 bits");
 _Static_assert(sizeof(char *) <= sizeof(int64_t), "pointers of at most 64 bits");
 

@@ -1,4 +1,4 @@
-/* Tables in memory as columns of one type each: what the library hands out and HDF5 files hold.
+/* Tables in memory as columns of one type each, for results of the library and HDF5 files.
  *
  *     static const struct wb_column_kind kinds[] = {{"t_s", "s", WB_COLUMN_REAL}, ...};
  *     wb_columns_init(&table, "load", kinds, 3);
@@ -23,7 +23,7 @@ enum wb_column_type {
 
 struct wb_column_kind {
     const char *name; /* "force_N" */
-    const char *unit; /* "N"; "1" of counts and flags; "" of a text */
+    const char *unit; /* "N"; "1" for counts and flags; "" for text */
     enum wb_column_type type;
 };
 
@@ -47,8 +47,8 @@ enum {
 };
 
 struct wb_columns {
-    const char *name; /* borrowed, as the kinds are */
-    int n;            /* columns, 1..WB_COLUMNS_MOST */
+    const char *name; /* borrowed, like the kinds */
+    int n;            /* number of columns, 1..WB_COLUMNS_MOST */
     size_t n_rows, capacity;
     struct wb_column items[WB_COLUMNS_MOST];
 };
@@ -57,10 +57,10 @@ struct wb_columns {
 void wb_columns_init(struct wb_columns *table, const char *name, const struct wb_column_kind *kinds,
                      int n);
 
-/* Appends a row, a cell for each column. */
+/* Appends a row with one cell per column. */
 void wb_columns_add_row(struct wb_columns *table, const union wb_cell *cells);
 
-/* The column of that name; NULL: there is none. */
+/* The column with that name; NULL if there is none. */
 const struct wb_column *wb_columns_find(const struct wb_columns *table, const char *name);
 
 void wb_columns_release(struct wb_columns *table); /* accepts a zeroed one */

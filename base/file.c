@@ -33,16 +33,16 @@ static enum wb_status status_of_errno(int error)
     }
 }
 
-static enum wb_status fail_with(int error, const char *what, const char *path,
+static enum wb_status fail_with(int error, const char *action, const char *path,
                                 struct wb_reason *why)
 {
-    return wb_fail_to(why, status_of_errno(error), "cannot %s '%s': %s", what, path,
+    return wb_fail_to(why, status_of_errno(error), "cannot %s '%s': %s", action, path,
                       strerror(error));
 }
 
-static enum wb_status fail_errno(const char *what, const char *path)
+static enum wb_status fail_errno(const char *action, const char *path)
 {
-    return fail_with(errno, what, path, NULL);
+    return fail_with(errno, action, path, NULL);
 }
 
 static enum wb_status read_stream(FILE *file, const char *path, char **bytes, size_t *size,
@@ -60,7 +60,7 @@ static enum wb_status read_stream(FILE *file, const char *path, char **bytes, si
         buffer = larger;
     }
     if (!buffer)
-        return wb_fail_to(why, WB_ERR_MEMORY, "'%s' is too large to be read whole", path);
+        return wb_fail_to(why, WB_ERR_MEMORY, "'%s' is too large to read into memory", path);
     if (ferror(file)) {
         const int error = errno;
         free(buffer);
@@ -120,7 +120,8 @@ enum wb_status wb_file_write(const char *path, const void *bytes, size_t size)
     if (descriptor < 0)
         return fail_errno("create a file beside", path);
     enum wb_status status = write_all(descriptor, path, bytes, size);
-    /* mkostemp() makes private files; outputs follow the umask as other programs' do. */
+    /* mkostemp() creates private files; output files follow the umask instead, like those of other
+     * programs. */
     const mode_t mask = umask(0);
     umask(mask);
     if (status == WB_OK && fchmod(descriptor, 0666 & ~mask) != 0)
@@ -188,7 +189,8 @@ enum wb_status wb_file_prepare_output(const char *path, bool force)
         return wb_fail(WB_ERR_EXISTS, "'%s' exists and is not a folder", path);
     if (!force && !folder_is_empty(path))
         return wb_fail(WB_ERR_EXISTS,
-                       "folder '%s' is not empty; give another, or --force to overwrite", path);
+                       "folder '%s' is not empty; use another folder, or --force to overwrite",
+                       path);
     return wb_file_make_folder(path);
 }
 
@@ -258,9 +260,9 @@ enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind, const 
     return wb_file_find_named(path, kind, name, beside, NULL, NULL);
 }
 
-/* A name without a slash or ending may also be that of a folder, such as the output of a command.
- */
-static bool is_meant(const char *path, bool is_name)
+/* True if the path exists; a bare name (no slash, no extension) must not be a folder, which may be
+ * e.g. the output of a command. */
+static bool is_candidate(const char *path, bool is_name)
 {
     return wb_file_exists(path) && !(is_name && wb_file_is_folder(path));
 }
@@ -281,11 +283,11 @@ enum wb_status wb_file_find_named(char path[WB_PATH], const char *kind, const ch
     }
     if (beside) {
         WB_TRY(join(path, beside, name, why));
-        if (is_meant(path, is_name))
+        if (is_candidate(path, is_name))
             return WB_OK;
     }
     WB_TRY(join(path, "", name, why));
-    if (is_meant(path, is_name) || (!is_name && wb_file_find_data(path, name) == WB_OK))
+    if (is_candidate(path, is_name) || (!is_name && wb_file_find_data(path, name) == WB_OK))
         return WB_OK;
     if (is_name)
         return wb_fail_to(why, WB_ERR_NOT_FOUND,
@@ -304,8 +306,8 @@ static long read_holder(int descriptor)
     return strtol(text, NULL, 10);
 }
 
-/* Whoever held the lock before may have removed its file after we opened it. */
-static bool is_still_there(int descriptor, const char *path)
+/* False if the previous holder of the lock removed its file after we opened it. */
+static bool is_same_file(int descriptor, const char *path)
 {
     struct stat held, named;
     return fstat(descriptor, &held) == 0 && stat(path, &named) == 0 &&
@@ -328,11 +330,11 @@ enum wb_status wb_file_lock(struct wb_file_lock *lock, const char *path, long *h
             close(descriptor);
             return status;
         }
-        if (is_still_there(descriptor, path)) {
+        if (is_same_file(descriptor, path)) {
             char text[32];
             const int n = snprintf(text, sizeof text, "%ld\n", (long)getpid());
             lock->descriptor = descriptor;
-            /* The number serves the message only; the lock holds without it. */
+            /* The process number is only for messages: the lock is valid without it. */
             if (ftruncate(descriptor, 0) == 0 && pwrite(descriptor, text, (size_t)n, 0) < n)
                 wb_warn("'%s': %s", path, strerror(errno));
             return WB_OK;

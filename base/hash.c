@@ -56,7 +56,7 @@ void wb_hash_bytes(const void *bytes, size_t n, char hex[WB_SHA256_TEXT])
     finish(checksum, hex);
 }
 
-/* struct wb_hash is GLib's checksum under our name. */
+/* struct wb_hash is GLib's GChecksum under another name; it is never defined. */
 
 struct wb_hash *wb_hash_create(void)
 {

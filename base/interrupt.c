@@ -26,7 +26,8 @@ void wb_interrupt_install(void)
     static const int hangup[] = {SIGHUP};
     struct sigaction before;
     handle(noted, sizeof noted / sizeof noted[0], note_signal);
-    /* `nohup` has it ignored: then a terminal that is closed ends nothing. */
+    /* `nohup` ignores SIGHUP: keep it ignored, so that closing the terminal does not stop the
+     * program. */
     if (sigaction(SIGHUP, NULL, &before) != 0 || before.sa_handler != SIG_IGN)
         handle(hangup, 1, note_signal);
 }

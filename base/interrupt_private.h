@@ -1,4 +1,4 @@
-/* What only tests ask of base/interrupt.h. */
+/* Functions of base/interrupt.c that only tests use. */
 #ifndef WB_BASE_INTERRUPT_PRIVATE_H
 #define WB_BASE_INTERRUPT_PRIVATE_H
 

@@ -15,10 +15,10 @@
 
 /* A struct wb_json is jansson's json_t under another name: it is never defined.
  *
- * jansson's values do not know their document, so the thread remembers that one of its documents
- * lost a value, until all its documents are destroyed. */
+ * jansson's values have no link to their document. A lost value is therefore recorded per thread,
+ * until all documents of the thread are destroyed. */
 static _Thread_local struct {
-    int documents; /* that are not destroyed */
+    int documents; /* not yet destroyed */
     bool lost;
 } thread;
 
@@ -52,9 +52,9 @@ void wb_json_destroy(struct wb_json *root)
     json_decref(jansson(root));
 }
 
-/* Sets a member of an object (appends to an array, without a key). Takes over `value`, which is
- * NULL when it could not be made. A list that is NULL could not be made either, which is remembered
- * already. */
+/* Sets a member of an object (without a key: appends to an array). Takes ownership of `value`,
+ * which is NULL if it could not be created. If `list` is NULL, its own failure is already
+ * recorded. */
 static struct wb_json *put(struct wb_json *list, const char *key, json_t *value)
 {
     if (!list) {
@@ -79,7 +79,7 @@ static json_t *text(const char *raw)
         return json_null();
     json_t *string = json_string(raw);
     char *const ascii = string ? NULL : strdup(raw);
-    /* Not UTF-8 (bytes from a device, say): keep what is ASCII. */
+    /* Not UTF-8 (bytes from a device, for example): keep the ASCII characters. */
     for (char *c = ascii; c && *c; c++) {
         if ((unsigned char)*c >= 0x80)
             *c = '?';
@@ -171,8 +171,8 @@ static void format_list(struct wb_text *text, json_t *list, int depth)
     wb_text_append(text, is_object ? "}" : "]");
 }
 
-/* jansson prints 0.1 with 17 digits as 0.10000000000000001; people read these files, so numbers
- * and what they stand in are laid out here. */
+/* jansson prints 0.1 with 17 digits as 0.10000000000000001. People read these files, so numbers,
+ * objects and arrays are formatted here. */
 static void format_value(struct wb_text *text, json_t *value, int depth)
 {
     char number_text[WB_NUMBER_TEXT];
@@ -242,7 +242,7 @@ enum wb_status wb_json_read(struct wb_json **root, const char *path)
     return wb_json_read_with_reason(root, path, NULL);
 }
 
-/* --- reading; jansson's functions give NULL or 0 for NULL and for values of another kind --- */
+/* --- reading; jansson's functions return NULL or 0 for NULL and for values of another kind --- */
 
 struct wb_json *wb_json_get(const struct wb_json *object, const char *key)
 {
@@ -307,13 +307,13 @@ bool wb_json_get_boolean(const struct wb_json *object, const char *key, bool *va
 
 struct comparison {
     double tolerance;
-    const char *const *ignored; /* members of the roots */
+    const char *const *ignored; /* members of the roots to skip */
     struct wb_json_difference *found;
     char place[sizeof(((struct wb_json_place *)0)->place)];
     size_t length; /* of the place */
 };
 
-/* A value for a message; of a list that it is one. */
+/* A value for a message; arrays by their length only. */
 static void show(json_t *value, char text[80])
 {
     if (!value || json_is_null(value))
@@ -327,10 +327,10 @@ static void show(json_t *value, char text[80])
     else if (json_is_array(value))
         snprintf(text, 80, "a list of %zu", json_array_size(value));
     else
-        snprintf(text, 80, "something");
+        snprintf(text, 80, "an object");
 }
 
-static void note(struct comparison *c, double size, json_t *a, json_t *b)
+static void note_difference(struct comparison *c, double size, json_t *a, json_t *b)
 {
     struct wb_json_difference *const found = c->found;
     struct wb_json_place here;
@@ -359,7 +359,7 @@ static double largest_of(json_t *list)
 
 static void compare(struct comparison *c, json_t *a, json_t *b, double scale);
 
-/* Parts of two values; the place of the values is put back by its length. */
+/* Compares members or items of two values; `length` restores the place afterwards. */
 static void compare_part(struct comparison *c, json_t *a, json_t *b, const char *key, size_t index,
                          double scale)
 {
@@ -381,18 +381,18 @@ static bool is_ignored(const struct comparison *c, const char *key)
     return false;
 }
 
-/* `scale`: the largest number of the array that they stand in. */
+/* `scale`: the largest number of the array that contains the values. */
 static void compare(struct comparison *c, json_t *a, json_t *b, double scale)
 {
     json_t *part;
     const char *key;
     size_t i;
-    /* A number without a fraction reads back as an integer. */
+    /* A number without a fraction is read back as an integer. */
     if (json_is_number(a) && json_is_number(b)) {
         const double x = json_number_value(a), y = json_number_value(b);
         const double largest = fmax(scale, fmax(fabs(x), fabs(y)));
         if (!(fabs(x - y) <= c->tolerance * largest))
-            note(c, fabs(x - y) / largest, a, b);
+            note_difference(c, fabs(x - y) / largest, a, b);
     } else if (json_is_array(a) && json_is_array(b) && json_array_size(a) == json_array_size(b)) {
         scale = fmax(largest_of(a), largest_of(b));
         json_array_foreach(b, i, part)
@@ -411,7 +411,7 @@ static void compare(struct comparison *c, json_t *a, json_t *b, double scale)
                 compare_part(c, part, NULL, key, 0, 0.0);
         }
     } else if (a != b && !json_equal(a, b)) {
-        note(c, (double)INFINITY, a, b);
+        note_difference(c, (double)INFINITY, a, b);
     }
 }
 

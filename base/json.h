@@ -1,11 +1,11 @@
-/* JSON values: built to be written, or read from a file. They are jansson's, which stays behind
- * json.c.
+/* JSON values: built to be written, or read from a file. An interface to jansson, which only json.c
+ * uses.
  *
- * Functions that build a document return no status. When memory runs out, or a value is set into
- * something that is not an object (appended to something that is not an array), the thread
- * remembers it, and wb_json_format() fails in this thread until all its documents are destroyed. So
- * a document is built and formatted in one thread. Numbers that are not finite become null. Keys
- * keep the order in which they were set.
+ * Functions that build a document return no status. If memory runs out, or a member is set in a
+ * value that is not an object (appended to one that is not an array), the failure is recorded for
+ * the thread, and wb_json_format() fails in this thread until all its documents are destroyed.
+ * Build and format a document in one thread. Numbers that are not finite become null. Keys keep the
+ * order in which they were set.
  */
 #ifndef WB_BASE_JSON_H
 #define WB_BASE_JSON_H
@@ -17,21 +17,21 @@
 #include "base/reason.h"
 #include "base/status.h"
 
-struct wb_json; /* a document or a value in it */
+struct wb_json; /* a document, or a value in it */
 
-/* A new document whose root is an object; NULL when out of memory. All functions accept NULL: what
- * is set into it is dropped, and formatting it fails. */
+/* A new document whose root is an object; NULL when out of memory. All functions accept NULL:
+ * values set in it are dropped, and formatting fails. */
 struct wb_json *wb_json_create(void);
 void wb_json_destroy(struct wb_json *root);
 
-/* Sets a member of an object. The text is copied; NULL text becomes null. */
+/* Sets a member of an object. The text is copied; NULL becomes null. */
 void wb_json_set_text(struct wb_json *object, const char *key, const char *text);
 void wb_json_set_number(struct wb_json *object, const char *key, double value);
 void wb_json_set_integer(struct wb_json *object, const char *key, int64_t value);
 void wb_json_set_boolean(struct wb_json *object, const char *key, bool value);
 
-/* Adds an empty object or array as a member; the returned handle belongs to the document, until
- * the member is set again. */
+/* Adds an empty object or array as a member; the returned handle belongs to the document and is
+ * valid until the member is set again. */
 struct wb_json *wb_json_set_object(struct wb_json *object, const char *key);
 struct wb_json *wb_json_set_array(struct wb_json *object, const char *key);
 
@@ -40,16 +40,16 @@ void wb_json_append_text(struct wb_json *array, const char *text);
 void wb_json_append_number(struct wb_json *array, double value);
 struct wb_json *wb_json_append_object(struct wb_json *array);
 
-/* Sets a deep copy of `value` (any document's) as a member. */
+/* Sets a deep copy of `value`, from any document, as a member. */
 void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_json *value);
 
-/* Text of the document (caller frees), indented by two spaces, with a final newline, doubles that
- * read back the same. WB_ERR_MEMORY when a value was lost. */
+/* Text of the document (caller frees), indented by two spaces, with a final newline; doubles are
+ * read back exactly. WB_ERR_MEMORY if a value was lost. */
 WB_MUST_CHECK enum wb_status wb_json_format(const struct wb_json *root, char **text);
 
-/* Reads a document whose root is an object; errors name file and line. */
+/* Reads a document whose root is an object; messages name file and line. */
 WB_MUST_CHECK enum wb_status wb_json_read(struct wb_json **root, const char *path);
-/* The same; On failure `why` holds the reason. NULL: that is logged. */
+/* As wb_json_read(). On failure `why` receives the reason; if it is NULL, the reason is logged. */
 WB_MUST_CHECK enum wb_status wb_json_read_with_reason(struct wb_json **root, const char *path,
                                                       struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_json_parse(struct wb_json **root, const char *text,
@@ -57,37 +57,38 @@ WB_MUST_CHECK enum wb_status wb_json_parse(struct wb_json **root, const char *te
 WB_MUST_CHECK enum wb_status wb_json_parse_with_reason(struct wb_json **root, const char *text,
                                                        const char *origin, struct wb_reason *why);
 
-/* Reading: each returns false and leaves the target when the member is missing or of another
- * kind. Text is owned by the document. */
+/* Reading: each function returns false and leaves the target unchanged if the member is missing or
+ * of another kind. Text is owned by the document. */
 bool wb_json_get_text(const struct wb_json *object, const char *key, const char **text);
 bool wb_json_get_number(const struct wb_json *object, const char *key, double *value);
 bool wb_json_get_integer(const struct wb_json *object, const char *key, int64_t *value);
 bool wb_json_get_boolean(const struct wb_json *object, const char *key, bool *value);
-/* Member object or array, item of an array; NULL when missing. Length of an array, 0 otherwise. */
+/* Member object or array; item of an array; NULL if missing. Length of an array, otherwise 0. */
 struct wb_json *wb_json_get(const struct wb_json *object, const char *key);
 size_t wb_json_length(const struct wb_json *array);
 struct wb_json *wb_json_item(const struct wb_json *array, size_t index);
-/* An item or value itself as number or text. */
+/* A value as number or text. */
 bool wb_json_number(const struct wb_json *value, double *number);
 bool wb_json_text(const struct wb_json *value, const char **text);
 
-/* One place where two values differ, and both of them for a message: `nothing` where one is not
- * there, `a list of 3` of arrays. */
+/* A place where two values differ, with both values as text for a message: `nothing` if a value is
+ * missing, `a list of 3` for arrays. */
 struct wb_json_place {
     char place[200]; /* "wires[0].rms" */
     char a[80], b[80];
 };
 
 struct wb_json_difference {
-    size_t n;       /* how many values differ; 0: the rest is empty */
-    double largest; /* of numbers, relative; INFINITY where something else differs */
+    size_t n;       /* number of differences; 0: the other members are empty */
+    double largest; /* largest relative difference of numbers; INFINITY if other values differ */
     struct wb_json_place first, most;
 };
 
-/* Whether two values (NULL: nothing) differ, and where first and most. Texts, truths, keys and
- * lengths are to be equal, members stand in any order; numbers are to differ by at most `tolerance`
- * times the larger of the two, or in an array of numbers times the largest of both arrays. Members
- * `ignored` (names up to a NULL; NULL: none) of the two values themselves may differ. */
+/* Compares two values (NULL: missing) and finds the first and the largest difference. Texts,
+ * booleans, keys and lengths must be equal, members may be in any order. Numbers may differ by
+ * `tolerance` times the larger of the two, or in an array of numbers by `tolerance` times the
+ * largest of both arrays. Members `ignored` (names up to a NULL; NULL: none) of the two values
+ * themselves may differ. */
 bool wb_json_differs(const struct wb_json *a, const struct wb_json *b, double tolerance,
                      const char *const *ignored, struct wb_json_difference *difference);
 

@@ -76,7 +76,8 @@ void *wb_memory_room(void *block, size_t *room, size_t n, size_t size)
         return block;
     const size_t doubled = 2 * *room + 16, larger = doubled > n ? doubled : n;
     void *const grown = wb_memory_resize(block, larger, size);
-    *room = larger; /* not before: who owns the block may live on where there is no memory */
+    *room = larger; /* only after success: with wb_memory_try() the owner of the block survives the
+                       failure */
     return grown;
 }
 

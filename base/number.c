@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* strtod() also takes hexadecimal, "nan" and "inf"; a decimal number has none of their letters. */
+/* strtod() also accepts hexadecimal, "nan" and "inf": allow only the characters of decimal
+ * numbers. */
 static bool only_decimal_characters(const char *text)
 {
     return text[strspn(text, "0123456789+-.eE \t\r\n")] == '\0';

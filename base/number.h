@@ -5,17 +5,17 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Enough for any double in wb_number_format(), with the NUL. */
+/* Size of the buffer for wb_number_format(), including the NUL. */
 #define WB_NUMBER_TEXT 32
 
-/* Parses the whole of `text` as one finite decimal number (blanks around it are allowed; a
- * decimal comma, a unit, hexadecimal, "nan" and "inf" are not). False when it is anything else. */
+/* Parses the whole `text` as one finite decimal number; surrounding blanks are allowed. False for
+ * anything else, including a decimal comma, a unit, hexadecimal, "nan" and "inf". */
 bool wb_number_parse(const char *text, double *value);
 
-/* Parses the whole of `text` as one decimal integer within a long. */
+/* Parses the whole `text` as one decimal integer within the range of long. */
 bool wb_number_parse_integer(const char *text, long *value);
 
-/* The shortest text that reads back as the same double; "nan", "inf" and "-inf" otherwise.
+/* The shortest text that is read back as the same double; "nan", "inf" and "-inf" for other values.
  * Returns `text`. */
 char *wb_number_format(double value, char text[WB_NUMBER_TEXT]);
 

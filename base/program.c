@@ -17,7 +17,7 @@
 
 #define WB_LOG_DOMAIN "program"
 
-/* The program of that name in PATH. */
+/* Finds a program in PATH. */
 static bool find_program(char path[WB_PATH], const char *name)
 {
     const char *folder = getenv("PATH");
@@ -37,7 +37,7 @@ static void pause_ms(int ms)
     nanosleep(&time, NULL);
 }
 
-/* Its exit code into *code; false when it had to be killed. */
+/* Waits for the process; its exit code goes to *code. False if it had to be killed. */
 static bool wait_for(pid_t child, double timeout, int *code)
 {
     const int64_t until_ns = wb_time_now_ns() + wb_ns_from_seconds(timeout);
@@ -68,7 +68,7 @@ static void read_back(struct wb_text *text, int descriptor)
         wb_text_append_bytes(text, bytes, (size_t)n);
 }
 
-/* Into two files in memory: nothing can be held up by a pipe that nobody reads. */
+/* Output goes to two files in memory, which cannot block like a pipe without a reader. */
 static enum wb_status run_into(struct wb_program_answer *answer, const char *path,
                                const char *const *words, double timeout, const int files[2])
 {
@@ -76,7 +76,7 @@ static enum wb_status run_into(struct wb_program_answer *answer, const char *pat
     if (child < 0)
         return wb_fail(WB_ERR_IO, "cannot start '%s': %s", path, strerror(errno));
     if (child == 0) {
-        setpgid(0, 0); /* Ctrl-C must not hit a submission half-way */
+        setpgid(0, 0); /* own process group: Ctrl-C must not interrupt a job submission */
         const int nothing = open("/dev/null", O_RDONLY);
         if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
             dup2(files[0], STDOUT_FILENO) >= 0 && dup2(files[1], STDERR_FILENO) >= 0)
@@ -85,7 +85,8 @@ static enum wb_status run_into(struct wb_program_answer *answer, const char *pat
     }
     setpgid(child, child);
     if (!wait_for(child, timeout, &answer->code))
-        return wb_fail(WB_ERR_TIMEOUT, "%s did not end within %.0f s", words[0], timeout);
+        return wb_fail(WB_ERR_TIMEOUT, "%s did not finish within %.0f s and was killed", words[0],
+                       timeout);
     read_back(&answer->out, files[0]);
     read_back(&answer->err, files[1]);
     return WB_OK;
@@ -101,7 +102,7 @@ enum wb_status wb_program_run(struct wb_program_answer *answer, const char *cons
     const int files[2] = {memfd_create("out", MFD_CLOEXEC), memfd_create("err", MFD_CLOEXEC)};
     enum wb_status status = WB_OK;
     if (files[0] < 0 || files[1] < 0)
-        status = wb_fail(WB_ERR_IO, "cannot make a file in memory: %s", strerror(errno));
+        status = wb_fail(WB_ERR_IO, "cannot create a file in memory: %s", strerror(errno));
     else
         status = run_into(answer, path, words, timeout, files);
     for (int i = 0; i < 2; i++)

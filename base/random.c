@@ -33,7 +33,7 @@ double wb_random_between(uint64_t seed, uint64_t stream, uint64_t index, double 
 double wb_random_normal(uint64_t seed, uint64_t stream, uint64_t index)
 {
     const uint64_t bits = wb_random_bits(seed, stream, index);
-    /* 1 - u is never 0, so the logarithm is finite. */
+    /* unit() is below 1, so the logarithm is finite. */
     const double radius = sqrt(-2.0 * log(1.0 - unit(bits)));
     return radius * cos(2.0 * M_PI * unit(mix(bits)));
 }

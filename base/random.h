@@ -1,8 +1,8 @@
 /* Counter-based random numbers: a pure function of (seed, stream, index).
  *
- * Numbers do not depend on the order of drawing, so the noise of a device's sample k is the same
- * whatever else was drawn before, and however late the process was. The mixer is SplitMix64's
- * finaliser, chained over the three words.
+ * Numbers do not depend on the order of drawing, so the noise of a device's sample k does not
+ * depend on other draws or on delays of the process. The mixer is SplitMix64's finaliser, chained
+ * over the three words.
  */
 #ifndef WB_BASE_RANDOM_H
 #define WB_BASE_RANDOM_H

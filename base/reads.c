@@ -14,7 +14,7 @@ static struct {
     struct wb_read *items; /* (capacity) */
 } reads = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-/* --- with the lock held --- */
+/* --- called with the lock held --- */
 
 static void keep(int n)
 {

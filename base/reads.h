@@ -1,6 +1,6 @@
-/* Which files this process has read, with the SHA-256 sums of what it found in them. wb_file_read()
- * notes them, and whatever stands on it: what a result is made from is noted where it is read, and
- * no list can forget a file. Any thread may read; one asks.
+/* Log of the files that this process has read, with the SHA-256 sums of their contents.
+ * wb_file_read() and everything based on it notes them where they are read, so the inputs of a
+ * result are complete. Any thread may read files; one thread queries the log.
  */
 #ifndef WB_BASE_READS_H
 #define WB_BASE_READS_H
@@ -10,25 +10,24 @@
 
 #include "base/hash.h"
 
-/* Forgets what was noted. From here on reads are noted, until wb_reads_stop(), which forgets too.
- */
+/* Clears the log and notes reads until wb_reads_stop(), which also clears it. */
 void wb_reads_start(void);
 void wb_reads_stop(void);
 
-/* How many are noted: one for a file, one more for each time that something else was found in it.
- */
+/* Number of entries: one per file, and one more for each time that its contents had changed. */
 int wb_reads_count(void);
-/* Forgets all but the first n. */
+/* Drops all entries after the first n. */
 void wb_reads_forget(int n);
 
 struct wb_read {
-    const char *path; /* absolute, without links and ".."; valid until it is forgotten */
+    const char *path; /* absolute, without links and ".."; valid until the entry is dropped */
     char sha256[WB_SHA256_TEXT];
 };
-/* The one at an index, in the order of reading; false after the last. */
+/* Gets the entry at an index, in the order of reading; false after the last. */
 bool wb_reads_at(int index, struct wb_read *read);
 
-/* Of a file that was read: notes what it holds; leaves it out again, as no input that stays. */
+/* For a file that was read: adds an entry; removes it again if the file is not an input of the
+ * result. */
 void wb_reads_note(const char *path, const void *bytes, size_t size);
 void wb_reads_leave_out(const char *path);
 

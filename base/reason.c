@@ -4,12 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* As long as the longest message of the log. */
+/* As long as the longest log message. */
 enum {
-    MOST_MESSAGE = 2048
+    MAX_MESSAGE = 2048
 };
 
-/* Keeps what fits of the message. */
+/* Stores the message, truncated if necessary. */
 static void keep(struct wb_reason *reason, const char *message)
 {
     static const char mark[] = "...";
@@ -21,7 +21,7 @@ static void keep(struct wb_reason *reason, const char *message)
     }
     memcpy(reason->text, message, sizeof reason->text);
     size_t end = sizeof reason->text - sizeof mark;
-    /* Bytes 10xxxxxx of UTF-8 continue a character: none may lose its head. */
+    /* Do not cut within a UTF-8 character: bytes 10xxxxxx continue one. */
     while (end > 0 && ((unsigned char)reason->text[end] & 0xc0) == 0x80)
         end--;
     memcpy(reason->text + end, mark, sizeof mark);
@@ -29,7 +29,7 @@ static void keep(struct wb_reason *reason, const char *message)
 
 void wb_reason_set(struct wb_reason *reason, const char *format, ...)
 {
-    char message[MOST_MESSAGE];
+    char message[MAX_MESSAGE];
     va_list arguments;
 
     va_start(arguments, format);
@@ -38,10 +38,10 @@ void wb_reason_set(struct wb_reason *reason, const char *format, ...)
     keep(reason, message);
 }
 
-void wb_reason_tell(struct wb_reason *reason, bool also, const char *domain, const char *format,
-                    ...)
+void wb_reason_report(struct wb_reason *reason, bool also, const char *domain, const char *format,
+                      ...)
 {
-    char message[MOST_MESSAGE];
+    char message[MAX_MESSAGE];
     va_list arguments;
 
     va_start(arguments, format);

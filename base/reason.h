@@ -1,9 +1,9 @@
-/* Why something failed, as a text that travels with the result instead of going to the log.
+/* Reason of a failure, as a text that is returned with the result instead of being logged.
  *
- * A caller who expects that a call may fail, and who reports that as part of its own result, owns
- * a zeroed wb_reason and passes it down. The function that fails writes the reason with
- * wb_fail_to() and returns the status as after wb_fail(). Where the caller passes NULL, the message
- * is logged as an error, so that one function serves both kinds of callers.
+ * A caller who expects that a call may fail, and who includes the failure in its own result, passes
+ * a zeroed wb_reason. The failing function writes the reason with wb_fail_to() and returns the
+ * status as after wb_fail(). If the caller passes NULL, the message is logged as an error, so that
+ * one function serves both kinds of callers.
  */
 #ifndef WB_BASE_REASON_H
 #define WB_BASE_REASON_H
@@ -12,29 +12,29 @@
 
 #include "base/status.h"
 
-/* All zero: there is none. A text that does not fit is cut at the end of a UTF-8 character and ends
- * in "...". */
+/* All zero: no reason. A text that does not fit is cut after a UTF-8 character and ends in
+ * "...". */
 struct wb_reason {
     char text[1024];
 };
 
-/* Replaces the text. It may be made of the present one. */
+/* Replaces the text. The arguments may include the current text. */
 void wb_reason_set(struct wb_reason *reason, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Replaces the text of `reason`, or adds to it where that is wanted; logs an error of that domain
- * where it is NULL. Called by the two below. */
-void wb_reason_tell(struct wb_reason *reason, bool also, const char *domain, const char *format,
-                    ...) __attribute__((format(printf, 4, 5)));
+/* Replaces the text of `reason`, or appends to it if `also`; logs an error in `domain` if `reason`
+ * is NULL. Used by the macros below. */
+void wb_reason_report(struct wb_reason *reason, bool also, const char *domain, const char *format,
+                      ...) __attribute__((format(printf, 4, 5)));
 
-/* Writes the message to `reason`, or logs it as wb_fail() does where that is NULL, and evaluates to
+/* Writes the message to `reason`, or logs it as wb_fail() does if that is NULL, and evaluates to
  * `status`. A macro, so that the compiler sees that the caller returns an error. */
 #define wb_fail_to(reason, status, ...)                                                            \
-    (wb_reason_tell((reason), false, WB_LOG_DOMAIN, __VA_ARGS__), (status))
+    (wb_reason_report((reason), false, WB_LOG_DOMAIN, __VA_ARGS__), (status))
 
-/* The same for one of several failures that the caller can go on after: `reason` keeps what it says
- * already, "; " between them. */
+/* As wb_fail_to(), for one of several failures after which the caller continues: appends to
+ * `reason` after "; ". */
 #define wb_fail_also(reason, status, ...)                                                          \
-    (wb_reason_tell((reason), true, WB_LOG_DOMAIN, __VA_ARGS__), (status))
+    (wb_reason_report((reason), true, WB_LOG_DOMAIN, __VA_ARGS__), (status))
 
 #endif

@@ -1,7 +1,7 @@
-/* Status codes, and the one way to fail.
+/* Status codes and error reporting.
  *
  * Every function that can fail returns an enum wb_status: WB_OK or a negative code. The message is
- * logged once, with wb_fail(), where the detail is known; the code just travels up with WB_TRY().
+ * logged once, with wb_fail(), where the detail is known; callers pass the code on with WB_TRY().
  * Results go through out-parameters, which are written only on success.
  */
 #ifndef WB_BASE_STATUS_H
@@ -11,18 +11,18 @@
 
 enum wb_status {
     WB_OK = 0,
-    WB_ERR_ARGUMENT = -1,    /* the caller misused the function, or a setting is out of range */
+    WB_ERR_ARGUMENT = -1,    /* wrong use of a function, or a setting out of range */
     WB_ERR_MEMORY = -2,      /* out of memory */
     WB_ERR_IO = -3,          /* a file, socket or port could not be read or written */
     WB_ERR_NOT_FOUND = -4,   /* a file, port, key or name does not exist */
-    WB_ERR_FORMAT = -5,      /* bytes or text that do not follow their format */
-    WB_ERR_BUSY = -6,        /* somebody else holds the port or file */
-    WB_ERR_PERMISSION = -7,  /* not allowed to open it */
+    WB_ERR_FORMAT = -5,      /* bytes or text do not follow their format */
+    WB_ERR_BUSY = -6,        /* another process holds the port or file */
+    WB_ERR_PERMISSION = -7,  /* no permission to open it */
     WB_ERR_TIMEOUT = -8,     /* no answer in time */
-    WB_ERR_UNSUPPORTED = -9, /* the instrument or format cannot do this */
-    WB_ERR_EXISTS = -10,     /* it would overwrite something */
-    WB_ERR_DATA = -11,       /* the data cannot serve the purpose; the message says why */
-    WB_ERR_CONVERGENCE = -12 /* an iteration did not converge where the caller cannot go on */
+    WB_ERR_UNSUPPORTED = -9, /* the instrument or format does not support this */
+    WB_ERR_EXISTS = -10,     /* would overwrite something */
+    WB_ERR_DATA = -11,       /* the data do not serve the purpose; the message says why */
+    WB_ERR_CONVERGENCE = -12 /* an iteration did not converge and the caller cannot continue */
 };
 
 #define WB_MUST_CHECK __attribute__((warn_unused_result))

@@ -1,19 +1,19 @@
-/* Text that grows: built by appending, read as one C string. */
+/* Growing text: built by appending, read as one C string. */
 #ifndef WB_BASE_TEXT_H
 #define WB_BASE_TEXT_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* All zero is an empty text. Running out of memory sets `failed`; further appends do nothing, so
- * one check at the end is enough. */
+/* All zero is an empty text. Running out of memory sets `failed`; later appends do nothing, so one
+ * check at the end is enough. */
 struct wb_text {
     char *bytes; /* NUL-terminated once something was appended; owned */
     size_t length, capacity;
     bool failed;
 };
 
-/* Appends by printf, or bytes as they are. */
+/* Appends formatted text, or raw bytes. */
 void wb_text_append(struct wb_text *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void wb_text_append_bytes(struct wb_text *text, const void *bytes, size_t n);
@@ -21,7 +21,7 @@ void wb_text_append_bytes(struct wb_text *text, const void *bytes, size_t n);
 /* Appends with &, <, >, " and ' escaped for HTML, SVG and Pango markup. */
 void wb_text_append_escaped(struct wb_text *text, const char *raw);
 
-/* The text so far; "" when empty. Owned by `text`. */
+/* The current text; "" if empty. Owned by `text`. */
 const char *wb_text_string(const struct wb_text *text);
 
 /* Frees and zeroes. */

@@ -13,10 +13,10 @@
 #define WB_LOG_DOMAIN "table"
 
 enum {
-    MOST_COLUMNS = 256,
-    MOST_LINES = 50000000,
-    SAMPLE = 2000, /* lines that are looked at to find the delimiter */
-    NUMBER = 64    /* bytes of a number, at most */
+    MAX_COLUMNS = 256,
+    MAX_LINES = 50000000,
+    SAMPLE = 2000, /* number of lines examined to find the delimiter */
+    NUMBER = 64    /* maximum bytes of a number */
 };
 
 /* --- encodings --- */
@@ -28,17 +28,17 @@ const char *wb_text_encoding_name(enum wb_text_encoding encoding)
     return names[encoding];
 }
 
-/* Text as it was found in a file. */
+/* Text decoded from a file. */
 struct decoded_text {
-    char *bytes; /* UTF-8 without byte order mark, NUL-terminated; owned, to be freed */
+    char *bytes; /* UTF-8 without byte order mark, NUL-terminated; owned, freed by the caller */
     size_t size; /* without the NUL */
     enum wb_text_encoding encoding;
     bool byte_order_mark;
-    bool cut; /* the last bytes were no whole character, and are left out */
+    bool cut; /* incomplete character at the end, dropped */
 };
 
-/* Length of the UTF-8 character at `at`, 0 where there is none; overlong forms, surrogates and what
- * is beyond Unicode are none. */
+/* Length of the UTF-8 character at `at`; 0 if it is invalid: overlong, a surrogate, or beyond
+ * Unicode. */
 static size_t utf8_length(const uint8_t *at, size_t n)
 {
     if (at[0] < 0x80)
@@ -70,7 +70,7 @@ static bool is_utf8(const uint8_t *bytes, size_t n)
     return true;
 }
 
-/* Text in Latin letters as UTF-16 has a zero in every other byte. */
+/* UTF-16 text in Latin letters has a zero in every second byte. */
 static bool has_zeros_in(const uint8_t *bytes, size_t n, size_t odd)
 {
     size_t zeros[2] = {0, 0};
@@ -127,7 +127,7 @@ static size_t put_utf8(char *to, uint32_t c)
     return 4;
 }
 
-/* Line and character of the end of a text, from 1, for messages. */
+/* Line and column of the end of a text, from 1, for messages. */
 static void place_of(const char *text, size_t n, int *line, int *column)
 {
     *line = *column = 1;
@@ -141,13 +141,14 @@ static void place_of(const char *text, size_t n, int *line, int *column)
     }
 }
 
-static enum wb_status refuse_character(const struct decoded_text *text, const char *name,
-                                       uint32_t c, const char *what, struct wb_reason *why)
+static enum wb_status reject_character(const struct decoded_text *text, const char *name,
+                                       uint32_t c, const char *description, struct wb_reason *why)
 {
     int line, column;
     place_of(text->bytes, text->size, &line, &column);
     return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: character %d (0x%02x) is %s: expected text in %s",
-                      name, line, column, (unsigned)c, what, wb_text_encoding_name(text->encoding));
+                      name, line, column, (unsigned)c, description,
+                      wb_text_encoding_name(text->encoding));
 }
 
 static bool is_text(uint32_t c)
@@ -165,12 +166,12 @@ static enum wb_status decode_utf16(const uint8_t *bytes, size_t n, const char *n
             const uint32_t next =
                 i + 3 < n ? (uint32_t)bytes[i + 2 + low] | (uint32_t)bytes[i + 3 - low] << 8 : 0;
             if (c >= 0xdc00 || next < 0xdc00 || next >= 0xe000)
-                return refuse_character(text, name, c, "half of a pair", why);
+                return reject_character(text, name, c, "half of a surrogate pair", why);
             c = 0x10000 + ((c & 0x3ff) << 10) + (next & 0x3ff);
             i += 2;
         }
         if (!is_text(c))
-            return refuse_character(text, name, c, "no text", why);
+            return reject_character(text, name, c, "not a text character", why);
         text->size += put_utf8(text->bytes + text->size, c);
     }
     text->cut = n % 2 != 0;
@@ -183,7 +184,7 @@ static enum wb_status decode_bytes(const uint8_t *bytes, size_t n, const char *n
     for (size_t i = 0; i < n; i++) {
         const bool latin1 = text->encoding == WB_ENCODING_LATIN1;
         if (!is_text(bytes[i]) && !(bytes[i] == 0x1a && i + 1 == n)) /* the end mark of DOS */
-            return refuse_character(text, name, bytes[i], "no text", why);
+            return reject_character(text, name, bytes[i], "not a text character", why);
         if (bytes[i] == 0x1a)
             continue;
         if (latin1)
@@ -200,7 +201,8 @@ static enum wb_status decode(const void *bytes, size_t size, const char *name,
     struct decoded_text decoded = {NULL, 0, WB_ENCODING_UTF8, false, false};
     if (size >= 4 &&
         (memcmp(bytes, "\xff\xfe\0\0", 4) == 0 || memcmp(bytes, "\0\0\xfe\xff", 4) == 0))
-        return wb_fail_to(why, WB_ERR_UNSUPPORTED, "%s: UTF-32: save it as UTF-8 or UTF-16", name);
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED,
+                          "%s: UTF-32 is not supported; save the file as UTF-8 or UTF-16", name);
     const size_t start = find_encoding(bytes, size, &decoded);
     decoded.bytes = wb_memory_new(2 * size + 1, 1);
     const uint8_t *const from = (const uint8_t *)bytes + start;
@@ -235,7 +237,8 @@ static void add_line(struct lines *lines, char *text, int number)
     lines->items[lines->n++] = (struct line){text, number};
 }
 
-/* Cuts the text in place. Carriage returns before a line feed belong to it. */
+/* Splits the text into lines in place. Carriage returns before a line feed belong to the line
+ * end. */
 static enum wb_status cut_lines(struct wb_text_table *table, size_t size, const char *name,
                                 struct lines *lines, struct wb_reason *why)
 {
@@ -253,8 +256,8 @@ static enum wb_status cut_lines(struct wb_text_table *table, size_t size, const 
         else if (next > stop)
             next = stop + 1;
         table->ends_without_end = stop == end;
-        if (number == MOST_LINES)
-            return wb_fail_to(why, WB_ERR_FORMAT, "%s: more than %d lines", name, MOST_LINES);
+        if (number == MAX_LINES)
+            return wb_fail_to(why, WB_ERR_FORMAT, "%s: more than %d lines", name, MAX_LINES);
         add_line(lines, at, ++number);
         if (stop < end)
             *stop = '\0';
@@ -277,7 +280,7 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* The bytes C2 A0: a blank that does not break lines. */
+/* The bytes C2 A0: a no-break space. */
 static bool is_hard_blank(const char *at)
 {
     return (uint8_t)at[0] == 0xc2 && (uint8_t)at[1] == 0xa0;
@@ -306,8 +309,8 @@ static void trim(struct field *field, char delimiter)
     }
 }
 
-/* Takes the next field off a line, which `*rest` points into; `*rest` becomes NULL after the last.
- * Blanks as delimiters count once where several stand together, and not at the ends of a line. */
+/* Takes the next field off a line, which `*rest` points into; `*rest` becomes NULL after the last
+ * field. Consecutive blanks are one delimiter; blanks at the ends of a line are none. */
 static bool next_field(const char **rest, char delimiter, struct field *field)
 {
     const char *at = *rest;
@@ -371,8 +374,8 @@ static enum wb_text_field classify(const char *text, size_t n, char decimal, dou
     return wb_number_parse(number, value) ? WB_FIELD_NUMBER : WB_FIELD_TEXT;
 }
 
-/* What a line holds when it is cut by a delimiter; numbers of either decimal sign count. Fields
- * that are empty at its end do not. */
+/* Contents of a line split by a delimiter; numbers with either decimal sign count. Empty fields at
+ * its end do not count. */
 struct content {
     int fields, numbers, texts;
 };
@@ -402,7 +405,7 @@ static struct content look(const char *line, char delimiter)
 struct layout {
     char delimiter;
     int columns;     /* of most rows */
-    bool some_texts; /* rows have texts beside numbers */
+    bool some_texts; /* rows may contain text besides numbers */
 };
 
 static bool is_row(const struct content *content, bool some_texts)
@@ -410,25 +413,26 @@ static bool is_row(const struct content *content, bool some_texts)
     return some_texts ? content->numbers >= 2 : content->numbers >= 1 && content->texts == 0;
 }
 
-/* Most lines that are rows of one number of columns under this delimiter, and that number. */
+/* The largest number of lines that are rows with the same number of columns under this delimiter,
+ * and that number of columns. */
 static size_t score(const struct lines *lines, char delimiter, bool some_texts, int *columns)
 {
-    size_t count[MOST_COLUMNS + 1] = {0};
+    size_t count[MAX_COLUMNS + 1] = {0};
     const size_t stride = 1 + lines->n / SAMPLE;
     *columns = 0;
     for (size_t i = 0; i < lines->n; i += stride) {
         const struct content content = look(lines->items[i].text, delimiter);
-        if (is_row(&content, some_texts) && content.fields <= MOST_COLUMNS)
+        if (is_row(&content, some_texts) && content.fields <= MAX_COLUMNS)
             count[content.fields]++;
     }
-    for (int k = 1; k <= MOST_COLUMNS; k++) {
+    for (int k = 1; k <= MAX_COLUMNS; k++) {
         if (count[k] > count[*columns])
             *columns = k;
     }
     return count[*columns];
 }
 
-/* Two columns are better than one, more rows than fewer. */
+/* Prefers two or more columns to one, then more rows. */
 static bool find_layout(const struct lines *lines, char given, bool some_texts,
                         struct layout *layout)
 {
@@ -448,7 +452,7 @@ static bool find_layout(const struct lines *lines, char given, bool some_texts,
     return best > 0;
 }
 
-/* The first line of the rows: the next one with anything in it is a row, too, or there is none. */
+/* The first line of the rows: the next line that is not empty is also a row, or there is none. */
 static size_t find_body(const struct lines *lines, const struct layout *layout)
 {
     size_t candidate = lines->n;
@@ -469,7 +473,7 @@ static size_t find_body(const struct lines *lines, const struct layout *layout)
 
 /* --- the decimal sign --- */
 
-/* 1,234 or 12,345,678: commas that may be those of thousands. 0,123 is not. */
+/* 1,234 or 12,345,678: commas may be thousands separators. 0,123 is not one of these. */
 static bool may_be_thousands(const struct field *field)
 {
     const char *at = field->text;
@@ -495,7 +499,7 @@ static bool may_be_thousands(const struct field *field)
 
 struct signs {
     bool point, comma, sure_comma;
-    int comma_line, comma_column; /* of the first that has one */
+    int comma_line, comma_column; /* position of the first field with a comma */
     char comma_text[NUMBER];
 };
 
@@ -530,21 +534,22 @@ static enum wb_status find_decimal(struct wb_text_table *table, const struct lin
     if (signs.comma && signs.point)
         return wb_fail_to(
             why, WB_ERR_FORMAT,
-            "%s:%d: column %d: '%s' has a comma where other numbers have a point: say "
-            "which is the decimal sign",
+            "%s:%d: column %d: '%s' has a comma but other numbers have a point: specify "
+            "the decimal sign",
             name, signs.comma_line, signs.comma_column, signs.comma_text);
     if (signs.comma && !signs.sure_comma)
-        return wb_fail_to(why, WB_ERR_FORMAT,
-                          "%s:%d: column %d: the comma in '%s' may be that of a decimal or of "
-                          "thousands: say which is the decimal sign",
-                          name, signs.comma_line, signs.comma_column, signs.comma_text);
+        return wb_fail_to(
+            why, WB_ERR_FORMAT,
+            "%s:%d: column %d: the comma in '%s' may be a decimal sign or a thousands "
+            "separator: specify the decimal sign",
+            name, signs.comma_line, signs.comma_column, signs.comma_text);
     table->decimal = signs.comma ? ',' : '.';
     return WB_OK;
 }
 
 /* --- the header --- */
 
-/* Words as short as units are, or in brackets, none of them a number. */
+/* True if all words are short, or in brackets, as units are, and none is a number. */
 static bool is_line_of_units(const char *line, char delimiter)
 {
     struct field field;
@@ -561,8 +566,8 @@ static bool is_line_of_units(const char *line, char delimiter)
     return any;
 }
 
-/* Where the header stands among the lines above the rows, and a line of units below it; both
- * `lines->n` where there is none. */
+/* Finds the header among the lines above the rows, and a line of units below it; each is `lines->n`
+ * if there is none. */
 static enum wb_status find_header(const struct lines *lines, size_t body,
                                   const struct layout *layout, const char *name, size_t *header,
                                   size_t *units, struct wb_reason *why)
@@ -577,13 +582,13 @@ static enum wb_status find_header(const struct lines *lines, size_t body,
     }
     if (above[0] == lines->n)
         return WB_OK;
-    /* A row that stands above words would be lost without a word. */
+    /* A row above a line of words would be lost silently: report it. */
     for (size_t i = 0; i < above[0]; i++) {
         content = look(lines->items[i].text, layout->delimiter);
         if (layout->columns > 1 && content.fields == layout->columns &&
             content.numbers == content.fields)
             return wb_fail_to(why, WB_ERR_FORMAT,
-                              "%s:%d: this line stands between rows of numbers: expected a row",
+                              "%s:%d: text between rows of numbers: expected a row of numbers",
                               name, lines->items[above[0]].number);
     }
     content = look(lines->items[above[0]].text, layout->delimiter);
@@ -591,16 +596,17 @@ static enum wb_status find_header(const struct lines *lines, size_t body,
     if (content.numbers > 0 && (as_wide || content.texts > 1))
         return wb_fail_to(
             why, WB_ERR_FORMAT,
-            "%s:%d: numbers and words in one line: neither names of columns nor a row", name,
-            lines->items[above[0]].number);
+            "%s:%d: the line mixes numbers and words: expected column names or a row of numbers",
+            name, lines->items[above[0]].number);
     if (content.numbers > 0)
         return WB_OK;
     if (!as_wide) {
         if (content.texts > 1)
-            return wb_fail_to(why, WB_ERR_FORMAT,
-                              "%s:%d: %d names above rows of %d fields: are they cut by another "
-                              "delimiter, or is the comma the decimal sign?",
-                              name, lines->items[above[0]].number, content.fields, layout->columns);
+            return wb_fail_to(
+                why, WB_ERR_FORMAT,
+                "%s:%d: %d column names above rows of %d fields: check the delimiter and "
+                "whether the comma is the decimal sign",
+                name, lines->items[above[0]].number, content.fields, layout->columns);
         return WB_OK;
     }
     *header = above[0];
@@ -616,8 +622,8 @@ static enum wb_status find_header(const struct lines *lines, size_t body,
 
 /* --- the table --- */
 
-/* Fields of a line in place, at most `most`; the number of those up to the last that is not empty,
- * or one more than `most` where there are more. */
+/* Splits a line into at most `most` fields in place. Returns the number of fields up to the last
+ * non-empty one, or `most` + 1 if there are more. */
 static int cut_fields(char *line, char delimiter, int most, char **fields)
 {
     const char *rest = line;
@@ -630,7 +636,7 @@ static int cut_fields(char *line, char delimiter, int most, char **fields)
         if (n < most)
             fields[n] = text;
         n++;
-        /* The byte after a field is a delimiter, a quote, a blank or the end: looked at already. */
+        /* The byte after a field (delimiter, quote, blank or end) was already read. */
         text[field.n] = '\0';
     }
     return last > most ? most + 1 : last;
@@ -639,17 +645,17 @@ static int cut_fields(char *line, char delimiter, int most, char **fields)
 static enum wb_status fill_names(struct wb_text_table *table, const struct lines *lines,
                                  size_t header, size_t units)
 {
-    char *fields[MOST_COLUMNS];
+    char *fields[MAX_COLUMNS];
     for (int k = 0; k < table->n_columns; k++)
         table->columns[k] = (struct wb_text_table_column){"", ""};
     if (header < lines->n) {
         table->header_line = lines->items[header].number;
-        const int n = cut_fields(lines->items[header].text, table->delimiter, MOST_COLUMNS, fields);
+        const int n = cut_fields(lines->items[header].text, table->delimiter, MAX_COLUMNS, fields);
         for (int k = 0; k < n && k < table->n_columns; k++)
             table->columns[k].name = fields[k];
     }
     if (units < lines->n) {
-        const int n = cut_fields(lines->items[units].text, table->delimiter, MOST_COLUMNS, fields);
+        const int n = cut_fields(lines->items[units].text, table->delimiter, MAX_COLUMNS, fields);
         for (int k = 0; k < n && k < table->n_columns; k++)
             table->columns[k].unit = fields[k];
     }
@@ -692,13 +698,13 @@ static enum wb_status fill(struct wb_text_table *table, struct lines *lines,
     size_t header, units;
     if (!find_layout(lines, form->delimiter, false, &layout) &&
         !find_layout(lines, form->delimiter, true, &layout))
-        return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: no row of numbers up to the end", name,
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: no row of numbers in the file", name,
                           table->n_lines > 0 ? table->n_lines : 1);
     const size_t body = find_body(lines, &layout);
     table->delimiter = layout.delimiter;
     table->decimal = form->decimal;
     if (body == lines->n)
-        return wb_fail_to(why, WB_ERR_FORMAT, "%s: no rows of numbers one after another", name);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: no consecutive rows of numbers", name);
     if (!form->decimal)
         WB_TRY(find_decimal(table, lines, body, name, why));
     WB_TRY(find_header(lines, body, &layout, name, &header, &units, why));
@@ -707,8 +713,8 @@ static enum wb_status fill(struct wb_text_table *table, struct lines *lines,
         const int named = look(lines->items[header].text, table->delimiter).fields;
         table->n_columns = named > layout.columns ? named : layout.columns;
     }
-    if (table->n_columns > MOST_COLUMNS)
-        return wb_fail_to(why, WB_ERR_FORMAT, "%s: more than %d columns", name, MOST_COLUMNS);
+    if (table->n_columns > MAX_COLUMNS)
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: more than %d columns", name, MAX_COLUMNS);
     const size_t n = lines->n - body;
     table->columns = wb_memory_new((size_t)table->n_columns, sizeof *table->columns);
     table->fields = wb_memory_new(n * (size_t)table->n_columns, sizeof *table->fields);
@@ -758,7 +764,7 @@ enum wb_text_field wb_text_table_number(const struct wb_text_table *table, size_
     return text ? classify(text, strlen(text), table->decimal, value) : WB_FIELD_EMPTY;
 }
 
-enum wb_status wb_text_table_refuse(const struct wb_text_table *table, const char *name, size_t row,
+enum wb_status wb_text_table_reject(const struct wb_text_table *table, const char *name, size_t row,
                                     int column, const char *message, struct wb_reason *why)
 {
     const char *const text = table->fields[row * (size_t)table->n_columns + (size_t)column];

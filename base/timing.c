@@ -69,7 +69,7 @@ bool wb_time_parse(const char *text, int64_t *utc)
         const char *const end = strptime(text, forms[i], &date);
         if (!end || *end)
             continue;
-        /* strptime() takes the 31st of every month: only a date that is printed alike exists. */
+        /* strptime() accepts the 31st of every month: only existing dates are printed unchanged. */
         const time_t seconds = timegm(&date);
         *utc = (int64_t)seconds;
         wb_time_format(*utc, again);

@@ -1,8 +1,8 @@
-/* The clock and the wait of everything that acquires, shows or simulates, through one table that
- * can be replaced: by virtual time (fixtures/virtual/virtual_time.h), under which a test of minutes
- * takes a second and every run gives the same result on any machine.
+/* The clock and the wait function of everything that acquires, displays or simulates, through a
+ * table that can be replaced by virtual time (fixtures/virtual/virtual_time.h): a test of minutes
+ * then takes a second and gives the same result on any machine.
  *
- * What computes and measures its own speed uses the same clock; it runs in the host's time.
+ * Computations that measure their own speed use the same clock; they run in the host's time.
  */
 #ifndef WB_BASE_TIMING_H
 #define WB_BASE_TIMING_H
@@ -18,11 +18,11 @@ struct wb_time_source {
     int (*wait)(struct pollfd *descriptors, size_t n, int64_t deadline_ns);
 };
 
-/* Replaces the host's clock for the whole process; NULL brings it back. Not while another thread
- * uses it. The source is borrowed. */
+/* Replaces the host's clock for the whole process; NULL restores it. Not while another thread uses
+ * it. The source is borrowed. */
 void wb_time_replace(const struct wb_time_source *source);
 
-/* True while the host's clock is replaced: time then passes only while wb_time_wait() waits. */
+/* True while the host's clock is replaced: time then advances only during wb_time_wait(). */
 bool wb_time_is_virtual(void);
 
 /* Monotonic clock, ns. */
@@ -31,18 +31,18 @@ int64_t wb_time_now_ns(void);
 /* Date, seconds since 1970-01-01 UTC. */
 int64_t wb_time_utc(void);
 
-/* Formats a date (s, as above) as "2026-11-25T14:03:00Z". */
+/* Formats a date (s, as from wb_time_utc()) as "2026-11-25T14:03:00Z". */
 #define WB_TIME_TEXT 32
 void wb_time_format(int64_t utc, char text[WB_TIME_TEXT]);
-/* Reads a date of that form, or "2026-11-25" (its first second). False: the text is neither. */
+/* Parses a date in that format, or "2026-11-25" (its first second). False for any other text. */
 bool wb_time_parse(const char *text, int64_t *utc);
 
-/* Waits as ppoll() does until one of the n descriptors is ready, a signal arrives or `deadline_ns`
- * has passed, and sets their `revents`. Returns how many are ready, 0 at the deadline, -1 with
- * errno otherwise (EINTR: a signal). `descriptors` may be NULL with n = 0. */
+/* Waits like ppoll() until one of the n descriptors is ready, a signal arrives or `deadline_ns` has
+ * passed, and sets their `revents`. Returns the number of ready descriptors, 0 at the deadline, -1
+ * with errno otherwise (EINTR: a signal). `descriptors` may be NULL with n = 0. */
 int wb_time_wait(struct pollfd *descriptors, size_t n, int64_t deadline_ns);
 
-/* Waits until `deadline_ns`, or less where a signal arrives. */
+/* Waits until `deadline_ns`, or until a signal arrives. */
 void wb_time_sleep(int64_t deadline_ns);
 
 #endif

@@ -1,5 +1,5 @@
-/* Conversions at the edges. Every double without a unit in its name is SI; these factors turn the
- * units of files, instruments and axes into SI (multiply) and back (divide). */
+/* Unit conversions at the interfaces. Every double without a unit in its name is SI; these factors
+ * convert units of files, instruments and axes to SI (multiply) and back (divide). */
 #ifndef WB_BASE_UNITS_H
 #define WB_BASE_UNITS_H
 
@@ -13,8 +13,8 @@
 #define WB_DAY 86400.0                 /* s */
 #define WB_NMM 1e-3                    /* N m: one newton millimetre */
 #define WB_NMM2 1e-6                   /* N m2: one newton square millimetre */
-#define WB_N_PER_MM 1e3                /* J/m2: energy of a crack in N/mm */
-#define WB_N_PER_MM3 1e9               /* Pa/m: stiffness of an interface in N/mm3 */
+#define WB_N_PER_MM 1e3                /* J/m2: fracture energy of 1 N/mm */
+#define WB_N_PER_MM3 1e9               /* Pa/m: stiffness of an interface of 1 N/mm3 */
 #define WB_S_PER_MM 1e3                /* s/m */
 #define WB_MN 1e-3                     /* N: one millinewton */
 #define WB_MJ 1e-3                     /* J: one millijoule */
@@ -29,13 +29,13 @@
 #define WB_NS_PER_S INT64_C(1000000000)
 #define WB_NS_PER_MS INT64_C(1000000)
 
-/* Nanoseconds of a time in seconds, rounded to nearest. |seconds| must be below 9.2e9. */
+/* Nanoseconds for a time in seconds, rounded to nearest. |seconds| must be below 9.2e9. */
 static inline int64_t wb_ns_from_seconds(double seconds)
 {
     return (int64_t)(seconds * 1e9 + (seconds < 0.0 ? -0.5 : 0.5));
 }
 
-/* Seconds of a time in nanoseconds; exact to 1 ns up to 100 days. */
+/* Seconds for a time in nanoseconds; exact to 1 ns up to 100 days. */
 static inline double wb_seconds_from_ns(int64_t t_ns)
 {
     return (double)t_ns * 1e-9;

@@ -1,4 +1,5 @@
-/* Vectors of three components in space. All functions are pure; results may be an argument. */
+/* Vectors with three components. Functions have no side effects; a result may be the same array as
+ * an argument. */
 #ifndef WB_BASE_VEC3_H
 #define WB_BASE_VEC3_H
 
@@ -25,7 +26,7 @@ static inline void wb_vec3_cross(const double *a, const double *b, double *out)
     out[2] = z;
 }
 
-/* Scales to length 1 and returns the length before; a vector of no length stays as it is. */
+/* Scales to length 1 and returns the previous length; a vector of length 0 does not change. */
 static inline double wb_vec3_normalise(double *a)
 {
     const double length = wb_vec3_length(a);

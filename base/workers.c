@@ -6,7 +6,7 @@
 #include "base/memory.h"
 
 enum {
-    MOST_THREADS = 64
+    MAX_THREADS = 64
 };
 
 struct queue {
@@ -72,9 +72,9 @@ int wb_workers_run(const struct wb_workers *workers)
                           .is_guarded = wb_memory_is_guarded()};
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     const int wanted = workers->n_threads > 0 ? workers->n_threads : (int)processors;
-    pthread_t threads[MOST_THREADS];
+    pthread_t threads[MAX_THREADS];
     int started = 0;
-    while (started < wanted - 1 && started < workers->n - 1 && started < MOST_THREADS &&
+    while (started < wanted - 1 && started < workers->n - 1 && started < MAX_THREADS &&
            pthread_create(&threads[started], NULL, work, &queue) == 0)
         started++;
     work(&queue);

@@ -1,4 +1,4 @@
-/* Jobs that do not depend on each other, side by side on threads. */
+/* Independent jobs in parallel on threads. */
 #ifndef WB_BASE_WORKERS_H
 #define WB_BASE_WORKERS_H
 
@@ -8,19 +8,19 @@
 
 struct wb_workers {
     int n;         /* jobs */
-    int n_threads; /* at most, the calling one among them; 0: as many as there are processors */
+    int n_threads; /* maximum number, including the calling thread; 0: one per processor */
     enum wb_status (*job)(void *context, int index);
-    /* Called after each job with what it returned, by one thread at a time; false: no further job
-     * begins. NULL: none. */
+    /* Called after each job with its status, by one thread at a time; return false to start no
+     * further jobs. May be NULL. */
     bool (*done)(void *context, int index, enum wb_status status);
     void *context;
 };
 
-/* Begins the jobs in the order of their index, as threads become free, and returns when all that
- * began have ended. A thread that cannot be started is no failure: others do its jobs. Where the
- * caller is below wb_memory_try(), so are job and done: a job that finds no memory returns
- * WB_ERR_MEMORY, and where `done` finds none, no further job begins. Returns how many jobs were
- * done. */
+/* Starts the jobs in the order of their index as threads become free, and returns when all started
+ * jobs have ended. A thread that cannot be started is not an error: others do its jobs. If the
+ * caller is below wb_memory_try(), so are job and done: a job that runs out of memory returns
+ * WB_ERR_MEMORY, and if `done` runs out of memory, no further job starts. Returns the number of
+ * completed jobs. */
 int wb_workers_run(const struct wb_workers *workers);
 
 #endif

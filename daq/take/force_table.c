@@ -25,7 +25,7 @@ static enum wb_status take_rows(struct wb_force_table *out, const struct wb_text
             WB_TRY(wb_table_columns_value(columns, table, i, WB_MEASURED_FORCE, &force, name, why));
         }
         if (fabs(t) >= LARGEST_TIME)
-            return wb_text_table_refuse(table, name, i, columns->column[WB_MEASURED_TIME],
+            return wb_text_table_reject(table, name, i, columns->column[WB_MEASURED_TIME],
                                         "expected a time from a test's start", why);
         if (isfinite(t) && isfinite(force) && (out->n == 0 || t > out->t[out->n - 1])) {
             out->t[out->n] = t;

@@ -428,5 +428,5 @@ enum wb_status wb_table_columns_value(const struct wb_table_columns *columns,
     case WB_FIELD_TEXT:
         break;
     }
-    return wb_text_table_refuse(table, name, row, column, "expected a number", why);
+    return wb_text_table_reject(table, name, row, column, "expected a number", why);
 }

@@ -50,7 +50,7 @@ static void written_bytes_read_back(void **state)
     assert_int_equal(entries(folder), 1);
 }
 
-static void a_failed_write_leaves_the_old_file_and_nothing_else(void **state)
+static void a_failed_write_keeps_the_old_file(void **state)
 {
     (void)state;
     char path[WB_PATH], *bytes;
@@ -87,7 +87,7 @@ static void an_output_folder_with_files_needs_force(void **state)
     assert_int_equal(wb_file_prepare_output(inside, true), WB_ERR_EXISTS);
 }
 
-static void paths_come_apart(void **state)
+static void paths_are_split(void **state)
 {
     (void)state;
     char part[WB_PATH];
@@ -113,7 +113,7 @@ static void fixtures_are_found_by_name_and_by_path(void **state)
     assert_int_equal(wb_file_find_fixture(path, "wires", file, NULL), WB_OK);
     assert_int_equal(wb_file_find_fixture(path, "wires", "no-such-wire", NULL), WB_ERR_NOT_FOUND);
     assert_int_equal(wb_file_find_fixture(path, "wires", "no/such.yaml", folder), WB_ERR_NOT_FOUND);
-    /* A file without the ending, but no folder. */
+    /* A file without an extension. */
     assert_int_equal(wb_file_join(file, folder, "mine"), WB_OK);
     assert_int_equal(wb_file_write(file, "a: 1\n", 5), WB_OK);
     assert_int_equal(wb_file_find_fixture(path, "wires", "mine", folder), WB_OK);
@@ -123,7 +123,7 @@ static void fixtures_are_found_by_name_and_by_path(void **state)
     assert_int_equal(wb_file_join(file, folder, "results"), WB_OK);
     assert_int_equal(wb_file_make_folder(file), WB_OK);
     assert_int_equal(wb_file_find_fixture(path, "wires", "results", folder), WB_ERR_NOT_FOUND);
-    /* Shipped data wins from the folder in the environment. */
+    /* Shipped data in the folder from the environment has precedence. */
     char shipped[WB_PATH];
     assert_int_equal(wb_file_join(shipped, folder, "fixtures/wires"), WB_OK);
     assert_int_equal(wb_file_make_folder(shipped), WB_OK);
@@ -144,7 +144,7 @@ static void remember(void *context, enum wb_log_level level, const char *domain,
     snprintf(last_message, sizeof last_message, "%s", message);
 }
 
-static void a_name_that_means_nothing_is_told_with_its_place(void **state)
+static void unknown_name_is_reported_with_its_place(void **state)
 {
     (void)state;
     char path[WB_PATH];
@@ -165,7 +165,7 @@ static void a_lock_is_held_once_and_ends_with_its_holder(void **state)
     struct wb_file_lock lock, second;
     long holder = -1;
     assert_int_equal(wb_file_join(path, folder, "test.lock"), WB_OK);
-    /* One left behind, with a number in it. */
+    /* A leftover lock file with a number. */
     assert_int_equal(wb_file_write(path, "123456789\n", 10), WB_OK);
     assert_int_equal(wb_file_lock(&lock, path, &holder), WB_OK);
     assert_int_equal(wb_file_lock(&second, path, &holder), WB_ERR_BUSY);
@@ -198,11 +198,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         fact(written_bytes_read_back),
-        fact(a_failed_write_leaves_the_old_file_and_nothing_else),
+        fact(a_failed_write_keeps_the_old_file),
         fact(an_output_folder_with_files_needs_force),
-        fact(paths_come_apart),
+        fact(paths_are_split),
         fact(fixtures_are_found_by_name_and_by_path),
-        fact(a_name_that_means_nothing_is_told_with_its_place),
+        fact(unknown_name_is_reported_with_its_place),
         fact(a_lock_is_held_once_and_ends_with_its_holder),
         fact(sha256_matches_the_standard_vector),
     };

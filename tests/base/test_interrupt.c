@@ -31,8 +31,8 @@ static void guarded_quit_interrupts_and_the_rest_is_ignored(void **state)
     wb_interrupt_set(false);
 }
 
-/* As `nohup` leaves it. */
-static void a_hangup_that_is_ignored_stays_ignored(void **state)
+/* As set by `nohup`. */
+static void ignored_hangup_stays_ignored(void **state)
 {
     (void)state;
     signal(SIGHUP, SIG_IGN);
@@ -46,7 +46,7 @@ static void a_hangup_that_is_ignored_stays_ignored(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_hangup_that_is_ignored_stays_ignored),
+        cmocka_unit_test(ignored_hangup_stays_ignored),
         cmocka_unit_test(interrupts_set_the_flag),
         cmocka_unit_test(guarded_quit_interrupts_and_the_rest_is_ignored),
     };

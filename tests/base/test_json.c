@@ -42,14 +42,15 @@ static void a_document_reads_back(void **state)
     wb_json_destroy(again);
 }
 
-static void what_json_cannot_say_becomes_null_or_ascii(void **state)
+static void unsupported_values_become_null_or_ascii(void **state)
 {
     (void)state;
     struct wb_json *root = wb_json_create();
     wb_json_set_number(root, "a", (double)NAN);
     wb_json_set_text(root, "b", NULL);
     wb_json_set_text(root, "c", "\xff!");
-    /* Half of a pair, more bytes than needed, beyond the last character; and characters. */
+    /* Half of a surrogate pair, an overlong form, beyond the last character; and valid
+     * characters. */
     wb_json_set_text(root, "d", "\xed\xa0\x80 \xc0\xaf \xf4\x90\x80\x80");
     wb_json_set_text(root, "e", "\xc3\xa9 \xf0\x9f\x98\x80 \xef\xbf\xbe");
     char *text;
@@ -99,7 +100,7 @@ static void a_lost_value_is_reported_when_written(void **state)
     assert_int_equal(format_quietly(NULL), WB_ERR_MEMORY);
 }
 
-static void a_lost_value_is_remembered_until_its_document_is_gone(void **state)
+static void a_lost_value_is_recorded_until_its_document_is_destroyed(void **state)
 {
     (void)state;
     struct wb_json *const broken = wb_json_create();
@@ -114,7 +115,7 @@ static void a_lost_value_is_remembered_until_its_document_is_gone(void **state)
     wb_json_destroy(later);
 }
 
-static void setting_again_replaces_and_keeps_the_place(void **state)
+static void setting_again_replaces_and_keeps_the_order(void **state)
 {
     (void)state;
     struct wb_json *const root = wb_json_create();
@@ -132,7 +133,7 @@ static void setting_again_replaces_and_keeps_the_place(void **state)
     wb_json_destroy(root);
 }
 
-static void bad_json_is_refused(void **state)
+static void invalid_json_is_rejected(void **state)
 {
     (void)state;
     wb_log_set_sink(discard_message, NULL);
@@ -145,7 +146,7 @@ static void bad_json_is_refused(void **state)
     wb_log_set_sink(NULL, NULL);
 }
 
-/* Two documents: whether they differ by more than 1e-9, and where. */
+/* Checks whether two documents differ by more than 1e-9, and where. */
 static void assert_differs(const char *one, const char *other, const char *const *ignored,
                            const char *expected)
 {
@@ -168,14 +169,14 @@ static void documents_are_compared_number_by_number(void **state)
     assert_differs("{\"a\": {\"b\": 1}}", "{\"a\": {\"b\": 1.0000000005}}", NULL, NULL);
     assert_differs("{\"a\": {\"b\": 1}}", "{\"a\": {\"b\": 1.000000002}}", NULL, "a.b");
     assert_differs("{\"a\": {\"b\": 1e-20}}", "{\"a\": {\"b\": 2e-20}}", NULL, "a.b");
-    /* What is nothing beside the largest of its array may be another nothing. */
+    /* Values negligible compared with the largest of their array may differ. */
     assert_differs("{\"a\": [5, 1e-20]}", "{\"a\": [5, 2e-20]}", NULL, NULL);
     assert_differs("{\"a\": [5, 1e-8]}", "{\"a\": [5, 2e-8]}", NULL, "a[1]");
     assert_differs("{\"a\": [5, {\"b\": [true]}]}", "{\"a\": [5, {\"b\": [false]}]}", NULL,
                    "a[1].b[0]");
 }
 
-static void what_is_no_number_is_to_be_equal(void **state)
+static void values_other_than_numbers_must_be_equal(void **state)
 {
     (void)state;
     assert_differs("{\"a\": \"x\", \"c\": \"x\"}", "{\"a\": \"x\", \"c\": \"y\"}", NULL, "c");
@@ -184,7 +185,7 @@ static void what_is_no_number_is_to_be_equal(void **state)
     assert_differs("{\"a\": null}", "{\"a\": 0}", NULL, "a");
     assert_differs("{\"a\": {\"b\": 1}}", "{\"a\": {\"c\": 1}}", NULL, "a.c");
     assert_differs("{\"a\": [1, 2]}", "{\"a\": [1]}", NULL, "a");
-    /* Members may be left out, here and not further down. */
+    /* Members can be ignored at the top level only. */
     static const char *const t_and_u[] = {"t", "u", NULL};
     assert_differs("{\"t\": 1, \"a\": 1}", "{\"t\": 2, \"a\": 1, \"u\": 3}", t_and_u, NULL);
     assert_differs("{\"u\": 1, \"v\": 1}", "{\"u\": 2, \"v\": 2}", t_and_u, "v");
@@ -208,7 +209,7 @@ static void the_first_difference_is_named_with_both_values(void **state)
          "c.d[1].e", "2", "3"},
         {"{\"a\": [1]}", "{\"a\": [1, 2]}", "a", "a list of 1", "a list of 2"},
         {"{\"a\": 1}", "{}", "a", "1", "nothing"},
-        {"{}", "{\"a\": {}}", "a", "nothing", "something"},
+        {"{}", "{\"a\": {}}", "a", "nothing", "an object"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_json *a, *b;
@@ -248,14 +249,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_document_reads_back),
-        cmocka_unit_test(what_json_cannot_say_becomes_null_or_ascii),
+        cmocka_unit_test(unsupported_values_become_null_or_ascii),
         cmocka_unit_test(numbers_are_as_short_as_they_can_be),
         cmocka_unit_test(a_lost_value_is_reported_when_written),
-        cmocka_unit_test(a_lost_value_is_remembered_until_its_document_is_gone),
-        cmocka_unit_test(setting_again_replaces_and_keeps_the_place),
-        cmocka_unit_test(bad_json_is_refused),
+        cmocka_unit_test(a_lost_value_is_recorded_until_its_document_is_destroyed),
+        cmocka_unit_test(setting_again_replaces_and_keeps_the_order),
+        cmocka_unit_test(invalid_json_is_rejected),
         cmocka_unit_test(documents_are_compared_number_by_number),
-        cmocka_unit_test(what_is_no_number_is_to_be_equal),
+        cmocka_unit_test(values_other_than_numbers_must_be_equal),
         cmocka_unit_test(the_first_difference_is_named_with_both_values),
         cmocka_unit_test(differences_are_counted_and_the_largest_named),
     };

@@ -1,4 +1,4 @@
-/* Messages on stderr, as a file receives them. */
+/* Messages on stderr, redirected to a file. */
 #include "base/log.h"
 
 #include <fcntl.h>
@@ -13,7 +13,7 @@
 
 #define WB_LOG_DOMAIN "test"
 
-/* What stderr receives between start() and finish(). */
+/* Captures stderr between start() and finish(). */
 static int saved;
 static FILE *file;
 

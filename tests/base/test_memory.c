@@ -42,7 +42,7 @@ static void blocks_grow_and_texts_are_copied(void **unused)
     free(copy);
 }
 
-static void room_doubles_and_what_is_in_it_stays(void **unused)
+static void room_doubles_and_keeps_its_contents(void **unused)
 {
     (void)unused;
     size_t room = 0, last = 0;
@@ -62,14 +62,15 @@ static void room_doubles_and_what_is_in_it_stays(void **unused)
     free(numbers);
 }
 
-/* Noted only after it has grown: who owns the block goes on below wb_memory_try(). */
+/* The capacity is updated only after success: the owner of the block survives below
+ * wb_memory_try(). */
 static enum wb_status too_much_room(void *context)
 {
     (void)wb_memory_room(NULL, context, SIZE_MAX / 2, 16);
     return WB_OK;
 }
 
-/* Larger than any memory: no library is asked for it. */
+/* Larger than any memory: malloc() is not called. */
 static enum wb_status too_much(void *context)
 {
     (void)wb_memory_resize(NULL, SIZE_MAX / 2, 16);
@@ -171,7 +172,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arrays_are_zeroed_and_apart),
         cmocka_unit_test(blocks_grow_and_texts_are_copied),
-        cmocka_unit_test(room_doubles_and_what_is_in_it_stays),
+        cmocka_unit_test(room_doubles_and_keeps_its_contents),
         cmocka_unit_test(tried_function_ends_at_the_allocation),
         cmocka_unit_test(program_ends_with_one_message),
     };

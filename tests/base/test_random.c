@@ -9,12 +9,12 @@ static void numbers_depend_on_seed_stream_and_index_only(void **state)
     assert_true(bits != wb_random_bits(4, 5, 7));
     assert_true(bits != wb_random_bits(3, 6, 7));
     assert_true(bits != wb_random_bits(3, 5, 8));
-    /* Swapped words must not meet. */
+    /* Exchanged words must give different numbers. */
     assert_true(wb_random_bits(5, 3, 7) != wb_random_bits(3, 5, 7));
     assert_true(wb_random_bits(3, 7, 5) != wb_random_bits(3, 5, 7));
 }
 
-/* Recordings are made again from their seeds: these numbers may never change. */
+/* Recordings are regenerated from their seeds: these numbers must never change. */
 static void known_numbers_stay(void **state)
 {
     (void)state;
@@ -45,7 +45,7 @@ static void uniform_fills_the_unit_interval_evenly(void **state)
     double chi2 = 0.0;
     for (int b = 0; b < BINS; b++)
         chi2 += pow(counts[b] - N / BINS, 2.0) / ((double)N / BINS);
-    /* 19 degrees of freedom: beyond 50 has a chance of 1e-4. */
+    /* 19 degrees of freedom: a value above 50 has a probability of 1e-4. */
     assert_true(chi2 < 50.0);
 }
 

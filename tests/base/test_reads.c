@@ -21,7 +21,7 @@ static void write_and_read(const char *name, const char *text)
     free(bytes);
 }
 
-static void files_are_noted_once_with_what_was_found_in_them(void **state)
+static void files_are_noted_once_with_their_contents(void **state)
 {
     (void)state;
     struct wb_read read;
@@ -60,7 +60,7 @@ static void a_file_is_the_same_by_a_link(void **state)
     wb_reads_stop();
 }
 
-static void a_file_is_left_out_and_later_ones_are_forgotten(void **state)
+static void a_file_is_removed_and_later_ones_are_dropped(void **state)
 {
     (void)state;
     struct wb_read read;
@@ -81,9 +81,9 @@ static void a_file_is_left_out_and_later_ones_are_forgotten(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(files_are_noted_once_with_what_was_found_in_them),
+        cmocka_unit_test(files_are_noted_once_with_their_contents),
         cmocka_unit_test(a_file_is_the_same_by_a_link),
-        cmocka_unit_test(a_file_is_left_out_and_later_ones_are_forgotten),
+        cmocka_unit_test(a_file_is_removed_and_later_ones_are_dropped),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

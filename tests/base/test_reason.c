@@ -1,4 +1,4 @@
-/* Reasons: texts that travel with a result, and the log where nobody asks for them. */
+/* Reasons: texts returned with a result, and the log if no reason is passed. */
 #include "tests/messages.h"
 
 #include <string.h>
@@ -9,7 +9,7 @@
 
 static enum wb_status refuse(struct wb_reason *reason, int number)
 {
-    return wb_fail_to(reason, WB_ERR_DATA, "number %d refused", number);
+    return wb_fail_to(reason, WB_ERR_DATA, "number %d rejected", number);
 }
 
 static void a_failure_goes_to_the_reason_and_not_to_the_log(void **state)
@@ -19,7 +19,7 @@ static void a_failure_goes_to_the_reason_and_not_to_the_log(void **state)
     keep_messages();
     assert_int_equal(refuse(&reason, 7), WB_ERR_DATA);
     release_messages();
-    assert_string_equal(reason.text, "number 7 refused");
+    assert_string_equal(reason.text, "number 7 rejected");
     assert_int_equal(kept.n, 0);
 }
 
@@ -32,10 +32,10 @@ static void a_failure_without_a_reason_is_logged(void **state)
     assert_int_equal(kept.n, 1);
     assert_int_equal(kept.level, WB_LOG_ERROR);
     assert_string_equal(kept.domain, "test");
-    assert_string_equal(kept.last, "number 8 refused");
+    assert_string_equal(kept.last, "number 8 rejected");
 }
 
-static void a_text_is_replaced_also_by_one_made_of_itself(void **state)
+static void a_text_can_be_replaced_by_one_that_contains_it(void **state)
 {
     (void)state;
     struct wb_reason reason = {0};
@@ -52,7 +52,7 @@ static enum wb_status lose(struct wb_reason *reason, const char *table)
     return wb_fail_also(reason, WB_ERR_DATA, "table %s is lost", table);
 }
 
-static void one_failure_after_another_is_kept(void **state)
+static void failures_are_appended(void **state)
 {
     (void)state;
     struct wb_reason reason = {.text = ""};
@@ -69,8 +69,8 @@ static void one_failure_after_another_is_kept(void **state)
     assert_string_equal(kept.last, "table c is lost");
 }
 
-/* The last bytes that fit are "..."; a character of two bytes would lie across their begin. */
-static void a_long_text_is_cut_at_the_end_of_a_character(void **state)
+/* The last bytes that fit are "..."; a character of two bytes would be cut by them. */
+static void a_long_text_is_cut_after_a_complete_character(void **state)
 {
     (void)state;
     const size_t most = sizeof(struct wb_reason) - 1;
@@ -98,9 +98,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_failure_goes_to_the_reason_and_not_to_the_log),
         cmocka_unit_test(a_failure_without_a_reason_is_logged),
-        cmocka_unit_test(a_text_is_replaced_also_by_one_made_of_itself),
-        cmocka_unit_test(one_failure_after_another_is_kept),
-        cmocka_unit_test(a_long_text_is_cut_at_the_end_of_a_character),
+        cmocka_unit_test(a_text_can_be_replaced_by_one_that_contains_it),
+        cmocka_unit_test(failures_are_appended),
+        cmocka_unit_test(a_long_text_is_cut_after_a_complete_character),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

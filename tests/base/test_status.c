@@ -6,7 +6,7 @@
 
 static enum wb_status refuse(int number)
 {
-    return wb_fail(WB_ERR_DATA, "number %d refused", number);
+    return wb_fail(WB_ERR_DATA, "number %d rejected", number);
 }
 
 static enum wb_status call_refuse(int *after)
@@ -16,7 +16,7 @@ static enum wb_status call_refuse(int *after)
     return WB_OK;
 }
 
-static void failing_logs_one_message_and_travels_up(void **state)
+static void a_failure_logs_one_message_and_is_returned(void **state)
 {
     (void)state;
     keep_messages();
@@ -27,7 +27,7 @@ static void failing_logs_one_message_and_travels_up(void **state)
     assert_int_equal(kept.n, 1);
     assert_int_equal(kept.level, WB_LOG_ERROR);
     assert_string_equal(kept.domain, "test");
-    assert_string_equal(kept.last, "number 7 refused");
+    assert_string_equal(kept.last, "number 7 rejected");
 }
 
 static void every_status_has_its_own_text(void **state)
@@ -56,7 +56,7 @@ static void messages_above_the_threshold_are_dropped(void **state)
     release_messages();
 }
 
-static void grave_messages_are_delivered_as_less(void **state)
+static void severe_messages_are_downgraded(void **state)
 {
     (void)state;
     keep_messages();
@@ -80,10 +80,10 @@ static void grave_messages_are_delivered_as_less(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(failing_logs_one_message_and_travels_up),
+        cmocka_unit_test(a_failure_logs_one_message_and_is_returned),
         cmocka_unit_test(every_status_has_its_own_text),
         cmocka_unit_test(messages_above_the_threshold_are_dropped),
-        cmocka_unit_test(grave_messages_are_delivered_as_less),
+        cmocka_unit_test(severe_messages_are_downgraded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

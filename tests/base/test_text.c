@@ -26,7 +26,7 @@ static void markup_is_escaped(void **state)
     wb_text_release(&text);
 }
 
-static void an_impossible_size_is_remembered_as_failure(void **state)
+static void an_invalid_size_is_recorded_as_failure(void **state)
 {
     (void)state;
     struct wb_text text = {0};
@@ -43,7 +43,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(text_grows_by_appending),
         cmocka_unit_test(markup_is_escaped),
-        cmocka_unit_test(an_impossible_size_is_remembered_as_failure),
+        cmocka_unit_test(an_invalid_size_is_recorded_as_failure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

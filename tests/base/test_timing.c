@@ -32,11 +32,11 @@ static void host_waits_until_the_deadline(void **state)
     assert_false(wb_time_is_virtual());
     assert_int_equal(wb_time_wait(NULL, 0, deadline_ns), 0);
     assert_true(wb_time_now_ns() >= deadline_ns);
-    /* A deadline that has passed does not wait. */
+    /* A deadline in the past does not wait. */
     assert_int_equal(wb_time_wait(NULL, 0, INT64_MIN / 2), 0);
 }
 
-static void host_wakes_for_a_ready_descriptor(void **state)
+static void host_wait_ends_when_a_descriptor_is_ready(void **state)
 {
     int ends[2];
     (void)state;
@@ -49,7 +49,7 @@ static void host_wakes_for_a_ready_descriptor(void **state)
     close(ends[1]);
 }
 
-static void replacement_is_used_until_it_is_taken_back(void **state)
+static void replacement_is_used_until_it_is_removed(void **state)
 {
     static const struct wb_time_source source = {fixed_now_ns, fixed_utc, refuse_to_wait};
     (void)state;
@@ -63,7 +63,7 @@ static void replacement_is_used_until_it_is_taken_back(void **state)
     assert_true(wb_time_now_ns() != 42);
 }
 
-static void dates_are_read_as_they_are_written(void **state)
+static void dates_round_trip(void **state)
 {
     char text[WB_TIME_TEXT];
     int64_t utc = 0;
@@ -102,9 +102,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(host_waits_until_the_deadline),
-        cmocka_unit_test(host_wakes_for_a_ready_descriptor),
-        cmocka_unit_test(replacement_is_used_until_it_is_taken_back),
-        cmocka_unit_test(dates_are_read_as_they_are_written),
+        cmocka_unit_test(host_wait_ends_when_a_descriptor_is_ready),
+        cmocka_unit_test(replacement_is_used_until_it_is_removed),
+        cmocka_unit_test(dates_round_trip),
         cmocka_unit_test(invalid_dates_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -60,7 +60,7 @@ static void every_job_is_done_once(void **unused)
     }
 }
 
-static void one_thread_is_the_callers(void **unused)
+static void one_thread_runs_in_the_caller(void **unused)
 {
     (void)unused;
     struct record record = {.stops_after = 0};
@@ -75,7 +75,7 @@ static void no_job_begins_after_a_stop(void **unused)
     assert_int_equal(run(&record, 1), 3);
     assert_int_equal(record.times[2], 1);
     assert_int_equal(record.times[3], 0);
-    /* Those that others began before are done. */
+    /* Jobs that other threads have started are finished. */
     record = (struct record){.stops_after = 3};
     const int done = run(&record, 4);
     assert_true(done >= 3 && done <= 3 + 3);
@@ -99,7 +99,7 @@ static enum wb_status need_memory(void *context, int index)
 
 struct ends {
     int n_without, n_told;
-    int fails_at; /* of those told */
+    int fails_at; /* number of the reported job that fails */
 };
 
 static bool count_ends(void *context, int index, enum wb_status status)
@@ -126,7 +126,7 @@ static void discard(void *context, enum wb_log_level level, const char *domain, 
     (void)context, (void)level, (void)domain, (void)text;
 }
 
-static void a_job_without_memory_fails_alone(void **unused)
+static void only_the_job_without_memory_fails(void **unused)
 {
     (void)unused;
     struct ends ends = {0}, cut = {.fails_at = 5};
@@ -143,10 +143,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_job_is_done_once),
-        cmocka_unit_test(one_thread_is_the_callers),
+        cmocka_unit_test(one_thread_runs_in_the_caller),
         cmocka_unit_test(no_job_begins_after_a_stop),
         cmocka_unit_test(nothing_is_done_without_jobs),
-        cmocka_unit_test(a_job_without_memory_fails_alone),
+        cmocka_unit_test(only_the_job_without_memory_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
