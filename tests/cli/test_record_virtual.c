@@ -174,8 +174,8 @@ static void force_limit_stops_the_test(void **state)
 /* The power of the whole bench fails. */
 static void unplug_all(void)
 {
-    bench->way->unplug(bench, WB_ROLE_LOAD);
-    bench->way->unplug(bench, WB_ROLE_STAGE);
+    bench->transport->unplug(bench, WB_ROLE_LOAD);
+    bench->transport->unplug(bench, WB_ROLE_STAGE);
     bench->has_mocap = false;
 }
 

@@ -1,4 +1,4 @@
-/* What most tests of the virtual rig start from: the paper's bench, a specimen, its wire. */
+/* Common setup of most tests of the virtual rig: the paper's bench, a specimen, its wire. */
 #ifndef WB_TESTS_VIRTUAL_SETUP_H
 #define WB_TESTS_VIRTUAL_SETUP_H
 

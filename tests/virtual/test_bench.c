@@ -1,4 +1,4 @@
-/* The whole virtual rig with the real drivers in the real acquisition loop: in virtual time, and
+/* The complete virtual rig with the real drivers in the real acquisition loop: in virtual time, and
  * several side by side through their ports in real time. */
 #include "fixtures/virtual/bench_private.h"
 
@@ -19,8 +19,8 @@ enum {
     MOST = 20000
 };
 
-/* What was heard, by sample number. */
-struct ears {
+/* Received samples, by sample number. */
+struct receiver {
     int n_load, n_mocap, n_probe;
     double force[MOST];
     int64_t load_ns[MOST];
@@ -31,39 +31,39 @@ struct ears {
 struct scene {
     char folder[64], rig_path[WB_PATH], paper[WB_PATH], specimen[WB_PATH];
     struct wb_bench *bench;
-    bool has_ports; /* and a thread that serves them, in real time */
+    bool has_ports; /* also with a thread that serves its ports, in real time */
     pthread_t thread;
     volatile bool stop;
     struct wb_rig rig;
     struct wb_acquisition *acquisition;
-    struct ears ears;
+    struct receiver receiver;
 };
 
 static void hear_load(void *context, const struct wb_load_sample *sample)
 {
-    struct ears *const ears = context;
-    if (ears->n_load == MOST)
+    struct receiver *const receiver = context;
+    if (receiver->n_load == MOST)
         return;
-    ears->force[ears->n_load] = sample->force;
-    ears->load_ns[ears->n_load++] = sample->t_ns;
+    receiver->force[receiver->n_load] = sample->force;
+    receiver->load_ns[receiver->n_load++] = sample->t_ns;
 }
 
 static void hear_mocap(void *context, const struct wb_mocap_frame *frame)
 {
-    struct ears *const ears = context;
-    if (ears->n_mocap == MOST)
+    struct receiver *const receiver = context;
+    if (receiver->n_mocap == MOST)
         return;
-    ears->frame[ears->n_mocap] = frame->frame_number;
-    ears->position[ears->n_mocap] = 0.0;
+    receiver->frame[receiver->n_mocap] = frame->frame_number;
+    receiver->position[receiver->n_mocap] = 0.0;
     for (int i = 0; i < 3 && frame->n_markers > 0; i++)
-        ears->position[ears->n_mocap] += (double)frame->markers[0].position[i];
-    ears->n_mocap++;
+        receiver->position[receiver->n_mocap] += (double)frame->markers[0].position[i];
+    receiver->n_mocap++;
 }
 
 static void hear_probe(void *context, const struct wb_clock_probe *probe)
 {
     (void)probe;
-    ((struct ears *)context)->n_probe++;
+    ((struct receiver *)context)->n_probe++;
 }
 
 static void *live(void *context)
@@ -106,7 +106,7 @@ static void start_bench(struct scene *scene, struct wb_bench_settings settings, 
 static void connect_to(struct scene *scene)
 {
     const struct wb_sink sink = {
-        .context = &scene->ears, .load = hear_load, .mocap = hear_mocap, .probe = hear_probe};
+        .context = &scene->receiver, .load = hear_load, .mocap = hear_mocap, .probe = hear_probe};
     assert_int_equal(
         wb_acquisition_open(&scene->acquisition, &scene->rig, WB_ACQUISITION_ALL, &sink), WB_OK);
     wb_acquisition_start(scene->acquisition, NULL);
@@ -119,11 +119,11 @@ static void listen_for(struct scene *scene, double seconds)
         assert_int_equal(wb_acquisition_step(scene->acquisition, left), WB_ACQUISITION_CONTINUE);
 }
 
-/* Listens until so much was heard. */
+/* Listens until this number of samples was received. */
 static void listen_until(struct scene *scene, int readings, int frames)
 {
     const int64_t end_ns = wb_time_now_ns() + 120 * WB_NS_PER_S;
-    while (scene->ears.n_load < readings || scene->ears.n_mocap < frames) {
+    while (scene->receiver.n_load < readings || scene->receiver.n_mocap < frames) {
         assert_true(wb_time_now_ns() < end_ns);
         assert_int_equal(wb_acquisition_step(scene->acquisition, 5 * WB_NS_PER_MS),
                          WB_ACQUISITION_CONTINUE);
@@ -162,25 +162,25 @@ static void rates_are_those_of_the_bench_times_the_scale(void **state)
         start_bench(scene, settings, false);
         connect_to(scene);
         listen_for(scene, 0.1);
-        memset(&scene->ears, 0, sizeof scene->ears);
+        memset(&scene->receiver, 0, sizeof scene->receiver);
         listen_for(scene, seconds);
         const struct wb_truth *const truth = &scene->bench->truth;
-        assert_close(scene->ears.n_load, truth->cell_rate * 60.0, 1.0);
-        assert_close(scene->ears.n_mocap, truth->frame_rate * (1.0 + truth->clock_drift) * 60.0,
+        assert_close(scene->receiver.n_load, truth->cell_rate * 60.0, 1.0);
+        assert_close(scene->receiver.n_mocap, truth->frame_rate * (1.0 + truth->clock_drift) * 60.0,
                      1.0);
         assert_close_relative(truth->cell_rate, 80.0, 0.005);
         assert_close_relative(truth->frame_rate, 120.0, 0.005);
-        assert_true(scene->ears.n_probe > 0);
-        /* No frame is left out. */
-        for (int n = 1; n < scene->ears.n_mocap; n++)
-            assert_int_equal(scene->ears.frame[n], scene->ears.frame[n - 1] + 1);
+        assert_true(scene->receiver.n_probe > 0);
+        /* No frame is missing. */
+        for (int n = 1; n < scene->receiver.n_mocap; n++)
+            assert_int_equal(scene->receiver.frame[n], scene->receiver.frame[n - 1] + 1);
         stop_bench(scene);
     }
     free(scene);
 }
 
-/* A rig is the same again from its seed: frame n and reading n hold the same numbers, whenever
- * somebody began to listen. */
+/* A rig is reproduced from its seed: frame n and reading n have the same numbers, independent of
+ * the start of listening. */
 static void the_same_seed_gives_the_same_samples(void **state)
 {
     (void)state;
@@ -193,19 +193,20 @@ static void the_same_seed_gives_the_same_samples(void **state)
         wb_time_sleep(wb_time_now_ns() + run * 30 * WB_NS_PER_MS);
         connect_to(scene);
         listen_until(scene, run == 0 ? 600 : 50, run == 0 ? 900 : 300);
-        const struct ears *const ears = &scene->ears;
-        for (int n = 0; n < ears->n_mocap; n++)
-            position[run][ears->frame[n]] = ears->position[n];
-        from = ears->frame[0] > from ? ears->frame[0] : from;
-        const int last = ears->frame[ears->n_mocap - 1];
+        const struct receiver *const receiver = &scene->receiver;
+        for (int n = 0; n < receiver->n_mocap; n++)
+            position[run][receiver->frame[n]] = receiver->position[n];
+        from = receiver->frame[0] > from ? receiver->frame[0] : from;
+        const int last = receiver->frame[receiver->n_mocap - 1];
         least = last < least ? last : least;
-        memcpy(force[run], ears->force, sizeof force[run]);
+        memcpy(force[run], receiver->force, sizeof force[run]);
         stop_bench(scene);
     }
     assert_true(least - from > 100);
     for (int n = from; n <= least; n++)
         assert_close(position[0][n], position[1][n], 0.0);
-    /* Readings carry no number: the second run began later, so find its place in the first. */
+    /* Readings have no number: the second run may have started later, so find its offset in the
+     * first. */
     int shift = 0;
     while (shift < 580 && memcmp(force[0] + shift, force[1], 20 * sizeof force[0][0]) != 0)
         shift++;
@@ -223,7 +224,7 @@ static void other_seeds_give_other_noise(void **state)
         start_bench(scene, settings, false);
         connect_to(scene);
         listen_until(scene, 10, 0);
-        memcpy(first[run], scene->ears.force, sizeof first[run]);
+        memcpy(first[run], scene->receiver.force, sizeof first[run]);
         stop_bench(scene);
     }
     assert_memory_not_equal(first[0], first[1], sizeof first[0]);
@@ -250,7 +251,7 @@ static void several_rigs_run_side_by_side(void **state)
     }
 }
 
-/* The stage is told to go down; the cell feels it and the cameras see it. */
+/* The stage is commanded to move down; the cell and the cameras measure it. */
 static void a_jog_loads_the_wire(void **state)
 {
     (void)state;
@@ -264,7 +265,7 @@ static void a_jog_loads_the_wire(void **state)
     while (!latest->stream[WB_ROLE_STAGE].ready)
         listen_for(scene, 0.02);
     assert_close(latest->settings.speed, 200.0 * WB_MM, 1e-9);
-    const double zero = scene->ears.force[scene->ears.n_load - 1];
+    const double zero = scene->receiver.force[scene->receiver.n_load - 1];
     assert_int_equal(wb_acquisition_command(scene->acquisition, WB_STAGE_COMMAND_JOG, 10.0 * WB_MM,
                                             20.0 * WB_MM),
                      WB_OK);
@@ -273,9 +274,9 @@ static void a_jog_loads_the_wire(void **state)
         assert_true(wb_time_now_ns() < end_ns);
         listen_for(scene, 0.02);
     }
-    listen_until(scene, scene->ears.n_load + 100, 0);
+    listen_until(scene, scene->receiver.n_load + 100, 0);
     assert_close(latest->stage.position, -52.0 * WB_MM, 1e-6);
-    assert_true(scene->ears.force[scene->ears.n_load - 1] - zero > 30.0 * WB_MN);
+    assert_true(scene->receiver.force[scene->receiver.n_load - 1] - zero > 30.0 * WB_MN);
     wb_acquisition_motion_ended(scene->acquisition);
     wb_bench_count(scene->bench, &counts);
     assert_close(counts.travel, 10.0 * WB_MM, 1e-6);
@@ -284,7 +285,7 @@ static void a_jog_loads_the_wire(void **state)
     free(scene);
 }
 
-/* A clock that a test moves. */
+/* A clock set by a test. */
 static int64_t moved_ns;
 
 static int64_t moved_now(void)
@@ -303,8 +304,8 @@ static int moved_wait(struct pollfd *descriptors, size_t n, int64_t deadline_ns)
     return poll(descriptors, (nfds_t)n, 0);
 }
 
-/* A process that was held up makes up for every sample. */
-static void lateness_leaves_no_holes(void **state)
+/* A delayed process produces all missed samples. */
+static void delays_cause_no_gaps(void **state)
 {
     (void)state;
     struct scene *const scene = make_scene();
@@ -326,7 +327,7 @@ static void lateness_leaves_no_holes(void **state)
     wb_bench_count(scene->bench, &after);
     wb_time_replace(NULL);
     assert_in_range(after.readings - before.readings, 39, 41);
-    assert_in_range(after.frames - before.frames, 59, 60); /* not yet sent: the last */
+    assert_in_range(after.frames - before.frames, 59, 60); /* the last one is not sent yet */
     assert_close(after.latest, 0.5, 1.0 / 80.0);
     /* It has not moved by itself. */
     assert_close(after.travel, 0.0, 0.0);
@@ -347,7 +348,7 @@ static void count_refusals(void *context, enum wb_log_level level, const char *d
     refusals += level == WB_LOG_ERROR;
 }
 
-static void bad_settings_give_one_message(void **state)
+static void invalid_settings_give_one_message(void **state)
 {
     (void)state;
     char rig[WB_PATH], specimen[WB_PATH], wires[WB_PATH];
@@ -381,8 +382,8 @@ int main(void)
         cmocka_unit_test(other_seeds_give_other_noise),
         cmocka_unit_test(several_rigs_run_side_by_side),
         cmocka_unit_test(a_jog_loads_the_wire),
-        cmocka_unit_test(lateness_leaves_no_holes),
-        cmocka_unit_test(bad_settings_give_one_message),
+        cmocka_unit_test(delays_cause_no_gaps),
+        cmocka_unit_test(invalid_settings_give_one_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
-/* The doctor on the virtual bench, in virtual time: a bench that is well is ready, and each fault
- * that can be known at rest is named. Faults that come with the motion (clock-restart, unit-change,
- * replug-cell, the unplug ones, stuck-stage, strand-break) cannot be. */
+/* The doctor on the virtual bench, in virtual time: a healthy bench is ready, and each fault that
+ * can be detected at rest is named. Faults that occur during motion (clock-restart, unit-change,
+ * replug-cell, the unplug ones, stuck-stage, strand-break) cannot be detected. */
 #include <stdlib.h>
 
 #include "base/config.h"
@@ -75,7 +75,7 @@ static void look(struct fixture *fixture)
     wb_doctor_close(doctor, &fixture->report);
 }
 
-/* The text of this item with this verdict that holds these words; NULL: there is none. */
+/* The text of this item with this verdict that contains these words; NULL if there is none. */
 static const char *find(const struct fixture *fixture, const char *name,
                         enum wb_doctor_verdict verdict, const char *words)
 {
@@ -127,7 +127,7 @@ static void expect_ready(const struct fixture *fixture)
     fail_msg("not ready");
 }
 
-/* Writes `from` to fixture->changed with `old` replaced by `new`, which is there once. */
+/* Writes `from` to fixture->changed with `old`, which occurs once, replaced by `new`. */
 static void change(struct fixture *fixture, const char *from, const char *old, const char *new)
 {
     struct wb_text changed = {0};
@@ -176,7 +176,7 @@ static void wrong_unit_is_named(void **state)
     (void)expect(fixture, "unit", WB_DOCTOR_NOT_READY, "load_cell.unit: kg");
 }
 
-static void marker_that_the_wire_lacks_is_asked_for(void **state)
+static void missing_marker_is_asked_for(void **state)
 {
     struct fixture *const fixture = *state;
     begin(fixture, NULL, 1);
@@ -184,7 +184,7 @@ static void marker_that_the_wire_lacks_is_asked_for(void **state)
     fixture->request.test.specimen_path = fixture->changed;
     look(fixture);
     (void)expect(fixture, "markers", WB_DOCTOR_NOT_READY, "7 of 8 markers seen");
-    /* Asked for in a line of its own, at its place. */
+    /* Asked for in a separate line, at its place. */
     int asked = 0;
     for (const char *line = fixture->report.picture; *line; line += strcspn(line, "\n") + 1) {
         const size_t blank = strspn(line + 1, " ");
@@ -193,7 +193,7 @@ static void marker_that_the_wire_lacks_is_asked_for(void **state)
     assert_int_equal(asked, 1);
 }
 
-static void wire_of_another_length_is_named_with_both_lengths(void **state)
+static void wrong_wire_length_is_reported_with_both_lengths(void **state)
 {
     struct fixture *const fixture = *state;
     begin(fixture, NULL, 1);
@@ -207,7 +207,7 @@ static void wire_of_another_length_is_named_with_both_lengths(void **state)
     assert_non_null(strstr(text, "88.0"));
 }
 
-static void travel_that_the_rig_forbids_is_named(void **state)
+static void travel_beyond_the_rigs_limit_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     begin(fixture, NULL, 1);
@@ -238,7 +238,7 @@ static void swapped_ports_are_named(void **state)
     (void)expect(fixture, "stage", WB_DOCTOR_NOT_READY, "swapped");
 }
 
-static void port_in_use_leaves_the_others_judged(void **state)
+static void other_ports_are_checked_if_one_is_in_use(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_stream *other;
@@ -251,7 +251,8 @@ static void port_in_use_leaves_the_others_judged(void **state)
     (void)expect(fixture, "markers", WB_DOCTOR_READY, "all 7");
 }
 
-/* A fault of the bench, the item that names it, and the only item that is NOT READY; NULL: none. */
+/* A fault of the bench, the item that reports it, and the only item that is NOT READY; NULL:
+ * none. */
 static const struct {
     const char *faults, *item, *words;
     enum wb_doctor_verdict verdict;
@@ -269,7 +270,7 @@ static const struct {
     {"wrong-up", "up axis", "set mocap.up: z", WB_DOCTOR_NOT_READY, "up axis", 3},
 };
 
-static void faults_are_named(void **state)
+static void faults_are_reported(void **state)
 {
     struct fixture *const fixture = *state;
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
@@ -298,7 +299,7 @@ static void interrupt_run(void *context, int64_t now_ns)
     wb_interrupt_set(true);
 }
 
-static void interrupt_ends_the_look_at_once(void **state)
+static void interrupt_ends_the_check_at_once(void **state)
 {
     struct fixture *const fixture = *state;
     const struct wb_virtual_actor actor = {NULL, interrupt_next, interrupt_run};
@@ -318,14 +319,14 @@ int main(void)
     const struct CMUnitTest tests[] = {
         FACT(healthy_bench_is_ready_and_not_moved),
         FACT(wrong_unit_is_named),
-        FACT(marker_that_the_wire_lacks_is_asked_for),
-        FACT(wire_of_another_length_is_named_with_both_lengths),
-        FACT(travel_that_the_rig_forbids_is_named),
+        FACT(missing_marker_is_asked_for),
+        FACT(wrong_wire_length_is_reported_with_both_lengths),
+        FACT(travel_beyond_the_rigs_limit_is_reported),
         FACT(missing_folder_is_named),
         FACT(swapped_ports_are_named),
-        FACT(port_in_use_leaves_the_others_judged),
-        FACT(faults_are_named),
-        FACT(interrupt_ends_the_look_at_once),
+        FACT(other_ports_are_checked_if_one_is_in_use),
+        FACT(faults_are_reported),
+        FACT(interrupt_ends_the_check_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

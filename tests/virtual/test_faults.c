@@ -1,4 +1,4 @@
-/* Lists of faults: what is read, and what is refused with one message. */
+/* Lists of faults: parsing, and lists rejected with one message. */
 #include "fixtures/virtual/faults.h"
 #include "fixtures/virtual/faults_private.h"
 
@@ -16,7 +16,7 @@ static struct wb_faults read_list(const char *list)
     return faults;
 }
 
-static void no_list_is_no_fault(void **state)
+static void an_empty_list_has_no_faults(void **state)
 {
     (void)state;
     static const struct wb_faults none;
@@ -42,7 +42,7 @@ static void values_are_in_their_units(void **state)
     assert_close(faults.duplicates, 0.0, 0.0);
 }
 
-static void every_name_alone_stands_for_its_usual_value(void **state)
+static void every_name_alone_has_its_default_value(void **state)
 {
     (void)state;
     for (size_t i = 0; i < wb_faults_table.n; i++) {
@@ -54,15 +54,15 @@ static void every_name_alone_stands_for_its_usual_value(void **state)
     }
 }
 
-static void what_is_no_fault_is_refused_with_one_message(void **state)
+static void invalid_faults_are_rejected_with_one_message(void **state)
 {
     (void)state;
     static const struct {
         const char *list, *said;
     } cases[] = {
-        {"los", "'los' is no fault: expected some of loss, duplicates"},
-        {"loss=5,,reorder", "'' is no fault"},
-        {"loss=5,", "'' is no fault"},
+        {"los", "'los' is not a fault: expected some of loss, duplicates"},
+        {"loss=5,,reorder", "'' is not a fault"},
+        {"loss=5,", "'' is not a fault"},
         {"loss=0", "loss: expected a number from 0.01 to 100"},
         {"loss=101", "loss: expected a number"},
         {"loss=", "loss: expected a number"},
@@ -88,7 +88,7 @@ static int hits(const struct wb_faults *faults, const double *fault, uint64_t se
     return n;
 }
 
-static void shares_are_kept_and_depend_on_the_seed_only(void **state)
+static void fractions_are_correct_and_depend_on_the_seed_only(void **state)
 {
     (void)state;
     const struct wb_faults faults = read_list("loss=5,reorder=5");
@@ -99,13 +99,13 @@ static void shares_are_kept_and_depend_on_the_seed_only(void **state)
         const bool hit = wb_faults_hit(&faults, &faults.loss, 3, k);
         assert_int_equal(hit, wb_faults_hit(&faults, &faults.loss, 3, k));
         differ += hit != wb_faults_hit(&faults, &faults.loss, 4, k);
-        /* Faults do not go together. */
+        /* Faults are independent of each other. */
         differ += hit != wb_faults_hit(&faults, &faults.reorder, 3, k);
     }
     assert_true(differ > 1000);
 }
 
-static void noise_is_none_of_the_bytes_of_an_instrument(void **state)
+static void noise_contains_no_byte_of_an_instrument(void **state)
 {
     (void)state;
     uint8_t bytes[500], again[500];
@@ -121,12 +121,12 @@ static void noise_is_none_of_the_bytes_of_an_instrument(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_list_is_no_fault),
+        cmocka_unit_test(an_empty_list_has_no_faults),
         cmocka_unit_test(values_are_in_their_units),
-        cmocka_unit_test(every_name_alone_stands_for_its_usual_value),
-        cmocka_unit_test(what_is_no_fault_is_refused_with_one_message),
-        cmocka_unit_test(shares_are_kept_and_depend_on_the_seed_only),
-        cmocka_unit_test(noise_is_none_of_the_bytes_of_an_instrument),
+        cmocka_unit_test(every_name_alone_has_its_default_value),
+        cmocka_unit_test(invalid_faults_are_rejected_with_one_message),
+        cmocka_unit_test(fractions_are_correct_and_depend_on_the_seed_only),
+        cmocka_unit_test(noise_contains_no_byte_of_an_instrument),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,7 @@ static int parse(const char *line, bool jog, struct wb_gcode_words *words)
     return wb_gcode_parse(line, words);
 }
 
-static void blanks_and_comments_are_left_out(void **state)
+static void blanks_and_comments_are_removed(void **state)
 {
     (void)state;
     char line[16];
@@ -37,7 +37,7 @@ static void words_and_modes_are_read(void **state)
     assert_true(words.machine && words.rapid);
 }
 
-static void modes_that_are_not_named_stay(void **state)
+static void other_modes_are_unchanged(void **state)
 {
     (void)state;
     struct wb_gcode_words words = {.relative = true, .inches = true, .rapid = true};
@@ -45,7 +45,7 @@ static void modes_that_are_not_named_stay(void **state)
     assert_true(words.relative && words.inches && words.rapid);
 }
 
-static void faults_have_the_numbers_of_grbl(void **state)
+static void errors_have_the_numbers_of_grbl(void **state)
 {
     (void)state;
     static const struct {
@@ -72,10 +72,10 @@ static void faults_have_the_numbers_of_grbl(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blanks_and_comments_are_left_out),
+        cmocka_unit_test(blanks_and_comments_are_removed),
         cmocka_unit_test(words_and_modes_are_read),
-        cmocka_unit_test(modes_that_are_not_named_stay),
-        cmocka_unit_test(faults_have_the_numbers_of_grbl),
+        cmocka_unit_test(other_modes_are_unchanged),
+        cmocka_unit_test(errors_have_the_numbers_of_grbl),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

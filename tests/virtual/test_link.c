@@ -1,4 +1,4 @@
-/* What the network does to frames, fault by fault. */
+/* Effects of the network on frames, fault by fault. */
 #include "fixtures/virtual/link.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ struct arrivals {
     double due[2 * FRAMES];
 };
 
-/* Sends frames one period apart, taking each that is due before the next is put. */
+/* Sends frames one period apart, taking all due frames before each. */
 static void pass(const char *list, uint64_t seed, struct arrivals *arrivals)
 {
     static struct wb_link link;
@@ -44,7 +44,7 @@ static void pass(const char *list, uint64_t seed, struct arrivals *arrivals)
 
 static struct arrivals got, again;
 
-/* Arrivals of the frame before or of an earlier one. */
+/* Number of arrivals that repeat or precede the last frame. */
 static int backwards(const struct arrivals *arrivals)
 {
     int n = 0;
@@ -72,7 +72,7 @@ static void without_faults_every_frame_arrives_when_it_is_sent(void **state)
     }
 }
 
-static void loss_leaves_frames_out(void **state)
+static void loss_drops_frames(void **state)
 {
     (void)state;
     pass("loss=10", 1, &got);
@@ -82,7 +82,7 @@ static void loss_leaves_frames_out(void **state)
     assert_int_equal(got.n, 0);
 }
 
-static void duplicates_come_one_after_the_other(void **state)
+static void duplicates_arrive_in_succession(void **state)
 {
     (void)state;
     pass("duplicates=10", 1, &got);
@@ -91,7 +91,7 @@ static void duplicates_come_one_after_the_other(void **state)
     assert_int_equal(backwards(&got), 0);
 }
 
-static void reordered_frames_come_after_the_next(void **state)
+static void reordered_frames_arrive_after_the_next(void **state)
 {
     (void)state;
     pass("reorder=10", 1, &got);
@@ -115,7 +115,7 @@ static void delayed_frames_keep_their_order(void **state)
     assert_true(longest > 0.049);
 }
 
-static void garbage_comes_besides_the_frames(void **state)
+static void garbage_arrives_in_addition_to_frames(void **state)
 {
     (void)state;
     pass("garbage=10", 1, &got);
@@ -134,7 +134,7 @@ static void the_seed_decides_which_frames(void **state)
     assert_memory_not_equal(&got, &again, sizeof got);
 }
 
-static void frames_beyond_its_room_are_lost(void **state)
+static void frames_beyond_the_capacity_are_lost(void **state)
 {
     (void)state;
     static struct wb_link link;
@@ -152,13 +152,13 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_faults_every_frame_arrives_when_it_is_sent),
-        cmocka_unit_test(loss_leaves_frames_out),
-        cmocka_unit_test(duplicates_come_one_after_the_other),
-        cmocka_unit_test(reordered_frames_come_after_the_next),
+        cmocka_unit_test(loss_drops_frames),
+        cmocka_unit_test(duplicates_arrive_in_succession),
+        cmocka_unit_test(reordered_frames_arrive_after_the_next),
         cmocka_unit_test(delayed_frames_keep_their_order),
-        cmocka_unit_test(garbage_comes_besides_the_frames),
+        cmocka_unit_test(garbage_arrives_in_addition_to_frames),
         cmocka_unit_test(the_seed_decides_which_frames),
-        cmocka_unit_test(frames_beyond_its_room_are_lost),
+        cmocka_unit_test(frames_beyond_the_capacity_are_lost),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,11 +78,11 @@ static void interpolation_equals_a_finer_grid(void **state)
         const double step = turns[leg] > at ? 0.37 : -0.37;
         for (; (turns[leg] - at) * step > 0.0; at += step)
             worst = fmax(worst, fabs(tension_at(coarse, at) - tension_at(direct, at)));
-        /* Turns lie on both grids, as the ends of a test's strokes do. */
+        /* Reversals lie on both grids, like the ends of a test's strokes. */
         at = turns[leg];
         worst = fmax(worst, fabs(tension_at(coarse, at) - tension_at(direct, at)));
     }
-    /* Half a reading's noise, on 190 mN. */
+    /* Half of a reading's noise, on 190 mN. */
     assert_true(worst < 0.05 * WB_MN);
     assert_true(worst > 0.0);
     wb_live_wire_destroy(coarse);
@@ -105,7 +105,7 @@ static void coarse_mesh_and_strips_are_fine_enough(void **state)
     wb_live_wire_destroy(good);
 }
 
-static void answers_depend_on_the_path_not_on_the_asking(void **state)
+static void results_depend_on_the_path_and_not_on_the_calls(void **state)
 {
     (void)state;
     struct setup setup;
@@ -131,8 +131,8 @@ static void answers_depend_on_the_path_not_on_the_asking(void **state)
     wb_live_wire_destroy(rarely);
 }
 
-/* Looking ahead into an interval and turning back leaves no trace. */
-static void a_look_ahead_is_taken_back(void **state)
+/* Evaluating ahead into an interval and reversing has no effect. */
+static void evaluating_ahead_is_reverted(void **state)
 {
     (void)state;
     struct setup setup;
@@ -167,7 +167,7 @@ static void the_same_seed_gives_the_same_wire_to_the_bit(void **state)
     wb_live_wire_destroy(two);
 }
 
-static void unloading_goes_another_way_and_ends_without_load(void **state)
+static void unloading_has_another_path_and_ends_without_load(void **state)
 {
     (void)state;
     struct setup setup;
@@ -186,7 +186,7 @@ static void unloading_goes_another_way_and_ends_without_load(void **state)
 
 static double force_rms(struct setup *setup, double *peak)
 {
-    /* Straight, without scatter, no rest: against the paper's homogenised properties. */
+    /* Straight, without scatter, no rest: compared with the paper's homogenised properties. */
     const struct wb_live_wire_settings plain = {.straight = true, .no_rest = true};
     setup->truth.stiffness_factor = setup->truth.yield_factor = 1.0;
     struct wb_live_wire *const wire = make(setup, &plain);
@@ -242,8 +242,8 @@ static void the_wires_resemble_the_paper_but_not_exactly(void **state)
     }
 }
 
-/* The same laws with isotropic hardening load alike and unload otherwise. */
-static void kinematic_hardening_shows_in_unloading_only(void **state)
+/* The same laws with isotropic hardening agree in loading and differ in unloading. */
+static void kinematic_hardening_affects_unloading_only(void **state)
 {
     (void)state;
     struct setup setup;
@@ -280,7 +280,7 @@ static void kinematic_hardening_shows_in_unloading_only(void **state)
         wb_section_release(&section);
     }
     assert_close_relative(loads[0][0], loads[1][0], 1e-6);
-    /* It yields earlier during unloading, so more force is left. */
+    /* It yields earlier during unloading, so more force remains. */
     assert_true(loads[0][1] - loads[1][1] > 0.02 * loads[0][0]);
 }
 
@@ -291,12 +291,12 @@ int main(void)
         cmocka_unit_test(the_tip_rises_by_the_travel_once_the_strand_is_taut),
         cmocka_unit_test(interpolation_equals_a_finer_grid),
         cmocka_unit_test(coarse_mesh_and_strips_are_fine_enough),
-        cmocka_unit_test(answers_depend_on_the_path_not_on_the_asking),
-        cmocka_unit_test(a_look_ahead_is_taken_back),
+        cmocka_unit_test(results_depend_on_the_path_and_not_on_the_calls),
+        cmocka_unit_test(evaluating_ahead_is_reverted),
         cmocka_unit_test(the_same_seed_gives_the_same_wire_to_the_bit),
-        cmocka_unit_test(unloading_goes_another_way_and_ends_without_load),
+        cmocka_unit_test(unloading_has_another_path_and_ends_without_load),
         cmocka_unit_test(the_wires_resemble_the_paper_but_not_exactly),
-        cmocka_unit_test(kinematic_hardening_shows_in_unloading_only),
+        cmocka_unit_test(kinematic_hardening_affects_unloading_only),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,7 +19,7 @@ struct scene {
     struct wb_sim_mocap mocap;
     struct wb_mocap_server *server;
     struct wb_live_wire_view view;
-    struct wb_natnet_frame frame, heard;
+    struct wb_natnet_frame frame, received;
     uint64_t k;
     /* The client. */
     int socket;
@@ -34,7 +34,7 @@ struct scene {
 static void keep_frame(void *context, const struct wb_mocap_frame *frame)
 {
     struct scene *const scene = context;
-    scene->heard.mocap = *frame;
+    scene->received.mocap = *frame;
     scene->frames++;
 }
 
@@ -111,7 +111,7 @@ static void hear(struct scene *scene)
         wb_natnet_client.receive(scene->state, scene->now_ns, bytes, (size_t)n, &sink);
 }
 
-/* One frame of life on both sides, on a clock of our own. */
+/* One frame period on both sides, with a simulated clock. */
 static void turn(struct scene *scene)
 {
     struct wb_outbox outbox;
@@ -137,30 +137,30 @@ static void the_real_client_understands_every_version(void **state)
         open_scene(scene, versions[i]);
         for (int n = 0; n < 600; n++) {
             turn(scene);
-            /* A frame arrives as it was made. */
+            /* A frame arrives unchanged. */
             if (scene->frames == 0)
                 continue;
             const struct wb_mocap_frame *const sent = &scene->frame.mocap;
-            const struct wb_mocap_frame *const heard = &scene->heard.mocap;
-            assert_int_equal(heard->frame_number, sent->frame_number);
-            assert_int_equal(heard->n_markers, sent->n_markers);
+            const struct wb_mocap_frame *const received = &scene->received.mocap;
+            assert_int_equal(received->frame_number, sent->frame_number);
+            assert_int_equal(received->n_markers, sent->n_markers);
             for (int m = 0; m < sent->n_markers; m++) {
-                assert_int_equal(heard->markers[m].id, sent->markers[m].id);
-                assert_memory_equal(heard->markers[m].position, sent->markers[m].position,
+                assert_int_equal(received->markers[m].id, sent->markers[m].id);
+                assert_memory_equal(received->markers[m].position, sent->markers[m].position,
                                     sizeof sent->markers[m].position);
                 if (wb_natnet_version_at_least(versions[i], 2, 6))
-                    assert_int_equal(heard->markers[m].params, sent->markers[m].params);
+                    assert_int_equal(received->markers[m].params, sent->markers[m].params);
             }
             if (wb_natnet_version_at_least(versions[i], 2, 7))
-                assert_close(heard->t_device, sent->t_device, 0.0);
+                assert_close(received->t_device, sent->t_device, 0.0);
             if (wb_natnet_version_at_least(versions[i], 3, 0))
-                assert_true(heard->camera_data_received == sent->camera_data_received &&
-                            heard->transmit == sent->transmit);
+                assert_true(received->camera_data_received == sent->camera_data_received &&
+                            received->transmit == sent->transmit);
         }
         if (scene->frames < 595 || scene->errors > 0)
             fail_msg("NatNet %u.%u: %d of 600 frames, %d warnings: %s", versions[i].major,
                      versions[i].minor, scene->frames, scene->errors, scene->complaint);
-        /* Probes from 3.0 on; they show the server's clock. */
+        /* Clock probes from version 3.0 on; they return the server's clock. */
         if (wb_natnet_version_at_least(versions[i], 3, 0)) {
             assert_true(scene->probes >= 8);
             assert_close(scene->probe_error, 0.0, 1e-6);
@@ -172,7 +172,7 @@ static void the_real_client_understands_every_version(void **state)
     free(scene);
 }
 
-static void a_silent_client_is_dropped_and_told(void **state)
+static void a_silent_client_is_dropped_with_a_message(void **state)
 {
     (void)state;
     struct scene *const scene = malloc(sizeof *scene);
@@ -195,7 +195,7 @@ static void a_silent_client_is_dropped_and_told(void **state)
     free(scene);
 }
 
-static void a_client_that_says_goodbye_gets_no_more_frames(void **state)
+static void a_disconnected_client_gets_no_more_frames(void **state)
 {
     (void)state;
     struct wb_outbox outbox;
@@ -268,7 +268,7 @@ static void requests_are_answered(void **state)
     free(scene);
 }
 
-/* Any datagram: at most an answer, and the frames go on. */
+/* Any datagram causes at most an answer, and frames continue. */
 static void random_datagrams_do_no_harm(void **state)
 {
     (void)state;
@@ -283,7 +283,7 @@ static void random_datagrams_do_no_harm(void **state)
         for (size_t k = 0; k < n; k++)
             bytes[k] = (uint8_t)wb_random_bits(2, i, k + 1);
         if (n >= 4) {
-            /* Mostly known messages of the right length, but no goodbye. */
+            /* Mostly known messages of the right length, but no disconnect. */
             bytes[0] = (uint8_t)(wb_random_bits(2, i, 100) % 16);
             bytes[0] = bytes[0] == WB_NATNET_DISCONNECT ? 0 : bytes[0];
             bytes[1] = bytes[3] = 0;
@@ -330,7 +330,7 @@ static void several_servers_have_ports_of_their_own(void **state)
         for (int j = 0; j < i; j++)
             assert_int_not_equal(wb_mocap_server_port(servers[i]),
                                  wb_mocap_server_port(servers[j]));
-    /* A port that is asked for is the one, or refused. */
+    /* A requested port is used, or an error is reported. */
     const int port = wb_mocap_server_port(servers[0]);
     const struct wb_mocap_server_settings fixed = {.version = {3, 0}, .port = port};
     struct wb_mocap_server *other;
@@ -349,8 +349,8 @@ static void several_servers_have_ports_of_their_own(void **state)
     assert_null(servers[0]);
 }
 
-/* The address that a rig file has for it is the one by which the real stream hears it. */
-static void frames_come_through_a_multicast_group(void **state)
+/* The server's address in a rig file works with the real stream. */
+static void frames_arrive_through_a_multicast_group(void **state)
 {
     (void)state;
     struct setup setup;
@@ -359,7 +359,7 @@ static void frames_come_through_a_multicast_group(void **state)
     struct wb_stream *stream;
     struct wb_natnet_packet packet;
     struct wb_natnet_fault fault;
-    static struct wb_natnet_frame frame, heard;
+    static struct wb_natnet_frame frame, received;
     static uint8_t bytes[65536];
     const struct wb_mocap_server_settings settings = {.version = {3, 0}, .multicast = true};
     char address[128];
@@ -384,8 +384,8 @@ static void frames_come_through_a_multicast_group(void **state)
     assert_int_equal(poll(polled, (nfds_t)n_descriptors, 60000), 1);
     assert_int_equal(wb_stream_read(stream, bytes, sizeof bytes, &n), WB_OK);
     assert_int_equal(wb_natnet_decode_packet(bytes, n, &packet, &fault), WB_OK);
-    assert_int_equal(wb_natnet_decode_frame(&packet, settings.version, &heard, &fault), WB_OK);
-    assert_int_equal(heard.mocap.frame_number, 77);
+    assert_int_equal(wb_natnet_decode_frame(&packet, settings.version, &received, &fault), WB_OK);
+    assert_int_equal(received.mocap.frame_number, 77);
     wb_stream_close(stream);
     wb_mocap_server_close(server);
 }
@@ -394,12 +394,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_real_client_understands_every_version),
-        cmocka_unit_test(a_silent_client_is_dropped_and_told),
-        cmocka_unit_test(a_client_that_says_goodbye_gets_no_more_frames),
+        cmocka_unit_test(a_silent_client_is_dropped_with_a_message),
+        cmocka_unit_test(a_disconnected_client_gets_no_more_frames),
         cmocka_unit_test(requests_are_answered),
         cmocka_unit_test(random_datagrams_do_no_harm),
         cmocka_unit_test(several_servers_have_ports_of_their_own),
-        cmocka_unit_test(frames_come_through_a_multicast_group),
+        cmocka_unit_test(frames_arrive_through_a_multicast_group),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The instrument's end of a pseudo-terminal, against the real stream. */
+/* The instrument's end of a pseudo-terminal, tested with the real stream. */
 #include "fixtures/virtual/pty_port.h"
 
 #include <fcntl.h>
@@ -19,14 +19,14 @@ static struct wb_stream *open_stream(const struct wb_pty_port *port)
 
 #define DEADLINE_MS 60000
 
-/* The kernel passes bytes on by a worker: waits until there are some. */
+/* The kernel delivers bytes in a worker: waits until some arrive. */
 static void wait_for_bytes(int descriptor)
 {
     struct pollfd polled = {.fd = descriptor, .events = POLLIN};
     assert_int_equal(poll(&polled, 1, DEADLINE_MS), 1);
 }
 
-/* Reads so many bytes, and finds no more behind them. */
+/* Reads this number of bytes, and checks that no more follow. */
 static void read_exactly(struct wb_stream *stream, char *text, size_t size)
 {
     int descriptors[2];
@@ -41,7 +41,7 @@ static void read_exactly(struct wb_stream *stream, char *text, size_t size)
     assert_int_equal(got, 0);
 }
 
-/* Reads `expected`, which was written last: nothing came before it. */
+/* Reads `expected`, written last: nothing arrived before it. */
 static void assert_reads(struct wb_stream *stream, const char *expected)
 {
     char text[16];
@@ -49,7 +49,7 @@ static void assert_reads(struct wb_stream *stream, const char *expected)
     assert_memory_equal(text, expected, strlen(expected));
 }
 
-static void opening_and_closing_is_seen(void **state)
+static void opening_and_closing_are_detected(void **state)
 {
     (void)state;
     struct wb_pty_port port;
@@ -89,14 +89,14 @@ static void bytes_go_both_ways_unchanged(void **state)
     }
     assert_memory_equal(back, all, sizeof all);
     assert_int_equal(wb_pty_port_read(&port, back, sizeof back), 0);
-    /* Nothing is echoed: an echo would stand before this. */
+    /* No echo: an echo would come before this. */
     wb_pty_port_write(&port, "end", 3);
     assert_reads(stream, "end");
     wb_stream_close(stream);
     wb_pty_port_close(&port);
 }
 
-/* A program that sets nothing finds no echo and no line editing. */
+/* A program that sets nothing gets no echo and no line editing. */
 static void the_line_is_raw_from_the_start(void **state)
 {
     (void)state;
@@ -126,7 +126,7 @@ static void bytes_for_a_closed_port_are_lost(void **state)
     wb_pty_port_update(&port);
     wb_pty_port_write(&port, "late", 4);
     assert_reads(stream, "late");
-    /* What one program left unread, the next does not find. */
+    /* Bytes that one program left unread are not seen by the next. */
     wb_pty_port_write(&port, "unread", 6);
     int descriptors[2];
     assert_int_equal(wb_stream_descriptors(stream, descriptors), 1);
@@ -164,7 +164,7 @@ static void ignore(void *context, enum wb_log_level level, const char *domain, c
     (void)message;
 }
 
-static void a_port_that_is_pulled_out_is_gone_for_its_reader(void **state)
+static void an_unplugged_port_is_gone_for_its_reader(void **state)
 {
     (void)state;
     struct wb_pty_port port;
@@ -188,12 +188,12 @@ static void a_port_that_is_pulled_out_is_gone_for_its_reader(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(opening_and_closing_is_seen),
+        cmocka_unit_test(opening_and_closing_are_detected),
         cmocka_unit_test(bytes_go_both_ways_unchanged),
         cmocka_unit_test(the_line_is_raw_from_the_start),
         cmocka_unit_test(bytes_for_a_closed_port_are_lost),
         cmocka_unit_test(slow_reader_does_not_block),
-        cmocka_unit_test(a_port_that_is_pulled_out_is_gone_for_its_reader),
+        cmocka_unit_test(an_unplugged_port_is_gone_for_its_reader),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

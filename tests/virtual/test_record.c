@@ -1,4 +1,4 @@
-/* The bending test recorded from the virtual rig, and replayed: the same samples, bit for bit. */
+/* The bending test recorded from the virtual rig and replayed: identical samples. */
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -113,7 +113,7 @@ static void replayed_samples_are_the_recorded_ones_natnet_4_1(void **state)
     assert_recorded_like_replayed(4, 1, "type2-L85-2.yaml", 5.0);
 }
 
-static void truth_is_kept_and_called_virtual(void **state)
+static void truth_is_stored_and_marked_as_virtual(void **state)
 {
     (void)state;
     struct fixture fixture;
@@ -143,7 +143,7 @@ int main(void)
         cmocka_unit_test(replayed_samples_are_the_recorded_ones_natnet_2_7),
         cmocka_unit_test(replayed_samples_are_the_recorded_ones_natnet_3_0),
         cmocka_unit_test(replayed_samples_are_the_recorded_ones_natnet_4_1),
-        cmocka_unit_test(truth_is_kept_and_called_virtual),
+        cmocka_unit_test(truth_is_stored_and_marked_as_virtual),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

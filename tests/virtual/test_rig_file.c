@@ -21,7 +21,7 @@ static void format(const char *path, struct wb_text *text)
     assert_int_equal(wb_rig_file_format(path, &file, text), WB_OK);
 }
 
-static void the_paper_rig_keeps_all_but_its_addresses(void **state)
+static void the_paper_rig_keeps_everything_but_its_addresses(void **state)
 {
     (void)state;
     static const char *const names[] = {"fixtures/rigs/paper.yaml",
@@ -41,7 +41,7 @@ static void the_paper_rig_keeps_all_but_its_addresses(void **state)
         assert_close(after.time_scale, 10.0, 0.0);
         assert_int_equal(strncmp(after.name, "virtual rig", 11), 0);
         assert_non_null(strstr(wb_text_string(&text), "bow_mm: -2.5"));
-        /* The rest is as it was. */
+        /* Everything else is unchanged. */
         strcpy(after.load_cell.address, before.load_cell.address);
         strcpy(after.mocap.address, before.mocap.address);
         strcpy(after.stage.address, before.stage.address);
@@ -58,7 +58,7 @@ static void the_paper_rig_keeps_all_but_its_addresses(void **state)
     }
 }
 
-/* A second time over its own product: nothing doubles. */
+/* Formatting its own output again: nothing is duplicated. */
 static void formatting_again_changes_nothing(void **state)
 {
     (void)state;
@@ -110,7 +110,7 @@ static void odd_texts_survive(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_paper_rig_keeps_all_but_its_addresses),
+        cmocka_unit_test(the_paper_rig_keeps_everything_but_its_addresses),
         cmocka_unit_test(formatting_again_changes_nothing),
         cmocka_unit_test(odd_texts_survive),
     };

@@ -1,4 +1,4 @@
-/* The simulated load cell, through the real drivers. */
+/* The simulated load cell, tested with the real drivers. */
 #include "fixtures/virtual/sim_cell.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include "daq/protocol/loadcell_preset.h"
 #include "tests/virtual/setup.h"
 
-struct heard {
+struct received {
     int n, overloads, unstable;
     double last, sum, squares;
     int remarks;
@@ -15,14 +15,14 @@ struct heard {
 
 static void hear(void *context, const struct wb_load_sample *sample)
 {
-    struct heard *const heard = context;
-    heard->n++;
-    heard->overloads += sample->overload;
-    heard->unstable += sample->unstable;
+    struct received *const received = context;
+    received->n++;
+    received->overloads += sample->overload;
+    received->unstable += sample->unstable;
     if (sample->valid) {
-        heard->last = sample->force;
-        heard->sum += sample->force;
-        heard->squares += sample->force * sample->force;
+        received->last = sample->force;
+        received->sum += sample->force;
+        received->squares += sample->force * sample->force;
     }
 }
 
@@ -33,16 +33,16 @@ static void hear_remark(void *context, enum wb_log_level level, int64_t t_ns, co
     (void)kind;
     (void)text;
     if (level < WB_LOG_INFO)
-        ((struct heard *)context)->remarks++;
+        ((struct received *)context)->remarks++;
 }
 
-/* A cell, the driver that listens to it, and a tension to weigh. */
+/* A cell, its driver, and the tension. */
 struct scene {
     struct setup setup;
     struct wb_sim_cell cell;
     const struct wb_driver *driver;
     void *state;
-    struct heard heard;
+    struct received received;
     struct wb_sink sink;
     uint64_t k;
     int64_t now_ns;
@@ -69,7 +69,8 @@ static void open_scene(struct scene *scene)
     scene->state = calloc(1, scene->driver->state_size);
     assert_non_null(scene->state);
     assert_int_equal(scene->driver->init(scene->state, &scene->setup.rig), WB_OK);
-    scene->sink = (struct wb_sink){.context = &scene->heard, .load = hear, .remark = hear_remark};
+    scene->sink =
+        (struct wb_sink){.context = &scene->received, .load = hear, .remark = hear_remark};
     wb_outbox_clear(&outbox);
     scene->driver->start(scene->state, 0, &outbox);
     wb_sim_cell_receive(&scene->cell, outbox.bytes, outbox.n_bytes);
@@ -86,7 +87,7 @@ static void close_scene(struct scene *scene)
     free(scene->state);
 }
 
-/* The next reading, of `tension`. */
+/* The next reading, for `tension`. */
 static void weigh(struct scene *scene, double tension)
 {
     const double t = wb_sim_cell_time(&scene->cell, scene->k);
@@ -104,18 +105,18 @@ static void constant_load_reads_offset_noise_and_drift(void **state)
     open_scene(&scene);
     const int n = 8000;
     weigh(&scene, 0.1);
-    memset(&scene.heard, 0, sizeof scene.heard);
+    memset(&scene.received, 0, sizeof scene.received);
     for (int i = 0; i < n; i++)
         weigh(&scene, 0.1);
     const double mg = WB_MG * WB_STANDARD_GRAVITY;
-    assert_int_equal(scene.heard.n, n);
-    assert_int_equal(scene.heard.remarks, 0);
-    const double mean = scene.heard.sum / n;
-    const double variance = scene.heard.squares / n - mean * mean;
+    assert_int_equal(scene.received.n, n);
+    assert_int_equal(scene.received.remarks, 0);
+    const double mean = scene.received.sum / n;
+    const double variance = scene.received.squares / n - mean * mean;
     assert_close(mean, 0.1 + scene.setup.truth.cell_offset, 5.0 * 10.0 * mg / sqrt(n));
     assert_close(sqrt(variance), 10.0 * mg, 10.0 * mg * 5.0 / sqrt(2.0 * n));
-    /* Whole milligrams. */
-    const double in_mg = scene.heard.last / mg;
+    /* Integer milligrams. */
+    const double in_mg = scene.received.last / mg;
     assert_close(in_mg, round(in_mg), 1e-6);
     close_scene(&scene);
 }
@@ -130,7 +131,7 @@ static void zero_drifts_by_two_milligrams_a_minute(void **state)
     double means[2];
     for (int minute = 0; minute < 2; minute++) {
         const int n = 2000;
-        memset(&scene.heard, 0, sizeof scene.heard);
+        memset(&scene.received, 0, sizeof scene.received);
         while (scene.k < (uint64_t)(minute * 60 * 60 * 80))
             wb_sim_cell_read(&scene.cell, scene.k, wb_sim_cell_time(&scene.cell, scene.k), 0.0),
                 scene.k++;
@@ -138,7 +139,7 @@ static void zero_drifts_by_two_milligrams_a_minute(void **state)
         wb_reply_take(&scene.cell.out, dropped, sizeof dropped);
         for (int i = 0; i < n; i++)
             weigh(&scene, 0.0);
-        means[minute] = scene.heard.sum / scene.heard.n;
+        means[minute] = scene.received.sum / scene.received.n;
     }
     const double hour = 60.0 * 80.0 / scene.setup.truth.cell_rate;
     assert_close(fabs(means[1] - means[0]), 2.0 * mg * hour, 1.5 * mg);
@@ -202,7 +203,7 @@ static void noise_belongs_to_the_reading_not_to_the_time(void **state)
     close_scene(&two);
 }
 
-static void beyond_its_overload_it_says_so(void **state)
+static void overload_is_reported(void **state)
 {
     (void)state;
     static const char *const protocols[] = {"generic", "mt-sics"};
@@ -214,13 +215,13 @@ static void beyond_its_overload_it_says_so(void **state)
         const double capacity = scene.setup.rig.load_cell.capacity;
         for (int k = 0; k < 100; k++)
             weigh(&scene, 1.45 * capacity);
-        assert_int_equal(scene.heard.overloads, 0);
+        assert_int_equal(scene.received.overloads, 0);
         assert_false(scene.cell.over);
         for (int k = 0; k < 100; k++)
             weigh(&scene, 1.6 * capacity);
-        assert_true(scene.heard.overloads > 90);
+        assert_true(scene.received.overloads > 90);
         assert_true(scene.cell.over);
-        /* Taring away what hangs on it does not make the cell stronger. */
+        /* Taring a load does not increase the cell's overload limit. */
         for (int k = 0; k < 100; k++)
             weigh(&scene, capacity);
         wb_sim_cell_receive(&scene.cell, "T\r\n", 3);
@@ -229,9 +230,9 @@ static void beyond_its_overload_it_says_so(void **state)
         assert_true(scene.cell.over && !scene.cell.under);
         for (int k = 0; k < 100; k++)
             weigh(&scene, 0.0);
-        const int so_far = scene.heard.overloads;
+        const int so_far = scene.received.overloads;
         weigh(&scene, 0.0);
-        assert_int_equal(scene.heard.overloads, so_far);
+        assert_int_equal(scene.received.overloads, so_far);
         close_scene(&scene);
     }
 }
@@ -250,16 +251,17 @@ static void taring_zeroes_the_reading(void **state)
         for (int k = 0; k < 50; k++)
             weigh(&scene, 0.08);
         wb_sim_cell_receive(&scene.cell, commands[i], strlen(commands[i]));
-        memset(&scene.heard, 0, sizeof scene.heard);
+        memset(&scene.received, 0, sizeof scene.received);
         for (int k = 0; k < 400; k++)
             weigh(&scene, 0.08);
-        /* The tare has one reading's noise. */
-        assert_close(scene.heard.sum / scene.heard.n, 0.0, 5.0 * scene.setup.truth.cell_noise);
+        /* The tare has the noise of one reading. */
+        assert_close(scene.received.sum / scene.received.n, 0.0,
+                     5.0 * scene.setup.truth.cell_noise);
         close_scene(&scene);
     }
 }
 
-/* Whatever the rig file says the line looks like, the driver reads the force back. */
+/* For all line settings in the rig file the driver reads the force correctly. */
 static void all_line_settings_read_back(void **state)
 {
     (void)state;
@@ -301,15 +303,16 @@ static void all_line_settings_read_back(void **state)
         open_scene(&scene);
         for (int k = 0; k < 200; k++)
             weigh(&scene, 0.06);
-        const double mean = scene.heard.n > 0 ? scene.heard.sum / scene.heard.n : 0.0;
-        if (scene.heard.n < 100 || scene.heard.remarks > 0)
-            fail_msg("case %zu: %d readings, %d remarks", i, scene.heard.n, scene.heard.remarks);
+        const double mean = scene.received.n > 0 ? scene.received.sum / scene.received.n : 0.0;
+        if (scene.received.n < 100 || scene.received.remarks > 0)
+            fail_msg("case %zu: %d readings, %d remarks", i, scene.received.n,
+                     scene.received.remarks);
         assert_close(mean, 0.06 + scene.setup.truth.cell_offset, scene.setup.truth.cell_noise);
         close_scene(&scene);
     }
 }
 
-/* The presets' lines, answers and commands, spoken from the manuals and read by the driver. */
+/* The presets' lines, answers and commands, written from the manuals and read by the driver. */
 static void every_preset_reads_back(void **state)
 {
     (void)state;
@@ -325,21 +328,21 @@ static void every_preset_reads_back(void **state)
         open_scene(&scene);
         for (int k = 0; k < 600; k++)
             weigh(&scene, 0.06);
-        const double mean = scene.heard.n > 0 ? scene.heard.sum / scene.heard.n : 0.0;
-        /* Commands must be obeyed, and answers to them must not be taken amiss. The scales with
-         * slow questions give ten readings. */
-        if (scene.heard.n < 10 || scene.heard.remarks > 0)
-            fail_msg("%s: %d readings, %d remarks", preset->name, scene.heard.n,
-                     scene.heard.remarks);
-        /* The iLoad prints whole thousandths of a pound. */
+        const double mean = scene.received.n > 0 ? scene.received.sum / scene.received.n : 0.0;
+        /* Commands must work, and their answers must not cause warnings. Scales that are polled
+         * slowly give ten readings. */
+        if (scene.received.n < 10 || scene.received.remarks > 0)
+            fail_msg("%s: %d readings, %d remarks", preset->name, scene.received.n,
+                     scene.received.remarks);
+        /* The iLoad prints integer thousandths of a pound. */
         const double step =
             strcmp(preset->name, "loadstar-iload") == 0 ? scene.cell.unit * 1e-3 : 0.0;
         assert_close(mean, 0.06 + scene.setup.truth.cell_offset,
                      scene.setup.truth.cell_noise + 0.5 * step);
         for (int k = 0; k < 200; k++)
             weigh(&scene, 1.6 * cell->capacity);
-        if (scene.heard.overloads < 3)
-            fail_msg("%s: %d overloads", preset->name, scene.heard.overloads);
+        if (scene.received.overloads < 3)
+            fail_msg("%s: %d overloads", preset->name, scene.received.overloads);
         close_scene(&scene);
     }
 }
@@ -354,17 +357,17 @@ static void the_end_of_a_session_ends_the_stream(void **state)
     open_scene(&scene);
     for (int k = 0; k < 50; k++)
         weigh(&scene, 0.06);
-    const int so_far = scene.heard.n;
+    const int so_far = scene.received.n;
     assert_true(so_far > 40);
     scene.driver->stop(scene.state, &outbox);
     wb_sim_cell_receive(&scene.cell, outbox.bytes, outbox.n_bytes);
     for (int k = 0; k < 50; k++)
         weigh(&scene, 0.06);
-    assert_int_equal(scene.heard.n, so_far);
+    assert_int_equal(scene.received.n, so_far);
     close_scene(&scene);
 }
 
-static void mtsics_says_dynamic_while_the_load_changes(void **state)
+static void mtsics_reports_dynamic_while_the_load_changes(void **state)
 {
     (void)state;
     struct scene scene;
@@ -373,14 +376,14 @@ static void mtsics_says_dynamic_while_the_load_changes(void **state)
     open_scene(&scene);
     for (int k = 0; k < 50; k++)
         weigh(&scene, 0.02);
-    assert_true(scene.heard.unstable <= 2);
+    assert_true(scene.received.unstable <= 2);
     for (int k = 0; k < 50; k++)
         weigh(&scene, 0.02 + 0.003 * k);
-    assert_true(scene.heard.unstable > 40);
+    assert_true(scene.received.unstable > 40);
     close_scene(&scene);
 }
 
-static void mtsics_answers_questions(void **state)
+static void mtsics_answers_queries(void **state)
 {
     (void)state;
     static const struct {
@@ -402,7 +405,7 @@ static void mtsics_answers_questions(void **state)
         text[wb_reply_take(&scene.cell.out, text, sizeof text - 1)] = '\0';
         assert_string_equal(text, cases[i].answer);
     }
-    /* Not asked for a stream, it sends nothing by itself; asked once, it sends one. */
+    /* Without a stream request it sends nothing; one query gives one line. */
     char text[256];
     wb_sim_cell_read(&scene.cell, 0, 0.1, 0.05);
     assert_int_equal(wb_reply_take(&scene.cell.out, text, sizeof text), 0);
@@ -412,7 +415,7 @@ static void mtsics_answers_questions(void **state)
     assert_int_equal(wb_reply_take(&scene.cell.out, text, sizeof text), 0);
 }
 
-static void an_unread_port_costs_lines_not_memory(void **state)
+static void unread_lines_are_lost_without_growing_memory(void **state)
 {
     (void)state;
     struct scene scene;
@@ -440,7 +443,7 @@ static void the_unit_key_changes_the_number_and_the_unit(void **state)
     open_scene(&scene);
     const double tension = 100.0 * WB_MN;
     for (int i = 0; i < 3; i++) {
-        /* Long enough for the filter; the last line stands at the end. */
+        /* Long enough for the filter; the last line is at the end. */
         for (int k = 0; k < 200; k++, scene.k++) {
             wb_reply_take(&scene.cell.out, line, sizeof line);
             wb_sim_cell_read(&scene.cell, scene.k, wb_sim_cell_time(&scene.cell, scene.k), tension);
@@ -464,14 +467,14 @@ int main(void)
         cmocka_unit_test(the_filter_lags_fifty_milliseconds_behind_a_ramp),
         cmocka_unit_test(the_filter_answers_a_step_exponentially),
         cmocka_unit_test(noise_belongs_to_the_reading_not_to_the_time),
-        cmocka_unit_test(beyond_its_overload_it_says_so),
+        cmocka_unit_test(overload_is_reported),
         cmocka_unit_test(taring_zeroes_the_reading),
         cmocka_unit_test(all_line_settings_read_back),
         cmocka_unit_test(every_preset_reads_back),
         cmocka_unit_test(the_end_of_a_session_ends_the_stream),
-        cmocka_unit_test(mtsics_says_dynamic_while_the_load_changes),
-        cmocka_unit_test(mtsics_answers_questions),
-        cmocka_unit_test(an_unread_port_costs_lines_not_memory),
+        cmocka_unit_test(mtsics_reports_dynamic_while_the_load_changes),
+        cmocka_unit_test(mtsics_answers_queries),
+        cmocka_unit_test(unread_lines_are_lost_without_growing_memory),
         cmocka_unit_test(the_unit_key_changes_the_number_and_the_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -12,7 +12,7 @@ static double slope_at(int marker)
     return 0.15 * marker;
 }
 
-/* A wire of no equilibrium, but with heights and slopes that differ from marker to marker. */
+/* A wire that is not in equilibrium, with heights and slopes that differ from marker to marker. */
 static void shape(const struct setup *setup, double travel, struct wb_live_wire_view *view)
 {
     memset(view, 0, sizeof *view);
@@ -25,7 +25,7 @@ static void shape(const struct setup *setup, double travel, struct wb_live_wire_
     }
 }
 
-/* Where marker m of that wire really is in the lab. */
+/* Actual position of marker m of that wire in the lab. */
 static void expected(const struct setup *setup, int m, double travel, double lab[3])
 {
     const double offset = setup->truth.marker_offsets[m];
@@ -34,7 +34,7 @@ static void expected(const struct setup *setup, int m, double travel, double lab
     wb_truth_to_lab(&setup->truth, 'y', bench, lab);
 }
 
-/* The measured marker nearest to a place; NULL when none is within 3 mm. */
+/* The measured marker nearest to a position; NULL if none is within 3 mm. */
 static const struct wb_marker *nearest(const struct wb_mocap_frame *frame, const double lab[3])
 {
     const struct wb_marker *best = NULL;
@@ -140,14 +140,14 @@ static void losses_are_short_often_and_long_rarely(void **state)
             was_filled = false;
         }
     }
-    /* A marker: 1.8 short losses a minute and one long in 6 minutes. */
+    /* Per marker: 1.8 short losses per minute and one long loss in 6 minutes. */
     assert_close((double)shorts / (7.0 * (double)minutes), 1.8, 0.25);
     assert_close((double)longs / (7.0 * (double)minutes), 0.16, 0.05);
     assert_close((double)filled / shorts, 0.4, 0.06);
     assert_true(lost < 7 * n / 100);
 }
 
-static void a_marker_comes_back_under_a_new_id(void **state)
+static void a_marker_returns_with_a_new_id(void **state)
 {
     (void)state;
     struct setup setup;
@@ -186,7 +186,7 @@ static void a_marker_comes_back_under_a_new_id(void **state)
     free(frame);
 }
 
-static void the_order_changes_and_a_ghost_comes_and_goes(void **state)
+static void the_order_changes_and_a_ghost_appears_at_times(void **state)
 {
     (void)state;
     struct setup setup;
@@ -215,7 +215,7 @@ static void the_order_changes_and_a_ghost_comes_and_goes(void **state)
     free(frame);
 }
 
-/* Filled markers are flagged, off by millimetres, and never where the protocol cannot flag them. */
+/* Filled markers are flagged, wrong by millimetres, and absent if the protocol has no flag. */
 static void filled_markers_are_flagged_and_wrong(void **state)
 {
     (void)state;
@@ -257,7 +257,7 @@ static void filled_markers_are_flagged_and_wrong(void **state)
     free(frame);
 }
 
-static void the_clock_is_hours_off_and_drifts(void **state)
+static void the_clock_has_an_offset_of_hours_and_drifts(void **state)
 {
     (void)state;
     struct setup setup;
@@ -269,7 +269,7 @@ static void the_clock_is_hours_off_and_drifts(void **state)
     const double ran =
         (double)(wb_sim_mocap_ticks(&mocap, 1000.0) - wb_sim_mocap_ticks(&mocap, 0.0)) / rate;
     assert_close(fabs(ran - 1000.0), 0.05, 1e-6);
-    /* Frames are even on the server's own clock, and sent after they were exposed. */
+    /* Frames are equidistant on the server's own clock, and sent after their exposure. */
     for (uint64_t k = 0; k < 5000; k++) {
         const double t = wb_sim_mocap_time(&mocap, k), next = wb_sim_mocap_time(&mocap, k + 1);
         assert_close(wb_sim_mocap_clock(&mocap, next) - wb_sim_mocap_clock(&mocap, t), 1.0 / 120.0,
@@ -300,10 +300,10 @@ int main(void)
         cmocka_unit_test(markers_are_measured_with_their_noise),
         cmocka_unit_test(frames_depend_on_seed_and_number_only),
         cmocka_unit_test(losses_are_short_often_and_long_rarely),
-        cmocka_unit_test(a_marker_comes_back_under_a_new_id),
-        cmocka_unit_test(the_order_changes_and_a_ghost_comes_and_goes),
+        cmocka_unit_test(a_marker_returns_with_a_new_id),
+        cmocka_unit_test(the_order_changes_and_a_ghost_appears_at_times),
         cmocka_unit_test(filled_markers_are_flagged_and_wrong),
-        cmocka_unit_test(the_clock_is_hours_off_and_drifts),
+        cmocka_unit_test(the_clock_has_an_offset_of_hours_and_drifts),
         cmocka_unit_test(a_clock_that_restarts_shows_one_second),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* The simulated GRBL stage: against GRBL's documented answers. */
+/* The simulated GRBL stage, tested against GRBL's documented answers. */
 #include "fixtures/virtual/sim_stage.h"
 
 #include "base/random.h"
@@ -26,8 +26,8 @@ static const char *listen(struct scene *scene)
     return scene->said;
 }
 
-/* Sends text and returns what came back at once. */
-static const char *tell(struct scene *scene, const char *text)
+/* Sends text and returns the immediate reply. */
+static const char *send(struct scene *scene, const char *text)
 {
     wb_sim_stage_receive(&scene->stage, scene->t, text, strlen(text));
     return listen(scene);
@@ -48,12 +48,12 @@ static void assert_state(struct scene *scene, const char *state)
 {
     char expected[32];
     snprintf(expected, sizeof expected, "<%s|MPos:", state);
-    const char *const report = tell(scene, "?");
+    const char *const report = send(scene, "?");
     if (strncmp(report, expected, strlen(expected)) != 0)
         fail_msg("report '%s', expected state %s", report, state);
 }
 
-/* Most tests have a plain stage that was just switched on. */
+/* Most tests use a default stage after power-up. */
 static int set_up(void **state)
 {
     static struct scene scene;
@@ -64,23 +64,23 @@ static int set_up(void **state)
 
 #define SCENE_TEST(test) cmocka_unit_test_setup(test, set_up)
 
-static void settings_and_questions_are_answered(void **state)
+static void settings_and_queries_are_answered(void **state)
 {
     struct scene *const scene = *state;
     wb_sim_stage_greet(&scene->stage);
     assert_string_equal(listen(scene), "\r\nGrbl 1.1h ['$' for help]\r\n");
-    assert_string_equal(tell(scene, "\n"), "ok\r\n");
-    assert_non_null(strstr(tell(scene, "$I\n"), "virtual rig"));
-    assert_non_null(strstr(tell(scene, "$$\n"), "$130=64.000\r\n"));
-    assert_non_null(strstr(tell(scene, "$#\n"), "[G54:0.000,0.000,0.000]\r\n"));
-    assert_non_null(strstr(tell(scene, "$G\n"), "G21 G90"));
-    assert_string_equal(tell(scene, "$120=100\n"), "ok\r\n");
-    assert_non_null(strstr(tell(scene, "$$\n"), "$120=100.000\r\n"));
-    assert_string_equal(tell(scene, "$120=-1\n"), "error:4\r\n");
-    assert_string_equal(tell(scene, "$999=1\n"), "error:3\r\n");
-    assert_string_equal(tell(scene, "$QQ\n"), "error:3\r\n");
-    assert_string_equal(tell(scene, "hello\n"), "error:2\r\n");
-    assert_string_equal(tell(scene, "G4 P0.01 (sync)\n"), "");
+    assert_string_equal(send(scene, "\n"), "ok\r\n");
+    assert_non_null(strstr(send(scene, "$I\n"), "virtual rig"));
+    assert_non_null(strstr(send(scene, "$$\n"), "$130=64.000\r\n"));
+    assert_non_null(strstr(send(scene, "$#\n"), "[G54:0.000,0.000,0.000]\r\n"));
+    assert_non_null(strstr(send(scene, "$G\n"), "G21 G90"));
+    assert_string_equal(send(scene, "$120=100\n"), "ok\r\n");
+    assert_non_null(strstr(send(scene, "$$\n"), "$120=100.000\r\n"));
+    assert_string_equal(send(scene, "$120=-1\n"), "error:4\r\n");
+    assert_string_equal(send(scene, "$999=1\n"), "error:3\r\n");
+    assert_string_equal(send(scene, "$QQ\n"), "error:3\r\n");
+    assert_string_equal(send(scene, "hello\n"), "error:2\r\n");
+    assert_string_equal(send(scene, "G4 P0.01 (sync)\n"), "");
     wait(scene, 0.02);
     assert_string_equal(listen(scene), "ok\r\n");
 }
@@ -89,7 +89,7 @@ static void a_jog_moves_the_clamp_at_the_feed(void **state)
 {
     struct scene *const scene = *state;
     assert_close(travel(scene), 0.0, 1e-9);
-    assert_string_equal(tell(scene, "$J=G91 G21 X53.000 F60.000\n"), "ok\r\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X53.000 F60.000\n"), "ok\r\n");
     wait(scene, 10.0);
     assert_state(scene, "Jog");
     assert_close(travel(scene), (10.0 - 0.01) * WB_MM, 2e-6);
@@ -98,8 +98,8 @@ static void a_jog_moves_the_clamp_at_the_feed(void **state)
     wait(scene, 0.2);
     assert_state(scene, "Idle");
     assert_close(travel(scene), 53.0 * WB_MM, 1e-9);
-    assert_string_equal(tell(scene, "$J=G91 G21 X-53.000 F6000.000\n"), "ok\r\n");
-    /* Clipped to the axis's 10 mm/s. */
+    assert_string_equal(send(scene, "$J=G91 G21 X-53.000 F6000.000\n"), "ok\r\n");
+    /* Limited to the axis's 10 mm/s. */
     wait(scene, 5.0);
     assert_state(scene, "Jog");
     wait(scene, 1.0);
@@ -114,31 +114,31 @@ static void down_can_be_the_negative_direction(void **state)
     settings.down = -1;
     settings.axis = 'Z';
     open_scene(&scene, &settings);
-    assert_string_equal(tell(&scene, "$J=G91 G21 Z-20 F600\n"), "ok\r\n");
+    assert_string_equal(send(&scene, "$J=G91 G21 Z-20 F600\n"), "ok\r\n");
     wait(&scene, 10.0);
     assert_close(travel(&scene), 20.0 * WB_MM, 1e-9);
-    assert_string_equal(tell(&scene, "$J=G91 G21 Z30 F600\n"), "error:15\r\n");
+    assert_string_equal(send(&scene, "$J=G91 G21 Z30 F600\n"), "error:15\r\n");
 }
 
-static void jogs_beyond_the_travel_are_refused(void **state)
+static void jogs_beyond_the_travel_are_rejected(void **state)
 {
     struct scene *const scene = *state;
-    assert_string_equal(tell(scene, "$J=G91 G21 X62.1 F600\n"), "error:15\r\n");
-    assert_string_equal(tell(scene, "$J=G91 G21 X-2.1 F600\n"), "error:15\r\n");
-    assert_string_equal(tell(scene, "$J=G91 G21 X62.0 F600\n"), "ok\r\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X62.1 F600\n"), "error:15\r\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X-2.1 F600\n"), "error:15\r\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X62.0 F600\n"), "ok\r\n");
     wait(scene, 20.0);
     assert_close(travel(scene), 62.0 * WB_MM, 1e-9);
-    assert_string_equal(tell(scene, "$J=G91 X1\n"), "error:22\r\n");
-    assert_string_equal(tell(scene, "$J=G91 F10\n"), "error:26\r\n");
-    assert_string_equal(tell(scene, "$J=G0 X1 F10\n"), "error:16\r\n");
+    assert_string_equal(send(scene, "$J=G91 X1\n"), "error:22\r\n");
+    assert_string_equal(send(scene, "$J=G91 F10\n"), "error:26\r\n");
+    assert_string_equal(send(scene, "$J=G0 X1 F10\n"), "error:16\r\n");
 }
 
-static void jogs_in_a_row_run_on_without_a_halt(void **state)
+static void consecutive_jogs_do_not_stop_in_between(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "$J=G91 G21 X2 F60\n");
+    send(scene, "$J=G91 G21 X2 F60\n");
     wait(scene, 1.5);
-    assert_string_equal(tell(scene, "$J=G91 G21 X2 F60\n"), "ok\r\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X2 F60\n"), "ok\r\n");
     wait(scene, 0.5);
     const double at_two = travel(scene);
     wait(scene, 0.1);
@@ -148,16 +148,16 @@ static void jogs_in_a_row_run_on_without_a_halt(void **state)
     assert_close(travel(scene), 4.0 * WB_MM, 1e-9);
 }
 
-/* 14 wait behind the one that is executed; the next line is read when there is room again. */
-static void a_full_planner_lets_lines_wait(void **state)
+/* 14 blocks wait behind the one being executed; the next line is read when a slot becomes free. */
+static void lines_wait_while_the_planner_is_full(void **state)
 {
     struct scene *const scene = *state;
     for (int i = 0; i < 15; i++)
-        assert_string_equal(tell(scene, "$J=G91 G21 X0.1 F60\n"), "ok\r\n");
-    assert_string_equal(tell(scene, "$J=G91 G21 X0.1 F60\n"), "");
+        assert_string_equal(send(scene, "$J=G91 G21 X0.1 F60\n"), "ok\r\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X0.1 F60\n"), "");
     wait(scene, 0.09);
     assert_string_equal(listen(scene), "");
-    /* 0.1 mm and the start, which costs 10 ms. */
+    /* 0.1 mm and the start, which takes 10 ms. */
     wait(scene, 0.021);
     assert_string_equal(listen(scene), "ok\r\n");
     wait(scene, 2.0);
@@ -165,15 +165,15 @@ static void a_full_planner_lets_lines_wait(void **state)
     assert_state(scene, "Idle");
 }
 
-/* The planner brakes to rest at the end of what it has; a block that comes while steps of the
- * braking are laid down already joins after them. */
-static void a_late_block_is_joined_after_the_steps_laid_down(void **state)
+/* The planner stops at the end of its last block; a block that arrives while the steps of braking
+ * are already passed to the motor is joined after them. */
+static void a_late_block_is_joined_after_the_steps_already_sent(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "$J=G91 G21 X1 F600\n"); /* at most 7.1 mm/s, 0.14 s up and down */
+    send(scene, "$J=G91 G21 X1 F600\n"); /* at most 7.1 mm/s; 0.14 s of acceleration and braking */
     wait(scene, 0.2);
     const double at = travel(scene);
-    tell(scene, "$J=G91 G21 X9 F600\n");
+    send(scene, "$J=G91 G21 X9 F600\n");
     wait(scene, 0.049);
     const double speed = (travel(scene) - at) / 0.049;
     assert_true(speed < 4.2 * WB_MM);
@@ -185,13 +185,13 @@ static void a_late_block_is_joined_after_the_steps_laid_down(void **state)
     assert_close(travel(scene), 10.0 * WB_MM, 1e-9);
 }
 
-static void a_cancelled_jog_lets_the_line_behind_it_start(void **state)
+static void the_next_line_starts_after_a_cancelled_jog(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "$J=G91 G21 X30 F600\n");
+    send(scene, "$J=G91 G21 X30 F600\n");
     wait(scene, 1.1);
     const double at = travel(scene);
-    assert_string_equal(tell(scene, "\x85$J=G91 G21 X0.5 F600\n"), "");
+    assert_string_equal(send(scene, "\x85$J=G91 G21 X0.5 F600\n"), "");
     wait(scene, 1.0);
     assert_string_equal(listen(scene), "ok\r\n");
     assert_close(travel(scene), at + 1.5 * WB_MM, 3e-6);
@@ -204,17 +204,17 @@ static void a_clock_that_runs_fast_makes_the_stage_fast(void **state)
     struct wb_sim_stage_settings settings = plain;
     settings.clock_error = 0.02;
     open_scene(&scene, &settings);
-    tell(&scene, "$J=G91 G21 X50 F60\n");
+    send(&scene, "$J=G91 G21 X50 F60\n");
     wait(&scene, 10.0);
     assert_close(travel(&scene), (10.2 - 0.01) * WB_MM, 2e-6);
-    assert_non_null(strstr(tell(&scene, "?"), "FS:60,0"));
+    assert_non_null(strstr(send(&scene, "?"), "FS:60,0"));
 }
 
 static void opposite_jogs_wait_for_each_other(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "$J=G91 G21 X5 F600\n");
-    assert_string_equal(tell(scene, "$J=G91 G21 X-4 F600\n"), "ok\r\n");
+    send(scene, "$J=G91 G21 X5 F600\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X-4 F600\n"), "ok\r\n");
     double highest = 0.0;
     for (int i = 0; i < 400; i++) {
         wait(scene, 0.01);
@@ -231,46 +231,46 @@ static void a_hold_cancels_a_jog_and_ends_idle(void **state)
     for (int i = 0; i < 2; i++) {
         struct scene scene;
         open_scene(&scene, &plain);
-        tell(&scene, "$J=G91 G21 X30 F600\n");
-        tell(&scene, "$J=G91 G21 X-5 F600\n");
+        send(&scene, "$J=G91 G21 X30 F600\n");
+        send(&scene, "$J=G91 G21 X-5 F600\n");
         wait(&scene, 1.2);
         const double at = travel(&scene);
-        tell(&scene, bytes[i]);
+        send(&scene, bytes[i]);
         assert_state(&scene, "Jog");
         wait(&scene, 0.5);
         assert_state(&scene, "Idle");
-        /* It took 0.2 s from 10 mm/s, 1 mm, and forgot the rest. */
+        /* It stopped within 0.2 s from 10 mm/s, 1 mm, and dropped the rest. */
         assert_close(travel(&scene), at + 1.0 * WB_MM, 3e-6);
         wait(&scene, 5.0);
         assert_close(travel(&scene), at + 1.0 * WB_MM, 3e-6);
     }
 }
 
-static void a_hold_at_rest_deafens_until_resumed(void **state)
+static void a_hold_at_rest_blocks_lines_until_resumed(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "!");
+    send(scene, "!");
     assert_state(scene, "Hold:0");
-    assert_string_equal(tell(scene, "$J=G91 G21 X1 F60\n"), "");
+    assert_string_equal(send(scene, "$J=G91 G21 X1 F60\n"), "");
     wait(scene, 3.0);
     assert_close(travel(scene), 0.0, 1e-9);
     /* The line waited in the buffer. */
-    assert_string_equal(tell(scene, "~"), "ok\r\n");
+    assert_string_equal(send(scene, "~"), "ok\r\n");
     assert_state(scene, "Jog");
     wait(scene, 2.0);
     assert_close(travel(scene), 1.0 * WB_MM, 1e-9);
 }
 
-static void a_program_move_holds_and_goes_on(void **state)
+static void a_program_move_holds_and_resumes(void **state)
 {
     struct scene *const scene = *state;
-    assert_string_equal(tell(scene, "G91 G1 X10 F600\n"), "ok\r\n");
+    assert_string_equal(send(scene, "G91 G1 X10 F600\n"), "ok\r\n");
     wait(scene, 0.5);
-    tell(scene, "!");
+    send(scene, "!");
     assert_state(scene, "Hold:1");
     wait(scene, 0.5);
     assert_state(scene, "Hold:0");
-    tell(scene, "~");
+    send(scene, "~");
     assert_state(scene, "Run");
     wait(scene, 2.0);
     assert_state(scene, "Idle");
@@ -280,65 +280,65 @@ static void a_program_move_holds_and_goes_on(void **state)
 static void a_reset_in_motion_alarms_and_locks(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "$J=G91 G21 X30 F600\n");
+    send(scene, "$J=G91 G21 X30 F600\n");
     wait(scene, 1.0);
     const double at = travel(scene);
-    assert_string_equal(tell(scene, "\x18"), "ALARM:3\r\n\r\nGrbl 1.1h ['$' for help]\r\n"
+    assert_string_equal(send(scene, "\x18"), "ALARM:3\r\n\r\nGrbl 1.1h ['$' for help]\r\n"
                                              "[MSG:'$H'|'$X' to unlock]\r\n");
     assert_state(scene, "Alarm");
     wait(scene, 1.0);
     assert_close(travel(scene), at, 1e-9);
-    assert_string_equal(tell(scene, "$J=G91 G21 X1 F60\n"), "error:8\r\n");
-    assert_string_equal(tell(scene, "G91 G1 X1 F60\n"), "error:9\r\n");
-    assert_string_equal(tell(scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X1 F60\n"), "error:8\r\n");
+    assert_string_equal(send(scene, "G91 G1 X1 F60\n"), "error:9\r\n");
+    assert_string_equal(send(scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
     assert_state(scene, "Idle");
 }
 
-static void a_reset_at_rest_only_greets(void **state)
+static void a_reset_at_rest_only_sends_the_banner(void **state)
 {
     struct scene *const scene = *state;
-    assert_string_equal(tell(scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
-    tell(scene, "!");
-    assert_string_equal(tell(scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
+    assert_string_equal(send(scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
+    send(scene, "!");
+    assert_string_equal(send(scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
     assert_state(scene, "Idle");
 }
 
 static void a_program_move_beyond_the_travel_alarms_until_reset(void **state)
 {
     struct scene *const scene = *state;
-    assert_string_equal(tell(scene, "G91 G1 X100 F600\n"),
+    assert_string_equal(send(scene, "G91 G1 X100 F600\n"),
                         "ALARM:2\r\n[MSG:Reset to continue]\r\n");
-    assert_string_equal(tell(scene, "$X\n"), "error:3\r\n");
-    tell(scene, "\x18");
-    assert_string_equal(tell(scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
+    assert_string_equal(send(scene, "$X\n"), "error:3\r\n");
+    send(scene, "\x18");
+    assert_string_equal(send(scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
 }
 
 static void homing_brings_the_clamp_to_the_start(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "$J=G91 G21 X20 F600\n");
+    send(scene, "$J=G91 G21 X20 F600\n");
     wait(scene, 3.0);
-    assert_string_equal(tell(scene, "$H\n"), "");
+    assert_string_equal(send(scene, "$H\n"), "");
     assert_state(scene, "Home");
     wait(scene, 2.0);
-    assert_string_equal(tell(scene, "$J=G91 G21 X1 F60\n"), "");
+    assert_string_equal(send(scene, "$J=G91 G21 X1 F60\n"), "");
     wait(scene, 10.0);
     assert_string_equal(listen(scene), "ok\r\nok\r\n");
     wait(scene, 2.0);
     assert_close(travel(scene), 1.0 * WB_MM, 1e-9);
-    assert_string_equal(tell(scene, "$22=0\n"), "ok\r\n");
-    assert_string_equal(tell(scene, "$H\n"), "error:5\r\n");
+    assert_string_equal(send(scene, "$22=0\n"), "ok\r\n");
+    assert_string_equal(send(scene, "$H\n"), "error:5\r\n");
 }
 
 static void a_reset_while_homing_is_alarm_six(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "$H\n");
+    send(scene, "$H\n");
     wait(scene, 0.1);
-    assert_int_equal(strncmp(tell(scene, "\x18"), "ALARM:6\r\n", 9), 0);
+    assert_int_equal(strncmp(send(scene, "\x18"), "ALARM:6\r\n", 9), 0);
 }
 
-static void lost_steps_stay_until_homed(void **state)
+static void lost_steps_remain_until_homed(void **state)
 {
     (void)state;
     struct scene scene;
@@ -346,7 +346,7 @@ static void lost_steps_stay_until_homed(void **state)
     settings.clamp.lost_steps = 0.8 * WB_MM;
     settings.clamp.lost_at = 20.0 * WB_MM;
     open_scene(&scene, &settings);
-    tell(&scene, "$J=G91 G21 X30 F600\n");
+    send(&scene, "$J=G91 G21 X30 F600\n");
     double before = 0.0;
     for (int i = 0; i < 400; i++) {
         wait(&scene, 0.01);
@@ -354,10 +354,10 @@ static void lost_steps_stay_until_homed(void **state)
         before = travel(&scene);
     }
     assert_close(travel(&scene), 29.2 * WB_MM, 2e-6);
-    tell(&scene, "$J=G91 G21 X-30 F600\n");
+    send(&scene, "$J=G91 G21 X-30 F600\n");
     wait(&scene, 10.0);
     assert_close(travel(&scene), -0.8 * WB_MM, 2e-6);
-    tell(&scene, "$H\n");
+    send(&scene, "$H\n");
     wait(&scene, 10.0);
     assert_close(travel(&scene), 0.0, 2e-6);
 }
@@ -365,28 +365,28 @@ static void lost_steps_stay_until_homed(void **state)
 static void end_stops_stall_the_motor(void **state)
 {
     struct scene *const scene = *state;
-    assert_string_equal(tell(scene, "$20=0\n"), "ok\r\n");
-    assert_string_equal(tell(scene, "$J=G91 G21 X70 F600\n"), "ok\r\n");
+    assert_string_equal(send(scene, "$20=0\n"), "ok\r\n");
+    assert_string_equal(send(scene, "$J=G91 G21 X70 F600\n"), "ok\r\n");
     for (int i = 0; i < 100; i++) {
         wait(scene, 0.1);
         travel(scene);
     }
     assert_close(travel(scene), 62.5 * WB_MM, 2e-6);
-    /* It was told 70 mm: going back by 70 mm is 7.5 mm too far, into the other stop. */
-    tell(scene, "$J=G91 G21 X-70 F600\n");
+    /* It was commanded to 70 mm: 70 mm back is 7.5 mm too far, into the other stop. */
+    send(scene, "$J=G91 G21 X-70 F600\n");
     for (int i = 0; i < 100; i++) {
         wait(scene, 0.1);
         travel(scene);
     }
     assert_close(travel(scene), -2.5 * WB_MM, 2e-6);
-    assert_string_equal(tell(scene, "$H\n"), "");
+    assert_string_equal(send(scene, "$H\n"), "");
     wait(scene, 20.0);
     assert_string_equal(listen(scene), "ok\r\n");
     assert_close(travel(scene), 0.0, 2e-6);
 }
 
-/* Any bytes at any time: it stays within its stops and goes on answering. */
-static void random_bytes_do_no_harm(void **state)
+/* Random bytes at random times: it stays within its stops and keeps answering. */
+static void random_bytes_are_harmless(void **state)
 {
     (void)state;
     static const char alphabet[] = "?!~\x18\x85\n\r$JGXYFMH=0129.-+ (;)\xff\x91$X\n$H\n";
@@ -405,31 +405,31 @@ static void random_bytes_do_no_harm(void **state)
         const double at = travel(&scene);
         assert_true(at >= -2.6 * WB_MM && at <= 62.6 * WB_MM);
     }
-    tell(&scene, "\x18");
+    send(&scene, "\x18");
     wait(&scene, 1.0);
-    assert_non_null(strstr(tell(&scene, "\n$I\n"), "virtual rig"));
+    assert_non_null(strstr(send(&scene, "\n$I\n"), "virtual rig"));
 }
 
-static void reports_have_the_work_offset_now_and_then(void **state)
+static void some_reports_include_the_work_offset(void **state)
 {
     struct scene *const scene = *state;
     int offsets = 0;
     for (int i = 0; i < 100; i++)
-        offsets += strstr(tell(scene, "?"), "|WCO:") != NULL;
+        offsets += strstr(send(scene, "?"), "|WCO:") != NULL;
     assert_int_equal(offsets, 10);
-    assert_string_equal(tell(scene, "$10=0\n"), "ok\r\n");
-    assert_non_null(strstr(tell(scene, "?"), "WPos:"));
+    assert_string_equal(send(scene, "$10=0\n"), "ok\r\n");
+    assert_non_null(strstr(send(scene, "?"), "WPos:"));
 }
 
 static void a_reset_empties_the_receive_buffer(void **state)
 {
     struct scene *const scene = *state;
-    tell(scene, "$J=G91 G21 X1");
-    tell(scene, "\x18");
-    assert_string_equal(tell(scene, "\n"), "ok\r\n");
+    send(scene, "$J=G91 G21 X1");
+    send(scene, "\x18");
+    assert_string_equal(send(scene, "\n"), "ok\r\n");
 }
 
-static void endless_lines_are_refused(void **state)
+static void endless_lines_are_rejected(void **state)
 {
     (void)state;
     struct scene scene;
@@ -437,43 +437,43 @@ static void endless_lines_are_refused(void **state)
     open_scene(&scene, &plain);
     memset(flood, 'X', sizeof flood);
     wb_sim_stage_receive(&scene.stage, 0.0, flood, 100);
-    assert_string_equal(tell(&scene, "\n"), "error:11\r\n");
+    assert_string_equal(send(&scene, "\n"), "error:11\r\n");
     wb_sim_stage_receive(&scene.stage, 0.0, flood, sizeof flood);
     assert_non_null(strstr(listen(&scene), "error:11\r\n"));
-    assert_string_equal(tell(&scene, "$I\n") + strlen(scene.said) - 4, "ok\r\n");
+    assert_string_equal(send(&scene, "$I\n") + strlen(scene.said) - 4, "ok\r\n");
 }
 
-static void with_a_time_scale_feeds_are_the_hosts(void **state)
+static void with_a_time_scale_feeds_are_in_host_time(void **state)
 {
     (void)state;
     struct scene scene;
     struct wb_sim_stage_settings settings = plain;
     settings.time_scale = 10.0;
     open_scene(&scene, &settings);
-    /* 10 mm/s of the host is 1 mm/s of the bench. */
-    tell(&scene, "$J=G91 G21 X53 F600\n");
+    /* 10 mm/s in host time is 1 mm/s in bench time. */
+    send(&scene, "$J=G91 G21 X53 F600\n");
     wait(&scene, 10.0);
     assert_close(travel(&scene), (10.0 - 0.01) * WB_MM, 2e-6);
-    assert_non_null(strstr(tell(&scene, "?"), "FS:600,0"));
+    assert_non_null(strstr(send(&scene, "?"), "FS:600,0"));
 }
 
-static void a_clamp_that_jams_stays_until_the_stage_is_homed(void **state)
+static void a_jammed_clamp_stays_until_homed(void **state)
 {
     (void)state;
     static struct scene scene;
     struct wb_sim_stage_settings settings = plain;
     settings.clamp.stuck_at = 7.0 * WB_MM;
     open_scene(&scene, &settings);
-    tell(&scene, "$J=G91 X20 F600\n");
+    send(&scene, "$J=G91 X20 F600\n");
     wait(&scene, 10.0);
     assert_close(travel(&scene), 7.0 * WB_MM, 1e-12);
-    assert_non_null(strstr(tell(&scene, "?"), "-42.000")); /* it reports 20 mm */
-    tell(&scene, "$J=G91 X-20 F600\n");
+    assert_non_null(strstr(send(&scene, "?"), "-42.000")); /* it reports 20 mm */
+    send(&scene, "$J=G91 X-20 F600\n");
     wait(&scene, 10.0);
     assert_close(travel(&scene), 7.0 * WB_MM, 1e-12);
-    tell(&scene, "$H\n");
+    send(&scene, "$H\n");
     wait(&scene, 60.0);
-    tell(&scene, "$J=G91 X5 F600\n");
+    send(&scene, "$J=G91 X5 F600\n");
     wait(&scene, 10.0);
     assert_close(travel(&scene), 5.0 * WB_MM, 1e-4);
 }
@@ -481,32 +481,32 @@ static void a_clamp_that_jams_stays_until_the_stage_is_homed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        SCENE_TEST(settings_and_questions_are_answered),
+        SCENE_TEST(settings_and_queries_are_answered),
         SCENE_TEST(a_jog_moves_the_clamp_at_the_feed),
         cmocka_unit_test(down_can_be_the_negative_direction),
-        SCENE_TEST(jogs_beyond_the_travel_are_refused),
-        SCENE_TEST(jogs_in_a_row_run_on_without_a_halt),
-        SCENE_TEST(a_full_planner_lets_lines_wait),
-        SCENE_TEST(a_late_block_is_joined_after_the_steps_laid_down),
-        SCENE_TEST(a_cancelled_jog_lets_the_line_behind_it_start),
+        SCENE_TEST(jogs_beyond_the_travel_are_rejected),
+        SCENE_TEST(consecutive_jogs_do_not_stop_in_between),
+        SCENE_TEST(lines_wait_while_the_planner_is_full),
+        SCENE_TEST(a_late_block_is_joined_after_the_steps_already_sent),
+        SCENE_TEST(the_next_line_starts_after_a_cancelled_jog),
         cmocka_unit_test(a_clock_that_runs_fast_makes_the_stage_fast),
         SCENE_TEST(opposite_jogs_wait_for_each_other),
         cmocka_unit_test(a_hold_cancels_a_jog_and_ends_idle),
-        SCENE_TEST(a_hold_at_rest_deafens_until_resumed),
-        SCENE_TEST(a_program_move_holds_and_goes_on),
+        SCENE_TEST(a_hold_at_rest_blocks_lines_until_resumed),
+        SCENE_TEST(a_program_move_holds_and_resumes),
         SCENE_TEST(a_reset_in_motion_alarms_and_locks),
-        SCENE_TEST(a_reset_at_rest_only_greets),
+        SCENE_TEST(a_reset_at_rest_only_sends_the_banner),
         SCENE_TEST(a_program_move_beyond_the_travel_alarms_until_reset),
         SCENE_TEST(homing_brings_the_clamp_to_the_start),
         SCENE_TEST(a_reset_while_homing_is_alarm_six),
-        cmocka_unit_test(lost_steps_stay_until_homed),
+        cmocka_unit_test(lost_steps_remain_until_homed),
         SCENE_TEST(end_stops_stall_the_motor),
-        cmocka_unit_test(random_bytes_do_no_harm),
-        SCENE_TEST(reports_have_the_work_offset_now_and_then),
+        cmocka_unit_test(random_bytes_are_harmless),
+        SCENE_TEST(some_reports_include_the_work_offset),
         SCENE_TEST(a_reset_empties_the_receive_buffer),
-        cmocka_unit_test(endless_lines_are_refused),
-        cmocka_unit_test(a_clamp_that_jams_stays_until_the_stage_is_homed),
-        cmocka_unit_test(with_a_time_scale_feeds_are_the_hosts),
+        cmocka_unit_test(endless_lines_are_rejected),
+        cmocka_unit_test(a_jammed_clamp_stays_until_homed),
+        cmocka_unit_test(with_a_time_scale_feeds_are_in_host_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The driver of the stage on the simulated stage, in simulated time: the short jogs that lead it.
- * Bytes take some time each way, and the program's turn comes when the test says so. */
+/* The stage driver on the simulated stage, in simulated time: the short jogs that move it. Bytes
+ * take some time in each direction, and the test decides when the program runs. */
 #include <stdlib.h>
 
 #include "base/log.h"
@@ -33,11 +33,11 @@ struct drive {
     struct post to_stage, to_driver;
     int64_t now_ns, next_tick_ns;
     int64_t tick_ns;       /* between two turns of the program */
-    int64_t stalled_until; /* the program does not run before */
+    int64_t stalled_until; /* the program does not run before this time */
     bool is_dead;
-    int lose_line, lose_ok; /* the so-manieth jog, or `ok`, from now on is lost; 0: none */
+    int lose_line, lose_ok; /* this jog, or `ok`, counted from now on, is lost; 0: none */
     int lines;
-    double most_ahead; /* m: what the stage had before it */
+    double most_ahead; /* m: largest distance queued ahead of the stage */
     double speed, acceleration;
     struct wb_stage_report last;
     int reports, errors;
@@ -52,7 +52,7 @@ static void post(struct post *post, int64_t due_ns, const void *bytes, size_t n)
     memcpy(post->letters[at].bytes, bytes, n);
 }
 
-/* The next letter that has arrived; NULL: none. */
+/* The next line that has arrived; NULL: none. */
 static const char *arrived(struct post *post, int64_t now_ns, size_t *n)
 {
     if (post->n == 0 || post->letters[post->first].due_ns > now_ns)
@@ -140,10 +140,11 @@ static void live(struct drive *drive, double seconds)
         step(drive);
 }
 
-static void command(struct drive *drive, enum wb_stage_command what, double distance)
+static void command(struct drive *drive, enum wb_stage_command command_kind, double distance)
 {
     assert_int_equal(
-        wb_stage_grbl.command(drive->driver, what, distance, drive->speed, &drive->outbox), WB_OK);
+        wb_stage_grbl.command(drive->driver, command_kind, distance, drive->speed, &drive->outbox),
+        WB_OK);
     send(drive);
 }
 
@@ -185,7 +186,7 @@ static double ahead(const struct drive *drive)
     return wb_jog_feed_ahead(&(struct wb_motion_limits){drive->speed, drive->acceleration});
 }
 
-/* s until the stage stands at a travel. */
+/* Seconds until the stage reaches a travel. */
 static double arrive(struct drive *drive, double target, double patience)
 {
     const int64_t begin_ns = drive->now_ns;
@@ -203,7 +204,7 @@ static const struct {
 } moves[] = {{1.0, 50.0, 53.0},  {1.0, 10.0, 20.0}, {1.0, 1.0, 20.0}, {10.0, 50.0, 53.0},
              {10.0, 10.0, 53.0}, {0.05, 50.0, 2.0}, {0.01, 10.0, 0.2}};
 
-/* In the stage's own time, over the whole stroke, and in each half second of it. */
+/* In the stage's own time, over the complete stroke, and in each half second of it. */
 static void the_speed_is_held_within_1_percent(void **state)
 {
     (void)state;
@@ -227,7 +228,7 @@ static void the_speed_is_held_within_1_percent(void **state)
                 before = at;
                 assert_true(wb_seconds_from_ns(drive.now_ns - begin_ns) < 1.2 * ideal + 3.0);
             }
-            /* The steps of the motor are a part of 1 %. */
+            /* The motor's step size is a part of the 1 %. */
             const double step_share = 1.25e-6 / (0.5 * v);
             if (!(slowest > 0.99 - step_share))
                 fail_msg("%g mm/s, %g mm/s2, clock %+g: %.3f of the speed in half a second",
@@ -239,7 +240,7 @@ static void the_speed_is_held_within_1_percent(void **state)
             if (!(fabs(took - ideal) < 0.01 * ideal + 0.02))
                 fail_msg("%g mm/s, %g mm/s2, clock %+g: %.3f s instead of %.3f s", moves[i].speed,
                          moves[i].acceleration, errors[k], took, ideal);
-            /* A clock that is slow by 2 % is late by 8 ms at most until the next report. */
+            /* A clock that is slow by 2 % is late by at most 8 ms until the next report. */
             const double bound = ahead(&drive) + 0.01 * v + 3e-6;
             if (!(drive.most_ahead <= bound))
                 fail_msg("%g mm/s, %g mm/s2: %.4f mm ahead, not within %.4f mm", moves[i].speed,
@@ -250,9 +251,8 @@ static void the_speed_is_held_within_1_percent(void **state)
     }
 }
 
-/* Killed at any moment, the program leaves a stage that comes to rest within the way to brake and
- * 0.15 s. */
-static void a_dead_program_leaves_a_stage_that_stops(void **state)
+/* If the program is killed at any time, the stage stops within the braking distance plus 0.15 s. */
+static void the_stage_stops_after_the_program_dies(void **state)
 {
     (void)state;
     uint64_t n = 0;
@@ -295,7 +295,7 @@ static void a_program_late_by_40_ms_still_holds_the_speed(void **state)
     end(&drive);
 }
 
-static void a_stall_stops_the_stage_and_it_goes_on(void **state)
+static void a_stall_stops_the_stage_and_it_resumes(void **state)
 {
     (void)state;
     struct drive drive;
@@ -321,17 +321,17 @@ static void ignore(void *context, enum wb_log_level level, const char *domain, c
     ++*(int *)context;
 }
 
-/* Whether the line or its answer was lost shows where the stage comes to rest. */
-static void lost_lines_and_answers_are_made_up_for(void **state)
+/* The position at which the stage stops shows whether the line or its answer was lost. */
+static void lost_lines_and_answers_are_recovered(void **state)
 {
     (void)state;
     int n_messages = 0;
     wb_log_set_sink(ignore, &n_messages);
     for (int nth = 1; nth <= 12; nth++) {
-        for (int what = 0; what < 2; what++) {
+        for (int command_kind = 0; command_kind < 2; command_kind++) {
             struct drive drive;
             begin(&drive, 1.0 * WB_MM, 50.0 * WB_MM, 0.0);
-            *(what ? &drive.lose_line : &drive.lose_ok) = nth;
+            *(command_kind ? &drive.lose_line : &drive.lose_ok) = nth;
             command(&drive, WB_STAGE_COMMAND_JOG, 0.6 * WB_MM);
             arrive(&drive, 0.6 * WB_MM, 5.0);
             live(&drive, 2.0);
@@ -344,7 +344,7 @@ static void lost_lines_and_answers_are_made_up_for(void **state)
     wb_log_set_sink(NULL, NULL);
 }
 
-/* A cancel between two short jogs: the line behind it starts, and is cancelled too. */
+/* A cancel between two short jogs: the next line starts, and is also cancelled. */
 static void a_cancelled_jog_ends_at_rest(void **state)
 {
     (void)state;
@@ -395,7 +395,7 @@ static void the_stage_holds_resets_and_homes(void **state)
     assert_int_equal(drive.last.state, WB_STAGE_IDLE);
     assert_int_equal(drive.last.alarm, 0);
     assert_close(drive.last.position, -62.0 * WB_MM, 1e-9);
-    /* Beyond its travel of 62 mm it comes to rest before the end. */
+    /* For a target beyond its travel of 62 mm it stops before the end. */
     command(&drive, WB_STAGE_COMMAND_JOG, 100.0 * WB_MM);
     live(&drive, 10.0);
     assert_int_equal(drive.errors, 2);
@@ -408,10 +408,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_speed_is_held_within_1_percent),
-        cmocka_unit_test(a_dead_program_leaves_a_stage_that_stops),
+        cmocka_unit_test(the_stage_stops_after_the_program_dies),
         cmocka_unit_test(a_program_late_by_40_ms_still_holds_the_speed),
-        cmocka_unit_test(a_stall_stops_the_stage_and_it_goes_on),
-        cmocka_unit_test(lost_lines_and_answers_are_made_up_for),
+        cmocka_unit_test(a_stall_stops_the_stage_and_it_resumes),
+        cmocka_unit_test(lost_lines_and_answers_are_recovered),
         cmocka_unit_test(a_cancelled_jog_ends_at_rest),
         cmocka_unit_test(the_stage_holds_resets_and_homes),
     };

@@ -1,5 +1,5 @@
-/* The driver of the Tic on the simulated one, in simulated time: bytes take some time each way, and
- * the program's turn comes every 20 ms as long as it lives. */
+/* The Tic driver on the simulated Tic, in simulated time: bytes take some time in each direction,
+ * and the program runs every 20 ms while it is alive. */
 #include <stdlib.h>
 
 #include "base/units.h"
@@ -11,7 +11,7 @@
 #define LINK_NS (25 * MS) /* an answer at 9600 baud */
 #define TICK_NS (20 * MS)
 
-/* What is under way in one direction: in order, and never more than this. */
+/* Bytes in transit in one direction: in order, limited in number. */
 struct wire {
     struct {
         int64_t due_ns;
@@ -126,14 +126,14 @@ static void live(struct drive *drive, double duration)
         step(drive);
 }
 
-/* Offers a command until it is taken, as wb_sequence does; the time that took. */
-static double command(struct drive *drive, enum wb_stage_command what, double distance,
+/* Sends a command repeatedly until it is accepted, as wb_sequence does; returns the time taken. */
+static double command(struct drive *drive, enum wb_stage_command command_kind, double distance,
                       double speed)
 {
     const double began = seconds(drive);
     for (;;) {
         const enum wb_status status =
-            wb_stage_tic.command(drive->driver, what, distance, speed, &drive->outbox);
+            wb_stage_tic.command(drive->driver, command_kind, distance, speed, &drive->outbox);
         if (status == WB_OK)
             break;
         assert_int_equal(status, WB_ERR_BUSY);
@@ -144,7 +144,7 @@ static double command(struct drive *drive, enum wb_stage_command what, double di
     return seconds(drive) - began;
 }
 
-/* Runs until the stage is seen idle twice; at most `most` seconds. */
+/* Runs until the stage is reported idle twice; at most `most` seconds. */
 static void arrive(struct drive *drive, double most)
 {
     const double end = seconds(drive) + most;
@@ -177,7 +177,7 @@ static void begin(struct drive *drive, int down)
     assert_int_equal(drive->last.state, WB_STAGE_IDLE);
 }
 
-static void a_jog_goes_where_it_is_sent(void **state)
+static void a_jog_reaches_its_target(void **state)
 {
     (void)state;
     for (int down = -1; down <= 1; down += 2) {
@@ -198,8 +198,8 @@ static void a_jog_goes_where_it_is_sent(void **state)
     }
 }
 
-/* Nothing moves before a jog, whatever the target was that an earlier program left behind. */
-static void an_old_target_is_not_gone_to(void **state)
+/* Nothing moves before a jog, regardless of the target left by an earlier program. */
+static void an_old_target_is_ignored(void **state)
 {
     (void)state;
     struct drive drive;
@@ -231,7 +231,7 @@ static void a_hold_brakes_and_keeps_the_position(void **state)
     command(&drive, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
     live(&drive, 1.0);
     assert_int_equal(drive.last.state, WB_STAGE_IDLE);
-    /* The way of the word and of braking from 5 mm/s at 50 mm/s2. */
+    /* Distance during transmission plus the braking distance from 5 mm/s at 50 mm/s2. */
     const double most = 5.0 * WB_MM * wb_seconds_from_ns(LINK_NS + 2 * MS) + 0.25 * WB_MM;
     assert_true(travel(&drive) > here && travel(&drive) <= here + most + 1e-6);
     assert_false(drive.tic.uncertain);
@@ -241,7 +241,7 @@ static void a_hold_brakes_and_keeps_the_position(void **state)
     free(drive.driver);
 }
 
-static void the_stop_of_last_resort_halts_at_once(void **state)
+static void the_emergency_stop_halts_at_once(void **state)
 {
     (void)state;
     struct drive drive;
@@ -257,8 +257,8 @@ static void the_stop_of_last_resort_halts_at_once(void **state)
     free(drive.driver);
 }
 
-/* Nothing can be done any more by a program that is dead: the Tic stops by its own timeout, and the
- * way that takes is what the driver said before. */
+/* A dead program cannot act: the Tic stops by its own timeout, within the distance that the driver
+ * announced. */
 static void a_dead_program_stops_the_stage(void **state)
 {
     (void)state;
@@ -288,9 +288,8 @@ static void a_dead_program_stops_the_stage(void **state)
     }
 }
 
-/* A program that was kept from running finds its stage stopped, and is told so; a new jog goes on.
- */
-static void a_stall_beyond_the_timeout_is_told(void **state)
+/* A stalled program finds its stage stopped, and gets a warning; a new jog moves it again. */
+static void a_stall_beyond_the_timeout_is_reported(void **state)
 {
     (void)state;
     struct drive drive;
@@ -310,7 +309,7 @@ static void a_stall_beyond_the_timeout_is_told(void **state)
     free(drive.driver);
 }
 
-/* As long as the program lives no timeout runs out, moving or not. */
+/* While the program is alive no timeout expires, moving or not. */
 static void a_living_program_is_never_timed_out(void **state)
 {
     (void)state;
@@ -339,13 +338,13 @@ static void homing_goes_to_the_switch(void **state)
         assert_close(travel(&drive), -2.0 * WB_MM, 1e-9);
         assert_close(drive.last.position, 0.0, 1e-9);
         assert_int_equal(drive.homings, 1);
-        /* That the switch is pressed and no position known before is part of it. */
+        /* Includes that the switch is pressed and that the position was unknown before. */
         assert_int_equal(drive.warnings, 0);
         free(drive.driver);
     }
 }
 
-static void without_a_limit_switch_homing_is_refused(void **state)
+static void without_a_limit_switch_homing_is_rejected(void **state)
 {
     (void)state;
     struct drive drive;
@@ -388,15 +387,15 @@ static void a_kill_switch_is_an_alarm_until_it_is_released(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_jog_goes_where_it_is_sent),
-        cmocka_unit_test(an_old_target_is_not_gone_to),
+        cmocka_unit_test(a_jog_reaches_its_target),
+        cmocka_unit_test(an_old_target_is_ignored),
         cmocka_unit_test(a_hold_brakes_and_keeps_the_position),
-        cmocka_unit_test(the_stop_of_last_resort_halts_at_once),
+        cmocka_unit_test(the_emergency_stop_halts_at_once),
         cmocka_unit_test(a_dead_program_stops_the_stage),
-        cmocka_unit_test(a_stall_beyond_the_timeout_is_told),
+        cmocka_unit_test(a_stall_beyond_the_timeout_is_reported),
         cmocka_unit_test(a_living_program_is_never_timed_out),
         cmocka_unit_test(homing_goes_to_the_switch),
-        cmocka_unit_test(without_a_limit_switch_homing_is_refused),
+        cmocka_unit_test(without_a_limit_switch_homing_is_rejected),
         cmocka_unit_test(a_kill_switch_is_an_alarm_until_it_is_released),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -84,7 +84,7 @@ static void the_curvature_gives_the_bow(void **state)
     }
 }
 
-static void markers_sit_a_millimetre_off_with_a_twentieth_of_scatter(void **state)
+static void markers_are_a_millimetre_off_the_axis_with_scatter(void **state)
 {
     (void)state;
     struct setup setup;
@@ -149,7 +149,7 @@ static void the_lab_frame_keeps_distances_and_handedness(void **state)
     }
 }
 
-static void the_written_truth_is_yaml_with_all_it_is(void **state)
+static void the_written_truth_is_complete_yaml(void **state)
 {
     (void)state;
     struct setup setup;
@@ -195,10 +195,10 @@ int main(void)
         cmocka_unit_test(stiffness_and_yield_scatter_by_four_percent),
         cmocka_unit_test(the_bow_is_two_to_four_millimetres_either_way),
         cmocka_unit_test(the_curvature_gives_the_bow),
-        cmocka_unit_test(markers_sit_a_millimetre_off_with_a_twentieth_of_scatter),
+        cmocka_unit_test(markers_are_a_millimetre_off_the_axis_with_scatter),
         cmocka_unit_test(instruments_are_those_of_the_paper_bench),
         cmocka_unit_test(the_lab_frame_keeps_distances_and_handedness),
-        cmocka_unit_test(the_written_truth_is_yaml_with_all_it_is),
+        cmocka_unit_test(the_written_truth_is_complete_yaml),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,25 +8,25 @@
 #include "tests/virtual/setup.h"
 
 enum {
-    MOST_HISTORY = 16
+    MAX_HISTORY = 16
 };
 
-/* A point and what it did last. */
+/* A point and its last response. */
 struct point {
     struct wb_point_law law;
-    double history[MOST_HISTORY], stress, tangent;
+    double history[MAX_HISTORY], stress, tangent;
 };
 
 static struct point make_point(const struct wb_truth_law *law)
 {
     struct point p = {.law = wb_truth_law_point(law)};
-    assert_true(p.law.n_history <= MOST_HISTORY);
+    assert_true(p.law.n_history <= MAX_HISTORY);
     return p;
 }
 
 static double strain_to(struct point *p, double strain)
 {
-    double after[MOST_HISTORY];
+    double after[MAX_HISTORY];
     p->law.respond(p->law.context, strain, p->history, after, &p->stress, &p->tangent);
     memcpy(p->history, after, sizeof after);
     return p->stress;
@@ -49,7 +49,7 @@ static void linear_hardening_grows_or_moves(void **unused)
     assert_close_relative(strain_to(&b, top), expected, 1e-12);
     assert_close_relative(a.tangent, slope, 1e-12);
     assert_close_relative(b.tangent, slope, 1e-12);
-    /* During unloading one yields at -expected, the other 2 yield below the top. */
+    /* During unloading one law yields at -expected, the other 2 yield below the top. */
     const double back = top - 2.0 * yield / E - 1e-3;
     assert_close_relative(strain_to(&a, back), expected - E * (top - back), 1e-12);
     assert_close_relative(strain_to(&b, back), expected - 2.0 * yield - slope * 1e-3, 1e-11);
@@ -90,7 +90,7 @@ static void a_maxwell_part_relaxes(void **unused)
         assert_close_relative(strain_to(&p, 1e-3), 1e6 + 2e6 * exp(-3.0 * i / 15.0), 1e-12);
 }
 
-/* Eyring's: at the stress q0 e times as fast, in small steps. */
+/* Eyring's law: at the stress q0 relaxation is e times as fast, in small steps. */
 static void a_maxwell_part_relaxes_faster_at_a_larger_stress(void **unused)
 {
     (void)unused;
@@ -113,7 +113,7 @@ static void a_maxwell_part_relaxes_faster_at_a_larger_stress(void **unused)
     assert_close_relative(1.0 - left[1], 0.1 / tau * exp(1.0), 0.03);
 }
 
-/* A negative Q: the stress falls once the part slips, and stays there during unloading. */
+/* A negative Q: the stress decreases once the part slips, and stays low during unloading. */
 static void strands_carry_less_once_they_slip(void **unused)
 {
     (void)unused;
@@ -151,7 +151,7 @@ static void tangents_are_slopes(void **unused)
     for (int i = 0; i < 200; i++) {
         random = random * 6364136223846793005u + 1442695040888963407u;
         const double strain = 2e-2 * ((double)(random >> 11) / 9007199254740992.0 - 0.5);
-        double low, high, slope, after[MOST_HISTORY];
+        double low, high, slope, after[MAX_HISTORY];
         const double h = 1e-8;
         p.law.respond(&law, strain - h, p.history, after, &low, &slope);
         p.law.respond(&law, strain + h, p.history, after, &high, &slope);
@@ -160,7 +160,7 @@ static void tangents_are_slopes(void **unused)
     }
 }
 
-static void the_variants_differ_on_the_way_back_only_where_they_should(void **unused)
+static void the_variants_differ_in_unloading_as_intended(void **unused)
 {
     (void)unused;
     struct setup setup;
@@ -191,7 +191,7 @@ static void the_variants_differ_on_the_way_back_only_where_they_should(void **un
     const double M = up[WB_COMPOSITE_KINEMATIC];
     assert_close_relative(up[WB_COMPOSITE_ISOTROPIC], M, 1e-9);
     assert_close_relative(up[WB_COMPOSITE_MIXED], M, 1e-9);
-    /* All are of the same size, so that the same instruments serve. */
+    /* All have similar forces, so that the same instruments can be used. */
     for (int variant = 0; variant < WB_COMPOSITE_VARIANTS; variant++)
         assert_true(up[variant] > 0.5 * M && up[variant] < 2.0 * M);
     assert_true(back[WB_COMPOSITE_ISOTROPIC] < back[WB_COMPOSITE_MIXED] - 0.05 * M);
@@ -207,7 +207,7 @@ int main(void)
         cmocka_unit_test(a_maxwell_part_relaxes_faster_at_a_larger_stress),
         cmocka_unit_test(strands_carry_less_once_they_slip),
         cmocka_unit_test(tangents_are_slopes),
-        cmocka_unit_test(the_variants_differ_on_the_way_back_only_where_they_should),
+        cmocka_unit_test(the_variants_differ_in_unloading_as_intended),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

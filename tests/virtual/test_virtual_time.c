@@ -1,4 +1,4 @@
-/* Virtual time and the ports in it: what arrives when, stalls, cables. */
+/* Virtual time and its ports: arrival times, stalls, cables. */
 #include "fixtures/virtual/virtual_time_private.h"
 
 #include <errno.h>
@@ -16,14 +16,14 @@
 #define MS WB_NS_PER_MS
 #define START WB_VIRTUAL_TIME_START_NS
 
-/* An instrument that says a letter every 10 ms, and keeps what it is told. */
+/* An instrument that sends a letter every 10 ms and stores what it receives. */
 struct ticker {
     struct wb_virtual_actor actor;
     struct wb_sim_port_handler handler;
     struct wb_sim_port *port;
     int64_t due_ns;
     char next;
-    char heard[64], line[32];
+    char received[64], line[32];
     size_t n_heard;
     int64_t heard_ns;
 };
@@ -44,8 +44,8 @@ static void ticker_run(void *context, int64_t now_ns)
 static void ticker_hear(void *context, int64_t now_ns, const void *bytes, size_t n)
 {
     struct ticker *const ticker = context;
-    assert_true(ticker->n_heard + n <= sizeof ticker->heard);
-    memcpy(ticker->heard + ticker->n_heard, bytes, n);
+    assert_true(ticker->n_heard + n <= sizeof ticker->received);
+    memcpy(ticker->received + ticker->n_heard, bytes, n);
     ticker->n_heard += n;
     ticker->heard_ns = now_ns;
 }
@@ -131,7 +131,7 @@ static void wait_ends_when_a_piece_arrives(void **state)
     wb_stream_close(stream);
 }
 
-static void bytes_written_are_heard_at_once(void **state)
+static void written_bytes_arrive_at_once(void **state)
 {
     struct ticker *const ticker = *state;
     struct wb_stream *const stream = open_cell();
@@ -295,7 +295,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         FACT(time_passes_only_in_waits),
         FACT(wait_ends_when_a_piece_arrives),
-        FACT(bytes_written_are_heard_at_once),
+        FACT(written_bytes_arrive_at_once),
         FACT(pieces_wait_while_the_program_is_stalled),
         FACT(pieces_are_lost_while_nobody_has_the_port_open),
         FACT(port_is_open_once_and_named),

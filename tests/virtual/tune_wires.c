@@ -1,8 +1,8 @@
-/* Finds the constants of fixtures/virtual/wires.yaml again and prints them: run by hand when the
- * beam or the wires' paper properties change. Usage: tune_wires [WIRE...]
+/* Recomputes the constants of fixtures/virtual/wires.yaml and prints them: run by hand after
+ * changes of the beam or of the wires' paper properties. Usage: tune_wires [WIRE...]
  *
- * Two numbers a wire, the second law's yield stress and the hardening modulus, are fitted to the
- * force-deflection curve of the wire's homogenised properties; the rest is chosen here.
+ * Two numbers per wire, the second law's yield stress and the hardening modulus, are fitted to the
+ * force-deflection curve of the wire's homogenised properties; the others are chosen here.
  */
 #include <math.h>
 #include <stdio.h>
@@ -21,8 +21,8 @@ enum {
     POINTS = 104
 };
 
-/* Chosen: see fixtures/virtual/wires.yaml. Yield stresses are relative to the core's stress at the
- * yield moment of the homogenised wire. */
+/* Chosen values: see fixtures/virtual/wires.yaml. Yield stresses are relative to the core's stress
+ * at the yield moment of the homogenised wire. */
 static const double jacket_modulus = 25.0 * WB_MPA;
 static const double stiffness = 1.12;
 static const double shares[] = {0.40, 0.48, 0.12};
