@@ -572,7 +572,7 @@ static enum verdict report_progress(struct run *r)
     return DONE;
 }
 
-/* --- ways --- */
+/* --- branches --- */
 
 /* Time over duration at which a fifth-order smooth step has completed a fraction of its path. */
 static double time_of(double share)

@@ -780,7 +780,7 @@ static void respond_points(const struct wb_fibres *f, double eps, double kappa,
     }
 }
 
-/* A section's own kind. */
+/* Response of a section of any kind of material, chosen at run time. */
 static WB_ALWAYS_INLINE void respond_any(const struct wb_fibres *f, struct strains strains,
                                          const double *before, double *after,
                                          struct wb_fibres_response *response)

@@ -87,7 +87,7 @@ static double get(const struct wb_swept_tape *tape, const void *numbers, size_t 
 
 static bool is_convex(const struct element *e)
 {
-    static const int next[4] = {1, 3, 0, 2}; /* round the element */
+    static const int next[4] = {1, 3, 0, 2}; /* around the element */
     static const int before[4] = {2, 0, 3, 1};
 
     for (int a = 0; a < 4; a++) {

@@ -72,7 +72,7 @@ void wb_swept_tape_destroy(struct wb_swept_tape *tape);
 /* The model, with a copy of the positions, and with defaults and instructions filled in. */
 const struct wb_swept_tape_model *wb_swept_tape_get_model(const struct wb_swept_tape *tape);
 int wb_swept_tape_blocks(const struct wb_swept_tape *tape);   /* of WB_SWEPT_LANES stations */
-int wb_swept_tape_elements(const struct wb_swept_tape *tape); /* round the ring */
+int wb_swept_tape_elements(const struct wb_swept_tape *tape); /* around the ring */
 
 /* Directors of the reference state (a field): the mean of the adjoining elements' normals, in the
  * plane of the section. */

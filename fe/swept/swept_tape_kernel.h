@@ -49,7 +49,7 @@ enum {
 
 struct wb_swept_tape_kernel_model {
     struct wb_swept_layout layout;
-    int n_elements; /* round the ring */
+    int n_elements; /* around the ring */
     int n_along;
     bool closed;
     int n_points;

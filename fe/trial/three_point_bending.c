@@ -33,8 +33,8 @@ static const double roller_stiffness = 1e5, nose_stiffness = 2e4;
 static const double sticking_stiffness = 1e3;
 
 static const double force_tolerance = 1e-9; /* residual over the largest internal force */
-static const double max_iteration_rotation =
-    0.3;                                  /* limit of a node's rotation in an iteration, rad */
+/* Limit of a node's rotation in an iteration, rad. */
+static const double max_iteration_rotation = 0.3;
 static const double smallest_step = 1e-7; /* of a sub-step, over the span */
 static const double first_step = 2e-3;    /* of the virgin wire, over the span */
 static const double turning_step = 5e-5;  /* after the nose reverses, over the span */
@@ -53,7 +53,7 @@ struct nose {
 struct state {
     double level; /* of the nose, as deflection in m */
     double last_step;
-    double step; /* that converged easily, m */
+    double step; /* of the last accepted sub-step, m */
     double force, largest_force;
     double work, internal_work, friction_work;
     bool slack;

@@ -24,7 +24,7 @@ struct wb_wire1d {
     double (*shape)[3]; /* (MAX_SHAPE) workspace */
 };
 
-/* A run under way. */
+/* A run in progress. */
 struct run {
     struct wb_wire1d *wire;
     struct wb_wire_progress at;

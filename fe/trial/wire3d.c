@@ -29,7 +29,7 @@ struct wb_wire3d {
     bool has_run;
 };
 
-/* A run under way. */
+/* A run in progress. */
 struct run {
     struct wb_wire3d *wire;
     struct wb_wire_progress at;

@@ -7,7 +7,7 @@
 
 #define WB_LOG_DOMAIN "test"
 
-static enum wb_status refuse(struct wb_reason *reason, int number)
+static enum wb_status fail_with(struct wb_reason *reason, int number)
 {
     return wb_fail_to(reason, WB_ERR_DATA, "number %d rejected", number);
 }
@@ -17,7 +17,7 @@ static void a_failure_goes_to_the_reason_and_not_to_the_log(void **state)
     (void)state;
     struct wb_reason reason = {.text = "of before"};
     keep_messages();
-    assert_int_equal(refuse(&reason, 7), WB_ERR_DATA);
+    assert_int_equal(fail_with(&reason, 7), WB_ERR_DATA);
     release_messages();
     assert_string_equal(reason.text, "number 7 rejected");
     assert_int_equal(kept.n, 0);
@@ -27,7 +27,7 @@ static void a_failure_without_a_reason_is_logged(void **state)
 {
     (void)state;
     keep_messages();
-    assert_int_equal(refuse(NULL, 8), WB_ERR_DATA);
+    assert_int_equal(fail_with(NULL, 8), WB_ERR_DATA);
     release_messages();
     assert_int_equal(kept.n, 1);
     assert_int_equal(kept.level, WB_LOG_ERROR);

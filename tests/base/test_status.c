@@ -4,14 +4,14 @@
 
 #define WB_LOG_DOMAIN "test"
 
-static enum wb_status refuse(int number)
+static enum wb_status fail_with(int number)
 {
     return wb_fail(WB_ERR_DATA, "number %d rejected", number);
 }
 
 static enum wb_status call_refuse(int *after)
 {
-    WB_TRY(refuse(7));
+    WB_TRY(fail_with(7));
     *after = 1;
     return WB_OK;
 }

@@ -25,7 +25,7 @@ static enum wb_status count(void *context, int index)
     return index == 1 ? WB_ERR_DATA : WB_OK;
 }
 
-static bool tell(void *context, int index, enum wb_status status)
+static bool record_end(void *context, int index, enum wb_status status)
 {
     struct record *const record = context;
     if ((status == WB_OK) == (index == 1))
@@ -40,7 +40,7 @@ static bool tell(void *context, int index, enum wb_status status)
 static int run(struct record *record, int n_threads)
 {
     const struct wb_workers workers = {
-        .n = JOBS, .n_threads = n_threads, .job = count, .done = tell, .context = record};
+        .n = JOBS, .n_threads = n_threads, .job = count, .done = record_end, .context = record};
     record->caller = pthread_self();
     record->only_caller = true;
     return wb_workers_run(&workers);

@@ -337,15 +337,15 @@ static void delays_cause_no_gaps(void **state)
     free(scene);
 }
 
-static int refusals;
+static int n_errors;
 
-static void count_refusals(void *context, enum wb_log_level level, const char *domain,
-                           const char *message)
+static void count_errors(void *context, enum wb_log_level level, const char *domain,
+                         const char *message)
 {
     (void)context;
     (void)domain;
     (void)message;
-    refusals += level == WB_LOG_ERROR;
+    n_errors += level == WB_LOG_ERROR;
 }
 
 static void invalid_settings_give_one_message(void **state)
@@ -364,12 +364,12 @@ static void invalid_settings_give_one_message(void **state)
         {.rig = rig, .specimen = specimen, .composites = wires},
         {.rig = rig, .specimen = specimen, .natnet = {4, 5}},
     };
-    wb_log_set_sink(count_refusals, NULL);
+    wb_log_set_sink(count_errors, NULL);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        refusals = 0;
+        n_errors = 0;
         assert_int_not_equal(wb_bench_open(&bench, &cases[i]), WB_OK);
         assert_null(bench);
-        assert_int_equal(refusals, 1);
+        assert_int_equal(n_errors, 1);
     }
     wb_log_set_sink(NULL, NULL);
 }

@@ -374,7 +374,7 @@ static void frames_arrive_through_a_multicast_group(void **state)
         wb_mocap_server_close(server);
         skip();
     }
-    frame.mocap.frame_number = 77; /* nobody has connected */
+    frame.mocap.frame_number = 77; /* no client has connected */
     wb_mocap_server_send(server, &frame, 0);
     struct pollfd polled[2];
     int descriptors[2];

@@ -15,7 +15,7 @@
 #define TICK_NS (20 * MS)
 #define POST 64
 
-/* Bytes under way. */
+/* Bytes in transit. */
 struct post {
     struct {
         int64_t due_ns;

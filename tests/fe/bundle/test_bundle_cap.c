@@ -44,7 +44,7 @@ static void capped_bundle_conserves_energy_and_momentum(void **unused)
     wb_bundle_destroy(bundle);
 }
 
-/* --- on its own --- */
+/* --- cap without tape or loads --- */
 
 /* Sums over the wires' nodes at the end, independent of the rigid-body code. */
 struct sums {

@@ -75,7 +75,7 @@ static char *path_of(const char *name)
 struct vtu {
     char *bytes;
     size_t size;
-    const unsigned char *data; /* behind the underscore */
+    const unsigned char *data; /* after the underscore */
     size_t used;               /* bytes of data, summed over the arrays that were read */
     int n_points, n_cells;
 };

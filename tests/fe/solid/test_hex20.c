@@ -610,7 +610,7 @@ static void plastic_strain_at_nodes_is_not_negative(void **unused)
     assert_close(plastic[4], 0.5e-3 * (1.0 + sqrt(3.0)), 1e-15);
 }
 
-/* --- Refusals --- */
+/* --- Invalid input --- */
 
 static void inverted_elements_and_invalid_input_are_rejected(void **unused)
 {

@@ -607,7 +607,7 @@ static void sticking_forces_have_a_potential(void **unused)
     }
 }
 
-/* --- refusals and defaults --- */
+/* --- invalid input and defaults --- */
 
 static void nan_input_gives_nan_output(void **unused)
 {

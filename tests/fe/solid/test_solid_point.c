@@ -469,7 +469,7 @@ static void a_rotated_yielding_point_only_rotates(void **unused)
     }
 }
 
-/* --- Precision, and refusals --- */
+/* --- Precision, and invalid input --- */
 
 static void tiny_strains_keep_their_digits(void **unused)
 {

@@ -115,7 +115,7 @@ static void windings_are_bonded_to_the_one_inside(void **unused)
     test_tape_destroy(&t);
 }
 
-/* --- refusals --- */
+/* --- invalid input --- */
 
 static void invalid_bonds_are_rejected(void **unused)
 {

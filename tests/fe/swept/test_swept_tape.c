@@ -514,7 +514,7 @@ static void bound_of_frequencies_holds_and_is_close(void **unused)
     }
 }
 
-/* --- refusals --- */
+/* --- invalid input --- */
 
 static void invalid_tapes_are_rejected(void **unused)
 {

@@ -528,7 +528,7 @@ static void contact_takes_over_from_a_broken_bond(void **unused)
     grip_destroy(&g);
 }
 
-/* --- stable step, refusals --- */
+/* --- stable step, invalid input --- */
 
 static void bounds_exceed_the_springs_stiffness(void **unused)
 {

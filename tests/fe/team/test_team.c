@@ -18,7 +18,7 @@ enum {
 struct rounds {
     struct wb_team *team;
     int members, n;
-    int slow; /* member that dawdles */
+    int slow; /* member that pauses in some rounds */
     int wrong[MOST];
 };
 
@@ -38,11 +38,11 @@ static int is_wrong(const double *packet, int from, int to, int round, bool expe
     return !expected;
 }
 
-static void dawdle(int round)
+static void pause_in_some_rounds(int round)
 {
-    const struct timespec while_long = {0, 20000};
+    const struct timespec pause = {0, 20000};
     if (round % 7 == 0)
-        nanosleep(&while_long, NULL);
+        nanosleep(&pause, NULL);
 }
 
 static void go_through_rounds(void *context, int member)
@@ -51,7 +51,7 @@ static void go_through_rounds(void *context, int member)
     int wrong = 0;
     for (int round = 0; round < r->n; round++) {
         if (member == r->slow)
-            dawdle(round);
+            pause_in_some_rounds(round);
         fill(wb_team_packet(r->team, member, WB_TEAM_BEFORE), member, member - 1, round);
         fill(wb_team_packet(r->team, member, WB_TEAM_AFTER), member, member + 1, round);
         wb_team_post(r->team, member);
