@@ -128,7 +128,7 @@ refused 1 '2.5 to 4.4' "$rig" --specimen "$specimen" --run "$folder/refused" --n
 refused 1 'nowhere.yaml' "$folder/nowhere.yaml" --specimen "$specimen" --run "$folder/refused"
 refused 1 'nowhere.yaml' "$rig" --specimen "$folder/nowhere.yaml" --run "$folder/refused"
 sed 's/^wire: .*/wire: 8awg/' "$specimen" >"$folder/thick.yaml"
-refused 1 'what wire' "$rig" --specimen "$folder/thick.yaml" --run "$folder/refused"
+refused 1 "wire '8awg'.*wires.yaml" "$rig" --specimen "$folder/thick.yaml" --run "$folder/refused"
 echo text >"$folder/file"
 refused 1 'file' "$rig" --specimen "$specimen" --run "$folder/file/below"
 sed '/^strand:/,/counterweight_g/d' "$rig" >"$folder/no-strand.yaml"
