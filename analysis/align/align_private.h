@@ -91,7 +91,7 @@ struct wb_align {
     struct wb_rig rig;
     struct wb_specimen specimen;
     struct wb_wire wire;
-    double gravity; /* m/s2 */
+    double gravity;      /* m/s2 */
     double checked_gain; /* standard uncertainty of the gain by its last check; 0: unknown */
     bool is_virtual;
 
@@ -102,7 +102,7 @@ struct wb_align {
     struct wb_point_cloud cloud;
     struct wb_replay_counts counts;
     uint64_t n_invalid;      /* readings that were not numbers */
-    bool is_losing_readings; /* the load cell lost more lines than occasional ones */
+    bool is_losing_readings; /* the load cell lost 2 % of its lines or more */
 
     /* Events. */
     bool has_tare, has_start;

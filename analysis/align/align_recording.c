@@ -126,7 +126,7 @@ static void note_loss(struct wb_align *align, struct wb_json *losses, const char
     wb_align_set(object, "longest_gap_s", counts.longest_gap);
     if (wb_loss_is_told(loss))
         wb_align_warn(
-            align, "%.2g %% of the %s were lost: %llu in %llu gap%s, the longest of %.3g s",
+            align, "%.2g %% of the %s never came: %llu in %llu place%s, the longest of %.3g s",
             wb_loss_share(&counts) / WB_PERCENT, what, (unsigned long long)counts.missing,
             (unsigned long long)counts.gaps, counts.gaps == 1 ? "" : "s", counts.longest_gap);
 }
@@ -239,9 +239,10 @@ static enum wb_status load_events(struct wb_align *align, struct wb_recording *r
     else
         WB_TRY(status);
     if (!align->has_tare)
-        return wb_fail_to(align->why, WB_ERR_DATA,
-                          "%s: no event 'tare': without the load cell's zero there is no force",
-                          align->name);
+        return wb_fail_to(
+            align->why, WB_ERR_DATA,
+            "%s: no tare in the recording: without the load cell's zero there is no force",
+            align->name);
     /* From here on `tare` is the reading of the unloaded cell. */
     align->tare -= wb_rig_tare_load(&align->rig);
     if (align->is_cut_short)
