@@ -432,6 +432,50 @@ static void help_says_range_and_default(void **unused)
     for_each_option(look_at_help);
 }
 
+/* --- rows --- */
+
+/* The SI value of a row's unit; 1 without a unit. */
+static double unit_value(const struct wb_setting *row)
+{
+    static const struct {
+        const char *unit;
+        double value;
+    } units[] = {
+        {"mm", 1e-3}, {"mm/s", 1e-3},  {"mm/N", 1e-3}, {"s", 1.0},    {"minutes", 60.0},
+        {"N", 1.0},   {"mN", 1e-3},    {"MPa", 1e6},   {"%", 1e-2},   {"rad", 1.0},
+        {"1/m", 1.0}, {"N mm2", 1e-6}, {"g/cm3", 1e3}, {"s/mm", 1e3}, {"N/mm3", 1e9},
+    };
+    if (!row->unit)
+        return 1.0;
+    for (size_t i = 0; i < WB_COUNT(units); i++)
+        if (strcmp(units[i].unit, row->unit) == 0)
+            return units[i].value;
+    fail_msg("%s: the unit %s has no SI value in this test", row->name, row->unit);
+    return 0.0;
+}
+
+static void look_at_row(const struct command *command, const struct wb_setting_table *table,
+                        const struct wb_setting *row)
+{
+    (void)command;
+    const double scale = row->scale == 0.0 ? 1.0 : row->scale;
+    if (row->type == WB_SETTING_NUMBER && !(fabs(scale / unit_value(row) - 1.0) <= 1e-12))
+        fail_msg("%s: one %s is %g, not %g", row->name, row->unit ? row->unit : "unit",
+                 unit_value(row), scale);
+    for (size_t i = 0; i < table->n; i++) {
+        const struct wb_setting *const other = &table->rows[i];
+        if (other != row && other->type != WB_SETTING_LIST && row->type != WB_SETTING_LIST &&
+            other->offset == row->offset)
+            fail_msg("%s and %s have the same field", row->name, other->name);
+    }
+}
+
+static void rows_have_their_own_fields_and_the_scales_of_their_units(void **unused)
+{
+    (void)unused;
+    for_each_option(look_at_row);
+}
+
 /* A line of blanks alone looks like the end of the options; argp leaves one after a help that just
  * fills its line. */
 static void help_has_no_line_of_blanks(void **unused)
@@ -563,6 +607,7 @@ int main(void)
         cmocka_unit_test(campaigns_have_the_rows_ranges),
         cmocka_unit_test(bundles_have_the_rows_ranges),
         cmocka_unit_test(bundles_without_a_run_have_the_rows_defaults),
+        cmocka_unit_test(rows_have_their_own_fields_and_the_scales_of_their_units),
         cmocka_unit_test(help_says_range_and_default),
         cmocka_unit_test(help_has_no_line_of_blanks),
         cmocka_unit_test(the_manual_says_range_and_default),
