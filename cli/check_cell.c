@@ -135,7 +135,7 @@ static bool run_program(struct check *check, struct wb_mass_check *program)
             ask(check->masses[wb_mass_check_index(program)], phase);
         before = phase;
         if (phase == WB_MASS_CHECK_WAITING && line_came(&ended))
-            wb_mass_check_hung(program);
+            wb_mass_check_confirm(program);
         if (ended) {
             wb_error("nobody pressed Enter: standard input has ended");
             return false;

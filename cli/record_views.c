@@ -24,7 +24,7 @@ static void tell_and_keep(void *context, enum wb_log_level level, const char *do
                           const char *message)
 {
     struct wb_record_views *const views = context;
-    wb_live_feed_tell(&views->feed, level, message);
+    wb_live_feed_add_message(&views->feed, level, message);
     if (views->unsaid.length >= MOST_UNSAID)
         views->n_lost++;
     else
@@ -36,7 +36,7 @@ static void tell_and_say(void *context, enum wb_log_level level, const char *dom
                          const char *message)
 {
     struct wb_record_views *const views = context;
-    wb_live_feed_tell(&views->feed, level, message);
+    wb_live_feed_add_message(&views->feed, level, message);
     wb_live_line_log(NULL, level, domain, message);
 }
 

@@ -117,7 +117,7 @@ void wb_live_feed_push(struct wb_live_feed *feed, struct wb_live_frame *frame)
     }
 }
 
-void wb_live_feed_tell(struct wb_live_feed *feed, enum wb_log_level level, const char *text)
+void wb_live_feed_add_message(struct wb_live_feed *feed, enum wb_log_level level, const char *text)
 {
     struct wb_live_frame_message message = {
         .header = wb_live_frame_header(WB_LIVE_FRAME_MESSAGE, sizeof message), .level = level};

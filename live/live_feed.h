@@ -7,7 +7,7 @@
  * slow for a while has the whole curve again; beyond the ring the oldest are dropped and counted.
  *
  * Views are started before the process has threads, ports or priority: a fork() inherits all of
- * them. Used by one thread, but for wb_live_feed_tell(), which any thread may call.
+ * them. Used by one thread, but for wb_live_feed_add_message(), which any thread may call.
  */
 #ifndef WB_LIVE_LIVE_FEED_H
 #define WB_LIVE_LIVE_FEED_H
@@ -58,7 +58,7 @@ void wb_live_feed_add_point(struct wb_live_feed *feed, const struct wb_live_fram
 void wb_live_feed_push(struct wb_live_feed *feed, struct wb_live_frame *frame);
 
 /* Sends a message of the log to all views. */
-void wb_live_feed_tell(struct wb_live_feed *feed, enum wb_log_level level, const char *text);
+void wb_live_feed_add_message(struct wb_live_feed *feed, enum wb_log_level level, const char *text);
 
 /* The next key that a view sent; 0 when there is none. Never waits. */
 int wb_live_feed_key(struct wb_live_feed *feed);

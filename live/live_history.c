@@ -80,7 +80,7 @@ void wb_live_history_release(struct wb_live_history *history)
     memset(history, 0, sizeof *history);
 }
 
-void wb_live_history_look_at_disk(struct wb_live_history *history, const char *recording)
+void wb_live_history_check_disk(struct wb_live_history *history, const char *recording)
 {
     struct statvfs status;
     const struct wb_live_frame *const frame = &history->frame;

@@ -22,7 +22,7 @@ struct wb_live_history {
     uint64_t n_thinned;                 /* how often every second point was let go */
     int n_messages;                     /* all that came; the last ones are kept */
     struct wb_live_frame_message message[WB_LIVE_HISTORY_MESSAGES]; /* number i at i % MESSAGES */
-    /* The disk of the recording, as wb_live_history_look_at_disk() found it. */
+    /* The disk of the recording, as wb_live_history_check_disk() found it. */
     int64_t disk_due_ns;
     double disk_free; /* bytes; NaN: not known */
     double disk_left; /* s until it is full, at the mean rate of this test so far; NaN: not known */
@@ -35,7 +35,7 @@ bool wb_live_history_receive(struct wb_live_history *history, int socket);
 
 /* Looks at the room on the disk of the recording, every two seconds at most. Asking may take long
  * on a network drive; only the view waits. */
-void wb_live_history_look_at_disk(struct wb_live_history *history, const char *recording);
+void wb_live_history_check_disk(struct wb_live_history *history, const char *recording);
 
 void wb_live_history_release(struct wb_live_history *history);
 

@@ -222,7 +222,7 @@ static void serve(struct server *server, struct MHD_Daemon *daemon, int socket)
             return;
         if (!server->is_over && polled[1].revents) {
             server->is_over = !wb_live_history_receive(&server->history, socket);
-            wb_live_history_look_at_disk(&server->history, server->plan->recording);
+            wb_live_history_check_disk(&server->history, server->plan->recording);
             if (server->is_over)
                 end_ns = wb_time_now_ns() + LINGER_NS;
             wake_clients(server);

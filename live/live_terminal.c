@@ -67,7 +67,7 @@ static void follow(int socket, struct wb_live_screen *screen, struct wb_live_his
         handle_keys(socket);
         if (wb_time_now_ns() - drawn_ns < DRAW_NS)
             continue;
-        wb_live_history_look_at_disk(history, screen->plan->recording);
+        wb_live_history_check_disk(history, screen->plan->recording);
         wb_live_screen_draw(screen);
         drawn_ns = wb_time_now_ns();
     }

@@ -9,7 +9,7 @@
 #define WB_LOG_DOMAIN "align"
 
 /* End of a hold, bench time; infinite if the hold did not end. */
-static double end_of(const struct wb_align *align, const struct wb_bend_hold_told *hold)
+static double end_of(const struct wb_align *align, const struct wb_bend_hold_recorded *hold)
 {
     return hold->to_ns == INT64_MAX ? (double)INFINITY : wb_align_bench_time(align, hold->to_ns);
 }
@@ -29,7 +29,7 @@ void wb_align_describe_holds(struct wb_align *align)
     struct wb_json *const list =
         align->n_holds > 0 ? wb_json_set_array(align->checks, "holds") : NULL;
     for (int i = 0; i < align->n_holds; i++) {
-        const struct wb_bend_hold_told *const hold = &align->holds[i];
+        const struct wb_bend_hold_recorded *const hold = &align->holds[i];
         const double from = wb_align_bench_time(align, hold->from_ns);
         const double lasted = end_of(align, hold) - from;
         struct wb_json *const object = wb_json_append_object(list);

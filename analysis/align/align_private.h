@@ -114,7 +114,7 @@ struct wb_align {
     char stop_reason[384]; /* text of the event `stop` */
     unsigned n_lost, n_drops;
     int n_holds; /* by the operator */
-    struct wb_bend_hold_told holds[WB_ALIGN_MAX_HOLDS];
+    struct wb_bend_hold_recorded holds[WB_ALIGN_MAX_HOLDS];
 
     /* Times. */
     int64_t zero_ns;                               /* host time of bench time 0 */

@@ -124,7 +124,7 @@ static void note_loss(struct wb_align *align, struct wb_json *losses, const char
     wb_json_set_integer(object, "repeated", (int64_t)counts.repeated);
     wb_json_set_integer(object, "overtaken", (int64_t)counts.overtaken);
     wb_align_set(object, "longest_gap_s", counts.longest_gap);
-    if (wb_loss_is_told(loss))
+    if (wb_loss_is_significant(loss))
         wb_align_warn(
             align, "%.2g %% of the %s never came: %llu in %llu place%s, the longest of %.3g s",
             wb_loss_share(&counts) / WB_PERCENT, what, (unsigned long long)counts.missing,
@@ -144,7 +144,7 @@ static void note_losses(struct wb_align *align)
     struct wb_json *const losses = wb_json_set_object(align->checks, "losses");
     note_loss(align, losses, "frames", &frames);
     note_loss(align, losses, "readings", &readings);
-    align->is_losing_readings = wb_loss_is_told(&readings);
+    align->is_losing_readings = wb_loss_is_significant(&readings);
 }
 
 /* The probes of imported recordings may be in the clock table only. */
@@ -184,7 +184,7 @@ static enum wb_status take_tare(struct wb_align *align, const struct wb_event *e
 static void take_hold(struct wb_align *align, const struct wb_event *event)
 {
     const bool begins = strcmp(event->kind, WB_BEND_HOLD_START) == 0;
-    struct wb_bend_hold_told hold;
+    struct wb_bend_hold_recorded hold;
     if (begins && align->n_holds == WB_ALIGN_MAX_HOLDS) {
         wb_align_warn(
             align,

@@ -483,7 +483,7 @@ static void read_line(struct line *line)
     struct wb_acquisition *const a = line->owner;
     struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
     const struct wb_sink sink = sink_of(line);
-    a->latest.telling = line->role;
+    a->latest.source = line->role;
     for (int i = 0; i < READS_A_STEP && !state->gone; i++) {
         size_t n = 0;
         const enum wb_status status = wb_stream_read(line->stream, a->buffer, sizeof a->buffer, &n);
@@ -612,7 +612,7 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
         }
         state->lost = lost;
         state->loss = wb_loss_counts(&line->loss);
-        state->is_losing = wb_loss_is_told(&line->loss);
+        state->is_losing = wb_loss_is_significant(&line->loss);
         tell_loss(line, now_ns);
         state->ready = !state->gone && line->driver->ready(line->state);
         state->drops = line->kernel_drops;
@@ -726,7 +726,7 @@ static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
     if (stalled_ns < STALL_NS)
         return;
     a->deaf_ns += stalled_ns;
-    wb_interlock_forgive(&a->interlock, stalled_ns);
+    wb_interlock_discount(&a->interlock, stalled_ns);
     if (stalled_ns < TOLD_STALL_NS || !a->interlock.armed)
         return;
     char text[160];
@@ -913,7 +913,7 @@ enum wb_status wb_acquisition_open_each(struct wb_acquisition **out, const struc
     return WB_OK;
 }
 
-void wb_acquisition_also_tell(struct wb_acquisition *a, const struct wb_sink *sink)
+void wb_acquisition_add_sink(struct wb_acquisition *a, const struct wb_sink *sink)
 {
     a->sinks[1] = *sink;
 }
@@ -960,7 +960,7 @@ void wb_acquisition_close(struct wb_acquisition *a)
     free(a);
 }
 
-int64_t wb_acquisition_heard_ns(const struct wb_acquisition *a)
+int64_t wb_acquisition_listened_ns(const struct wb_acquisition *a)
 {
     return a->woken_ns - a->deaf_ns;
 }

@@ -55,7 +55,7 @@ WB_MUST_CHECK enum wb_status wb_acquisition_open_each(struct wb_acquisition **ou
                                                       struct wb_reason why[WB_INTERLOCK_ROLES]);
 
 /* A second sink, copied, that sees everything after the first one. */
-void wb_acquisition_also_tell(struct wb_acquisition *acquisition, const struct wb_sink *sink);
+void wb_acquisition_add_sink(struct wb_acquisition *acquisition, const struct wb_sink *sink);
 
 /* Greets the instruments (connect, start to stream); from here on bytes are stored. `writer` is
  * borrowed and may be NULL (nothing is stored). Its recording has the streams declared in the order
@@ -115,7 +115,7 @@ struct wb_acquisition_stream_state {
 };
 
 struct wb_acquisition_latest {
-    enum wb_role telling; /* whose bytes were decoded last: a remark in a sink is of this stream */
+    enum wb_role source; /* whose bytes were decoded last: a remark in a sink is of this stream */
     struct wb_acquisition_stream_state stream[WB_INTERLOCK_ROLES]; /* by role */
     bool has_load, has_mocap, has_stage;
     struct wb_load_sample load; /* the last valid one */
@@ -152,6 +152,6 @@ void wb_acquisition_raise_priority(void);
 /* That clock at the last waking up, less all time in which this loop was kept from running or from
  * waiting for bytes: what deadlines are counted in, or an instrument would be blamed for silence
  * that nobody listened to. */
-int64_t wb_acquisition_heard_ns(const struct wb_acquisition *acquisition);
+int64_t wb_acquisition_listened_ns(const struct wb_acquisition *acquisition);
 
 #endif

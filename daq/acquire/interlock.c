@@ -169,10 +169,10 @@ bool wb_interlock_expires(const struct wb_interlock *interlock, enum wb_role rol
     return !interlock->lost[role] && expired(interlock, (int)role, now_ns);
 }
 
-void wb_interlock_forgive(struct wb_interlock *interlock, int64_t stalled_ns)
+void wb_interlock_discount(struct wb_interlock *interlock, int64_t stalled_ns)
 {
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
-        const int64_t left_ns = WB_INTERLOCK_FORGIVEN_NS - interlock->forgiven_ns[role];
+        const int64_t left_ns = WB_INTERLOCK_DISCOUNTED_NS - interlock->forgiven_ns[role];
         const int64_t forgiven_ns = stalled_ns < left_ns ? stalled_ns : left_ns;
         interlock->forgiven_ns[role] += forgiven_ns;
         interlock->last_ns[role] += forgiven_ns;

@@ -100,10 +100,10 @@ bool wb_interlock_tick(struct wb_interlock *interlock, int64_t now_ns);
  * once more at what waits to be read. */
 bool wb_interlock_expires(const struct wb_interlock *interlock, enum wb_role role, int64_t now_ns);
 /* Nobody listened or asked for so long: it does not count as silence of any stream. At most
- * WB_INTERLOCK_FORGIVEN_NS are forgiven between two samples of a stream, so that a stream that is
+ * WB_INTERLOCK_DISCOUNTED_NS are forgiven between two samples of a stream, so that a stream that is
  * really lost is found on the worst of machines. */
-void wb_interlock_forgive(struct wb_interlock *interlock, int64_t stalled_ns);
-#define WB_INTERLOCK_FORGIVEN_NS INT64_C(5000000000)
+void wb_interlock_discount(struct wb_interlock *interlock, int64_t stalled_ns);
+#define WB_INTERLOCK_DISCOUNTED_NS INT64_C(5000000000)
 /* Trips it for a reason of the caller's, armed or not. */
 bool wb_interlock_trip(struct wb_interlock *interlock, enum wb_interlock_reason reason,
                        int64_t t_ns, const char *text);

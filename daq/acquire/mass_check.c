@@ -238,7 +238,7 @@ int wb_mass_check_index(const struct wb_mass_check *check)
     return check->index;
 }
 
-void wb_mass_check_hung(struct wb_mass_check *check)
+void wb_mass_check_confirm(struct wb_mass_check *check)
 {
     if (check->phase == WB_MASS_CHECK_WAITING)
         enter(check, WB_MASS_CHECK_SETTLING);

@@ -4,9 +4,8 @@
  *
  *     WB_TRY(wb_mass_check_open(&check, rig, seconds, masses, n));
  *     while ((phase = wb_mass_check_step(check, timeout_ns)) < WB_MASS_CHECK_DONE)
- *         ...on WAITING: ask for masses[wb_mass_check_index(check)], then wb_mass_check_hung()...
- *     points = wb_mass_check_points(check);
- *     wb_mass_check_close(check);
+ *         ...on WAITING: ask for masses[wb_mass_check_index(check)], then
+ * wb_mass_check_confirm()... points = wb_mass_check_points(check); wb_mass_check_close(check);
  *
  * The list begins with 0: what the cell carries when the check begins is its zero, and is read
  * without a question. Used by one thread.
@@ -41,7 +40,7 @@ enum wb_mass_check_phase wb_mass_check_step(struct wb_mass_check *check, int64_t
 /* Number from 0 of the mass that is asked for or being read. */
 int wb_mass_check_index(const struct wb_mass_check *check);
 /* The operator says that the mass hangs: the check continues. */
-void wb_mass_check_hung(struct wb_mass_check *check);
+void wb_mass_check_confirm(struct wb_mass_check *check);
 
 /* The points (n of them), after WB_MASS_CHECK_DONE; owned by the check. */
 const struct wb_cell_point *wb_mass_check_points(const struct wb_mass_check *check);

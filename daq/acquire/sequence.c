@@ -24,14 +24,14 @@ void wb_sequence_enter(struct wb_sequence *sequence, int phase)
 {
     sequence->phase = phase;
     sequence->phase_ns = wb_time_now_ns();
-    sequence->heard_ns = wb_acquisition_heard_ns(sequence->acquisition);
+    sequence->heard_ns = wb_acquisition_listened_ns(sequence->acquisition);
     sequence->reports_seen = wb_acquisition_latest(sequence->acquisition)->stage_reports;
     sequence->idle_reports = 0;
 }
 
 int64_t wb_sequence_lasts_ns(const struct wb_sequence *sequence)
 {
-    return wb_acquisition_heard_ns(sequence->acquisition) - sequence->heard_ns;
+    return wb_acquisition_listened_ns(sequence->acquisition) - sequence->heard_ns;
 }
 
 void wb_sequence_set_end(struct wb_sequence *sequence, enum wb_sequence_end end, const char *format,

@@ -87,7 +87,7 @@ static enum wb_status start(struct wb_doctor *doctor)
     const struct wb_sink sink = wb_doctor_seen_sink(seen);
     WB_TRY(wb_acquisition_open_each(&doctor->acquisition, &doctor->rig, WB_ACQUISITION_ALL, &sink,
                                     seen->opening));
-    seen->telling = &wb_acquisition_latest(doctor->acquisition)->telling;
+    seen->source = &wb_acquisition_latest(doctor->acquisition)->source;
     wb_acquisition_start(doctor->acquisition, NULL);
     enter(doctor, PHASE_CONNECT);
     return WB_OK;

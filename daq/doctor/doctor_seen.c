@@ -76,7 +76,7 @@ static void note_remark(void *context, enum wb_log_level level, int64_t t_ns, co
                         const char *text)
 {
     struct wb_doctor_seen *const seen = context;
-    const enum wb_role role = *seen->telling;
+    const enum wb_role role = *seen->source;
     int i = 0;
     (void)t_ns;
     while (i < seen->n_remarks[role] && strcmp(seen->remarks[role][i].kind, kind) != 0)

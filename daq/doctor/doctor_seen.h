@@ -35,8 +35,8 @@ struct wb_doctor_seen {
     struct wb_acquisition_latest latest;          /* at the end */
     double waited;                                /* s for the instruments to answer */
     double listened;                              /* s after that */
-    const enum wb_role *telling; /* borrowed from the acquisition; set before the first sample */
-    bool listening;              /* samples count from here on */
+    const enum wb_role *source; /* borrowed from the acquisition; set before the first sample */
+    bool listening;             /* samples count from here on */
     struct wb_start_check check;
     struct wb_doctor_trend trend;
     struct wb_mocap_frame frame; /* the latest of those with most measured markers */
@@ -51,7 +51,7 @@ struct wb_doctor_seen {
     struct wb_doctor_remark remarks[WB_INTERLOCK_ROLES][WB_DOCTOR_REMARKS];
 };
 
-/* A sink that notes in `seen`. `telling` says whose remark it is (wb_acquisition_latest). */
+/* A sink that notes in `seen`. `source` says whose remark it is (wb_acquisition_latest). */
 struct wb_sink wb_doctor_seen_sink(struct wb_doctor_seen *seen);
 
 /* Mean slope of force over the host's time, N/s, with its standard error. */

@@ -45,7 +45,7 @@ void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64
     sink->remark(sink->context, level, t_ns, kind, text);
 }
 
-bool wb_driver_worth_saying(uint64_t n)
+bool wb_driver_is_report_due(uint64_t n)
 {
     while (n > 3 && n % 10 == 0)
         n /= 10;

@@ -88,6 +88,6 @@ void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64
 
 /* True for the 1st, 2nd, 3rd, 10th, 20th, 30th, 100th, ... of many: a repeated remark is logged
  * more and more rarely. */
-bool wb_driver_worth_saying(uint64_t n);
+bool wb_driver_is_report_due(uint64_t n);
 
 #endif

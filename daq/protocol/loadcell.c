@@ -57,7 +57,7 @@ static void refuse(struct wb_loadcell *loadcell, int64_t t_ns, const char *reaso
 {
     char text[64];
     loadcell->n_refused++;
-    if (wb_driver_worth_saying(loadcell->n_refused))
+    if (wb_driver_is_report_due(loadcell->n_refused))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
                          "a line of the load cell is not understood: '%s': %s; %" PRIu64 " so far",
                          wb_loadcell_printable(&loadcell->line, text, sizeof text), reason,

@@ -380,7 +380,7 @@ double wb_loss_share(const struct wb_loss_counts *counts)
     return all > 0.0 ? (double)counts->missing / all : 0.0;
 }
 
-bool wb_loss_is_told(const struct wb_loss *loss)
+bool wb_loss_is_significant(const struct wb_loss *loss)
 {
     struct wb_loss_counts counts = loss->counts;
     add_open(&counts, &loss->recent);

@@ -88,6 +88,6 @@ struct wb_loss_counts wb_loss_counts(const struct wb_loss *loss);
 /* The share of samples that are missing, 0 to 1, and whether that is more than chance: one stamped
  * sample is, of arrivals it takes two percent. */
 double wb_loss_share(const struct wb_loss_counts *counts);
-bool wb_loss_is_told(const struct wb_loss *loss);
+bool wb_loss_is_significant(const struct wb_loss *loss);
 
 #endif

@@ -544,7 +544,7 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
     if (!fault.reason)
         return;
     state->n_refused++;
-    if (wb_driver_worth_saying(state->n_refused))
+    if (wb_driver_is_report_due(state->n_refused))
         wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "refused",
             "datagram of %zu bytes (message %d, NatNet %u.%u) refused at byte %zu: %s; %" PRIu64

@@ -55,7 +55,7 @@ enum wb_natnet_news wb_natnet_watch_frame(struct wb_natnet_watch *watch,
     if (has_restarted(watch, frame, back)) {
         news = WB_NATNET_RESTARTED;
         watch->segment++;
-        if (wb_driver_worth_saying(++watch->n_restarts))
+        if (wb_driver_is_report_due(++watch->n_restarts))
             wb_driver_remark(sink, WB_LOG_WARNING, frame->t_ns, "restart",
                              "the server's clock went back by %.3f s, to its frame %" PRId32
                              ": it was restarted; segment %d begins (%" PRIu64 " so far)",
@@ -66,7 +66,7 @@ enum wb_natnet_news wb_natnet_watch_frame(struct wb_natnet_watch *watch,
                rises(watch, frame, WB_FRAME_BITSTREAM_CHANGED)) {
         news = WB_NATNET_NEW_MODELS;
         watch->segment++;
-        if (wb_driver_worth_saying(++watch->n_changes))
+        if (wb_driver_is_report_due(++watch->n_changes))
             wb_driver_remark(sink, WB_LOG_WARNING, frame->t_ns, "models",
                              "somebody changed what the server tracks or streams, at its frame "
                              "%" PRId32 ": segment %d begins (%" PRIu64 " so far)",

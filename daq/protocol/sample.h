@@ -88,7 +88,7 @@ struct wb_stage_settings {
     double travel;       /* m: positions are -travel to 0 where soft_limits */
     bool soft_limits;
     bool inches;     /* positions are reported in inches */
-    bool lets_go;    /* the motor is switched off when a motion has ended */
+    bool powers_off; /* the motor is switched off when a motion has ended */
     char fault[320]; /* why no motion may begin, and how to mend it; "": it may */
     char text[1280]; /* all of it as the firmware prints it, one setting a line */
 };

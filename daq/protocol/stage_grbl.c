@@ -87,7 +87,7 @@ static void note_setting(struct grbl_state *state, const struct wb_grbl_line *li
         snprintf(settings->text + used, sizeof settings->text - used, "%s\n", line->text);
     switch (line->number) {
     case WB_GRBL_IDLE_DELAY:
-        settings->lets_go = line->value < WB_GRBL_ALWAYS_ON;
+        settings->powers_off = line->value < WB_GRBL_ALWAYS_ON;
         break;
     case WB_GRBL_INCHES:
         settings->inches = line->value > 0.0;
@@ -127,7 +127,7 @@ static void end_settings(struct grbl_state *state, int64_t t_ns, const struct wb
         state->rig.stage.axis, settings->steps * WB_MM, settings->speed / WB_MM,
         settings->acceleration / WB_MM, settings->travel / WB_MM,
         settings->soft_limits ? "on" : "off", speed / WB_MM, wb_jog_feed_ahead(&top) / WB_MM);
-    if (settings->lets_go)
+    if (settings->powers_off)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings",
                          "the stage switches its motors off when a motion has ended, and the clamp "
                          "may sag: set $1=255 in its firmware");
@@ -317,7 +317,7 @@ static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb
         break;
     case WB_GRBL_LINE_UNKNOWN:
         state->n_unknown++;
-        if (wb_driver_worth_saying(state->n_unknown))
+        if (wb_driver_is_report_due(state->n_unknown))
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
                              "a line of the stage is not understood: '%s'; %" PRIu64 " so far",
                              line.text, state->n_unknown);

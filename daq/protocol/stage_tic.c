@@ -84,7 +84,7 @@ static void find_fault(const struct wb_tic_settings *tic, char *text, size_t siz
                  "the Tic's command timeout (setting 0x09) is %d ms: set it to %d to %d ms %s; the "
                  "stage continues that long when this computer fails",
                  tic->command_timeout_ms, LEAST_TIMEOUT_MS, MOST_TIMEOUT_MS, where);
-    else if (tic->soft_error_response == WB_TIC_GO_TO_PLACE)
+    else if (tic->soft_error_response == WB_TIC_GO_TO_POSITION)
         snprintf(text, size,
                  "the Tic goes to a position of its own when this computer dies (soft error "
                  "response): choose Decelerate to hold in Tic Control Center, Advanced settings");
@@ -100,7 +100,7 @@ static void tell_settings(struct tic_state *state, int64_t t_ns, const struct wb
         .speed = (double)tic->max_speed * WB_TIC_SPEED_UNIT / steps,
         .acceleration = wb_tic_acceleration(tic, steps),
         .travel = (double)NAN,
-        .lets_go = tic->soft_error_response == WB_TIC_LET_GO,
+        .powers_off = tic->soft_error_response == WB_TIC_RESPONSE_DEENERGIZE,
     };
     find_fault(tic, settings.fault, sizeof settings.fault);
     snprintf(settings.text, sizeof settings.text,
@@ -120,7 +120,7 @@ static void tell_settings(struct tic_state *state, int64_t t_ns, const struct wb
         state->rig.stage.speed / WB_MM, alone / WB_MM);
     if (settings.fault[0])
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings", "%s", settings.fault);
-    if (settings.lets_go)
+    if (settings.powers_off)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings",
                          "the Tic switches its motor off when this computer falls silent, and the "
                          "clamp may sag: set its soft error response to Decelerate to hold");
@@ -222,7 +222,7 @@ static void take_answer(struct tic_state *state, int64_t t_ns, const struct wb_s
     }
     state->skips = !understood;
     state->n_refused += !understood;
-    if (!understood && wb_driver_worth_saying(state->n_refused))
+    if (!understood && wb_driver_is_report_due(state->n_refused))
         wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "refused",
             "an answer of the Tic is not understood and dropped: check the baud rate in "

@@ -77,10 +77,10 @@ enum {
 
 /* What the Tic does when its command timeout has run out (setting 0x53). */
 enum wb_tic_response {
-    WB_TIC_LET_GO,      /* de-energize */
-    WB_TIC_HALT,        /* halt and hold */
-    WB_TIC_BRAKE,       /* decelerate to hold */
-    WB_TIC_GO_TO_PLACE, /* go to a position of its own */
+    WB_TIC_RESPONSE_DEENERGIZE, /* de-energize */
+    WB_TIC_HALT,                /* halt and hold */
+    WB_TIC_BRAKE,               /* decelerate to hold */
+    WB_TIC_GO_TO_POSITION,      /* go to a position of its own */
     WB_TIC_RESPONSES
 };
 

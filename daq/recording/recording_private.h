@@ -27,7 +27,7 @@ struct wb_recording_log {
 };
 
 /* Looks at the bytes of a log. */
-void wb_recording_log_look(const uint8_t *bytes, size_t n, struct wb_recording_log *log);
+void wb_recording_log_count(const uint8_t *bytes, size_t n, struct wb_recording_log *log);
 
 /* --- rows --- */
 

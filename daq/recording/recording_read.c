@@ -164,7 +164,7 @@ static void look_at_log(struct wb_recording *recording, const char *wal)
     size_t size = 0;
     struct wb_reason unread = {{0}}; /* then SQLite will say so */
     if (wb_file_read_with_reason(wal, &bytes, &size, &unread) == WB_OK)
-        wb_recording_log_look((const uint8_t *)bytes, size, &recording->log);
+        wb_recording_log_count((const uint8_t *)bytes, size, &recording->log);
     free(bytes);
 }
 

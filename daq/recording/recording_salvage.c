@@ -67,7 +67,7 @@ static void add_sum(uint32_t sum[2], const uint8_t *bytes, size_t n, bool is_big
     }
 }
 
-void wb_recording_log_look(const uint8_t *bytes, size_t n, struct wb_recording_log *log)
+void wb_recording_log_count(const uint8_t *bytes, size_t n, struct wb_recording_log *log)
 {
     *log = (struct wb_recording_log){0};
     if (n < LOG_HEADER)

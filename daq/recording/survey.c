@@ -179,7 +179,7 @@ static void count_mocap(void *context, const struct wb_mocap_frame *frame)
 static void note_loss(struct wb_survey_stream *stream, const struct wb_loss *loss)
 {
     stream->loss = wb_loss_counts(loss);
-    stream->is_losing = wb_loss_is_told(loss);
+    stream->is_losing = wb_loss_is_significant(loss);
 }
 
 static enum wb_status decode_all(struct wb_recording *recording, struct wb_survey *survey)

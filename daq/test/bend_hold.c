@@ -87,7 +87,7 @@ static double number_of(const struct wb_json *json, const char *key, double unit
     return wb_json_get_number(json, key, &value) ? value * unit : (double)NAN;
 }
 
-enum wb_status wb_bend_hold_read(const struct wb_event *event, struct wb_bend_hold_told *told)
+enum wb_status wb_bend_hold_read(const struct wb_event *event, struct wb_bend_hold_recorded *told)
 {
     struct wb_json *json;
     struct wb_reason why;
@@ -104,12 +104,12 @@ enum wb_status wb_bend_hold_read(const struct wb_event *event, struct wb_bend_ho
     const bool is_ours = wb_json_get_integer(json, "cycle", &cycle) && cycle > 0 &&
                          cycle < INT32_MAX && wb_json_get_text(json, "phase", &phase);
     if (is_ours) {
-        *told = (struct wb_bend_hold_told){.from_ns = event->t_ns,
-                                           .to_ns = INT64_MAX,
-                                           .cycle = (int)cycle,
-                                           .travel = number_of(json, "travel_mm", WB_MM),
-                                           .before = number_of(json, "tension_mN", WB_MN),
-                                           .after = (double)NAN};
+        *told = (struct wb_bend_hold_recorded){.from_ns = event->t_ns,
+                                               .to_ns = INT64_MAX,
+                                               .cycle = (int)cycle,
+                                               .travel = number_of(json, "travel_mm", WB_MM),
+                                               .before = number_of(json, "tension_mN", WB_MN),
+                                               .after = (double)NAN};
         snprintf(told->phase, sizeof told->phase, "%s", phase);
     }
     wb_json_destroy(json);

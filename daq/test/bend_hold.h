@@ -47,7 +47,7 @@ void wb_bend_hold_end(struct wb_bend_hold *hold, struct wb_sequence *run, const 
 double wb_bend_hold_lasts(const struct wb_bend_hold *hold);
 
 /* A hold as a recording tells it. */
-struct wb_bend_hold_told {
+struct wb_bend_hold_recorded {
     int64_t from_ns, to_ns; /* host clock; to_ns INT64_MAX: it did not end */
     int cycle;
     char phase[WB_BEND_HOLD_PHASE]; /* "down", "up", "rest" */
@@ -58,6 +58,6 @@ struct wb_bend_hold_told {
 /* Reads an event hold_start into `told`, which is filled anew, or hold_end into the one that has
  * begun. WB_ERR_DATA, without a message, where the text is none of ours. */
 WB_MUST_CHECK enum wb_status wb_bend_hold_read(const struct wb_event *event,
-                                               struct wb_bend_hold_told *told);
+                                               struct wb_bend_hold_recorded *told);
 
 #endif

@@ -686,7 +686,7 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
                        request->output_path);
     const struct wb_sink sink = {.context = test, .load = on_load, .mocap = on_mocap};
     WB_TRY(wb_acquisition_open(&test->run.acquisition, &test->run.rig, WB_ACQUISITION_ALL, &sink));
-    wb_acquisition_also_tell(test->run.acquisition, &request->sink);
+    wb_acquisition_add_sink(test->run.acquisition, &request->sink);
     test->started_ns = wb_time_now_ns();
     const struct wb_bend_recording description = {
         .path = request->output_path,

@@ -218,8 +218,8 @@ static void no_stamp_is_before_its_bytes_arrived(void **state)
     int n_samples = 0, n_late = 0;
     int64_t arrived_ns = wb_time_now_ns() + WB_SIM_PORT_DELAY_NS;
     start(fixture);
-    wb_acquisition_also_tell(fixture->acquisition,
-                             &(struct wb_sink){.context = &n_samples, .load = stall_at_every_40th});
+    wb_acquisition_add_sink(fixture->acquisition,
+                            &(struct wb_sink){.context = &n_samples, .load = stall_at_every_40th});
     run_for(fixture, 800 * MS);
     finish(fixture);
     assert_int_equal(wb_recording_open(&recording, fixture->output), WB_OK);

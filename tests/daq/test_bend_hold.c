@@ -293,7 +293,7 @@ static void events_are_read_back(void **state)
                              .kind = WB_BEND_HOLD_START,
                              .text = "{\"cycle\": 2, \"phase\": \"up\", \"travel_mm\": 20.5, "
                                      "\"tension_mN\": 41.5}"};
-    struct wb_bend_hold_told told;
+    struct wb_bend_hold_recorded told;
     assert_int_equal(wb_bend_hold_read(&event, &told), WB_OK);
     assert_true(told.from_ns == 7 && told.to_ns == INT64_MAX && isnan(told.after));
     assert_int_equal(told.cycle, 2);

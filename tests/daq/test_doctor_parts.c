@@ -227,7 +227,7 @@ static enum wb_doctor_verdict judge_axis(char up, const double direction[3])
     static struct wb_doctor_report report;
     struct wb_rig rig = {.time_scale = 1.0, .gravity = 9.81, .mocap = {.up = up}};
     struct wb_bend_test_request test;
-    const enum wb_role telling = WB_ROLE_MOCAP;
+    const enum wb_role source = WB_ROLE_MOCAP;
     memset(&seen, 0, sizeof seen);
     memset(&report, 0, sizeof report);
     wb_bend_test_default_request(&test);
@@ -235,7 +235,7 @@ static enum wb_doctor_verdict judge_axis(char up, const double direction[3])
     rig.stage.speed = 1e-3;
     seen.rig = &rig;
     seen.specimen = &specimen;
-    seen.telling = &telling;
+    seen.source = &source;
     seen.listening = true;
     const struct wb_sink sink = wb_doctor_seen_sink(&seen);
     for (int i = 0; i < 20; i++) {

@@ -176,13 +176,13 @@ static void time_nobody_listened_is_no_silence_up_to_5_s(void **state)
     assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 11 * S - 1));
     assert_true(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 11 * S));
     assert_false(wb_interlock_expires(&interlock, WB_ROLE_MOCAP, 100 * S));
-    wb_interlock_forgive(&interlock, 2 * S);
+    wb_interlock_discount(&interlock, 2 * S);
     assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 13 * S - 1));
     assert_int_equal(wb_interlock_deadline(&interlock), 13 * S);
     /* No more than 5 s of one silence, */
-    wb_interlock_forgive(&interlock, 20 * S);
+    wb_interlock_discount(&interlock, 20 * S);
     assert_int_equal(wb_interlock_deadline(&interlock), 16 * S);
-    wb_interlock_forgive(&interlock, 20 * S);
+    wb_interlock_discount(&interlock, 20 * S);
     assert_int_equal(wb_interlock_deadline(&interlock), 16 * S);
     wb_interlock_tick(&interlock, 16 * S);
     assert_true(interlock.lost[WB_ROLE_LOAD] && interlock.lost[WB_ROLE_STAGE]);
@@ -190,7 +190,7 @@ static void time_nobody_listened_is_no_silence_up_to_5_s(void **state)
     /* and of the next one again. */
     const struct wb_load_sample sample = {.t_ns = 20 * S, .valid = true};
     wb_interlock_load(&interlock, &sample);
-    wb_interlock_forgive(&interlock, S);
+    wb_interlock_discount(&interlock, S);
     assert_true(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 22 * S));
     assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 22 * S - 1));
 }

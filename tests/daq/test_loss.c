@@ -50,7 +50,7 @@ static void a_whole_stream_of_frames_misses_nothing(void **state)
     const struct wb_loss_counts counts = wb_loss_counts(&loss);
     assert_int_equal(counts.received, N);
     assert_int_equal(counts.missing, 0);
-    assert_false(wb_loss_is_told(&loss));
+    assert_false(wb_loss_is_significant(&loss));
     assert_close(counts.period, 1.0002 / 120.0, 1e-9);
 }
 
@@ -67,7 +67,7 @@ static void lost_frames_are_counted_to_the_last_one(void **state)
         assert_int_equal(counts.missing, lost);
         assert_int_equal(counts.received, N - lost);
         assert_true(counts.gaps > 0 && counts.gaps <= lost);
-        assert_true(wb_loss_is_told(&loss));
+        assert_true(wb_loss_is_significant(&loss));
         assert_close(wb_loss_share(&counts), (double)lost / N, 1e-12);
     }
 }
@@ -114,7 +114,7 @@ static void frames_on_their_way_at_either_end_are_not_missing(void **state)
         wb_loss_init(&loss, true, 0.01);
         for (size_t i = first; i < 3 * n; i++) {
             wb_loss_add(&loss, 3.0 + 0.01 * (order[i % n] + 17 * (int)(i / n)));
-            assert_false(wb_loss_is_told(&loss));
+            assert_false(wb_loss_is_significant(&loss));
         }
         const struct wb_loss_counts counts = wb_loss_counts(&loss);
         assert_int_equal(counts.missing, 0);
@@ -200,7 +200,7 @@ static void lost_lines_are_counted(void **state)
             const struct wb_loss_counts counts = wb_loss_counts(&loss);
             assert_close((double)counts.missing, (double)lost,
                          arrival == PROMPT ? 2.0 : 0.1 * (double)lost);
-            assert_true(wb_loss_is_told(&loss) || shares[i] < 0.05);
+            assert_true(wb_loss_is_significant(&loss) || shares[i] < 0.05);
         }
     }
 }
@@ -215,7 +215,7 @@ static void bundled_lines_have_no_rhythm_to_miss(void **state)
     const struct wb_loss_counts counts = wb_loss_counts(&loss);
     assert_int_equal(counts.received, N - lost);
     assert_int_equal(counts.missing, 0);
-    assert_false(wb_loss_is_told(&loss));
+    assert_false(wb_loss_is_significant(&loss));
 }
 
 static void no_times_do_harm(void **state)
@@ -258,7 +258,7 @@ static void rhythm_learnt_on_a_busy_computer_misses_nothing(void **state)
     assert_int_equal(counts.received, N);
     assert_close_relative(counts.period, period, 0.002);
     assert_true(wb_loss_share(&counts) < 0.001); /* before the period is known well */
-    assert_false(wb_loss_is_told(&loss));
+    assert_false(wb_loss_is_significant(&loss));
 }
 
 /* A computer that is late by 10 ms when the rhythm has just been learnt: eight lines come together.
@@ -273,7 +273,7 @@ static void a_stall_that_is_made_up_for_is_never_told(void **state)
         for (int k = 0; k < 2000; k++) {
             const double due = k * period, awake = (begin + 8) * period;
             wb_loss_add(&loss, k >= begin && due < awake ? awake : due);
-            assert_false(wb_loss_is_told(&loss));
+            assert_false(wb_loss_is_significant(&loss));
         }
         assert_int_equal(wb_loss_counts(&loss).missing, 0);
     }
@@ -290,7 +290,7 @@ static void bundles_of_a_busy_computer_are_no_rhythm(void **state)
         const double due = k / 800.0;
         const int in_bundle = k % 4;
         wb_loss_add(&loss, k < 2000 ? due + (3 - in_bundle) / 800.0 + 1e-4 * in_bundle : due);
-        assert_false(wb_loss_is_told(&loss));
+        assert_false(wb_loss_is_significant(&loss));
     }
     const struct wb_loss_counts counts = wb_loss_counts(&loss);
     assert_close(counts.period, 1.0 / 800.0, 1e-5);
@@ -337,7 +337,7 @@ static void late_lines_are_not_taken_for_lost_ones(void **state)
                 struct wb_loss loss;
                 uint64_t lost;
                 busy_stream(&loss, &busy, &lost);
-                if (wb_loss_is_told(&loss))
+                if (wb_loss_is_significant(&loss))
                     fail_msg("late by %g s on average: stream %d is called lossy", means[i],
                              stream);
                 missing += wb_loss_counts(&loss).missing;
@@ -362,7 +362,7 @@ static void lost_lines_are_counted_among_late_ones(void **state)
                 struct wb_loss loss;
                 uint64_t lost;
                 busy_stream(&loss, &busy, &lost);
-                told += wb_loss_is_told(&loss);
+                told += wb_loss_is_significant(&loss);
                 missing += wb_loss_counts(&loss).missing;
                 all_lost += lost;
             }
@@ -385,7 +385,7 @@ static void every_fourth_line_is_missed(void **state)
     assert_close((double)counts.missing, N / 4.0, 3.0);
     assert_close((double)counts.gaps, N / 4.0, 10.0); /* those of the ends */
     assert_close(counts.longest_gap, 0.0125, 1e-5);
-    assert_true(wb_loss_is_told(&loss));
+    assert_true(wb_loss_is_significant(&loss));
 }
 
 /* Longer than what is counted: told elsewhere. */

@@ -86,7 +86,7 @@ static void settings_are_asked_for_once_and_delivered(void **state)
     assert_close(settings->speed, 10e-3, 1e-15);
     assert_close(settings->acceleration, 50e-3, 1e-15);
     assert_close(settings->travel, 64e-3, 1e-15);
-    assert_true(settings->inches && settings->soft_limits && settings->lets_go);
+    assert_true(settings->inches && settings->soft_limits && settings->powers_off);
     assert_int_equal(strncmp(settings->text, "$1=25\n$13=1\n$20=1\n", 18), 0);
     assert_non_null(strstr(settings->text, "\n$131=64.000\n"));
     assert_true(wb_stage_grbl.ready(driver));

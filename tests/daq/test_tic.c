@@ -194,7 +194,7 @@ static void a_tic_that_would_go_on_alone_is_refused(void **state)
         {99, 0, WB_TIC_BRAKE, "(setting 0x09) is 99 ms: set it to 100 to 2000 ms"},
         {2001, 0, WB_TIC_BRAKE, "is 2001 ms: set it"},
         {1000, 2, WB_TIC_BRAKE, "control mode is 2"},
-        {1000, 0, WB_TIC_GO_TO_PLACE, "Decelerate to hold"},
+        {1000, 0, WB_TIC_GO_TO_POSITION, "Decelerate to hold"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct collect collect = {0};

@@ -133,7 +133,7 @@ static void tell_feed(void *context, enum wb_log_level level, const char *domain
 {
     struct show *const show = context;
     (void)domain;
-    wb_live_feed_tell(&show->feed, level, message);
+    wb_live_feed_add_message(&show->feed, level, message);
 }
 
 static void obey(struct show *show)

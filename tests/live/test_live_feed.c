@@ -166,7 +166,7 @@ static void a_killed_view_is_noticed_and_nothing_else_happens(void **state)
     while (!wb_live_feed_has_ended(feed, 0))
         (void)poll(NULL, 0, 1);
     push(10);
-    wb_live_feed_tell(feed, WB_LOG_INFO, "nobody hears this");
+    wb_live_feed_add_message(feed, WB_LOG_INFO, "nobody hears this");
     assert_true(feed->view[0].is_gone);
     assert_false(feed->view[0].ended_well);
     assert_int_equal(wb_live_feed_key(feed), 0);

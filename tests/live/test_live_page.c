@@ -132,7 +132,7 @@ static void events_bring_the_plan_the_curve_and_the_state(void **state)
     hear(client, "\"disk_free_GB\": ");
     wb_live_feed_add_point(feed, &(struct wb_live_frame_point){0.0025f, 0.0335f, 2});
     hear(client, "data: {\"from\": 1, \"points\": [[2,2.5,33.5]]}\n\n");
-    wb_live_feed_tell(feed, WB_LOG_WARNING, "a \"message\"\nof two lines");
+    wb_live_feed_add_message(feed, WB_LOG_WARNING, "a \"message\"\nof two lines");
     hear(client, "event: message\ndata: {   \"level\": \"warning\",   \"text\": \"a "
                  "\\\"message\\\"\\nof two lines\" } \n\n");
     close(client);
@@ -157,16 +157,16 @@ static void the_room_on_the_disk_is_told_in_bytes_and_in_time(void **state)
     (void)state;
     struct wb_live_history history = {.has_frame = true};
     wb_virtual_time_begin(WB_VIRTUAL_TIME_HOST_DATE);
-    wb_live_history_look_at_disk(&history, plan.recording);
+    wb_live_history_check_disk(&history, plan.recording);
     assert_true(number_of(&history, "disk_free_GB") > 0.0);
     assert_true(isnan(number_of(&history, "disk_left_h"))); /* before the first frame */
     history.frame.elapsed = 100.0;
     history.frame.bytes = 1000000000;
     wb_time_sleep(WB_VIRTUAL_TIME_START_NS + 2 * WB_NS_PER_S - 1);
-    wb_live_history_look_at_disk(&history, plan.recording);
+    wb_live_history_check_disk(&history, plan.recording);
     assert_true(isnan(number_of(&history, "disk_left_h"))); /* a look every two seconds */
     wb_time_sleep(WB_VIRTUAL_TIME_START_NS + 2 * WB_NS_PER_S);
-    wb_live_history_look_at_disk(&history, plan.recording);
+    wb_live_history_check_disk(&history, plan.recording);
     assert_close_relative(number_of(&history, "disk_left_h") * 3600.0 * 1e-2,
                           number_of(&history, "disk_free_GB"), 1e-9);
     wb_virtual_time_end();
@@ -176,10 +176,10 @@ static void a_disk_that_cannot_be_asked_has_unknown_room(void **state)
 {
     (void)state;
     struct wb_live_history history = {.frame = {.elapsed = 10.0, .bytes = 1000}};
-    wb_live_history_look_at_disk(&history, "/tmp");
+    wb_live_history_check_disk(&history, "/tmp");
     assert_close_relative(history.disk_left, history.disk_free / 100.0, 1e-12);
     history.disk_due_ns = 1;
-    wb_live_history_look_at_disk(&history, "/nowhere/at all");
+    wb_live_history_check_disk(&history, "/nowhere/at all");
     assert_true(isnan(history.disk_free) && isnan(history.disk_left));
 }
 
