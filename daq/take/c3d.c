@@ -1,11 +1,11 @@
 /* C3D (c3d.org, "The C3D File Format"): blocks of 512 bytes; a header, parameters in groups, then
  * frames of points and analogue readings.
  *
- * The parameter section names the processor that wrote the file: Intel (84), DEC (85), which has
- * Intel's integers and floats of the VAX, or MIPS (86), which is big-endian. POINT:SCALE below zero
- * says that data are floats, else they are 16-bit integers times that scale. A point is X, Y, Z and
- * a word of residual and cameras, which is negative where the point is missing. An analogue reading
- * is (raw - OFFSET) x SCALE x GEN_SCALE.
+ * The parameter section gives the processor that wrote the file: Intel (84); DEC (85), with Intel's
+ * integers and VAX floats; or MIPS (86), big-endian. If POINT:SCALE is negative, data are floats;
+ * otherwise they are 16-bit integers to be multiplied by it. A point is X, Y, Z and a word of
+ * residual and cameras, which is negative if the point is missing. An analogue reading is
+ * (raw - OFFSET) x SCALE x GEN_SCALE.
  */
 #include <limits.h>
 #include <math.h>
@@ -30,7 +30,7 @@ enum processor {
     MIPS = 86
 };
 
-/* A parameter in place. */
+/* A parameter, located in the file. */
 struct parameter {
     int type; /* -1 characters, 1 byte, 2 int16, 4 float */
     int n_dimensions;
@@ -47,7 +47,7 @@ struct reading {
     size_t n;
     enum processor processor;
     size_t parameters; /* offset of the section */
-    size_t steps;      /* records looked at: a hostile file must not take forever */
+    size_t steps;      /* records read so far; limits the run time for malicious files */
     /* From header and parameters. */
     bool is_real, is_unsigned;
     double scale, unit; /* of integers; m */
@@ -57,15 +57,15 @@ struct reading {
     double *offsets, *scales; /* of the channels; owned */
 };
 
-/* Says where: an offset in bytes, or a parameter's name. */
-#define refuse_at(reading, where, format, ...)                                                     \
+/* Fails with the location in the file: an offset in bytes, or the name of a parameter. */
+#define reject_at(reading, where, format, ...)                                                     \
     wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s: byte %zu: " format, (reading)->name,            \
                (size_t)(where), __VA_ARGS__)
-#define refuse_parameter(reading, where, format, ...)                                              \
+#define reject_parameter(reading, where, format, ...)                                              \
     wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s: %s: " format, (reading)->name, where,           \
                __VA_ARGS__)
 
-/* --- numbers of three processors --- */
+/* --- number formats of the three processors --- */
 
 static uint16_t get_word(const struct reading *reading, const uint8_t *at)
 {
@@ -78,8 +78,8 @@ static int16_t get_int(const struct reading *reading, const uint8_t *at)
     return (int16_t)get_word(reading, at);
 }
 
-/* The VAX keeps the high word first, its exponent is larger by two for the same number, and
- * exponent 0 is zero. */
+/* VAX floats store the high word first; their exponent is larger by two for the same number, and
+ * exponent 0 means zero. */
 static double get_float(const struct reading *reading, const uint8_t *at)
 {
     uint32_t bits;
@@ -102,12 +102,13 @@ static double get_float(const struct reading *reading, const uint8_t *at)
 
 /* --- parameters --- */
 
-/* The next record of the section; false at its end, also where it breaks off. */
+/* A record of the parameter section. read_record() returns false at the end of the section, also if
+ * it is truncated. */
 struct record {
-    int id; /* below zero: a group of that number */
+    int id; /* negative: a group with number -id */
     const uint8_t *name;
     size_t n_name;
-    size_t body; /* offset of what follows the word to the next record */
+    size_t body; /* offset after the word that points to the next record */
     size_t next; /* offset; 0: none */
 };
 
@@ -156,7 +157,7 @@ static bool read_parameter(const struct reading *reading, size_t at, struct para
     return (size == 1 || size == 2 || size == 4) && at + size * n_items <= reading->n;
 }
 
-/* Finds GROUP:NAME. Records only ever lead forwards. */
+/* Finds GROUP:NAME. The offset of the next record is always positive, so the search ends. */
 static bool find(struct reading *reading, const char *group, const char *name,
                  struct parameter *parameter)
 {
@@ -204,7 +205,7 @@ static bool find_number(struct reading *reading, const char *group, const char *
            isfinite(*value);
 }
 
-/* Integers that count are unsigned, whatever the format says. */
+/* Reads a count: counts are unsigned, although the format declares signed integers. */
 static bool find_count(struct reading *reading, const char *group, const char *name, size_t *count)
 {
     double value;
@@ -216,7 +217,7 @@ static bool find_count(struct reading *reading, const char *group, const char *n
     return true;
 }
 
-/* The i-th text of a list, which goes on in LABELS2, LABELS3 after 255. */
+/* Finds the i-th text of a list, which continues in LABELS2, LABELS3, ... after 255 entries. */
 static bool find_text(struct reading *reading, const char *group, const char *name, size_t i,
                       const char **text, size_t *n)
 {
@@ -241,20 +242,21 @@ static bool find_text(struct reading *reading, const char *group, const char *na
     return false;
 }
 
-/* --- what the file holds --- */
+/* --- layout of the file --- */
 
 static enum wb_status find_parameters(struct reading *reading)
 {
     if (reading->n < 2 * BLOCK || reading->bytes[0] == 0 || reading->bytes[1] != 0x50)
-        return refuse_at(reading, 0, "%s", "no header of a C3D file of at least 1024 bytes");
+        return reject_at(reading, 0, "%s", "expected a C3D file of at least 1024 bytes");
     const size_t section = ((size_t)reading->bytes[0] - 1) * BLOCK;
     if (section + 4 > reading->n)
-        return refuse_at(reading, 0, "the parameters are to begin at byte %zu, behind the end",
+        return reject_at(reading, 0, "the parameters begin at byte %zu, after the end of the file",
                          section);
     const int processor = reading->bytes[section + 3];
     if (processor < INTEL || processor > MIPS)
-        return refuse_at(reading, section + 3,
-                         "processor %d, expected 84 (Intel), 85 (DEC) or 86 (MIPS)", processor);
+        return reject_at(reading, section + 3,
+                         "processor: expected 84 (Intel), 85 (DEC) or 86 (MIPS), not %d",
+                         processor);
     reading->processor = (enum processor)processor;
     reading->parameters = section + 4;
     static const char *const names[] = {"Intel", "DEC", "MIPS"};
@@ -263,7 +265,7 @@ static enum wb_status find_parameters(struct reading *reading)
     return WB_OK;
 }
 
-/* The number of frames: 16 bits in header and POINT:FRAMES do not hold long takes. */
+/* Determines the number of frames, for which 16 bits in header and POINT:FRAMES may be too few. */
 static void count_frames(struct reading *reading)
 {
     const uint8_t *const header = reading->bytes;
@@ -303,44 +305,47 @@ static enum wb_status read_layout(struct reading *reading)
     if (!find_count(reading, "POINT", "USED", &reading->n_points))
         reading->n_points = get_word(reading, reading->bytes + 2);
     if (reading->n_points == 0 || reading->n_points > MOST_POINTS)
-        return refuse_parameter(reading, "POINT:USED", "%zu points", reading->n_points);
+        return reject_parameter(reading, "POINT:USED", "expected 1 to %d points, not %zu",
+                                MOST_POINTS, reading->n_points);
     if (!find_number(reading, "POINT", "SCALE", &scale))
         scale = get_float(reading, reading->bytes + 12);
     if (!(fabs(scale) > 0.0) || !(fabs(scale) < 1e6))
-        return refuse_parameter(reading, "POINT:SCALE", "%g", scale);
+        return reject_parameter(reading, "POINT:SCALE", "expected a scale other than 0, not %g",
+                                scale);
     reading->is_real = scale < 0.0;
     reading->scale = fabs(scale);
     if (!find_number(reading, "POINT", "RATE", &rate))
         rate = get_float(reading, reading->bytes + 20);
-    /* Slower, and the times of frames that are numbered from far on do not fit 64 bits of ns. */
+    /* At lower rates the times of frames with large numbers would overflow 64 bits of ns. */
     if (!(rate >= 0.5) || !(rate < 1e6))
-        return refuse_parameter(reading, "POINT:RATE", "%g frames a second", rate);
+        return reject_parameter(reading, "POINT:RATE", "expected 0.5 to 1e6 frames/s, not %g",
+                                rate);
     reading->take->rate = rate;
     if (!find_text(reading, "POINT", "UNITS", 0, &unit, &n_unit))
-        return refuse_parameter(reading, "POINT:UNITS", "%s", "not there: lengths have no unit");
+        return reject_parameter(reading, "POINT:UNITS", "%s", "missing: lengths have no unit");
     reading->unit = wb_take_length_unit(unit, n_unit);
     if (!(reading->unit > 0.0)) {
         char word[24];
         wb_take_copy_name(word, sizeof word, unit, n_unit);
-        return refuse_parameter(reading, "POINT:UNITS", "'%s' is no unit of length that is known",
-                                word);
+        return reject_parameter(reading, "POINT:UNITS", "unknown unit of length '%s'", word);
     }
     if (!find_count(reading, "POINT", "DATA_START", &block) || block == 0)
         block = get_word(reading, reading->bytes + 16);
     reading->data = (block - 1) * BLOCK;
     if (block == 0 || reading->data >= reading->n)
-        return refuse_parameter(reading, "POINT:DATA_START", "block %zu is not in the file", block);
+        return reject_parameter(reading, "POINT:DATA_START", "block %zu is outside the file",
+                                block);
     if (!find_count(reading, "ANALOG", "USED", &reading->n_channels))
         reading->n_channels = 0;
     if (reading->n_channels > 0) {
         if (per_frame % reading->n_channels != 0 || per_frame / reading->n_channels > 10000)
-            return refuse_at(reading, 4, "%zu analogue readings a frame of %zu channels", per_frame,
-                             reading->n_channels);
+            return reject_at(reading, 4, "%zu analogue readings per frame do not fit %zu channels",
+                             per_frame, reading->n_channels);
         reading->per_frame = per_frame / reading->n_channels;
         if (reading->per_frame == 0)
             reading->n_channels = 0;
     } else if (per_frame > 0) {
-        return refuse_parameter(reading, "ANALOG:USED", "no channels, but %zu readings a frame",
+        return reject_parameter(reading, "ANALOG:USED", "no channels, but %zu readings per frame",
                                 per_frame);
     }
     count_frames(reading);
@@ -395,7 +400,7 @@ static enum wb_status read_channels(struct reading *reading)
             reading->offsets[i] += 65536.0;
         reading->scales[i] *= general;
         if (!isfinite(reading->scales[i]) || !isfinite(reading->offsets[i]))
-            return refuse_parameter(reading, "ANALOG:SCALE", "channel %zu has no finite scale",
+            return reject_parameter(reading, "ANALOG:SCALE", "channel %zu has no finite scale",
                                     i + 1);
         if (find_text(reading, "ANALOG", "LABELS", i, &text, &n_text))
             wb_take_copy_name(channel->name, sizeof channel->name, text, n_text);
@@ -428,7 +433,9 @@ static enum wb_status read_point(struct reading *reading, size_t point, const ui
         zero &= raw == 0.0;
         position[k] = raw * factor;
         if (!(fabs(position[k]) <= LARGEST_POSITION))
-            return refuse_at(reading, at - reading->bytes, "a marker at %g m", position[k]);
+            return reject_at(reading, at - reading->bytes,
+                             "implausible position of a marker: %g m; check POINT:UNITS",
+                             position[k]);
     }
     if (zero)
         return WB_OK;
@@ -461,13 +468,16 @@ static enum wb_status read_data(struct reading *reading)
     const size_t size = word * (4 * reading->n_points + reading->n_channels * reading->per_frame);
     const size_t there = (reading->n - reading->data) / size;
     size_t n = reading->n_frames;
-    /* A count that 16 bits could not hold: the file's length decides. */
+    /* 65535 is the largest 16-bit count: use the length of the file. */
     if (n == 65535 && there > n)
         n = there;
     if (n == 0)
-        return refuse_parameter(reading, "POINT:FRAMES", "%s", "no frame");
+        return reject_parameter(reading, "POINT:FRAMES", "%s", "expected at least 1 frame");
     if ((double)reading->first + (double)n > (double)INT_MAX)
-        return refuse_parameter(reading, "POINT:FRAMES", "%zu frames", n);
+        return reject_parameter(reading, "POINT:FRAMES",
+                                "%zu frames exceed the range of frame "
+                                "numbers",
+                                n);
     reading->take->declared_frames = n;
     for (size_t i = 0; i < n && i < there; i++)
         WB_TRY(read_frame(reading, i, reading->bytes + reading->data + i * size));
@@ -478,7 +488,7 @@ static enum wb_status read_data(struct reading *reading)
 
 static bool is_c3d(const uint8_t *bytes, size_t n)
 {
-    /* A text that begins so has its second letter P. */
+    /* The first byte is a block number; a text file with 'P' as its second letter is excluded. */
     return n >= 2 && bytes[0] > 0 && bytes[1] == 0x50 && (n < 3 || bytes[0] < ' ');
 }
 

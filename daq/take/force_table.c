@@ -12,11 +12,11 @@
 
 #define LARGEST_TIME 1e8 /* s */
 
-static enum wb_status take_rows(struct wb_force_table *out, const struct wb_text_table *table,
+static enum wb_status read_rows(struct wb_force_table *out, const struct wb_text_table *table,
                                 const char *name, const struct wb_table_columns *columns, int sign,
                                 struct wb_reason *why)
 {
-    /* The last row of a file that was cut off may end within a number. */
+    /* Without a line end the last row may be truncated within a number. */
     const size_t n_rows = table->n_rows - (table->ends_without_end && table->n_rows > 0);
     for (size_t i = 0; i < table->n_rows; i++) {
         double t = (double)NAN, force = (double)NAN;
@@ -26,7 +26,8 @@ static enum wb_status take_rows(struct wb_force_table *out, const struct wb_text
         }
         if (fabs(t) >= LARGEST_TIME)
             return wb_text_table_reject(table, name, i, columns->column[WB_MEASURED_TIME],
-                                        "expected a time from a test's start", why);
+                                        "expected a time in seconds since the start of a test",
+                                        why);
         if (isfinite(t) && isfinite(force) && (out->n == 0 || t > out->t[out->n - 1])) {
             out->t[out->n] = t;
             out->force[out->n++] = sign * force;
@@ -39,8 +40,8 @@ static enum wb_status take_rows(struct wb_force_table *out, const struct wb_text
     out->empty_rows = table->n_empty_lines;
     if (out->n < 2 || out->skipped_rows > out->n)
         return wb_fail_to(why, WB_ERR_FORMAT,
-                          "%s:%d: column %d: %zu of %zu rows have time and force in ascending "
-                          "order; this is the first that has not",
+                          "%s:%d: column %d: only %zu of %zu rows have a force and an ascending "
+                          "time; this is the first row without",
                           name, out->first_skipped ? out->first_skipped : 1,
                           columns->column[WB_MEASURED_TIME] + 1, out->n, table->n_rows);
     return WB_OK;
@@ -56,7 +57,7 @@ static enum wb_status take(struct wb_force_table *out, const struct wb_text_tabl
     snprintf(taken, WB_FORCE_TABLE_LIST, "time=%d:%s,force=%d:%s",
              columns.column[WB_MEASURED_TIME] + 1, columns.unit[WB_MEASURED_TIME],
              columns.column[WB_MEASURED_FORCE] + 1, columns.unit[WB_MEASURED_FORCE]);
-    return take_rows(out, table, name, &columns, rig->load_cell.sign, why);
+    return read_rows(out, table, name, &columns, rig->load_cell.sign, why);
 }
 
 enum wb_status wb_force_table_parse(struct wb_force_table *out, const char *name, const void *bytes,

@@ -1,10 +1,10 @@
-/* CSV exports of Motive: the columns of formats 1.20 to 1.25, and the rows of format 1.1.
+/* CSV exports of Motive: formats 1.20 to 1.25 with columns, and format 1.1 with rows.
  *
- * With columns, all is found from the header: the first line has keys and values, then come rows of
- * types, names, IDs, (1.25) parents, kinds and axes above each column; since 1.24 a column of time
- * code may stand between times and data. With rows, each line says by its first word what it is,
- * and its width varies. Column type `Marker` is what cameras measured; `Rigid Body Marker` is
- * solved from the body and filled where the marker was lost.
+ * With columns, the header defines the layout: the first line has keys and values, followed by rows
+ * of types, names, IDs, (1.25) parents, kinds and axes above each column; since 1.24 there may be a
+ * column of time code between times and data. With rows, the first word of a line is its kind, and
+ * the number of cells varies. Columns of type `Marker` were measured by the cameras; `Rigid Body
+ * Marker` is solved from the body and filled in while the marker is lost.
  */
 #include <limits.h>
 #include <math.h>
@@ -61,13 +61,13 @@ struct slot {
     bool used;
 };
 
-#define refuse(reading, column, format, ...)                                                       \
+#define reject(reading, column, format, ...)                                                       \
     wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s:%zu: column %zu: " format, (reading)->name,      \
                (reading)->lines.number, (size_t)(column), __VA_ARGS__)
 
 static bool is_missing(const char *cell, size_t n)
 {
-    /* Most cells are numbers. */
+    /* Fast path: most cells are numbers. */
     if (n > 0 && (unsigned)cell[n - 1] - '0' <= 9)
         return false;
     return n == 0 || wb_cells_begins(cell, n, "nan") || wb_cells_begins(cell, n, "-nan");
@@ -102,8 +102,8 @@ static enum wb_status read_rate(struct reading *reading, const char *line, size_
         double rate;
         if (!wb_cells_number(value, n_value, reading->comma, &rate) || !(rate > 0.0) ||
             !(rate < 1e6))
-            return refuse(reading, column, "%s: expected a rate in frames a second, not '%s'",
-                          keys[i], wb_take_quote(value, n_value).text);
+            return reject(reading, column, "%s: expected a rate in frames/s, not '%s'", keys[i],
+                          wb_take_quote(value, n_value).text);
         reading->take->rate = rate;
     }
     return WB_OK;
@@ -118,20 +118,19 @@ static enum wb_status read_keys(struct reading *reading, const char *line, size_
     if (find_value(reading, line, n, "Format Version", &value, &n_value, &column))
         wb_take_copy_name(version, sizeof version, value, n_value);
     if (strncmp(version, "1.2", 3) != 0 && strncmp(version, "1,2", 3) != 0)
-        return refuse(reading, 2, "format version '%s' is not known, expected 1.20 to 1.25",
-                      version);
+        return reject(reading, 2, "Format Version: expected 1.20 to 1.25, not '%s'", version);
     snprintf(reading->take->format, sizeof reading->take->format, "Motive CSV %s", version);
     WB_TRY(read_rate(reading, line, n));
     if (!find_value(reading, line, n, "Length Units", &value, &n_value, &column))
-        return refuse(reading, 1, "%s", "no 'Length Units': export again, with the header");
+        return reject(reading, 1, "%s", "'Length Units' is missing: export again with the header");
     reading->unit = wb_take_length_unit(value, n_value);
     if (!(reading->unit > 0.0))
-        return refuse(reading, column, "'%s' is no unit of length that is known",
+        return reject(reading, column, "unknown unit of length '%s'",
                       wb_take_quote(value, n_value).text);
     if (find_value(reading, line, n, "Coordinate Space", &value, &n_value, &column) &&
         wb_cells_equal(value, n_value, "Local"))
-        return refuse(reading, column, "%s",
-                      "local coordinates do not say where markers are: export again with "
+        return reject(reading, column, "%s",
+                      "local coordinates do not give the positions of markers: export again with "
                       "'Coordinate Space' Global");
     if (find_value(reading, line, n, "Total Exported Frames", &value, &n_value, &column) &&
         wb_cells_number(value, n_value, reading->comma, &count) && count >= 0.0 && count < 1e9)
@@ -146,7 +145,7 @@ struct header {
         const char *line;
         size_t n;
     } rows[MOST_HEADER_ROWS];
-    size_t type, name, kind, axis; /* which row is what */
+    size_t type, name, kind, axis; /* indices of the rows */
 };
 
 static enum wb_status gather_header(struct reading *reading, struct header *header)
@@ -155,11 +154,11 @@ static enum wb_status gather_header(struct reading *reading, struct header *head
     size_t n, n_cell;
     for (;;) {
         if (!wb_cells_lines_next(&reading->lines, &line, &n))
-            return refuse(reading, 1, "%s", "the file ends before a row that begins with 'Frame'");
+            return reject(reading, 1, "%s", "the file ends before a row that begins with 'Frame'");
         if (wb_cells_blank(line, n, reading->delimiter))
             continue;
         if (header->n == MOST_HEADER_ROWS)
-            return refuse(reading, 1, "no row begins with 'Frame' among the first %d",
+            return reject(reading, 1, "no row begins with 'Frame' among the first %d",
                           MOST_HEADER_ROWS);
         header->rows[header->n].line = line;
         header->rows[header->n++].n = n;
@@ -170,14 +169,14 @@ static enum wb_status gather_header(struct reading *reading, struct header *head
     }
 }
 
-/* 1.21 has rows of types, names, IDs, kinds, axes; later ones say in their first cells what they
- * are. */
+/* Format 1.21 has rows of types, names, IDs, kinds, axes; in later formats the first cells name the
+ * rows. */
 static enum wb_status find_rows(struct reading *reading, struct header *header)
 {
     if (header->n < 4)
-        return refuse(reading, 1,
-                      "%zu rows of header above the data, expected types, names, IDs, kinds and "
-                      "axes",
+        return reject(reading, 1,
+                      "expected header rows of types, names, IDs, kinds and axes above the data, "
+                      "found %zu rows",
                       header->n);
     header->axis = header->n - 1;
     header->kind = header->n - 2;
@@ -230,18 +229,18 @@ static enum wb_status check_columns(struct reading *reading)
             incomplete = i + 1;
     free(axes);
     if (incomplete)
-        return refuse(reading, incomplete, "'%s' has not all of X, Y and Z",
+        return reject(reading, incomplete, "'%s' lacks one of the columns X, Y and Z",
                       reading->take->points[reading->columns[incomplete - 1].point].name);
     if (!frame || !time)
-        return refuse(reading, 1, "no column '%s'", frame ? "Time" : "Frame");
+        return reject(reading, 1, "the column '%s' is missing", frame ? "Time" : "Frame");
     if (reading->take->n_points == 0)
-        return refuse(reading, 1, "%s",
+        return reject(reading, 1, "%s",
                       "no column has positions of markers: export again with 'Markers' on");
     return WB_OK;
 }
 
-/* Walks the header's rows side by side. A new point begins where the name or the type changes, or
- * where an axis comes again. */
+/* Reads the rows of the header in parallel. A new point begins if the name or the type changes, or
+ * if an axis is repeated. */
 static enum wb_status read_columns(struct reading *reading, const struct header *header)
 {
     struct wb_cells rows[4];
@@ -263,7 +262,7 @@ static enum wb_status read_columns(struct reading *reading, const struct header 
                 n[r] = 0;
             }
         if (reading->n_columns > MOST_COLUMNS)
-            return refuse(reading, reading->n_columns, "more than %d columns", MOST_COLUMNS);
+            return reject(reading, reading->n_columns, "more than %d columns", MOST_COLUMNS);
         if (wb_cells_equal(cell[3], n[3], "Frame"))
             column->role = ROLE_FRAME;
         else if (wb_cells_equal(cell[3], n[3], "Time") || wb_cells_begins(cell[3], n[3], "Time ("))
@@ -274,7 +273,7 @@ static enum wb_status read_columns(struct reading *reading, const struct header 
             continue;
         const int axis = (cell[3][0] | 0x20) - 'x';
         if (axis < 0 || axis > 2)
-            return refuse(reading, reading->n_columns, "a position along '%c', expected X, Y or Z",
+            return reject(reading, reading->n_columns, "axis: expected X, Y or Z, not '%c'",
                           cell[3][0]);
         const struct wb_take_quoted name = wb_take_quote(cell[1], n[1]);
         if (axes >> axis & 1 || kind != last_kind || strcmp(name.text, last.text) != 0) {
@@ -298,7 +297,7 @@ static enum wb_status take_number(struct reading *reading, const struct wb_cells
     double value;
     if (!wb_cells_number(cell, n, 0, &value) || value != floor(value) ||
         !(fabs(value) < (double)INT_MAX))
-        return refuse(reading, cells->column, "expected a frame's number, not '%s'",
+        return reject(reading, cells->column, "expected a frame number, not '%s'",
                       wb_take_quote(cell, n).text);
     *number = (int32_t)value;
     return WB_OK;
@@ -308,12 +307,12 @@ static enum wb_status take_time(struct reading *reading, const struct wb_cells *
                                 const char *cell, size_t n, double *t)
 {
     if (!wb_cells_number(cell, n, reading->comma, t) || !(fabs(*t) < LARGEST_TIME))
-        return refuse(reading, cells->column, "expected a time in seconds, not '%s'",
+        return reject(reading, cells->column, "expected a time in seconds, not '%s'",
                       wb_take_quote(cell, n).text);
     return WB_OK;
 }
 
-/* A coordinate; NaN where the cell is empty. */
+/* Reads a coordinate; NaN if the cell is empty. */
 static enum wb_status take_coordinate(struct reading *reading, const struct wb_cells *cells,
                                       const char *cell, size_t n, double *value)
 {
@@ -322,16 +321,16 @@ static enum wb_status take_coordinate(struct reading *reading, const struct wb_c
         return WB_OK;
     }
     if (!wb_cells_number(cell, n, reading->comma, value))
-        return refuse(reading, cells->column, "expected a position, not '%s'",
+        return reject(reading, cells->column, "expected a position, not '%s'",
                       wb_take_quote(cell, n).text);
     *value *= reading->unit;
     if (!(fabs(*value) <= LARGEST_POSITION))
-        return refuse(reading, cells->column, "a marker at %g m: is the unit of length right?",
-                      *value);
+        return reject(reading, cells->column,
+                      "implausible position of a marker: %g m; check the unit of length", *value);
     return WB_OK;
 }
 
-/* Frames must come in order; false: it is left out. */
+/* False if the frame is not in ascending order; it is then skipped. */
 static bool in_order(struct reading *reading, int32_t number, double t)
 {
     if (reading->has_last && (number <= reading->last_number || !(t > reading->last_t)))
@@ -348,8 +347,8 @@ static void add_point(struct reading *reading, uint32_t point, const double posi
         wb_take_add_place(reading->take, point, position);
 }
 
-/* One row of data. A row of another width than the header is left out: which cell is missing in it
- * cannot be known, and all behind it would be wrong. */
+/* Reads a row of data. A row with another number of cells than the header is skipped: it is unknown
+ * which cell is missing. */
 static enum wb_status read_row(struct reading *reading, const char *line, size_t n)
 {
     struct wb_cells cells;
@@ -401,9 +400,9 @@ static enum wb_status read_data(struct reading *reading)
     }
     if (reading->take->skipped_rows > reading->take->n_frames) {
         reading->lines.number = reading->take->first_skipped;
-        return refuse(reading, 1,
-                      "%zu of %zu rows do not have the %zu cells of the header, or are not in "
-                      "order; this is the first",
+        return reject(reading, 1,
+                      "%zu of %zu rows do not have the %zu cells of the header or are not in "
+                      "ascending order; this is the first of them",
                       reading->take->skipped_rows,
                       reading->take->skipped_rows + reading->take->n_frames, reading->n_columns);
     }
@@ -467,16 +466,16 @@ static enum wb_status need_count(struct reading *reading, struct wb_cells *cells
     size_t n;
     double value;
     if (!wb_cells_next(cells, &cell, &n))
-        return refuse(reading, cells->column, "the row ends before %s", what);
+        return reject(reading, cells->column, "the row ends before %s", what);
     if (!wb_cells_number(cell, n, 0, &value) || value != floor(value) || !(value >= 0.0) ||
         !(value <= 1e6))
-        return refuse(reading, cells->column, "expected %s, not '%s'", what,
+        return reject(reading, cells->column, "expected %s, not '%s'", what,
                       wb_take_quote(cell, n).text);
     *count = (size_t)value;
     return WB_OK;
 }
 
-/* How many cells there are to the end, with and without empty ones there. */
+/* Counts the remaining cells of the row, with and without empty cells at its end. */
 static void count_left(struct wb_cells cells, size_t *all, size_t *filled)
 {
     const char *cell;
@@ -488,7 +487,7 @@ static void count_left(struct wb_cells cells, size_t *all, size_t *filled)
     }
 }
 
-/* x, y, z, id and, in some versions, a name. */
+/* Reads markers: x, y, z, id and, in some versions, a name. */
 static enum wb_status read_markers(struct reading *reading, struct wb_cells *cells,
                                    size_t n_markers)
 {
@@ -497,21 +496,21 @@ static enum wb_status read_markers(struct reading *reading, struct wb_cells *cel
     size_t all, filled;
     count_left(*cells, &all, &filled);
     const bool named = filled > 4 * n_markers;
-    /* In a row of another width it cannot be known which cell is which. */
+    /* With another number of cells their meaning is ambiguous. */
     if (named && (all < 5 * n_markers || filled > 5 * n_markers))
-        return refuse(reading, cells->column + 1,
-                      "%zu cells for %zu markers, expected 4 or 5 for each", filled, n_markers);
+        return reject(reading, cells->column + 1,
+                      "%zu cells for %zu markers: expected 4 or 5 per marker", filled, n_markers);
     for (size_t i = 0; i < n_markers; i++) {
         double position[3];
         int32_t id;
         for (int k = 0; k < 3; k++) {
             if (!wb_cells_next(cells, &cell, &n))
-                return refuse(reading, cells->column, "the row ends within marker %zu of %zu",
+                return reject(reading, cells->column, "the row ends within marker %zu of %zu",
                               i + 1, n_markers);
             WB_TRY(take_coordinate(reading, cells, cell, n, &position[k]));
         }
         if (!wb_cells_next(cells, &cell, &n))
-            return refuse(reading, cells->column, "the row ends before the id of marker %zu",
+            return reject(reading, cells->column, "the row ends before the id of marker %zu",
                           i + 1);
         WB_TRY(take_number(reading, cells, cell, n, &id));
         name = "";
@@ -523,7 +522,8 @@ static enum wb_status read_markers(struct reading *reading, struct wb_cells *cel
     return WB_OK;
 }
 
-/* frame, number, time, bodies, 11 cells for each, markers, 4 or 5 cells for each. */
+/* Reads a row: frame, number, time, number of bodies, 11 cells per body, number of markers, 4 or 5
+ * cells per marker. */
 static enum wb_status read_frame(struct reading *reading, struct wb_cells *cells)
 {
     enum {
@@ -534,15 +534,15 @@ static enum wb_status read_frame(struct reading *reading, struct wb_cells *cells
     int32_t number;
     double t;
     if (!wb_cells_next(cells, &cell, &n))
-        return refuse(reading, cells->column, "%s", "the row ends before the frame's number");
+        return reject(reading, cells->column, "%s", "the row ends before the frame number");
     WB_TRY(take_number(reading, cells, cell, n, &number));
     if (!wb_cells_next(cells, &cell, &n))
-        return refuse(reading, cells->column, "%s", "the row ends before the frame's time");
+        return reject(reading, cells->column, "%s", "the row ends before the time");
     WB_TRY(take_time(reading, cells, cell, n, &t));
     WB_TRY(need_count(reading, cells, "the number of rigid bodies", &n_bodies));
     for (size_t i = 0; i < CELLS_OF_BODY * n_bodies; i++)
         if (!wb_cells_next(cells, &cell, &n))
-            return refuse(reading, cells->column, "the row ends within its %zu rigid bodies",
+            return reject(reading, cells->column, "the row ends within its %zu rigid bodies",
                           n_bodies);
     WB_TRY(need_count(reading, cells, "the number of markers", &n_markers));
     if (!in_order(reading, number, t)) {
@@ -590,13 +590,13 @@ static enum wb_status read_line_by_word(struct reading *reading, const char *lin
     for (size_t i = 0; i < sizeof ignored / sizeof ignored[0]; i++)
         if (wb_cells_equal(word, n_word, ignored[i]))
             return WB_OK;
-    return refuse(reading, 1, "a row begins with '%s', expected frame, info, rigidbody or comment",
+    return reject(reading, 1, "expected a row of frame, info, rigidbody or comment, not '%s'",
                   wb_take_quote(word, n_word).text);
 }
 
 static enum wb_status read_with_rows(struct reading *reading, const char *line, size_t n)
 {
-    reading->unit = 1.0; /* this format knows no other */
+    reading->unit = 1.0; /* format 1.1 is always in metres */
     strcpy(reading->take->format, "Motive CSV 1.1");
     do {
         if (wb_cells_blank(line, n, reading->delimiter))
@@ -605,13 +605,13 @@ static enum wb_status read_with_rows(struct reading *reading, const char *line, 
             WB_TRY(read_line_by_word(reading, line, n));
     } while (wb_cells_lines_next(&reading->lines, &line, &n));
     if (reading->take->n_points == 0)
-        return refuse(reading, 1, "%s", "no frame has a marker");
+        return reject(reading, 1, "%s", "no frame contains a marker");
     return WB_OK;
 }
 
 /* --- the file --- */
 
-/* What separates the cells, told by the first one. */
+/* The delimiter: the character after the first word. */
 static char delimiter_after(const char *line, size_t n, const char *word)
 {
     const char *at = line, *const end = line + n;
@@ -657,7 +657,7 @@ static bool is_motive_csv(const uint8_t *bytes, size_t n)
     size_t n_line;
     char delimiter;
     bool with_columns;
-    /* What the first line is shows in its first bytes. */
+    /* The beginning of the first line is sufficient. */
     wb_cells_lines_begin(&lines, bytes, n < 4096 ? n : 4096);
     const bool is = first_line(&lines, &line, &n_line, &delimiter, &with_columns);
     wb_cells_lines_release(&lines);
@@ -675,7 +675,7 @@ static enum wb_status read_motive_csv(struct wb_take *take, const char *name, co
     wb_cells_lines_begin(&reading.lines, bytes, n);
     enum wb_status status;
     if (!first_line(&reading.lines, &line, &n_line, &reading.delimiter, &with_columns)) {
-        status = refuse(&reading, 1, "%s", "expected 'Format Version' or 'comment'");
+        status = reject(&reading, 1, "%s", "expected 'Format Version' or 'comment'");
     } else {
         reading.comma = reading.delimiter == ',' ? 0 : ',';
         status = with_columns ? read_with_columns(&reading, line, n_line)

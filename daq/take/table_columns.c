@@ -46,7 +46,7 @@ static const struct unit units[] = {
     {WB_MEASURED_STRAIN, "um/m", 1e-6},
 };
 
-/* Both letters that are written for micro become a u. */
+/* Copies a unit; both characters for micro (U+00B5, U+03BC) become 'u'. */
 static void plain_unit(char out[16], const char *text)
 {
     size_t n = 0;
@@ -74,9 +74,9 @@ static bool find_unit(const char *text, double gravity, enum wb_measured *measur
     return wb_line_unit_factor(text, gravity, factor);
 }
 
-/* --- the words of a header --- */
+/* --- words of the header --- */
 
-/* What a header says: its words in small letters with a blank around each, and its unit. */
+/* The header of a column: its words in lower case, each surrounded by blanks, and its unit. */
 struct header {
     char words[160];
     char unit[16];
@@ -95,8 +95,8 @@ static void copy_unit(struct header *header, const char *from, size_t n)
     plain_unit(header->unit, text);
 }
 
-/* Takes the unit off the end of a name: "Load (N)", "Load [N]", "Load / N", "Load in N", "load_N",
- * "Load, N". Returns how much of the name is left. */
+/* Splits the unit off the end of a name: "Load (N)", "Load [N]", "Load / N", "Load in N", "load_N",
+ * "Load, N". Returns the length of the rest. */
 static size_t take_unit(struct header *header, const char *name)
 {
     static const char *const before[] = {" in ", "/", ",", "_", ":"};
@@ -155,7 +155,7 @@ struct word {
     int points;
 };
 
-/* The word that says most decides. Some only add or take away. */
+/* The word with the highest score decides. */
 static const struct word words[] = {
     {WB_MEASURED_TIME, "time", 10},
     {WB_MEASURED_TIME, "zeit", 10},
@@ -202,7 +202,8 @@ static const struct word words[] = {
     {WB_MEASURED_STRAIN, "dehnung", 10},
 };
 
-/* Among several extensions the machine's own is meant, not one counted from a preload. */
+/* Added to the score: among several extensions, the machine's total is preferred to one counted
+ * from a preload. */
 static const struct word qualifiers[] = {
     {WB_MEASURED_TRAVEL, "machine", 5},
     {WB_MEASURED_TRAVEL, "crosshead", 5},
@@ -216,8 +217,8 @@ static bool has_word(const struct header *header, const char *word)
     return strstr(header->words, padded) != NULL;
 }
 
-/* How well a column serves as `measured`: 0 not at all. Its unit must be one of that quantity, or
- * there is none yet. */
+/* Score of a column for the quantity `measured`; 0: not suitable. Its unit must be one of that
+ * quantity or missing. */
 static int score(const struct header *header, enum wb_measured measured, double gravity)
 {
     enum wb_measured of_unit;
@@ -240,7 +241,7 @@ static int score(const struct header *header, enum wb_measured measured, double 
 
 /* --- messages --- */
 
-/* "1 'Time (s)', 2 'Load (N)'" */
+/* Writes "1 'Time (s)', 2 'Load (N)'". */
 static void list_columns(const struct wb_text_table *table, struct wb_text *text)
 {
     if (table->header_line == 0) {
@@ -253,7 +254,7 @@ static void list_columns(const struct wb_text_table *table, struct wb_text *text
         wb_text_append(text, ", ...");
 }
 
-static enum wb_status refuse(const struct wb_text_table *table, const char *name,
+static enum wb_status reject(const struct wb_text_table *table, const char *name,
                              enum wb_status status, const char *message, struct wb_reason *why)
 {
     struct wb_text columns = {0};
@@ -265,7 +266,7 @@ static enum wb_status refuse(const struct wb_text_table *table, const char *name
     return refused;
 }
 
-/* --- finding them --- */
+/* --- search --- */
 
 struct search {
     const struct wb_text_table *table;
@@ -274,27 +275,28 @@ struct search {
     struct wb_reason *why;
 };
 
-static enum wb_status take(struct wb_table_columns *columns, const struct search *search,
-                           enum wb_measured measured, int column, const char *unit)
+static enum wb_status assign(struct wb_table_columns *columns, const struct search *search,
+                             enum wb_measured measured, int column, const char *unit)
 {
     enum wb_measured of_unit;
     char message[160];
     if (unit[0] == '\0') {
-        snprintf(message, sizeof message, "column %d has no unit: say it, as in --columns %s=%d:%s",
-                 column + 1, measured_names[measured], column + 1,
+        snprintf(message, sizeof message,
+                 "column %d has no unit: give it, as in --columns %s=%d:%s", column + 1,
+                 measured_names[measured], column + 1,
                  measured == WB_MEASURED_TIME     ? "s"
                  : measured == WB_MEASURED_FORCE  ? "N"
                  : measured == WB_MEASURED_TRAVEL ? "mm"
                                                   : "%");
-        return refuse(search->table, search->name, WB_ERR_FORMAT, message, search->why);
+        return reject(search->table, search->name, WB_ERR_FORMAT, message, search->why);
     }
     plain_unit(columns->unit[measured], unit);
     if (!find_unit(columns->unit[measured], search->gravity, &of_unit,
                    &columns->factor[measured]) ||
         of_unit != measured) {
-        snprintf(message, sizeof message, "'%.15s' of column %d is no unit of %s", unit, column + 1,
-                 measured_names[measured]);
-        return refuse(search->table, search->name, WB_ERR_FORMAT, message, search->why);
+        snprintf(message, sizeof message, "the unit '%.15s' of column %d is not a unit of %s", unit,
+                 column + 1, measured_names[measured]);
+        return reject(search->table, search->name, WB_ERR_FORMAT, message, search->why);
     }
     columns->column[measured] = column;
     return WB_OK;
@@ -319,21 +321,20 @@ static enum wb_status find_by_header(struct wb_table_columns *columns, const str
         }
         if (second >= 0) {
             snprintf(message, sizeof message,
-                     "columns %d and %d may both be the %s: name the one that is meant, as in "
-                     "--columns %s=%d",
+                     "columns %d and %d could both be the %s: choose one, as in --columns %s=%d",
                      at + 1, second + 1, measured_names[m], measured_names[m], at + 1);
-            return refuse(search->table, search->name, WB_ERR_FORMAT, message, search->why);
+            return reject(search->table, search->name, WB_ERR_FORMAT, message, search->why);
         }
         if (at < 0)
             continue;
         read_header(&header, &search->table->columns[at]);
-        WB_TRY(take(columns, search, (enum wb_measured)m, at, header.unit));
+        WB_TRY(assign(columns, search, (enum wb_measured)m, at, header.unit));
     }
     return WB_OK;
 }
 
-/* One entry of the list: "force=2:mN". */
-static enum wb_status take_entry(struct wb_table_columns *columns, const struct search *search,
+/* Reads an entry of the list: "force=2:mN". */
+static enum wb_status read_entry(struct wb_table_columns *columns, const struct search *search,
                                  char *entry)
 {
     char message[160];
@@ -351,19 +352,19 @@ static enum wb_status take_entry(struct wb_table_columns *columns, const struct 
     if (!equals || measured == WB_MEASURED_COUNT || !wb_number_parse_integer(equals + 1, &number) ||
         (colon && colon[1] == '\0'))
         return wb_fail_to(search->why, WB_ERR_ARGUMENT,
-                          "list of columns: '%.40s': expected time, force, travel or strain and a "
-                          "column's number, as in time=1,force=2:mN,travel=3",
+                          "list of columns: expected time, force, travel or strain with a column "
+                          "number, as in time=1,force=2:mN,travel=3, not '%.40s'",
                           entry);
     if (number < 1 || number > search->table->n_columns) {
-        snprintf(message, sizeof message, "%s=%ld: there is no such column", entry, number);
-        return refuse(search->table, search->name, WB_ERR_ARGUMENT, message, search->why);
+        snprintf(message, sizeof message, "%s=%ld: this column does not exist", entry, number);
+        return reject(search->table, search->name, WB_ERR_ARGUMENT, message, search->why);
     }
     if (columns->column[measured] >= 0)
-        return wb_fail_to(search->why, WB_ERR_ARGUMENT, "list of columns: %s is named twice",
+        return wb_fail_to(search->why, WB_ERR_ARGUMENT, "list of columns: %s is given twice",
                           entry);
     read_header(&header, &search->table->columns[number - 1]);
-    return take(columns, search, (enum wb_measured)measured, (int)number - 1,
-                colon ? colon + 1 : header.unit);
+    return assign(columns, search, (enum wb_measured)measured, (int)number - 1,
+                  colon ? colon + 1 : header.unit);
 }
 
 static enum wb_status find_by_list(struct wb_table_columns *columns, const struct search *search,
@@ -374,7 +375,7 @@ static enum wb_status find_by_list(struct wb_table_columns *columns, const struc
         return wb_fail_to(search->why, WB_ERR_ARGUMENT, "list of columns: too long");
     strcpy(copy, list);
     for (char *entry; (entry = strsep(&rest, ","));)
-        WB_TRY(take_entry(columns, search, entry));
+        WB_TRY(read_entry(columns, search, entry));
     return WB_OK;
 }
 
@@ -397,13 +398,13 @@ enum wb_status wb_table_columns_find(struct wb_table_columns *columns,
         if (found.column[m] >= 0 || !(needed & WB_MEASURED_BIT(m)))
             continue;
         snprintf(message, sizeof message,
-                 "no column of the %s is found: name it, as in --columns %s=1:%s",
+                 "no column of the %s was found: give it, as in --columns %s=1:%s",
                  measured_names[m], measured_names[m],
                  m == WB_MEASURED_FORCE    ? "N"
                  : m == WB_MEASURED_TRAVEL ? "mm"
                  : m == WB_MEASURED_TIME   ? "s"
                                            : "%");
-        return refuse(table, name, WB_ERR_FORMAT, message, why);
+        return reject(table, name, WB_ERR_FORMAT, message, why);
     }
     *columns = found;
     return WB_OK;

@@ -13,9 +13,9 @@
 
 #define WB_LOG_DOMAIN "take"
 
-/* Times in files are rounded to 1 ms or finer; a time may be off its frame's by so much, s. */
+/* s, accepted difference between a time and that of its frame number: files round times to 1 ms. */
 #define ROUNDING 0.75e-3
-/* Frames missing in one go; more is another take. */
+/* Consecutive missing frames, at most; more are an error. */
 #define LONGEST_JUMP 100000000
 
 void wb_take_release(struct wb_take *take)
@@ -115,7 +115,7 @@ size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const cha
 
 void wb_take_add_frame(struct wb_take *take, int32_t number, double t)
 {
-    /* One more, for the end of the last. */
+    /* One more element, for the end of the last frame. */
     take->frames =
         wb_memory_room(take->frames, &take->capacity[1], take->n_frames + 2, sizeof *take->frames);
     take->frames[take->n_frames++] =
@@ -154,8 +154,8 @@ void wb_take_skip(struct wb_take *take, size_t line)
         take->first_skipped = line;
 }
 
-/* Puts times on the frames' numbers where they are those, but for their rounding. A file may count
- * in frames of the cameras and hold every n-th of them. */
+/* Recomputes times from frame numbers if they agree within rounding. A file may number the frames
+ * of the cameras and contain every n-th of them. */
 static void unround_times(struct wb_take *take)
 {
     struct wb_take_frame *const frames = take->frames;
@@ -180,10 +180,10 @@ static void unround_times(struct wb_take *take)
 enum wb_status wb_take_finish(struct wb_take *take, const char *name, struct wb_reason *why)
 {
     if (take->n_frames == 0)
-        return wb_fail_to(why, WB_ERR_FORMAT, "%s: there is no frame in it", name);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: the file contains no frame", name);
     struct wb_take_frame *const frames = take->frames;
     frames[take->n_frames].first = take->n_places;
-    /* Numbers go up by 1, or by the cameras' frames to one that was written. */
+    /* Numbers increase by 1, or by the number of camera frames per frame in the file. */
     int64_t step = INT64_MAX;
     for (size_t i = 1; i < take->n_frames; i++) {
         const int64_t by = (int64_t)frames[i].number - frames[i - 1].number;

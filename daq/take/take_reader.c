@@ -33,9 +33,10 @@ enum wb_status wb_take_read(struct wb_take *take, const char *name, const uint8_
         *reader = found;
     if (found)
         return found->read(take, name, bytes, n, why);
-    return wb_fail_to(why, WB_ERR_FORMAT,
-                      "%s:1: column 1: no take of motion capture: expected a CSV export of Motive "
-                      "('Format Version' or 'comment'), a TRC ('PathFileType') or a C3D file; the "
-                      "curve of a testing machine is for 'wirebench import force'",
-                      name);
+    return wb_fail_to(
+        why, WB_ERR_FORMAT,
+        "%s:1: column 1: not a take of motion capture: expected a CSV export of Motive "
+        "('Format Version' or 'comment'), a TRC ('PathFileType') or a C3D file; for "
+        "the curve of a testing machine use 'wirebench import force'",
+        name);
 }

@@ -1,8 +1,9 @@
-/* TRC: a header of five lines, then frame, time and three coordinates a marker, with tabs between.
+/* TRC: a header of five lines, then frame, time and three coordinates per marker, separated by
+ * tabs.
  *
- * Written by many programs, so that real files have padded integers, CR CR LF, a header with
- * blanks instead of tabs, a blank line before the data, rows that end with the last marker that was
- * seen, and 0, 0, 0 for a marker that was not.
+ * Many programs write TRC. Real files have padded integers, CR CR LF, a header with blanks instead
+ * of tabs, a blank line before the data, rows that end after the last visible marker, and 0, 0, 0
+ * for a marker that is not visible.
  */
 #include <limits.h>
 #include <math.h>
@@ -29,7 +30,7 @@ struct reading {
     double last_t;
 };
 
-#define refuse(reading, column, format, ...)                                                       \
+#define reject(reading, column, format, ...)                                                       \
     wb_fail_to((reading)->why, WB_ERR_FORMAT, "%s:%zu: column %zu: " format, (reading)->name,      \
                (reading)->lines.number, (size_t)(column), __VA_ARGS__)
 
@@ -40,12 +41,12 @@ static enum wb_status need_line(struct reading *reading, const char *what, const
     while (wb_cells_lines_next(&reading->lines, line, n))
         if (!wb_cells_blank(*line, *n, '\t'))
             return WB_OK;
-    return refuse(reading, 1, "the file ends before %s", what);
+    return reject(reading, 1, "the file ends before %s", what);
 }
 
 /* --- header --- */
 
-/* Keys in one line, values in the next, at the same place. */
+/* Reads a value of the header: keys are in one line, values at the same position in the next. */
 static enum wb_status read_value(struct reading *reading, const char *key, const char *value,
                                  size_t n, size_t column)
 {
@@ -53,19 +54,19 @@ static enum wb_status read_value(struct reading *reading, const char *key, const
     if (strcmp(key, "Units") == 0) {
         reading->unit = wb_take_length_unit(value, n);
         if (!(reading->unit > 0.0))
-            return refuse(reading, column, "'%s' is no unit of length that is known",
+            return reject(reading, column, "unknown unit of length '%s'",
                           wb_take_quote(value, n).text);
         return WB_OK;
     }
     if (!wb_cells_number(value, n, ',', &number) || !(number >= 0.0) || !(number < 1e9))
-        return refuse(reading, column, "%s: expected a number, not '%s'", key,
+        return reject(reading, column, "%s: expected a number, not '%s'", key,
                       wb_take_quote(value, n).text);
     if (strcmp(key, "DataRate") == 0)
         reading->take->rate = number;
     else if (strcmp(key, "NumFrames") == 0)
         reading->take->declared_frames = (size_t)number;
     else if (number < 1.0 || number > MOST_MARKERS || number != floor(number))
-        return refuse(reading, column, "%g markers, expected 1 to %d", number, MOST_MARKERS);
+        return reject(reading, column, "expected 1 to %d markers, not %g", MOST_MARKERS, number);
     else
         reading->n_markers = (size_t)number;
     return WB_OK;
@@ -85,7 +86,7 @@ static enum wb_status read_keys(struct reading *reading)
     unsigned found = 0;
     while (wb_cells_next(&at_key, &key, &n_key)) {
         if (!wb_cells_next(&at_value, &value, &n_value) && n_key > 0)
-            return refuse(reading, at_value.column, "the key '%s' has no value",
+            return reject(reading, at_value.column, "the key '%s' has no value",
                           wb_take_quote(key, n_key).text);
         for (unsigned i = 0; i < 4; i++) {
             if (!wb_cells_equal(key, n_key, wanted[i]))
@@ -96,24 +97,24 @@ static enum wb_status read_keys(struct reading *reading)
     }
     for (unsigned i = 0; i < 4; i++)
         if (!(found >> i & 1))
-            return refuse(reading, 1, "the header has no '%s'", wanted[i]);
+            return reject(reading, 1, "the header has no '%s'", wanted[i]);
     return WB_OK;
 }
 
-/* Names stand above the first of a marker's three columns. With blanks between, they stand one by
- * one. */
+/* Reads the names, which are above the first of a marker's three columns. If blanks separate them,
+ * they follow each other directly. */
 static enum wb_status read_names(struct reading *reading)
 {
     const char *line, *cell;
     size_t n, n_cell;
-    WB_TRY(need_line(reading, "the markers' names", &line, &n));
+    WB_TRY(need_line(reading, "the names of markers", &line, &n));
     const bool tabs = memchr(line, '\t', n) != NULL;
     struct wb_cells cells;
     wb_cells_begin(&cells, line, n, tabs ? '\t' : ' ');
     if (!wb_cells_next(&cells, &cell, &n_cell) || !wb_cells_begins(cell, n_cell, "Frame"))
-        return refuse(reading, 1, "%s", "expected 'Frame#'");
+        return reject(reading, 1, "%s", "expected 'Frame#'");
     if (!wb_cells_next(&cells, &cell, &n_cell) || !wb_cells_begins(cell, n_cell, "Time"))
-        return refuse(reading, 2, "%s", "expected 'Time'");
+        return reject(reading, 2, "%s", "expected 'Time'");
     while (wb_cells_next(&cells, &cell, &n_cell)) {
         if (n_cell == 0)
             continue;
@@ -123,12 +124,12 @@ static enum wb_status read_names(struct reading *reading)
                           cell, n_cell);
     }
     if (reading->take->n_points != reading->n_markers)
-        return refuse(reading, cells.column, "%zu names of markers, but NumMarkers is %zu",
+        return reject(reading, cells.column, "%zu names of markers, but NumMarkers is %zu",
                       reading->take->n_points, reading->n_markers);
     return WB_OK;
 }
 
-/* X1 Y1 Z1 X2 ... */
+/* Reads the row of axes: X1 Y1 Z1 X2 ... */
 static enum wb_status read_axes(struct reading *reading)
 {
     const char *line, *cell;
@@ -138,12 +139,12 @@ static enum wb_status read_axes(struct reading *reading)
     wb_cells_begin(&cells, line, n, ' ');
     while (wb_cells_next(&cells, &cell, &n_cell)) {
         if ((cell[0] | 0x20) != "xyz"[count % 3])
-            return refuse(reading, cells.column + 2, "expected an axis %c, not '%s'",
+            return reject(reading, cells.column + 2, "expected an axis %c, not '%s'",
                           "XYZ"[count % 3], wb_take_quote(cell, n_cell).text);
         count++;
     }
     if (count != 3 * reading->n_markers)
-        return refuse(reading, cells.column + 2, "%zu axes for %zu markers", count,
+        return reject(reading, cells.column + 2, "%zu axes for %zu markers", count,
                       reading->n_markers);
     return WB_OK;
 }
@@ -158,18 +159,17 @@ static enum wb_status read_start(struct reading *reading, struct wb_cells *cells
     double value;
     if (!wb_cells_next(cells, &cell, &n) || !wb_cells_number(cell, n, 0, &value) ||
         value != floor(value) || !(fabs(value) < (double)INT_MAX))
-        return refuse(reading, 1, "expected a frame's number, not '%s'",
-                      wb_take_quote(cell, n).text);
+        return reject(reading, 1, "expected a frame number, not '%s'", wb_take_quote(cell, n).text);
     *number = (int32_t)value;
     if (!wb_cells_next(cells, &cell, &n))
-        return refuse(reading, 2, "%s", "the row ends before the time");
+        return reject(reading, 2, "%s", "the row ends before the time");
     if (!wb_cells_number(cell, n, ',', t) || !(fabs(*t) < LARGEST_TIME))
-        return refuse(reading, 2, "expected a time in seconds, not '%s'",
+        return reject(reading, 2, "expected a time in seconds, not '%s'",
                       wb_take_quote(cell, n).text);
     return WB_OK;
 }
 
-/* Takes three cells. *whole is false where the row ends before the marker. */
+/* Reads three cells. *whole is false if the row ends before the marker. */
 static enum wb_status read_marker(struct reading *reading, struct wb_cells *cells,
                                   double position[3], bool *whole, int *cells_there)
 {
@@ -185,11 +185,12 @@ static enum wb_status read_marker(struct reading *reading, struct wb_cells *cell
         if (n == 0 || wb_cells_begins(cell, n, "nan"))
             continue;
         if (!wb_cells_number(cell, n, ',', &position[k]))
-            return refuse(reading, cells->column, "expected a position, not '%s'",
+            return reject(reading, cells->column, "expected a position, not '%s'",
                           wb_take_quote(cell, n).text);
         position[k] *= reading->unit;
         if (!(fabs(position[k]) <= LARGEST_POSITION))
-            return refuse(reading, cells->column, "a marker at %g m: is the unit of length right?",
+            return reject(reading, cells->column,
+                          "implausible position of a marker: %g m; check the unit of length",
                           position[k]);
     }
     return WB_OK;
@@ -201,7 +202,7 @@ static bool is_seen(const double position[3])
            (position[0] != 0.0 || position[1] != 0.0 || position[2] != 0.0);
 }
 
-/* A row may end after any marker; one that ends within a marker is left out. */
+/* Reads a row of data. It may end after any marker; a row that ends within a marker is skipped. */
 static enum wb_status read_row(struct reading *reading, const char *line, size_t n)
 {
     struct wb_take *const take = reading->take;
@@ -253,11 +254,12 @@ static enum wb_status read_data(struct reading *reading)
     }
     if (reading->take->skipped_rows > reading->take->n_frames) {
         reading->lines.number = reading->take->first_skipped;
-        return refuse(reading, 1,
-                      "%zu of %zu rows do not have the cells of %zu markers, or are not in order; "
-                      "this is the first",
-                      reading->take->skipped_rows,
-                      reading->take->skipped_rows + reading->take->n_frames, reading->n_markers);
+        return reject(
+            reading, 1,
+            "%zu of %zu rows do not have the cells of %zu markers or are not in ascending "
+            "order; this is the first of them",
+            reading->take->skipped_rows, reading->take->skipped_rows + reading->take->n_frames,
+            reading->n_markers);
     }
     return WB_OK;
 }
@@ -283,7 +285,7 @@ static bool is_trc(const uint8_t *bytes, size_t n)
 static enum wb_status read_all(struct reading *reading)
 {
     if (!begins(&reading->lines))
-        return refuse(reading, 1, "%s", "expected 'PathFileType'");
+        return reject(reading, 1, "%s", "expected 'PathFileType'");
     strcpy(reading->take->format, "TRC");
     WB_TRY(read_keys(reading));
     WB_TRY(read_names(reading));

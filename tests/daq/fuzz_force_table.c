@@ -1,4 +1,4 @@
-/* Any bytes are a table of force over time, in order and finite, or refused. */
+/* Any bytes are read as a table of force over time, ordered and finite, or rejected. */
 #include <math.h>
 
 #include "base/reason.h"

@@ -1,5 +1,5 @@
-/* Any bytes are a table or refused; what is read of a table lies in it. Input: a byte of settings,
- * then the bytes of the file. */
+/* Any bytes are read as a table or rejected; all cells are within the table. Input: a byte of
+ * settings, then the bytes of the file. */
 #include "tests/daq/fuzz.h"
 
 #include <math.h>

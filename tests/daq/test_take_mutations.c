@@ -183,14 +183,14 @@ static void mutate_format(const struct wb_text *seed, char separator, const char
         free(text.bytes);
     }
     count_trials("Takes of motion capture with rows, columns, separators and encodings changed",
-                 MUTATIONS, "%s files: refused, or what is missing counted", name);
+                 MUTATIONS, "%s files: rejected, or missing data counted", name);
     printf("%s: %zu of %d changed files are read, %zu strange places\n", name, n_read, MUTATIONS,
            strange);
     assert_true(n_read > 0 && n_read < MUTATIONS);
     assert_true(strange <= most_strange);
 }
 
-static void changed_motive_files_are_refused_or_counted(void **state)
+static void changed_motive_files_are_rejected_or_counted(void **state)
 {
     (void)state;
     for (int version = 21; version <= 25; version += 2) {
@@ -202,7 +202,7 @@ static void changed_motive_files_are_refused_or_counted(void **state)
     }
 }
 
-static void changed_rows_of_motive_are_refused_or_counted(void **state)
+static void changed_rows_of_motive_are_rejected_or_counted(void **state)
 {
     (void)state;
     const struct example_csv form = {11, "Meters", 1.0, ',', '.', "\n"};
@@ -212,7 +212,7 @@ static void changed_rows_of_motive_are_refused_or_counted(void **state)
     wb_text_release(&text);
 }
 
-static void changed_trc_files_are_refused_or_counted(void **state)
+static void changed_trc_files_are_rejected_or_counted(void **state)
 {
     (void)state;
     struct wb_text text = {0};
@@ -236,7 +236,7 @@ static double load_of(int i)
     return 3.0 + 0.1 * i + 0.001 * i * i;
 }
 
-/* Readings that no row of the file holds, but what the change itself wrote. */
+/* Readings that are in no row of the file, except those written by the mutation. */
 static size_t count_strange(const struct wb_force_table *table)
 {
     size_t n = 0;
@@ -250,7 +250,7 @@ static size_t count_strange(const struct wb_force_table *table)
     return n;
 }
 
-static void changed_tables_of_the_force_are_refused_or_counted(void **state)
+static void changed_tables_of_the_force_are_rejected_or_counted(void **state)
 {
     (void)state;
     struct wb_rig rig = {.gravity = 9.80665};
@@ -289,7 +289,7 @@ static void changed_tables_of_the_force_are_refused_or_counted(void **state)
     }
     wb_text_release(&seed);
     count_trials("Tables of the force with rows, columns, separators and encodings changed",
-                 MUTATIONS, "files: refused, or what is missing counted");
+                 MUTATIONS, "files: rejected, or missing data counted");
     printf("force: %zu of %d changed files are read, %zu strange readings\n", n_read, MUTATIONS,
            strange);
     assert_true(n_read > 100 && n_read < MUTATIONS - 100);
@@ -297,7 +297,7 @@ static void changed_tables_of_the_force_are_refused_or_counted(void **state)
 }
 
 /* Bytes of header and parameters, words turned round, cuts. */
-static void changed_c3d_files_are_refused_or_counted(void **state)
+static void changed_c3d_files_are_rejected_or_counted(void **state)
 {
     (void)state;
     static struct example_bytes seed;
@@ -330,9 +330,9 @@ static void changed_c3d_files_are_refused_or_counted(void **state)
         strange += ignored > 0;
         free(text.bytes);
     }
-    /* A changed scale or rate is another file that is right in itself: no reader can tell. */
+    /* A changed scale or rate gives another valid file, which a reader cannot detect. */
     count_trials("Takes of motion capture with changed bytes", MUTATIONS,
-                 "C3D files: refused, or what is missing counted");
+                 "C3D files: rejected, or missing data counted");
     printf("C3D: %zu of %d changed files are read, %zu of them otherwise\n", n_read, MUTATIONS,
            strange);
     assert_true(n_read > 0 && n_read < MUTATIONS);
@@ -348,11 +348,11 @@ static int begin(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(changed_motive_files_are_refused_or_counted, begin),
-        cmocka_unit_test_setup(changed_rows_of_motive_are_refused_or_counted, begin),
-        cmocka_unit_test_setup(changed_trc_files_are_refused_or_counted, begin),
-        cmocka_unit_test_setup(changed_tables_of_the_force_are_refused_or_counted, begin),
-        cmocka_unit_test_setup(changed_c3d_files_are_refused_or_counted, begin),
+        cmocka_unit_test_setup(changed_motive_files_are_rejected_or_counted, begin),
+        cmocka_unit_test_setup(changed_rows_of_motive_are_rejected_or_counted, begin),
+        cmocka_unit_test_setup(changed_trc_files_are_rejected_or_counted, begin),
+        cmocka_unit_test_setup(changed_tables_of_the_force_are_rejected_or_counted, begin),
+        cmocka_unit_test_setup(changed_c3d_files_are_rejected_or_counted, begin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
