@@ -39,7 +39,7 @@ size_t wb_network_cards(struct wb_network_card *cards, size_t most)
     return n;
 }
 
-/* The address that the kernel would send from. */
+/* The source address that the kernel would choose. connect() on a UDP socket sends nothing. */
 static bool find_source(const struct sockaddr_in *host, char address[16])
 {
     struct sockaddr_storage own;

@@ -23,8 +23,8 @@ static bool describe(long process, char text[WB_PORT_USER_TEXT])
     return true;
 }
 
-/* The process that holds a lock on the file; 0: nobody, or not of this system. A line is
- * "1: FLOCK  ADVISORY  WRITE 1234 00:19:5 0 EOF", with the device's numbers in hexadecimal. */
+/* The process that holds a lock on the file; 0: none, or /proc/locks cannot be read. A line of
+ * /proc/locks is "1: FLOCK  ADVISORY  WRITE 1234 00:19:5 0 EOF"; device numbers are hexadecimal. */
 static long find_locker(const struct stat *device)
 {
     FILE *const file = fopen("/proc/locks", "r");

@@ -1,7 +1,7 @@
-/* Who has a port open: for the message that it is busy.
+/* Finds the program that has a port open, for the message that the port is busy.
  *
- * The kernel tells the holder of a lock (/proc/locks), and which files the processes of this user,
- * or for root of all users, have open (/proc/PID/fd).
+ * Sources: /proc/locks lists the holders of locks; /proc/PID/fd lists the open files of this user's
+ * processes (of all processes for root).
  */
 #ifndef WB_DAQ_STREAM_PORT_USER_H
 #define WB_DAQ_STREAM_PORT_USER_H
@@ -10,8 +10,9 @@
 
 #define WB_PORT_USER_TEXT 64
 
-/* "minicom, process 1234" of the process other than this one that holds the lock on the device at
- * `path` (links are followed), or else has it open. False: nobody that this user may see. */
+/* Writes "minicom, process 1234" for another process that holds a lock on the device at `path`
+ * (links are followed) or, failing that, has it open. False: no such process is visible to this
+ * user. */
 bool wb_port_user(const char *path, char text[WB_PORT_USER_TEXT]);
 
 #endif

@@ -7,7 +7,7 @@
 
 #define WB_LOG_DOMAIN "stream"
 
-/* The last one is registered from outside. */
+/* The last entry is set by wb_stream_kind_register(). */
 static const struct wb_stream_kind *kinds[] = {&wb_stream_serial, &wb_stream_pty, &wb_stream_udp,
                                                &wb_stream_memory, NULL};
 
@@ -39,7 +39,7 @@ enum wb_status wb_stream_open_with_reason(struct wb_stream **out, const char *ad
     if (!kind)
         return wb_fail_to(
             why, WB_ERR_ARGUMENT,
-            "address '%s' is not known: expected serial:PORT,BAUD,8n1 or pty:PATH or udp:HOST:PORT",
+            "unknown address '%s': expected serial:PORT,BAUD,8n1 or pty:PATH or udp:HOST:PORT",
             address);
     struct wb_stream *stream = calloc(1, sizeof *stream);
     char *copy = strdup(address);

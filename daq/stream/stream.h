@@ -23,48 +23,48 @@
 
 struct wb_stream; /* opaque */
 
-/* At most this many bytes come from one read: the largest UDP payload. */
+/* Bytes returned by one read at most: the largest UDP payload. */
 #define WB_STREAM_READ_MAX 65536
 
-/* Opens the address. On failure *out is NULL and one message says what to do (for a permission
- * error, which group to join). */
+/* Opens the address. On failure *out is NULL and one message says what to do, for example which
+ * group to join after a permission error. */
 WB_MUST_CHECK enum wb_status wb_stream_open(struct wb_stream **out, const char *address);
-/* The same; `why` holds the message. NULL: that is logged. */
+/* The same, with the message in `why`; NULL: the message is logged. */
 WB_MUST_CHECK enum wb_status wb_stream_open_with_reason(struct wb_stream **out, const char *address,
                                                         struct wb_reason *why);
 void wb_stream_close(struct wb_stream *stream); /* accepts NULL */
 
-/* The address it was opened with; owned by the stream. */
+/* The address given to wb_stream_open(); owned by the stream. */
 const char *wb_stream_address(const struct wb_stream *stream);
 
-/* Opens the device of a stream again that went away (a read or write gave WB_ERR_IO): the one at
- * the same address or, of a USB adapter, the same one under another number. False, without a
- * message, while it is not there, and always where it cannot go away. */
+/* Tries to open a disconnected device again (a read or write returned WB_ERR_IO): at the same
+ * address or, for a USB adapter, under its new number. Returns false, without a message, while the
+ * device is absent, and always for streams that cannot be disconnected. */
 bool wb_stream_reopen(struct wb_stream *stream);
 
-/* Descriptors to poll for reading, at most two (UDP with a group has two); returns how many.
- * A memory stream has none. */
+/* Writes the descriptors to poll for reading and returns their number: two for UDP with a group,
+ * none for a memory stream, otherwise one. */
 int wb_stream_descriptors(const struct wb_stream *stream, int descriptors[2]);
 
-/* Reads what is there: one datagram, or the bytes that wait, up to `size`. *n is 0 when nothing
- * waits. WB_ERR_IO when the device went away. */
+/* Reads without blocking: one datagram, or the pending bytes, up to `size`. *n is 0 if nothing is
+ * pending. WB_ERR_IO: the device was disconnected. */
 WB_MUST_CHECK enum wb_status wb_stream_read(struct wb_stream *stream, void *buffer, size_t size,
                                             size_t *n);
 
-/* Writes all bytes (a datagram on UDP). A port that cannot take them within 50 ms fails with
- * WB_ERR_TIMEOUT; nothing is retried behind the caller's back. */
+/* Writes all bytes (one datagram on UDP). WB_ERR_TIMEOUT: the port did not accept them within 50
+ * ms; the write is not retried. */
 WB_MUST_CHECK enum wb_status wb_stream_write(struct wb_stream *stream, const void *bytes, size_t n);
 
-/* Datagrams that the kernel threw away because they were not read in time, since opening; 0 for
- * streams that cannot tell. Known after the read that follows the loss. */
+/* Number of datagrams since opening that the kernel dropped because its buffer was full; 0 for
+ * streams without this counter. Updated by the first read after the loss. */
 uint64_t wb_stream_kernel_drops(const struct wb_stream *stream);
 
-/* What opening it could not set right and the operator should know, with how to mend it; "" when
- * all is well. Owned by the stream. */
+/* A warning for the operator about a setting that could not be applied when the port was opened,
+ * with its remedy; "" if there is none. Owned by the stream. */
 const char *wb_stream_caution(const struct wb_stream *stream);
 
-/* Memory streams only: appends one block of bytes. wb_stream_read() reads one block a call, as it
- * does with datagrams. */
+/* Memory streams only: appends one block of bytes. Each wb_stream_read() returns one block, like a
+ * datagram. */
 WB_MUST_CHECK enum wb_status wb_stream_memory_push(struct wb_stream *stream, const void *bytes,
                                                    size_t n);
 

@@ -1,4 +1,4 @@
-/* Between stream.c and the kinds of streams: what a kind is, and a stream of one. */
+/* The interface between stream.c and the kinds of streams. */
 #ifndef WB_DAQ_STREAM_STREAM_KIND_H
 #define WB_DAQ_STREAM_STREAM_KIND_H
 
@@ -8,8 +8,8 @@
 
 #include "base/reason.h"
 
-/* One kind of stream. The core allocates `state_size` zeroed bytes for it. open() gets what
- * follows "scheme:"; when it fails it has released everything and said why. */
+/* One kind of stream. stream.c allocates `state_size` zeroed bytes for its state. open() receives
+ * the address after "scheme:"; if it fails, it has released everything and given the reason. */
 struct wb_stream_kind {
     const char *scheme;
     size_t state_size;
@@ -18,8 +18,8 @@ struct wb_stream_kind {
     int (*descriptors)(const void *state, int descriptors[2]);
     enum wb_status (*read)(void *state, void *buffer, size_t size, size_t *n);
     enum wb_status (*write)(void *state, const void *bytes, size_t n);
-    bool (*reopen)(void *state);                 /* NULL: cannot go away */
-    uint64_t (*kernel_drops)(const void *state); /* NULL: cannot tell */
+    bool (*reopen)(void *state);                 /* NULL: cannot be disconnected */
+    uint64_t (*kernel_drops)(const void *state); /* NULL: no counter */
     const char *(*caution)(const void *state);   /* see wb_stream_caution(); NULL: never */
 };
 
@@ -28,7 +28,7 @@ extern const struct wb_stream_kind wb_stream_pty;
 extern const struct wb_stream_kind wb_stream_udp;
 extern const struct wb_stream_kind wb_stream_memory;
 
-/* Makes one more kind known, beside those above: the virtual bench's. The kind is borrowed. */
+/* Registers one further kind, that of the virtual bench. The kind is borrowed. */
 void wb_stream_kind_register(const struct wb_stream_kind *kind);
 
 struct wb_stream {

@@ -82,7 +82,7 @@ enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *lin
     if (n == 0 || n >= sizeof line->path)
         return wb_fail_to(
             why, WB_ERR_ARGUMENT,
-            "'%s' names no device: expected PATH,BAUD,8n1 such as /dev/ttyUSB0,9600,8n1", rest);
+            "'%s' has no device path: expected PATH,BAUD,8n1 such as /dev/ttyUSB0,9600,8n1", rest);
     memcpy(line->path, rest, n);
     line->path[n] = '\0';
     const char *at = rest + n;
@@ -90,13 +90,13 @@ enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *lin
         char option[32];
         n = strcspn(++at, ",");
         if (n >= sizeof option)
-            return wb_fail_to(why, WB_ERR_ARGUMENT, "line setting '%.*s' of '%s' is not known",
-                              (int)n, at, line->path);
+            return wb_fail_to(why, WB_ERR_ARGUMENT, "unknown line setting '%.*s' of '%s'", (int)n,
+                              at, line->path);
         memcpy(option, at, n);
         option[n] = '\0';
         if (!parse_option(option, line))
             return wb_fail_to(why, WB_ERR_ARGUMENT,
-                              "line setting '%s' of '%s' is not known: expected a baud rate, bits "
+                              "unknown line setting '%s' of '%s': expected a baud rate, data bits, "
                               "parity and stop bits such as 8n1, dtr=on|off|keep, rts=on|off or "
                               "flow=none|xonxoff|rtscts",
                               option, line->path);
@@ -118,18 +118,19 @@ enum wb_status wb_stream_fail_open(const char *path, int error, const char *hint
     case EACCES:
     case EPERM:
         return wb_fail_to(why, WB_ERR_PERMISSION,
-                          "port '%s' may not be opened by you: join the group dialout with 'sudo "
+                          "no permission to open port '%s': join the group dialout with 'sudo "
                           "usermod -aG dialout $USER' and log in again",
                           path);
     case EBUSY:
     case EWOULDBLOCK:
         if (wb_port_user(path, user))
-            return wb_fail_to(why, WB_ERR_BUSY,
-                              "port '%s' is in use by another program (%s): close that one first",
-                              path, user);
+            return wb_fail_to(
+                why, WB_ERR_BUSY,
+                "port '%s' is in use by another program (%s): close that program first", path,
+                user);
         return wb_fail_to(why, WB_ERR_BUSY,
-                          "port '%s' is in use by another program: close that one first ('sudo "
-                          "fuser %s' names it)",
+                          "port '%s' is in use by another program: close that program first ('sudo "
+                          "fuser -v %s' shows it)",
                           path, path);
     default:
         return wb_fail_to(why, WB_ERR_IO, "port '%s' cannot be opened: %s", path, strerror(error));
@@ -143,7 +144,7 @@ enum wb_status wb_stream_lock(int descriptor, const char *path, struct wb_reason
     return wb_stream_fail_open(path, errno == EWOULDBLOCK ? EBUSY : errno, "", why);
 }
 
-/* After a read of 0 bytes: true when the device hung up or went away. */
+/* After a read of 0 bytes: true if the device was disconnected, false if no data is pending. */
 static bool has_gone(int descriptor)
 {
     struct pollfd wait = {.fd = descriptor, .events = POLLIN};
@@ -185,7 +186,7 @@ enum wb_status wb_stream_port_read(void *state, void *buffer, size_t size, size_
     if (failed && errno != EIO && errno != ENXIO && errno != ENODEV)
         return wb_fail(WB_ERR_IO, "port '%s' cannot be read: %s", port->line.path, strerror(errno));
     if (failed || has_gone(port->descriptor))
-        return wb_fail(WB_ERR_IO, "port '%s' went away: %s", port->line.path, port->gone);
+        return wb_fail(WB_ERR_IO, "port '%s' was disconnected: %s", port->line.path, port->gone);
     return WB_OK;
 }
 
@@ -207,8 +208,8 @@ enum wb_status wb_stream_port_write(void *state, const void *bytes, size_t n)
                            strerror(errno));
         if (!wb_stream_wait_writable(port->descriptor, deadline_ns))
             return wb_fail(WB_ERR_TIMEOUT,
-                           "port '%s' took only %zu of %zu bytes within 50 ms: is the instrument "
-                           "on, and its flow control as in the rig file?",
+                           "port '%s' accepted only %zu of %zu bytes within 50 ms: check that the "
+                           "instrument is on and its flow control is that of the rig file",
                            port->line.path, done, n);
     }
     return WB_OK;

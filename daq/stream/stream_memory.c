@@ -1,4 +1,4 @@
-/* Bytes from the caller: the seam by which recordings and tests feed drivers. */
+/* A stream of bytes from the caller: replay and tests feed drivers through it. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 
 #define WB_LOG_DOMAIN "stream"
 
-/* One pushed run of bytes. */
+/* One block of wb_stream_memory_push(). */
 struct run {
     struct run *next;
     size_t n, taken;
@@ -25,7 +25,8 @@ static enum wb_status memory_open(void *state, const char *rest, struct wb_reaso
     (void)why;
     (void)state;
     if (rest[0])
-        return wb_fail(WB_ERR_ARGUMENT, "'%s' follows memory:, where nothing is expected", rest);
+        return wb_fail(WB_ERR_ARGUMENT, "address 'memory:%s': expected nothing after 'memory:'",
+                       rest);
     return WB_OK;
 }
 
@@ -109,7 +110,7 @@ enum wb_status wb_stream_memory_push(struct wb_stream *stream, const void *bytes
     if (!memory)
         return wb_fail(WB_ERR_ARGUMENT, "'%s' is not a memory stream", stream->address);
     if (n == 0)
-        return WB_OK; /* an empty run would read as "nothing waits" */
+        return WB_OK; /* an empty block would read as "nothing pending" */
     struct run *run = malloc(sizeof *run + n);
     if (!run)
         return wb_fail(WB_ERR_MEMORY, "out of memory for %zu bytes", n);

@@ -1,4 +1,4 @@
-/* Pseudo-terminals (and any other terminal) through termios: libserialport wants a sysfs entry and
+/* Pseudo-terminals (and any other terminal) through termios: libserialport needs a sysfs entry and
  * modem lines, which pseudo-terminals lack. */
 #include <errno.h>
 #include <fcntl.h>
@@ -42,7 +42,7 @@ static enum wb_status apply_line(int descriptor, const struct wb_stream_line *li
     speed_t speed = find_speed(line->baud);
     if (speed == 0)
         return wb_fail_to(why, WB_ERR_ARGUMENT,
-                          "baud rate %d of '%s' is not a standard one such as 9600 or 115200",
+                          "baud rate %d of '%s' is not a standard rate such as 9600 or 115200",
                           line->baud, line->path);
     cfsetispeed(&settings, speed);
     cfsetospeed(&settings, speed);
@@ -72,7 +72,7 @@ static int open_terminal(const struct wb_stream_line *line)
     return open(line->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
 }
 
-/* Takes the open terminal over, or closes it. */
+/* Locks and configures the open terminal, or closes it. */
 static enum wb_status prepare(struct wb_stream_port *pty, int descriptor, struct wb_reason *why)
 {
     enum wb_status status = wb_stream_lock(descriptor, pty->line.path, why);
@@ -92,12 +92,12 @@ static enum wb_status pty_open(void *state, const char *rest, struct wb_reason *
     const int descriptor = open_terminal(&pty->line);
     if (descriptor < 0)
         return wb_stream_fail_open(pty->line.path, errno, "", why);
-    pty->gone = "its other side was closed";
+    pty->gone = "its other end was closed";
     return prepare(pty, descriptor, why);
 }
 
-/* The path may be a link that leads to another terminal now. A number by itself may by now be that
- * of anybody's terminal. */
+/* Reopens a link only, which may lead to a new terminal. The number of a closed pseudo-terminal may
+ * meanwhile belong to an unrelated program. */
 static bool pty_reopen(void *state)
 {
     struct wb_stream_port *pty = state;

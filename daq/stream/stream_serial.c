@@ -22,16 +22,17 @@ struct serial_state {
     struct wb_stream_port device; /* comes first; open while `port` is */
     struct sp_port *port;         /* NULL: closed after it went away */
     struct wb_usb_identity identity;
-    char caution[512]; /* what could not be tuned; "" */
+    char caution[512]; /* see wb_stream_caution() */
 };
 
-/* "; ports that exist: /dev/ttyUSB0, /dev/ttyACM0", or that there is none. */
+/* Writes "; ports that exist: /dev/ttyUSB0, /dev/ttyACM0", or that no port exists. */
 static void describe_ports(char *text, size_t size)
 {
     struct sp_port **ports = NULL;
     size_t n = 0;
     if (sp_list_ports(&ports) != SP_OK || !ports || !ports[0]) {
-        snprintf(text, size, "; no serial port is there at all: is the cable plugged in?");
+        snprintf(text, size,
+                 "; this computer has no serial port: check that the cable is plugged in");
     } else {
         n = (size_t)snprintf(text, size, "; ports that exist: ");
         for (int i = 0; ports[i] && n < size; i++)
@@ -42,7 +43,7 @@ static void describe_ports(char *text, size_t size)
         sp_free_port_list(ports);
 }
 
-/* The one place that turns libserialport's codes into ours. errno is that of the failed call. */
+/* Maps a code of libserialport to a status and message. errno must be that of the failed call. */
 static enum wb_status fail_serial(enum sp_return code, const char *path, const char *doing,
                                   struct wb_reason *why)
 {
@@ -93,13 +94,13 @@ static enum wb_status apply_line(struct sp_port *port, const struct wb_stream_li
     return set_modem_lines(port, line, why);
 }
 
-/* What libserialport does not offer, where the driver takes it: no second opener, arrival without
- * the 16 ms timer of FTDI chips, and with dtr=off or keep no pulse on DTR at closing: the edge of
- * the next opening would reset an Arduino. */
+/* Settings that libserialport lacks, as far as the driver supports them: exclusive access,
+ * reception without the 16 ms latency timer of FTDI chips, and for dtr=off and dtr=keep no change
+ * of DTR at closing, because the edge at the next opening would reset an Arduino. */
 static void tune(int descriptor, const struct wb_stream_line *line)
 {
     if (ioctl(descriptor, TIOCEXCL) != 0)
-        wb_debug("'%s' cannot be kept from other programs: %s", line->path, strerror(errno));
+        wb_debug("exclusive access to '%s' cannot be set: %s", line->path, strerror(errno));
     struct serial_struct serial;
     if (ioctl(descriptor, TIOCGSERIAL, &serial) == 0) {
         serial.flags |= ASYNC_LOW_LATENCY;
@@ -110,14 +111,14 @@ static void tune(int descriptor, const struct wb_stream_line *line)
     const bool stays = line->dtr < 0 || line->keeps_dtr;
     if (tcgetattr(descriptor, &settings) == 0) {
         settings.c_cflag &= ~(tcflag_t)HUPCL;
-        settings.c_cflag |= stays ? 0 : HUPCL; /* libserialport 0.1.2 switches it off */
+        settings.c_cflag |= stays ? 0 : HUPCL; /* libserialport 0.1.2 clears HUPCL */
         if (tcsetattr(descriptor, TCSANOW, &settings) != 0)
             wb_debug("hang-up at closing of '%s' cannot be switched %s", line->path,
                      stays ? "off" : "on");
     }
 }
 
-/* Opens the port and leaves errno of a failure in *error. */
+/* Opens the port; *error receives the errno of a failure. */
 static enum sp_return open_port(const char *path, struct sp_port **port, int *error)
 {
     errno = 0;
@@ -148,8 +149,8 @@ static void identify(struct sp_port *port, struct wb_usb_identity *identity)
         snprintf(identity->serial, sizeof identity->serial, "%s", serial);
 }
 
-/* Longest time, ms, for which the chip of an FTDI adapter keeps bytes back, as the kernel's driver
- * has it for a port of this name ("ttyUSB0"); 0: another kind of port. */
+/* The latency timer of an FTDI adapter, ms: the longest time for which its chip buffers received
+ * bytes. Read from sysfs for a port of this name ("ttyUSB0"); 0: another kind of port. */
 static int latency_timer(const char *name)
 {
     char path[NAME_MAX + 64], text[16] = "";
@@ -162,7 +163,7 @@ static int latency_timer(const char *name)
     return n > 0 ? atoi(text) : 0;
 }
 
-/* The driver was asked for low latency, but may refuse it silently. */
+/* The driver may ignore the request for low latency without an error. */
 static void check_latency(struct serial_state *serial)
 {
     const char *const port = sp_get_port_name(serial->port), *const slash = strrchr(port, '/');
@@ -170,22 +171,23 @@ static void check_latency(struct serial_state *serial)
     const int latency_ms = latency_timer(name);
     serial->caution[0] = '\0';
     if (latency_ms > 1)
-        snprintf(serial->caution, sizeof serial->caution,
-                 "the adapter at '%.128s' keeps bytes back for up to %d ms (latency timer), and "
-                 "arrival times are as wrong: run 'echo 1 | sudo tee "
-                 "/sys/class/tty/%.64s/device/latency_timer', or install the udev rule of "
-                 "docs/instruments.md",
-                 serial->device.line.path, latency_ms, name);
+        snprintf(
+            serial->caution, sizeof serial->caution,
+            "the adapter at '%.128s' buffers bytes for up to %d ms (latency timer), which delays "
+            "arrival times by as much: run 'echo 1 | sudo tee "
+            "/sys/class/tty/%.64s/device/latency_timer', or install the udev rule of "
+            "docs/instruments.md",
+            serial->device.line.path, latency_ms, name);
 }
 
-/* Sets the open port up, or closes it. */
+/* Configures and locks the open port, or closes it. */
 static enum wb_status prepare(struct serial_state *serial, struct wb_reason *why)
 {
     const struct wb_stream_line *const line = &serial->device.line;
     enum wb_status status = WB_OK;
     if (sp_get_port_handle(serial->port, &serial->device.descriptor) != SP_OK)
         status = wb_fail_to(why, WB_ERR_IO, "port '%s' has no descriptor", line->path);
-    /* The lock keeps other wirebenches out, TIOCEXCL all other programs but root's. */
+    /* The lock excludes other wirebench processes, TIOCEXCL all programs except root's. */
     if (status == WB_OK)
         status = wb_stream_lock(serial->device.descriptor, line->path, why);
     if (status == WB_OK)
@@ -207,7 +209,7 @@ static enum wb_status serial_open(void *state, const char *rest, struct wb_reaso
     struct serial_state *serial = state;
     const struct wb_stream_line *const line = &serial->device.line;
     WB_TRY(wb_stream_parse_line(rest, &serial->device.line, why));
-    /* libserialport takes the kernel's name only, not a link from /dev/serial/by-id. */
+    /* libserialport accepts the kernel's name only, not a link such as /dev/serial/by-id/... */
     char resolved[PATH_MAX];
     if (!realpath(line->path, resolved))
         snprintf(resolved, sizeof resolved, "%s", line->path);
@@ -229,8 +231,7 @@ static enum wb_status serial_open(void *state, const char *rest, struct wb_reaso
     return prepare(serial, why);
 }
 
-/* What is open of it is given up. */
-static void let_go(struct serial_state *serial)
+static void close_port(struct serial_state *serial)
 {
     if (!serial->port)
         return;
@@ -241,7 +242,7 @@ static void let_go(struct serial_state *serial)
     serial->device.descriptor = -1;
 }
 
-/* The name of the port that the adapter has now; false: it is not there. */
+/* Finds the name that the adapter's port has now; false: the adapter is not connected. */
 static bool find_again(const struct wb_usb_identity *wanted, char *name, size_t size)
 {
     enum {
@@ -266,7 +267,7 @@ static bool serial_reopen(void *state)
     struct serial_state *serial = state;
     char name[sizeof serial->identity.port];
     int error;
-    let_go(serial);
+    close_port(serial);
     if (!find_again(&serial->identity, name, sizeof name) ||
         open_port(name, &serial->port, &error) != SP_OK || prepare(serial, NULL) != WB_OK)
         return false;
@@ -276,7 +277,7 @@ static bool serial_reopen(void *state)
 
 static void serial_close(void *state)
 {
-    let_go(state);
+    close_port(state);
 }
 
 static const char *serial_caution(const void *state)

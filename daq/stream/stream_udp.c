@@ -18,16 +18,17 @@
 
 #define WB_LOG_DOMAIN "stream"
 
-/* A frame of 300 markers takes 15 kB; this holds seconds of them while the host stalls. */
+/* Receive buffer of a socket. A frame of 300 markers takes 15 kB: at 100 Hz the buffer holds more
+ * than 5 s while the host stalls. */
 #define RECEIVE_BUFFER_BYTES (8 << 20)
 
 struct udp_state {
     int command;             /* socket to and from the server */
-    int data;                /* socket of the group; -1 without one */
-    struct sockaddr_in host; /* where commands go */
+    int data;                /* socket of the group; -1: no group */
+    struct sockaddr_in host; /* destination of commands */
     bool any_source;         /* the host is a broadcast or multicast address */
     bool warned_source;
-    uint32_t drops[2]; /* the kernel's counters of command and data */
+    uint32_t drops[2]; /* dropped datagrams by the kernel's counters: command, data */
     char name[160];
 };
 
@@ -35,12 +36,12 @@ static enum wb_status open_socket(int *out, struct wb_reason *why)
 {
     int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (descriptor < 0)
-        return wb_fail_to(why, WB_ERR_IO, "no socket: %s", strerror(errno));
+        return wb_fail_to(why, WB_ERR_IO, "a UDP socket cannot be created: %s", strerror(errno));
     int on = 1, size = RECEIVE_BUFFER_BYTES;
-    /* Beyond the system's limit only root may go; the plain option takes what is allowed. */
+    /* Only root may exceed the system's limit; SO_RCVBUF is clamped to the limit. */
     if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
         setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0)
-        wb_debug("receive buffer stays as it is: %s", strerror(errno));
+        wb_debug("the receive buffer cannot be enlarged: %s", strerror(errno));
     if (setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on) != 0)
         wb_debug("dropped datagrams will not be counted: %s", strerror(errno));
     if (setsockopt(descriptor, SOL_SOCKET, SO_BROADCAST, &on, sizeof on) != 0)
@@ -75,26 +76,27 @@ static enum wb_status join_group(int descriptor, const struct wb_udp_address *ad
     bool multicast = IN_MULTICAST(ntohl(address->group.s_addr));
     struct sockaddr_in bound = {.sin_family = AF_INET,
                                 .sin_port = htons((uint16_t)address->group_port)};
-    /* Bound to the group itself, the socket hears no other group on the same port. */
+    /* A socket bound to the group's address receives no other group on the same port. */
     if (multicast)
         bound.sin_addr = address->group;
     if (setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
         bind(descriptor, (struct sockaddr *)&bound, sizeof bound) != 0)
         return wb_fail_to(
             why, errno == EADDRINUSE ? WB_ERR_BUSY : WB_ERR_IO,
-            "port %d of the data group cannot be used: %s: does another program listen there?",
+            "port %d of the data group cannot be used: %s; check whether another program uses it",
             address->group_port, strerror(errno));
     if (!multicast)
         return WB_OK;
     struct ip_mreqn request;
     WB_TRY(find_interface(address, &request, why));
     if (setsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off) != 0)
-        wb_debug("other groups may be heard: %s", strerror(errno));
+        wb_debug("datagrams of other groups may be received: %s", strerror(errno));
     if (setsockopt(descriptor, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request) != 0)
-        return wb_fail_to(why, WB_ERR_IO,
-                          "the multicast group cannot be joined%s%s: %s; name the network card "
-                          "towards the server with interface=ADDRESS",
-                          address->interface[0] ? " on " : "", address->interface, strerror(errno));
+        return wb_fail_to(
+            why, WB_ERR_IO,
+            "the multicast group cannot be joined%s%s: %s; give the network interface "
+            "towards the server with interface=ADDRESS",
+            address->interface[0] ? " on " : "", address->interface, strerror(errno));
     return WB_OK;
 }
 
@@ -121,7 +123,8 @@ static enum wb_status udp_open(void *state, const char *rest, struct wb_reason *
     if (status == WB_OK) {
         struct sockaddr_in any = {.sin_family = AF_INET};
         if (bind(udp->command, (struct sockaddr *)&any, sizeof any) != 0)
-            status = wb_fail_to(why, WB_ERR_IO, "no port for '%s': %s", udp->name, strerror(errno));
+            status = wb_fail_to(why, WB_ERR_IO, "no local port can be bound for '%s': %s",
+                                udp->name, strerror(errno));
     }
     if (status == WB_OK && address.has_group)
         status = open_socket(&udp->data, why);
@@ -142,7 +145,7 @@ static int udp_descriptors(const void *state, int descriptors[2])
     return 2;
 }
 
-/* The kernel's counter of datagrams it dropped comes with each datagram after the loss. */
+/* After a loss, every datagram carries the kernel's counter of dropped datagrams. */
 static void note_drops(struct msghdr *message, uint32_t *drops)
 {
     for (struct cmsghdr *c = CMSG_FIRSTHDR(message); c; c = CMSG_NXTHDR(message, c)) {
@@ -151,7 +154,7 @@ static void note_drops(struct msghdr *message, uint32_t *drops)
     }
 }
 
-/* One datagram of one socket; *from tells who sent it. *n is -1 when nothing waits. */
+/* Receives one datagram from one socket; *from is its sender. *n is -1 if nothing is pending. */
 static enum wb_status receive_one(struct udp_state *udp, int which, struct iovec *space,
                                   struct sockaddr_in *from, ssize_t *n)
 {
@@ -174,7 +177,7 @@ static enum wb_status receive_one(struct udp_state *udp, int which, struct iovec
         }
         if (errno == EAGAIN)
             return WB_OK;
-        /* An answer of the network to an earlier send ("no such port") is not the stream's end. */
+        /* ICMP errors caused by an earlier send ("port unreachable") do not end the stream. */
         if (errno != EINTR && errno != ECONNREFUSED && errno != EHOSTUNREACH &&
             errno != ENETUNREACH)
             return wb_fail(WB_ERR_IO, "receiving from '%s' failed: %s", udp->name, strerror(errno));
@@ -188,8 +191,8 @@ static bool from_server(struct udp_state *udp, const struct sockaddr_in *from)
     if (!udp->warned_source) {
         char text[INET_ADDRSTRLEN] = "";
         inet_ntop(AF_INET, &from->sin_addr, text, sizeof text);
-        wb_warn("datagrams from %s are ignored: expected them from '%s', as mocap.address has it",
-                text, udp->name);
+        wb_warn("datagrams from %s are ignored: mocap.address expects them from '%s'", text,
+                udp->name);
         udp->warned_source = true;
     }
     return false;
@@ -205,7 +208,7 @@ static enum wb_status udp_read(void *state, void *buffer, size_t size, size_t *n
         while (got >= 0) {
             struct sockaddr_in from = {0};
             WB_TRY(receive_one(udp, which, &space, &from, &got));
-            /* Empty datagrams carry nothing and would read as "nothing waits". */
+            /* An empty datagram would read as "nothing pending". */
             if (got > 0 && (which == 1 || from_server(udp, &from))) {
                 *n = (size_t)got;
                 return WB_OK;
@@ -229,7 +232,8 @@ static enum wb_status udp_write(void *state, const void *bytes, size_t n)
         if (errno != EAGAIN && errno != ENOBUFS)
             return wb_fail(WB_ERR_IO, "sending to '%s' failed: %s", udp->name, strerror(errno));
         if (!wb_stream_wait_writable(udp->command, deadline_ns))
-            return wb_fail(WB_ERR_TIMEOUT, "'%s' took no datagram within 50 ms", udp->name);
+            return wb_fail(WB_ERR_TIMEOUT, "no datagram could be sent to '%s' within 50 ms",
+                           udp->name);
     }
 }
 

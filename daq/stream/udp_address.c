@@ -42,7 +42,7 @@ enum wb_status wb_udp_address_parse(const char *rest, struct wb_udp_address *add
     size_t n = strcspn(rest, ",");
     if (!split_host_port(rest, n, address->host, sizeof address->host, &address->port))
         return wb_fail_to(why, WB_ERR_ARGUMENT,
-                          "'udp:%s' names no host and port: expected udp:HOST:PORT", rest);
+                          "'udp:%s' has no host and port: expected udp:HOST:PORT", rest);
     const char *at = rest + n;
     while (*at == ',') {
         n = strcspn(++at, ",");
@@ -59,7 +59,7 @@ enum wb_status wb_udp_address_parse(const char *rest, struct wb_udp_address *add
             address->interface[n - 10] = '\0';
         } else {
             return wb_fail_to(why, WB_ERR_ARGUMENT,
-                              "'%.*s' in 'udp:%s' is not known: expected group=ADDRESS:PORT or "
+                              "unknown option '%.*s' in 'udp:%s': expected group=ADDRESS:PORT or "
                               "interface=ADDRESS",
                               (int)n, at, rest);
         }
@@ -76,7 +76,7 @@ enum wb_status wb_udp_address_resolve(const struct wb_udp_address *address,
     int code = getaddrinfo(address->host, NULL, &want, &found);
     if (code != 0 || !found)
         return wb_fail_to(why, WB_ERR_NOT_FOUND,
-                          "host '%s' is not known: %s: check mocap.address and the network",
+                          "host '%s' cannot be resolved: %s; check mocap.address and the network",
                           address->host, gai_strerror(code));
     memcpy(host, found->ai_addr, sizeof *host);
     host->sin_port = htons((uint16_t)address->port);

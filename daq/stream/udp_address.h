@@ -13,15 +13,14 @@ struct wb_udp_address {
     bool has_group;
     struct in_addr group;
     int group_port;
-    char interface[64]; /* address or name of the card that the group is joined on; "" the system's
-                         */
+    char interface[64]; /* address or name of the interface to join on; "": the system's choice */
 };
 
-/* Reads what follows "udp:". `why` holds the message of a failure; NULL: it is logged. */
+/* Parses the address after "udp:". `why` holds the message of a failure; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_udp_address_parse(const char *rest, struct wb_udp_address *address,
                                                   struct wb_reason *why);
 
-/* Looks the host's name up; the port is set, too. */
+/* Resolves the host name and sets address and port of `host`. */
 WB_MUST_CHECK enum wb_status wb_udp_address_resolve(const struct wb_udp_address *address,
                                                     struct sockaddr_in *host,
                                                     struct wb_reason *why);

@@ -1,21 +1,20 @@
-/* Which of the serial ports that are there is an adapter that was unplugged: the kernel may give it
- * another number when it comes back, and its old number to another one.
- */
+/* Finds a USB adapter again after it was unplugged: the kernel may give it another port number, and
+ * its old number to another adapter. */
 #ifndef WB_DAQ_STREAM_USB_IDENTITY_H
 #define WB_DAQ_STREAM_USB_IDENTITY_H
 
 #include <stdbool.h>
 
 struct wb_usb_identity {
-    char port[64]; /* as the kernel names it: "/dev/ttyUSB0" */
-    bool is_usb;   /* what follows is known */
+    char port[64]; /* the kernel's name: "/dev/ttyUSB0" */
+    bool is_usb;   /* the members below are set */
     int vendor, product;
-    char serial[64]; /* "": it has none, as many cheap adapters */
+    char serial[64]; /* "": no serial number, as in many cheap adapters */
 };
 
-/* Index of the wanted one in a list of n; -1: it is not there, or several may be it. Of those with
- * the same vendor, product and serial number the one under the old number is taken, or the only
- * one. A port that is none of USB is known by its name. */
+/* Index of the wanted adapter in a list of n ports; -1: absent or ambiguous. Among ports with the
+ * same vendor, product and serial number, the port with the old name is chosen, or the only one. A
+ * port that is not USB is found by its name. */
 int wb_usb_identity_find(const struct wb_usb_identity *wanted, const struct wb_usb_identity *list,
                          int n);
 

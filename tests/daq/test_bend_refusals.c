@@ -1,5 +1,5 @@
-/* What keeps a bending test from starting, or ends it in its first millimetres, each with its one
- * message, against a small bench in virtual time. */
+/* Conditions that prevent a bending test or end it in its first millimetres, each with one message,
+ * with a small bench in virtual time. */
 #include "daq/stream/stream.h"
 #include "tests/daq/bend_fixture.h"
 
@@ -10,7 +10,7 @@ static void edit_rig(const struct fixture *fixture, const char *sed)
     assert_int_equal(system(command), 0);
 }
 
-/* --- what keeps it from starting --- */
+/* --- start check --- */
 
 static void assert_refused(struct fixture *fixture, const char *words, bool recorded)
 {
@@ -28,49 +28,49 @@ static void assert_refused(struct fixture *fixture, const char *words, bool reco
     assert_int_equal(fixture->bench->holds, 0);
 }
 
-static void no_natnet_answer_is_told_and_leaves_nothing(void **state)
+static void missing_natnet_reply_is_reported_and_leaves_no_file(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->mocap_dead = true;
-    assert_refused(fixture, "no NatNet answer from sim:fake_mocap", false);
+    assert_refused(fixture, "no NatNet reply from sim:fake_mocap", false);
 }
 
-static void a_silent_load_cell_is_told(void **state)
+static void silent_load_cell_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->load_silent = true;
-    assert_refused(fixture, "sent nothing within", false);
+    assert_refused(fixture, "sent no data within", false);
 }
 
-static void a_load_cell_of_another_protocol_is_told(void **state)
+static void load_cell_with_another_protocol_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->garbage = true;
     assert_refused(fixture, "no reading that can be decoded", false);
 }
 
-static void a_silent_stage_is_told(void **state)
+static void silent_stage_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->stage_silent = true;
     assert_refused(fixture, "the stage at sim:fake_stage", false);
 }
 
-static void swapped_ports_are_told(void **state)
+static void swapped_ports_are_reported(void **state)
 {
     struct fixture *const fixture = *state;
     edit_rig(fixture, "s/fake_cell/fake_here/; s/fake_stage/fake_cell/; s/fake_here/fake_stage/");
-    assert_refused(fixture, "load_cell.address and stage.address seem to be swapped", false);
+    assert_refused(fixture, "load_cell.address and stage.address are probably swapped", false);
 }
 
-static void a_stage_set_slower_than_the_test_is_told(void **state)
+static void stage_set_slower_than_the_test_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->fastest_mm_min = 30;
-    assert_refused(fixture, "0.5 mm/s at most ($110=30 mm/min), and 1 mm/s are wanted", true);
+    assert_refused(fixture, "($110=30 mm/min): set $110=60", true);
 }
 
-static void a_missing_marker_is_named(void **state)
+static void missing_marker_is_named(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->markers = 6;
@@ -79,7 +79,7 @@ static void a_missing_marker_is_named(void **state)
     assert_non_null(strstr(fixture->events, "check: refused: 6 of 7"));
 }
 
-static void a_stray_reflection_does_not_hurt(void **state)
+static void stray_reflection_is_tolerated(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -92,20 +92,20 @@ static void a_stray_reflection_does_not_hurt(void **state)
 }
 
 /* In grams the rig file would allow a thousand times the force. */
-static void a_unit_that_contradicts_the_rig_file_is_refused(void **state)
+static void unit_that_contradicts_the_rig_file_is_rejected(void **state)
 {
     struct fixture *const fixture = *state;
     edit_rig(fixture, "s/^  noise_mg: 10/  unit: g\\n&/");
     fixture->bench->other_unit = true;
-    assert_refused(fixture, "prints another unit than load_cell.unit: g", true);
+    assert_refused(fixture, "load_cell.unit: g in", true);
     unlink(fixture->output);
     /* Within the cell's range as well. */
     fixture->bench->force_mg = 0;
-    assert_refused(fixture, "prints another unit than load_cell.unit: g", true);
+    assert_refused(fixture, "load_cell.unit: g in", true);
 }
 
 /* A converter without a calibration, with and without a unit in the rig file. */
-static void raw_counts_are_told_with_the_keys_that_make_them_forces(void **state)
+static void raw_counts_are_reported_with_the_keys_to_set(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->raw_counts = true;
@@ -114,14 +114,14 @@ static void raw_counts_are_told_with_the_keys_that_make_them_forces(void **state
     assert_refused(fixture, "load_cell.scale", false);
 }
 
-static void a_loaded_zero_is_refused(void **state)
+static void loaded_zero_is_rejected(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->force_mg = 2700;
     assert_refused(fixture, "the unloaded load cell reads 26", true);
 }
 
-static void a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out(void **state)
+static void stage_in_alarm_or_on_hold_is_rejected_with_the_remedy(void **state)
 {
     struct fixture *const fixture = *state;
     char words[160];
@@ -134,7 +134,7 @@ static void a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out(void **state
     assert_refused(fixture, words, true);
 }
 
-static void a_tare_with_the_counterweight_adds_its_weight(void **state)
+static void tare_with_the_counterweight_adds_its_weight(void **state)
 {
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
@@ -146,7 +146,7 @@ static void a_tare_with_the_counterweight_adds_its_weight(void **state)
     fclose(file);
     edit_rig(fixture, "s/noise_mg: 10/noise_mg: 10\\n  tare: counterweight/");
     fixture->request.travel = 8.0 * WB_MM;
-    assert_refused(fixture, "not the counterweight's 26.48 mN", true); /* nothing hangs there */
+    assert_refused(fixture, "expected the counterweight's 26.48 mN", true);
     unlink(fixture->output);
     bench->force_mg = 2800;
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
@@ -157,7 +157,7 @@ static void a_tare_with_the_counterweight_adds_its_weight(void **state)
     assert_close(result.peak_tension, 6.7e-3 * WB_STANDARD_GRAVITY, 0.05e-3 * WB_STANDARD_GRAVITY);
 }
 
-/* --- what cannot be opened --- */
+/* --- opening --- */
 
 static void assert_not_opened(struct fixture *fixture, enum wb_status expected, const char *words)
 {
@@ -171,7 +171,7 @@ static void assert_not_opened(struct fixture *fixture, enum wb_status expected, 
     assert_ptr_equal(strchr(fixture->errors, '\n'), fixture->errors + strlen(fixture->errors) - 1);
 }
 
-static void a_missing_port_is_one_message(void **state)
+static void missing_port_gives_one_message(void **state)
 {
     struct fixture *const fixture = *state;
     edit_rig(fixture, "s/fake_cell/no_such_cell/");
@@ -181,7 +181,7 @@ static void a_missing_port_is_one_message(void **state)
     assert_int_not_equal(access(fixture->output, F_OK), 0);
 }
 
-static void a_busy_port_is_one_message(void **state)
+static void busy_port_gives_one_message(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_stream *other;
@@ -191,7 +191,7 @@ static void a_busy_port_is_one_message(void **state)
     assert_int_not_equal(access(fixture->output, F_OK), 0);
 }
 
-static void an_existing_recording_is_never_overwritten(void **state)
+static void existing_recording_is_never_overwritten(void **state)
 {
     struct fixture *const fixture = *state;
     FILE *const file = fopen(fixture->output, "w");
@@ -201,16 +201,16 @@ static void an_existing_recording_is_never_overwritten(void **state)
     assert_not_opened(fixture, WB_ERR_EXISTS, "never overwritten");
 }
 
-static void too_much_travel_is_refused_before_anything_is_opened(void **state)
+static void excessive_travel_is_rejected_before_opening_instruments(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->request.travel = 59.0 * WB_MM;
-    assert_not_opened(fixture, WB_ERR_ARGUMENT, "59 mm is not free");
+    assert_not_opened(fixture, WB_ERR_ARGUMENT, "not 59 mm (--travel-mm)");
     fixture->request.travel = (double)NAN;
-    assert_not_opened(fixture, WB_ERR_ARGUMENT, "not free");
+    assert_not_opened(fixture, WB_ERR_ARGUMENT, "not nan mm (--travel-mm)");
 }
 
-static void a_folder_that_cannot_be_written_is_one_message(void **state)
+static void unwritable_folder_gives_one_message(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->request.output_path = "/no/such/folder/test.wbr";
@@ -219,9 +219,9 @@ static void a_folder_that_cannot_be_written_is_one_message(void **state)
     assert_non_null(strstr(fixture->errors, "/no/such/folder/test.wbr"));
 }
 
-/* --- what ends it while the specimen is whole --- */
+/* --- first millimetres --- */
 
-static void a_first_force_that_no_such_wire_has_ends_the_test(void **state)
+static void implausible_first_force_ends_the_test(void **state)
 {
     struct fixture *const fixture = *state;
     static const struct {
@@ -231,9 +231,9 @@ static void a_first_force_that_no_such_wire_has_ends_the_test(void **state)
     } cases[] = {{500, 1.6, 15.0, NULL},
                  {500, 0.0, 0.0, NULL},
                  {-500, 0.0, 0.0, "load_cell.sign"},
-                 {500, 0.0016, 0.015, "a known wire gives 0.015 at the most"},
-                 {500, 50.0, 450.0, "a known wire gives 50 at the least"},
-                 {0, 1.6, 15.0, "reads no force"}};
+                 {500, 0.0016, 0.015, "at most 0.015 by a known wire"},
+                 {500, 50.0, 450.0, "at least 50 by a known wire"},
+                 {0, 1.6, 15.0, "shows no force"}};
     fixture->request.travel = 20.0 * WB_MM;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct fake_bench *const bench = fixture->bench;
@@ -262,7 +262,7 @@ static void a_first_force_that_no_such_wire_has_ends_the_test(void **state)
     }
 }
 
-static void a_specimen_that_breaks_ends_the_test_at_once(void **state)
+static void specimen_that_breaks_ends_the_test_at_once(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -274,7 +274,7 @@ static void a_specimen_that_breaks_ends_the_test_at_once(void **state)
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
-    assert_non_null(strstr(result.text, "while the wire was bent further"));
+    assert_non_null(strstr(result.text, "limits.force_drop_percent"));
     assert_true(result.standing && result.displaced);
     assert_in_range((int)fixture->bench->position_mm, 20, 30);
     read_events(fixture);
@@ -286,26 +286,26 @@ static void a_specimen_that_breaks_ends_the_test_at_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(no_natnet_answer_is_told_and_leaves_nothing),
-        TEST(a_silent_load_cell_is_told),
-        TEST(a_load_cell_of_another_protocol_is_told),
-        TEST(a_silent_stage_is_told),
-        TEST(swapped_ports_are_told),
-        TEST(a_stage_set_slower_than_the_test_is_told),
-        TEST(a_missing_marker_is_named),
-        TEST(a_stray_reflection_does_not_hurt),
-        TEST(a_unit_that_contradicts_the_rig_file_is_refused),
-        TEST(raw_counts_are_told_with_the_keys_that_make_them_forces),
-        TEST(a_loaded_zero_is_refused),
-        TEST(a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out),
-        TEST(a_tare_with_the_counterweight_adds_its_weight),
-        TEST(a_missing_port_is_one_message),
-        TEST(a_busy_port_is_one_message),
-        TEST(an_existing_recording_is_never_overwritten),
-        TEST(too_much_travel_is_refused_before_anything_is_opened),
-        TEST(a_folder_that_cannot_be_written_is_one_message),
-        TEST(a_first_force_that_no_such_wire_has_ends_the_test),
-        TEST(a_specimen_that_breaks_ends_the_test_at_once),
+        TEST(missing_natnet_reply_is_reported_and_leaves_no_file),
+        TEST(silent_load_cell_is_reported),
+        TEST(load_cell_with_another_protocol_is_reported),
+        TEST(silent_stage_is_reported),
+        TEST(swapped_ports_are_reported),
+        TEST(stage_set_slower_than_the_test_is_reported),
+        TEST(missing_marker_is_named),
+        TEST(stray_reflection_is_tolerated),
+        TEST(unit_that_contradicts_the_rig_file_is_rejected),
+        TEST(raw_counts_are_reported_with_the_keys_to_set),
+        TEST(loaded_zero_is_rejected),
+        TEST(stage_in_alarm_or_on_hold_is_rejected_with_the_remedy),
+        TEST(tare_with_the_counterweight_adds_its_weight),
+        TEST(missing_port_gives_one_message),
+        TEST(busy_port_gives_one_message),
+        TEST(existing_recording_is_never_overwritten),
+        TEST(excessive_travel_is_rejected_before_opening_instruments),
+        TEST(unwritable_folder_gives_one_message),
+        TEST(implausible_first_force_ends_the_test),
+        TEST(specimen_that_breaks_ends_the_test_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,11 @@
-/* A load cell whose cable comes out and in again, against a small bench in virtual time: the test
- * continues, the gap is reported, and no two halves of lines make a reading that was never sent. */
+/* A load cell whose cable is unplugged and plugged in again, with a small bench in virtual time:
+ * the test continues, the gap is reported, and no halves of lines are joined to a wrong reading. */
 #include "base/timing.h"
 #include "daq/stream/usb_identity.h"
 #include "tests/daq/bend_fixture.h"
 #include "tests/trials.h"
 
-/* The cable comes out amid a line, and in again amid another. */
+/* The cable is unplugged within a line, and plugged in again within another. */
 static void plug(struct fake_bench *bench, bool in)
 {
     if (!in)
@@ -23,7 +23,7 @@ static int count_events(const struct fixture *fixture, const char *kind)
     return n;
 }
 
-static void a_cell_that_comes_back_goes_on_and_no_halves_of_lines_join(void **state)
+static void test_continues_with_a_reconnected_cell_and_no_half_lines_join(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -52,21 +52,20 @@ static void a_cell_that_comes_back_goes_on_and_no_halves_of_lines_join(void **st
     wb_bend_test_stop(test);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    /* First, because it says what went wrong. */
+    /* Asserted first, because a failure then shows the reason. */
     assert_string_equal(result.text, "stopped by the operator");
     assert_int_equal(plugged, TRIALS);
     /* 7 mm beyond the slack pull by 3.5 g; two halves would make 10 g and more. */
     assert_true(result.peak_tension < 45.0 * WB_MN);
     read_events(fixture);
-    assert_true(count_events(fixture, "reconnected: the load cell's port came back") >= TRIALS - 1);
+    assert_true(count_events(fixture, "reconnected: the load cell's port") >= TRIALS - 1);
     assert_true(result.loss[WB_ROLE_LOAD].missing > 0);
     assert_replay_identical(fixture->output, &fixture->log);
-    count_trials(
-        "A load cell's cable out amid a line, and in again", TRIALS,
-        "times in one test: it continued, each gap reported, no reading that was never sent");
+    count_trials("A load cell's cable unplugged within a line, and plugged in again", TRIALS,
+                 "times in one test: the test continued, each gap was reported, no wrong reading");
 }
 
-static void a_cell_that_stays_away_ends_the_test(void **state)
+static void disconnected_cell_ends_the_test(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -84,11 +83,11 @@ static void a_cell_that_stays_away_ends_the_test(void **state)
     }
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_true(cut && result.standing);
-    assert_non_null(strstr(result.text, "went away: check its cable and power"));
+    assert_non_null(strstr(result.text, "was disconnected"));
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
 }
 
-static void an_adapter_is_known_by_what_it_is_not_by_its_number(void **state)
+static void adapter_is_identified_independent_of_its_port_number(void **state)
 {
     (void)state;
     static const struct wb_usb_identity cell = {"/dev/ttyUSB0", true, 0x0403, 0x6001, "A50285BI"};
@@ -104,7 +103,7 @@ static void an_adapter_is_known_by_what_it_is_not_by_its_number(void **state)
     assert_int_equal(wb_usb_identity_find(&cell, there, 5), 1);
     assert_int_equal(wb_usb_identity_find(&cell, there, 1), -1);
     assert_int_equal(wb_usb_identity_find(&plain, there, 3), 2);
-    assert_int_equal(wb_usb_identity_find(&plain, there, 4), -1); /* either may be it */
+    assert_int_equal(wb_usb_identity_find(&plain, there, 4), -1); /* ambiguous */
     assert_int_equal(wb_usb_identity_find(&board, there, 5), 4);
     assert_int_equal(wb_usb_identity_find(&there[3], there, 5), 3);
 }
@@ -114,9 +113,9 @@ static void an_adapter_is_known_by_what_it_is_not_by_its_number(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(a_cell_that_comes_back_goes_on_and_no_halves_of_lines_join),
-        TEST(a_cell_that_stays_away_ends_the_test),
-        cmocka_unit_test(an_adapter_is_known_by_what_it_is_not_by_its_number),
+        TEST(test_continues_with_a_reconnected_cell_and_no_half_lines_join),
+        TEST(disconnected_cell_ends_the_test),
+        cmocka_unit_test(adapter_is_identified_independent_of_its_port_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Streams over pseudo-terminals, UDP on the loopback and memory; addresses that make no sense. */
+/* Streams over pseudo-terminals, UDP on the loopback and memory; invalid addresses. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -38,7 +38,7 @@ static void wait_readable(struct wb_stream *stream)
 
 /* --- addresses --- */
 
-static void wrong_addresses_are_refused_with_what_is_expected(void **state)
+static void wrong_addresses_are_rejected_with_what_is_expected(void **state)
 {
     (void)state;
     static const struct {
@@ -47,7 +47,7 @@ static void wrong_addresses_are_refused_with_what_is_expected(void **state)
         {"", "serial:PORT"},
         {"/dev/ttyUSB0", "serial:PORT"},
         {"tcp:1.2.3.4:5", "serial:PORT"},
-        {"serial:", "names no device"},
+        {"serial:", "PATH,BAUD,8n1"},
         {"serial:/dev/ttyS0,9600,8x1", "8x1"},
         {"serial:/dev/ttyS0,9600,9n1", "9n1"},
         {"serial:/dev/ttyS0,12", "12"},
@@ -61,9 +61,9 @@ static void wrong_addresses_are_refused_with_what_is_expected(void **state)
         {"udp:localhost:15x", "udp:HOST:PORT"},
         {"udp:127.0.0.1:1510,group=239.255.42.99", "group=ADDRESS:PORT"},
         {"udp:127.0.0.1:1510,group=127.0.0.1:1511", "group=ADDRESS:PORT"},
-        {"udp:127.0.0.1:1510,grouo=239.255.42.99:1511", "is not known"},
+        {"udp:127.0.0.1:1510,grouo=239.255.42.99:1511", "'grouo=239.255.42.99:1511'"},
         {"udp:127.0.0.1:1510,group=239.255.42.99:1511,interface=nix0", "nix0"},
-        {"memory:x", "nothing is expected"},
+        {"memory:x", "'memory:x'"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         struct wb_stream *stream = (struct wb_stream *)&stream;
@@ -94,7 +94,7 @@ static int open_master(char *slave, size_t size)
     return master;
 }
 
-/* A stream on the other side of *master; `settings` follow the path. */
+/* A stream at the other end of *master; `settings` follow the path. */
 static struct wb_stream *open_pty(int *master, const char *settings)
 {
     char slave[64], address[128];
@@ -105,7 +105,7 @@ static struct wb_stream *open_pty(int *master, const char *settings)
     return stream;
 }
 
-/* What waits is exactly this. */
+/* Exactly these bytes are pending. */
 static void assert_reads(struct wb_stream *stream, const char *text)
 {
     char got[64];
@@ -152,7 +152,7 @@ static void pseudo_terminal_passes_bytes_unchanged(void **state)
     close(master);
 }
 
-static void second_opener_of_a_pseudo_terminal_is_told_it_is_busy(void **state)
+static void second_opener_of_a_pseudo_terminal_is_reported_it_is_busy(void **state)
 {
     (void)state;
     char slave[64], address[128];
@@ -178,7 +178,7 @@ static void closed_master_is_a_lost_stream(void **state)
     size_t n = 0;
     wait_readable(stream);
     assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_ERR_IO);
-    assert_message("went away");
+    assert_message("was disconnected");
     wb_stream_close(stream);
 }
 
@@ -222,7 +222,7 @@ static void full_pseudo_terminal_times_out(void **state)
     close(master);
 }
 
-static void missing_pseudo_terminal_and_plain_file_are_told_apart(void **state)
+static void missing_pseudo_terminal_and_plain_file_are_reported_apart(void **state)
 {
     (void)state;
     struct wb_stream *stream = NULL;
@@ -289,7 +289,7 @@ static void datagrams_pass_one_a_read(void **state)
     struct wb_stream *stream = open_udp("127.0.0.1", &server);
     const struct sockaddr_in client = address_of(stream, server);
 
-    /* The answers come from another port of the same host, as a NatNet server's frames may. */
+    /* Replies arrive from another port of the same host, as frames of a NatNet server may. */
     int data_port;
     int data = open_server(&data_port);
     send_text(data, &client, "one");
@@ -337,7 +337,7 @@ static void server_that_is_not_there_is_no_error_of_the_stream(void **state)
 {
     (void)state;
     int port;
-    close(open_server(&port)); /* a port that nobody listens on */
+    close(open_server(&port)); /* a port without a listener */
     char address[64], got[8];
     snprintf(address, sizeof address, "udp:127.0.0.1:%d", port);
     struct wb_stream *stream = NULL;
@@ -421,7 +421,7 @@ static void multicast_data_and_unicast_answers_come_through_one_stream(void **st
     struct in_addr loopback = {.s_addr = htonl(INADDR_LOOPBACK)};
     assert_int_equal(setsockopt(server, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback),
                      0);
-    /* A second client on the same machine hears the group as well. */
+    /* A second client on the same computer also receives the group. */
     assert_int_equal(wb_stream_open(&other, address), WB_OK);
     int descriptors[2];
     assert_int_equal(wb_stream_descriptors(stream, descriptors), 2);
@@ -463,7 +463,7 @@ static void memory_gives_one_pushed_run_a_read(void **state)
     char got[8];
     size_t n = 0;
     assert_reads(stream, "abc");
-    /* A buffer too small for the run leaves the rest for the next read. */
+    /* With a smaller buffer the rest of a block is returned by the next read. */
     assert_int_equal(wb_stream_read(stream, got, 4, &n), WB_OK);
     assert_int_equal(n, 4);
     assert_memory_equal(got, "defg", 4);
@@ -509,14 +509,14 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
 #define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-        FACT(wrong_addresses_are_refused_with_what_is_expected),
+        FACT(wrong_addresses_are_rejected_with_what_is_expected),
         FACT(unknown_host_is_named),
         FACT(pseudo_terminal_passes_bytes_unchanged),
-        FACT(second_opener_of_a_pseudo_terminal_is_told_it_is_busy),
+        FACT(second_opener_of_a_pseudo_terminal_is_reported_it_is_busy),
         FACT(closed_master_is_a_lost_stream),
         FACT(lost_pseudo_terminal_comes_back_through_its_link_under_another_number),
         FACT(full_pseudo_terminal_times_out),
-        FACT(missing_pseudo_terminal_and_plain_file_are_told_apart),
+        FACT(missing_pseudo_terminal_and_plain_file_are_reported_apart),
         FACT(datagrams_pass_one_a_read),
         FACT(largest_datagram_passes_whole),
         FACT(server_that_is_not_there_is_no_error_of_the_stream),
