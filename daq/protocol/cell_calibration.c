@@ -8,7 +8,7 @@
 #include "base/units.h"
 #include "daq/protocol/average.h"
 
-/* kg: masses so near to each other are the same. */
+/* kg; masses with a smaller difference count as equal. */
 #define SAME (1e-3 * WB_MG)
 
 struct wb_cell_deviation wb_cell_calibration_deviation(const struct wb_cell_point *zero,
@@ -37,7 +37,7 @@ bool wb_cell_calibration_check(const double *masses, int n, char *problem, size_
     bool differ = false;
     for (int i = 0; i < n; i++) {
         if (!(masses[i] >= 0.0)) {
-            snprintf(problem, size, "expected masses of 0 g and more, not %g", masses[i] / WB_G);
+            snprintf(problem, size, "expected masses of at least 0 g, not %g", masses[i] / WB_G);
             return false;
         }
         if (masses[i] > SAME && first > 0.0 && fabs(masses[i] - first) > SAME)
@@ -51,7 +51,7 @@ bool wb_cell_calibration_check(const double *masses, int n, char *problem, size_
         snprintf(problem, size, "expected 0 first, the cell's zero, such as 0,5,10,5,0");
     else if (!differ)
         snprintf(problem, size,
-                 "expected at least two masses that differ beside 0, such as 0,5,10,5,0");
+                 "expected at least two different masses besides 0, such as 0,5,10,5,0");
     else
         return true;
     return false;
@@ -71,7 +71,8 @@ int wb_cell_calibration_parse(const char *text, double masses[WB_RIG_MASSES], ch
         }
         snprintf(field, sizeof field, "%.*s", (int)length, at);
         if (length >= sizeof field || !wb_number_parse(field, &grams)) {
-            snprintf(problem, size, "expected masses in grams between commas, not '%s'", field);
+            snprintf(problem, size, "expected masses in grams separated by commas, not '%s'",
+                     field);
             return 0;
         }
         masses[n++] = grams * WB_G;
@@ -80,7 +81,7 @@ int wb_cell_calibration_parse(const char *text, double masses[WB_RIG_MASSES], ch
     return wb_cell_calibration_check(masses, n, problem, size) ? n : 0;
 }
 
-/* The line through all points, and how far each lies from it. */
+/* Fits the line through all points, and computes the residuals. */
 static void fit_line(struct wb_cell_calibration *c, const struct wb_cell_point *points, int n,
                      double gravity)
 {
@@ -104,7 +105,7 @@ static void fit_line(struct wb_cell_calibration *c, const struct wb_cell_point *
         c->is_down[i] = i > 0 && points[i].mass < points[i - 1].mass - SAME;
         squares += c->residuals[i] * c->residuals[i];
     }
-    /* Three different masses at least, so there are always more points than unknowns. */
+    /* With at least three different masses, n - 2 is positive. */
     c->scatter = sqrt(squares / (n - 2));
     c->results[WB_CELL_SPAN] = (struct wb_cell_result){
         .known = true,
@@ -130,18 +131,18 @@ static void find_linearity(struct wb_cell_calibration *c, const struct wb_cell_p
     };
 }
 
-/* Readings of one mass that were reached from one side, kg. */
+/* Readings (kg) of one mass that was reached from one side. */
 struct side {
     struct wb_average readings;
-    double squares; /* of their standard uncertainties */
+    double squares; /* sum of the squares of their standard uncertainties */
 };
 
 static struct side gather(const struct wb_cell_calibration *c, const struct wb_cell_point *points,
                           int n, double gravity, double mass, bool down)
 {
     struct side side = {0};
-    /* The first point is reached from nowhere. At 0 it stands for the way up, which has no other:
-     * the zero before all and the zero after. */
+    /* The first point has no side. At 0 it counts as loading, which has no other point there, so
+     * that the zeros before and after can be compared. */
     for (int i = 0; i < n; i++) {
         if (fabs(points[i].mass - mass) > SAME || c->is_down[i] != down)
             continue;
@@ -165,7 +166,7 @@ static bool is_first_of_its_mass(const struct wb_cell_point *points, int i)
     return true;
 }
 
-/* Hysteresis and repeatability: by mass and side. The zero is left to the zero return. */
+/* Hysteresis and repeatability, by mass and side. The zero is covered by the zero return. */
 static void find_returns(struct wb_cell_calibration *c, const struct wb_cell_point *points, int n,
                          double gravity)
 {

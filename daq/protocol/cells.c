@@ -10,8 +10,8 @@
 
 /* --- lines --- */
 
-/* 1 or 2 for UTF-16 with the low or the high byte first, 0 for bytes. Without a mark, ASCII in
- * UTF-16 has a zero in every other byte. */
+/* Encoding: 1 for UTF-16 little-endian, 2 for big-endian, 0 for bytes. Without a byte order mark,
+ * ASCII text in UTF-16 is recognised by a zero in every other byte. */
 static int utf16_order(const uint8_t *bytes, size_t n, size_t *skip)
 {
     *skip = 2;
@@ -53,7 +53,7 @@ void wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, si
     lines->end = text + n_units;
 }
 
-/* The next CR before the next LF; NULL: none. */
+/* The next CR before the next LF; NULL: there is none. */
 static const char *find_cr(const struct wb_cells_lines *lines, const char *from)
 {
     return memchr(from, '\r', (size_t)(lines->lf - from));
@@ -73,7 +73,8 @@ bool wb_cells_lines_next(struct wb_cells_lines *lines, const char **line, size_t
     const char *const cr = find_cr(lines, from);
     lines->terminated = true;
     if (cr) {
-        /* All that is between a CR and its LF is CR, or the CR ends a line by itself. */
+        /* Only further CRs may be between a CR and its LF; otherwise the CR itself ends the line.
+         */
         const char *next = cr;
         while (next < lines->end && *next == '\r')
             next++;
@@ -136,7 +137,7 @@ static const char *find_end(const struct wb_cells *cells)
             at++;
         return at;
     }
-    /* A quoted cell may hold delimiters. */
+    /* A quoted cell may contain delimiters. */
     while (at < cells->end && (*at == ' ' || *at == '\0'))
         at++;
     if (at < cells->end && *at == '"') {
@@ -229,7 +230,7 @@ bool wb_cells_number(const char *cell, size_t n, char comma, double *value)
     }
     if (n_digits == 0)
         return false;
-    /* Both are exact up to here, so that their quotient is the nearest double. */
+    /* Up to 15 digits both are exact, and their quotient is the nearest double. */
     if (n_digits > 15)
         return slow_number(cell, n, comma, value);
     const double magnitude = (double)digits / powers[n_decimals];

@@ -1,5 +1,5 @@
-/* Lines and cells of large tables as text, without copies: for exports of 100 MB, read in a second.
- * Small tables of unknown make are for base/text_table.h. */
+/* Reads lines and cells of large text tables without copying them: 100 MB per second. For small
+ * tables of unknown layout use base/text_table.h. */
 #ifndef WB_DAQ_PROTOCOL_CELLS_H
 #define WB_DAQ_PROTOCOL_CELLS_H
 
@@ -7,41 +7,41 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A text, line by line. Line ends are LF, CR, CR LF and CR CR LF; a byte order mark is left out. */
+/* A text, read line by line. Line ends are LF, CR, CR LF and CR CR LF; a byte order mark is
+ * skipped. */
 struct wb_cells_lines {
     const char *at, *end;
     const char *lf;  /* the next LF, or `end` */
-    size_t number;   /* of the line last given, from 1 */
-    bool terminated; /* that line had an end. The last of a file that was cut off has none: what it
-                        holds may be part of a number */
-    char *converted; /* owned: of UTF-16 text */
+    size_t number;   /* of the last line returned, from 1 */
+    bool terminated; /* that line had a line end; without one it may be truncated within a number */
+    char *converted; /* owned: UTF-16 text as bytes */
 };
 
-/* Begins. UTF-16 in either order becomes bytes, characters beyond ASCII '?'. */
+/* Begins to read. UTF-16 is converted to bytes; characters beyond ASCII become '?'. */
 void wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, size_t n);
 /* The next line without its end; false at the end of the text. */
 bool wb_cells_lines_next(struct wb_cells_lines *lines, const char **line, size_t *n);
 void wb_cells_lines_release(struct wb_cells_lines *lines);
 
-/* A line's cells. */
+/* The cells of a line. */
 struct wb_cells {
-    const char *at, *end; /* at is NULL after the last */
+    const char *at, *end; /* `at` is NULL after the last cell */
     char delimiter;       /* ' ': any number of blanks and tabs */
-    size_t column;        /* of the cell last given, from 1 */
+    size_t column;        /* of the last cell returned, from 1 */
 };
 
 void wb_cells_begin(struct wb_cells *cells, const char *line, size_t n, char delimiter);
 /* The next cell without blanks and quotes around it; false after the last. */
 bool wb_cells_next(struct wb_cells *cells, const char **cell, size_t *n);
-/* Whether the line has nothing but delimiters and blanks. */
+/* Whether the line contains only delimiters and blanks. */
 bool wb_cells_blank(const char *line, size_t n, char delimiter);
 
-/* Compares without regard to case. */
+/* Case-insensitive comparison with a word, and with the beginning of the cell. */
 bool wb_cells_equal(const char *cell, size_t n, const char *word);
 bool wb_cells_begins(const char *cell, size_t n, const char *word);
 
-/* A decimal number that is the whole cell, with '.' or `comma` (0: none) before its decimals. Reads
- * the same double as strtod(). */
+/* Reads a cell that is a decimal number with '.' or `comma` (0: none) as decimal sign. Gives the
+ * same double as strtod(). False if the cell is not a number. */
 bool wb_cells_number(const char *cell, size_t n, char comma, double *value);
 
 #endif

@@ -6,14 +6,14 @@
 
 #include "base/units.h"
 
-#define BURST_NS WB_NS_PER_S
-#define LEAST_PROBE_SPAN 2.0 /* s */
-/* Within this time of the host a delay has passed and stamps are on time again. */
+#define BURST_NS WB_NS_PER_S /* one probe is used per burst of this length */
+#define LEAST_PROBE_SPAN 2.0 /* s, between the first and last probe, to fit the slope */
+/* A temporary delay of the host is over after this time, and stamps arrive in time again. */
 #define SETTLING_NS (5 * WB_NS_PER_S)
 
 int64_t wb_clock_line_host_ns(const struct wb_clock_line *line, double device)
 {
-    /* A far extrapolation (a damaged stamp) must not leave what an int64_t holds. */
+    /* Limit the extrapolation: a damaged stamp must not overflow an int64_t. */
     const double seconds = line->slope * (device - line->device_zero);
     if (!(fabs(seconds) < 1e9))
         return line->host_zero_ns;
@@ -23,7 +23,7 @@ int64_t wb_clock_line_host_ns(const struct wb_clock_line *line, double device)
 /* --- robust line --- */
 
 struct point {
-    double x, y;  /* device s and host s, both since the first point */
+    double x, y;  /* s since the first point, on the clock of the device and of the host */
     double width; /* round trip, s */
 };
 
@@ -33,7 +33,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Median of n > 0 values, which are sorted in place. */
+/* Median of n > 0 values; sorts them in place. */
 static double median(double *values, size_t n)
 {
     qsort(values, n, sizeof *values, compare_doubles);
@@ -42,10 +42,10 @@ static double median(double *values, size_t n)
 
 struct fit {
     double mean_x, mean_y, slope;
-    double sum_weight, sum_xx; /* weighted, about the mean */
+    double sum_weight, sum_xx; /* sum of weights; weighted sum of squares about the mean */
 };
 
-/* Weighted line; a given slope is kept when `fixed`. */
+/* Fits a line by weighted least squares; with `fixed` its slope is kept. */
 static void fit_weighted(const struct point *points, const double *weights, size_t n, bool fixed,
                          struct fit *fit)
 {
@@ -73,7 +73,7 @@ static double residual(const struct fit *fit, const struct point *point)
     return point->y - fit->mean_y - fit->slope * (point->x - fit->mean_x);
 }
 
-/* Huber's weights from residuals: 1 within 1.345 robust standard deviations, falling beyond. */
+/* Huber's weights: 1 for residuals within 1.345 robust standard deviations, decreasing beyond. */
 static void set_weights(const struct fit *fit, const struct point *points, size_t n,
                         double *weights, double *work)
 {
@@ -86,7 +86,8 @@ static void set_weights(const struct fit *fit, const struct point *points, size_
     }
 }
 
-/* Fits and tells the weighted standard deviation. `weights` and `work` are scratch of n each. */
+/* Robust fit; returns the weighted standard deviation. `weights` and `work`: n values of scratch.
+ */
 static double fit_robust(const struct point *points, size_t n, bool fixed, struct fit *fit,
                          double *weights, double *work)
 {
@@ -116,7 +117,7 @@ static int64_t round_trip(const struct wb_clock_probe *probe)
     return probe->t_received_ns - probe->t_sent_ns;
 }
 
-/* Keeps the probe of the shortest round trip in each second; `probes` is sorted and compacted. */
+/* Keeps the probe with the shortest round trip of each second; sorts and compacts `probes`. */
 static size_t keep_best(struct wb_clock_probe *probes, size_t n)
 {
     qsort(probes, n, sizeof *probes, compare_probes);
@@ -134,7 +135,7 @@ static size_t keep_best(struct wb_clock_probe *probes, size_t n)
     return n_kept;
 }
 
-/* Room for n probes and what is computed from them. */
+/* Arrays for n probes and the results computed from them. */
 struct probe_fit {
     struct wb_clock_probe *kept;
     struct point *points;
@@ -204,7 +205,7 @@ static double cross(const struct point *o, const struct point *a, const struct p
     return (a->x - o->x) * (b->y - o->y) - (a->y - o->y) * (b->x - o->x);
 }
 
-/* Lower convex hull of points with ascending x (Andrew's chain), in place. */
+/* Lower convex hull of points with ascending x (Andrew's monotone chain), in place. */
 static size_t lower_hull(struct point *points, size_t n)
 {
     size_t n_hull = 0;
@@ -216,8 +217,8 @@ static size_t lower_hull(struct point *points, size_t n)
     return n_hull;
 }
 
-/* The sum of distances of all points above a line depends on its height at their mean x only, so
- * the best line below them is the hull's edge there. */
+/* The sum of the distances of all points above a line depends only on the height of the line at
+ * their mean x. The best line is therefore the edge of the hull there. */
 static void choose_edge(const struct point *hull, size_t n, double mean_x, struct fit *fit)
 {
     size_t edge = 0;
@@ -228,7 +229,7 @@ static void choose_edge(const struct point *hull, size_t n, double mean_x, struc
     fit->slope = (hull[edge + 1].y - hull[edge].y) / (hull[edge + 1].x - hull[edge].x);
 }
 
-/* With a given slope the lowest point carries the line. */
+/* With a given slope the line passes through the lowest point. */
 static void choose_lowest(const struct point *points, size_t n, struct fit *fit)
 {
     size_t lowest = 0;
@@ -282,7 +283,7 @@ enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *d
         .n_points = n,
         .n_used = n_hull,
     };
-    /* Both ends of an edge may be early by about the scatter. */
+    /* Each end of the edge may be off by about the scatter. */
     if (!fixed)
         line->slope_uncertainty = line->scatter / (device[n - 1] - device[0]);
     free(points);
@@ -292,15 +293,15 @@ enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *d
 
 /* --- segments --- */
 
-/* How much later stamp i arrived than stamp `zero` says it should have, s. */
+/* s, delay of stamp i relative to stamp `zero`. */
 static double shift_of(const struct wb_clock_stamps *stamps, size_t i, size_t zero)
 {
     return wb_seconds_from_ns(stamps->host_ns[i] - stamps->host_ns[zero]) -
            stamps->nominal_slope * (stamps->device[i] - stamps->device[zero]);
 }
 
-/* Least lateness, over that of stamp `zero`, of stamps first, first + step, ... that arrived within
- * SETTLING_NS of the first of them. */
+/* s, smallest delay, relative to stamp `zero`, of stamps first, first + step, ... that arrived
+ * within SETTLING_NS of the first of them. */
 static double least_shift(const struct wb_clock_stamps *stamps, size_t zero, size_t first, int step)
 {
     double least = HUGE_VAL;
@@ -312,8 +313,8 @@ static double least_shift(const struct wb_clock_stamps *stamps, size_t zero, siz
     return least;
 }
 
-/* Whether the stamps from `first` to the last still arrive faster than they were made: a host that
- * was busy works off what waited when the stamps end. */
+/* Whether the delay still decreases from `first` to the last stamp: the host was busy and is still
+ * processing a backlog when the stamps end. */
 static bool is_catching_up(const struct wb_clock_stamps *stamps, size_t first)
 {
     const size_t last = stamps->n - 1;
@@ -331,8 +332,8 @@ size_t wb_clock_split(const struct wb_clock_stamps *stamps, double jump, size_t 
     for (size_t i = 1; i < stamps->n && n_segments < most; i++) {
         if (fabs(shift_of(stamps, i, i - 1)) <= jump)
             continue;
-        /* A busy host is late once and catches up; a clock that was set stays so. Index 0 - 1 wraps
-         * beyond n and ends the walk backwards. */
+        /* The delay of a busy host is temporary, a change of the clock is permanent. Walking
+         * backwards ends when the index 0 - 1 wraps beyond n. */
         const double before = least_shift(stamps, i - 1, i - 1, -1);
         const double after = least_shift(stamps, i - 1, i, 1);
         const bool is_late = after > before && is_catching_up(stamps, i);
@@ -342,14 +343,14 @@ size_t wb_clock_split(const struct wb_clock_stamps *stamps, double jump, size_t 
     return n_segments;
 }
 
-/* Arrivals less a constant rate, s. */
+/* s, delay of arrival i relative to a constant rate. */
 static double lateness(const int64_t *host_ns, size_t i, size_t zero, double period)
 {
     return wb_seconds_from_ns(host_ns[i] - host_ns[zero]) - ((double)i - (double)zero) * period;
 }
 
-/* The least lateness of readings first, first + step, ... up to `end` (exclusive), as long as they
- * arrived within SETTLING_NS of the first of them. */
+/* s, smallest delay of readings first, first + step, ... up to `end` (exclusive) that arrived
+ * within SETTLING_NS of the first of them. */
 static double least_lateness(const int64_t *host_ns, size_t first, size_t end, int step,
                              size_t zero, double period)
 {
@@ -362,8 +363,8 @@ static double least_lateness(const int64_t *host_ns, size_t first, size_t end, i
     return least;
 }
 
-/* Period of the readings: the median of what windows of them took, which neither a few losses nor
- * a few delays move. */
+/* s, period of the readings: from the median duration of windows of readings, which is insensitive
+ * to single losses and delays. */
 static double typical_period(const int64_t *host_ns, size_t n)
 {
     enum {
@@ -382,8 +383,7 @@ static double typical_period(const int64_t *host_ns, size_t n)
     return median(periods, n_periods);
 }
 
-/* How much arrivals usually scatter: the median, over windows, of the largest lateness over the
- * least. */
+/* s, typical jitter of arrivals: the median over windows of the range of the delays. */
 static double usual_jitter(const int64_t *host_ns, size_t n, double period)
 {
     enum {
@@ -414,7 +414,7 @@ size_t wb_clock_split_readings(const int64_t *host_ns, size_t n, size_t *starts,
     size_t n_segments = 0;
     starts[n_segments++] = 0;
     for (size_t i = 1; i < n && n_segments < most; i++) {
-        /* A busy host is late now and then and catches up; lost readings are so for good. */
+        /* The delay of a busy host is temporary, that of lost readings is permanent. */
         if (wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]) < fmax(2.5 * period, 5e-3))
             continue;
         const double before =

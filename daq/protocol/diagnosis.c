@@ -7,8 +7,8 @@
 #include "daq/protocol/grbl.h"
 #include "daq/protocol/loadcell_line.h"
 
-#define TEXT_SHARE 0.85  /* of the bytes are printable, or it is no text */
-#define ENDLESS_BYTES 80 /* without a line end */
+#define TEXT_SHARE 0.85  /* least fraction of printable bytes in text */
+#define ENDLESS_BYTES 80 /* text of this length without a line end is not a line */
 
 void wb_diagnosis_add(struct wb_diagnosis *diagnosis, const void *bytes, size_t n)
 {
@@ -41,13 +41,13 @@ static bool has(const char *line, size_t n, const char *word)
     return false;
 }
 
-/* Of one line of text; OTHER where it says little. */
+/* Kind of a line of text; OTHER if it is not recognised. */
 static enum wb_diagnosis_kind judge_line(const char *line, size_t n)
 {
     static const struct wb_rig_load_cell plain = {.scale = 1.0, .sign = 1};
     struct wb_grbl_line grbl;
     struct wb_line_reading reading;
-    /* "<Idle,MPos:0.000,...": the reports of 0.9 have commas where those of 1.1 have bars. */
+    /* "<Idle,MPos:0.000,...": reports of version 0.9 have commas, those of 1.1 have bars. */
     if (begins(line, n, "Grbl 0.") || (begins(line, n, "<") && has(line, n, ",MPos:")))
         return WB_DIAGNOSIS_OLD_GRBL;
     if (has(line, n, "Marlin") || begins(line, n, "echo:") || begins(line, n, "Error:Printer"))
@@ -75,7 +75,7 @@ enum wb_diagnosis_kind wb_diagnosis_kind(const struct wb_diagnosis *diagnosis)
         if (kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL ||
             kind == WB_DIAGNOSIS_MARLIN)
             return kind;
-        /* The first line may be the rest of one. */
+        /* The first line may be incomplete. */
         if (i > begin && lines > 0) {
             readings += kind == WB_DIAGNOSIS_READINGS;
             others += kind != WB_DIAGNOSIS_READINGS;
@@ -89,9 +89,9 @@ enum wb_diagnosis_kind wb_diagnosis_kind(const struct wb_diagnosis *diagnosis)
 }
 
 static const char *const swapped =
-    "load_cell.address and stage.address seem to be swapped: exchange them";
+    "load_cell.address and stage.address are probably swapped: exchange them";
 
-/* Lines end, but not as the rig file says. */
+/* Whether the bytes contain line ends, but not those of the rig file. */
 static bool lacks_terminator(const struct wb_diagnosis *load, const struct wb_rig *rig)
 {
     const char *const told = rig->load_cell.terminator;
@@ -102,7 +102,7 @@ static bool lacks_terminator(const struct wb_diagnosis *load, const struct wb_ri
     return strcmp(told, "lf") == 0 && !memchr(load->bytes, '\n', load->n);
 }
 
-/* The second whole line, if it is a number without a unit. */
+/* Whether the second complete line is a number without a unit. */
 static bool is_bare_number(const struct wb_diagnosis *load, const struct wb_rig *rig,
                            double *number)
 {
@@ -121,21 +121,21 @@ static bool is_bare_number(const struct wb_diagnosis *load, const struct wb_rig 
     return false;
 }
 
-/* Numbers that are no forces yet. */
+/* Diagnoses numbers without a unit. */
 static void diagnose_numbers(double number, const struct wb_rig *rig, char text[WB_DIAGNOSIS_TEXT])
 {
     const char *const unit = rig->load_cell.unit;
     if (unit[0])
         snprintf(
             text, WB_DIAGNOSIS_TEXT,
-            "its numbers, such as %g, are beyond the cell as %s: if they are a converter's raw "
-            "counts, set load_cell.scale (%s a count, by a known mass) and load_cell.offset",
+            "its numbers, such as %g, exceed the cell's range in %s: if they are raw counts of a "
+            "converter, set load_cell.scale (%s per count, from a known mass) and load_cell.offset",
             number, unit, unit);
     else
         snprintf(
             text, WB_DIAGNOSIS_TEXT,
-            "its lines are numbers without a unit, such as %g: set load_cell.unit and, if they "
-            "are a converter's raw counts, load_cell.scale and offset",
+            "its lines are numbers without a unit, such as %g: set load_cell.unit and, for raw "
+            "counts of a converter, load_cell.scale and load_cell.offset",
             number);
 }
 
@@ -147,19 +147,20 @@ void wb_diagnosis_load(const struct wb_diagnosis *load, const struct wb_diagnosi
     double number;
     if (is_grbl || wb_diagnosis_kind(stage) == WB_DIAGNOSIS_READINGS)
         snprintf(text, WB_DIAGNOSIS_TEXT, "%s: %s",
-                 is_grbl ? "a stage answers there" : "a load cell answers at the stage's port",
+                 is_grbl ? "a stage replies at this port" : "a load cell sends at the stage's port",
                  swapped);
     else if (kind == WB_DIAGNOSIS_NOTHING)
-        snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "check power and cable, the baud rate in load_cell.address, and whether it sends "
-                 "only when asked (load_cell.poll_command, poll_period_ms)");
+        snprintf(
+            text, WB_DIAGNOSIS_TEXT,
+            "check power and cable, the baud rate in load_cell.address, and whether it must be "
+            "polled (load_cell.poll_command, load_cell.poll_period_ms)");
     else if (kind == WB_DIAGNOSIS_NOISE)
         snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "its bytes are no text: set baud rate and frame (such as 9600,8n1) in "
-                 "load_cell.address as in the instrument's menu");
+                 "its bytes are not text: set baud rate and frame in load_cell.address (such as "
+                 "9600,8n1) as in the instrument's menu");
     else if (kind == WB_DIAGNOSIS_ENDLESS || lacks_terminator(load, rig))
         snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "its lines do not end as load_cell.terminator says: set it to any or, where there "
+                 "its line ends are not those of load_cell.terminator: set it to any or, if there "
                  "are no line ends, to idle");
     else if (is_bare_number(load, rig, &number))
         diagnose_numbers(number, rig, text);
@@ -173,13 +174,14 @@ static void diagnose_tic(enum wb_diagnosis_kind kind, char text[WB_DIAGNOSIS_TEX
 {
     if (kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL)
         snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "it is a GRBL and no Tic: set stage.protocol: grbl, and stage.axis");
+                 "it is a GRBL, not a Tic: set stage.protocol: grbl, and stage.axis");
     else
         snprintf(text, WB_DIAGNOSIS_TEXT,
                  "%s: check power and cable (TX, RX and ground), the baud rate in stage.address "
                  "(Tic: 9600 unless changed), and in Tic Control Center that the control mode is "
                  "Serial / I2C / USB and CRC and 7-bit responses are off",
-                 kind == WB_DIAGNOSIS_NOTHING ? "nothing came" : "what came is no answer of a Tic");
+                 kind == WB_DIAGNOSIS_NOTHING ? "no data received"
+                                              : "the received bytes are not a reply of a Tic");
 }
 
 void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *rig,
@@ -193,24 +195,24 @@ void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *r
     switch (kind) {
     case WB_DIAGNOSIS_NOTHING:
         snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "nothing came: check power and cable, the port and the baud rate in stage.address "
-                 "(GRBL 1.1: 115200), and stage.protocol");
+                 "no data received: check power and cable, the port and the baud rate in "
+                 "stage.address (GRBL 1.1: 115200), and stage.protocol");
         break;
     case WB_DIAGNOSIS_NOISE:
     case WB_DIAGNOSIS_ENDLESS:
         snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "its bytes are no lines of text: set the baud rate in stage.address (GRBL 1.1: "
+                 "its bytes are not lines of text: set the baud rate in stage.address (GRBL 1.1: "
                  "115200)");
         break;
     case WB_DIAGNOSIS_OLD_GRBL:
         snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "it is a GRBL before 1.1, which has no jog: load GRBL 1.1 onto the controller "
+                 "it is a GRBL before 1.1, which cannot jog: install GRBL 1.1 on the controller "
                  "(stage.protocol %s)",
                  rig->stage.protocol);
         break;
     case WB_DIAGNOSIS_MARLIN:
         snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "it answers like Marlin, the firmware of 3D printers: stage.protocol %s needs "
+                 "it replies like Marlin, the firmware of 3D printers: stage.protocol %s needs "
                  "GRBL 1.1 on the controller",
                  rig->stage.protocol);
         break;
@@ -219,13 +221,14 @@ void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *r
         break;
     case WB_DIAGNOSIS_GRBL:
         snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "it is a GRBL 1.1 that does not answer '?': check the cable, both directions, and "
-                 "flow= in stage.address");
+                 "it is a GRBL 1.1 that does not reply to '?': check both directions of the cable, "
+                 "and flow= in stage.address");
         break;
     case WB_DIAGNOSIS_OTHER:
-        snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "what it sends is not GRBL 1.1: check that stage.address is the stage's port, and "
-                 "stage.protocol");
+        snprintf(
+            text, WB_DIAGNOSIS_TEXT,
+            "its lines are not those of GRBL 1.1: check that stage.address is the stage's port, "
+            "and stage.protocol");
         break;
     }
 }

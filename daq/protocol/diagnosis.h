@@ -1,6 +1,6 @@
-/* What an instrument that cannot be understood seems to be, from the first bytes it sent, and which
- * key of the rig file to change: a wrong baud rate, no line ends, other firmware, the ports of load
- * cell and stage swapped. Pure functions on bytes. */
+/* Diagnoses an instrument whose bytes cannot be decoded, from the first bytes it sent: a wrong baud
+ * rate, missing line ends, other firmware, swapped ports of load cell and stage; and gives the key
+ * of the rig file to change. Pure functions of bytes. */
 #ifndef WB_DAQ_PROTOCOL_DIAGNOSIS_H
 #define WB_DAQ_PROTOCOL_DIAGNOSIS_H
 
@@ -11,15 +11,15 @@
 
 #define WB_DIAGNOSIS_TEXT 320
 
-/* The beginning of a stream. All zero is empty. */
+/* The beginning of a stream. All zero: empty. */
 struct wb_diagnosis {
     size_t n;
     char bytes[512];
 };
 
 enum wb_diagnosis_kind {
-    WB_DIAGNOSIS_NOTHING,  /* not a byte came */
-    WB_DIAGNOSIS_NOISE,    /* no text: another baud rate or frame */
+    WB_DIAGNOSIS_NOTHING,  /* no byte received */
+    WB_DIAGNOSIS_NOISE,    /* not text: another baud rate or frame */
     WB_DIAGNOSIS_ENDLESS,  /* text without line ends */
     WB_DIAGNOSIS_GRBL,     /* GRBL 1.1 */
     WB_DIAGNOSIS_OLD_GRBL, /* GRBL before 1.1, which cannot jog */
@@ -30,11 +30,11 @@ enum wb_diagnosis_kind {
 
 void wb_diagnosis_add(struct wb_diagnosis *diagnosis, const void *bytes, size_t n);
 
-/* What the bytes look like. */
+/* Classifies the bytes. */
 enum wb_diagnosis_kind wb_diagnosis_kind(const struct wb_diagnosis *diagnosis);
 
-/* The likely cause and the key to change, "its bytes are no text: ...", for an instrument that gave
- * no reading, or no status. */
+/* Write the likely cause and the key to change, such as "its bytes are not text: ...", for a load
+ * cell without readings and a stage without status. */
 void wb_diagnosis_load(const struct wb_diagnosis *load, const struct wb_diagnosis *stage,
                        const struct wb_rig *rig, char text[WB_DIAGNOSIS_TEXT]);
 void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *rig,

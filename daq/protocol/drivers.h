@@ -1,5 +1,5 @@
-/* The protocols that the program knows. A new one is a file with its `struct wb_driver`, named as
- * the file, and a line in this list. */
+/* List of the supported protocols. To add one, write a file with a `struct wb_driver` named like
+ * the file, and add a line to this list. */
 #ifndef WB_DAQ_PROTOCOL_DRIVERS_H
 #define WB_DAQ_PROTOCOL_DRIVERS_H
 
@@ -16,7 +16,7 @@
 WB_DRIVERS(WB_DRIVERS_DECLARE)
 #undef WB_DRIVERS_DECLARE
 
-/* By role and protocol name; NULL when there is none. */
+/* Finds a driver by role and protocol name; NULL: unknown. */
 const struct wb_driver *wb_drivers_find(enum wb_role role, const char *protocol);
 
 #endif

@@ -1,10 +1,10 @@
-/* What only tests ask of daq/protocol/drivers.h. */
+/* Declarations of daq/protocol/drivers.c that only tests use. */
 #ifndef WB_DAQ_PROTOCOL_DRIVERS_PRIVATE_H
 #define WB_DAQ_PROTOCOL_DRIVERS_PRIVATE_H
 
 #include "daq/protocol/drivers.h"
 
-/* All of them; NULL is the end. */
+/* All drivers, terminated by NULL. */
 extern const struct wb_driver *const wb_drivers[];
 
 #endif

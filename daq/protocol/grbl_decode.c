@@ -11,7 +11,7 @@
 #define MM_PER_M 1e3
 #define S_PER_MIN 60.0
 
-/* Digits only, 1 to 4 of them. */
+/* Parses 1 to 4 digits. */
 static bool parse_number(const char *text, int *number)
 {
     int value = 0, n = 0;
@@ -23,7 +23,7 @@ static bool parse_number(const char *text, int *number)
     return true;
 }
 
-/* Up to three numbers separated by commas; returns how many, 0 when any is not one. */
+/* Parses up to three numbers separated by commas; returns their number, 0 if one is invalid. */
 static int parse_triple(const char *text, double values[3])
 {
     char copy[96];
@@ -59,7 +59,7 @@ static enum wb_stage_state state_of(const char *name)
     return WB_STAGE_UNKNOWN;
 }
 
-/* One field of a report, "MPos:0.000,0.000,0.000". Unknown fields are left alone. */
+/* Parses a field of a report, "MPos:0.000,0.000,0.000". Unknown fields are ignored. */
 static bool parse_field(const char *field, struct wb_grbl_report *report)
 {
     static const char *const names[] = {"MPos:", "WPos:", "WCO:"};
@@ -81,7 +81,7 @@ static bool parse_field(const char *field, struct wb_grbl_report *report)
     return true;
 }
 
-/* The inside of <...>. */
+/* Parses the contents of <...>. */
 static bool parse_report(char *text, struct wb_grbl_report *report)
 {
     char *rest = text;
@@ -112,7 +112,8 @@ static void parse_setting(const char *text, struct wb_grbl_line *line)
         line->value = (double)NAN;
 }
 
-/* `word` in whatever case: firmware variants differ in it. */
+/* The text after `word`, case-insensitive because firmware variants differ; NULL if it is missing.
+ */
 static const char *after(const char *text, const char *word)
 {
     const size_t n = strlen(word);
@@ -182,7 +183,7 @@ bool wb_grbl_position(const struct wb_grbl_report *report, struct wb_grbl_offset
     return true;
 }
 
-/* By number; what is not listed has no text. */
+/* Text of a number, or a general one for numbers that are not listed. */
 static const char *text_of(const char *const *texts, size_t n, int number)
 {
     const char *const text = number >= 0 && (size_t)number < n ? texts[number] : NULL;
@@ -194,7 +195,7 @@ const char *wb_grbl_error_text(int number)
     static const char *const texts[] = {
         [1] = "a word has no letter",
         [2] = "a number is malformed",
-        [3] = "the $ command is not known",
+        [3] = "unknown $ command",
         [5] = "homing is not enabled ($22)",
         [7] = "the stored settings could not be read",
         [8] = "only possible when idle",
@@ -202,7 +203,7 @@ const char *wb_grbl_error_text(int number)
         [10] = "soft limits need homing",
         [11] = "the line is too long",
         [13] = "the safety door is open",
-        [15] = "the jog goes beyond the machine's travel",
+        [15] = "the jog exceeds the machine's travel",
         [16] = "the jog command is malformed",
         [20] = "the command is not supported",
         [22] = "no feed rate was given",
@@ -215,7 +216,7 @@ const char *wb_grbl_alarm_text(int number)
     static const char *const texts[] = {
         [0] = "it was not homed since it was switched on or reset",
         [1] = "hard limit: the position is lost, home the stage",
-        [2] = "soft limit: the move goes beyond the machine's travel",
+        [2] = "soft limit: the move exceeds the machine's travel",
         [3] = "reset while moving: the position is lost, home the stage",
         [4] = "probe failed",
         [5] = "probe failed",
@@ -233,9 +234,9 @@ void wb_grbl_alarm_reason(const struct wb_stage_report *report, char *text, size
         snprintf(text, size, "ALARM:%d, %s", report->alarm, wb_grbl_alarm_text(report->alarm));
     else if (report->was_reset)
         snprintf(text, size,
-                 "its controller started anew when the port was opened and has forgotten its "
-                 "position; an Arduino does so at the first time after plugging in, and each time "
-                 "where stage.address has dtr=on or off");
+                 "its controller restarted when the port was opened and lost its position; an "
+                 "Arduino restarts at the first opening after plugging in, and at each opening if "
+                 "stage.address has dtr=on or dtr=off");
     else
         snprintf(text, size, "locked: %s", wb_grbl_alarm_text(0));
 }
@@ -245,7 +246,7 @@ bool wb_grbl_alarm_loses_position(int number)
     return number == 1 || number == 3 || (number >= 6 && number <= 9);
 }
 
-/* A length in thousandths as "-2.000", whatever the locale. */
+/* Formats a number given in thousandths, independent of the locale: "-2.000". */
 static int format_thousandths(char *text, size_t size, long long value)
 {
     const long long magnitude = value < 0 ? -value : value;
@@ -274,7 +275,7 @@ size_t wb_grbl_format_report(char *text, size_t size, const struct wb_grbl_repor
     char line[256];
     size_t n = (size_t)snprintf(line, sizeof line, "<%s", report->name);
     for (int i = 0; i < 3; i++) {
-        /* GRBL's order: position, feed, pins, work offset. */
+        /* Order of the fields in GRBL: position, feed, pins, work offset. */
         if (i == 2) {
             n += (size_t)snprintf(line + n, sizeof line - n, "|FS:%lld,0",
                                   llround(report->feed_mm_min));

@@ -7,10 +7,10 @@
 #include "base/units.h"
 
 #define UM 1e-6
-#define LEAST_TIME 0.02 /* s of the jog's speed: of a block */
-#define BLOCKS 12       /* at most in the firmware's planner, which has 15 */
-#define LEAST_AHEAD (4.0 * UM)
-#define BLIND_NS (400 * WB_NS_PER_MS) /* predicted for so long without a report */
+#define LEAST_TIME 0.02               /* s at the jog's speed: shortest block */
+#define BLOCKS 12                     /* used of the firmware's planner, which has 15 */
+#define LEAST_AHEAD (4.0 * UM)        /* m, lower bound of `ahead` */
+#define BLIND_NS (400 * WB_NS_PER_MS) /* longest prediction without a report */
 
 double wb_jog_feed_ahead(const struct wb_motion_limits *top)
 {
@@ -31,7 +31,7 @@ void wb_jog_feed_begin(struct wb_jog_feed *feed, const struct wb_jog *jog)
     feed->resumed_um = -1;
 }
 
-/* The prediction from here on: towards the end of what was accepted. */
+/* Predicts the motion from here to the end of the accepted blocks. */
 static void predict(struct wb_jog_feed *feed, int64_t t_ns, double done, double speed)
 {
     const double end = (double)feed->accepted_um * UM;
@@ -69,7 +69,7 @@ void wb_jog_feed_report(struct wb_jog_feed *feed, int64_t t_ns, double position,
     if (!feed->active || feed->idle_reports < 2)
         return;
     if (is_short && done_um == feed->resumed_um)
-        feed->active = false; /* nothing came of it the last time */
+        feed->active = false; /* sending the missing blocks again had no effect: give up */
     if (is_short) {
         feed->sent_um = done_um;
         feed->resumed_um = done_um;

@@ -1,4 +1,4 @@
-/* Bytes of a text protocol, gathered until they are a line. */
+/* Collects the bytes of a text protocol into lines. */
 #ifndef WB_DAQ_PROTOCOL_LINE_BUFFER_H
 #define WB_DAQ_PROTOCOL_LINE_BUFFER_H
 
@@ -6,16 +6,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bytes on their way to be a line. All zero is empty. */
+/* An incomplete line. All zero: empty. */
 struct wb_line_buffer {
     char bytes[256];
     size_t n;
-    bool overlong; /* bytes were dropped: the line is no line */
+    bool overlong; /* bytes were dropped: the line is invalid */
 };
 
-/* Appends a byte; true when it ends the line, which then stands in the buffer until it is cleared.
- * `terminator` is the rig file's: "cr", "lf", "crlf" (LF ends, the CR before it is a blank), "any"
- * or "" (CR or LF), "idle" (no byte ends a line, silence does). */
+/* Appends a byte; true if it completes the line, which stays in the buffer until cleared.
+ * `terminator` is that of the rig file: "cr", "lf", "crlf" (LF ends the line, the CR before it is a
+ * blank), "any" or "" (CR or LF), "idle" (a pause ends the line, no byte does). */
 bool wb_line_buffer_push(struct wb_line_buffer *buffer, uint8_t byte, const char *terminator);
 void wb_line_buffer_clear(struct wb_line_buffer *buffer);
 

@@ -52,20 +52,20 @@ char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_
     return text;
 }
 
-static void refuse(struct wb_loadcell *loadcell, int64_t t_ns, const char *reason,
-                   const struct wb_sink *sink)
+static void reject_line(struct wb_loadcell *loadcell, int64_t t_ns, const char *reason,
+                        const struct wb_sink *sink)
 {
     char text[64];
     loadcell->n_refused++;
     if (wb_driver_is_report_due(loadcell->n_refused))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                         "a line of the load cell is not understood: '%s': %s; %" PRIu64 " so far",
+                         "a line of the load cell cannot be decoded: '%s': %s; %" PRIu64 " so far",
                          wb_loadcell_printable(&loadcell->line, text, sizeof text), reason,
                          loadcell->n_refused);
 }
 
-/* Keeps the unit's history; true when the line's unit is not the first one seen. A line without a
- * unit says nothing (some scales leave it out while unstable). */
+/* Tracks the unit; true if the line's unit differs from the first one. A line without a unit is
+ * ignored (some scales omit it while unstable). */
 static bool watch_unit(struct wb_loadcell *loadcell, int64_t t_ns, const char *unit,
                        const struct wb_sink *sink)
 {
@@ -82,7 +82,7 @@ static bool watch_unit(struct wb_loadcell *loadcell, int64_t t_ns, const char *u
     return strcmp(loadcell->first_unit, unit) != 0;
 }
 
-/* A contradiction is remarked once: it stays as long as nobody mends it. */
+/* Whether the line's unit contradicts the rig file; this is reported once. */
 static bool contradicts(struct wb_loadcell *loadcell, int64_t t_ns,
                         const struct wb_line_reading *reading, const struct wb_sink *sink)
 {
@@ -91,8 +91,8 @@ static bool contradicts(struct wb_loadcell *loadcell, int64_t t_ns,
         return false;
     if (!loadcell->contradicted)
         wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "unit",
-                         "the load cell prints %s, the rig file says load_cell.unit: %s; its own "
-                         "unit is used: set one of the two right",
+                         "the load cell prints %s, but load_cell.unit of the rig file is %s; the "
+                         "printed unit is used: correct one of them",
                          reading->unit, of_rig);
     loadcell->contradicted = true;
     return true;
@@ -133,23 +133,23 @@ void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
     if (reading->kind == WB_LINE_EMPTY)
         return;
     if (reading->kind == WB_LINE_REFUSED) {
-        refuse(loadcell, t_ns, reading->reason, sink);
+        reject_line(loadcell, t_ns, reading->reason, sink);
         return;
     }
     if (reading->kind == WB_LINE_OVERLOAD) {
         deliver_overload(loadcell, &sample, sink);
         return;
     }
-    /* A line without a unit goes by the last one: the scale's unit is not known to have changed. */
+    /* A line without a unit is read in the last printed unit. */
     struct wb_line_reading complete = *reading;
     if (complete.unit[0] == '\0')
         strcpy(complete.unit, loadcell->last_unit);
     double force;
     if (!wb_line_force(&complete, cell, loadcell->rig.gravity, &force)) {
-        refuse(loadcell, t_ns,
-               complete.unit[0] ? "its unit is not known: set load_cell.unit in the rig file"
-                                : "it has no unit: set load_cell.unit in the rig file",
-               sink);
+        reject_line(loadcell, t_ns,
+                    complete.unit[0] ? "unknown unit: set load_cell.unit in the rig file"
+                                     : "no unit: set load_cell.unit in the rig file",
+                    sink);
         return;
     }
     sample.unit_changed = watch_unit(loadcell, t_ns, reading->unit, sink);

@@ -1,8 +1,8 @@
-/* A load cell that prints one reading a line, by itself or when polled.
+/* Driver of a load cell that prints one reading per line, by itself or when polled.
  *
- * What is decoded depends on the received bytes and their times only. Where lines end by silence,
- * a line is complete when the next byte comes after the gap; its sample then bears the time of its
- * own last byte.
+ * The result depends only on the received bytes and their times. If lines end by a pause, a line is
+ * complete when the next byte arrives after the pause; its sample has the time of its own last
+ * byte.
  */
 #include "daq/protocol/driver.h"
 
@@ -16,8 +16,8 @@
 struct generic_state {
     struct wb_loadcell loadcell;             /* comes first */
     int64_t first_ns, last_ns;               /* arrival of the first and the last bytes */
-    bool anything;                           /* a byte has come */
-    bool settled;                            /* and the settling time is over */
+    bool anything;                           /* a byte was received */
+    bool settled;                            /* the settling time is over */
     const struct wb_loadcell_preset *preset; /* of the rig file; NULL: none */
     bool after_noise;                        /* the last line was noise */
 };
@@ -28,11 +28,11 @@ static enum wb_status init(void *opaque, const struct wb_rig *rig)
     const char *const preset = rig->load_cell.preset;
     state->preset = wb_loadcell_preset_find(preset);
     if (preset[0] && !state->preset)
-        return wb_fail(WB_ERR_ARGUMENT, "load_cell.preset: there is no preset '%s'", preset);
+        return wb_fail(WB_ERR_ARGUMENT, "load_cell.preset: unknown preset '%s'", preset);
     return wb_loadcell_init(state, rig);
 }
 
-/* Bytes that no indicator prints. */
+/* Whether the line has bytes that indicators do not print. */
 static bool has_noise(const struct wb_line_buffer *line)
 {
     for (size_t i = 0; i < line->n; i++) {
@@ -51,9 +51,10 @@ static void end_line(struct generic_state *state, int64_t t_ns, const struct wb_
     char text[64];
     const bool noisy = has_noise(line);
     if (state->after_noise) {
-        /* Noise that ended a line amid a reading leaves the rest of it: `.345 g` of `12.345 g`. */
+        /* After noise that ended a line within a reading, the next line may be its rest: `.345 g`
+         * of `12.345 g`. */
     } else if (!loadcell->whole) {
-        /* Reading may have begun amid a line: `00.00 g` would look like a value. */
+        /* The first line may be the rest of a longer one; `00.00 g` would look like a value. */
         if (line->n > 0)
             wb_driver_remark(sink, WB_LOG_INFO, t_ns, "partial",
                              "the first line may be incomplete and is dropped: '%s'",
@@ -74,7 +75,7 @@ static void end_line(struct generic_state *state, int64_t t_ns, const struct wb_
     wb_line_buffer_clear(line);
 }
 
-/* False as long as the instrument settles; times count from its first byte. */
+/* False during the settling time of the instrument, which begins with its first byte. */
 static bool has_settled(struct generic_state *state, int64_t t_ns)
 {
     if (!state->anything)
@@ -125,7 +126,7 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     if (cell->poll_command[0])
         wb_loadcell_poll(&state->loadcell, now_ns, cell->poll_command, outbox);
     else if (state->preset && cell->start_command[0])
-        /* Only of a known instrument is it known that asking again does no harm. */
+        /* Repeating the request is known to be harmless only for instruments with a preset. */
         wb_loadcell_keep_streaming(&state->loadcell, now_ns, cell->start_command, outbox);
 }
 

@@ -19,7 +19,7 @@ struct unit {
     bool mass;
 };
 
-/* Exact spellings: a capital M or a small n would be another prefix or unit. */
+/* Case-sensitive: a capital M or a lower-case n would be another prefix or unit. */
 static const struct unit units[] = {
     {"g", WB_G, true},
     {"G", WB_G, true},
@@ -77,7 +77,7 @@ bool wb_line_unit_contradicts(const struct wb_line_reading *reading,
                               const struct wb_rig_load_cell *cell)
 {
     double of_line, of_rig;
-    /* Any gravity does: gf is g wherever the bench stands, and N is none of them. */
+    /* The comparison does not depend on the value of gravity. */
     return wb_line_unit_factor(reading->unit, WB_STANDARD_GRAVITY, &of_line) &&
            wb_line_unit_factor(cell->unit, WB_STANDARD_GRAVITY, &of_rig) &&
            !(fabs(of_line - of_rig) <= 1e-9 * of_rig);
@@ -90,8 +90,8 @@ static bool is_separator(char c)
     return isspace((unsigned char)c) || c == ',' || c == ';' || c == ':' || c == '=';
 }
 
-/* Values that stand for a saturated converter or a full display: infinity, the rails of 24 bits,
- * nothing but nines. */
+/* Values of a saturated converter or a full display: infinity, the limits of 24 bits, only nines.
+ */
 static bool is_rail(const char *word)
 {
     const char *digits = word + (*word == '+' || *word == '-');
@@ -104,7 +104,7 @@ static bool is_rail(const char *word)
     return nines >= 7 && (digits[nines] == '\0' || tolower((unsigned char)digits[nines]) == 'e');
 }
 
-/* A token of the rig file matches a word as text, or as the same number. */
+/* Whether a word equals one of the rig file's tokens, as text or as a number. */
 static bool is_token(const char *word, const char tokens[WB_RIG_TOKENS][16])
 {
     double value, token_value;
@@ -120,8 +120,8 @@ static bool is_token(const char *word, const char tokens[WB_RIG_TOKENS][16])
     return false;
 }
 
-/* Goes through the words of the line, looking for overload and for marks of instability. Rails
- * count in the column that holds the value: a time stamp may well be 9999999. */
+/* Searches the words of the line for overload and for marks of instability. Saturated values are
+ * searched for only in the value's column, because a time stamp may be 9999999. */
 static void look_for_tokens(const char *text, const struct wb_rig_load_cell *cell,
                             struct wb_line_reading *reading)
 {
@@ -159,14 +159,14 @@ static void skip_blanks(struct cursor *cursor)
         cursor->at++;
 }
 
-static void refuse(struct cursor *cursor, const char *reason)
+static void reject(struct cursor *cursor, const char *reason)
 {
     cursor->reading->kind = WB_LINE_REFUSED;
     cursor->reading->reason = reason;
 }
 
-/* One of these signs that stands alone: stable, dynamic, or over and under range. False when there
- * is none. */
+/* Reads one of these signs if it stands alone: stable, dynamic, over or under range. False: none.
+ */
 static bool take_sign(struct cursor *cursor, const char *signs)
 {
     const char sign = *cursor->at;
@@ -181,8 +181,9 @@ static bool take_sign(struct cursor *cursor, const char *signs)
     return true;
 }
 
-/* One status word before the number: `ST`, `US`, `GS`, ..., delimited from what follows. Returns
- * false when there is none. */
+/* Reads a status word before the number: `ST`, `US`, `GS`, ..., followed by a delimiter. False:
+ * none.
+ */
 static bool take_status(struct cursor *cursor)
 {
     static const char *const words[] = {"SUI", "SD", "SI", "SU", "ST", "US",
@@ -196,7 +197,7 @@ static bool take_status(struct cursor *cursor)
             continue;
         if (strcmp(words[i], "US") == 0 || strcmp(words[i], "SD") == 0)
             cursor->reading->unstable = true;
-        /* Answers to S, SI, SU and SUI: MT-SICS, Radwag. */
+        /* Replies to S, SI, SU and SUI: MT-SICS, Radwag. */
         const bool answers = strcmp(words[i], "S") == 0 || strcmp(words[i], "SI") == 0 ||
                              strcmp(words[i], "SU") == 0 || strcmp(words[i], "SUI") == 0;
         cursor->at += n;
@@ -209,8 +210,8 @@ static bool take_status(struct cursor *cursor)
     return false;
 }
 
-/* A label before the number, letters, blanks and underscores up to a comma, colon or equals sign.
- */
+/* Reads a label before the number: letters, blanks and underscores up to a comma, colon or equals
+ * sign. */
 static bool take_label(struct cursor *cursor)
 {
     size_t n = 0;
@@ -224,7 +225,7 @@ static bool take_label(struct cursor *cursor)
     return true;
 }
 
-/* A comma between the number and its unit, `0.000,kg`: it is no decimal sign. */
+/* Whether a comma separates the number from its unit, as in `0.000,kg`. */
 static bool is_before_unit(const char *comma)
 {
     if (*comma != ',')
@@ -233,7 +234,7 @@ static bool is_before_unit(const char *comma)
     return isalpha((unsigned char)*comma);
 }
 
-/* The number, its sign possibly apart from it, into a text that wb_number_parse() reads. */
+/* Reads the number, with its sign possibly separated by blanks. */
 static bool take_number(struct cursor *cursor)
 {
     char text[MAX_LINE];
@@ -252,11 +253,11 @@ static bool take_number(struct cursor *cursor)
         } else if (!point && (*c == '.' || *c == ',') && !is_before_unit(c)) {
             const bool wanted = cursor->cell->decimal_comma ? *c == ',' : *c == '.';
             if (!wanted) {
-                refuse(cursor,
+                reject(cursor,
                        cursor->cell->decimal_comma
                            ? "a point in a number, but the rig file sets load_cell.decimal_comma"
                            : "a comma in or after a number: set load_cell.decimal_comma, or "
-                             "delimiter and column");
+                             "load_cell.delimiter and load_cell.column");
                 return false;
             }
             point = true;
@@ -266,10 +267,10 @@ static bool take_number(struct cursor *cursor)
         }
     }
     if (digits == 0) {
-        refuse(cursor, "no number where one was expected");
+        reject(cursor, "expected a number");
         return false;
     }
-    /* An exponent only if digits follow: the E of `12.3 E` is a mark. */
+    /* An exponent needs digits: the E of `12.3 E` is a mark. */
     if (*c == 'e' || *c == 'E') {
         const size_t sign = c[1] == '+' || c[1] == '-';
         if (isdigit((unsigned char)c[1 + sign])) {
@@ -282,7 +283,7 @@ static bool take_number(struct cursor *cursor)
     text[n] = '\0';
     cursor->at = c;
     if (!wb_number_parse(text, &cursor->reading->value)) {
-        refuse(cursor, "the number is malformed or too large");
+        reject(cursor, "the number is malformed or too large");
         return false;
     }
     return true;
@@ -294,8 +295,8 @@ static bool is_known_unit(const char *word)
     return wb_line_unit_factor(word, WB_STANDARD_GRAVITY, &newtons);
 }
 
-/* A mark after the number or unit: `?`, or check-weighing (low, good, high) and stability letters.
- * Returns false when it is none. */
+/* Interprets a mark after the number or unit: `?`, check-weighing (low, good, high) or stability
+ * letters. False if it is not a mark. */
 static bool take_mark(struct wb_line_reading *reading, const char *mark)
 {
     const char *rest = mark;
@@ -316,7 +317,7 @@ static bool take_mark(struct wb_line_reading *reading, const char *mark)
     return true;
 }
 
-/* A word of letters after the number: a unit, a unit with marks grown on to it, or a mark. */
+/* Interprets a word after the number: a unit, a unit with marks attached, or a mark. */
 static bool take_word(struct cursor *cursor, const char *word, size_t n)
 {
     struct wb_line_reading *const reading = cursor->reading;
@@ -324,7 +325,7 @@ static bool take_word(struct cursor *cursor, const char *word, size_t n)
     if (n >= sizeof head)
         return false;
     if (!reading->unit[0]) {
-        /* The longest head that is a unit, the tail being a mark: `GLS` is G and LS. */
+        /* Find the longest beginning that is a unit and leaves a mark: `GLS` is G and LS. */
         for (size_t k = n; k > 0; k--) {
             memcpy(head, word, k);
             head[k] = '\0';
@@ -343,12 +344,12 @@ static bool take_word(struct cursor *cursor, const char *word, size_t n)
         return true;
     if (reading->unit[0])
         return false;
-    /* Not a unit we know: kept, for a rig file that gives its own. */
+    /* An unknown unit is stored for the message, and for rig files that set the unit. */
     strcpy(reading->unit, head);
     return true;
 }
 
-/* Unit and marks, up to the end of the line. */
+/* Reads unit and marks up to the end of the line. */
 static void take_rest(struct cursor *cursor)
 {
     skip_blanks(cursor);
@@ -364,18 +365,19 @@ static void take_rest(struct cursor *cursor)
         if (n == 0 && *cursor->at == '?')
             n = 1;
         if (n == 0 || words == 3) {
-            refuse(cursor, "more than one value on the line: set load_cell.delimiter and column");
+            reject(cursor, "more than one value in the line: set load_cell.delimiter and "
+                           "load_cell.column");
             return;
         }
         if (!take_word(cursor, cursor->at, n)) {
-            refuse(cursor, "something after the number is neither a unit nor a mark");
+            reject(cursor, "expected a unit or a mark after the number");
             return;
         }
         cursor->at += n;
     }
 }
 
-/* Cuts the configured column out of the line, in place. */
+/* Selects the configured column of the line, in place. */
 static bool select_column(char **text, const struct wb_rig_load_cell *cell)
 {
     char *field = *text;
@@ -392,8 +394,8 @@ static bool select_column(char **text, const struct wb_rig_load_cell *cell)
     return true;
 }
 
-/* Copies the line as clean text: blanks trimmed, a micro sign as `u`. False for bytes that no
- * instrument of this kind prints, or too many. */
+/* Copies the line as clean text: blanks trimmed, the micro sign as `u`. False if it contains bytes
+ * that are not text, or is too long. */
 static bool clean(const char *bytes, size_t length, char text[MAX_LINE])
 {
     size_t n = 0;
@@ -408,7 +410,7 @@ static bool clean(const char *bytes, size_t length, char text[MAX_LINE])
         if (n + 1 >= MAX_LINE)
             return false;
         if (c == 0xC2 && i + 1 < length && (unsigned char)bytes[i + 1] == 0xB5)
-            continue; /* the micro sign in UTF-8 */
+            continue; /* first byte of the micro sign in UTF-8 */
         if (c == 0xB5)
             text[n++] = 'u';
         else if (c == '\t' || (c >= 0x20 && c < 0x7f))
@@ -429,7 +431,7 @@ void wb_line_decode(const char *bytes, size_t length, const struct wb_rig_load_c
     memset(reading, 0, sizeof *reading);
     reading->value = (double)NAN;
     if (!clean(bytes, length, line)) {
-        refuse(&cursor, "bytes that are not text, or too many: check baud rate and parity in "
+        reject(&cursor, "the bytes are not text, or too many: check baud rate and parity in "
                         "load_cell.address");
         return;
     }
@@ -440,12 +442,12 @@ void wb_line_decode(const char *bytes, size_t length, const struct wb_rig_load_c
     if (reading->kind == WB_LINE_OVERLOAD)
         return;
     if (cell->delimiter && !select_column(&text, cell)) {
-        refuse(&cursor, "the line has fewer columns than load_cell.column");
+        reject(&cursor, "the line has fewer columns than load_cell.column");
         return;
     }
     cursor.at = text;
     skip_blanks(&cursor);
-    /* What Radwag prints by itself begins with the mark of stability. */
+    /* Lines that Radwag balances print by themselves begin with the mark of stability. */
     take_sign(&cursor, "?^v");
     while (take_status(&cursor) || take_label(&cursor))
         ;

@@ -1,10 +1,10 @@
-/* One line of a load cell or scale: what it says, as a pure function on text.
+/* Decodes a line of a load cell or scale; pure functions of text.
  *
- * The generic line protocol takes what most indicators, scales and hobby amplifiers print: words
- * before the number (`ST,GS,`, `S S`, `Reading:`), the number with its sign possibly apart from it,
- * a unit, and a mark of stability after it. Overload, by word or by value, is looked for first:
- * `OL,+9999999E+19` is no number. A comma in a number is refused unless the rig file says that this
- * instrument writes decimal commas.
+ * The generic line protocol accepts the lines of most indicators, scales and hobby amplifiers:
+ * words before the number (`ST,GS,`, `S S`, `Reading:`), the number with its sign possibly
+ * separated, a unit, and a mark of stability. Overload, as a word or a value, is checked first:
+ * `OL,+9999999E+19` is not a reading. A comma in a number is rejected unless the rig file sets
+ * decimal_comma.
  */
 #ifndef WB_DAQ_PROTOCOL_LOADCELL_LINE_H
 #define WB_DAQ_PROTOCOL_LOADCELL_LINE_H
@@ -16,36 +16,35 @@
 #include "daq/protocol/rig.h"
 
 enum wb_line_kind {
-    WB_LINE_EMPTY,    /* nothing but blanks */
+    WB_LINE_EMPTY,    /* only blanks */
     WB_LINE_VALUE,    /* a reading */
     WB_LINE_OVERLOAD, /* over or under range */
-    WB_LINE_REFUSED   /* no reading: an error code, a greeting, rubbish; `reason` says what */
+    WB_LINE_REFUSED   /* not a reading (an error code, a banner, invalid bytes); see `reason` */
 };
 
 struct wb_line_reading {
     enum wb_line_kind kind;
     double value;       /* as printed, in `unit` */
-    char unit[16];      /* as printed; "" when the line has none */
-    bool unstable;      /* the line calls it unstable, or dynamic */
-    const char *reason; /* static text, when refused */
+    char unit[16];      /* as printed; "": the line has none */
+    bool unstable;      /* the line marks it as unstable or dynamic */
+    const char *reason; /* static text, for WB_LINE_REFUSED */
 };
 
-/* Reads one line of `length` bytes without its terminator. Uses of `cell`: delimiter, column,
- * decimal_comma, unstable_tokens, overload_tokens. */
+/* Decodes a line of `length` bytes without its terminator. Uses delimiter, column, decimal_comma,
+ * unstable_tokens and overload_tokens of `cell`. */
 void wb_line_decode(const char *bytes, size_t length, const struct wb_rig_load_cell *cell,
                     struct wb_line_reading *reading);
 
-/* Newtons per unit: of force units (N, mN, kN, uN, lbF, ozF, gf, kgf) themselves, of mass units (g,
- * kg, mg, t, lb, oz, ct) under `gravity` (m/s2). False when the unit is not known. */
+/* Newtons per unit of force (N, mN, kN, uN, lbF, ozF, gf, kgf), or per unit of mass (g, kg, mg, t,
+ * lb, oz, ct) with `gravity` (m/s2). False: unknown unit. */
 bool wb_line_unit_factor(const char *unit, double gravity, double *newtons);
 
-/* Force in N: sign x (scale x value + offset) x unit, with the unit on the line where it is a known
- * one, else the rig file's. What the instrument prints beside its number is believed: a rig file
- * may be of another day. False when there is no unit, or an unknown one. */
+/* Force in N: sign x (scale x value + offset) x unit. The unit of the line has priority over that
+ * of the rig file, which may be outdated. False if there is no unit, or an unknown one. */
 bool wb_line_force(const struct wb_line_reading *reading, const struct wb_rig_load_cell *cell,
                    double gravity, double *force);
 
-/* True when the line and the rig file each name a known unit, and not the same one. */
+/* True if the line and the rig file have different known units. */
 bool wb_line_unit_contradicts(const struct wb_line_reading *reading,
                               const struct wb_rig_load_cell *cell);
 

@@ -1,5 +1,5 @@
-/* A balance that speaks MT-SICS: asked once, it streams (SIR), or it is polled (SI). `S` is never
- * sent: it waits until the load is stable, which in bending is never. */
+/* Driver of a balance with MT-SICS: it streams on request (SIR) or is polled (SI). The command `S`
+ * is not used, because it waits for a stable load, which never occurs during bending. */
 #include "daq/protocol/driver.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "base/number.h"
 #include "daq/protocol/loadcell.h"
 
-/* Splits a line at blanks into at most four words; returns how many there are. */
+/* Splits a line at blanks into at most four words; returns their number. */
 static int split(char *text, char *words[4])
 {
     int n = 0;
@@ -21,12 +21,12 @@ static int split(char *text, char *words[4])
     return n;
 }
 
-/* `S S 100.00 g`, `S D 100.00 g`, `S +`, `S -`, `S I`. */
+/* Decodes `S S 100.00 g`, `S D 100.00 g`, `S +`, `S -` or `S I`. */
 static void decode_weight(char *const words[4], int n, struct wb_line_reading *reading)
 {
     const char status = n >= 2 && words[1][1] == '\0' ? words[1][0] : '\0';
     reading->kind = WB_LINE_REFUSED;
-    reading->reason = "not a weight as MT-SICS writes it";
+    reading->reason = "not a weight in the format of MT-SICS";
     if (n == 2 && (status == '+' || status == '-')) {
         reading->kind = WB_LINE_OVERLOAD;
     } else if (n == 2 && status == 'I') {
@@ -42,7 +42,7 @@ static void decode_weight(char *const words[4], int n, struct wb_line_reading *r
     }
 }
 
-/* `I4 A "B123456789"` */
+/* Checks the serial number in the reply `I4 A "B123456789"`. */
 static void check_serial(const struct wb_loadcell *loadcell, int64_t t_ns, const char *serial,
                          const struct wb_sink *sink)
 {
@@ -55,12 +55,13 @@ static void check_serial(const struct wb_loadcell *loadcell, int64_t t_ns, const
     memcpy(number, serial + quoted, length);
     number[length] = '\0';
     wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected",
-                     "the balance with serial number %s answers", number);
+                     "the balance with serial number %s is connected", number);
     if (expected[0] && strcmp(expected, number) != 0)
         wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "serial",
-            "the balance has serial number %s, the rig file names %s: is it the right one?", number,
-            expected);
+            "the balance has serial number %s, but load_cell.serial_number is %s: check that it is "
+            "the right balance",
+            number, expected);
 }
 
 static void decode_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct wb_sink *sink)
@@ -69,32 +70,31 @@ static void decode_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct
     char text[sizeof line->bytes + 1];
     char *words[4] = {NULL, NULL, NULL, NULL};
     struct wb_line_reading reading = {.kind = WB_LINE_REFUSED, .value = (double)NAN};
-    reading.reason = "it is no answer of MT-SICS: check load_cell.protocol";
+    reading.reason = "not a reply of MT-SICS: check load_cell.protocol";
     wb_loadcell_printable(line, text, sizeof text);
-    /* Printable copies show a CR as '?'; here it is a blank like any other. */
+    /* Replace CR by a blank, before a printable copy would show it as '?'. */
     for (size_t i = 0; i < line->n; i++)
         if (line->bytes[i] == '\r')
             text[i] = ' ';
     const int n = split(text, words);
     if (line->overlong)
-        reading.reason = "it is far too long: check baud rate and parity in load_cell.address";
+        reading.reason = "the line is too long: check baud rate and parity in load_cell.address";
     else if (n == 0)
         return;
     else if (strcmp(words[0], "S") == 0)
         decode_weight(words, n, &reading);
     else if (strcmp(words[0], "ES") == 0)
-        reading.reason = "the balance did not understand a command (syntax)";
+        reading.reason = "the balance rejected a command (syntax)";
     else if (strcmp(words[0], "ET") == 0)
         reading.reason = "the balance received a damaged command (transmission)";
     else if (strcmp(words[0], "EL") == 0)
-        reading.reason = "the balance cannot do what a command asked (logic)";
+        reading.reason = "the balance cannot execute a command (logic)";
     else if (strcmp(words[0], "I4") == 0) {
         if (n >= 3)
             check_serial(loadcell, t_ns, words[2], sink);
         return;
     }
-    /* Only a line that cannot be read may have been cut off by opening the port amid it: a weight
-     * begins with its status. */
+    /* A first line that can be decoded is complete, because a weight begins with its status. */
     if (!loadcell->whole && reading.kind == WB_LINE_REFUSED) {
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "partial",
                          "the first line may be incomplete and is dropped");
@@ -141,7 +141,8 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 
 static void stop(void *opaque, struct wb_outbox *outbox)
 {
-    /* One immediate weight ends the stream; a reset (@) would also forget the balance's tare. */
+    /* A single immediate weight ends the stream; a reset (@) would also clear the balance's tare.
+     */
     const struct wb_loadcell *const loadcell = opaque;
     if (loadcell->rig.load_cell.poll_period_ns == 0)
         wb_outbox_add_text(outbox, "SI\r\n");

@@ -9,8 +9,9 @@
 
 #define MS WB_NS_PER_MS
 
-/* Sources: the makers' manuals, and the sketches of the libraries named. A command that waits for a
- * load at rest (`S` of most balances) is in no row: in a bending test the load never rests. */
+/* Sources: the manufacturers' manuals, and the sketches of the named libraries. Commands that wait
+ * for a stable load (`S` of most balances) are not used: during bending the load is never stable.
+ */
 static const struct wb_loadcell_preset presets[] = {
     {
         .name = "loadstar",
@@ -51,11 +52,11 @@ static const struct wb_loadcell_preset presets[] = {
         .tare = "Z\r",
         .answers =
             {
-                {"*10", "the gauge does not know the command (*10): Series 3 and 4 know only "
+                {"*10", "unknown command (*10): Series 3 and 4 support only "
                         "load_cell.poll_command: \"?\\r\""},
-                {"*11", "the gauge says that the command does not apply now (*11)"},
-                {"*12", "the gauge refused part of the command (*12)"},
-                {"*22", "the gauge refused a value as too large (*22)"},
+                {"*11", "the command cannot be executed now (*11)"},
+                {"*12", "invalid command specifier (*12)"},
+                {"*22", "a value in the command is too large (*22)"},
             },
     },
     {
@@ -71,12 +72,12 @@ static const struct wb_loadcell_preset presets[] = {
         .answers =
             {
                 {"A00", NULL},
-                {"E01", "the balance did not take a command (E01)"},
+                {"E01", "the balance rejected a command (E01)"},
             },
     },
     {
         .name = "kern-asked",
-        .summary = "KERN balances (PCB, FKB and others) that answer to the letter w",
+        .summary = "KERN balances (PCB, FKB and others) polled with the letter w",
         .line = "9600,8n1",
         .terminator = "any",
         .unit_rule = WB_UNIT_IF_STABLE,
@@ -125,17 +126,17 @@ static const struct wb_loadcell_preset presets[] = {
         .answers =
             {
                 {"\x06", NULL},
-                {"EC,E00", "the balance met an error of the line (EC,E00): check baud rate and "
-                           "parity in load_cell.address"},
-                {"EC,E01", "the balance does not know the command (EC,E01)"},
-                {"EC,E02", "the balance was not ready for the command (EC,E02)"},
+                {"EC,E00", "communication error (EC,E00): check baud rate and parity in "
+                           "load_cell.address"},
+                {"EC,E01", "unknown command (EC,E01)"},
+                {"EC,E02", "the balance is not ready for the command (EC,E02)"},
                 {"EC,E04", "the balance received too many characters (EC,E04)"},
                 {"EC,E06", "the balance received a malformed command (EC,E06)"},
             },
     },
     {
         .name = "ohaus",
-        .summary = "Ohaus balances, the maker's own commands",
+        .summary = "Ohaus balances, Ohaus commands",
         .line = "9600,8n1",
         .terminator = "any",
         .unit_rule = WB_UNIT_PRINTED,
@@ -145,7 +146,7 @@ static const struct wb_loadcell_preset presets[] = {
         .tare = "T\r\n",
         .answers =
             {
-                {"ES", "the balance does not know the command (ES)"},
+                {"ES", "unknown command (ES)"},
                 {"OK!", NULL},
                 {"Err 8.3", NULL, true},
                 {"Err 8.4", NULL, true},
@@ -195,7 +196,7 @@ static const struct wb_loadcell_preset presets[] = {
                 {"C0 A", NULL},
                 {"C1 I", "the balance cannot stream now (C1 I)"},
                 {"SI I", "the balance cannot weigh now (SI I)"},
-                {"ES", "the balance does not know the command (ES)"},
+                {"ES", "unknown command (ES)"},
             },
     },
     {
@@ -207,7 +208,7 @@ static const struct wb_loadcell_preset presets[] = {
     },
     {
         .name = "dini-argeo",
-        .summary = "Dini Argeo indicators, asked",
+        .summary = "Dini Argeo indicators, polled",
         .line = "9600,8n1",
         .terminator = "crlf",
         .unit_rule = WB_UNIT_PRINTED,
@@ -218,20 +219,20 @@ static const struct wb_loadcell_preset presets[] = {
         .answers =
             {
                 {"OK", NULL},
-                {"ERR01", "the indicator met an error in the command (ERR01)"},
-                {"ERR02", "the indicator refused a value of the command (ERR02)"},
-                {"ERR03", "the indicator cannot do that now (ERR03)"},
-                {"ERR04", "the indicator does not know the command (ERR04)"},
+                {"ERR01", "error in the command (ERR01)"},
+                {"ERR02", "invalid value in the command (ERR02)"},
+                {"ERR03", "the command cannot be executed now (ERR03)"},
+                {"ERR04", "unknown command (ERR04)"},
             },
     },
     {
         .name = "mantracourt",
-        .summary = "Mantracourt DSC and DCell, ASCII, station 1, asked",
+        .summary = "Mantracourt DSC and DCell, ASCII, station 1, polled",
         .terminator = "cr",
         .unit_rule = WB_UNIT_OF_RIG_FILE,
         .request = "!001:SYS?\r",
         .period_ns = 50 * MS,
-        .answers = {{"?", "the amplifier did not understand the request (?)"}},
+        .answers = {{"?", "the amplifier rejected the request (?)"}},
     },
 };
 
@@ -302,7 +303,7 @@ bool wb_loadcell_preset_complete_address(const struct wb_loadcell_preset *preset
     return used < size;
 }
 
-/* The row's answer that the line is; NULL when it is none. */
+/* The reply of the preset that equals the line; NULL: none. */
 static const struct wb_loadcell_answer *find_answer(const struct wb_loadcell_preset *preset,
                                                     const char *bytes, size_t length)
 {

@@ -4,38 +4,40 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* s: a stamp that goes back by more is a device that began anew. */
+/* s; a time stamp that goes back by more shows a restart of the device. */
 #define RESTART 0.5
-/* s: a longer silence is a stop of the stream, which is told elsewhere. */
+/* s; a longer silence is an interruption of the stream, which is reported elsewhere. */
 #define LONGEST 60.0
-/* Shares of the period. */
-#define SAME 0.25     /* stamps nearer than this are one */
-#define LONG 1.6      /* an interval of arrivals that may hide a lost sample */
-#define IN_RHYTHM 0.4 /* how far an interval may be off */
-/* Share of intervals in rhythm without which arrivals have none. */
+/* Fractions of the period. */
+#define SAME 0.25     /* stamps with a smaller difference are equal */
+#define LONG 1.6      /* a longer interval between arrivals may contain a lost sample */
+#define IN_RHYTHM 0.4 /* tolerance of a regular interval */
+/* Least fraction of regular intervals; with fewer, the arrivals have no period. */
 #define LEAST_RHYTHM 0.6
-/* Arrivals that are nearer to each other than their mean by more than this factor come in bundles:
- * more than half of a stream that is watched is not lost. */
+/* If the typical interval is shorter than the mean by more than this factor, lines arrive in
+ * bundles; a loss of more than half of the lines is excluded. */
 #define MOST_OFTEN 2.5
-/* Stamps in order after which a gap grows old, and then is one: more than a network turns round. As
- * many at the beginning of a stream tell of none, because the first one may have been overtaken by
- * what was sent before this end listened. */
+/* Number of stamps in order after which a gap is final: more than networks reorder. At the
+ * beginning of a stream as many stamps are not evaluated, because the first one may be out of
+ * order. */
 #define TURNED_ROUND 8
-/* A window of arrivals has so many, and lasts so long (s): longer than a computer is busy with
- * something else for a moment. */
+/* Least number of arrivals and duration (s) of a window: longer than short delays of a busy
+ * computer.
+ */
 #define WINDOW 16
 #define WINDOW_TIME 0.1
-/* Windows without which a period cannot be told from one that differs by a line in a window. */
+/* With fewer windows, a period cannot be distinguished from one that differs by a line per window.
+ */
 #define LEAST_WINDOWS 8
-/* Mean square of what is left of whole periods, in periods: above it there is no rhythm. */
+/* Largest mean square of the fractions of periods, in periods; above it, there is no period. */
 #define MOST_MISFIT 0.05
-/* How far the period from intervals may be off: at least, and times the square of the relative
- * scatter of the intervals. Of 2000 simulated streams of each kind none was off by more. */
+/* Relative uncertainty of the period from intervals: lower bound, and factor of the square of the
+ * relative scatter of the intervals. Covers all of 2000 simulated streams of each kind. */
 #define LEAST_DOUBT 0.005
 #define DOUBT 3.5
-/* Missing between two windows at most: stamps of a damaged recording may be anything. */
+/* Upper bound of the samples missing between two windows: a damaged recording has random stamps. */
 #define MOST_MISSING 1e9
-/* Share of arrivals that may seem to be missing on a busy computer. */
+/* Fraction of arrivals that may seem to be missing on a busy computer. */
 #define CHANCE 0.02
 
 void wb_loss_init(struct wb_loss *loss, bool stamped, double period)
@@ -53,9 +55,9 @@ static int ascending(const void *a, const void *b)
     return (left > right) - (left < right);
 }
 
-/* The period of these times; 0 without one. A lost sample makes an interval longer, never shorter:
- * of stamps the lower quartile is the period while three quarters may be lost. Arrivals scatter,
- * and the median is taken. */
+/* The period of the stored times; 0: none. Lost samples make intervals longer, never shorter:
+ * therefore the lower quartile is used for stamps, which tolerates three quarters of lost samples.
+ * Arrivals scatter, and the median is used. */
 static double find_period(const struct wb_loss *loss, double *doubt)
 {
     double intervals[WB_LOSS_LEARNT];
@@ -116,7 +118,7 @@ static void open_gap(struct wb_loss *loss, double step)
     loss->young.longest_gap = fmax(loss->young.longest_gap, step - loss->counts.period);
 }
 
-/* What is passed over for long enough is missing. */
+/* Makes gaps final that are old enough. */
 static void grow_old(struct wb_loss *loss)
 {
     struct wb_loss_counts *const counts = &loss->counts;
@@ -131,7 +133,7 @@ static void grow_old(struct wb_loss *loss)
     loss->n_passed = 0;
 }
 
-/* An overtaken one makes up for a gap, most likely for one of the latest. */
+/* A late sample closes a gap, most likely one of the latest. */
 static void make_up(struct wb_loss *loss)
 {
     struct wb_loss_open *const open = loss->young.missing > 0 ? &loss->young : &loss->old;
@@ -164,14 +166,15 @@ static void take_stamp(struct wb_loss *loss, double t)
 
 /* --- arrivals --- */
 
-/* Periods between two arrivals beyond those of the lines received: nearly a whole number. */
+/* Number of periods between two arrivals minus the number of lines received: nearly an integer. */
 static double periods_more(const struct wb_loss_arrival *from, const struct wb_loss_arrival *to,
                            double period)
 {
     return (to->t - from->t) / period - (to->number - from->number);
 }
 
-/* Mean square of the windows' fractions of a period; of fewer periods than lines the largest. */
+/* Mean square of the fractions of a period over the windows; fewer periods than lines count as the
+ * largest fraction. */
 static double misfit(const struct wb_loss *loss, double period)
 {
     double sum = 0.0;
@@ -184,7 +187,9 @@ static double misfit(const struct wb_loss *loss, double period)
     return sum / (loss->n_windows - 1);
 }
 
-/* The period, near the one learnt, whose misfit is the least; of equal ones the longest. */
+/* Finds the period near that from the intervals with the smallest misfit; of equal ones the
+ * longest.
+ */
 static void fit_period(struct wb_loss *loss)
 {
     const struct wb_loss_arrival *const first = &loss->windows[0].earliest,
@@ -202,7 +207,7 @@ static void fit_period(struct wb_loss *loss)
     loss->is_fitted = best < MOST_MISFIT && (is_clear || loss->n_windows >= LEAST_WINDOWS);
 }
 
-/* Adds what is missing between window i and the one before. */
+/* Adds the samples missing between window i and the window before. */
 static void add_missing(const struct wb_loss *loss, int i, struct wb_loss_open *sum)
 {
     const struct wb_loss_window *const window = &loss->windows[i], *const before = window - 1;
@@ -224,7 +229,7 @@ static void add_open(struct wb_loss_counts *counts, const struct wb_loss_open *o
     counts->longest_gap = fmax(counts->longest_gap, open->longest_gap);
 }
 
-/* The oldest window goes, and what is missing up to the next one is settled. */
+/* Removes the oldest window; the samples missing up to the next one become final. */
 static void settle(struct wb_loss *loss)
 {
     struct wb_loss_open open = {0};
@@ -235,11 +240,11 @@ static void settle(struct wb_loss *loss)
     memmove(loss->windows, loss->windows + 1, (size_t)loss->n_windows * sizeof *loss->windows);
 }
 
-/* Drops the windows whose earliest arrival was late, as a later window shows: the computer had not
- * caught up. */
+/* Removes windows whose earliest arrival was delayed, as shown by a later window: the computer had
+ * not processed its backlog yet. */
 static void drop_late(struct wb_loss *loss)
 {
-    int kept = loss->n_windows - 1; /* from here on */
+    int kept = loss->n_windows - 1; /* index of the first window kept */
     for (int i = kept - 1; i >= 0; i--)
         if (periods_more(&loss->windows[i].earliest, &loss->windows[kept].earliest,
                          loss->counts.period) >= -0.5)
@@ -268,7 +273,7 @@ static void close_window(struct wb_loss *loss)
         add_missing(loss, i, &loss->recent);
 }
 
-/* The stream stood still, which is told elsewhere: what comes now is counted from here. */
+/* Starts counting again after an interruption of the stream, which is reported elsewhere. */
 static void begin_again(struct wb_loss *loss)
 {
     add_open(&loss->counts, &loss->recent);
@@ -309,8 +314,8 @@ static void take(struct wb_loss *loss, double t)
         take_arrival(loss, t);
 }
 
-/* Enough times are there: finds the period, and takes them. Without one the oldest half goes, and
- * later ones may show a rhythm. */
+/* Finds the period once there are enough times, and counts them. Without a period the oldest half
+ * is discarded; later times may be regular. */
 static void learn(struct wb_loss *loss)
 {
     double times[WB_LOSS_LEARNT + 1];
@@ -343,7 +348,7 @@ void wb_loss_add(struct wb_loss *loss, double t)
     }
 }
 
-/* Missing up to the last window and after it: late arrivals may still make up for that. */
+/* Adds the samples missing up to and after the last window, which may still arrive. */
 static void add_end(const struct wb_loss *loss, struct wb_loss_counts *counts)
 {
     struct wb_loss_open open = {0};

@@ -1,15 +1,14 @@
-/* What a stream did not bring, counted from its samples alone: missing, repeated and overtaken
- * ones.
+/* Counts missing, repeated and out-of-order samples of a stream from the samples alone.
  *
- * An instrument that streams keeps a rhythm. Cameras stamp their frames: a step of two periods is
- * one frame lost on the way, whoever lost it. A load cell stamps nothing, and its lines arrive
- * late, by times that vary. The stream is therefore cut into windows. The earliest line of each,
- * against the rhythm, is nearly prompt, and between two such lines whole periods pass: one for each
- * line, received or lost. The period is the one that leaves the smallest fractions. Where arrivals
- * show no rhythm (lines that come in bundles, an instrument that is asked now and then) none are
- * counted as missing.
+ * A streaming instrument has a constant period. Cameras stamp their frames: a step of two periods
+ * is one lost frame, wherever it was lost. A load cell sends no time stamps, and its lines arrive
+ * with varying delays. The stream is therefore divided into windows. The earliest line of a window,
+ * relative to the period, has almost no delay, and between two such lines an integer number of
+ * periods passes: one per line, received or lost. The period is chosen to minimise the fractions.
+ * If arrivals have no period (lines in bundles, an instrument that is polled irregularly), no
+ * samples are counted as missing.
  *
- * Pure: samples in, counts out; no memory, no clock.
+ * Pure functions: no memory, no clock.
  */
 #ifndef WB_DAQ_PROTOCOL_LOSS_H
 #define WB_DAQ_PROTOCOL_LOSS_H
@@ -19,33 +18,33 @@
 
 #include "daq/protocol/sample.h"
 
-#define WB_LOSS_LEARNT 64  /* intervals that the period is learnt from */
-#define WB_LOSS_RECENT 64  /* stamps that a repeated one is known by */
-#define WB_LOSS_WINDOWS 32 /* of arrivals; they are counted anew with every better period */
-#define WB_LOSS_TAIL 4     /* arrivals at the end that one is the earliest of */
+#define WB_LOSS_LEARNT 64  /* intervals from which the period is determined */
+#define WB_LOSS_RECENT 64  /* stamps stored to detect repeated ones */
+#define WB_LOSS_WINDOWS 32 /* windows of arrivals; evaluated again when the period improves */
+#define WB_LOSS_TAIL 4     /* last arrivals, of which the earliest is used */
 
 struct wb_loss_counts {
-    uint64_t received;  /* repeated ones not among them */
-    uint64_t missing;   /* at least so many never came */
-    uint64_t gaps;      /* places where some are missing */
-    uint64_t repeated;  /* came again, with the same stamp */
-    uint64_t overtaken; /* came after a later one */
-    double longest_gap; /* s, by the stream's own clock, without its period */
-    double period;      /* s; 0: no rhythm, and nothing is known to be missing */
+    uint64_t received;  /* without repeated samples */
+    uint64_t missing;   /* lower bound of the samples that were not received */
+    uint64_t gaps;      /* number of gaps with missing samples */
+    uint64_t repeated;  /* samples received again, with the same stamp */
+    uint64_t overtaken; /* samples received after a later one */
+    double longest_gap; /* s of the stream's clock, without one period */
+    double period;      /* s; 0: no period, missing samples cannot be determined */
 };
 
-/* Stamps that were passed over a moment ago: overtaken ones may still come. */
+/* Recent gaps of stamps, which late samples may still close. */
 struct wb_loss_open {
     uint64_t missing, gaps;
     double longest_gap; /* s */
 };
 
-/* An arrival: number in the stream, and s. */
+/* An arrival: number in the stream, and time in s. */
 struct wb_loss_arrival {
     double number, t;
 };
 
-/* The earliest arrival of a window, and intervals of the window that may hide lost ones. */
+/* The earliest arrival of a window, and its intervals that may contain lost samples. */
 struct wb_loss_window {
     struct wb_loss_arrival earliest;
     double widest; /* s */
@@ -54,39 +53,40 @@ struct wb_loss_window {
 
 struct wb_loss {
     struct wb_loss_counts counts;
-    struct wb_loss_open young, old;   /* of stamps: gaps of the latest ones, and of those before */
-    int n_passed;                     /* stamps in order since the young ones began */
-    bool stamped;                     /* times are the device's stamps, not arrivals */
-    double times[WB_LOSS_LEARNT + 1]; /* s, until the period is known; then the recent stamps */
+    struct wb_loss_open young, old;   /* of stamps: the latest gaps, and those before */
+    int n_passed;                     /* stamps in order since `young` began */
+    bool stamped;                     /* times are stamps of the device, not arrivals */
+    double times[WB_LOSS_LEARNT + 1]; /* s, until the period is known; then recent stamps */
     int n_times, next;
     double last; /* s, the latest */
-    /* Of arrivals. Those of `counts` are settled: before the first of the windows kept. */
+    /* For arrivals. `counts` is final and covers the time before the first stored window. */
     struct wb_loss_arrival tail[WB_LOSS_TAIL];
-    struct wb_loss_window window; /* being filled, */
-    int n_window;                 /* with so many, */
-    double begun;                 /* since then, s */
-    double slope;                 /* s per arrival on average, lost ones or not */
+    struct wb_loss_window window; /* the window being filled */
+    int n_window;                 /* arrivals in it */
+    double begun;                 /* s, its begin */
+    double slope;                 /* s, mean time per received line */
     struct wb_loss_window windows[WB_LOSS_WINDOWS];
     int n_windows;
-    struct wb_loss_open recent; /* missing in the windows kept */
-    double learnt, doubt;       /* s, the period from intervals; its relative uncertainty */
-    bool is_fitted;             /* the period fits the windows */
-    bool has_last, has_begun;   /* begun: gaps between stamps count */
+    struct wb_loss_open recent; /* missing in the stored windows */
+    double learnt, doubt;       /* s, period from intervals; its relative uncertainty */
+    bool is_fitted;             /* the period was fitted to the windows */
+    bool has_last, has_begun;   /* has_begun: gaps between stamps are counted */
 };
 
-/* Begins to count. `stamped`: times are stamps of the device's clock; else arrivals. `period` (s):
- * the rhythm that is announced; 0: it is learnt. */
+/* Initialises. `stamped`: times are stamps of the device's clock, otherwise arrivals. `period` (s):
+ * the announced period; 0: it is determined from the samples. */
 void wb_loss_init(struct wb_loss *loss, bool stamped, double period);
 
-/* A sample came, with this time in s. Not finite: it counts as received. */
+/* Adds a sample with its time in s; if the time is not finite, the sample only counts as received.
+ */
 void wb_loss_add(struct wb_loss *loss, double t);
 
-/* The counts so far. Of arrivals, a gap at the end of a stream counts; of stamps it does only
- * between some earlier and some later ones, because overtaken ones may be on their way. */
+/* The counts so far. Of arrivals, gaps at the end of the stream are included; of stamps, gaps near
+ * the beginning and the end are not, because frames may still arrive late. */
 struct wb_loss_counts wb_loss_counts(const struct wb_loss *loss);
 
-/* The share of samples that are missing, 0 to 1, and whether that is more than chance: one stamped
- * sample is, of arrivals it takes two percent. */
+/* Fraction of missing samples, 0 to 1; and whether it exceeds chance: one stamped sample does, of
+ * arrivals more than 2 %. */
 double wb_loss_share(const struct wb_loss_counts *counts);
 bool wb_loss_is_significant(const struct wb_loss *loss);
 

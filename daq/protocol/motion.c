@@ -36,7 +36,7 @@ void wb_motion_plan(struct wb_motion *motion, double start, double from, double 
     motion->from = from;
     motion->end = end;
     motion->direction = end < from ? -1.0 : 1.0;
-    /* Highest speed from which it can still brake on the way that is left. */
+    /* Highest speed that permits braking within the remaining distance. */
     const double reachable = sqrt(acceleration * way + 0.5 * speed * speed);
     const double peak = fmin(fmax(top, speed), reachable);
     const double up = fmax(peak - speed, 0.0) / acceleration, down = peak / acceleration;

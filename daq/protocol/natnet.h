@@ -1,15 +1,15 @@
-/* NatNet, the motion-capture server's protocol, 2.5 to 4.4: what its datagrams hold, and pure,
- * bounds-checked decoders on (bytes, length).
+/* NatNet 2.5 to 4.4, the protocol of the motion-capture server: contents of its datagrams, and
+ * bounds-checked decoders as pure functions of (bytes, length).
  *
  * A datagram is `uint16 message, uint16 payload bytes`, then the payload; little-endian, unpadded.
- * The layout of a frame depends on the version that the server announced in SERVERINFO. Decoders
- * log nothing: on failure they return WB_ERR_FORMAT and say where and why in a fault, and leave the
- * result as it was, but for wb_natnet_decode_frame(), whose large result is overwritten in any
- * case. Decoding a hostile datagram reads nothing beyond it and ends in time proportional to it.
+ * The layout of a frame depends on the version that the server announced in SERVERINFO. Decoders do
+ * not log: on failure they return WB_ERR_FORMAT with location and reason in a fault, and leave the
+ * result unchanged, except wb_natnet_decode_frame(), whose large result is always overwritten. A
+ * malicious datagram is decoded in time proportional to its length, without reading beyond it.
  *
- * The vendor's published clients read 4.2 to 4.4 as 4.1. No captured stream of them was seen: they,
- * and later versions, are read as 4.1, and like every frame only
- * when sections, stamps and end mark fit to the last byte. Other layouts are refused.
+ * The vendor's published clients decode 4.2 to 4.4 like 4.1. No captured stream of these versions
+ * was available. They and later versions are decoded like 4.1 and, like every frame, accepted only
+ * if sections, stamps and end mark match to the last byte; other layouts are rejected.
  */
 #ifndef WB_DAQ_PROTOCOL_NATNET_H
 #define WB_DAQ_PROTOCOL_NATNET_H
@@ -49,38 +49,38 @@ struct wb_natnet_version {
     uint8_t major, minor;
 };
 
-/* True when `version` is major.minor or later. */
+/* True if `version` is major.minor or later. */
 bool wb_natnet_version_at_least(struct wb_natnet_version version, int major, int minor);
 
-/* Why a datagram was refused. */
+/* Reason why a datagram was rejected. */
 struct wb_natnet_fault {
     size_t offset;      /* bytes into the datagram */
     const char *reason; /* static text */
 };
 
-/* One datagram, its header read. */
+/* A datagram with decoded header. */
 struct wb_natnet_packet {
-    int message; /* enum wb_natnet_message, or a number we do not know */
+    int message; /* enum wb_natnet_message, or an unknown number */
     const uint8_t *payload;
     size_t n_payload;
 };
 
-/* What the server says about itself. */
+/* SERVERINFO: description of the server. */
 struct wb_natnet_server {
     char name[256];
     uint8_t app_version[4];
     uint8_t natnet_version[4];
-    bool has_connection;      /* NatNet 3.0 and later: the fields below were sent */
+    bool has_connection;      /* the members below were sent (NatNet 3.0 and later) */
     uint64_t clock_frequency; /* ticks per second of echo and camera stamps */
     uint16_t data_port;
     bool multicast;
     uint8_t group[4];
 };
 
-/* A named set of points. Its points are solved positions, also of markers no camera sees: never a
- * measurement of a shape. */
+/* A named set of points. Its points are solved positions, also of markers that no camera sees, and
+ * are not used as measurements. */
 struct wb_natnet_set {
-    char name[64];           /* cut to fit */
+    char name[64];           /* truncated */
     int n_points;            /* as sent */
     int first_point, n_kept; /* in `points` */
 };
@@ -106,7 +106,7 @@ struct wb_natnet_group {
 struct wb_natnet_analog {
     int32_t id;
     int n_channels;
-    int n_values; /* of all channels together */
+    int n_values; /* sum over all channels */
 };
 
 #define WB_NATNET_MAX_SETS 32
@@ -115,9 +115,10 @@ struct wb_natnet_analog {
 #define WB_NATNET_MAX_GROUPS 16
 #define WB_NATNET_MAX_ANALOGS 16
 
-/* One frame of data. `mocap` holds the labelled markers and the stamps; its t_ns and t_clock are
- * the client's to fill. Each n_ counts what was sent; an array holds the first of them, up to its
- * length (`mocap.n_markers` counts what it holds). */
+/* A frame of data. `mocap` holds the labelled markers and the stamps; its t_ns and t_clock are set
+ * by the client. Members n_ are the numbers sent; an array holds the first elements, up to its
+ * length
+ * (`mocap.n_markers` is the number stored). */
 struct wb_natnet_frame {
     struct wb_mocap_frame mocap;
     int n_labelled;
@@ -126,54 +127,54 @@ struct wb_natnet_frame {
     float points[WB_NATNET_MAX_POINTS][3];
     int n_others; /* the legacy list, which repeats labelled markers */
     float others[WB_MAX_MARKERS][3];
-    int n_bodies;      /* rigid bodies at top level: the first ones in `bodies` */
-    int n_bodies_kept; /* of `bodies`: rigid bodies, bones, bodies of assets, in this order */
+    int n_bodies;      /* rigid bodies at top level, at the beginning of `bodies` */
+    int n_bodies_kept; /* in `bodies`: rigid bodies, bones, bodies of assets, in this order */
     struct wb_natnet_body bodies[WB_NATNET_MAX_BODIES];
     int n_skeletons, n_assets, n_force_plates, n_devices;
     struct wb_natnet_group skeletons[WB_NATNET_MAX_GROUPS];
     struct wb_natnet_group assets[WB_NATNET_MAX_GROUPS];
     struct wb_natnet_analog force_plates[WB_NATNET_MAX_ANALOGS];
     struct wb_natnet_analog devices[WB_NATNET_MAX_ANALOGS];
-    float latency; /* s, before 3.0: really a capture time */
+    float latency; /* s, before 3.0: a capture time */
     uint32_t timecode, timecode_sub;
     double timestamp;   /* s, from 2.6 on */
     bool has_precision; /* 4.1 and later, at times 4.0 */
     uint32_t precision_seconds, precision_fraction;
 };
 
-/* Reads the header. */
+/* Decodes the header. */
 WB_MUST_CHECK enum wb_status wb_natnet_decode_packet(const uint8_t *bytes, size_t length,
                                                      struct wb_natnet_packet *packet,
                                                      struct wb_natnet_fault *fault);
 
-/* SERVERINFO. */
+/* Decodes SERVERINFO. */
 WB_MUST_CHECK enum wb_status wb_natnet_decode_server(const struct wb_natnet_packet *packet,
                                                      struct wb_natnet_server *server,
                                                      struct wb_natnet_fault *fault);
 
-/* FRAMEOFDATA of a server of `version`, consumed to its last byte. Fills t_device with the
- * server's capture time: the f64 stamp (2.7 on), the f32 stamp (2.6) or the f32 latency (2.5). A
- * frame is refused whose section sizes (4.1 on) differ from what was read, whose end mark is not 0,
- * whose stamp is not from 0 to 1e9 s, or whose stamps contradict each other. */
+/* Decodes FRAMEOFDATA of a server of `version` to its last byte. Sets t_device to the server's
+ * capture time: the f64 stamp (2.7 on), the f32 stamp (2.6) or the f32 latency (2.5). A frame is
+ * rejected if section sizes (4.1 on) differ from the contents, the end mark is not 0, the stamp is
+ * not in 0 to 1e9 s, or stamps contradict each other. */
 WB_MUST_CHECK enum wb_status wb_natnet_decode_frame(const struct wb_natnet_packet *packet,
                                                     struct wb_natnet_version version,
                                                     struct wb_natnet_frame *frame,
                                                     struct wb_natnet_fault *fault);
 
-/* ECHOREQUEST (ticks is set to 0) and ECHORESPONSE: the client's stamp, given back verbatim, and
- * the server's clock at receipt in ticks. */
+/* Decodes ECHOREQUEST (ticks is set to 0) or ECHORESPONSE: the client's stamp, returned unchanged,
+ * and the server's clock at receipt in ticks. */
 WB_MUST_CHECK enum wb_status wb_natnet_decode_echo(const struct wb_natnet_packet *packet,
                                                    uint64_t *stamp, uint64_t *ticks,
                                                    struct wb_natnet_fault *fault);
 
-/* REQUEST and MESSAGESTRING: the text, cut to `size` and always terminated; what is not printable
- * becomes '?'. */
+/* Decodes the text of REQUEST and MESSAGESTRING, truncated to `size` and always terminated;
+ * characters that are not printable become '?'. */
 WB_MUST_CHECK enum wb_status wb_natnet_decode_text(const struct wb_natnet_packet *packet,
                                                    char *text, size_t size,
                                                    struct wb_natnet_fault *fault);
 
-/* RESPONSE: four bytes are one number, an int32 or a float32 as the request has it (0 is OK);
- * anything else is a text. */
+/* RESPONSE: four bytes are a number, an int32 or a float32 depending on the request (0 means
+ * success); other lengths are a text. */
 struct wb_natnet_response {
     bool is_number;
     int32_t integer;

@@ -1,8 +1,8 @@
 /* The NatNet client: handshake, keepalive, clock probes, frames.
  *
- * What is decoded depends on received bytes and their times only, never on what was sent: the
- * server's answer to an echo carries our own stamp, and its answers to queries come in the order of
- * `queries`. So a replay, which sends nothing, yields the same samples and probes.
+ * The result depends only on received bytes and their times, not on the bytes sent: the server's
+ * reply to an echo contains our own stamp, and its replies to queries arrive in the order of
+ * `queries`. Therefore a replay, which sends nothing, gives the same samples and probes.
  */
 #include "daq/protocol/driver.h"
 
@@ -19,33 +19,34 @@
 #define CONNECT_PERIOD_NS (500 * WB_NS_PER_MS)
 #define QUERY_PERIOD_NS (1000 * WB_NS_PER_MS)
 #define KEEPALIVE_PERIOD_NS (1000 * WB_NS_PER_MS)
-#define SILENCE_NS (3000 * WB_NS_PER_MS) /* then we connect anew */
+#define SILENCE_NS (3000 * WB_NS_PER_MS) /* without datagrams, after which to connect again */
 #define BURST_PROBES 8
 #define BURST_PERIOD_NS (64 * WB_NS_PER_MS)
 #define PROBE_PERIOD_NS (1000 * WB_NS_PER_MS)
-#define PROBE_MAX_NS (1000 * WB_NS_PER_MS) /* an older answer says nothing about the clock */
+#define PROBE_MAX_NS (1000 * WB_NS_PER_MS) /* longest round trip of a useful probe */
 
-/* Answers that are no unit of length before we stop asking for one. */
+/* Replies that are not a unit of length after which the unit is not queried again. */
 #define STRAYS_MAX 3
 
 enum query {
     QUERY_UNITS,
     QUERY_FRAME_RATE,
-    QUERY_BITSTREAM, /* of servers newer than the layout that was verified, */
-    QUERY_TAKE,      /* and where the rig file wants a take: see applies() */
+    QUERY_BITSTREAM, /* only for versions newer than the verified layout; see applies() */
+    QUERY_TAKE,      /* only if the rig file requests a take */
     N_QUERIES
 };
 static const char *const queries[N_QUERIES] = {"UnitsToMillimeters", "FrameRate", "Bitstream,4.1",
                                                "StartRecording"};
 #define STOP_TAKE "StopRecording"
 
-/* s of the server's clock that a datagram may be overtaken by others on its way. */
+/* s of the server's clock by which a datagram may arrive out of order. */
 #define OVERTAKEN 1.0
 
-/* Frames in a row without a measured marker before it is told: somebody may walk by. */
+/* Consecutive frames without a measured marker before it is reported: a person may block the view.
+ */
 #define UNMEASURED_FRAMES 100
 
-/* Remarks that are made once a connection. */
+/* Remarks that are made once per connection. */
 enum {
     SAID_EARLY = 1 << 0,
     SAID_NO_LABELLED = 1 << 1,
@@ -58,17 +59,17 @@ enum {
 
 struct natnet_state {
     struct wb_rig rig;
-    /* From received bytes. */
+    /* Depends on received bytes only. */
     bool connected;
     struct wb_natnet_version version;
     struct wb_natnet_server server;
-    int n_answers;     /* to queries, of those that apply */
-    bool records_take; /* the server agreed to */
+    int n_answers;     /* replies to the applicable queries */
+    bool records_take; /* the server agreed to record a take */
     struct wb_natnet_watch watch;
-    int n_strays;        /* answers that cannot be to the first query */
+    int n_strays;        /* replies that cannot belong to the first query */
     double units_factor; /* server's length unit in m */
     uint64_t n_frames, n_refused;
-    int n_unmeasured; /* frames in a row whose markers are all flagged as not measured */
+    int n_unmeasured; /* consecutive frames whose markers are all flagged as not measured */
     int64_t last_receive_ns;
     unsigned said;
     /* For sending. */
@@ -78,7 +79,7 @@ struct natnet_state {
     struct wb_natnet_frame frame;
 };
 
-/* True the first time since the server was found. */
+/* True the first time since the connection. */
 static bool first_time(struct natnet_state *state, unsigned what)
 {
     const bool first = !(state->said & what);
@@ -94,8 +95,7 @@ static bool is_unverified(const struct natnet_state *state)
     return wb_natnet_version_at_least(state->version, 4, 2);
 }
 
-/* The vendor's published clients read 4.2 to 4.4 as they read 4.1; of what comes later nothing is
- * known. */
+/* The vendor's published clients decode 4.2 to 4.4 like 4.1; later layouts are unknown. */
 static bool is_unknown(const struct natnet_state *state)
 {
     return wb_natnet_version_at_least(state->version, 4, 5);
@@ -103,13 +103,13 @@ static bool is_unknown(const struct natnet_state *state)
 
 static bool applies(const struct natnet_state *state, enum query query)
 {
-    /* A unicast server streams the version that it is asked for; a multicast one serves many. */
+    /* Only a unicast server streams a requested version. */
     if (query == QUERY_BITSTREAM)
         return is_unverified(state) && !state->server.multicast;
     return query != QUERY_TAKE || state->rig.mocap.record_take;
 }
 
-/* The query that is the next to be answered; N_QUERIES: none. */
+/* The query whose reply is expected next; N_QUERIES: none. */
 static enum query next_query(const struct natnet_state *state)
 {
     int left = state->n_answers;
@@ -119,16 +119,16 @@ static enum query next_query(const struct natnet_state *state)
     return N_QUERIES;
 }
 
-/* The server is asked everything again: it was restarted, or announced itself anew. */
-static void forget_answers(struct natnet_state *state)
+/* Restarts all queries, because the server was restarted or sent new settings. */
+static void restart_queries(struct natnet_state *state)
 {
-    /* Its own answers are waited for; those of before may still be under way. */
+    /* Replies to earlier queries may still arrive. */
     state->n_answers = state->n_asked = 0;
     state->n_strays = 0;
     state->records_take = false;
 }
 
-/* Compares where the server sends with where the rig file listens. */
+/* Compares the server's multicast group with that of the rig file. */
 static void check_group(const struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     const struct wb_natnet_server *const server = &state->server;
@@ -140,11 +140,11 @@ static void check_group(const struct natnet_state *state, int64_t t_ns, const st
     snprintf(group, sizeof group, "%u.%u.%u.%u:%u", server->group[0], server->group[1],
              server->group[2], server->group[3], server->data_port);
     if (!server->multicast) {
-        /* A group of 255.255.255.255 listens to broadcasts, of which server info says nothing. */
+        /* A group of 255.255.255.255 receives broadcasts, which SERVERINFO does not report. */
         if (listed && strncmp(listed, ",group=255.", 11) != 0)
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "group",
-                             "the server streams unicast, so the group in mocap.address stays "
-                             "silent: remove the group");
+                             "the server streams unicast and sends nothing to the group in "
+                             "mocap.address: remove the group");
         return;
     }
     if (!listed) {
@@ -162,7 +162,7 @@ static void check_group(const struct natnet_state *state, int64_t t_ns, const st
             "the server streams to the multicast group %s, not the one in mocap.address", group);
 }
 
-/* A version and what it means for us. */
+/* Reports the server and its version. */
 static void remark_version(const struct natnet_state *state, int64_t t_ns,
                            const struct wb_sink *sink)
 {
@@ -180,19 +180,18 @@ static void remark_version(const struct natnet_state *state, int64_t t_ns,
                      app[3], version.major, version.minor);
     if (is_unverified(state))
         wb_driver_remark(sink, is_unknown(state) ? WB_LOG_WARNING : WB_LOG_INFO, t_ns, "version",
-                         "the server speaks NatNet %u.%u: layout %s. Its frames are read "
-                         "as 4.1 and refused where they do not fit%s",
+                         "the server uses NatNet %u.%u: layout %s. Its frames are decoded as 4.1 "
+                         "and rejected if they do not match%s",
                          version.major, version.minor,
                          is_unknown(state) ? "unknown"
-                                           : "as the vendor's clients have it, not seen on a "
+                                           : "as in the vendor's clients, not verified with a "
                                              "captured stream",
-                         state->server.multicast ? "; a unicast server can be asked for 4.1: "
-                                                   "set the server to unicast and remove the "
-                                                   "group from mocap.address"
-                                                 : "; the server is asked for 4.1");
+                         state->server.multicast ? "; to request 4.1, set the server to unicast "
+                                                   "and remove the group from mocap.address"
+                                                 : "; 4.1 is requested from the server");
     else if (!wb_natnet_version_at_least(version, 2, 5))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "version",
-                         "the server speaks NatNet %u.%u, older than 2.5, the oldest known here: "
+                         "the server uses NatNet %u.%u; the oldest supported version is 2.5: "
                          "markers may be missing",
                          version.major, version.minor);
 }
@@ -205,26 +204,26 @@ static void receive_server(struct natnet_state *state, int64_t t_ns,
     memset(&server, 0, sizeof server);
     if (wb_natnet_decode_server(packet, &server, fault) != WB_OK)
         return;
-    /* Repeated answers to repeated questions change nothing. */
+    /* Repeated replies to repeated requests are ignored. */
     if (state->connected && memcmp(&server, &state->server, sizeof server) == 0)
         return;
     if (state->connected)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "server",
-                         "the motion-capture server announces itself anew, with other settings");
+                         "the motion-capture server reports new settings");
     state->server = server;
     state->version = (struct wb_natnet_version){server.natnet_version[0], server.natnet_version[1]};
     state->connected = true;
-    forget_answers(state);
+    restart_queries(state);
     state->units_factor = 1.0;
     state->said = 0;
     remark_version(state, t_ns, sink);
     check_group(state, t_ns, sink);
 }
 
-/* --- answers --- */
+/* --- replies --- */
 
-/* Units of length in mm. Frame rates are none of them (but 1 and 10, which nobody films a wire
- * with), so that an answer to another question is not taken for one. */
+/* Units of length in mm. Plausible frame rates are not among them, so that a reply to another query
+ * is not mistaken for a unit. */
 static bool is_unit(double mm)
 {
     static const double units[] = {1000.0, 1.0, 10.0, 25.4, 304.8, 914.4, 0.001, 1e6};
@@ -239,7 +238,7 @@ static void take_units(struct natnet_state *state, double units, int64_t t_ns,
 {
     if (!is_unit(units)) {
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "units",
-                         "the server tells no known unit of length: metres are assumed");
+                         "the server reports no known unit of length: metres are assumed");
         return;
     }
     state->units_factor = 1.0;
@@ -255,15 +254,15 @@ static void take_frame_rate(const struct natnet_state *state, float rate, int64_
                             const struct wb_sink *sink)
 {
     const double expected = state->rig.mocap.frame_rate;
-    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "rate", "the server captures %g frames a second",
+    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "rate", "the server captures %g frames/s",
                      (double)rate);
     if (expected > 0.0 && !(fabs((double)rate - expected) <= 0.005 * expected))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "rate",
-                         "the server captures %g frames a second, the rig file expects %g",
+                         "the server captures %g frames/s, but mocap.frame_rate_hz is %g",
                          (double)rate, expected);
 }
 
-/* The answer is an integer, 0 when the server will do it. */
+/* The reply is an integer; 0 means success. */
 static void take_bitstream(const struct wb_natnet_response *response, int64_t t_ns,
                            const struct wb_sink *sink)
 {
@@ -271,12 +270,13 @@ static void take_bitstream(const struct wb_natnet_response *response, int64_t t_
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "version",
                          "the server agrees to stream NatNet 4.1");
     else
-        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "version",
-                         "the server does not stream NatNet 4.1 when asked: its frames stay "
-                         "unverified");
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "version",
+            "the server refuses to stream NatNet 4.1: the layout of its frames remains "
+            "unverified");
 }
 
-/* The answer is an integer, 0 when the server will do it. */
+/* The reply is an integer; 0 means success. */
 static void take_take(struct natnet_state *state, const struct wb_natnet_response *response,
                       int64_t t_ns, const struct wb_sink *sink)
 {
@@ -285,12 +285,12 @@ static void take_take(struct natnet_state *state, const struct wb_natnet_respons
         wb_natnet_watch_promise(&state->watch, t_ns);
     else
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "take",
-                         "the server does not record a take of its own when asked: put Motive into "
-                         "live mode, or remove mocap.record_take from the rig file");
+                         "the server refuses to record a take: set Motive to live mode, or remove "
+                         "mocap.record_take from the rig file");
 }
 
-/* An answer does not repeat its question: they come one at a time, in the order asked. After the
- * server announced itself anew, answers to questions of before may come first. */
+/* A reply does not contain its query: replies are assigned in the order of the queries. After new
+ * settings of the server, replies to earlier queries may arrive first. */
 static void receive_response(struct natnet_state *state, int64_t t_ns,
                              const struct wb_natnet_packet *packet, const struct wb_sink *sink,
                              struct wb_natnet_fault *fault)
@@ -307,7 +307,7 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
         state->n_strays++;
         wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "units",
-            "the server answers %g, which is no known unit of length: it is asked again",
+            "the server replied %g, which is not a known unit of length: the query is repeated",
             (double)response.real);
         return;
     }
@@ -317,7 +317,7 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
     else if (query == QUERY_TAKE)
         take_take(state, &response, t_ns, sink);
     else if (unknown || !response.is_number)
-        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "query", "the server does not answer '%s'",
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "query", "the server does not support '%s'",
                          queries[query]);
     if (query == QUERY_UNITS)
         take_units(state, (double)response.real, t_ns, sink);
@@ -325,7 +325,7 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
         take_frame_rate(state, response.real, t_ns, sink);
 }
 
-/* Server ticks as seconds of its clock, without losing the last digits of a long uptime. */
+/* Converts server ticks to seconds, without loss of precision after a long uptime. */
 static double seconds_of_ticks(uint64_t ticks, uint64_t frequency)
 {
     return (double)(ticks / frequency) + (double)(ticks % frequency) / (double)frequency;
@@ -353,7 +353,7 @@ static void receive_echo(const struct natnet_state *state, int64_t t_ns,
 
 /* --- frames --- */
 
-/* Markers that the server made up are no shape, however many there are. */
+/* Reports frames that contain only occluded or model-filled markers. */
 static void remark_unmeasured(struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     const struct wb_mocap_frame *const mocap = &state->frame.mocap;
@@ -372,23 +372,22 @@ static void remark_unmeasured(struct natnet_state *state, int64_t t_ns, const st
         "for %d frames no marker was measured: of the %d that the server sends, %d are filled in "
         "by its model and %d occluded: %s",
         state->n_unmeasured, mocap->n_markers, n_filled, n_lost,
-        n_filled > 0 ? "delete the rigid body or asset that holds the wire's markers, and stream "
+        n_filled > 0 ? "delete the rigid body or asset with the wire's markers, and stream "
                        "unlabelled markers"
-                     : "look for what hides the wire from the cameras, and mend their exposure or "
-                       "threshold");
+                     : "check the cameras' view of the wire, their exposure and threshold");
 }
 
 static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     const struct wb_natnet_frame *const frame = &state->frame;
     if (frame->n_labelled == 0 && frame->n_others > 0 && first_time(state, SAID_NO_LABELLED))
-        wb_driver_remark(
-            sink, WB_LOG_WARNING, t_ns, "markers",
-            "no labelled markers are streamed, only the legacy list: switch on labelled and "
-            "unlabelled markers in the server's streaming settings");
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
+                         "only the legacy list of markers is streamed: enable labelled and "
+                         "unlabelled markers in "
+                         "the server's streaming settings");
     if (frame->n_labelled > frame->mocap.n_markers && first_time(state, SAID_TOO_MANY))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
-                         "a frame has %d markers, of which the first %d are kept: mask reflections",
+                         "a frame has %d markers; only the first %d are used: mask reflections",
                          frame->n_labelled, frame->mocap.n_markers);
     if (wb_natnet_version_at_least(state->version, 2, 6) && !(frame->mocap.params & 4) &&
         first_time(state, SAID_NOT_LIVE))
@@ -397,8 +396,8 @@ static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct 
             "the server does not flag its frames as live: it may be playing back a take");
 }
 
-/* Positions to metres, and what is no position to a missing marker. */
-static void mend_markers(struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
+/* Converts positions to metres; markers with an invalid position become occluded. */
+static void convert_markers(struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     struct wb_mocap_frame *const mocap = &state->frame.mocap;
     for (int i = 0; i < mocap->n_markers; i++) {
@@ -431,8 +430,8 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
     if (!state->connected) {
         if (first_time(state, SAID_EARLY))
             wb_driver_remark(sink, WB_LOG_INFO, t_ns, "early",
-                             "frames arrived before the server reported its NatNet version: they "
-                             "are not decoded");
+                             "frames received before the server reported its NatNet version are "
+                             "not decoded");
         return;
     }
     struct wb_mocap_frame *const mocap = &state->frame.mocap;
@@ -444,9 +443,9 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
             seconds_of_ticks(mocap->camera_data_received, state->server.clock_frequency);
     const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
     if (wb_natnet_watch_frame(&state->watch, mocap, OVERTAKEN * scale, sink) == WB_NATNET_RESTARTED)
-        forget_answers(state);
+        restart_queries(state);
     mocap->segment = state->watch.segment;
-    mend_markers(state, t_ns, sink);
+    convert_markers(state, t_ns, sink);
     remark_frame(state, t_ns, sink);
     remark_unmeasured(state, t_ns, sink);
     state->n_frames++;
@@ -454,7 +453,7 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
         sink->mocap(sink->context, mocap);
 }
 
-/* --- the driver's operations --- */
+/* --- operations of the driver --- */
 
 static enum wb_status init(void *opaque, const struct wb_rig *rig)
 {
@@ -467,7 +466,7 @@ static enum wb_status init(void *opaque, const struct wb_rig *rig)
 static void send_connect(struct natnet_state *state, int64_t now_ns, struct wb_outbox *outbox)
 {
     uint8_t buffer[512];
-    /* Servers before 4.0 know the short form only, and some answer to it only. */
+    /* Servers before 4.0 know the short form only, and some later ones reply to it only. */
     const bool extended = state->n_connects % 2 == 0;
     const size_t n = wb_natnet_encode_connect(buffer, sizeof buffer, "wirebench", extended);
     wb_outbox_add(outbox, buffer, n);
@@ -483,7 +482,7 @@ static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     send_connect(state, now_ns, outbox);
 }
 
-/* Why datagrams are refused, and what to change. */
+/* Likely cause of rejected datagrams, and the remedy. */
 static const char *likely_cause(const struct natnet_state *state)
 {
     if (!is_unverified(state))
@@ -503,7 +502,7 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
     struct wb_natnet_packet packet = {0};
     struct wb_natnet_fault fault = {0};
     if (n == 0)
-        return; /* a datagram is whole */
+        return; /* datagrams are complete: there is no state to discard */
     state->last_receive_ns = t_ns;
     if (wb_natnet_decode_packet(bytes, n, &packet, &fault) == WB_OK) {
         switch (packet.message) {
@@ -529,16 +528,15 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
         case WB_NATNET_DISCONNECTBYTIMEOUT:
             wb_driver_remark(
                 sink, WB_LOG_WARNING, t_ns, "disconnected",
-                "the server ended the connection because it heard nothing from this computer");
+                "the server closed the connection because it received nothing from this computer");
             break;
         case WB_NATNET_MODELDEF:
             break;
         default:
             if (first_time(state, SAID_UNKNOWN))
-                wb_driver_remark(
-                    sink, WB_LOG_INFO, t_ns, "unknown",
-                    "the server sends messages of kind %d, which are not known and ignored",
-                    packet.message);
+                wb_driver_remark(sink, WB_LOG_INFO, t_ns, "unknown",
+                                 "unknown messages of kind %d from the server are ignored",
+                                 packet.message);
         }
     }
     if (!fault.reason)
@@ -547,13 +545,13 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
     if (wb_driver_is_report_due(state->n_refused))
         wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "refused",
-            "datagram of %zu bytes (message %d, NatNet %u.%u) refused at byte %zu: %s; %" PRIu64
+            "datagram of %zu bytes (message %d, NatNet %u.%u) rejected at byte %zu: %s; %" PRIu64
             " so far. %s",
             n, packet.message, state->version.major, state->version.minor, fault.offset,
             fault.reason, state->n_refused, likely_cause(state));
 }
 
-/* Clock probes: a burst to start with, then one a period (of the rig's own time). */
+/* Clock probes: a burst at the beginning, then one per period (of rig time). */
 static void send_probe(struct natnet_state *state, int64_t now_ns, struct wb_outbox *outbox)
 {
     uint8_t buffer[32];

@@ -3,17 +3,17 @@
 #include <math.h>
 #include <string.h>
 
-/* A cursor over the payload. The first fault sticks: everything read after it is zero, so a parser
- * reads straight on and checks once at the end of each section. */
+/* A cursor over the payload. After the first fault all values read are zero, so that a parser only
+ * needs to check at the end of each section. */
 struct reader {
     const uint8_t *bytes;
-    size_t n, at; /* n: end of the window that may be read */
+    size_t n, at; /* n: end of the readable window */
     const char *reason;
     size_t fault_at;
     struct wb_natnet_version version;
 };
 
-static void refuse(struct reader *reader, const char *reason)
+static void reject(struct reader *reader, const char *reason)
 {
     if (reader->reason)
         return;
@@ -26,11 +26,11 @@ static size_t remaining(const struct reader *reader)
     return reader->reason ? 0 : reader->n - reader->at;
 }
 
-/* The next n bytes, or NULL after a fault. */
+/* The next n bytes; NULL after a fault. */
 static const uint8_t *take(struct reader *reader, size_t n)
 {
     if (n > remaining(reader)) {
-        refuse(reader, "the datagram ends too early");
+        reject(reader, "the datagram ends too early");
         return NULL;
     }
     const uint8_t *const bytes = reader->bytes + reader->at;
@@ -101,12 +101,12 @@ static bool at_least(const struct reader *reader, int major, int minor)
     return wb_natnet_version_at_least(reader->version, major, minor);
 }
 
-/* A count of items of at least `minimum` bytes each; refused when they cannot be in the window. */
+/* Reads a count of items of at least `minimum` bytes each; a fault if they exceed the window. */
 static int get_count(struct reader *reader, size_t minimum)
 {
     const int32_t count = get_i32(reader);
     if (!reader->reason && (count < 0 || (size_t)count > remaining(reader) / minimum))
-        refuse(reader, "a count is larger than the datagram");
+        reject(reader, "a count is larger than the datagram");
     return reader->reason ? 0 : count;
 }
 
@@ -117,12 +117,12 @@ bool wb_natnet_version_at_least(struct wb_natnet_version version, int major, int
 
 /* --- sections of a frame --- */
 
-/* A section: i32 count, from 4.1 on i32 size in bytes, then the items. While it is open the reader
- * sees no further than its end. */
+/* A section: i32 count, from 4.1 on i32 size in bytes, then the items. While it is open the
+ * reader's window ends at its end. */
 struct section {
     int count;
     bool sized;
-    size_t start, end, outer; /* outer: the reader's end before */
+    size_t start, end, outer; /* outer: end of the window before */
 };
 
 /* Opens a section whose items take at least `minimum` bytes. */
@@ -138,9 +138,9 @@ static struct section open_section(struct reader *reader, size_t minimum)
     const int32_t count = get_i32(reader);
     const int32_t size = get_i32(reader);
     if (!reader->reason && (size < 0 || (size_t)size > remaining(reader)))
-        refuse(reader, "a section's size is larger than the datagram");
+        reject(reader, "a section's size is larger than the datagram");
     else if (!reader->reason && (count < 0 || (size_t)count > (size_t)size / minimum))
-        refuse(reader, "a section's count is larger than its size");
+        reject(reader, "a section's count is larger than its size");
     section.start = section.end = reader->at;
     if (!reader->reason) {
         section.count = count;
@@ -150,12 +150,12 @@ static struct section open_section(struct reader *reader, size_t minimum)
     return section;
 }
 
-/* Closes a section that was read item by item: its size must be what was read. */
+/* Closes a section; its size must equal the number of bytes read. */
 static void close_section(struct reader *reader, const struct section *section)
 {
     reader->n = section->outer;
     if (section->sized && reader->at != section->end)
-        refuse(reader, "a section's size differs from its content");
+        reject(reader, "a section's size differs from its content");
 }
 
 static void get_name(struct reader *reader, char *name, size_t size)
@@ -164,7 +164,7 @@ static void get_name(struct reader *reader, char *name, size_t size)
     const uint8_t *const start = reader->bytes + reader->at;
     const uint8_t *const end = limit ? memchr(start, 0, limit) : NULL;
     if (!end) {
-        refuse(reader, "a name has no end");
+        reject(reader, "a name is not terminated");
         return;
     }
     const size_t length = (size_t)(end - start);
@@ -216,7 +216,7 @@ static size_t body_minimum(const struct reader *reader)
     return 36 + (at_least(reader, 2, 0) ? 4 : 0) + (at_least(reader, 2, 6) ? 2 : 0);
 }
 
-/* Returns whether the body was kept. */
+/* Returns whether the body was stored. */
 static bool read_body(struct reader *reader, struct wb_natnet_frame *frame)
 {
     struct wb_natnet_body body = {.id = get_i32(reader)};
@@ -246,7 +246,7 @@ static void read_bodies(struct reader *reader, struct wb_natnet_frame *frame)
     close_section(reader, &section);
 }
 
-/* Skeletons and trained assets, whose groups end with markers. Returns how many were sent. */
+/* Reads skeletons, or trained assets, whose groups end with markers. Returns the number sent. */
 static int read_groups(struct reader *reader, struct wb_natnet_frame *frame,
                        struct wb_natnet_group *groups, bool assets)
 {
@@ -257,7 +257,7 @@ static int read_groups(struct reader *reader, struct wb_natnet_frame *frame,
         for (int k = 0; k < group.n_bodies && !reader->reason; k++)
             group.n_kept += read_body(reader, frame);
         if (assets) {
-            /* id, position, size, params, residual: of no use for a bare wire */
+            /* Skipped: id, position, size, params, residual. */
             group.n_markers = get_count(reader, 26);
             take(reader, (size_t)group.n_markers * 26);
         }
@@ -292,7 +292,7 @@ static void read_labelled(struct reader *reader, struct wb_natnet_frame *frame)
     close_section(reader, &section);
 }
 
-/* Force plates and devices share one layout. */
+/* Force plates and devices have the same layout. */
 static int read_analogs(struct reader *reader, struct wb_natnet_analog *analogs)
 {
     const struct section section = open_section(reader, 8);
@@ -313,19 +313,19 @@ static int read_analogs(struct reader *reader, struct wb_natnet_analog *analogs)
 
 /* --- the end of a frame --- */
 
-/* Thirty years: what is later was no time when it was sent. */
-#define STAMP_MAX 1e9 /* s */
+/* s, upper bound of a plausible stamp (30 years). */
+#define STAMP_MAX 1e9
 
-/* Stamps of a misread frame are any numbers. A server's clock has run for hours or days, and a
- * frame is exposed, received and sent in this order; 0 stands for a stamp that it does not have. */
+/* Rejects implausible stamps of a frame that was decoded with the wrong layout. A frame is exposed,
+ * received and sent in this order; 0 means a missing stamp. */
 static void check_stamps(struct reader *reader, const struct wb_mocap_frame *mocap)
 {
     if (!(mocap->t_device >= 0.0 && mocap->t_device <= STAMP_MAX))
-        refuse(reader, "the time stamp is no time of a running server");
+        reject(reader, "the time stamp is not plausible");
     const uint64_t exposed = mocap->camera_mid_exposure, received = mocap->camera_data_received;
     if ((exposed && received && exposed > received) ||
         (received && mocap->transmit && received > mocap->transmit))
-        refuse(reader, "the frame was sent before it was exposed");
+        reject(reader, "the frame was sent before it was exposed");
 }
 
 static void read_stamps(struct reader *reader, struct wb_natnet_frame *frame)
@@ -345,7 +345,7 @@ static void read_stamps(struct reader *reader, struct wb_natnet_frame *frame)
         mocap->camera_data_received = get_u64(reader);
         mocap->transmit = get_u64(reader);
     }
-    /* Clients disagree whether 4.0 has the precision stamp: what is left tells. */
+    /* Clients disagree whether 4.0 has the precision stamp: the remaining length decides. */
     frame->has_precision =
         at_least(reader, 4, 1) || (at_least(reader, 4, 0) && remaining(reader) == 14);
     if (frame->has_precision) {
@@ -360,9 +360,9 @@ static void read_stamps(struct reader *reader, struct wb_natnet_frame *frame)
 static void read_end(struct reader *reader)
 {
     if (get_u32(reader) != 0)
-        refuse(reader, "the end mark is not where this version has it");
+        reject(reader, "the end mark is not at the position of this version");
     if (remaining(reader) != 0)
-        refuse(reader, "bytes are left over after the frame");
+        reject(reader, "there are more bytes after the frame");
 }
 
 static void read_frame(struct reader *reader, struct wb_natnet_frame *frame)
@@ -452,8 +452,8 @@ enum wb_status wb_natnet_decode_frame(const struct wb_natnet_packet *packet,
 {
     struct reader reader = reader_of(packet);
     reader.version = version;
-    /* Only counts and scalars need to be zero: clearing the arrays would cost more than reading
-     * the frame. */
+    /* Only counts and scalars are set to zero: clearing the arrays would take longer than decoding.
+     */
     frame->mocap.t_ns = 0;
     frame->mocap.t_clock = (double)NAN;
     frame->mocap.camera_mid_exposure = 0;
@@ -486,7 +486,7 @@ enum wb_status wb_natnet_decode_echo(const struct wb_natnet_packet *packet, uint
     return status;
 }
 
-/* Printable ASCII only, so that a remark cannot carry terminal controls. */
+/* Copies printable ASCII only, so that a remark cannot contain terminal control sequences. */
 static void copy_text(const struct wb_natnet_packet *packet, char *text, size_t size)
 {
     size_t n = 0;
@@ -501,7 +501,7 @@ enum wb_status wb_natnet_decode_text(const struct wb_natnet_packet *packet, char
                                      struct wb_natnet_fault *fault)
 {
     if (packet->n_payload == 0 || size == 0)
-        return fail(fault, WB_NATNET_HEADER, "there is no text");
+        return fail(fault, WB_NATNET_HEADER, "the text is empty");
     copy_text(packet, text, size);
     return WB_OK;
 }

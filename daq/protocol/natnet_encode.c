@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* A cursor over the datagram being written. The first overflow sticks. */
+/* A cursor over the datagram being written. After an overflow nothing more is written. */
 struct writer {
     uint8_t *bytes;
     size_t size, at;
@@ -82,7 +82,7 @@ static bool at_least(const struct writer *writer, int major, int minor)
     return wb_natnet_version_at_least(writer->version, major, minor);
 }
 
-/* Starts a datagram; finish() fills in the payload's size. */
+/* Begins a datagram; finish() writes the payload's size. */
 static struct writer begin(uint8_t *buffer, size_t size, enum wb_natnet_message message)
 {
     struct writer writer = {.bytes = buffer, .size = size};
@@ -101,7 +101,7 @@ static size_t finish(struct writer *writer)
     return writer->at;
 }
 
-/* A name in a field of fixed size, zero-padded. */
+/* Writes a name in a field of fixed size, padded with zeros. */
 static void put_field(struct writer *writer, const char *text, size_t size)
 {
     const size_t length = strnlen(text, size - 1);
@@ -130,10 +130,10 @@ size_t wb_natnet_encode_connect(uint8_t *buffer, size_t size, const char *name, 
     static const uint8_t version[4] = {4, 1, 0, 0};
     struct writer writer = begin(buffer, size, WB_NATNET_CONNECT);
     put_field(&writer, name, 256);
-    put(&writer, version, sizeof version); /* of the application: we have no other */
+    put(&writer, version, sizeof version); /* of the application: the NatNet version is used */
     put(&writer, version, sizeof version);
     if (extended) {
-        put_zeros(&writer, 1); /* send all data, not only what was subscribed */
+        put_zeros(&writer, 1); /* request all data, without subscriptions */
         put(&writer, version, sizeof version);
         put_zeros(&writer, 2);
     }
@@ -165,7 +165,9 @@ size_t wb_natnet_encode_server(uint8_t *buffer, size_t size, const struct wb_nat
     return finish(&writer);
 }
 
-/* Writes a section's count and, from 4.1 on, room for its size; returns where the items start. */
+/* Writes the count of a section and, from 4.1 on, space for its size; returns the offset of its
+ * items.
+ */
 static size_t open_section(struct writer *writer, int count)
 {
     put_i32(writer, count);
@@ -248,7 +250,7 @@ static void put_labelled(struct writer *writer, const struct wb_mocap_frame *moc
     close_section(writer, start);
 }
 
-/* The values are zeros, all in the first channel. */
+/* Writes zeros, all in the first channel. */
 static void put_analogs(struct writer *writer, const struct wb_natnet_analog *analogs, int n)
 {
     const size_t start = open_section(writer, n);

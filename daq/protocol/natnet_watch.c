@@ -14,7 +14,8 @@ void wb_natnet_watch_promise(struct wb_natnet_watch *watch, int64_t t_ns)
     watch->promised_ns = t_ns;
 }
 
-/* Whether the server keeps a take of its own, and whether it keeps its word to do so. */
+/* Reports begin and end of the server's own take, and a take that was promised but did not begin.
+ */
 static void watch_take(struct wb_natnet_watch *watch, const struct wb_mocap_frame *frame,
                        const struct wb_sink *sink)
 {
@@ -24,15 +25,15 @@ static void watch_take(struct wb_natnet_watch *watch, const struct wb_mocap_fram
         watch->waits_for_take = false;
     if (records != recorded)
         wb_driver_remark(sink, WB_LOG_INFO, frame->t_ns, "take",
-                         records ? "the server records a take of its own, from its frame %" PRId32
-                                 : "the server's own take has ended, before its frame %" PRId32,
+                         records ? "the server records its own take from its frame %" PRId32
+                                 : "the server's own take ended before its frame %" PRId32,
                          frame->frame_number);
     if (!watch->waits_for_take || frame->t_ns - watch->promised_ns < PROMISE_NS)
         return;
     watch->waits_for_take = false;
     wb_driver_remark(sink, WB_LOG_WARNING, frame->t_ns, "take",
-                     "the server agreed to record a take of its own, but its frames do not say "
-                     "that it does: look whether Motive is in live mode and its disk has room");
+                     "the server agreed to record its own take, but its frames are not flagged as "
+                     "recorded: check that Motive is in live mode and its disk has space");
 }
 
 static bool has_restarted(const struct wb_natnet_watch *watch, const struct wb_mocap_frame *frame,
@@ -41,7 +42,7 @@ static bool has_restarted(const struct wb_natnet_watch *watch, const struct wb_m
     return watch->has_frame && frame->t_device < watch->newest - back;
 }
 
-/* A bit is set that was not set in the frame before. */
+/* Whether a bit is set that was not set in the previous frame. */
 static bool rises(const struct wb_natnet_watch *watch, const struct wb_mocap_frame *frame, int bit)
 {
     return watch->has_frame && (frame->params & bit) && !(watch->params & bit);
@@ -68,8 +69,8 @@ enum wb_natnet_news wb_natnet_watch_frame(struct wb_natnet_watch *watch,
         watch->segment++;
         if (wb_driver_is_report_due(++watch->n_changes))
             wb_driver_remark(sink, WB_LOG_WARNING, frame->t_ns, "models",
-                             "somebody changed what the server tracks or streams, at its frame "
-                             "%" PRId32 ": segment %d begins (%" PRIu64 " so far)",
+                             "the tracked models or the stream of the server were changed at its "
+                             "frame %" PRId32 ": segment %d begins (%" PRIu64 " so far)",
                              frame->frame_number, watch->segment, watch->n_changes);
     }
     watch_take(watch, frame, sink);

@@ -1,8 +1,8 @@
-/* What the frames of a motion-capture server tell about the server itself: that it was restarted,
- * that its models were changed, that it records a take of its own. After a restart or a change of
- * models a new segment begins: numbers of markers, and after a restart the clock, are other ones.
+/* Detects changes of the motion-capture server from its frames: a restart, a change of its models,
+ * the recording of its own take. After a restart or a change of models a new segment begins,
+ * because the ids of markers and, after a restart, the clock change.
  *
- * Pure: frames and their times in, remarks and a segment's number out; so a replay finds the same.
+ * Depends on frames and their times only, so that a replay gives the same result.
  */
 #ifndef WB_DAQ_PROTOCOL_NATNET_WATCH_H
 #define WB_DAQ_PROTOCOL_NATNET_WATCH_H
@@ -20,30 +20,31 @@ enum {
     WB_FRAME_BITSTREAM_CHANGED = 1 << 3
 };
 
-/* All zero before the first frame. */
+/* All zero: initial state. */
 struct wb_natnet_watch {
     bool has_frame;
-    double newest;  /* s: latest t_device of this run of the server; NaN without stamps */
+    double newest;  /* s, latest t_device since the server's start; NaN without stamps */
     int16_t params; /* of the last frame */
     int segment;
     uint64_t n_restarts, n_changes;
-    bool waits_for_take; /* the server said that it would record, and does not yet */
+    bool waits_for_take; /* the server agreed to record, but has not begun */
     int64_t promised_ns;
 };
 
 enum wb_natnet_news {
     WB_NATNET_SAME,
     WB_NATNET_NEW_MODELS,
-    WB_NATNET_RESTARTED /* what it was asked before is forgotten */
+    WB_NATNET_RESTARTED /* earlier queries must be repeated */
 };
 
-/* The next frame. `back` (s of the server's clock): how far a frame that was overtaken on its way
- * may lie behind; more is a restart. */
+/* Adds a frame. `back` (s of the server's clock): a frame may be out of order by this much; a
+ * larger step back is a restart. */
 enum wb_natnet_news wb_natnet_watch_frame(struct wb_natnet_watch *watch,
                                           const struct wb_mocap_frame *frame, double back,
                                           const struct wb_sink *sink);
 
-/* The server agreed at t_ns to record a take; it is told when no frame bears that out. */
+/* The server agreed at t_ns to record a take; a warning is given if its frames do not confirm it.
+ */
 void wb_natnet_watch_promise(struct wb_natnet_watch *watch, int64_t t_ns);
 
 #endif

@@ -1,4 +1,4 @@
-/* What instruments say, decoded: samples with the host's arrival time beside the device's own. */
+/* Decoded samples of the instruments, with the host's arrival time and the device's own time. */
 #ifndef WB_DAQ_PROTOCOL_SAMPLE_H
 #define WB_DAQ_PROTOCOL_SAMPLE_H
 
@@ -7,18 +7,18 @@
 
 #include "base/log.h"
 
-/* One reading of a load cell. `force` is as the instrument sent it, times sign and scale of the
- * rig file: not tared, no drift or delay removed. */
+/* A reading of a load cell. `force` is the value sent by the instrument with sign and scale of the
+ * rig file applied; tare, drift and delay are not corrected. */
 struct wb_load_sample {
     int64_t t_ns;          /* host monotonic, arrival of the read that completed the line */
     uint64_t index;        /* counts decoded readings of this stream from 0 */
-    double force;          /* N, tension positive; NaN when not valid */
+    double force;          /* N, tension positive; NaN: not valid */
     bool valid;            /* false: overload, underload or an error line */
-    bool unstable;         /* the instrument called it unstable; still valid */
-    bool overload;         /* over or under range: an interlock, never a number */
-    bool unit_changed;     /* the unit on the line differs from the first one seen: an alarm */
-    bool unit_contradicts; /* the unit on the line is not the rig file's: the line's is used, and no
-                              test begins */
+    bool unstable;         /* marked as unstable by the instrument; still valid */
+    bool overload;         /* over or under range: trips the interlock */
+    bool unit_changed;     /* the line's unit differs from the first one: trips the interlock */
+    bool unit_contradicts; /* the line's unit is not that of the rig file: the line's is used, and
+                              no test is started */
 };
 
 /* Marker parameter bits of NatNet (2.6 and later). */
@@ -33,7 +33,7 @@ enum {
 
 struct wb_marker {
     int32_t id;
-    float position[3]; /* m, in the server's frame, the bits as received */
+    float position[3]; /* m, in the server's frame, as received */
     float size;        /* m */
     float residual;    /* m per ray; 0 before NatNet 3.0 */
     int16_t params;    /* WB_MARKER_ bits */
@@ -45,15 +45,14 @@ struct wb_marker {
 struct wb_mocap_frame {
     int64_t t_ns; /* host monotonic, arrival of the datagram */
     int32_t frame_number;
-    double t_device;              /* s, the server's own capture stamp; NaN when it has none */
-    double t_clock;               /* s, camera_data_received on the clock that the probes read;
-                                     NaN when unknown (before NatNet 3.0) */
-    uint64_t camera_mid_exposure; /* server ticks, 0 when unknown (NatNet >= 3.0) */
+    double t_device;              /* s, capture stamp of the server; NaN: none */
+    double t_clock;               /* s, camera_data_received on the clock of the probes; NaN:
+                                     unknown (before NatNet 3.0) */
+    uint64_t camera_mid_exposure; /* server ticks; 0: unknown (before NatNet 3.0) */
     uint64_t camera_data_received;
     uint64_t transmit;
     int16_t params; /* bit 0 recording, 1 models changed, 2 live, 3 bitstream changed */
-    int segment;    /* from 0: the next one begins when the server was restarted, or what it tracks
-                       was changed */
+    int segment;    /* from 0; a new one begins when the server is restarted or its models change */
     int n_markers;
     struct wb_marker markers[WB_MAX_MARKERS];
 };
@@ -73,34 +72,32 @@ enum wb_stage_state {
 struct wb_stage_report {
     int64_t t_ns;
     enum wb_stage_state state;
-    double position; /* m, machine position of the test's axis as commanded; NaN when not sent */
-    int alarm;       /* last ALARM number, 0 none */
-    bool was_reset;  /* the firmware started anew since its port was opened, and not at our word */
+    double position; /* m, machine position of the test's axis as commanded; NaN: not sent */
+    int alarm;       /* last ALARM number; 0: none */
+    bool was_reset;  /* the firmware has restarted since its port was opened, not by our command */
 };
 
-/* What the firmware of a stage is set to, for the test's axis. A number that it did not tell is
- * NaN.
- */
+/* Settings of a stage's firmware for the test's axis. A number that it did not report is NaN. */
 struct wb_stage_settings {
     double steps;        /* motor steps per m */
-    double speed;        /* m/s, largest; a faster command is slowed down without a word */
+    double speed;        /* m/s, maximum; the firmware silently limits faster commands */
     double acceleration; /* m/s2 */
-    double travel;       /* m: positions are -travel to 0 where soft_limits */
+    double travel;       /* m; with soft_limits, positions are -travel to 0 */
     bool soft_limits;
     bool inches;     /* positions are reported in inches */
-    bool powers_off; /* the motor is switched off when a motion has ended */
-    char fault[320]; /* why no motion may begin, and how to mend it; "": it may */
-    char text[1280]; /* all of it as the firmware prints it, one setting a line */
+    bool powers_off; /* the motor is switched off after a motion */
+    char fault[320]; /* why no motion may be started, and the remedy; "": allowed */
+    char text[1280]; /* all settings as printed by the firmware, one per line */
 };
 
-/* One probe of a device's clock (Cristian): the device read `t_device` between the two host
- * times. */
+/* A probe of a device's clock (Cristian's method): the device's clock was `t_device` between the
+ * two host times. */
 struct wb_clock_probe {
     int64_t t_sent_ns, t_received_ns; /* host monotonic */
     double t_device;                  /* s, device clock */
 };
 
-/* Where decoders deliver. Members may be NULL. Everything passed is valid during the call only. */
+/* Receiver of decoded samples. Members may be NULL. Arguments are valid during the call only. */
 struct wb_sink {
     void *context;
     void (*load)(void *context, const struct wb_load_sample *sample);
@@ -108,8 +105,8 @@ struct wb_sink {
     void (*stage)(void *context, const struct wb_stage_report *report);
     void (*settings)(void *context, const struct wb_stage_settings *settings);
     void (*probe)(void *context, const struct wb_clock_probe *probe);
-    /* A remark for the recording's events and the operator: server connected, line rejected,
-     * alarm, version not known, ... `kind` is one lower-case word. */
+    /* A remark for the recording's events and the operator: server connected, line rejected, alarm,
+     * unknown version, ... `kind` is one lower-case word. */
     void (*remark)(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
                    const char *text);
 };

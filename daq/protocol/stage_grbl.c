@@ -1,5 +1,5 @@
-/* A GRBL stage: one line at a time, its reply awaited; reports, alarms and the banner come whenever
- * they like and are told apart by their form. */
+/* Driver of a GRBL stage: one line at a time, whose reply is awaited; reports, alarms and the
+ * banner arrive at any time and are recognised by their form. */
 #include "daq/protocol/driver.h"
 
 #include <inttypes.h>
@@ -15,49 +15,52 @@
 
 #define WB_LOG_DOMAIN "stage"
 
-#define POLL_PERIOD_NS (200 * WB_NS_PER_MS)      /* GRBL advises 5 reports a second at most, */
-#define FAST_POLL_PERIOD_NS (100 * WB_NS_PER_MS) /* and 10 for a while are fine */
+#define POLL_PERIOD_NS (200 * WB_NS_PER_MS)      /* GRBL recommends at most 5 reports/s, */
+#define FAST_POLL_PERIOD_NS (100 * WB_NS_PER_MS) /* and permits 10 reports/s temporarily */
 #define FAST_POLL_NS (1000 * WB_NS_PER_MS)
 #define LIST_SETTINGS "$$"
 #define S_PER_MIN 60.0
 #define JOG_LINE "$J="
-#define JOG_REPLY_NS (500 * WB_NS_PER_MS)  /* the planner has room for every line that is sent */
-#define UNTOLD_ACCELERATION (10.0 * WB_MM) /* m/s2, of a stage that hides its settings: GRBL's */
-#define UNTOLD_ROUNDING (0.05 * WB_MM)     /* m */
-#define PRINTED (0.002 * WB_MM)            /* m: positions have three decimals in mm */
+/* Timeout of a jog's reply: short, because the planner has space for every line that is sent. */
+#define JOG_REPLY_NS (500 * WB_NS_PER_MS)
+/* Assumed if the stage does not report its settings: GRBL's default acceleration (m/s2), and the
+ * rounding of positions to steps (m). */
+#define DEFAULT_ACCELERATION (10.0 * WB_MM)
+#define DEFAULT_ROUNDING (0.05 * WB_MM)
+#define PRINTED (0.002 * WB_MM) /* m, rounding of reported positions to three decimals of mm */
 #define PROBE_NS (2500 * WB_NS_PER_MS)
-#define REPLY_NS (2000 * WB_NS_PER_MS) /* a line is answered in far less, but for homing */
+#define REPLY_NS (2000 * WB_NS_PER_MS) /* timeout of a reply, except to homing */
 
 struct grbl_state {
     struct wb_rig rig;
     int axis;                   /* 0 to 2 */
-    struct wb_line_buffer line; /* that is coming in */
-    bool amid;                  /* a line whose beginning is missing */
-    /* What the firmware told. */
+    struct wb_line_buffer line; /* the line being received */
+    bool amid;                  /* the beginning of that line is missing */
+    /* Received from the firmware. */
     bool answered;
     bool position_lost, limit_pressed;
-    bool resets;    /* we have just told it to start anew */
-    bool was_reset; /* it did so by itself, or because its port was opened */
-    int alarm;      /* last ALARM number, 0 none */
+    bool resets;    /* a reset has just been sent */
+    bool was_reset; /* it restarted by itself, or because its port was opened */
+    int alarm;      /* last ALARM number; 0: none */
     enum wb_stage_state state;
     struct wb_grbl_offset offset;
     uint64_t n_unknown;
-    /* The answer to `$$`. Asked for once the stage is idle or in alarm: otherwise it is deaf or
-     * would refuse. */
+    /* The reply to `$$`, which is sent when the stage is idle or in alarm: in other states it would
+     * be ignored or rejected. */
     bool asked_settings, tried_settings, is_listing;
     struct wb_stage_settings settings;
-    /* A jog under way, led by short ones. */
+    /* The current jog, executed as short ones. */
     struct wb_jog_feed feed;
-    double position;   /* m, down; of the last report */
-    bool is_settling;  /* after a stop no jog until the stage was seen standing twice, */
-    bool is_cancelled; /* which our own word stops */
-    int idle_reports;  /* in a row, for that */
-    /* The queue of replies: the one line that waits for its ok. */
+    double position;   /* m, down, of the last report */
+    bool is_settling;  /* after a stop: no jog until the stage was reported idle twice */
+    bool is_cancelled; /* the stop was our jog cancel */
+    int idle_reports;  /* consecutive idle reports while settling */
+    /* The line whose reply is pending. */
     char pending[96];
     bool waits;
     /* For sending. */
     int64_t started_ns;
-    bool is_probed; /* with a line end: firmware that reads whole lines only then says something */
+    bool is_probed; /* a line end was sent, to which firmware that reads only whole lines replies */
     int64_t now_ns, sent_ns, next_poll_ns, fast_until_ns;
 };
 
@@ -109,10 +112,10 @@ static void note_setting(struct grbl_state *state, const struct wb_grbl_line *li
 
 static double acceleration_of(const struct wb_stage_settings *settings)
 {
-    return settings->acceleration > 0.0 ? settings->acceleration : UNTOLD_ACCELERATION;
+    return settings->acceleration > 0.0 ? settings->acceleration : DEFAULT_ACCELERATION;
 }
 
-/* An `ok` after a list of settings ends it. */
+/* The `ok` after the list of settings. */
 static void end_settings(struct grbl_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     const struct wb_stage_settings *const settings = &state->settings;
@@ -123,25 +126,25 @@ static void end_settings(struct grbl_state *state, int64_t t_ns, const struct wb
     wb_driver_remark(
         sink, WB_LOG_INFO, t_ns, "settings",
         "axis %c: %g steps/mm, at most %g mm/s, %g mm/s2, travel %g mm, soft limits "
-        "%s; if this computer fails at %g mm/s, the stage moves at most %.3f mm further",
+        "%s; if this computer fails at %g mm/s, the stage continues for at most %.3f mm",
         state->rig.stage.axis, settings->steps * WB_MM, settings->speed / WB_MM,
         settings->acceleration / WB_MM, settings->travel / WB_MM,
         settings->soft_limits ? "on" : "off", speed / WB_MM, wb_jog_feed_ahead(&top) / WB_MM);
     if (settings->powers_off)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings",
-                         "the stage switches its motors off when a motion has ended, and the clamp "
-                         "may sag: set $1=255 in its firmware");
+                         "the stage switches its motors off after a motion, and the clamp may sag: "
+                         "set $1=255 in its firmware");
     if (sink->settings)
         sink->settings(sink->context, settings);
 }
 
-/* The stage moves all the same; what is not known is not checked. */
+/* The settings are not available: the stage can be moved, but motions are not checked. */
 static void miss_settings(struct grbl_state *state, int64_t t_ns, const char *why,
                           const struct wb_sink *sink)
 {
     state->tried_settings = true;
     wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings",
-                     "the stage does not tell its settings ($$): %s; its largest speed and its "
+                     "the stage does not report its settings ($$): %s; its maximum speed and its "
                      "travel are not checked",
                      why);
 }
@@ -159,7 +162,8 @@ static bool waits_for_jog(const struct grbl_state *state)
     return state->waits && strncmp(state->pending, JOG_LINE, strlen(JOG_LINE)) == 0;
 }
 
-/* No more short jogs. A line under way may still start once the stage has come to rest. */
+/* Ends the sequence of short jogs. A line that is still being transferred may start a motion after
+ * the stage has stopped. */
 static void end_feed(struct grbl_state *state)
 {
     state->is_settling = state->is_settling || state->feed.active || waits_for_jog(state);
@@ -207,7 +211,7 @@ static void receive_report(struct grbl_state *state, int64_t t_ns,
     double position_mm = (double)NAN;
     wb_grbl_position(report, &state->offset, state->axis, &position_mm);
     if (!state->answered)
-        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected", "the stage answers, state %s",
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected", "the stage is connected, state %s",
                          report->name);
     state->answered = true;
     if (report->state == WB_STAGE_ALARM && state->state != WB_STAGE_ALARM && state->alarm == 0)
@@ -217,7 +221,7 @@ static void receive_report(struct grbl_state *state, int64_t t_ns,
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "switch",
                          "the limit switch of axis %c is pressed", state->rig.stage.axis);
     state->limit_pressed = report->limit[state->axis];
-    /* Out of the alarm by $X or $H: the number is history. */
+    /* $X or $H ended the alarm. */
     if (report->state != WB_STAGE_ALARM)
         state->alarm = 0;
     state->state = report->state;
@@ -226,8 +230,8 @@ static void receive_report(struct grbl_state *state, int64_t t_ns,
     deliver(state, t_ns, position_mm * WB_MM, sink);
 }
 
-/* The line that waits for its reply will get none. */
-static void forget_line(struct grbl_state *state)
+/* The pending line will not be answered. */
+static void discard_pending(struct grbl_state *state)
 {
     state->waits = false;
     state->feed.active = false;
@@ -240,14 +244,14 @@ static void receive_alarm(struct grbl_state *state, int64_t t_ns, int number,
 {
     state->alarm = number > 0 ? number : 99;
     state->state = WB_STAGE_ALARM;
-    forget_line(state);
+    discard_pending(state);
     state->position_lost = state->position_lost || wb_grbl_alarm_loses_position(number);
     wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "alarm", "ALARM:%d, %s", number,
                      wb_grbl_alarm_text(number));
     deliver(state, t_ns, (double)NAN, sink);
 }
 
-/* The firmware started anew: whatever it was asked is forgotten. */
+/* The firmware restarted: pending lines are lost. */
 static void receive_banner(struct grbl_state *state, int64_t t_ns, const struct wb_grbl_line *line,
                            const struct wb_sink *sink)
 {
@@ -258,7 +262,7 @@ static void receive_banner(struct grbl_state *state, int64_t t_ns, const struct 
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "firmware", "%s", line->text);
     state->was_reset = state->was_reset || !state->resets;
     state->resets = false;
-    forget_line(state);
+    discard_pending(state);
     state->offset.known = false;
 }
 
@@ -276,7 +280,7 @@ static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct w
     else if (state->waits && strcmp(state->pending, "$H") == 0 && state->position_lost) {
         state->position_lost = false;
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "homed",
-                         "the stage was homed: its position is known again");
+                         "the stage was homed: its position is known");
     }
     if (line->kind == WB_GRBL_LINE_OK && waits_for_jog(state))
         wb_jog_feed_accepted(&state->feed, t_ns);
@@ -319,7 +323,7 @@ static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb
         state->n_unknown++;
         if (wb_driver_is_report_due(state->n_unknown))
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                             "a line of the stage is not understood: '%s'; %" PRIu64 " so far",
+                             "a line of the stage cannot be decoded: '%s'; %" PRIu64 " so far",
                              line.text, state->n_unknown);
     }
 }
@@ -337,8 +341,8 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
             continue;
         if (state->line.overlong)
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                             "the stage sent a line of more than %d bytes, which is dropped: check "
-                             "the baud rate",
+                             "a line of more than %d bytes from the stage is dropped: check the "
+                             "baud rate",
                              (int)sizeof state->line.bytes);
         else if (!state->amid)
             receive_line(state, t_ns, sink);
@@ -361,12 +365,12 @@ static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 static enum wb_status send_byte(struct wb_outbox *outbox, uint8_t byte)
 {
     if (!wb_outbox_add(outbox, &byte, 1))
-        return wb_fail(WB_ERR_MEMORY, "the stage takes no more commands: too many wait to be sent");
+        return wb_fail(WB_ERR_MEMORY, "too many commands to the stage are waiting to be sent");
     return WB_OK;
 }
 
-/* Sends a line (with its newline) whose reply is then awaited. While an earlier one is not answered
- * it is refused silently: the caller tries again. */
+/* Sends a line (with its newline) and awaits its reply. While an earlier reply is pending, returns
+ * WB_ERR_BUSY without a message; the caller tries again. */
 static enum wb_status send_line(struct grbl_state *state, const char *text,
                                 struct wb_outbox *outbox)
 {
@@ -374,7 +378,7 @@ static enum wb_status send_line(struct grbl_state *state, const char *text,
     if (state->waits)
         return WB_ERR_BUSY;
     if (length >= sizeof state->pending || !wb_outbox_add_text(outbox, text))
-        return wb_fail(WB_ERR_MEMORY, "the stage takes no more commands: too many wait to be sent");
+        return wb_fail(WB_ERR_MEMORY, "too many commands to the stage are waiting to be sent");
     memcpy(state->pending, text, length);
     state->pending[length] = '\0';
     state->waits = true;
@@ -382,7 +386,7 @@ static enum wb_status send_line(struct grbl_state *state, const char *text,
     return WB_OK;
 }
 
-/* The next short jog, when the firmware has room for it. */
+/* Sends the next short jog if the firmware has space for it. */
 static enum wb_status send_block(struct grbl_state *state, struct wb_outbox *outbox)
 {
     char line[96];
@@ -402,10 +406,9 @@ static enum wb_status start_jog(struct grbl_state *state, double distance, doubl
     char line[96];
     if (!wb_grbl_format_jog(line, sizeof line, state->rig.stage.axis, distance, speed))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "cannot jog by %g mm at %g mm/s: at least 0.001 mm and a positive speed are "
-                       "needed",
+                       "jog by %g mm at %g mm/s: expected at least 0.001 mm and a positive speed",
                        distance / WB_MM, speed / WB_MM);
-    /* The caller waits for `ready`, or tries again. */
+    /* Busy: the caller tries again. */
     if (!state->tried_settings || state->waits || state->feed.active || state->is_settling ||
         state->state != WB_STAGE_IDLE || !isfinite(state->position))
         return WB_ERR_BUSY;
@@ -413,20 +416,20 @@ static enum wb_status start_jog(struct grbl_state *state, double distance, doubl
                                .top = {speed, acceleration_of(&state->settings)},
                                .rounding = state->settings.steps > 0.0
                                                ? 1.0 / state->settings.steps + PRINTED
-                                               : UNTOLD_ROUNDING,
+                                               : DEFAULT_ROUNDING,
                                .start = state->position};
     wb_jog_feed_begin(&state->feed, &jog);
     return send_block(state, outbox);
 }
 
-static bool tells_settings(const struct grbl_state *state)
+static bool can_list_settings(const struct grbl_state *state)
 {
     return state->state == WB_STAGE_IDLE || state->state == WB_STAGE_ALARM;
 }
 
-static bool must_ask_settings(const struct grbl_state *state)
+static bool must_request_settings(const struct grbl_state *state)
 {
-    return tells_settings(state) && !state->asked_settings && !state->waits;
+    return can_list_settings(state) && !state->asked_settings && !state->waits;
 }
 
 static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
@@ -434,26 +437,27 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     struct grbl_state *const state = opaque;
     const uint8_t poll = WB_GRBL_STATUS;
     state->now_ns = now_ns;
-    /* A lost reply must not lock the stage out for ever. */
+    /* A lost reply must not block the stage permanently. */
     const int64_t allowed_ns = waits_for_jog(state) ? JOG_REPLY_NS : REPLY_NS;
     if (state->waits && now_ns - state->sent_ns > allowed_ns && strcmp(state->pending, "$H") != 0) {
-        wb_warn("the stage did not answer '%s' within %d ms: check its cable", state->pending,
+        wb_warn("the stage did not reply to '%s' within %d ms: check its cable", state->pending,
                 (int)(allowed_ns / WB_NS_PER_MS));
         state->waits = false;
         wb_jog_feed_lose(&state->feed);
         state->tried_settings = state->tried_settings || state->asked_settings;
     }
-    if (must_ask_settings(state) && send_line(state, LIST_SETTINGS "\n", outbox) == WB_OK)
+    if (must_request_settings(state) && send_line(state, LIST_SETTINGS "\n", outbox) == WB_OK)
         state->asked_settings = true;
     if (!state->answered && !state->is_probed && now_ns - state->started_ns > PROBE_NS) {
         (void)wb_outbox_add_text(outbox, "\n");
         state->is_probed = true;
     }
-    /* A line that does not fit is offered again. */
+    /* If the block cannot be sent now, the next tick tries again. */
     (void)send_block(state, outbox);
     if (now_ns < state->next_poll_ns || !wb_outbox_add(outbox, &poll, 1))
         return;
-    /* Again, because a line that was under way may have started after the first time. */
+    /* Repeated, because a line that was being transferred may have started after the first cancel.
+     */
     if (state->is_cancelled && state->state == WB_STAGE_JOG)
         (void)send_byte(outbox, WB_GRBL_JOG_CANCEL);
     const int64_t period = now_ns < state->fast_until_ns ? FAST_POLL_PERIOD_NS : POLL_PERIOD_NS;
@@ -479,8 +483,8 @@ static enum wb_status command(void *opaque, enum wb_stage_command what, double d
         return send_byte(outbox, WB_GRBL_JOG_CANCEL);
     case WB_STAGE_COMMAND_SOFT_RESET:
         state->resets = true;
-        /* The firmware forgets what it was sent and will not answer it. */
-        forget_line(state);
+        /* After a reset the firmware does not answer earlier lines. */
+        discard_pending(state);
         poll_soon(state);
         return send_byte(outbox, WB_GRBL_SOFT_RESET);
     case WB_STAGE_COMMAND_HOME:
@@ -497,10 +501,10 @@ static bool ready(const void *opaque)
 {
     const struct grbl_state *const state = opaque;
     return state->answered && state->state != WB_STAGE_UNKNOWN &&
-           (state->tried_settings || !tells_settings(state));
+           (state->tried_settings || !can_list_settings(state));
 }
 
-/* No `stop`: nothing streams, and whether the stage may go on moving is the caller's decision. */
+/* No `stop`: nothing is streamed, and stopping the motion is the caller's decision. */
 const struct wb_driver wb_stage_grbl = {
     .name = "grbl",
     .role = WB_ROLE_STAGE,

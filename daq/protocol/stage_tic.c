@@ -1,11 +1,10 @@
-/* A stage on a Pololu Tic. A way is one target; the Tic's own watchdog, its command timeout, brings
- * the stage to rest when this program dies, hangs or loses its cable: it is told that we live as
- * long as we do, and a Tic whose timeout is off or long is not moved.
+/* Driver of a stage with a Pololu Tic. A motion is one target position. The Tic's watchdog, its
+ * command timeout, stops the stage if this program crashes or hangs or the cable is unplugged: the
+ * driver resets the timeout regularly, and does not move a Tic whose timeout is off or too long.
  *
- * Answers have no frame. What is asked is chosen so that there are two kinds, of different length:
- * first the settings, until they have come, then nothing but the status. Bytes that stop amid an
- * answer are dropped once nothing more came for a while; so what is decoded depends on the received
- * bytes and their times only. */
+ * Replies have no frame. The driver requests only two kinds of reply, with different lengths: first
+ * the settings until they are received, then only the status. An incomplete reply is discarded
+ * after a pause; thus the result depends only on the received bytes and their times. */
 #include "daq/protocol/driver.h"
 
 #include <inttypes.h>
@@ -20,33 +19,34 @@
 #define WB_LOG_DOMAIN "stage"
 
 #define POLL_NS (200 * WB_NS_PER_MS)
-#define FAST_POLL_NS (100 * WB_NS_PER_MS) /* for a while after a stop */
+#define FAST_POLL_NS (100 * WB_NS_PER_MS) /* for FAST_NS after a stop */
 #define FAST_NS (1000 * WB_NS_PER_MS)
-#define ANSWER_NS (500 * WB_NS_PER_MS) /* it takes 25 ms at 9600 baud; then it is asked again */
-#define GAP_NS (80 * WB_NS_PER_MS)     /* within an answer */
-#define WAKE_NS (100 * WB_NS_PER_MS)   /* between two attempts to start the Tic up */
-#define LIVES_PER_TIMEOUT 4            /* signs of life within the command timeout */
-#define LEAST_TIMEOUT_MS 100           /* or a busy computer would stop the stage by itself */
+#define ANSWER_NS (500 * WB_NS_PER_MS) /* timeout of a reply, which takes 25 ms at 9600 baud */
+#define GAP_NS (80 * WB_NS_PER_MS)     /* longest pause within a reply */
+#define WAKE_NS (100 * WB_NS_PER_MS)   /* between two attempts to energize the Tic */
+#define LIVES_PER_TIMEOUT 4            /* timeout resets sent per command timeout */
+/* Accepted command timeout: with less, delays of a busy computer would stop the stage. */
+#define LEAST_TIMEOUT_MS 100
 #define MOST_TIMEOUT_MS 2000
 
 struct tic_state {
     struct wb_rig rig;
-    uint8_t bytes[WB_TIC_SETTINGS_BYTES]; /* of the answer that is coming in */
+    uint8_t bytes[WB_TIC_SETTINGS_BYTES]; /* of the reply being received */
     size_t n;
-    int64_t last_ns; /* arrival of the last byte, or of word that some are missing */
-    bool skips;      /* what comes is not understood: up to the next gap */
-    /* What the Tic told. */
+    int64_t last_ns; /* arrival of the last byte, or time of missing bytes */
+    bool skips;      /* bytes are discarded until the next pause */
+    /* Received from the Tic. */
     bool has_settings, has_status;
     struct wb_tic_settings settings;
-    struct wb_tic_status status; /* the last one */
-    enum wb_stage_state state;   /* and what it means */
+    struct wb_tic_status status; /* last status */
+    enum wb_stage_state state;   /* derived from it */
     bool was_reset;
     uint64_t n_refused;
-    int idle_reports; /* in a row since the last command */
+    int idle_reports; /* consecutive idle reports since the last command */
     /* For sending. */
-    bool waits; /* for an answer */
+    bool waits; /* a reply is pending */
     int64_t now_ns, asked_ns, next_poll_ns, next_life_ns, fast_until_ns;
-    bool wakes; /* the Tic shall start up, because a motion is wanted */
+    bool wakes; /* the Tic is being energized for a motion */
     int64_t next_wake_ns;
 };
 
@@ -62,35 +62,37 @@ static enum wb_status init(void *opaque, const struct wb_rig *rig)
 
 /* --- settings --- */
 
-/* Why the stage must not be moved as the Tic is set, with how to mend it; "" when it may. */
+/* Writes the reason why the Tic's settings do not permit a motion, with the remedy; "": permitted.
+ */
 static void find_fault(const struct wb_tic_settings *tic, char *text, size_t size)
 {
     static const char *const where = "in Tic Control Center, Input and motor settings";
     text[0] = '\0';
     if (tic->control_mode != 0)
-        snprintf(
-            text, size,
-            "the Tic's control mode is %d, and it does not obey its serial port: choose Serial "
-            "/ I2C / USB %s",
-            tic->control_mode, where);
+        snprintf(text, size,
+                 "the Tic's control mode is %d, which ignores the serial port: choose Serial / I2C "
+                 "/ USB "
+                 "%s",
+                 tic->control_mode, where);
     else if (tic->command_timeout_ms == 0)
         snprintf(text, size,
-                 "the Tic's command timeout is off (setting 0x09 is 0), so that the stage would go "
-                 "on when this computer dies: enable it with 1000 ms %s",
+                 "the Tic's command timeout is off (setting 0x09 is 0), so that the stage would "
+                 "continue if this computer fails: set it to 1000 ms %s",
                  where);
     else if (tic->command_timeout_ms < LEAST_TIMEOUT_MS ||
              tic->command_timeout_ms > MOST_TIMEOUT_MS)
         snprintf(text, size,
-                 "the Tic's command timeout (setting 0x09) is %d ms: set it to %d to %d ms %s; the "
-                 "stage continues that long when this computer fails",
+                 "the Tic's command timeout (setting 0x09) is %d ms: set it to %d to %d ms %s; if "
+                 "this computer fails, the stage continues for that time",
                  tic->command_timeout_ms, LEAST_TIMEOUT_MS, MOST_TIMEOUT_MS, where);
     else if (tic->soft_error_response == WB_TIC_GO_TO_POSITION)
         snprintf(text, size,
-                 "the Tic goes to a position of its own when this computer dies (soft error "
-                 "response): choose Decelerate to hold in Tic Control Center, Advanced settings");
+                 "the Tic's soft error response is Go to position, which would move the stage if "
+                 "this computer fails: choose Decelerate to hold in Tic Control Center, Advanced "
+                 "settings");
 }
 
-static void tell_settings(struct tic_state *state, int64_t t_ns, const struct wb_sink *sink)
+static void deliver_settings(struct tic_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     const struct wb_tic_settings *const tic = &state->settings;
     const double steps = state->rig.stage.steps;
@@ -115,15 +117,15 @@ static void tell_settings(struct tic_state *state, int64_t t_ns, const struct wb
     wb_driver_remark(
         sink, WB_LOG_INFO, t_ns, "settings",
         "Tic: at most %g mm/s, %g mm/s2, command timeout %d ms; if this computer fails at "
-        "%g mm/s, the stage moves at most %.3f mm further",
+        "%g mm/s, the stage continues for at most %.3f mm",
         settings.speed / WB_MM, settings.acceleration / WB_MM, tic->command_timeout_ms,
         state->rig.stage.speed / WB_MM, alone / WB_MM);
     if (settings.fault[0])
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings", "%s", settings.fault);
     if (settings.powers_off)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings",
-                         "the Tic switches its motor off when this computer falls silent, and the "
-                         "clamp may sag: set its soft error response to Decelerate to hold");
+                         "the Tic switches its motor off if this computer fails, and the clamp may "
+                         "sag: set its soft error response to Decelerate to hold");
     if (sink->settings)
         sink->settings(sink->context, &settings);
 }
@@ -145,7 +147,7 @@ static enum wb_stage_state state_of(const struct wb_tic_status *status)
     return WB_STAGE_IDLE;
 }
 
-/* True when a bit of errors or flags is set that was not before. */
+/* Whether a bit of errors or flags is set that was not set before. */
 static bool rises(uint16_t before, uint16_t now, uint16_t bits)
 {
     return (now & bits) && !(before & bits);
@@ -159,27 +161,29 @@ static void remark_changes(const struct tic_state *state, int64_t t_ns,
     const int alarm = wb_tic_alarm(now->errors);
     if (!state->has_status)
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected",
-                         "the Tic answers, operation state %d", now->operation);
+                         "the Tic is connected, operation state %d", now->operation);
     else if (now->up_time_ms < before->up_time_ms)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "reset",
-                         "the Tic was reset: its position is not known, home the stage");
+                         "the Tic was reset and lost its position: home the stage");
     if (alarm != 0 && (!state->has_status || alarm != wb_tic_alarm(before->errors)))
         wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "alarm", "%s", wb_tic_alarm_text(alarm));
-    /* Our first word after a silence clears the timeout's own bit, but not that it was obeyed. */
+    /* The first command after a silence clears the error bit of the timeout; the stop is seen from
+     * the velocity and the operation state. */
     if (state->has_status && before->velocity != 0 && before->operation == WB_TIC_NORMAL &&
         now->operation == WB_TIC_SOFT_ERROR && alarm == 0)
         wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "timeout",
-                         "the Tic heard nothing from this computer for %d ms and stopped the stage",
+                         "the Tic received nothing from this computer for %d ms and stopped the "
+                         "stage",
                          state->settings.command_timeout_ms);
-    /* Homing presses its switch and knows no position before: nothing to warn of. */
+    /* No warnings while homing: it activates the limit switch, and the position is uncertain. */
     const bool homes = (before->flags | now->flags) & WB_TIC_HOMING;
     if (rises(before->flags, now->flags, limits))
         wb_driver_remark(sink, homes ? WB_LOG_INFO : WB_LOG_WARNING, t_ns, "switch",
                          "a limit switch is pressed");
     if (!homes && rises(before->flags, now->flags, WB_TIC_POSITION_UNCERTAIN))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "position",
-                         "the Tic is not certain of its position: home the stage, or continue from "
-                         "its present place");
+                         "the Tic's position is uncertain: home the stage, or continue from its "
+                         "present position");
     if ((before->flags & WB_TIC_HOMING) &&
         !(now->flags & (WB_TIC_HOMING | WB_TIC_POSITION_UNCERTAIN)))
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "homed",
@@ -218,14 +222,14 @@ static void take_answer(struct tic_state *state, int64_t t_ns, const struct wb_s
         understood = wb_tic_decode_settings(state->bytes, &state->settings);
         state->has_settings = understood;
         if (understood)
-            tell_settings(state, t_ns, sink);
+            deliver_settings(state, t_ns, sink);
     }
     state->skips = !understood;
     state->n_refused += !understood;
     if (!understood && wb_driver_is_report_due(state->n_refused))
         wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "refused",
-            "an answer of the Tic is not understood and dropped: check the baud rate in "
+            "a reply of the Tic cannot be decoded and is dropped: check the baud rate in "
             "stage.address; %" PRIu64 " so far",
             state->n_refused);
 }
@@ -234,7 +238,7 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
                     const struct wb_sink *sink)
 {
     struct tic_state *const state = opaque;
-    /* Where bytes are missing, the rest of an answer may follow: up to the next silence. */
+    /* After missing bytes, the rest of a reply may follow: discard bytes until the next pause. */
     if (n == 0 || t_ns - state->last_ns > GAP_NS) {
         state->n = 0;
         state->skips = n == 0;
@@ -269,7 +273,7 @@ static bool send_long(struct wb_outbox *outbox, uint8_t command, int32_t value)
 static enum wb_status sent(bool fits)
 {
     if (!fits)
-        return wb_fail(WB_ERR_MEMORY, "the stage takes no more commands: too many wait to be sent");
+        return wb_fail(WB_ERR_MEMORY, "too many commands to the stage are waiting to be sent");
     return WB_OK;
 }
 
@@ -294,8 +298,7 @@ static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     ask(state, outbox);
 }
 
-/* What brings a Tic that rests into its normal operation; it still stands then, whatever its target
- * was before. */
+/* Wakes the Tic to normal operation. It keeps its position, whatever its old target. */
 static void wake(struct tic_state *state, struct wb_outbox *outbox)
 {
     if (state->status.operation == WB_TIC_NORMAL) {
@@ -331,7 +334,7 @@ static void poll_soon(struct tic_state *state)
     state->idle_reports = 0;
 }
 
-/* False while a motion cannot begin yet; the caller tries again. */
+/* False while a motion cannot be started yet; the caller tries again. */
 static bool can_move(struct tic_state *state)
 {
     const bool stands = state->has_status && state->idle_reports >= 2;
@@ -346,18 +349,19 @@ static enum wb_status start_jog(struct tic_state *state, double distance, double
     const double steps = state->rig.stage.steps;
     const double way = round(distance * steps), rate = round(speed * steps / WB_TIC_SPEED_UNIT);
     if (!(fabs(way) >= 1.0) || !(rate >= 1.0) || !(rate <= WB_TIC_MOST_SPEED))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "cannot jog by %g mm at %g mm/s: at least one step of %g mm and a speed of "
-                       "at most %g mm/s are needed",
-                       distance / WB_MM, speed / WB_MM, 1.0 / steps / WB_MM,
-                       WB_TIC_MOST_SPEED * WB_TIC_SPEED_UNIT / steps / WB_MM);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "jog by %g mm at %g mm/s: expected at least one step of %g mm and a speed of "
+            "at most %g mm/s",
+            distance / WB_MM, speed / WB_MM, 1.0 / steps / WB_MM,
+            WB_TIC_MOST_SPEED * WB_TIC_SPEED_UNIT / steps / WB_MM);
     if (!can_move(state))
         return WB_ERR_BUSY;
     const double target = state->status.position + way * state->rig.stage.down;
     if (!(fabs(target) <= INT32_MAX))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the Tic counts to %" PRId32 " steps, and a way to %.0f is wanted: home the "
-                       "stage",
+                       "the Tic counts to %" PRId32
+                       " steps, but the target is %.0f: home the stage",
                        INT32_MAX, target);
     state->idle_reports = 0;
     return sent(send_long(outbox, WB_TIC_SET_MAX_SPEED, (int32_t)rate) &&
@@ -366,7 +370,7 @@ static enum wb_status start_jog(struct tic_state *state, double distance, double
 
 static enum wb_status start_homing(struct tic_state *state, struct wb_outbox *outbox)
 {
-    /* The switch is above. */
+    /* The limit switch is at the upper end. */
     const bool forward = state->rig.stage.down < 0;
     const uint8_t bytes[] = {WB_TIC_GO_HOME, forward};
     if (state->has_settings && !wb_tic_has_limit_switch(&state->settings, forward))
@@ -376,7 +380,7 @@ static enum wb_status start_homing(struct tic_state *state, struct wb_outbox *ou
                        forward ? "forward" : "reverse");
     if (state->state == WB_STAGE_ALARM)
         return wb_fail(WB_ERR_UNSUPPORTED,
-                       "the Tic cannot home (%s): mend the cause, then run 'unlock'",
+                       "the Tic cannot home (%s): remove the cause, then run 'unlock'",
                        wb_tic_alarm_text(wb_tic_alarm(state->status.errors)));
     if (!can_move(state))
         return WB_ERR_BUSY;
@@ -397,7 +401,7 @@ static enum wb_status command(void *opaque, enum wb_stage_command what, double d
         poll_soon(state);
         return sent(send_long(outbox, WB_TIC_SET_TARGET_VELOCITY, 0));
     case WB_STAGE_COMMAND_RESUME:
-        return WB_OK; /* a stage that was stopped is idle, and needs no word to go on */
+        return WB_OK; /* a stopped Tic is idle: nothing to resume */
     case WB_STAGE_COMMAND_SOFT_RESET:
         state->wakes = false;
         poll_soon(state);
@@ -422,8 +426,7 @@ static bool ready(const void *opaque)
     return state->has_settings && state->has_status;
 }
 
-/* No `stop`: whether the stage may go on is the caller's decision, and without our signs of life it
- * does not. */
+/* No `stop`: stopping the motion is the caller's decision; without timeout resets the Tic stops. */
 const struct wb_driver wb_stage_tic = {
     .name = "tic",
     .role = WB_ROLE_STAGE,

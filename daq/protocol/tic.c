@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where the answers' parts lie: variables (section 7 of the guide), settings (section 6). */
+/* Offsets and lengths (bytes) of variables (guide, section 7) and settings (section 6). */
 #define VARIABLE_STATUS 0x00   /* operation, flags, errors: 4 bytes */
 #define VARIABLE_PLANNING 0x09 /* mode, target position: 5 */
 #define VARIABLE_POSITION 0x22 /* position, velocity: 8 */
@@ -17,7 +17,7 @@
 #define PIN_LIMIT_FORWARD 8
 #define PIN_LIMIT_REVERSE 9
 
-static size_t put_question(uint8_t *bytes, uint8_t command, uint8_t offset, uint8_t length)
+static size_t put_request(uint8_t *bytes, uint8_t command, uint8_t offset, uint8_t length)
 {
     bytes[0] = command;
     bytes[1] = offset;
@@ -27,18 +27,18 @@ static size_t put_question(uint8_t *bytes, uint8_t command, uint8_t offset, uint
 
 size_t wb_tic_ask_status(uint8_t bytes[WB_TIC_ASK_BYTES])
 {
-    size_t n = put_question(bytes, WB_TIC_GET_VARIABLE, VARIABLE_STATUS, 4);
-    n += put_question(bytes + n, WB_TIC_GET_VARIABLE, VARIABLE_PLANNING, 5);
-    n += put_question(bytes + n, WB_TIC_GET_VARIABLE, VARIABLE_POSITION, 8);
-    return n + put_question(bytes + n, WB_TIC_GET_VARIABLE, VARIABLE_UP_TIME, 4);
+    size_t n = put_request(bytes, WB_TIC_GET_VARIABLE, VARIABLE_STATUS, 4);
+    n += put_request(bytes + n, WB_TIC_GET_VARIABLE, VARIABLE_PLANNING, 5);
+    n += put_request(bytes + n, WB_TIC_GET_VARIABLE, VARIABLE_POSITION, 8);
+    return n + put_request(bytes + n, WB_TIC_GET_VARIABLE, VARIABLE_UP_TIME, 4);
 }
 
 size_t wb_tic_ask_settings(uint8_t bytes[WB_TIC_ASK_BYTES])
 {
-    size_t n = put_question(bytes, WB_TIC_GET_SETTING, SETTING_CONTROL_MODE, 1);
-    n += put_question(bytes + n, WB_TIC_GET_SETTING, SETTING_COMMAND_TIMEOUT, 2);
-    n += put_question(bytes + n, WB_TIC_GET_SETTING, SETTING_PINS, 7);
-    return n + put_question(bytes + n, WB_TIC_GET_SETTING, SETTING_SPEED, 13);
+    size_t n = put_request(bytes, WB_TIC_GET_SETTING, SETTING_CONTROL_MODE, 1);
+    n += put_request(bytes + n, WB_TIC_GET_SETTING, SETTING_COMMAND_TIMEOUT, 2);
+    n += put_request(bytes + n, WB_TIC_GET_SETTING, SETTING_PINS, 7);
+    return n + put_request(bytes + n, WB_TIC_GET_SETTING, SETTING_SPEED, 13);
 }
 
 static uint16_t read_16(const uint8_t *bytes)
@@ -165,18 +165,18 @@ const char *wb_tic_alarm_text(int alarm)
 {
     switch (alarm - WB_TIC_ALARM) {
     case 1:
-        return "motor driver error: the driver chip is too hot or its motor is shorted";
+        return "motor driver error: the driver is too hot or the motor is short-circuited";
     case 2:
-        return "low VIN: the motor's supply is off or too weak";
+        return "low VIN: the motor supply is off or its voltage too low";
     case 3:
         return "the kill switch is active";
     case 4:
         return "a required input is invalid: set the control mode to Serial / I2C / USB";
     case 5:
-        return "serial error: bytes were damaged on their way to the Tic";
+        return "serial error: the Tic received damaged bytes";
     case 8:
         return "its ERR line is held high by another device";
     default:
-        return "an error that is not known here";
+        return "unknown error";
     }
 }

@@ -1,10 +1,10 @@
-/* Pololu Tic, a stepper controller, on its serial port: its commands and answers as pure functions
- * on bytes, for the driver and for the virtual rig. Source: Pololu, Tic user's guide (0J71),
- * sections 6 to 9; compact protocol, CRC off.
+/* Pololu Tic, a stepper controller, on its serial port: commands and replies as pure functions of
+ * bytes, for the driver and the virtual rig. Source: Pololu, Tic user's guide (0J71), sections 6 to
+ * 9; compact protocol, CRC off.
  *
- * A command is a byte from 0x80 on, its data bytes are below 0x80. Only questions are answered, by
- * the raw bytes asked for, without any frame. So that an answer is known by its length alone, two
- * groups of questions are used: what the Tic is set to, and how it stands.
+ * A command is a byte from 0x80 on, its data bytes are below 0x80. Only requests are answered, with
+ * the requested bytes without a frame. Two groups of requests are used, for settings and status,
+ * whose replies differ in length.
  *
  * Positions are in microsteps, speeds in microsteps per 10 000 s, accelerations in microsteps/s per
  * 100 s. */
@@ -18,13 +18,13 @@
 #define WB_TIC_SPEED_UNIT 1e-4        /* microsteps/s */
 #define WB_TIC_ACCELERATION_UNIT 1e-2 /* microsteps/s2 */
 #define WB_TIC_MOST_SPEED 500000000   /* 50 000 microsteps/s */
-#define WB_TIC_EXIT_SAFE_START_MS 200 /* so long may the Tic start up after the command */
+#define WB_TIC_EXIT_SAFE_START_MS 200 /* time for the Tic to start after Exit safe start */
 
 enum {
     WB_TIC_EXIT_SAFE_START = 0x83,
     WB_TIC_ENERGIZE = 0x85,
     WB_TIC_DEENERGIZE = 0x86,
-    WB_TIC_HALT_AND_HOLD = 0x89, /* without braking: the position is uncertain then */
+    WB_TIC_HALT_AND_HOLD = 0x89, /* without deceleration: makes the position uncertain */
     WB_TIC_CLEAR_DRIVER_ERROR = 0x8A,
     WB_TIC_RESET_COMMAND_TIMEOUT = 0x8C,
     WB_TIC_GO_HOME = 0x97, /* 7 bits: 0 in reverse, 1 forward */
@@ -55,7 +55,7 @@ enum {
     WB_TIC_ERROR_COMMAND_TIMEOUT = 1 << 6,
     WB_TIC_ERROR_SAFE_START = 1 << 7,
     WB_TIC_ERROR_ERR_LINE = 1 << 8,
-    /* What the tool's own words clear: the Tic stands and waits. */
+    /* Errors that wirebench's commands clear: the Tic stands still and waits. */
     WB_TIC_ERRORS_OF_REST =
         WB_TIC_ERROR_DEENERGIZED | WB_TIC_ERROR_COMMAND_TIMEOUT | WB_TIC_ERROR_SAFE_START
 };
@@ -75,29 +75,29 @@ enum {
     WB_TIC_TARGET_VELOCITY
 };
 
-/* What the Tic does when its command timeout has run out (setting 0x53). */
+/* Soft error response (setting 0x53): action when the command timeout has expired. */
 enum wb_tic_response {
-    WB_TIC_RESPONSE_DEENERGIZE, /* de-energize */
-    WB_TIC_HALT,                /* halt and hold */
-    WB_TIC_BRAKE,               /* decelerate to hold */
-    WB_TIC_GO_TO_POSITION,      /* go to a position of its own */
+    WB_TIC_RESPONSE_DEENERGIZE,
+    WB_TIC_HALT,           /* halt and hold */
+    WB_TIC_BRAKE,          /* decelerate to hold */
+    WB_TIC_GO_TO_POSITION, /* go to the position in its settings */
     WB_TIC_RESPONSES
 };
 
-/* How the Tic stands. */
+/* Status of the Tic. */
 #define WB_TIC_STATUS_BYTES 21
 struct wb_tic_status {
     uint8_t operation; /* enum wb_tic_operation */
     uint8_t flags;
     uint16_t errors;
     uint8_t planning; /* WB_TIC_TARGET_... */
-    int32_t target;   /* position, where it is planned for */
+    int32_t target;   /* position, if `planning` is a target position */
     int32_t position;
     int32_t velocity;
     uint32_t up_time_ms;
 };
 
-/* What it is set to, in its non-volatile memory. */
+/* Settings in its non-volatile memory. */
 #define WB_TIC_SETTINGS_BYTES 23
 struct wb_tic_settings {
     uint8_t control_mode;        /* 0: serial, I2C, USB */
@@ -108,36 +108,36 @@ struct wb_tic_settings {
     uint8_t soft_error_response;                            /* enum wb_tic_response */
 };
 
-/* Bytes that ask for the one and for the other. Return their number, at most WB_TIC_ASK_BYTES. */
+/* Requests for status and settings. Return their length, at most WB_TIC_ASK_BYTES. */
 #define WB_TIC_ASK_BYTES 12
 size_t wb_tic_ask_status(uint8_t bytes[WB_TIC_ASK_BYTES]);
 size_t wb_tic_ask_settings(uint8_t bytes[WB_TIC_ASK_BYTES]);
 
-/* False when the bytes are no such answer. */
+/* Decode a reply; false if the bytes are invalid. */
 bool wb_tic_decode_status(const uint8_t bytes[WB_TIC_STATUS_BYTES], struct wb_tic_status *status);
 bool wb_tic_decode_settings(const uint8_t bytes[WB_TIC_SETTINGS_BYTES],
                             struct wb_tic_settings *settings);
 
-/* A pin is the limit switch for this direction of the count. */
+/* Whether a pin is the limit switch for this direction of counting. */
 bool wb_tic_has_limit_switch(const struct wb_tic_settings *settings, bool forward);
 
-/* m/s2 within which the Tic both speeds up and brakes, with `steps` microsteps/m. */
+/* m/s2, the smaller of acceleration and deceleration, with `steps` microsteps/m. */
 double wb_tic_acceleration(const struct wb_tic_settings *settings, double steps);
 
-/* A command with 32 bits of data, 6 bytes. */
+/* Encodes a command with 32 bits of data, 6 bytes. */
 #define WB_TIC_LONG_BYTES 6
 void wb_tic_encode_long(uint8_t bytes[WB_TIC_LONG_BYTES], uint8_t command, int32_t value);
-/* Its data, without the command. */
+/* Decodes its data, without the command byte. */
 int32_t wb_tic_decode_long(const uint8_t data[WB_TIC_LONG_BYTES - 1]);
 
-/* Data bytes of a command; -1 when there is none like it. */
+/* Number of data bytes of a command; -1: unknown command. */
 int wb_tic_data_bytes(uint8_t command);
 
-/* The number of an alarm in stage reports: WB_TIC_ALARM + the lowest bit of an error that the
- * tool's own words do not clear. 0: no such error. */
+/* Alarm number for stage reports: WB_TIC_ALARM + the lowest bit of an error that wirebench's
+ * commands do not clear. 0: no such error. */
 #define WB_TIC_ALARM 100
 int wb_tic_alarm(uint16_t errors);
-/* What it means and how to mend it, in a few words; never NULL. */
+/* Meaning of an alarm number; never NULL. */
 const char *wb_tic_alarm_text(int alarm);
 
 #endif

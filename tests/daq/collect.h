@@ -1,4 +1,4 @@
-/* A sink that keeps what a driver delivers, for the tests of drivers. */
+/* A sink that stores the samples and remarks of a driver, for the tests of drivers. */
 #ifndef WB_TESTS_DAQ_COLLECT_H
 #define WB_TESTS_DAQ_COLLECT_H
 
@@ -85,7 +85,7 @@ static inline struct wb_sink collect_sink(struct collect *collect)
                             .remark = collect_remark};
 }
 
-/* How many remarks of a kind were made. */
+/* Number of remarks of a kind. */
 static inline int collect_count(const struct collect *collect, const char *kind)
 {
     int n = 0;

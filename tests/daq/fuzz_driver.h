@@ -1,5 +1,5 @@
-/* What the fuzz targets of drivers share: a driver is fed in reads of some size, its remarks must
- * be printable, and its samples are counted and hashed. */
+/* Common part of the fuzz targets of drivers: feeds a driver in reads of some size, checks that its
+ * remarks are printable, and counts and hashes its samples. */
 #ifndef WB_TESTS_DAQ_FUZZ_DRIVER_H
 #define WB_TESTS_DAQ_FUZZ_DRIVER_H
 
@@ -47,7 +47,7 @@ static inline struct fuzz_total fuzz_feed(const struct wb_driver *driver, const 
     return total;
 }
 
-/* How the bytes are cut into reads must not matter. */
+/* The result must not depend on the division into reads. */
 static inline void fuzz_cuts(const struct wb_driver *driver, const struct wb_rig *rig,
                              struct wb_sink sink, const uint8_t *bytes, size_t n)
 {

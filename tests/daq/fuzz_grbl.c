@@ -1,4 +1,4 @@
-/* Any bytes from a stage are lines or remarks, and how they are cut into reads does not matter. */
+/* Any bytes from a stage give lines or remarks, independent of the division into reads. */
 #include "tests/daq/fuzz_driver.h"
 #include "tests/daq/grbl_jog.h"
 

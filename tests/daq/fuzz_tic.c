@@ -1,4 +1,4 @@
-/* Any bytes from a Tic are answers or dropped, and how they are cut into reads does not matter. */
+/* Any bytes from a Tic are replies or dropped, independent of the division into reads. */
 #include "tests/daq/fuzz_driver.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* What a series of masses says of a load cell, on readings made with known faults. */
+/* Calibration of a load cell from a series of masses, with readings that have known faults. */
 #include <math.h>
 #include <string.h>
 
@@ -50,7 +50,7 @@ static struct wb_cell_calibration compute(const struct cell *cell, const char *t
 
 static const char up_and_down[] = "0,2,5,10,20,10,5,2,0";
 
-static void a_cell_without_fault_passes(void **state)
+static void good_cell_passes(void **state)
 {
     (void)state;
     const struct wb_cell_calibration c =
@@ -64,7 +64,7 @@ static void a_cell_without_fault_passes(void **state)
     }
 }
 
-static void a_gain_is_the_span(void **state)
+static void gain_is_the_span(void **state)
 {
     (void)state;
     const struct wb_cell_calibration c = compute(&(struct cell){.gain = 1.015}, up_and_down);
@@ -76,7 +76,7 @@ static void a_gain_is_the_span(void **state)
 }
 
 /* The line through (0, 0), (10, 10 + b), (20, 20) has the slope 1 and lies b/3 above the ends. */
-static void a_bend_is_the_linearity(void **state)
+static void curvature_is_the_linearity(void **state)
 {
     (void)state;
     const double bend = 0.3 * WB_G;
@@ -92,7 +92,7 @@ static void a_bend_is_the_linearity(void **state)
     assert_close(c.results[WB_CELL_SPAN].uncertainty, c.scatter / sqrt(200e-6), 1e-9);
 }
 
-static void what_is_left_on_the_way_down_is_hysteresis_and_zero_return(void **state)
+static void residual_in_unloading_is_hysteresis_and_zero_return(void **state)
 {
     (void)state;
     const double left = 0.05 * WB_G;
@@ -107,8 +107,8 @@ static void what_is_left_on_the_way_down_is_hysteresis_and_zero_return(void **st
     assert_false(c.results[WB_CELL_REPEATABILITY].known);
 }
 
-/* 10 g is reached from below three times, and reads 0, +d and -d too much: a standard deviation of
- * d. 20 g and 0 repeat themselves. */
+/* 10 g is reached from below three times with errors of 0, +d and -d: a standard deviation of d.
+ * The readings of 20 g and 0 are identical. */
 static void repeated_masses_give_the_repeatability(void **state)
 {
     (void)state;
@@ -126,7 +126,7 @@ static void repeated_masses_give_the_repeatability(void **state)
     assert_false(c.results[WB_CELL_HYSTERESIS].known);
 }
 
-static void what_the_masses_do_not_show_is_not_known_and_fails_nothing(void **state)
+static void undetermined_quantities_are_unknown_and_do_not_fail(void **state)
 {
     (void)state;
     const struct wb_cell_calibration c = compute(&(struct cell){.gain = 1.0}, "0,10,20");
@@ -136,15 +136,13 @@ static void what_the_masses_do_not_show_is_not_known_and_fails_nothing(void **st
     assert_true(c.passed);
 }
 
-static void a_list_that_is_no_series_is_refused_with_the_reason(void **state)
+static void invalid_series_is_rejected_with_the_reason(void **state)
 {
     (void)state;
-    static const char *const cases[][2] = {{"5,10,0", "0 first"},
-                                           {"0,10,10,0", "two masses that differ"},
-                                           {"0,-1,2", "0 g and more, not -1"},
-                                           {"0,5 g,10", "not '5 g'"},
-                                           {"0,5,,10", "not ''"},
-                                           {"", "not ''"}};
+    static const char *const cases[][2] = {
+        {"5,10,0", "0 first"}, {"0,10,10,0", "two different masses"},
+        {"0,-1,2", "not -1"},  {"0,5 g,10", "not '5 g'"},
+        {"0,5,,10", "not ''"}, {"", "not ''"}};
     double masses[WB_RIG_MASSES];
     char problem[160], many[8 * WB_RIG_MASSES] = "0";
     for (size_t i = 0; i < WB_COUNT(cases); i++) {
@@ -162,13 +160,13 @@ static void a_list_that_is_no_series_is_refused_with_the_reason(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cell_without_fault_passes),
-        cmocka_unit_test(a_gain_is_the_span),
-        cmocka_unit_test(a_bend_is_the_linearity),
-        cmocka_unit_test(what_is_left_on_the_way_down_is_hysteresis_and_zero_return),
+        cmocka_unit_test(good_cell_passes),
+        cmocka_unit_test(gain_is_the_span),
+        cmocka_unit_test(curvature_is_the_linearity),
+        cmocka_unit_test(residual_in_unloading_is_hysteresis_and_zero_return),
         cmocka_unit_test(repeated_masses_give_the_repeatability),
-        cmocka_unit_test(what_the_masses_do_not_show_is_not_known_and_fails_nothing),
-        cmocka_unit_test(a_list_that_is_no_series_is_refused_with_the_reason),
+        cmocka_unit_test(undetermined_quantities_are_unknown_and_do_not_fail),
+        cmocka_unit_test(invalid_series_is_rejected_with_the_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

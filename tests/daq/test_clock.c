@@ -1,4 +1,4 @@
-/* Device clocks to the host's, on made-up clocks with known offset, skew and latency. */
+/* Mapping of device clocks, with synthetic clocks of known offset, skew and latency. */
 #include "daq/protocol/clock.h"
 
 #include <stdlib.h>
@@ -61,7 +61,7 @@ static void probes_give_offset_and_skew(void **state)
     assert_true(line.n_points == n && line.n_used >= N_BURSTS && line.n_used < n);
 }
 
-static void an_asymmetric_path_stays_within_the_stated_uncertainty(void **state)
+static void asymmetric_path_stays_within_the_stated_uncertainty(void **state)
 {
     (void)state;
     static struct wb_clock_probe probes[N_BURSTS * N_PROBES];
@@ -73,7 +73,7 @@ static void an_asymmetric_path_stays_within_the_stated_uncertainty(void **state)
     assert_true(error <= line.uncertainty);
 }
 
-static void wild_probes_do_not_move_the_line(void **state)
+static void outliers_do_not_change_the_line(void **state)
 {
     (void)state;
     static struct wb_clock_probe probes[N_BURSTS * N_PROBES];
@@ -131,10 +131,10 @@ static void envelope_finds_skew_and_keeps_the_latency(void **state)
         assert_true(host_ns[i] - wb_clock_line_host_ns(&line, device[i]) >= -2);
 }
 
-static void envelope_is_the_best_of_all_lines_below(void **state)
+static void envelope_is_the_best_line_below_all_points(void **state)
 {
     (void)state;
-    /* The slow twin: every line through two points that has all others above it. */
+    /* The slow reference: every line through two points that has all other points above it. */
     enum {
         N = 40
     };
@@ -189,7 +189,7 @@ static size_t split(const double *device, const int64_t *host_ns, size_t n, size
     return wb_clock_split(&stamps, 0.5, starts, most);
 }
 
-static void a_restarted_server_begins_a_segment(void **state)
+static void restarted_server_begins_a_segment(void **state)
 {
     (void)state;
     static double device[N_FRAMES];
@@ -207,23 +207,23 @@ static void a_restarted_server_begins_a_segment(void **state)
     assert_int_equal(split(device, host_ns, N_FRAMES, starts, 2), 2);
 }
 
-static void a_busy_host_begins_none(void **state)
+static void busy_host_begins_no_segment(void **state)
 {
     (void)state;
     static double device[N_FRAMES];
     static int64_t host_ns[N_FRAMES];
     make_frames(device, host_ns, 1e-3);
-    /* For 2.7 s nothing is taken; then all that waited comes at once. */
+    /* Nothing is read for 2.7 s; then all pending data arrive at once. */
     const int64_t until = host_ns[6000] + INT64_C(2700000000);
     for (int i = 6000; i < N_FRAMES && host_ns[i] < until; i++)
         host_ns[i] = until;
     size_t starts[4];
     assert_int_equal(split(device, host_ns, N_FRAMES, starts, 4), 1);
     assert_int_equal(split(device, host_ns, 0, starts, 4), 0);
-    /* The recording ends while the host still works off what waited. */
+    /* The recording ends while the host is still processing the backlog. */
     assert_int_equal(split(device, host_ns, 6080, starts, 4), 1);
     assert_int_equal(split(device, host_ns, 6001, starts, 4), 1);
-    /* A server that stood still for as long is not late: it goes on at its own pace. */
+    /* A server that was interrupted for as long is not delayed: it continues at its rate. */
     make_frames(device, host_ns, 1e-3);
     for (int i = 6000; i < N_FRAMES; i++)
         host_ns[i] += INT64_C(2700000000);
@@ -231,7 +231,7 @@ static void a_busy_host_begins_none(void **state)
     assert_int_equal(starts[1], 6000);
 }
 
-static void lost_readings_begin_a_segment_and_late_ones_do_not(void **state)
+static void lost_readings_begin_a_segment_and_late_readings_do_not(void **state)
 {
     (void)state;
     enum {
@@ -264,15 +264,15 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(probes_give_offset_and_skew),
-        cmocka_unit_test(an_asymmetric_path_stays_within_the_stated_uncertainty),
-        cmocka_unit_test(wild_probes_do_not_move_the_line),
+        cmocka_unit_test(asymmetric_path_stays_within_the_stated_uncertainty),
+        cmocka_unit_test(outliers_do_not_change_the_line),
         cmocka_unit_test(few_probes_take_the_nominal_slope),
         cmocka_unit_test(envelope_finds_skew_and_keeps_the_latency),
-        cmocka_unit_test(envelope_is_the_best_of_all_lines_below),
+        cmocka_unit_test(envelope_is_the_best_line_below_all_points),
         cmocka_unit_test(short_or_repeated_stamps_take_the_nominal_slope),
-        cmocka_unit_test(a_restarted_server_begins_a_segment),
-        cmocka_unit_test(a_busy_host_begins_none),
-        cmocka_unit_test(lost_readings_begin_a_segment_and_late_ones_do_not),
+        cmocka_unit_test(restarted_server_begins_a_segment),
+        cmocka_unit_test(busy_host_begins_no_segment),
+        cmocka_unit_test(lost_readings_begin_a_segment_and_late_readings_do_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

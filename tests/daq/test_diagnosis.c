@@ -1,4 +1,4 @@
-/* What the first bytes of an instrument that is not understood tell about it. */
+/* Diagnosis of an instrument from its first bytes if they cannot be decoded. */
 #include "daq/protocol/diagnosis.h"
 
 #include "tests/check.h"
@@ -40,18 +40,18 @@ static void other_firmware_is_named(void **state)
     assert_stage("<Idle,MPos:0.000,0.000,0.000,WPos:0.000,0.000,0.000>\r\n", "GRBL before 1.1");
     assert_stage("start\necho:Marlin 1.1.9\n\necho: Last Updated: 2018-07-31\n", "Marlin");
     assert_stage("echo:Unknown command: \"????????\"\nok\n", "Marlin");
-    assert_stage("\r\nGrbl 1.1h ['$' for help]\r\n", "does not answer '?'");
+    assert_stage("\r\nGrbl 1.1h ['$' for help]\r\n", "does not reply to '?'");
     assert_stage("hello\r\nhello\r\n", "stage.protocol");
 }
 
-static void a_tic_that_does_not_answer_is_told_of_in_its_own_words(void **state)
+static void silent_tic_is_reported_with_advice_for_a_tic(void **state)
 {
     (void)state;
     static const struct {
         const char *bytes, *words;
     } cases[] = {
-        {"", "nothing came: check power and cable (TX, RX and ground)"},
-        {noise, "no answer of a Tic: check"},
+        {"", "TX, RX and ground"},
+        {noise, "not a reply of a Tic"},
         {"\r\nGrbl 1.1h ['$' for help]\r\n", "set stage.protocol: grbl"},
         {readings, "swapped"},
     };
@@ -64,7 +64,7 @@ static void a_tic_that_does_not_answer_is_told_of_in_its_own_words(void **state)
     }
 }
 
-static void a_wrong_baud_rate_is_told(void **state)
+static void wrong_baud_rate_is_reported(void **state)
 {
     (void)state;
     assert_stage(noise, "baud rate in stage.address");
@@ -73,17 +73,17 @@ static void a_wrong_baud_rate_is_told(void **state)
     assert_load("", "", "the baud rate in load_cell.address");
 }
 
-static void swapped_ports_are_told(void **state)
+static void swapped_ports_are_reported(void **state)
 {
     (void)state;
     assert_stage(readings, "swapped");
     assert_load("", readings, "swapped");
     assert_load("\r\nGrbl 1.1h ['$' for help]\r\n", "", "swapped");
-    /* Some numbers among other lines are no load cell. */
-    assert_stage("boot\r\n12\r\nloading\r\nchecking\r\n", "is not GRBL 1.1");
+    /* A few numbers among other lines do not identify a load cell. */
+    assert_stage("boot\r\n12\r\nloading\r\nchecking\r\n", "not those of GRBL 1.1");
 }
 
-static void line_ends_of_another_kind_are_told(void **state)
+static void other_line_ends_are_reported(void **state)
 {
     (void)state;
     char endless[200];
@@ -111,8 +111,8 @@ static void only_the_beginning_is_kept(void **state)
     assert_int_equal(wb_diagnosis_kind(&diagnosis), WB_DIAGNOSIS_NOISE);
 }
 
-/* Nothing is beyond its reach: any bytes, and lines cut anywhere. */
-static void any_bytes_are_judged(void **state)
+/* Any bytes, and lines truncated anywhere, are accepted. */
+static void any_bytes_are_accepted(void **state)
 {
     (void)state;
     unsigned seed = 1;
@@ -136,12 +136,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(other_firmware_is_named),
-        cmocka_unit_test(a_wrong_baud_rate_is_told),
-        cmocka_unit_test(swapped_ports_are_told),
-        cmocka_unit_test(line_ends_of_another_kind_are_told),
-        cmocka_unit_test(a_tic_that_does_not_answer_is_told_of_in_its_own_words),
+        cmocka_unit_test(wrong_baud_rate_is_reported),
+        cmocka_unit_test(swapped_ports_are_reported),
+        cmocka_unit_test(other_line_ends_are_reported),
+        cmocka_unit_test(silent_tic_is_reported_with_advice_for_a_tic),
         cmocka_unit_test(only_the_beginning_is_kept),
-        cmocka_unit_test(any_bytes_are_judged),
+        cmocka_unit_test(any_bytes_are_accepted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,7 @@ static void drivers_are_found_by_role_and_protocol(void **state)
     assert_null(wb_drivers_find(WB_ROLE_LOAD, "gener"));
 }
 
-static void every_driver_has_what_the_loop_calls(void **state)
+static void every_driver_has_the_operations_that_the_loop_calls(void **state)
 {
     (void)state;
     int n = 0;
@@ -52,7 +52,7 @@ static void outbox_keeps_entries_apart(void **state)
     assert_int_equal(outbox.n_entries + outbox.n_bytes, 0);
 }
 
-static void full_outbox_takes_nothing_more(void **state)
+static void full_outbox_accepts_no_more_entries(void **state)
 {
     (void)state;
     static const uint8_t big[WB_OUTBOX_BYTES + 1];
@@ -73,10 +73,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(drivers_are_found_by_role_and_protocol),
-        cmocka_unit_test(every_driver_has_what_the_loop_calls),
+        cmocka_unit_test(every_driver_has_the_operations_that_the_loop_calls),
         cmocka_unit_test(roles_have_names),
         cmocka_unit_test(outbox_keeps_entries_apart),
-        cmocka_unit_test(full_outbox_takes_nothing_more),
+        cmocka_unit_test(full_outbox_accepts_no_more_entries),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

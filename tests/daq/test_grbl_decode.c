@@ -16,7 +16,7 @@ static struct wb_grbl_line decode(const char *text)
     return line;
 }
 
-static void lines_are_told_apart(void **state)
+static void kinds_of_lines_are_distinguished(void **state)
 {
     (void)state;
     static const struct {
@@ -112,7 +112,7 @@ static void work_position_needs_the_cached_offset(void **state)
     assert_false(wb_grbl_position(&report, &offset, 1, &position));
 }
 
-static void jogs_are_written_in_millimetres_and_minutes(void **state)
+static void jogs_are_formatted_in_mm_and_mm_per_min(void **state)
 {
     (void)state;
     char text[64];
@@ -163,7 +163,7 @@ static void reports_survive_the_round_trip(void **state)
     assert_string_equal(
         text, "<Hold:1|MPos:-53.000,0.001,12.000|FS:60,0|Pn:X|WCO:1.000,2.000,3.000>\r\n");
     assert_int_equal(n, strlen(text));
-    text[n - 1] = '\0'; /* the newline ends the line, it is no part of it */
+    text[n - 1] = '\0'; /* the newline is not part of the line */
     const struct wb_grbl_line line = decode(text);
     assert_int_equal(line.kind, WB_GRBL_LINE_REPORT);
     assert_int_equal(line.report.state, WB_STAGE_HOLD);
@@ -188,11 +188,11 @@ static void codes_have_a_meaning(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_are_told_apart),
+        cmocka_unit_test(kinds_of_lines_are_distinguished),
         cmocka_unit_test(reports_give_state_position_feed_and_switches),
         cmocka_unit_test(states_of_the_manual_are_known),
         cmocka_unit_test(work_position_needs_the_cached_offset),
-        cmocka_unit_test(jogs_are_written_in_millimetres_and_minutes),
+        cmocka_unit_test(jogs_are_formatted_in_mm_and_mm_per_min),
         cmocka_unit_test(jogs_are_read_back),
         cmocka_unit_test(reports_survive_the_round_trip),
         cmocka_unit_test(codes_have_a_meaning),

@@ -45,7 +45,7 @@ static void readings_become_forces_with_their_arrival(void **state)
     free(driver);
 }
 
-static void first_partial_line_is_dropped_and_told(void **state)
+static void incomplete_first_line_is_dropped_and_reported(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -76,7 +76,7 @@ static void overload_is_an_invalid_sample_and_one_remark(void **state)
     free(driver);
 }
 
-static void change_of_unit_is_an_alarm(void **state)
+static void change_of_unit_is_reported(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -87,7 +87,7 @@ static void change_of_unit_is_an_alarm(void **state)
     assert_false(collect.load[0].unit_changed);
     assert_true(collect.load[1].unit_changed && collect.load[1].valid);
     assert_close(collect.load[1].force, 2e-3 * 9.81, 1e-16);
-    /* Without a unit the last one holds, and the alarm with it. */
+    /* A line without a unit keeps the last unit, and thus the alarm. */
     assert_true(collect.load[2].unit_changed);
     assert_close(collect.load[2].force, 3e-3 * 9.81, 1e-16);
     assert_false(collect.load[3].unit_changed);
@@ -95,7 +95,7 @@ static void change_of_unit_is_an_alarm(void **state)
     free(driver);
 }
 
-static void a_unit_that_contradicts_the_rig_file_is_believed_and_told_once(void **state)
+static void contradicting_unit_is_used_and_reported_once(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -115,7 +115,7 @@ static void a_unit_that_contradicts_the_rig_file_is_believed_and_told_once(void 
     free(driver);
 }
 
-static void readings_without_any_unit_are_refused(void **state)
+static void readings_without_a_unit_are_rejected(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -143,7 +143,7 @@ static void garbage_is_counted_without_a_flood_of_remarks(void **state)
     free(driver);
 }
 
-/* What came of many lines. */
+/* Result of many lines. */
 struct tally {
     int n, wrong, next;
 };
@@ -158,9 +158,9 @@ static void tally_load(void *context, const struct wb_load_sample *sample)
     tally->next = (int)round(k) + 1;
 }
 
-/* Bytes as of a wrong baud rate or a bad contact, line ends and digits among them, at random places
- * of a stream; each burst begins with one that no indicator prints. */
-static void noise_costs_two_readings_a_burst_and_makes_none(void **state)
+/* Bytes as caused by a wrong baud rate or a bad contact, including line ends and digits, at random
+ * positions of a stream; each burst begins with a byte that indicators do not print. */
+static void noise_loses_two_readings_per_burst_and_creates_none(void **state)
 {
     (void)state;
     enum {
@@ -194,8 +194,8 @@ static void noise_costs_two_readings_a_burst_and_makes_none(void **state)
     assert_int_equal(tally.wrong, 0);
     assert_true(bursts > 2000 && tally.n < READINGS);
     assert_true(READINGS - tally.n <= 2 * bursts);
-    count_trials("Noise amid the lines of a load cell", (uint64_t)bursts,
-                 "bursts in %d lines: %.2f readings lost a burst, none made", READINGS,
+    count_trials("Noise between the bytes of a load cell", (uint64_t)bursts,
+                 "bursts in %d lines: %.2f readings lost per burst, no wrong reading", READINGS,
                  (double)(READINGS - tally.n) / bursts);
 }
 
@@ -214,7 +214,7 @@ static void bytes_before_settling_are_ignored(void **state)
     free(driver);
 }
 
-static void silence_ends_a_line_where_the_rig_says_so(void **state)
+static void pause_ends_a_line_if_the_rig_file_says_so(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -233,7 +233,7 @@ static void silence_ends_a_line_where_the_rig_says_so(void **state)
     free(driver);
 }
 
-static void polls_keep_to_their_period(void **state)
+static void polls_keep_their_period(void **state)
 {
     (void)state;
     struct wb_rig rig = rig_of("g");
@@ -257,7 +257,7 @@ static void polls_keep_to_their_period(void **state)
     }
     assert_int_equal(first, 1050); /* not before the instrument has settled */
     assert_int_equal(n_polls, 10);
-    /* After a pause there is one poll, not one for each that was missed. */
+    /* After a pause there is one poll; missed polls are skipped. */
     wb_outbox_clear(&outbox);
     wb_loadcell_generic.tick(driver, 9000 * MS, &outbox);
     wb_loadcell_generic.tick(driver, 9010 * MS, &outbox);
@@ -265,7 +265,7 @@ static void polls_keep_to_their_period(void **state)
     free(driver);
 }
 
-/* Chunks and their times alone decide; what was sent in between does not matter. */
+/* The result depends only on chunks and their times, not on sent bytes. */
 static void replay_gives_the_same_samples(void **state)
 {
     (void)state;
@@ -296,16 +296,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(readings_become_forces_with_their_arrival),
-        cmocka_unit_test(first_partial_line_is_dropped_and_told),
+        cmocka_unit_test(incomplete_first_line_is_dropped_and_reported),
         cmocka_unit_test(overload_is_an_invalid_sample_and_one_remark),
-        cmocka_unit_test(change_of_unit_is_an_alarm),
-        cmocka_unit_test(a_unit_that_contradicts_the_rig_file_is_believed_and_told_once),
-        cmocka_unit_test(readings_without_any_unit_are_refused),
+        cmocka_unit_test(change_of_unit_is_reported),
+        cmocka_unit_test(contradicting_unit_is_used_and_reported_once),
+        cmocka_unit_test(readings_without_a_unit_are_rejected),
         cmocka_unit_test(garbage_is_counted_without_a_flood_of_remarks),
-        cmocka_unit_test(noise_costs_two_readings_a_burst_and_makes_none),
+        cmocka_unit_test(noise_loses_two_readings_per_burst_and_creates_none),
         cmocka_unit_test(bytes_before_settling_are_ignored),
-        cmocka_unit_test(silence_ends_a_line_where_the_rig_says_so),
-        cmocka_unit_test(polls_keep_to_their_period),
+        cmocka_unit_test(pause_ends_a_line_if_the_rig_file_says_so),
+        cmocka_unit_test(polls_keep_their_period),
         cmocka_unit_test(replay_gives_the_same_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -74,7 +74,7 @@ static void lines_of_known_instruments_are_read(void **state)
     }
 }
 
-static void what_is_no_reading_is_refused_with_a_reason(void **state)
+static void lines_that_are_not_readings_are_rejected_with_a_reason(void **state)
 {
     (void)state;
     static const char *const lines[] = {
@@ -96,7 +96,7 @@ static void what_is_no_reading_is_refused_with_a_reason(void **state)
     assert_int_equal(decode("  \t \r").kind, WB_LINE_EMPTY);
 }
 
-static void commas_are_refused_unless_the_rig_has_decimal_commas(void **state)
+static void commas_are_rejected_unless_the_rig_has_decimal_commas(void **state)
 {
     (void)state;
     struct wb_rig_load_cell comma = plain;
@@ -111,7 +111,7 @@ static void commas_are_refused_unless_the_rig_has_decimal_commas(void **state)
     assert_int_equal(decode_with("1,234,567 g", &comma).kind, WB_LINE_REFUSED);
 }
 
-static void overload_is_seen_before_any_number(void **state)
+static void overload_has_priority_over_numbers(void **state)
 {
     (void)state;
     static const char *const lines[] = {
@@ -145,7 +145,7 @@ static void tokens_of_the_rig_mark_overload_and_instability(void **state)
     assert_false(decode_with("still: 12.3 g", &cell).unstable);
 }
 
-static void columns_are_cut_out_by_the_delimiter(void **state)
+static void column_is_selected_by_the_delimiter(void **state)
 {
     (void)state;
     struct wb_rig_load_cell cell = plain;
@@ -156,7 +156,7 @@ static void columns_are_cut_out_by_the_delimiter(void **state)
     assert_int_equal(decode_with("1200,77", &cell).kind, WB_LINE_REFUSED);
     assert_int_equal(decode_with("1200,77,", &cell).kind, WB_LINE_REFUSED);
     assert_int_equal(decode_with("1200,77,inf", &cell).kind, WB_LINE_OVERLOAD);
-    /* A time stamp may be any number, the rails count in the value's column only. */
+    /* A time stamp may be any number: saturated values count in the value's column only. */
     assert_int_equal(decode_with("9999999,77,0.125", &cell).kind, WB_LINE_VALUE);
     assert_true(decode_with("US,GS,+4.8 g", &cell).kind == WB_LINE_VALUE);
     cell.delimiter = '\t';
@@ -207,7 +207,7 @@ static void force_is_scaled_shifted_and_signed(void **state)
     const struct wb_line_reading reading = decode("10 g");
     assert_true(wb_line_force(&reading, &cell, 9.80665, &force));
     assert_close(force, -(0.5 * 10.0 + 2.0) * 9.80665e-3, 1e-15);
-    /* The rig file's unit is for lines without one, or with one that nobody knows. */
+    /* The rig file's unit is used for lines without a unit or with an unknown one. */
     assert_false(wb_line_unit_contradicts(&reading, &cell));
     strcpy(cell.unit, "mN");
     assert_true(wb_line_force(&reading, &cell, 9.80665, &force));
@@ -256,11 +256,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_of_known_instruments_are_read),
-        cmocka_unit_test(what_is_no_reading_is_refused_with_a_reason),
-        cmocka_unit_test(commas_are_refused_unless_the_rig_has_decimal_commas),
-        cmocka_unit_test(overload_is_seen_before_any_number),
+        cmocka_unit_test(lines_that_are_not_readings_are_rejected_with_a_reason),
+        cmocka_unit_test(commas_are_rejected_unless_the_rig_has_decimal_commas),
+        cmocka_unit_test(overload_has_priority_over_numbers),
         cmocka_unit_test(tokens_of_the_rig_mark_overload_and_instability),
-        cmocka_unit_test(columns_are_cut_out_by_the_delimiter),
+        cmocka_unit_test(column_is_selected_by_the_delimiter),
         cmocka_unit_test(units_are_forces_or_masses_under_gravity),
         cmocka_unit_test(force_is_scaled_shifted_and_signed),
         cmocka_unit_test(lines_end_as_the_rig_says),

@@ -51,7 +51,7 @@ static void range_marks_are_overloads(void **state)
     free(driver);
 }
 
-static void errors_are_told_and_give_no_sample(void **state)
+static void errors_are_reported_and_give_no_sample(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -66,7 +66,7 @@ static void errors_are_told_and_give_no_sample(void **state)
     free(driver);
 }
 
-static void a_first_line_that_was_cut_off_is_dropped(void **state)
+static void truncated_first_line_is_dropped(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -95,7 +95,7 @@ static void serial_number_is_compared_with_the_rig(void **state)
     free(driver);
 }
 
-static void stream_is_asked_for_again_after_silence(void **state)
+static void stream_is_requested_again_after_silence(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -120,7 +120,7 @@ static void stream_is_asked_for_again_after_silence(void **state)
 }
 
 /* `S` waits for a stable load, which a test in motion never gives. */
-static void nothing_that_waits_for_stability_is_ever_sent(void **state)
+static void commands_that_wait_for_stability_are_not_sent(void **state)
 {
     (void)state;
     for (int polled = 0; polled < 2; polled++) {
@@ -151,11 +151,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stable_and_dynamic_weights_are_both_valid),
         cmocka_unit_test(range_marks_are_overloads),
-        cmocka_unit_test(errors_are_told_and_give_no_sample),
-        cmocka_unit_test(a_first_line_that_was_cut_off_is_dropped),
+        cmocka_unit_test(errors_are_reported_and_give_no_sample),
+        cmocka_unit_test(truncated_first_line_is_dropped),
         cmocka_unit_test(serial_number_is_compared_with_the_rig),
-        cmocka_unit_test(stream_is_asked_for_again_after_silence),
-        cmocka_unit_test(nothing_that_waits_for_stability_is_ever_sent),
+        cmocka_unit_test(stream_is_requested_again_after_silence),
+        cmocka_unit_test(commands_that_wait_for_stability_are_not_sent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Presets of load cells: lines of the makers' manuals, and what a rig file gets by their names. */
+/* Presets of load cells: lines of the manufacturers' manuals, and settings from the presets. */
 #include "daq/protocol/loadcell_preset.h"
 
 #include <stdlib.h>
@@ -81,7 +81,7 @@ enum result {
     UNSTABLE,
     OVERLOAD,
     REFUSED, /* with a remark */
-    SILENT   /* nothing comes of it */
+    SILENT   /* ignored */
 };
 
 struct line {
@@ -211,7 +211,7 @@ static void every_preset_has_lines_of_its_manual(void **state)
     assert_null(wb_loadcell_preset_find("nobody"));
 }
 
-/* A row of docs/instruments.md tells how it is connected: "| `NAME` | ... | LINE |". */
+/* A row of docs/instruments.md describes the connection: "| `NAME` | ... | LINE |". */
 static void every_preset_stands_in_the_documents(void **state)
 {
     (void)state;
@@ -235,7 +235,7 @@ static void every_preset_stands_in_the_documents(void **state)
     free(text);
 }
 
-/* In a bending test no load is ever at rest. */
+/* In a bending test the load is never stable. */
 static void no_preset_waits_for_a_stable_load(void **state)
 {
     (void)state;
@@ -249,7 +249,7 @@ static void no_preset_waits_for_a_stable_load(void **state)
     }
 }
 
-static void a_preset_sets_port_commands_and_unit(void **state)
+static void preset_sets_port_commands_and_unit(void **state)
 {
     (void)state;
     const struct wb_rig and_d = rig_of("  preset: a-and-d\n");
@@ -273,19 +273,19 @@ static void a_preset_sets_port_commands_and_unit(void **state)
     assert_int_equal(kept.n, 0);
 }
 
-static void keys_of_the_file_go_before_the_preset(void **state)
+static void keys_of_the_file_override_the_preset(void **state)
 {
     (void)state;
     struct wb_rig rig = rig_of("  preset: mark-10\n  sign: +1\n  poll_command: \"?\\r\"\n");
     assert_int_equal(rig.load_cell.sign, 1);
     assert_string_equal(rig.load_cell.poll_command, "?\r");
     assert_int_equal(rig.load_cell.poll_period_ns, 50 * MS);
-    /* A stream that is begun by the file's own command is not asked for readings. */
+    /* A stream started by the file's own command is not polled. */
     rig = rig_of("  preset: mark-10\n  start_command: \"AOUT50\\r\"\n");
     assert_string_equal(rig.load_cell.start_command, "AOUT50\r");
     assert_string_equal(rig.load_cell.poll_command, "");
     assert_int_equal(rig.load_cell.poll_period_ns, 0);
-    /* A period asks what would stream. */
+    /* With a period, a streaming instrument is polled instead. */
     rig = rig_of("  preset: a-and-d\n  poll_period_ms: 200\n");
     assert_string_equal(rig.load_cell.poll_command, "Q\r\n");
     assert_string_equal(rig.load_cell.start_command, "");
@@ -304,7 +304,7 @@ static void keys_of_the_file_go_before_the_preset(void **state)
     assert_string_equal(rig.load_cell.address, "pty:/dev/pts/3");
 }
 
-static void what_a_preset_cannot_know_is_asked_for(void **state)
+static void values_missing_in_a_preset_are_required(void **state)
 {
     (void)state;
     static const struct {
@@ -324,7 +324,7 @@ static void what_a_preset_cannot_know_is_asked_for(void **state)
     }
 }
 
-static void a_silent_stream_is_asked_for_again(void **state)
+static void silent_stream_is_requested_again(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -347,8 +347,8 @@ static void a_silent_stream_is_asked_for_again(void **state)
     free(driver);
 }
 
-/* Without a preset nobody knows what a second start command does. */
-static void a_start_command_of_the_file_is_sent_once(void **state)
+/* Without a preset the effect of a second start command is unknown. */
+static void start_command_of_the_file_is_sent_once(void **state)
 {
     (void)state;
     struct wb_outbox outbox = {0};
@@ -370,11 +370,11 @@ int main(void)
         cmocka_unit_test(every_preset_has_lines_of_its_manual),
         cmocka_unit_test(every_preset_stands_in_the_documents),
         cmocka_unit_test(no_preset_waits_for_a_stable_load),
-        cmocka_unit_test(a_preset_sets_port_commands_and_unit),
-        cmocka_unit_test(keys_of_the_file_go_before_the_preset),
-        cmocka_unit_test(what_a_preset_cannot_know_is_asked_for),
-        cmocka_unit_test(a_silent_stream_is_asked_for_again),
-        cmocka_unit_test(a_start_command_of_the_file_is_sent_once),
+        cmocka_unit_test(preset_sets_port_commands_and_unit),
+        cmocka_unit_test(keys_of_the_file_override_the_preset),
+        cmocka_unit_test(values_missing_in_a_preset_are_required),
+        cmocka_unit_test(silent_stream_is_requested_again),
+        cmocka_unit_test(start_command_of_the_file_is_sent_once),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

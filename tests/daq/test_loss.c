@@ -1,4 +1,4 @@
-/* Lost, repeated and overtaken samples, counted against what was taken away. */
+/* Lost, repeated and out-of-order samples, compared with the known numbers. */
 #include "daq/protocol/loss.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 enum {
     N = 6000,
-    LATEST = 17 /* stamps about a gap, and itself, that make it one */
+    LATEST = 17 /* number of stamps after which a gap is final */
 };
 
 static uint64_t state_of_noise;
@@ -32,7 +32,7 @@ static void frames(struct wb_loss *loss, double share, uint64_t *lost)
     seed();
     *lost = 0;
     for (int i = 0; i < N; i++) {
-        /* The first and the last ones may have been overtaken. */
+        /* The first and the last ones may be out of order. */
         if (i >= LATEST && i < N - LATEST && uniform() < share)
             ++*lost;
         else
@@ -40,7 +40,7 @@ static void frames(struct wb_loss *loss, double share, uint64_t *lost)
     }
 }
 
-static void a_whole_stream_of_frames_misses_nothing(void **state)
+static void complete_stream_of_frames_has_no_losses(void **state)
 {
     (void)state;
     struct wb_loss loss;
@@ -72,7 +72,7 @@ static void lost_frames_are_counted_to_the_last_one(void **state)
     }
 }
 
-static void an_announced_rate_is_taken_from_the_start(void **state)
+static void announced_rate_is_used_from_the_start(void **state)
 {
     (void)state;
     struct wb_loss loss;
@@ -87,7 +87,7 @@ static void an_announced_rate_is_taken_from_the_start(void **state)
     assert_close(counts.longest_gap, 0.02, 1e-12);
 }
 
-static void repeated_and_overtaken_frames_are_not_missing(void **state)
+static void repeated_and_out_of_order_frames_are_not_missing(void **state)
 {
     (void)state;
     static const int order[] = {0, 1, 2, 2, 4, 3, 5, 6, 6, 6, 7, 10, 9, 8, 9, 11};
@@ -102,9 +102,9 @@ static void repeated_and_overtaken_frames_are_not_missing(void **state)
     assert_int_equal(counts.received, 12);
 }
 
-/* A stream out of order that this end begins and ceases to hear anywhere: what was on its way then
- * is not lost. */
-static void frames_on_their_way_at_either_end_are_not_missing(void **state)
+/* A stream with frames out of order, received from and up to any frame: frames in transit at both
+ * ends are not lost. */
+static void late_frames_at_either_end_are_not_missing(void **state)
 {
     (void)state;
     static const int order[] = {0, 1, 3, 4, 2, 5, 8, 7, 6, 10, 9, 12, 13, 14, 11, 16, 15};
@@ -123,7 +123,7 @@ static void frames_on_their_way_at_either_end_are_not_missing(void **state)
     }
 }
 
-static void a_server_that_begins_anew_loses_nothing_by_it(void **state)
+static void restarted_server_causes_no_loss(void **state)
 {
     (void)state;
     struct wb_loss loss;
@@ -147,8 +147,7 @@ enum arrival {
     BUNDLED
 };
 
-/* 80 lines a second as they arrive; this share of them is lost. Read by a computer that looks in
- * every millisecond. */
+/* Arrivals of 80 lines/s, of which this fraction is lost, read every millisecond. */
 static void lines(struct wb_loss *loss, enum arrival arrival, double share, uint64_t *lost)
 {
     seed();
@@ -186,7 +185,7 @@ static void late_lines_and_a_stalled_computer_lose_nothing(void **state)
     }
 }
 
-/* Single lost lines beside late ones are not always told apart: within a tenth. */
+/* Single lost lines cannot always be distinguished from late ones: within a tenth. */
 static void lost_lines_are_counted(void **state)
 {
     (void)state;
@@ -205,7 +204,7 @@ static void lost_lines_are_counted(void **state)
     }
 }
 
-static void bundled_lines_have_no_rhythm_to_miss(void **state)
+static void bundled_lines_have_no_period(void **state)
 {
     (void)state;
     struct wb_loss loss;
@@ -218,7 +217,7 @@ static void bundled_lines_have_no_rhythm_to_miss(void **state)
     assert_false(wb_loss_is_significant(&loss));
 }
 
-static void no_times_do_harm(void **state)
+static void any_times_are_tolerated(void **state)
 {
     (void)state;
     static const double odd[] = {
@@ -235,9 +234,9 @@ static void no_times_do_harm(void **state)
     }
 }
 
-/* A computer that is busy while the rhythm is learnt: most lines are late, by more than the others
- * are early, and now and then all of it stands still. */
-static void rhythm_learnt_on_a_busy_computer_misses_nothing(void **state)
+/* A computer that is busy while the period is determined: most lines are late, and sometimes the
+ * process is suspended. */
+static void period_from_a_busy_computer_gives_no_losses(void **state)
 {
     (void)state;
     const double period = 0.0125;
@@ -261,9 +260,9 @@ static void rhythm_learnt_on_a_busy_computer_misses_nothing(void **state)
     assert_false(wb_loss_is_significant(&loss));
 }
 
-/* A computer that is late by 10 ms when the rhythm has just been learnt: eight lines come together.
- */
-static void a_stall_that_is_made_up_for_is_never_told(void **state)
+/* A computer that is delayed by 10 ms right after the period was determined: eight lines arrive
+ * together. */
+static void temporary_stall_is_not_reported_as_loss(void **state)
 {
     (void)state;
     const double period = 1.0 / 800.0;
@@ -279,9 +278,9 @@ static void a_stall_that_is_made_up_for_is_never_told(void **state)
     }
 }
 
-/* A busy computer that wakes each 5 ms and reads four lines a tenth of a millisecond apart, and
- * gets time again later. */
-static void bundles_of_a_busy_computer_are_no_rhythm(void **state)
+/* A busy computer that wakes every 5 ms and reads four lines 0.1 ms apart, and later is no longer
+ * busy. */
+static void bundles_of_a_busy_computer_give_no_period(void **state)
 {
     (void)state;
     struct wb_loss loss;
@@ -297,8 +296,8 @@ static void bundles_of_a_busy_computer_are_no_rhythm(void **state)
     assert_int_equal(counts.missing, 0);
 }
 
-/* 7 s of 80 lines a second, each late by an exponentially distributed time of this mean (s). In
- * some streams the computer stands still now and then; of some this share is lost. */
+/* 7 s of 80 lines/s, each delayed by an exponentially distributed time of this mean (s). In some
+ * streams the computer stalls occasionally; of some this fraction is lost. */
 struct busy {
     double mean;
     bool has_stalls;
@@ -324,7 +323,7 @@ static void busy_stream(struct wb_loss *loss, const struct busy *busy, uint64_t 
     }
 }
 
-static void late_lines_are_not_taken_for_lost_ones(void **state)
+static void late_lines_do_not_count_as_lost(void **state)
 {
     (void)state;
     static const double means[] = {0.0002, 0.001, 0.002, 0.003, 0.005, 0.01};
@@ -342,7 +341,7 @@ static void late_lines_are_not_taken_for_lost_ones(void **state)
                              stream);
                 missing += wb_loss_counts(&loss).missing;
             }
-            /* The end of a stream that stood still is not yet made up for. */
+            /* At the end of a stalled stream the backlog has not been read yet. */
             assert_true(missing <= (stalls ? 300u : 0u));
         }
     }
@@ -373,7 +372,7 @@ static void lost_lines_are_counted_among_late_ones(void **state)
 }
 
 /* Never eight regular intervals in a row. */
-static void every_fourth_line_is_missed(void **state)
+static void loss_of_every_fourth_line_is_counted(void **state)
 {
     (void)state;
     struct wb_loss loss;
@@ -388,8 +387,8 @@ static void every_fourth_line_is_missed(void **state)
     assert_true(wb_loss_is_significant(&loss));
 }
 
-/* Longer than what is counted: told elsewhere. */
-static void stream_that_stood_still_is_counted_on_from_there(void **state)
+/* Longer than the gaps that are counted: reported elsewhere. */
+static void interrupted_stream_is_counted_from_its_restart(void **state)
 {
     (void)state;
     struct wb_loss loss;
@@ -403,23 +402,23 @@ static void stream_that_stood_still_is_counted_on_from_there(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_whole_stream_of_frames_misses_nothing),
+        cmocka_unit_test(complete_stream_of_frames_has_no_losses),
         cmocka_unit_test(lost_frames_are_counted_to_the_last_one),
-        cmocka_unit_test(an_announced_rate_is_taken_from_the_start),
-        cmocka_unit_test(repeated_and_overtaken_frames_are_not_missing),
-        cmocka_unit_test(frames_on_their_way_at_either_end_are_not_missing),
-        cmocka_unit_test(a_server_that_begins_anew_loses_nothing_by_it),
+        cmocka_unit_test(announced_rate_is_used_from_the_start),
+        cmocka_unit_test(repeated_and_out_of_order_frames_are_not_missing),
+        cmocka_unit_test(late_frames_at_either_end_are_not_missing),
+        cmocka_unit_test(restarted_server_causes_no_loss),
         cmocka_unit_test(late_lines_and_a_stalled_computer_lose_nothing),
         cmocka_unit_test(lost_lines_are_counted),
-        cmocka_unit_test(bundled_lines_have_no_rhythm_to_miss),
-        cmocka_unit_test(no_times_do_harm),
-        cmocka_unit_test(rhythm_learnt_on_a_busy_computer_misses_nothing),
-        cmocka_unit_test(a_stall_that_is_made_up_for_is_never_told),
-        cmocka_unit_test(bundles_of_a_busy_computer_are_no_rhythm),
-        cmocka_unit_test(late_lines_are_not_taken_for_lost_ones),
+        cmocka_unit_test(bundled_lines_have_no_period),
+        cmocka_unit_test(any_times_are_tolerated),
+        cmocka_unit_test(period_from_a_busy_computer_gives_no_losses),
+        cmocka_unit_test(temporary_stall_is_not_reported_as_loss),
+        cmocka_unit_test(bundles_of_a_busy_computer_give_no_period),
+        cmocka_unit_test(late_lines_do_not_count_as_lost),
         cmocka_unit_test(lost_lines_are_counted_among_late_ones),
-        cmocka_unit_test(every_fourth_line_is_missed),
-        cmocka_unit_test(stream_that_stood_still_is_counted_on_from_there),
+        cmocka_unit_test(loss_of_every_fourth_line_is_counted),
+        cmocka_unit_test(interrupted_stream_is_counted_from_its_restart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

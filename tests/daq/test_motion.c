@@ -2,7 +2,7 @@
 
 #include "tests/check.h"
 
-static void a_long_way_is_a_trapezoid(void **state)
+static void long_motion_is_a_trapezoid(void **state)
 {
     (void)state;
     struct wb_motion motion;
@@ -24,7 +24,7 @@ static void a_long_way_is_a_trapezoid(void **state)
     assert_close(v, 0.0, 0.0);
 }
 
-static void a_short_way_is_a_triangle(void **state)
+static void short_motion_is_a_triangle(void **state)
 {
     (void)state;
     struct wb_motion motion;
@@ -56,7 +56,7 @@ static void position_and_speed_are_continuous(void **state)
     assert_close(before, 0.02, 0.0);
 }
 
-static void braking_takes_the_way_of_the_speed(void **state)
+static void braking_distance_follows_from_the_speed(void **state)
 {
     (void)state;
     struct wb_motion motion;
@@ -72,7 +72,7 @@ static void braking_takes_the_way_of_the_speed(void **state)
     assert_close(v, 0.0, 0.0);
 }
 
-static void braking_at_rest_stays(void **state)
+static void braking_at_rest_has_no_effect(void **state)
 {
     (void)state;
     struct wb_motion motion;
@@ -87,11 +87,11 @@ static void braking_at_rest_stays(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_long_way_is_a_trapezoid),
-        cmocka_unit_test(a_short_way_is_a_triangle),
+        cmocka_unit_test(long_motion_is_a_trapezoid),
+        cmocka_unit_test(short_motion_is_a_triangle),
         cmocka_unit_test(position_and_speed_are_continuous),
-        cmocka_unit_test(braking_takes_the_way_of_the_speed),
-        cmocka_unit_test(braking_at_rest_stays),
+        cmocka_unit_test(braking_distance_follows_from_the_speed),
+        cmocka_unit_test(braking_at_rest_has_no_effect),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

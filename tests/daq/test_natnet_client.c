@@ -143,15 +143,15 @@ static void every_version_from_2_5_to_4_1_is_decoded_by_its_announcement(void **
     }
 }
 
-static void versions_that_are_not_known_come_with_a_warning(void **state)
+static void unknown_versions_cause_a_warning(void **state)
 {
     (void)state;
     static const struct {
         int minor;
         enum wb_log_level level;
         const char *words;
-    } cases[] = {{2, WB_LOG_INFO, "NatNet 4.2: layout as the vendor's clients have it"},
-                 {4, WB_LOG_INFO, "NatNet 4.4: layout as the vendor's clients have it"},
+    } cases[] = {{2, WB_LOG_INFO, "NatNet 4.2: layout as in the vendor's"},
+                 {4, WB_LOG_INFO, "NatNet 4.4: layout as in the vendor's"},
                  {5, WB_LOG_WARNING, "NatNet 4.5: layout unknown"}};
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     natnet_example(&frame, 7);
@@ -177,7 +177,7 @@ static void versions_that_are_not_known_come_with_a_warning(void **state)
     free(driver);
 }
 
-/* What the client asks for in a tick, "" for nothing. */
+/* The query sent by the client in a tick; "": none. */
 static const char *asked_in(void *driver, int64_t t_ns)
 {
     static char text[64];
@@ -193,7 +193,7 @@ static const char *asked_in(void *driver, int64_t t_ns)
     return text;
 }
 
-static void a_newer_unicast_server_is_asked_for_4_1(void **state)
+static void newer_unicast_server_receives_a_request_for_4_1(void **state)
 {
     (void)state;
     static const struct {
@@ -217,7 +217,7 @@ static void a_newer_unicast_server_is_asked_for_4_1(void **state)
         assert_string_equal(asked_in(driver, 8 * S), "");
         free(driver);
     }
-    /* A refusal is told. */
+    /* A refusal is reported. */
     void *const driver = collect_open(&wb_natnet_client, &rig);
     memset(&collect, 0, sizeof collect);
     receive(driver, 0, server_info(4, 4, false));
@@ -230,7 +230,7 @@ static void a_newer_unicast_server_is_asked_for_4_1(void **state)
     free(driver);
 }
 
-/* Answers units and frame rate, so that only the take is left to ask for. */
+/* Replies with units and frame rate, so that only the query of the take remains. */
 static void answer_first_queries(void *driver, int64_t t_ns)
 {
     asked_in(driver, t_ns);
@@ -244,7 +244,7 @@ static size_t yes(void)
     return wb_natnet_encode_integer(buffer, sizeof buffer, WB_NATNET_RESPONSE, 0);
 }
 
-/* The text of the goodbye's first message; "" when it is no request. */
+/* Text of the first shutdown message; "": not a request. */
 static const char *goodbye(void *driver)
 {
     static char text[64];
@@ -258,7 +258,7 @@ static const char *goodbye(void *driver)
     return text;
 }
 
-static void a_take_is_recorded_only_when_the_rig_says_so(void **state)
+static void take_is_recorded_only_on_request_of_the_rig(void **state)
 {
     (void)state;
     for (int wanted = 0; wanted < 2; wanted++) {
@@ -275,7 +275,7 @@ static void a_take_is_recorded_only_when_the_rig_says_so(void **state)
     }
 }
 
-static void a_take_that_is_refused_or_does_not_come_is_told(void **state)
+static void refused_or_missing_take_is_reported(void **state)
 {
     (void)state;
     for (int refuses = 0; refuses < 2; refuses++) {
@@ -301,7 +301,7 @@ static void a_take_that_is_refused_or_does_not_come_is_told(void **state)
     }
 }
 
-static void begin_and_end_of_a_take_are_told(void **state)
+static void begin_and_end_of_a_take_are_reported(void **state)
 {
     void *const driver = *state;
     static const int16_t params[] = {4, 5, 5, 5, 4, 4, 5};
@@ -313,8 +313,8 @@ static void begin_and_end_of_a_take_are_told(void **state)
     assert_int_equal(collect_count(&collect, "take"), 3);
 }
 
-/* Another segment, and all questions again; a datagram that was overtaken is no restart. */
-static void a_restarted_server_begins_a_segment_and_is_asked_again(void **state)
+/* A new segment, and all queries again; a datagram out of order is not a restart. */
+static void restarted_server_begins_a_segment_and_queries_are_repeated(void **state)
 {
     void *const driver = *state;
     receive(driver, 0, server_info(3, 0, false));
@@ -339,8 +339,8 @@ static void a_restarted_server_begins_a_segment_and_is_asked_again(void **state)
     assert_int_equal(collect_count(&collect, "restart"), 1);
 }
 
-/* Counted from the newest frame, so that a clock that is set back does not hide behind others. */
-static void how_far_a_clock_went_back_counts_from_the_newest_frame(void **state)
+/* Counted from the newest frame, so that a clock that is set back in small steps is detected. */
+static void step_back_of_the_clock_counts_from_the_newest_frame(void **state)
 {
     void *const driver = *state;
     static const double stamps[] = {1000.0, 999.4, 998.9};
@@ -367,7 +367,7 @@ static void changed_models_begin_a_segment(void **state)
     assert_int_equal(collect_count(&collect, "models"), 2);
 }
 
-static void refused_datagrams_name_the_likely_cause(void **state)
+static void rejected_datagrams_are_reported_with_the_likely_cause(void **state)
 {
     (void)state;
     static const struct {
@@ -392,13 +392,13 @@ static void refused_datagrams_name_the_likely_cause(void **state)
     natnet_example(&frame, 7);
 }
 
-static void markers_that_are_never_measured_are_told_once(void **state)
+static void markers_that_are_never_measured_are_reported_once(void **state)
 {
     (void)state;
     static const struct {
         int params;
         const char *said;
-    } cases[] = {{WB_MARKER_OCCLUDED, "look for what hides the wire"},
+    } cases[] = {{WB_MARKER_OCCLUDED, "view of the wire"},
                  {WB_MARKER_MODEL_FILLED | WB_MARKER_OCCLUDED, "delete the rigid body"}};
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
@@ -410,7 +410,7 @@ static void markers_that_are_never_measured_are_told_once(void **state)
             frame.mocap.markers[i].params = (int16_t)cases[k].params;
         for (int i = 0; i < 99; i++)
             receive(driver, i, frame_of(3, 0));
-        frame.mocap.markers[4].params = 0; /* one is seen for a frame: it starts anew */
+        frame.mocap.markers[4].params = 0; /* one marker is seen in a frame: the count restarts */
         receive(driver, 100, frame_of(3, 0));
         frame.mocap.markers[4].params = (int16_t)cases[k].params;
         for (int i = 0; i < 99; i++)
@@ -491,7 +491,7 @@ static void servers_without_echo_are_not_probed(void **state)
     }
 }
 
-static void echo_answers_become_probes_by_their_own_stamp(void **state)
+static void echo_responses_become_probes_by_their_own_stamp(void **state)
 {
     void *const driver = *state;
     receive(driver, 0, server_info(3, 0, false));
@@ -503,7 +503,7 @@ static void echo_answers_become_probes_by_their_own_stamp(void **state)
     assert_int_equal(collect.probes[0].t_sent_ns, 7 * S);
     assert_int_equal(collect.probes[0].t_received_ns, 7 * S + MS);
     assert_close(collect.probes[0].t_device, 864000.0000001, 1e-9);
-    /* Answers from the future, too late, or to somebody else's question are none. */
+    /* Responses from the future, too late, or to another client's request are ignored. */
     static const uint64_t foreign[] = {8000000000, 1, UINT64_MAX};
     for (int i = 0; i < 3; i++)
         receive(driver, 7 * S + MS,
@@ -511,7 +511,7 @@ static void echo_answers_become_probes_by_their_own_stamp(void **state)
     assert_int_equal(collect.n_probes, 1);
 }
 
-static void queries_are_asked_one_after_the_other(void **state)
+static void queries_are_sent_one_after_the_other(void **state)
 {
     (void)state;
     struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
@@ -534,12 +534,12 @@ static void queries_are_asked_one_after_the_other(void **state)
             found = true;
         }
         assert_true(found);
-        /* The first question was lost and is repeated; the second is answered. */
+        /* The first query was lost and is repeated; the second is answered. */
         if (i == 1)
             receive(driver, 1600 * MS, answer_of(1000.0F));
     }
     receive(driver, 4 * S, answer_of(120.0F));
-    assert_int_equal(collect_count(&collect, "rate"), 2); /* what it is, and that it differs */
+    assert_int_equal(collect_count(&collect, "rate"), 2); /* the rate, and that it differs */
     assert_int_equal(collect_count(&collect, "units"), 0);
     free(driver);
 }
@@ -561,7 +561,7 @@ static double first_position(void *driver, int64_t t_ns)
     return (double)collect.mocap.markers[2].position[0];
 }
 
-static void an_answer_of_before_is_not_taken_for_the_unit(void **state)
+static void earlier_reply_is_not_mistaken_for_the_unit(void **state)
 {
     void *const driver = *state;
     struct wb_outbox outbox = {0};
@@ -570,12 +570,12 @@ static void an_answer_of_before_is_not_taken_for_the_unit(void **state)
     wb_natnet_client.tick(driver, 1 * MS, &outbox);
     receive(driver, 2 * MS, answer_of(1000.0F));
     wb_natnet_client.tick(driver, 3 * MS, &outbox);
-    /* FrameRate was asked; before its answer comes the server starts anew. */
+    /* FrameRate was queried; the server restarts before its reply. */
     receive(driver, 4 * MS, server_info(4, 1, false));
     receive(driver, 4 * MS, server_info(3, 0, false));
     receive(driver, 5 * MS, answer_of(120.0F));
     assert_close(first_position(driver, 6 * MS), expected, 0.0);
-    /* The unit is asked for at once, and its answer counts. */
+    /* The unit is queried at once, and its reply is used. */
     wb_outbox_clear(&outbox);
     wb_natnet_client.tick(driver, 7 * MS, &outbox);
     bool asked = false;
@@ -590,7 +590,7 @@ static void an_answer_of_before_is_not_taken_for_the_unit(void **state)
     assert_close(first_position(driver, 9 * MS), 1e-2 * expected, 1e-7);
 }
 
-static void an_unknown_unit_is_told_and_metres_are_kept(void **state)
+static void unknown_unit_is_reported_and_metres_are_assumed(void **state)
 {
     (void)state;
     static const float odd[] = {0.0F, -1.0F, 120.0F, 999.0F, NAN, INFINITY};
@@ -604,14 +604,14 @@ static void an_unknown_unit_is_told_and_metres_are_kept(void **state)
             receive(driver, 1, answer_of(odd[i]));
         assert_int_equal(collect_count(&collect, "units"), 4);
         assert_close(first_position(driver, 2), (double)frame.mocap.markers[2].position[0], 0.0);
-        /* Then it is the frame rate's turn. */
+        /* Next, the frame rate is queried. */
         receive(driver, 3, answer_of(120.0F));
         assert_int_equal(collect_count(&collect, "rate"), 1);
         free(driver);
     }
 }
 
-static void a_server_that_knows_no_queries_is_fine(void **state)
+static void server_without_queries_is_accepted(void **state)
 {
     void *const driver = *state;
     receive(driver, 0, server_info(2, 7, false));
@@ -624,7 +624,7 @@ static void a_server_that_knows_no_queries_is_fine(void **state)
     assert_int_equal(collect_count(&collect, "query"), 2);
 }
 
-static void damaged_datagrams_are_remarks(void **state)
+static void damaged_datagrams_cause_remarks(void **state)
 {
     void *const driver = *state;
     receive(driver, 0, server_info(3, 0, false));
@@ -647,7 +647,7 @@ static void markers_without_position_count_as_occluded(void **state)
         assert_int_equal(collect.mocap.markers[i].params & WB_MARKER_OCCLUDED, i == 2);
 }
 
-static void missing_labelled_markers_are_told_once(void **state)
+static void missing_labelled_markers_are_reported_once(void **state)
 {
     void *const driver = *state;
     natnet_example(&frame, 0);
@@ -655,11 +655,11 @@ static void missing_labelled_markers_are_told_once(void **state)
     receive(driver, 1, frame_of(3, 0));
     receive(driver, 2, frame_of(3, 0));
     assert_int_equal(collect.n_mocap, 2);
-    assert_int_equal(collect.mocap.n_markers, 0); /* the legacy list is no substitute */
+    assert_int_equal(collect.mocap.n_markers, 0); /* the legacy list is not used instead */
     assert_int_equal(collect_count(&collect, "markers"), 1);
 }
 
-static void a_silent_server_is_connected_to_anew(void **state)
+static void silent_server_is_reconnected(void **state)
 {
     void *const driver = *state;
     struct wb_outbox outbox = {0};
@@ -691,29 +691,29 @@ int main(void)
         DRIVER_TEST(connects_until_the_server_answers),
         DRIVER_TEST(frames_become_samples_with_their_stamps),
         cmocka_unit_test(every_version_from_2_5_to_4_1_is_decoded_by_its_announcement),
-        cmocka_unit_test(versions_that_are_not_known_come_with_a_warning),
-        cmocka_unit_test(a_newer_unicast_server_is_asked_for_4_1),
-        cmocka_unit_test(refused_datagrams_name_the_likely_cause),
-        cmocka_unit_test(markers_that_are_never_measured_are_told_once),
+        cmocka_unit_test(unknown_versions_cause_a_warning),
+        cmocka_unit_test(newer_unicast_server_receives_a_request_for_4_1),
+        cmocka_unit_test(rejected_datagrams_are_reported_with_the_likely_cause),
+        cmocka_unit_test(markers_that_are_never_measured_are_reported_once),
         cmocka_unit_test(group_of_the_server_is_compared_with_the_rig),
         DRIVER_TEST(clock_is_probed_in_a_burst_and_then_every_second),
         DRIVER_TEST(servers_without_echo_are_not_probed),
-        DRIVER_TEST(echo_answers_become_probes_by_their_own_stamp),
-        cmocka_unit_test(queries_are_asked_one_after_the_other),
+        DRIVER_TEST(echo_responses_become_probes_by_their_own_stamp),
+        cmocka_unit_test(queries_are_sent_one_after_the_other),
         DRIVER_TEST(other_units_than_metres_are_converted),
-        DRIVER_TEST(an_answer_of_before_is_not_taken_for_the_unit),
-        cmocka_unit_test(an_unknown_unit_is_told_and_metres_are_kept),
-        DRIVER_TEST(a_server_that_knows_no_queries_is_fine),
-        DRIVER_TEST(damaged_datagrams_are_remarks),
+        DRIVER_TEST(earlier_reply_is_not_mistaken_for_the_unit),
+        cmocka_unit_test(unknown_unit_is_reported_and_metres_are_assumed),
+        DRIVER_TEST(server_without_queries_is_accepted),
+        DRIVER_TEST(damaged_datagrams_cause_remarks),
         DRIVER_TEST(markers_without_position_count_as_occluded),
-        DRIVER_TEST(missing_labelled_markers_are_told_once),
-        DRIVER_TEST(a_silent_server_is_connected_to_anew),
-        DRIVER_TEST(begin_and_end_of_a_take_are_told),
-        DRIVER_TEST(a_restarted_server_begins_a_segment_and_is_asked_again),
-        DRIVER_TEST(how_far_a_clock_went_back_counts_from_the_newest_frame),
+        DRIVER_TEST(missing_labelled_markers_are_reported_once),
+        DRIVER_TEST(silent_server_is_reconnected),
+        DRIVER_TEST(begin_and_end_of_a_take_are_reported),
+        DRIVER_TEST(restarted_server_begins_a_segment_and_queries_are_repeated),
+        DRIVER_TEST(step_back_of_the_clock_counts_from_the_newest_frame),
         DRIVER_TEST(changed_models_begin_a_segment),
-        cmocka_unit_test(a_take_is_recorded_only_when_the_rig_says_so),
-        cmocka_unit_test(a_take_that_is_refused_or_does_not_come_is_told),
+        cmocka_unit_test(take_is_recorded_only_on_request_of_the_rig),
+        cmocka_unit_test(refused_or_missing_take_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

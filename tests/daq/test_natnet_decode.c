@@ -13,7 +13,7 @@ static const struct wb_natnet_version versions[] = {
 static uint8_t buffer[65536];
 static struct wb_natnet_frame sent, got;
 
-/* Decodes what stands in `buffer`, in a copy of exactly its size so that ASan sees any overrun. */
+/* Decodes `buffer` in a copy of exactly its size, so that ASan detects any overrun. */
 static enum wb_status decode(size_t n, struct wb_natnet_version version,
                              struct wb_natnet_fault *fault)
 {
@@ -103,7 +103,7 @@ static void frames_of_every_version_survive_the_round_trip(void **state)
     for (int i = 0; i < N_VERSIONS; i++) {
         struct wb_natnet_fault fault;
         natnet_example(&sent, 7);
-        memset(&got, 0x5a, sizeof got); /* nothing may be left from before */
+        memset(&got, 0x5a, sizeof got); /* earlier contents must be overwritten */
         assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_OK);
         check_markers(versions[i]);
         check_sections(versions[i]);
@@ -111,7 +111,7 @@ static void frames_of_every_version_survive_the_round_trip(void **state)
     }
 }
 
-static void empty_frames_are_frames(void **state)
+static void empty_frames_count_as_frames(void **state)
 {
     (void)state;
     memset(&sent, 0, sizeof sent);
@@ -138,7 +138,7 @@ static void version_4_0_is_read_with_and_without_precision_stamp(void **state)
     assert_int_equal(got.mocap.params, 4);
 }
 
-static void every_truncation_is_refused(void **state)
+static void every_truncation_is_rejected(void **state)
 {
     (void)state;
     natnet_example(&sent, 7);
@@ -161,7 +161,7 @@ static void every_truncation_is_refused(void **state)
     }
 }
 
-static void left_over_bytes_are_refused(void **state)
+static void bytes_after_the_frame_are_rejected(void **state)
 {
     (void)state;
     natnet_example(&sent, 7);
@@ -182,7 +182,7 @@ static void set_i32(size_t at, uint32_t value)
         buffer[at + (size_t)k] = (uint8_t)(value >> (8 * k));
 }
 
-static void hostile_counts_are_refused(void **state)
+static void malicious_counts_are_rejected(void **state)
 {
     (void)state;
     static const uint32_t hostile[] = {0xffffffff, 0x80000000, 0x7fffffff, 0x10000000, 70000};
@@ -235,7 +235,7 @@ static size_t insert(size_t n, size_t at, const void *more, size_t n_more)
     return n;
 }
 
-/* Where the first labelled marker stands. */
+/* Offset of the first labelled marker. */
 static size_t first_marker(size_t n)
 {
     uint8_t marker[16];
@@ -265,13 +265,13 @@ static void newer_versions_of_the_same_layout_are_read(void **state)
     check_stamps(known);
 }
 
-static void an_unknown_section_is_refused(void **state)
+static void unknown_section_is_rejected(void **state)
 {
     (void)state;
     struct wb_natnet_fault fault;
     uint8_t section[8 + 12] = {1, 0, 0, 0, 12, 0, 0, 0};
     natnet_example(&sent, 7);
-    /* Whatever it holds, before the stamps, where a later version would add one. */
+    /* With any contents, before the stamps, where a later version would add a section. */
     for (int fill = 0; fill < 256; fill++) {
         memset(section + 8, fill, 12);
         size_t n = encode(known);
@@ -281,7 +281,7 @@ static void an_unknown_section_is_refused(void **state)
     }
 }
 
-static void a_field_more_in_a_marker_is_refused(void **state)
+static void additional_field_in_a_marker_is_rejected(void **state)
 {
     (void)state;
     struct wb_natnet_fault fault;
@@ -295,7 +295,7 @@ static void a_field_more_in_a_marker_is_refused(void **state)
     assert_string_equal(fault.reason, "a section's size differs from its content");
 }
 
-static void bytes_before_the_end_mark_are_refused(void **state)
+static void bytes_before_the_end_mark_are_rejected(void **state)
 {
     (void)state;
     struct wb_natnet_fault fault;
@@ -308,7 +308,7 @@ static void bytes_before_the_end_mark_are_refused(void **state)
     assert_int_equal(decode(n, newer, &fault), WB_ERR_FORMAT);
 }
 
-static void stamps_that_are_no_times_are_refused(void **state)
+static void implausible_stamps_are_rejected(void **state)
 {
     (void)state;
     static const double odd[] = {2e272, -1.0, 1.1e9, (double)NAN, (double)INFINITY};
@@ -319,14 +319,14 @@ static void stamps_that_are_no_times_are_refused(void **state)
             sent.timestamp = odd[k];
             sent.latency = (float)odd[k];
             assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_ERR_FORMAT);
-            assert_string_equal(fault.reason, "the time stamp is no time of a running server");
+            assert_string_equal(fault.reason, "the time stamp is not plausible");
         }
         if (!has(versions[i], 3, 0))
             continue;
         natnet_example(&sent, 7);
         sent.mocap.transmit = sent.mocap.camera_data_received - 1;
         assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_ERR_FORMAT);
-        sent.mocap.transmit = 0; /* not told */
+        sent.mocap.transmit = 0; /* unknown */
         assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_OK);
         sent.mocap.camera_mid_exposure = sent.mocap.camera_data_received + 1;
         assert_int_equal(decode(encode(versions[i]), versions[i], &fault), WB_ERR_FORMAT);
@@ -472,17 +472,17 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_of_every_version_survive_the_round_trip),
-        cmocka_unit_test(empty_frames_are_frames),
+        cmocka_unit_test(empty_frames_count_as_frames),
         cmocka_unit_test(version_4_0_is_read_with_and_without_precision_stamp),
-        cmocka_unit_test(every_truncation_is_refused),
-        cmocka_unit_test(left_over_bytes_are_refused),
-        cmocka_unit_test(hostile_counts_are_refused),
+        cmocka_unit_test(every_truncation_is_rejected),
+        cmocka_unit_test(bytes_after_the_frame_are_rejected),
+        cmocka_unit_test(malicious_counts_are_rejected),
         cmocka_unit_test(section_size_must_equal_its_content),
         cmocka_unit_test(newer_versions_of_the_same_layout_are_read),
-        cmocka_unit_test(an_unknown_section_is_refused),
-        cmocka_unit_test(a_field_more_in_a_marker_is_refused),
-        cmocka_unit_test(bytes_before_the_end_mark_are_refused),
-        cmocka_unit_test(stamps_that_are_no_times_are_refused),
+        cmocka_unit_test(unknown_section_is_rejected),
+        cmocka_unit_test(additional_field_in_a_marker_is_rejected),
+        cmocka_unit_test(bytes_before_the_end_mark_are_rejected),
+        cmocka_unit_test(implausible_stamps_are_rejected),
         cmocka_unit_test(markers_beyond_the_limit_are_counted),
         cmocka_unit_test(server_info_survives_the_round_trip),
         cmocka_unit_test(echoes_carry_the_stamp_verbatim),

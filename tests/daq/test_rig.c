@@ -107,7 +107,7 @@ static void every_value_arrives_in_si(void **state)
     assert_int_equal(kept.n, 0);
 }
 
-static void uncertainties_are_those_that_are_stated(void **state)
+static void uncertainties_are_those_of_the_data(void **state)
 {
     (void)state;
     struct wb_rig rig = parse(good);
@@ -185,7 +185,7 @@ static void tare_is_unloaded_unless_it_is_with_the_counterweight(void **state)
     assert_close_relative(wb_rig_tare_load(&rig), 2.7e-3 * 9.81, 1e-12);
 }
 
-static void a_tare_with_a_counterweight_needs_one(void **state)
+static void tare_with_a_counterweight_needs_one(void **state)
 {
     (void)state;
     struct wb_rig rig;
@@ -198,7 +198,7 @@ static void a_tare_with_a_counterweight_needs_one(void **state)
     assert_message("strand.counterweight_g");
 }
 
-static void strand_and_limits_may_be_left_out(void **state)
+static void strand_and_limits_are_optional(void **state)
 {
     (void)state;
     char text[4096];
@@ -209,7 +209,7 @@ static void strand_and_limits_may_be_left_out(void **state)
     assert_close(rig.limits.stream_lost, 1.0, 0.0);
 }
 
-static void bad_files_are_refused_with_file_line_and_key(void **state)
+static void bad_files_are_rejected_with_file_line_and_key(void **state)
 {
     (void)state;
     static const struct {
@@ -277,7 +277,7 @@ static void bad_files_are_refused_with_file_line_and_key(void **state)
     }
 }
 
-static void balances_take_no_generic_keys(void **state)
+static void balances_reject_generic_keys(void **state)
 {
     (void)state;
     char text[4096];
@@ -295,7 +295,7 @@ static void missing_file_is_named(void **state)
     assert_message("/nowhere/bench.yaml");
 }
 
-static void a_virtual_rig_that_is_gone_is_told(void **state)
+static void ended_virtual_rig_is_reported(void **state)
 {
     (void)state;
     struct wb_rig rig;
@@ -317,7 +317,7 @@ static void a_virtual_rig_that_is_gone_is_told(void **state)
     rmdir(folder);
 }
 
-static void a_series_of_masses_and_its_due_date_are_read(void **state)
+static void series_of_masses_and_its_due_date_are_read(void **state)
 {
     (void)state;
     const struct wb_rig rig =
@@ -330,7 +330,7 @@ static void a_series_of_masses_and_its_due_date_are_read(void **state)
     assert_close(parse(good).load_cell.check_due, 0.0, 1e-15);
 }
 
-static void checks_after_the_table_tell_the_line_of_their_key(void **state)
+static void checks_after_the_table_give_the_line_of_their_key(void **state)
 {
     (void)state;
     struct wb_rig rig;
@@ -348,21 +348,21 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(every_value_arrives_in_si, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(uncertainties_are_those_that_are_stated, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(uncertainties_are_those_of_the_data, set_up, tear_down),
         cmocka_unit_test_setup_teardown(line_protocol_keys_are_read, set_up, tear_down),
         cmocka_unit_test_setup_teardown(virtual_rigs_are_marked_and_their_truth_is_ignored, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(tare_is_unloaded_unless_it_is_with_the_counterweight,
                                         set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_tare_with_a_counterweight_needs_one, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(strand_and_limits_may_be_left_out, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_files_are_refused_with_file_line_and_key, set_up,
+        cmocka_unit_test_setup_teardown(tare_with_a_counterweight_needs_one, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(strand_and_limits_are_optional, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bad_files_are_rejected_with_file_line_and_key, set_up,
                                         tear_down),
-        cmocka_unit_test_setup_teardown(balances_take_no_generic_keys, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_virtual_rig_that_is_gone_is_told, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_series_of_masses_and_its_due_date_are_read, set_up,
+        cmocka_unit_test_setup_teardown(balances_reject_generic_keys, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(ended_virtual_rig_is_reported, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(series_of_masses_and_its_due_date_are_read, set_up,
                                         tear_down),
-        cmocka_unit_test_setup_teardown(checks_after_the_table_tell_the_line_of_their_key, set_up,
+        cmocka_unit_test_setup_teardown(checks_after_the_table_give_the_line_of_their_key, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(missing_file_is_named, set_up, tear_down),
     };

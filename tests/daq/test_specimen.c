@@ -29,7 +29,7 @@ static void every_value_arrives_in_si(void **state)
     assert_close_relative(specimen.length_uncertainty, 0.25e-3, 1e-15);
 }
 
-static void bad_files_are_refused_with_the_reason(void **state)
+static void bad_files_are_rejected_with_the_reason(void **state)
 {
     (void)state;
     static const struct {
@@ -68,7 +68,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_value_arrives_in_si),
-        cmocka_unit_test(bad_files_are_refused_with_the_reason),
+        cmocka_unit_test(bad_files_are_rejected_with_the_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

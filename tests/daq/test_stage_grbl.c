@@ -29,7 +29,7 @@ static enum wb_status command(void *driver, enum wb_stage_command what)
     return wb_stage_grbl.command(driver, what, 0.002, 0.001, &outbox); /* 2 mm at 1 mm/s */
 }
 
-/* What a stage says first: it stands, and its settings. */
+/* First bytes of a stage: an idle report, and its settings. */
 static void introduce(void *driver)
 {
     feed(driver, 0, "<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n");
@@ -57,13 +57,13 @@ static void ignore_messages(void *context, enum wb_log_level level, const char *
     ++*(int *)context;
 }
 
-static void settings_are_asked_for_once_and_delivered(void **state)
+static void settings_are_requested_once_and_delivered(void **state)
 {
     (void)state;
     void *const driver = open_stage('Y', -1);
     wb_stage_grbl.start(driver, 0, &outbox);
     assert_sent("?");
-    /* On hold it is deaf: a question would wait for ever. */
+    /* On hold, lines are not executed: a request would wait indefinitely. */
     feed(driver, 1, "<Hold:0|MPos:1.000,2.000,3.000|FS:0,0>\r\n");
     wb_stage_grbl.tick(driver, 20 * MS, &outbox);
     assert_int_equal(outbox.n_entries, 0);
@@ -96,14 +96,14 @@ static void settings_are_asked_for_once_and_delivered(void **state)
     free(driver);
 }
 
-static void a_stage_that_hides_its_settings_is_taken_with_a_remark(void **state)
+static void stage_without_reported_settings_is_accepted_with_a_remark(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
     feed(driver, 1, "<Idle|MPos:1.000,2.000,3.000|FS:0,0>\r\n");
     wb_stage_grbl.tick(driver, 20 * MS, &outbox);
     feed(driver, 2, "error:3\r\n");
-    assert_non_null(strstr(collect_text(&collect, "settings"), "does not tell its settings"));
+    assert_non_null(strstr(collect_text(&collect, "settings"), "does not report its settings"));
     assert_int_equal(collect_count(&collect, "error"), 0);
     assert_int_equal(collect.n_settings, 0);
     assert_true(wb_stage_grbl.ready(driver));
@@ -143,7 +143,7 @@ static void downward_jogs_follow_the_rigs_axis_and_sign(void **state)
     free(driver);
 }
 
-static void one_line_waits_for_its_reply(void **state)
+static void only_one_line_awaits_its_reply(void **state)
 {
     (void)state;
     int n_messages = 0;
@@ -167,8 +167,8 @@ static void one_line_waits_for_its_reply(void **state)
     free(driver);
 }
 
-/* An error ends the jog: what the firmware still has is cancelled, until it is seen standing. */
-static void a_refused_jog_is_cancelled_until_the_stage_stands(void **state)
+/* An error ends the jog: blocks in the firmware are cancelled until the stage is idle. */
+static void rejected_jog_is_cancelled_until_the_stage_stands(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
@@ -182,7 +182,7 @@ static void a_refused_jog_is_cancelled_until_the_stage_stands(void **state)
     assert_sent("?\x85");
     feed(driver, 30 * MS, "<Idle|MPos:0.020,0.000,0.000|FS:0,0>\r\n");
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
-    /* A line that was under way has started after the first time. */
+    /* A line that was being transferred has started after the first cancel. */
     feed(driver, 40 * MS, "<Jog|MPos:0.020,0.000,0.000|FS:60,0>\r\n");
     wb_stage_grbl.tick(driver, 120 * MS, &outbox);
     assert_sent("?\x85");
@@ -193,8 +193,8 @@ static void a_refused_jog_is_cancelled_until_the_stage_stands(void **state)
     free(driver);
 }
 
-/* Without reports nothing more is sent, and the stage comes to rest by itself. */
-static void a_stage_that_reports_nothing_gets_nothing(void **state)
+/* Without reports nothing more is sent, and the stage stops by itself. */
+static void stage_without_reports_receives_no_commands(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
@@ -214,7 +214,7 @@ static void a_stage_that_reports_nothing_gets_nothing(void **state)
     free(driver);
 }
 
-static void real_time_bytes_are_never_refused(void **state)
+static void real_time_bytes_are_always_accepted(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
@@ -228,7 +228,7 @@ static void real_time_bytes_are_never_refused(void **state)
     assert_int_equal(command(driver, WB_STAGE_COMMAND_SOFT_RESET), WB_OK);
     assert_int_equal(outbox.n_entries, 5);
     assert_sent("!\x85?~\x18");
-    /* The reset made the firmware forget the jog: it will not be answered. */
+    /* After the reset the jog will not be answered. */
     assert_int_equal(command(driver, WB_STAGE_COMMAND_UNLOCK), WB_OK);
     assert_sent("$X\n");
     free(driver);
@@ -259,7 +259,7 @@ static void status_is_polled_at_5_hz_and_at_10_hz_after_a_hold(void **state)
     free(driver);
 }
 
-static void alarms_are_samples_at_once(void **state)
+static void alarms_become_samples_at_once(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
@@ -271,7 +271,7 @@ static void alarms_are_samples_at_once(void **state)
     assert_int_equal(collect.stage[1].alarm, 1);
     assert_true(isnan(collect.stage[1].position));
     assert_non_null(strstr(collect_text(&collect, "alarm"), "position is lost"));
-    /* The number stays as long as the state does, and goes with it. */
+    /* The alarm number is kept until the state changes. */
     feed(driver, 2, "<Alarm|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
     assert_int_equal(collect.stage[2].alarm, 1);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_HOME), WB_OK);
@@ -281,7 +281,7 @@ static void alarms_are_samples_at_once(void **state)
     free(driver);
 }
 
-static void reset_in_motion_is_understood(void **state)
+static void reset_during_motion_is_handled(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
@@ -299,7 +299,7 @@ static void reset_in_motion_is_understood(void **state)
     free(driver);
 }
 
-static void a_banner_out_of_the_blue_is_a_reset(void **state)
+static void unexpected_banner_is_a_reset(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
@@ -314,7 +314,7 @@ static void a_banner_out_of_the_blue_is_a_reset(void **state)
     free(driver);
 }
 
-static void a_lost_reply_does_not_lock_the_stage_out(void **state)
+static void lost_reply_does_not_block_the_stage(void **state)
 {
     (void)state;
     int n_messages = 0;
@@ -334,7 +334,7 @@ static void a_lost_reply_does_not_lock_the_stage_out(void **state)
     free(driver);
 }
 
-static void impossible_jogs_are_refused(void **state)
+static void impossible_jogs_are_rejected(void **state)
 {
     (void)state;
     int n_messages = 0;
@@ -351,7 +351,7 @@ static void impossible_jogs_are_refused(void **state)
     free(driver);
 }
 
-static void noise_on_the_line_is_remarked_and_survived(void **state)
+static void noise_on_the_line_causes_a_remark_only(void **state)
 {
     (void)state;
     char noise[1000];
@@ -365,7 +365,7 @@ static void noise_on_the_line_is_remarked_and_survived(void **state)
     free(driver);
 }
 
-static void pressed_switch_is_told_once(void **state)
+static void pressed_switch_is_reported_once(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
@@ -379,22 +379,22 @@ static void pressed_switch_is_told_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(settings_are_asked_for_once_and_delivered),
-        cmocka_unit_test(a_stage_that_hides_its_settings_is_taken_with_a_remark),
+        cmocka_unit_test(settings_are_requested_once_and_delivered),
+        cmocka_unit_test(stage_without_reported_settings_is_accepted_with_a_remark),
         cmocka_unit_test(reports_become_samples_of_the_tests_axis),
         cmocka_unit_test(downward_jogs_follow_the_rigs_axis_and_sign),
-        cmocka_unit_test(one_line_waits_for_its_reply),
-        cmocka_unit_test(a_refused_jog_is_cancelled_until_the_stage_stands),
-        cmocka_unit_test(a_stage_that_reports_nothing_gets_nothing),
-        cmocka_unit_test(real_time_bytes_are_never_refused),
+        cmocka_unit_test(only_one_line_awaits_its_reply),
+        cmocka_unit_test(rejected_jog_is_cancelled_until_the_stage_stands),
+        cmocka_unit_test(stage_without_reports_receives_no_commands),
+        cmocka_unit_test(real_time_bytes_are_always_accepted),
         cmocka_unit_test(status_is_polled_at_5_hz_and_at_10_hz_after_a_hold),
-        cmocka_unit_test(alarms_are_samples_at_once),
-        cmocka_unit_test(reset_in_motion_is_understood),
-        cmocka_unit_test(a_banner_out_of_the_blue_is_a_reset),
-        cmocka_unit_test(a_lost_reply_does_not_lock_the_stage_out),
-        cmocka_unit_test(impossible_jogs_are_refused),
-        cmocka_unit_test(noise_on_the_line_is_remarked_and_survived),
-        cmocka_unit_test(pressed_switch_is_told_once),
+        cmocka_unit_test(alarms_become_samples_at_once),
+        cmocka_unit_test(reset_during_motion_is_handled),
+        cmocka_unit_test(unexpected_banner_is_a_reset),
+        cmocka_unit_test(lost_reply_does_not_block_the_stage),
+        cmocka_unit_test(impossible_jogs_are_rejected),
+        cmocka_unit_test(noise_on_the_line_causes_a_remark_only),
+        cmocka_unit_test(pressed_switch_is_reported_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

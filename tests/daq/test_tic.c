@@ -1,4 +1,4 @@
-/* The Tic's bytes: examples of Pololu's guide, and what its driver makes of them. */
+/* The Tic's bytes: examples of Pololu's guide, and the results of its driver. */
 #include "daq/protocol/tic.h"
 
 #include "base/units.h"
@@ -32,8 +32,8 @@ static void long_commands_are_those_of_the_guide(void **state)
     }
 }
 
-/* Each question asks for what the decoders take, in order, and not more than 15 bytes at once. */
-static void questions_ask_for_as_much_as_is_decoded(void **state)
+/* The requests cover the decoded bytes in order, with at most 15 bytes each. */
+static void requests_have_the_length_that_is_decoded(void **state)
 {
     (void)state;
     uint8_t bytes[WB_TIC_ASK_BYTES];
@@ -54,7 +54,7 @@ static void questions_ask_for_as_much_as_is_decoded(void **state)
     assert_int_equal(bytes[5], 2);
 }
 
-static void answers_are_little_endian(void **state)
+static void replies_are_little_endian(void **state)
 {
     (void)state;
     static const uint8_t bytes[WB_TIC_STATUS_BYTES] = {
@@ -95,7 +95,7 @@ static void feed(void *driver, int64_t t_ns, const uint8_t *bytes, size_t n,
     wb_stage_tic.receive(driver, t_ns, bytes, n, &sink);
 }
 
-/* Opens a driver that has been told these settings. */
+/* Opens a driver that has received these settings. */
 static void *open_told(const struct wb_tic_settings *settings, struct collect *collect)
 {
     uint8_t bytes[WB_TIC_SETTINGS_BYTES];
@@ -145,7 +145,7 @@ static void status_becomes_a_report(void **state)
     }
 }
 
-static void an_alarm_is_told_in_words(void **state)
+static void alarm_is_described_in_words(void **state)
 {
     (void)state;
     char text[128];
@@ -180,7 +180,7 @@ static void settings_become_limits_in_si(void **state)
     assert_non_null(strstr(collect_text(&collect, "settings"), " 1.025 mm"));
 }
 
-static void a_tic_that_would_go_on_alone_is_refused(void **state)
+static void tic_without_command_timeout_is_rejected(void **state)
 {
     (void)state;
     static const struct {
@@ -210,8 +210,8 @@ static void a_tic_that_would_go_on_alone_is_refused(void **state)
     }
 }
 
-/* Bytes that were lost, or that came from elsewhere, cost one answer. */
-static void an_answer_cut_short_is_dropped_after_a_silence(void **state)
+/* Lost or additional bytes invalidate one reply. */
+static void incomplete_reply_is_dropped_after_a_pause(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -235,8 +235,8 @@ static void an_answer_cut_short_is_dropped_after_a_silence(void **state)
     free(driver);
 }
 
-/* A chunk without bytes says that some are missing: halves of two answers are none. */
-static void an_answer_with_bytes_missing_is_dropped(void **state)
+/* An empty chunk marks missing bytes: halves of two replies are not joined. */
+static void reply_with_missing_bytes_is_dropped(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -254,7 +254,7 @@ static void an_answer_with_bytes_missing_is_dropped(void **state)
     free(driver);
 }
 
-static void a_reset_and_a_timeout_are_noticed(void **state)
+static void reset_and_a_timeout_are_noticed(void **state)
 {
     (void)state;
     struct collect collect = {0};
@@ -277,8 +277,8 @@ static void a_reset_and_a_timeout_are_noticed(void **state)
     free(driver);
 }
 
-/* Many times within the command timeout, however short it is set, or the stage would stop. */
-static void signs_of_life_are_sent_several_times_within_the_timeout(void **state)
+/* Several times within the command timeout, however short, or the stage would stop. */
+static void timeout_resets_are_sent_several_times_within_the_timeout(void **state)
 {
     (void)state;
     static const int timeouts_ms[] = {100, 300, 1000, 2000};
@@ -310,16 +310,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(long_commands_are_those_of_the_guide),
-        cmocka_unit_test(questions_ask_for_as_much_as_is_decoded),
-        cmocka_unit_test(answers_are_little_endian),
+        cmocka_unit_test(requests_have_the_length_that_is_decoded),
+        cmocka_unit_test(replies_are_little_endian),
         cmocka_unit_test(status_becomes_a_report),
-        cmocka_unit_test(an_alarm_is_told_in_words),
+        cmocka_unit_test(alarm_is_described_in_words),
         cmocka_unit_test(settings_become_limits_in_si),
-        cmocka_unit_test(a_tic_that_would_go_on_alone_is_refused),
-        cmocka_unit_test(an_answer_cut_short_is_dropped_after_a_silence),
-        cmocka_unit_test(an_answer_with_bytes_missing_is_dropped),
-        cmocka_unit_test(a_reset_and_a_timeout_are_noticed),
-        cmocka_unit_test(signs_of_life_are_sent_several_times_within_the_timeout),
+        cmocka_unit_test(tic_without_command_timeout_is_rejected),
+        cmocka_unit_test(incomplete_reply_is_dropped_after_a_pause),
+        cmocka_unit_test(reply_with_missing_bytes_is_dropped),
+        cmocka_unit_test(reset_and_a_timeout_are_noticed),
+        cmocka_unit_test(timeout_resets_are_sent_several_times_within_the_timeout),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Answers of a Tic, byte by byte as its guide lays them out, for the tests of its driver. */
+/* Replies of a Tic, byte by byte according to its guide, for the tests of its driver. */
 #ifndef WB_TESTS_DAQ_TIC_EXAMPLE_H
 #define WB_TESTS_DAQ_TIC_EXAMPLE_H
 
@@ -6,7 +6,7 @@
 
 #include "daq/protocol/tic.h"
 
-/* As it leaves Pololu, but for a limit switch and the speed. */
+/* Factory settings, except a limit switch and the speed. */
 static const struct wb_tic_settings tic_example_usual = {
     .command_timeout_ms = 1000,
     .pins = {0, 0, 0, 0, 9},
