@@ -16,7 +16,7 @@
 
 #define WB_LOG_DOMAIN "export"
 
-/* One table: written beside its name, renamed when whole. */
+/* A table, written to a temporary file that is renamed when complete. */
 struct table {
     const char *name, *columns;
     FILE *file;
@@ -77,7 +77,7 @@ static enum wb_status close_table(struct table *table, bool keep)
     return wb_fail(WB_ERR_IO, "cannot write '%s': %s", table->path, strerror(error ? error : EIO));
 }
 
-/* The shortest text that reads back as the same float. */
+/* Shortest decimal text that is read back as the same float. */
 static const char *format_float(float value, char text[WB_NUMBER_TEXT])
 {
     for (int digits = 6; digits < 9; digits++) {
@@ -89,7 +89,7 @@ static const char *format_float(float value, char text[WB_NUMBER_TEXT])
     return text;
 }
 
-/* Quoted, with quotes doubled. */
+/* Writes a quoted CSV field; quotes are doubled. */
 static void put_text(FILE *file, const char *text)
 {
     putc('"', file);
@@ -101,7 +101,7 @@ static void put_text(FILE *file, const char *text)
     putc('"', file);
 }
 
-/* Begins a row with both times. */
+/* Begins a row with t_s and t_ns. */
 static FILE *begin_row(struct export *export, int which, int64_t t_ns)
 {
     struct table *table = &export->tables[which];
@@ -176,7 +176,7 @@ static enum wb_status put_clock(void *context, const struct wb_clock_row *row)
     return WB_OK;
 }
 
-/* --- all of it --- */
+/* --- tables of a recording --- */
 
 static enum wb_status write_tables(struct export *export, struct wb_recording *recording,
                                    const struct wb_rig *rig, struct wb_export_counts *counts)

@@ -14,7 +14,7 @@
 
 #define WB_LOG_DOMAIN "import"
 
-/* A stream's file is in memory as a whole. */
+/* Bytes; larger files are rejected, because a file is held in memory as a whole. */
 #define LARGEST_FILE ((int64_t)4 << 30)
 
 /* --- settings --- */
@@ -72,7 +72,7 @@ enum wb_status wb_foreign_parse(struct wb_foreign *foreign, const char *text, st
 
 /* --- force of a take --- */
 
-/* Spellings that C3D files have beside those of instruments. */
+/* Accepts the spellings of units in C3D files in addition to those of instruments. */
 static bool unit_factor(const char *unit, double gravity, double *newtons)
 {
     static const char *const others[] = {"nt", "newton", "newtons"};
@@ -106,8 +106,8 @@ static enum wb_status choose_channel(struct wb_foreign *foreign, const struct wb
     if (n == 1)
         return WB_OK;
     return wb_fail_to(why, WB_ERR_DATA,
-                      "%s: %d analogue channels can be the force, expected one: name it with "
-                      "--channel NAME; there are %s",
+                      "%s: %d analogue channels could be the force, expected 1: choose one with "
+                      "--channel NAME; the file has %s",
                       foreign->name, n, names[0] ? names : "none");
 }
 
@@ -123,10 +123,11 @@ enum wb_status wb_foreign_channel(struct wb_foreign *foreign, const struct wb_ta
     if (!foreign->unit[0])
         snprintf(foreign->unit, sizeof foreign->unit, "%s", take->channels[channel].unit);
     if (!unit_factor(foreign->unit, rig->gravity, &newtons))
-        return wb_fail_to(why, WB_ERR_DATA,
-                          "%s: channel '%s' is in '%s', which is no unit of force: name one, "
-                          "--channel NAME:mN",
-                          foreign->name, foreign->channel, foreign->unit);
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "%s: the unit '%s' of channel '%s' is not a unit of force: give the unit, "
+            "for example --channel NAME:mN",
+            foreign->name, foreign->channel, foreign->unit);
     const size_t per_frame = (size_t)take->per_frame;
     const size_t n = take->n_frames * per_frame;
     force->t = wb_memory_new(n, sizeof *force->t);
@@ -159,7 +160,8 @@ static void deliver_take(const struct wb_foreign *foreign, const struct wb_take 
     free(frame);
     if (left > 0)
         wb_driver_remark(sink, WB_LOG_WARNING, 0, "refused",
-                         "%zu markers beyond %d in a frame are left out", left, WB_MAX_MARKERS);
+                         "%zu markers beyond the first %d of a frame are ignored", left,
+                         WB_MAX_MARKERS);
 }
 
 static void deliver_force(const struct wb_foreign *foreign, const struct wb_force_table *force,
@@ -183,9 +185,7 @@ static enum wb_status play_take(const struct wb_foreign *foreign, const uint8_t 
     const struct wb_take_reader *const reader = wb_take_reader_find(foreign->format);
     struct wb_take take;
     if (!reader)
-        return wb_fail_to(why, WB_ERR_UNSUPPORTED,
-                          "the file '%s' is of the format '%s', which is "
-                          "not known here",
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED, "the file '%s' has the unknown format '%s'",
                           foreign->name, foreign->format);
     WB_TRY(reader->read(&take, foreign->name, bytes, foreign->size, why));
     enum wb_status status = WB_OK;

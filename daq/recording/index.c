@@ -37,7 +37,7 @@ enum wb_status wb_index_exclusion_read(const struct wb_config_node *node, char r
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys) - (recording == NULL)));
     if (!exclusion->by[0] || !exclusion->reason[0])
         return wb_config_refuse(node, exclusion->by[0] ? "reason" : "by",
-                                "expected a text: a test is excluded by somebody, for a reason");
+                                "expected a text: an exclusion needs a person and a reason");
     exclusion->is_excluded = true;
     return WB_OK;
 }
@@ -85,7 +85,7 @@ static enum wb_status read_entries(struct wb_index *index, const struct wb_confi
         struct wb_index_entry entry;
         WB_TRY(read_entry(node, &entry));
         if (wb_index_find(index, entry.file))
-            return wb_config_refuse(node, "file", "'%s' stands twice in the index", entry.file);
+            return wb_config_refuse(node, "file", "'%s' is listed twice in the index", entry.file);
         index->entries[index->n++] = entry;
     }
     return WB_OK;
@@ -96,7 +96,7 @@ enum wb_status wb_index_read(struct wb_index *index, const char *path, struct wb
     memset(index, 0, sizeof *index);
     struct wb_config *config;
     WB_TRY(wb_config_read(&config, path, why));
-    wb_reads_leave_out(path); /* it grows; what counts are the recordings that are chosen by it */
+    wb_reads_leave_out(path); /* it grows with each test; only the chosen recordings are inputs */
     const struct wb_config_node *list = wb_config_root(config);
     enum wb_status status = WB_OK;
     if (wb_config_length(list) < 0) {
@@ -119,7 +119,7 @@ void wb_index_release(struct wb_index *index)
     memset(index, 0, sizeof *index);
 }
 
-/* Length of a file's name without ".zst": a recording may be compressed after it was listed. */
+/* Length of a file name without ".zst": a recording may be compressed after it was listed. */
 static size_t name_length(const char *name)
 {
     static const char ending[] = ".zst";
@@ -153,7 +153,7 @@ bool wb_index_look_up(struct wb_index_entry *entry, const char *recording_path, 
     if (is_it)
         *entry = *found;
     else if (found)
-        wb_reason_set(why, "%s lists other data as '%s' (sha256 %.12s...)", path,
+        wb_reason_set(why, "%s lists '%s' with other contents (sha256 %.12s...)", path,
                       wb_file_name(recording_path), found->sha256);
     wb_index_release(&index);
     return is_it;
@@ -195,7 +195,7 @@ bool wb_index_exclusion_get_json(struct wb_index_exclusion *exclusion, const str
 
 /* --- writing --- */
 
-/* A text in single quotes, in which YAML knows no escapes but the doubled quote. */
+/* Writes a text in single quotes, where the only escape of YAML is the doubled quote. */
 static void put_text(struct wb_text *text, const char *key, const char *value)
 {
     wb_text_append(text, "%s: '", key);
@@ -234,7 +234,8 @@ static void put_entry(struct wb_text *text, const struct wb_index_entry *entry)
         wb_text_append(text, "    repeated: true\n");
 }
 
-/* An entry can only follow where the file is a list that is not indented, nor in brackets. */
+/* Checks that the result is valid: an entry can only be appended to a block list that is not
+ * indented. */
 static enum wb_status check_appended(const struct wb_text *text, int n_expected, const char *path,
                                      const struct wb_index_entry *entry)
 {
@@ -247,8 +248,8 @@ static enum wb_status check_appended(const struct wb_text *text, int n_expected,
         wb_config_destroy(config);
     if (n != n_expected)
         return wb_fail(WB_ERR_FORMAT,
-                       "'%s' cannot be continued with an entry for '%s': expected a plain list of "
-                       "recordings, each '- file: ...' at the margin%s%s",
+                       "'%s': an entry for '%s' cannot be appended: expected a list of recordings, "
+                       "each beginning with '- file: ...' without indentation%s%s",
                        path, entry->file, why.text[0] ? "; " : "", why.text);
     return WB_OK;
 }
@@ -266,14 +267,14 @@ enum wb_status wb_index_append(const char *path, const struct wb_index_entry *en
         const bool is_listed = wb_index_find(&index, entry->file);
         wb_index_release(&index);
         if (is_listed)
-            return wb_fail(WB_ERR_EXISTS, "'%s' lists '%s' already", path, entry->file);
+            return wb_fail(WB_ERR_EXISTS, "'%s' already lists '%s'", path, entry->file);
         WB_TRY(wb_file_read(path, &before, &size));
         wb_text_append_bytes(&text, before, size);
         wb_text_append(&text, "%s", size > 0 && before[size - 1] != '\n' ? "\n" : "");
         free(before);
     } else {
-        wb_text_append(&text,
-                       "# Recordings of this folder. 'excluded' takes one out of reports.\n");
+        wb_text_append(
+            &text, "# Recordings of this folder. 'excluded' removes a recording from reports.\n");
     }
     put_entry(&text, entry);
     enum wb_status status = check_appended(&text, n_before + 1, path, entry);

@@ -1,4 +1,4 @@
-/* Whether a recording holds every row as it was written. */
+/* Checks the integrity of a recording: every row present and unchanged. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,12 +9,12 @@
 
 struct checking {
     struct wb_recording_check *check;
-    int64_t last;           /* the highest number so far */
-    int64_t chain;          /* behind row `last`; -1 not known */
+    int64_t last;           /* the highest row number so far */
+    int64_t chain;          /* after row `last`; -1: unknown */
     struct wb_hash *digest; /* of all rows so far */
 };
 
-/* Adds to a list of places as long as there is room for them. */
+/* Appends to a list of places, or "..." once the list is full. */
 static void add_place(char *places, size_t size, const char *place)
 {
     const size_t n = strlen(places);
@@ -24,7 +24,7 @@ static void add_place(char *places, size_t size, const char *place)
         snprintf(places + n, size - n, ", ...");
 }
 
-/* What the row says it is, as far as that can be told in a few words. */
+/* Describes a row for the list of places. */
 static void describe(const struct wb_recording_row *row, char *text, size_t size)
 {
     const struct wb_recording_value *const v = row->values;
@@ -62,7 +62,7 @@ static bool is_digest(const struct wb_recording_row *row)
            memcmp(key->bytes, WB_RECORDING_DIGEST, key->n) == 0;
 }
 
-/* The digest is of all rows before its own. */
+/* The digest covers all rows before its own. */
 static void check_digest(struct checking *checking, const struct wb_recording_row *row)
 {
     char hex[WB_SHA256_TEXT];
@@ -86,7 +86,7 @@ static enum wb_status check_row(void *context, const struct wb_recording_row *ro
     }
     if (!check->is_protected)
         return WB_OK;
-    /* The number of a damaged row means nothing unless it is the next. */
+    /* The number of a damaged row is only believed if it is the expected one. */
     if (!row->intact && row->number != checking->last + 1) {
         checking->chain = -1;
         return WB_OK;

@@ -1,4 +1,4 @@
-/* Reading the rows of a table past damaged pages. */
+/* Reads the rows of a table and skips damaged pages. */
 #include <stdio.h>
 
 #include "base/log.h"
@@ -6,13 +6,13 @@
 
 #define WB_LOG_DOMAIN "recording"
 
-/* Behind a damaged page every row number is tried up to this far: a page holds no more rows.
- * Beyond, the steps double: much is damaged, and what lies between may be passed over. */
+/* After a damaged page, this many row numbers are tried one by one, which covers the rows of a
+ * page. Then the step doubles: with larger damage, intact rows in between may be skipped. */
 #define STEPS_OF_ONE 256
 
 enum wb_status wb_recording_cursor_open(struct wb_recording_cursor *cursor,
                                         struct wb_recording *recording, const char *columns,
-                                        const char *table, bool tell)
+                                        const char *table, bool report)
 {
     char sql[160];
     *cursor = (struct wb_recording_cursor){
@@ -24,7 +24,7 @@ enum wb_status wb_recording_cursor_open(struct wb_recording_cursor *cursor,
         return WB_OK;
     }
     cursor->code = code;
-    if (!tell && (code & 0xff) != SQLITE_NOMEM)
+    if (!report && (code & 0xff) != SQLITE_NOMEM)
         return WB_ERR_DATA;
     if (code == SQLITE_ERROR)
         return wb_fail_also(recording->why, WB_ERR_DATA, "'%s' is damaged: %s", recording->path,
@@ -37,8 +37,8 @@ static bool is_memory(int code)
     return (code & 0xff) == SQLITE_NOMEM;
 }
 
-/* Steps to the first row from this number on. False when that cannot be read, or is a row before
- * those that were read already. */
+/* Steps to the first row with at least this number. False if it cannot be read or has a lower
+ * number than rows that were already read. */
 static bool seek(struct wb_recording_cursor *cursor, int64_t number, int *code)
 {
     sqlite3_reset(cursor->statement);
@@ -50,8 +50,8 @@ static bool seek(struct wb_recording_cursor *cursor, int64_t number, int *code)
     return found > cursor->last && found <= cursor->recording->n_rows_max;
 }
 
-/* Finds the first row behind a damaged page, where there is one. */
-static int go_past_damage(struct wb_recording_cursor *cursor)
+/* Steps to the first readable row after a damaged page. */
+static int skip_damage(struct wb_recording_cursor *cursor)
 {
     int64_t failed = cursor->last, step = 1;
     int code;
@@ -75,8 +75,8 @@ static int go_past_damage(struct wb_recording_cursor *cursor)
     return seek(cursor, good, &code) ? code : SQLITE_DONE;
 }
 
-/* Pages that are only partly there read as rows without order. One number out of order is a row's
- * damage, and what follows it counts. */
+/* Truncated pages yield rows in random order. A single number out of order is a damaged row; the
+ * rows after it are still accepted. */
 static bool is_in_order(struct wb_recording_cursor *cursor)
 {
     const int64_t number = sqlite3_column_int64(cursor->statement, 0);
@@ -95,7 +95,7 @@ bool wb_recording_cursor_step(struct wb_recording_cursor *cursor)
     if (!cursor->statement)
         return false;
     int code = sqlite3_step(cursor->statement);
-    /* A damaged tree may lead in circles. */
+    /* A damaged tree may contain cycles: limit the number of steps. */
     for (; cursor->n_steps < cursor->recording->n_rows_max; cursor->n_steps++) {
         if (code == SQLITE_DONE)
             return false;
@@ -109,7 +109,7 @@ bool wb_recording_cursor_step(struct wb_recording_cursor *cursor)
             return true;
         }
         wb_recording_cursor_break(cursor, code);
-        code = code == SQLITE_ROW ? sqlite3_step(cursor->statement) : go_past_damage(cursor);
+        code = code == SQLITE_ROW ? sqlite3_step(cursor->statement) : skip_damage(cursor);
     }
     wb_recording_cursor_break(cursor, SQLITE_ROW);
     return false;

@@ -1,4 +1,4 @@
-/* Recordings as files: compressed and plain, temporary files, checksums. */
+/* Files of recordings: compression, temporary files, checksums. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -29,10 +29,11 @@ enum wb_status wb_recording_temporary(char *path, size_t size, int *descriptor,
         folder = "/tmp";
     int n = snprintf(path, size, "%s/wirebench-XXXXXX", folder);
     if (n < 0 || (size_t)n >= size)
-        return wb_fail_to(why, WB_ERR_ARGUMENT, "the temporary folder's name is too long");
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "the path of the temporary folder is too long");
     *descriptor = mkostemp(path, O_CLOEXEC);
     if (*descriptor < 0)
-        return wb_fail_to(why, WB_ERR_IO, "no temporary file in '%s': %s", folder, strerror(errno));
+        return wb_fail_to(why, WB_ERR_IO, "cannot create a temporary file in '%s': %s", folder,
+                          strerror(errno));
     return WB_OK;
 }
 
@@ -51,7 +52,7 @@ static enum wb_status write_all(int to, const void *bytes, size_t n, const char 
     return WB_OK;
 }
 
-/* One block of the compressed file; *n is 0 at its end. */
+/* Reads a block of the compressed file; *n is 0 at its end. */
 static enum wb_status read_block(int from, void *block, size_t size, const char *path, size_t *n,
                                  struct wb_reason *why)
 {
@@ -75,7 +76,7 @@ struct decompression {
 static enum wb_status decompress_all(struct decompression *d, int from, int to, const char *path,
                                      bool *whole, struct wb_reason *why)
 {
-    size_t left = 1; /* 0 once a frame is complete */
+    size_t left = 1; /* result of ZSTD_decompressStream(): 0 at the end of a frame */
     for (;;) {
         ZSTD_inBuffer in = {.src = d->in};
         WB_TRY(read_block(from, d->in, d->in_size, path, &in.size, why));
@@ -125,7 +126,7 @@ static enum wb_status open_file(const char *path, int *descriptor, struct wb_rea
                       path, strerror(errno));
 }
 
-/* The log beside a recording that was not closed holds a part of it. */
+/* Finds the write-ahead log, which holds a part of a recording that was not closed. */
 static bool find_wal(const char *path, char wal[WB_PATH])
 {
     struct stat there;
@@ -144,7 +145,8 @@ static enum wb_status append_file(int to, const char *path, struct wb_reason *wh
     return status;
 }
 
-/* The sum of what `from` (compressed) holds or, without it, of the file followed by its log. */
+/* Hashes the decompressed contents of `from` or, if it is not compressed, the file followed by its
+ * log. */
 static enum wb_status hash_whole(const char *path, int from, const char *wal, char hex[65],
                                  struct wb_reason *why)
 {
@@ -157,7 +159,7 @@ static enum wb_status hash_whole(const char *path, int from, const char *wal, ch
                                       : append_file(to, path, why);
     if (status == WB_OK && from < 0)
         status = append_file(to, wal, why);
-    /* Of one cut short what is there counts, as with one that is not compressed; opening tells. */
+    /* A truncated file is hashed as far as it goes, as without compression; opening reports it. */
     if (status == WB_OK)
         status = wb_hash_descriptor(to, path, hex, why);
     close(to);
@@ -190,14 +192,15 @@ static enum wb_status write_compressed(const char *target, const void *bytes, si
         return wb_fail(WB_ERR_ARGUMENT, "path '%.100s...' is too long", target);
     int to = mkostemp(temporary, O_CLOEXEC);
     if (to < 0)
-        return wb_fail(WB_ERR_IO, "cannot write beside '%s': %s", target, strerror(errno));
+        return wb_fail(WB_ERR_IO, "cannot create a temporary file beside '%s': %s", target,
+                       strerror(errno));
     enum wb_status status = write_all(to, bytes, size, target, NULL);
     if (status == WB_OK && (fchmod(to, 0644) != 0 || fsync(to) != 0))
         status = wb_fail(WB_ERR_IO, "cannot write '%s': %s", target, strerror(errno));
     close(to);
-    /* link() fails where the name exists, which rename() would overwrite. */
+    /* link() fails if the name exists; rename() would overwrite the file. */
     if (status == WB_OK && link(temporary, target) != 0)
-        status = wb_fail(errno == EEXIST ? WB_ERR_EXISTS : WB_ERR_IO, "cannot make '%s': %s",
+        status = wb_fail(errno == EEXIST ? WB_ERR_EXISTS : WB_ERR_IO, "cannot create '%s': %s",
                          target, strerror(errno));
     unlink(temporary);
     return status;
@@ -210,7 +213,7 @@ enum wb_status wb_recording_compress(const char *path, const char *target)
         return wb_fail(WB_ERR_BUSY, "'%s' is being recorded or was not closed", path);
     if (wb_file_exists(target))
         return wb_fail(WB_ERR_EXISTS,
-                       "'%s' exists: a recording is never overwritten; choose another name",
+                       "'%s' exists: recordings are never overwritten; choose another name",
                        target);
     char *bytes = NULL;
     size_t size = 0;

@@ -6,9 +6,10 @@
 
 #define WB_LOG_DOMAIN "recording"
 
-/* Pieces of the file as it was, at most; and at least two, for the times of its ends. */
+/* Bytes of a piece before compression; there are at least two pieces, with the times of both ends.
+ */
 #define PIECE (1 << 20)
-/* A file is as large as the camera's export was; the importer waits for the packing. */
+/* Compression level of zstd: fast, because the files are large and the user waits. */
 #define LEVEL 1
 
 bool wb_recording_foreign_is(const struct wb_recording_stream *stream)

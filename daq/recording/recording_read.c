@@ -1,4 +1,4 @@
-/* Recordings being read: opening what can be opened, and walking the tables. */
+/* Reading of recordings: opens a file as far as possible and walks its tables. */
 #include "daq/recording/recording.h"
 
 #include <errno.h>
@@ -15,7 +15,7 @@
 
 #define WB_LOG_DOMAIN "recording"
 
-/* --- what the file is --- */
+/* --- the header of the file --- */
 
 #define HEADER_BYTES 100
 
@@ -44,17 +44,16 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
                             recording->path, n == 0 ? ": the file is empty" : "");
     if (big_endian(header + 68) != WB_RECORDING_APPLICATION_ID)
         return wb_fail_also(recording->why, WB_ERR_FORMAT,
-                            "'%s' is not a recording: it is an SQLite database of another program",
+                            "'%s' is not a recording but an SQLite database of another program",
                             recording->path);
     const uint32_t version = big_endian(header + 60);
     if (version == 0)
-        return wb_fail_also(recording->why, WB_ERR_DATA, "'%s' is damaged: it is of schema 0",
+        return wb_fail_also(recording->why, WB_ERR_DATA, "'%s' is damaged: its schema number is 0",
                             recording->path);
     if (version > WB_RECORDING_SCHEMA)
         return wb_fail_also(
             recording->why, WB_ERR_UNSUPPORTED,
-            "'%s' is of schema %u, and this program knows schemas up to %d only: use a newer "
-            "wirebench",
+            "'%s' has schema %u, but this program supports schemas up to %d: use a newer wirebench",
             recording->path, version, WB_RECORDING_SCHEMA);
     recording->schema = (int)version;
     recording->is_log_missing = wb_recording_needs_log(header, sizeof header);
@@ -65,7 +64,7 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
     recording->bytes_expected = page * (int64_t)big_endian(header + 28);
     if (there.st_size < recording->bytes_expected)
         recording->shortened = true;
-    /* The smallest row takes more than four bytes. */
+    /* A row takes more than four bytes. */
     recording->n_rows_max = there.st_size / 4 + 64;
     return WB_OK;
 }
@@ -74,12 +73,12 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
 
 static char *make_uri(const char *path, const char *options)
 {
-    /* Only these three mean something in the path of a URI. */
+    /* '%', '?' and '#' are special in the path of a URI. */
     char *uri = malloc(3 * strlen(path) + strlen(options) + 16);
     if (!uri)
         return NULL;
     char *to = uri + sprintf(uri, "file:");
-    /* A path that starts with two slashes would read as a host. */
+    /* After two slashes SQLite would expect a host. */
     while (path[0] == '/' && path[1] == '/')
         path++;
     for (; *path; path++) {
@@ -92,7 +91,7 @@ static char *make_uri(const char *path, const char *options)
     return uri;
 }
 
-/* Opens the database and touches it; SQLite reads nothing before. */
+/* Opens the database and reads its schema, because SQLite reads nothing when opening. */
 static int open_database(struct wb_recording *recording, const char *path, const char *options)
 {
     char *uri = make_uri(path, options);
@@ -105,8 +104,8 @@ static int open_database(struct wb_recording *recording, const char *path, const
         sqlite3 *db = recording->db;
         sqlite3_extended_result_codes(db, 1);
         sqlite3_busy_timeout(db, 2000);
-        /* A file cut short is refused as a whole unless the schema may be repaired. The schema of
-         * a stranger's file runs nothing here. */
+        /* SQLite rejects a truncated file unless its schema is writable. No code in the schema of
+         * an untrusted file is executed. */
         sqlite3_db_config(db, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, NULL);
         sqlite3_db_config(db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
         sqlite3_db_config(db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
@@ -132,8 +131,8 @@ static enum wb_status copy_file(const char *from, const char *to, struct wb_reas
     return status;
 }
 
-/* A recording that was not closed, in a folder (or on a disk) where SQLite cannot put its index of
- * the write-ahead log: opened as a copy of both files. */
+/* Opens a copy of an unclosed recording and its write-ahead log, for folders where SQLite cannot
+ * create its index of the log. */
 static enum wb_status open_copy(struct wb_recording *recording)
 {
     char wal[WB_PATH], copy[WB_PATH], copy_of_wal[WB_PATH + 8], copy_of_shm[WB_PATH + 8];
@@ -157,12 +156,12 @@ static enum wb_status open_copy(struct wb_recording *recording)
     return status;
 }
 
-/* SQLite stops without a word where a frame of the log does not fit. */
-static void look_at_log(struct wb_recording *recording, const char *wal)
+/* Counts the frames of the log: SQLite silently ignores all frames after a damaged one. */
+static void inspect_log(struct wb_recording *recording, const char *wal)
 {
     char *bytes = NULL;
     size_t size = 0;
-    struct wb_reason unread = {{0}}; /* then SQLite will say so */
+    struct wb_reason unread = {{0}}; /* ignored: SQLite will report the same error */
     if (wb_file_read_with_reason(wal, &bytes, &size, &unread) == WB_OK)
         wb_recording_log_count((const uint8_t *)bytes, size, &recording->log);
     free(bytes);
@@ -174,14 +173,14 @@ static enum wb_status open_plain(struct wb_recording *recording)
     int n = snprintf(wal, sizeof wal, "%s-wal", recording->path);
     struct stat there;
     if (n < 0 || (size_t)n >= sizeof wal || stat(wal, &there) != 0) {
-        /* Closed: nobody writes to it any more, so it needs neither locks nor other files. */
+        /* A closed file is never written again: no locks and no auxiliary files are needed. */
         int code = open_database(recording, recording->path, "immutable=1");
         return code == SQLITE_OK ? WB_OK : wb_recording_fail(recording, code, "open the recording");
     }
     recording->n_rows_max += there.st_size / 4;
     recording->is_log_missing &= there.st_size == 0;
-    look_at_log(recording, wal);
-    recording->shortened = false; /* the log may hold what the header counts */
+    inspect_log(recording, wal);
+    recording->shortened = false; /* the log may hold the pages that the header counts */
     if (open_database(recording, recording->path, "mode=ro") == SQLITE_OK)
         return WB_OK;
     return open_copy(recording);
@@ -234,18 +233,19 @@ static enum wb_status prepare(struct wb_recording *recording, const char *sql,
     return wb_recording_fail(recording, code, "read");
 }
 
-static bool is_news(struct wb_recording *recording, const char *table)
+/* False if a problem of this table was reported before. */
+static bool is_first_report(struct wb_recording *recording, const char *table)
 {
-    for (size_t i = 0; i < recording->n_told; i++) {
-        if (strcmp(recording->told[i], table) == 0)
+    for (size_t i = 0; i < recording->n_reported; i++) {
+        if (strcmp(recording->reported[i], table) == 0)
             return false;
     }
-    if (recording->n_told < sizeof recording->told / sizeof recording->told[0])
-        recording->told[recording->n_told++] = table;
+    if (recording->n_reported < sizeof recording->reported / sizeof recording->reported[0])
+        recording->reported[recording->n_reported++] = table;
     return true;
 }
 
-/* The end of a walk: WB_OK unless rows were missing on the way. */
+/* Status at the end of a walk: reports missing rows. */
 static enum wb_status end_walk(struct wb_recording *recording,
                                const struct wb_recording_cursor *cursor, const char *table)
 {
@@ -253,15 +253,15 @@ static enum wb_status end_walk(struct wb_recording *recording,
         return WB_OK;
     if ((cursor->code & 0xff) == SQLITE_NOMEM)
         return wb_recording_fail(recording, cursor->code, "read");
-    /* That a file is cut short was said when it was opened, and every table is walked twice. */
-    if (recording->shortened || !is_news(recording, table))
+    /* A truncated file was reported on opening, and every table is walked twice. */
+    if (recording->shortened || !is_first_report(recording, table))
         return WB_ERR_DATA;
     const int64_t after = cursor->n_rows - cursor->n_rows_before;
     char behind[64] = "";
     if (after > 0)
-        snprintf(behind, sizeof behind, "; behind the damage are %lld", (long long)after);
+        snprintf(behind, sizeof behind, "; %lld more after the damage", (long long)after);
     return wb_fail_also(recording->why, WB_ERR_DATA,
-                        "'%s': table %s breaks off after %lld row%s: %s%s", recording->path, table,
+                        "'%s': table %s is damaged after %lld row%s: %s%s", recording->path, table,
                         (long long)cursor->n_rows_before, cursor->n_rows_before == 1 ? "" : "s",
                         sqlite3_errstr(cursor->code), behind);
 }
@@ -290,10 +290,10 @@ static enum wb_status read_stream_row(struct wb_recording *recording,
     struct wb_recording_stream stream = {.id = (int)v[0].integer};
     if (!row->intact && recording->schema >= 2)
         return wb_fail_also(recording->why, WB_ERR_DATA,
-                            "'%s': the row of a stream is damaged: it is left out",
+                            "'%s': the row of a stream is damaged; the stream is skipped",
                             recording->path);
     if (!role_of(text_of(&v[1]), &stream.role)) {
-        wb_warn("'%s': stream %d has the unknown role '%.40s' and is left out", recording->path,
+        wb_warn("'%s': stream %d has the unknown role '%.40s' and is skipped", recording->path,
                 stream.id, text_of(&v[1]));
         return WB_OK;
     }
@@ -320,7 +320,8 @@ static enum wb_status read_streams(struct wb_recording *recording)
     enum wb_status status = WB_OK;
     while (status != WB_ERR_MEMORY && cursor.n_rows < 1000 && wb_recording_cursor_step(&cursor)) {
         wb_recording_read_row(recording, WB_RECORDING_STREAM, cursor.statement, &row);
-        status = read_stream_row(recording, &row); /* damage was told, and the rest may serve */
+        status =
+            read_stream_row(recording, &row); /* after reported damage the rest is still used */
     }
     if (status != WB_ERR_MEMORY)
         status = end_walk(recording, &cursor, "stream");
@@ -328,7 +329,7 @@ static enum wb_status read_streams(struct wb_recording *recording)
     return status == WB_ERR_MEMORY ? status : WB_OK;
 }
 
-/* The tables say of which schema they are; the number in the header is under no checksum. */
+/* Determines the schema from the columns: the number in the header has no checksum. */
 static void find_schema(struct wb_recording *recording)
 {
     for (int i = 0; i < WB_RECORDING_TABLES; i++) {
@@ -392,20 +393,20 @@ enum wb_status wb_recording_hash(const struct wb_recording *recording, char hex[
 bool wb_recording_log_problem(const struct wb_recording *recording, char *text, size_t size)
 {
     const struct wb_recording_log *const log = &recording->log;
-    /* Between the steps of closing all is in the file. */
+    /* During closing, after the digest was written, the log is no longer needed. */
     if (recording->is_log_missing && !recording->complete) {
         snprintf(
             text, size,
-            "it was not closed, and its write-ahead log '%.60s-wal' is not beside it: what was "
-            "recorded last, a second or more, is in that file; put it back",
+            "it was not closed, and its write-ahead log '%.60s-wal' is missing, which contains the "
+            "last second or more of the recording: restore that file",
             wb_file_name(recording->path));
         return true;
     }
     if (log->readable >= log->frames)
         return false;
     snprintf(text, size,
-             "its write-ahead log '%.60s-wal' is damaged: %llu of %llu pages in it are read; "
-             "`wirebench recover` reads what is left of the others",
+             "its write-ahead log '%.60s-wal' is damaged: %llu of its %llu pages are read; run "
+             "`wirebench recover` to read the intact rest",
              wb_file_name(recording->path), (unsigned long long)log->readable,
              (unsigned long long)log->frames);
     return true;
@@ -417,10 +418,10 @@ void wb_recording_warn_cut_short(const struct wb_recording *recording)
     if (wb_recording_log_problem(recording, problem, sizeof problem))
         wb_warn("'%s': %s", recording->path, problem);
     if (recording->shortened)
-        wb_warn("'%s' is cut short: %.1f of %.1f MB could be read; look for the original%s",
+        wb_warn("'%s' is truncated: %.1f of %.1f MB could be read; use the original file%s",
                 recording->path, (double)recording->bytes_there * 1e-6,
                 (double)recording->bytes_expected * 1e-6,
-                recording->compressed ? "" : " or its -wal");
+                recording->compressed ? "" : ", or restore its -wal file");
 }
 
 enum wb_status wb_recording_open(struct wb_recording **out, const char *path)
@@ -481,9 +482,9 @@ static int compare_metas(const void *a, const void *b)
     return strcmp(((const struct meta *)a)->key, ((const struct meta *)b)->key);
 }
 
-/* A key that is set again has the later value. */
-static enum wb_status keep_meta(struct wb_recording *recording, struct metas *metas,
-                                const char *key, const char *value)
+/* Adds a meta value; of a key that was set twice, the later value is kept. */
+static enum wb_status add_meta(struct wb_recording *recording, struct metas *metas, const char *key,
+                               const char *value)
 {
     struct meta *found = NULL;
     for (size_t i = 0; i < metas->n && !found; i++)
@@ -508,8 +509,8 @@ static enum wb_status keep_meta(struct wb_recording *recording, struct metas *me
     return WB_OK;
 }
 
-/* All of them, or only those of one key; in no order. WB_ERR_DATA when some cannot be read: the
- * others are there. */
+/* Reads all meta values, or only that of one key, in no order. WB_ERR_DATA: some cannot be read,
+ * all others are in `metas`. */
 static enum wb_status read_metas(struct wb_recording *recording, const char *key,
                                  struct metas *metas)
 {
@@ -524,12 +525,12 @@ static enum wb_status read_metas(struct wb_recording *recording, const char *key
         if (recording->schema >= 2 && !row.intact)
             n_damaged++;
         else if (!key || strcmp(name, key) == 0)
-            status = keep_meta(recording, metas, name, text_of(&row.values[1]));
+            status = add_meta(recording, metas, name, text_of(&row.values[1]));
     }
     if (status == WB_OK)
         status = end_walk(recording, &cursor, "meta");
     if (status == WB_OK && n_damaged > 0)
-        status = is_news(recording, "meta")
+        status = is_first_report(recording, "meta")
                      ? wb_fail_also(recording->why, WB_ERR_DATA,
                                     "'%s': %llu row%s of table meta %s damaged", recording->path,
                                     (unsigned long long)n_damaged, n_damaged == 1 ? "" : "s",
@@ -572,8 +573,8 @@ enum wb_status wb_recording_each_meta(struct wb_recording *recording,
 
 /* --- rows in order of time --- */
 
-/* Where a row is and what it is sorted by. Sorting keys here instead of rows in SQLite lets a
- * damaged file give what comes before the damage, and keeps memory small. */
+/* Number and sorting keys of a row. Sorting keys here, instead of rows in SQLite, gives all
+ * readable rows of a damaged file and needs little memory. */
 struct key {
     int64_t t_ns, seq, rowid;
     int stream;
@@ -610,8 +611,8 @@ static enum wb_status append_key(struct keys *keys, const struct key *key, struc
     return WB_OK;
 }
 
-/* Reads rowid, time, stream and seq of all rows that can be read. *end is WB_OK or why rows are
- * missing. A page that is only partly there reads as rows of nothing, which have no time. */
+/* Reads rowid, time, stream and seq of all readable rows. *end is WB_OK, or the reason why rows are
+ * missing. Rows of a truncated page have no time and are skipped. */
 static enum wb_status read_keys(struct wb_recording *recording, const char *table,
                                 const char *columns, struct keys *keys, enum wb_status *end)
 {
@@ -635,9 +636,7 @@ static enum wb_status read_keys(struct wb_recording *recording, const char *tabl
     return status;
 }
 
-/* One table to be walked: its keys, which of a row's values is its time, and what to do with the
- * row.
- */
+/* A table to be walked: its keys, the index of the time among a row's values, and the visitor. */
 struct walk {
     enum wb_recording_kind kind;
     const char *keys; /* rowid, time, stream, seq */
@@ -649,8 +648,8 @@ struct walk {
     void *context;
 };
 
-/* Whether the row is to be visited. Chunks say themselves that they are damaged. Under a damaged
- * number another row may be found. */
+/* Whether the row is to be visited. Damaged chunks are visited, because visitors can see that they
+ * are damaged. The number of a damaged row may lead to another row. */
 static bool is_good(const struct walk *walk, const struct key *key,
                     const struct wb_recording_row *row, int schema)
 {
@@ -658,7 +657,7 @@ static bool is_good(const struct walk *walk, const struct key *key,
            (row->intact || walk->kind == WB_RECORDING_CHUNK || schema < 2);
 }
 
-/* Visits the rows. Those that cannot be read are counted in *n_lost and passed over. */
+/* Visits the rows; those that cannot be read are skipped and counted in *n_lost. */
 static enum wb_status visit_rows(struct wb_recording *recording, struct walk *walk,
                                  const struct keys *keys, size_t *n_lost)
 {
@@ -703,7 +702,7 @@ static enum wb_status walk_table(struct wb_recording *recording, struct walk *wa
         status = visit_rows(recording, walk, &keys, &n_lost);
         if (status == WB_OK && end == WB_OK && n_lost > 0) {
             end = WB_ERR_DATA;
-            if (!recording->shortened && is_news(recording, table))
+            if (!recording->shortened && is_first_report(recording, table))
                 end =
                     wb_fail_also(recording->why, WB_ERR_DATA,
                                  "'%s': %zu row%s of table %s %s damaged", recording->path, n_lost,

@@ -1,4 +1,4 @@
-/* Rows of recordings: what their tables hold, the checksum of a row, the chain of rows. */
+/* Rows of recordings: columns of the tables, checksum of a row, chain of rows. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,7 +19,7 @@ uint32_t wb_recording_crc32(const void *bytes, size_t n)
     return (uint32_t)crc32_z(crc32_z(0, NULL, 0), bytes, n);
 }
 
-/* Numbers are taken as 8 bytes, least significant first. */
+/* Numbers enter a checksum as 8 bytes, least significant first. */
 static uint8_t *put_number(uint8_t *to, uint64_t value)
 {
     for (int i = 0; i < 8; i++)
@@ -27,7 +27,7 @@ static uint8_t *put_number(uint8_t *to, uint64_t value)
     return to;
 }
 
-/* What SQLite makes of a number: it keeps neither NaN nor the sign of zero. */
+/* Bits of a number as SQLite stores it: without NaN and without the sign of zero. */
 static uint64_t bits_of(double value)
 {
     uint64_t bits;
@@ -38,8 +38,8 @@ static uint64_t bits_of(double value)
     return bits;
 }
 
-/* Of the table's name with its NUL, the row's number, then its values: numbers, and texts and blobs
- * as their length and their bytes. */
+/* CRC-32 of the table's name with its NUL, the row's number and its values; texts and blobs enter
+ * as length and bytes. */
 uint32_t wb_recording_row_crc32(enum wb_recording_kind kind, int64_t number,
                                 const struct wb_recording_value *values)
 {
@@ -79,7 +79,7 @@ void wb_recording_digest_add(struct wb_hash *digest, uint32_t row_crc32)
     wb_hash_add(digest, bytes, 4);
 }
 
-/* Whether the column has the type it was written with. */
+/* Reads a value; false if the column does not have the type with which it was written. */
 static bool read_value(sqlite3_stmt *statement, int column, char type,
                        struct wb_recording_value *value)
 {
@@ -106,7 +106,7 @@ static bool read_value(sqlite3_stmt *statement, int column, char type,
     }
 }
 
-/* A checksum as it was stored; -1, which is none, where there is something else. */
+/* Reads a stored checksum; -1 if the column has another type or range. */
 static int64_t read_crc32(sqlite3_stmt *statement, int column)
 {
     const int64_t value = sqlite3_column_int64(statement, column);

@@ -8,23 +8,23 @@
 
 /* https://www.sqlite.org/fileformat2.html: 1.6 (pages of trees), 2.1 (records), 4 (the log). */
 enum {
-    PAGE = 4096, /* wb_recording_create() makes no others */
+    PAGE = 4096, /* page size of wb_recording_create() */
     LEAF_OF_TABLE = 0x0d,
     LOG_HEADER = 32,
     FRAME_HEADER = 24,
-    MOST_INLINE = PAGE - 35,                   /* bytes of a row that stand in its own page, */
-    LEAST_INLINE = (PAGE - 12) * 32 / 255 - 23 /* and those that do when it has more */
+    MOST_INLINE = PAGE - 35,                   /* largest row without overflow pages, bytes */
+    LEAST_INLINE = (PAGE - 12) * 32 / 255 - 23 /* least part in the leaf page of larger rows */
 };
 
-/* Where a row stands. */
+/* Location of a row. */
 struct place {
     int64_t number;
     const uint8_t *cell; /* in a page of the file or the log */
     const uint8_t *end;  /* of that page */
     uint32_t crc32, chain;
-    uint32_t followers; /* rows behind it in the chain */
+    uint32_t followers; /* rows after it in the chain */
     enum wb_recording_kind kind;
-    bool is_file_first; /* pages that follow were taken from the file rather than the log */
+    bool is_file_first; /* overflow pages are taken from the file rather than from the log */
 };
 
 /* A page in the log. */
@@ -34,15 +34,15 @@ struct frame {
 
 struct wb_recording_salvage {
     const uint8_t *file, *log;
-    size_t n_pages;     /* in the file, a last one that is cut short not counted */
-    uint8_t tail[PAGE]; /* that one, the rest zero */
+    size_t n_pages;     /* complete pages in the file */
+    uint8_t tail[PAGE]; /* the truncated last page, padded with zeros */
     struct frame *frames;
     size_t n_frames; /* by page, then by index */
     struct place *places;
     size_t n_places, capacity;
-    uint8_t *payload; /* a row that runs over several pages */
-    uint64_t budget;  /* bytes that rows on several pages may still take: chains of pages that lead
-                         to each other in circles end */
+    uint8_t *payload; /* a row with overflow pages, assembled */
+    uint64_t budget;  /* bytes of overflow pages that may still be read; ends cycles in damaged
+                         chains of pages */
 };
 
 static uint32_t big_endian(const uint8_t *p)
@@ -58,7 +58,7 @@ static uint32_t word(const uint8_t *p, bool is_big)
                   : (uint32_t)p[3] << 24 | (uint32_t)p[2] << 16 | (uint32_t)p[1] << 8 | p[0];
 }
 
-/* Fletcher's sum of the log, over pairs of words. */
+/* Fletcher checksum of the log, over pairs of words. */
 static void add_sum(uint32_t sum[2], const uint8_t *bytes, size_t n, bool is_big)
 {
     for (size_t i = 0; i + 8 <= n; i += 8) {
@@ -80,7 +80,7 @@ void wb_recording_log_count(const uint8_t *bytes, size_t n, struct wb_recording_
                 big_endian(bytes + 24) == sum[0] && big_endian(bytes + 28) == sum[1];
     for (size_t at = LOG_HEADER; at + FRAME_HEADER + PAGE <= n; at += FRAME_HEADER + PAGE) {
         const uint8_t *const frame = bytes + at;
-        /* Of an earlier run, or damaged itself. */
+        /* A frame of an older log, or a damaged one. */
         if (memcmp(frame + 8, salt, 8) != 0) {
             fits = false;
             continue;
@@ -118,8 +118,8 @@ static void list_frames(struct wb_recording_salvage *s, size_t n_log)
     qsort(s->frames, s->n_frames, sizeof *s->frames, compare_frames);
 }
 
-/* The page of this number: its last version in the log, else in the file, or the other way round;
- * NULL when it is nowhere. Pages of rows are written once and stay. */
+/* Finds a page by its number: the last version in the log or, failing that, in the file; with
+ * `is_file_first` in the reverse order. NULL: not found. */
 static const uint8_t *find_page(const struct wb_recording_salvage *s, uint32_t number,
                                 bool is_file_first)
 {
@@ -144,7 +144,7 @@ static const uint8_t *find_page(const struct wb_recording_salvage *s, uint32_t n
 
 /* --- rows --- */
 
-/* A number of one to nine bytes, seven bits each, all eight of the ninth. False at the end. */
+/* Reads a number of one to nine bytes: seven bits each, eight in the ninth. False if truncated. */
 static bool read_varint(const uint8_t **at, const uint8_t *end, uint64_t *value)
 {
     *value = 0;
@@ -163,7 +163,7 @@ static bool read_varint(const uint8_t **at, const uint8_t *end, uint64_t *value)
     return false;
 }
 
-/* How many bytes of a row stand in its own page. */
+/* Bytes of a row of n bytes that are in its leaf page. */
 static size_t inline_bytes(uint64_t n)
 {
     if (n <= MOST_INLINE)
@@ -172,9 +172,9 @@ static size_t inline_bytes(uint64_t n)
     return k <= MOST_INLINE ? k : LEAST_INLINE;
 }
 
-/* Puts a row that runs over several pages together. */
-static bool gather(struct wb_recording_salvage *s, const uint8_t *at, size_t n_inline, size_t n,
-                   bool is_file_first)
+/* Assembles a row with overflow pages. */
+static bool assemble(struct wb_recording_salvage *s, const uint8_t *at, size_t n_inline, size_t n,
+                     bool is_file_first)
 {
     if (n > s->budget)
         return false;
@@ -194,7 +194,7 @@ static bool gather(struct wb_recording_salvage *s, const uint8_t *at, size_t n_i
     return true;
 }
 
-/* Reads the value of a column and steps over it. False when it is not of the type. */
+/* Reads the value of a column and advances; false if it has another type. */
 static bool read_value(char type, uint64_t serial, const uint8_t **body, const uint8_t *end,
                        struct wb_recording_value *value)
 {
@@ -220,7 +220,7 @@ static bool read_value(char type, uint64_t serial, const uint8_t **body, const u
     }
     if (type != 'r')
         return false;
-    /* NaN is stored as nothing, a whole number as an integer. */
+    /* SQLite stores NaN as NULL, and a real without fraction as an integer. */
     int64_t whole;
     memcpy(&whole, &bits, sizeof bits);
     if (serial == 7)
@@ -230,8 +230,8 @@ static bool read_value(char type, uint64_t serial, const uint8_t **body, const u
     return true;
 }
 
-/* Reads a record as a row of one table: number (which the record leaves empty), values, checksum,
- * chain. True when it is one by its checksum. */
+/* Decodes a record as a row of one table: number (not part of the record), values, checksum, chain.
+ * True if the checksum matches. */
 static bool read_record(enum wb_recording_kind kind, const uint8_t *record, size_t n,
                         struct wb_recording_row *row)
 {
@@ -264,7 +264,7 @@ static bool read_record(enum wb_recording_kind kind, const uint8_t *record, size
            row->crc32 == wb_recording_row_crc32(kind, row->number, row->values);
 }
 
-/* What a cell of a page of rows begins with. */
+/* Header of a cell in a leaf page. */
 struct cell {
     int64_t number;
     const uint8_t *at; /* the record */
@@ -290,7 +290,7 @@ static bool read_row(struct wb_recording_salvage *s, const struct cell *cell, bo
 {
     const uint8_t *record = cell->at;
     if (cell->n_inline < cell->n) {
-        if (!gather(s, cell->at, cell->n_inline, cell->n, is_file_first))
+        if (!assemble(s, cell->at, cell->n_inline, cell->n, is_file_first))
             return false;
         record = s->payload;
     }
@@ -308,8 +308,8 @@ static void keep(struct wb_recording_salvage *s, const struct place *place)
     s->places[s->n_places++] = *place;
 }
 
-/* The rows of one page, if it is one of rows. Cells do not overlap: all together are a page. */
-static void look_at_page(struct wb_recording_salvage *s, const uint8_t *page)
+/* Finds the rows of a page, if it is a leaf page of a table. */
+static void scan_page(struct wb_recording_salvage *s, const uint8_t *page)
 {
     if (page[0] != LEAF_OF_TABLE)
         return;
@@ -348,7 +348,7 @@ static int compare_places(const void *a, const void *b)
     const struct place *const x = a, *const y = b;
     if (x->number != y->number)
         return x->number < y->number ? -1 : 1;
-    /* The same row stands in every version of its page. */
+    /* Every version of a page contains the same row. */
     return x->crc32 != y->crc32 ? (x->crc32 < y->crc32 ? -1 : 1) : 0;
 }
 
@@ -358,7 +358,7 @@ static bool follows(const struct place *row, const struct place *before)
            row->chain == wb_recording_chain(before->chain, row->crc32);
 }
 
-/* Behind the places of the number that stands at `i`. */
+/* Index after the last place with the same row number as place `i`. */
 static size_t end_of_number(const struct wb_recording_salvage *s, size_t i)
 {
     const int64_t number = s->places[i].number;
@@ -367,7 +367,7 @@ static size_t end_of_number(const struct wb_recording_salvage *s, size_t i)
     return i;
 }
 
-/* How many rows follow each by the chain. */
+/* Counts for each place the rows that follow it in the chain. */
 static void count_followers(struct wb_recording_salvage *s)
 {
     for (size_t i = s->n_places; i-- > 0;) {
@@ -381,7 +381,7 @@ static void count_followers(struct wb_recording_salvage *s)
     }
 }
 
-/* Rows of every version of a page that are the same. */
+/* Removes identical rows from different versions of a page. */
 static void drop_copies(struct wb_recording_salvage *s)
 {
     size_t n = 0;
@@ -392,8 +392,8 @@ static void drop_copies(struct wb_recording_salvage *s)
     s->n_places = n;
 }
 
-/* Keeps each number once. A transaction that failed may have left rows whose numbers were used
- * again: those count that follow the row before and that most rows follow. */
+/* Keeps one row per number. A failed transaction may have left rows whose numbers were used again:
+ * the row that continues the chain and is followed by most rows is kept. */
 static void keep_each_once(struct wb_recording_salvage *s)
 {
     size_t n = 0;
@@ -426,10 +426,10 @@ struct wb_recording_salvage *wb_recording_salvage_find(const uint8_t *file, size
     s->budget = 4 * ((uint64_t)n_file + n_log);
     list_frames(s, n_log);
     for (size_t i = 0; i < s->n_frames; i++)
-        look_at_page(s, frame_page(s, s->frames[i].index));
+        scan_page(s, frame_page(s, s->frames[i].index));
     for (size_t i = 0; i < s->n_pages; i++)
-        look_at_page(s, file + i * PAGE);
-    look_at_page(s, s->tail);
+        scan_page(s, file + i * PAGE);
+    scan_page(s, s->tail);
     if (s->n_places > 0)
         qsort(s->places, s->n_places, sizeof *s->places, compare_places);
     drop_copies(s);
@@ -458,7 +458,7 @@ void wb_recording_salvage_row(struct wb_recording_salvage *salvage, size_t index
 {
     const struct place *const place = &salvage->places[index];
     struct cell cell;
-    salvage->budget = UINT64_MAX; /* each row once more, which was read before */
+    salvage->budget = UINT64_MAX; /* the row was already read once: its chain of pages ends */
     if (!read_cell(place->cell, place->end, &cell) ||
         !read_row(salvage, &cell, place->is_file_first, (int)place->kind, (int)place->kind, row))
         *row = (struct wb_recording_row){.number = place->number, .is_nothing = true};

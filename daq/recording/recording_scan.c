@@ -1,4 +1,4 @@
-/* All rows of a recording in order of writing: its tables side by side. */
+/* Visits all rows of a recording in order of writing, by merging its tables. */
 #include <string.h>
 
 #include "daq/recording/recording_private.h"
@@ -21,8 +21,8 @@ static void step(struct side *side, enum wb_recording_kind kind)
     }
 }
 
-/* The table whose row was written next; WB_RECORDING_TABLES at the end. Rows of schema 1 are
- * numbered table by table. */
+/* The table with the next row in order of writing; WB_RECORDING_TABLES at the end. In schema 1 each
+ * table has its own numbers, so the tables follow each other. */
 static int find_next(const struct side *sides, int schema)
 {
     int next = WB_RECORDING_TABLES;

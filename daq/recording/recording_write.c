@@ -1,4 +1,4 @@
-/* Recordings being written: schema, appends in transactions, closing. */
+/* Writing of recordings: schema, appends in transactions, closing. */
 #include "base/timing.h"
 #include "daq/recording/recording.h"
 
@@ -15,8 +15,8 @@
 
 #define WB_LOG_DOMAIN "recording"
 
-/* Tables without any index: rows are appended in order of arrival, so that the file is written and
- * read from front to back, and nothing stands in it twice. */
+/* Tables have no index: rows are appended in order of arrival, so that the file is written and read
+ * sequentially and contains no data twice. */
 static const char schema[] =
     "CREATE TABLE meta(n INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL,"
     " crc32 INTEGER NOT NULL, chain INTEGER NOT NULL);"
@@ -35,7 +35,7 @@ static const char schema[] =
 enum wb_status wb_recording_fail(const struct wb_recording *recording, int code, const char *doing)
 {
     const char *path = recording->path;
-    /* SQLite keeps the system's reason for some failures only; the others leave it in errno. */
+    /* SQLite stores the system's error code for some failures only; for others errno has it. */
     int error = recording->db ? sqlite3_system_errno(recording->db) : 0;
     if (error == 0)
         error = errno;
@@ -53,19 +53,18 @@ enum wb_status wb_recording_fail(const struct wb_recording *recording, int code,
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
         return wb_fail_also(recording->why, WB_ERR_BUSY,
-                            "'%s': cannot %s: another program holds it", path, doing);
+                            "'%s': cannot %s: it is locked by another program", path, doing);
     case SQLITE_READONLY:
     case SQLITE_PERM:
     case SQLITE_AUTH:
-        return wb_fail_also(recording->why, WB_ERR_PERMISSION, "'%s': cannot %s: not allowed", path,
-                            doing);
+        return wb_fail_also(recording->why, WB_ERR_PERMISSION, "'%s': cannot %s: no permission",
+                            path, doing);
     default:
         break;
     }
     if (error == EFBIG)
         return wb_fail_also(recording->why, WB_ERR_IO,
-                            "'%s': cannot %s: the largest file size allowed is reached", path,
-                            doing);
+                            "'%s': cannot %s: the maximum file size is reached", path, doing);
     return wb_fail_also(recording->why, WB_ERR_IO, "'%s': cannot %s: %s%s%s", path, doing,
                         sqlite3_errstr(code), error ? ": " : "", error ? strerror(error) : "");
 }
@@ -110,8 +109,8 @@ void wb_recording_release(struct wb_recording *recording)
     free(recording);
 }
 
-/* Makes the empty file ourselves: SQLite would open an existing one. Left-over journals of an
- * earlier file of this name would be taken for ours. */
+/* Creates the empty file here, because SQLite would open an existing one. Remaining journals of an
+ * earlier file of this name are an error: SQLite would use them. */
 static enum wb_status make_file(const char *path)
 {
     static const char *const beside[] = {"-wal", "-journal", "-shm"};
@@ -122,7 +121,7 @@ static enum wb_status make_file(const char *path)
             return wb_fail(WB_ERR_ARGUMENT, "path '%.100s...' is too long", path);
         if (access(other, F_OK) == 0)
             return wb_fail(WB_ERR_EXISTS,
-                           "'%s' exists: it is part of an earlier recording of this name; choose "
+                           "'%s' exists and belongs to an earlier recording of this name: choose "
                            "another name",
                            other);
     }
@@ -133,18 +132,18 @@ static enum wb_status make_file(const char *path)
     }
     if (errno == EEXIST)
         return wb_fail(WB_ERR_EXISTS,
-                       "'%s' exists: a recording is never overwritten; choose another name", path);
+                       "'%s' exists: recordings are never overwritten; choose another name", path);
     char folder[WB_PATH];
     const int error = errno;
     wb_file_folder(folder, path);
     if (error == ENOENT && wb_file_is_folder(folder)) /* /proc and the like */
-        return wb_fail(WB_ERR_PERMISSION, "'%s' cannot be made: nothing can be written in '%s'",
+        return wb_fail(WB_ERR_PERMISSION, "'%s' cannot be created: no files can be written in '%s'",
                        path, folder);
     errno = error;
     if (errno == ENOENT || errno == ENOTDIR)
-        return wb_fail(WB_ERR_NOT_FOUND, "'%s' cannot be made: its folder does not exist", path);
+        return wb_fail(WB_ERR_NOT_FOUND, "'%s' cannot be created: its folder does not exist", path);
     return wb_fail(errno == EACCES || errno == EROFS ? WB_ERR_PERMISSION : WB_ERR_IO,
-                   "'%s' cannot be made: %s", path, strerror(errno));
+                   "'%s' cannot be created: %s", path, strerror(errno));
 }
 
 static enum wb_status prepare(struct wb_recording *recording)
@@ -152,7 +151,7 @@ static enum wb_status prepare(struct wb_recording *recording)
     for (int i = 0; i < WB_RECORDING_TABLES; i++) {
         const struct wb_recording_table *const table = &wb_recording_tables[i];
         char sql[200];
-        /* Beside the row's values: its number, its checksum and the chain. */
+        /* In addition to the row's values: its number, its checksum and the chain. */
         snprintf(sql, sizeof sql, "INSERT INTO %s(n, %s, crc32, chain) VALUES(?, ?, ?%.*s)",
                  table->name, table->columns, 3 * (int)strlen(table->types), ", ?, ?, ?, ?, ?");
         const int code = sqlite3_prepare_v3(recording->db, sql, -1, SQLITE_PREPARE_PERSISTENT,
@@ -163,8 +162,8 @@ static enum wb_status prepare(struct wb_recording *recording)
     return WB_OK;
 }
 
-/* The schema is written before WAL is switched on, so that the main file says from the start what
- * it is. FULL makes a flush survive a power cut; the writer thread bears the wait. */
+/* The schema is written before WAL is enabled, so that the main file is always a valid recording.
+ * With synchronous=FULL a flush survives a power cut; only the writer thread waits for it. */
 static enum wb_status set_up(struct wb_recording *recording)
 {
     char pragmas[256];
@@ -207,7 +206,7 @@ enum wb_status wb_recording_create(struct wb_recording **out, const char *path)
         status = wb_recording_fail(recording, code, "create the recording");
     } else {
         sqlite3_extended_result_codes(recording->db, 1);
-        /* Somebody looking on (`info`) may hold a lock for a moment. */
+        /* A reader such as `info` may hold a lock for a moment. */
         sqlite3_busy_timeout(recording->db, 5000);
         status = set_up(recording);
     }
@@ -220,9 +219,9 @@ enum wb_status wb_recording_create(struct wb_recording **out, const char *path)
     return WB_OK;
 }
 
-/* Gives up the open transaction: what was not flushed is as if it had never been appended. Only the
- * first of several failures is told. */
-static enum wb_status take_back(struct wb_recording *recording, int code)
+/* Rolls back the open transaction, thus all rows since the last flush. Only the first of several
+ * failures is logged. */
+static enum wb_status roll_back(struct wb_recording *recording, int code)
 {
     if (recording->failed == WB_OK)
         recording->failed = wb_recording_fail(recording, code, "write");
@@ -235,7 +234,7 @@ static enum wb_status take_back(struct wb_recording *recording, int code)
     return recording->failed;
 }
 
-/* Remembers a row until it is flushed, and with it counts for the digest. */
+/* Stores a row's CRC-32, which enters the digest when the row is flushed. */
 static bool remember_row(struct wb_recording *recording, uint32_t crc32)
 {
     if (recording->n_unflushed == recording->capacity) {
@@ -258,7 +257,7 @@ static enum wb_status begin(struct wb_recording *recording)
         return WB_OK;
     int code = sqlite3_exec(recording->db, "BEGIN", NULL, NULL, NULL);
     if (code != SQLITE_OK)
-        return take_back(recording, code);
+        return roll_back(recording, code);
     recording->in_transaction = true;
     return WB_OK;
 }
@@ -307,7 +306,7 @@ enum wb_status wb_recording_append_row(struct wb_recording *recording, enum wb_r
     sqlite3_clear_bindings(statement);
     errno = error;
     if (code != SQLITE_DONE || !remember_row(recording, crc32))
-        return take_back(recording, code != SQLITE_DONE ? code : SQLITE_NOMEM);
+        return roll_back(recording, code != SQLITE_DONE ? code : SQLITE_NOMEM);
     recording->n_rows = number;
     recording->chain = chain;
     return WB_OK;
@@ -373,8 +372,8 @@ enum wb_status wb_recording_append_clock(struct wb_recording *recording, int str
 
 static const int64_t checkpoint_interval_ns = WB_NS_PER_S;
 
-/* Little shall hang on the log beside the file, which gets lost when the file alone is copied: what
- * is flushed goes into the file once a second. Where that fails the log still has it. */
+/* Moves flushed rows from the log into the file once a second, because the log is lost when only
+ * the file is copied. If that fails, the rows remain in the log. */
 static void checkpoint_when_due(struct wb_recording *recording)
 {
     const int64_t now = wb_time_now_ns();
@@ -391,7 +390,7 @@ enum wb_status wb_recording_flush(struct wb_recording *recording)
     errno = 0;
     int code = sqlite3_exec(recording->db, "COMMIT", NULL, NULL, NULL);
     if (code != SQLITE_OK)
-        return take_back(recording, code);
+        return roll_back(recording, code);
     recording->in_transaction = false;
     recording->failed = WB_OK;
     for (size_t i = 0; i < recording->n_unflushed; i++)
@@ -402,8 +401,8 @@ enum wb_status wb_recording_flush(struct wb_recording *recording)
     return WB_OK;
 }
 
-/* The last row is the digest of all before it: without it the end is missing. Then one plain file,
- * readable from a read-only folder. */
+/* Writes the digest of all rows as the last row, which proves that the end is present, and makes a
+ * single file, readable from a read-only folder. */
 static enum wb_status finish_file(struct wb_recording *recording)
 {
     char now[WB_TIME_TEXT], hex[WB_SHA256_TEXT];
@@ -423,8 +422,8 @@ static enum wb_status finish_file(struct wb_recording *recording)
     return WB_OK;
 }
 
-/* One plain file where the disk still takes that. Else the log stays: SQLite would bring it into
- * the file and delete it, and the header would go on to ask for it. */
+/* Makes a single file if the disk permits. Otherwise the log is kept: SQLite would checkpoint and
+ * delete it, although the header of the file would still require it. */
 static void leave_unclosed(struct wb_recording *recording)
 {
     sqlite3_db_config(recording->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);

@@ -16,7 +16,7 @@
 
 #define WB_LOG_DOMAIN "recover"
 
-/* Rows written between two flushes. */
+/* Rows per flush. */
 #define BATCH 5000
 
 /* Bytes of a file, mapped. */
@@ -48,7 +48,7 @@ static void unmap(struct bytes *bytes)
     bytes->n = 0;
 }
 
-/* Where rows come from and go to. */
+/* Source and target of the rows. */
 struct recovery {
     const char *from;
     struct bytes file, log;
@@ -59,7 +59,7 @@ struct recovery {
     int64_t last; /* the number of the row before */
 };
 
-/* --- the recording that is read --- */
+/* --- reading the source --- */
 
 static enum wb_status open_file(struct recovery *r)
 {
@@ -71,7 +71,7 @@ static enum wb_status open_file(struct recovery *r)
     close(descriptor);
     if (status != WB_OK || !wb_recording_is_zstd(r->file.at, r->file.n))
         return status;
-    /* As far as it can be decompressed. */
+    /* A truncated file is decompressed as far as possible. */
     char temporary[WB_PATH];
     int from = open(r->from, O_RDONLY | O_CLOEXEC), to = -1;
     bool whole;
@@ -162,7 +162,7 @@ static enum wb_status take_row(void *context, const struct wb_recording_row *row
                           (!found->is_protected && found->is_end_known);
     if (row->kind == WB_RECORDING_CHUNK)
         note_chunk(found, row);
-    /* The new file has an end of its own. */
+    /* Closing the new file writes its own end. */
     if (is_key(row, WB_RECORDING_DIGEST) || is_key(row, "closed"))
         return WB_OK;
     WB_TRY(wb_recording_append_row(r->to, row->kind, row->values));
@@ -184,13 +184,14 @@ static enum wb_status take_salvage(struct recovery *r, struct wb_recording_salva
     return WB_OK;
 }
 
-/* Puts bytes under a name of their own. */
+/* Writes bytes to a file. */
 static enum wb_status copy(const struct bytes *bytes, const char *path)
 {
     return wb_file_write(path, bytes->at, bytes->n);
 }
 
-/* A recording of schema 1, whose rows do not say what they are: what SQLite reads of a copy. */
+/* Schema 1: rows cannot be identified by their checksum; takes the rows that SQLite reads from a
+ * copy. */
 static enum wb_status take_old(struct recovery *r)
 {
     char path[WB_PATH], log[WB_PATH + 8], index[WB_PATH + 8];
@@ -206,8 +207,8 @@ static enum wb_status take_old(struct recovery *r)
         status = copy(&r->log, log);
     if (status == WB_OK && wb_recording_open_with_reason(&old, path, &reason) != WB_OK)
         status = wb_fail_to(r->why, WB_ERR_FORMAT,
-                            "'%s': no row of a recording is found in it: it is not a recording, or "
-                            "nothing is left of it",
+                            "'%s' contains no row of a recording: it is not a recording, or it is "
+                            "completely destroyed",
                             r->from);
     if (status == WB_OK)
         status = wb_recording_scan(old, take_row, r, &r->found->is_broken);
@@ -229,10 +230,10 @@ static enum wb_status take_all(struct recovery *r)
     WB_TRY(status);
     return r->found->rows > 0 ? WB_OK
                               : wb_fail_to(r->why, WB_ERR_FORMAT,
-                                           "'%s': no row of a recording is left in it", r->from);
+                                           "'%s' contains no intact row of a recording", r->from);
 }
 
-/* --- the recording that is written --- */
+/* --- writing the target --- */
 
 static enum wb_status put_meta(struct recovery *r)
 {
@@ -255,7 +256,7 @@ static enum wb_status write_to(struct recovery *r, const char *path)
     return status != WB_OK ? status : closed;
 }
 
-/* Under another name until it is done. */
+/* Writes to a temporary name; the file gets its name when it is complete. */
 static enum wb_status write_whole(struct recovery *r, const char *to)
 {
     static const char *const endings[] = {"", "-wal", "-shm"};
@@ -265,13 +266,14 @@ static enum wb_status write_whole(struct recovery *r, const char *to)
         return wb_fail_to(r->why, WB_ERR_ARGUMENT, "path '%.100s...' is too long", to);
     if (wb_file_exists(path))
         return wb_fail_to(r->why, WB_ERR_EXISTS,
-                          "'%s' exists: another program writes it, or left it behind; delete it",
+                          "'%s' exists: another recovery is running or was interrupted; delete the "
+                          "file if none is running",
                           path);
     enum wb_status status = write_to(r, path);
-    /* link() fails where the name exists, which rename() would overwrite. */
+    /* link() fails if the name exists; rename() would overwrite the file. */
     if (status == WB_OK && link(path, to) != 0)
         status = wb_fail_to(r->why, errno == EEXIST ? WB_ERR_EXISTS : WB_ERR_IO,
-                            "cannot make '%s': %s", to, strerror(errno));
+                            "cannot create '%s': %s", to, strerror(errno));
     for (size_t i = 0; i < WB_COUNT(endings); i++) {
         char name[WB_PATH + 8];
         snprintf(name, sizeof name, "%s%s", path, endings[i]);
@@ -287,7 +289,7 @@ enum wb_status wb_recover_run(const char *from, const char *to, struct wb_recove
     *found = (struct wb_recover){.rows = 0};
     if (wb_file_exists(to))
         return wb_fail_to(why, WB_ERR_EXISTS,
-                          "'%s' exists: a recording is never overwritten; choose another name", to);
+                          "'%s' exists: recordings are never overwritten; choose another name", to);
     enum wb_status status = open_file(&r);
     if (status == WB_OK)
         status = open_log(&r);
@@ -300,7 +302,7 @@ enum wb_status wb_recover_run(const char *from, const char *to, struct wb_recove
     return status;
 }
 
-/* --- what is missing --- */
+/* --- missing rows --- */
 
 static uint64_t missing_chunks(const struct wb_recover *found)
 {
@@ -320,7 +322,7 @@ void wb_recover_missing(const struct wb_recover *found, char *text, size_t size)
 {
     size_t n = 0;
     text[0] = '\0';
-#define SAY(...)                                                                                   \
+#define ADD_CLAUSE(...)                                                                            \
     do {                                                                                           \
         if (n < size)                                                                              \
             n += (size_t)snprintf(text + n, size - n, "%s", n ? "; " : "");                        \
@@ -328,22 +330,21 @@ void wb_recover_missing(const struct wb_recover *found, char *text, size_t size)
             n += (size_t)snprintf(text + n, size - n, __VA_ARGS__);                                \
     } while (0)
     if (found->missing > 0)
-        SAY("%" PRIu64 " row%s (%s)", found->missing, found->missing == 1 ? "" : "s",
-            found->missing_where);
+        ADD_CLAUSE("%" PRIu64 " row%s (%s)", found->missing, found->missing == 1 ? "" : "s",
+                   found->missing_where);
     if (found->damaged > 0)
-        SAY("%" PRIu64 " damaged row%s", found->damaged, found->damaged == 1 ? "" : "s");
+        ADD_CLAUSE("%" PRIu64 " damaged row%s", found->damaged, found->damaged == 1 ? "" : "s");
     if (found->is_broken)
-        SAY("rows that could not be read");
+        ADD_CLAUSE("rows that could not be read");
     for (int i = 0; i < WB_RECOVER_STREAMS; i++) {
         const struct wb_recover_stream *const s = &found->streams[i];
         if (s->missing > 0)
-            SAY("of stream %d %" PRIu64 " of %" PRIu64 " chunks", i, s->missing,
-                s->missing + s->chunks);
+            ADD_CLAUSE("stream %d: %" PRIu64 " of %" PRIu64 " chunks", i, s->missing,
+                       s->missing + s->chunks);
     }
     if (!found->is_end_known)
-        SAY("the end: the recording was not closed, and what came behind the last row is not "
-            "known");
+        ADD_CLAUSE("possibly the end, because the recording was not closed");
     if (found->is_log_missing && !found->is_end_known)
-        SAY("the write-ahead log (-wal), which was not beside it");
+        ADD_CLAUSE("the write-ahead log (-wal)");
 #undef SAY
 }

@@ -17,39 +17,39 @@
 
 #define WB_LOG_DOMAIN "replay"
 
-/* A file of another program, put together again from its pieces. */
+/* A file of another program, assembled from its pieces. */
 struct file {
     struct wb_foreign foreign;
     uint8_t *bytes; /* (foreign.size) owned */
     size_t n;
-    bool lost; /* a piece is not there: nothing of it can be read */
+    bool lost; /* a piece is missing: the file cannot be read */
 };
 
-/* One recorded stream with the driver that decodes it, or the file it holds; both are NULL when
- * there is none. */
+/* A recorded stream with the driver that decodes it, or with the file it contains; both NULL: the
+ * stream is skipped. */
 struct channel {
     int id;
     const struct wb_driver *driver;
     void *state;
     struct wb_stream *stream;
-    int64_t next_seq; /* of its chunks; -1: one is missing */
+    int64_t next_seq; /* expected number of the next chunk; -1: a chunk is missing */
     struct file *file;
 };
 
 struct replay {
     const struct wb_rig *rig;
     const struct wb_sink *sink;
-    struct wb_sink counting; /* between the drivers and the sink */
+    struct wb_sink counting; /* counts samples and passes them to the sink */
     struct wb_replay_counts *counts;
     struct channel *channels;
     int n_channels;
     double rate;
-    int64_t first_ns, started_ns; /* the first chunk's time, and when it was played */
+    int64_t first_ns, started_ns; /* time of the first chunk, and when it was replayed */
     bool interrupted;
     uint8_t *buffer;
 };
 
-/* --- counting what passes --- */
+/* --- counting samples --- */
 
 static void pass_load(void *context, const struct wb_load_sample *sample)
 {
@@ -97,7 +97,7 @@ static void open_file(struct channel *channel, const char *settings)
     channel->file = wb_memory_new(1, sizeof *channel->file);
     struct wb_reason why = {.text = ""};
     if (wb_foreign_parse(&channel->file->foreign, settings, &why) != WB_OK) {
-        wb_warn("stream %d is left out: %s", channel->id, why.text);
+        wb_warn("stream %d is skipped: %s", channel->id, why.text);
         channel->file->lost = true;
     }
 }
@@ -113,8 +113,8 @@ static enum wb_status open_channel(struct channel *channel,
     }
     const struct wb_driver *driver = wb_drivers_find(recorded->role, recorded->protocol);
     if (!driver) {
-        wb_warn("stream %d (%s) speaks the protocol '%s', which is not known here: it is left out",
-                recorded->id, wb_role_name(recorded->role), recorded->protocol);
+        wb_warn("stream %d (%s) is skipped: unknown protocol '%s'", recorded->id,
+                wb_role_name(recorded->role), recorded->protocol);
         return WB_OK;
     }
     WB_TRY(wb_stream_open(&channel->stream, "memory:"));
@@ -161,8 +161,8 @@ static struct channel *find_channel(struct replay *replay, int id)
 
 /* --- playing --- */
 
-/* Sleeps until the chunk is due; false when interrupted. Gaps of a damaged time stamp are played
- * like any other: Ctrl-C ends them. */
+/* Sleeps until the chunk is due; false if interrupted. A gap caused by a damaged time stamp is
+ * waited for like any other; Ctrl-C ends it. */
 static bool wait_until_due(struct replay *replay, int64_t t_ns)
 {
     if (wb_interrupted())
@@ -173,7 +173,7 @@ static bool wait_until_due(struct replay *replay, int64_t t_ns)
         replay->first_ns = t_ns;
         replay->started_ns = wb_time_now_ns();
     }
-    /* Chunks come in order of time. */
+    /* Chunks are ordered by time: the difference is not negative. */
     double wait_s = (double)((uint64_t)t_ns - (uint64_t)replay->first_ns) * 1e-9 / replay->rate;
     int64_t due_ns = replay->started_ns + wb_ns_from_seconds(wait_s < 1e9 ? wait_s : 1e9);
     while (wb_time_now_ns() < due_ns && !wb_interrupted())
@@ -184,7 +184,7 @@ static bool wait_until_due(struct replay *replay, int64_t t_ns)
 static void remark_damage(struct replay *replay, const struct wb_chunk *chunk)
 {
     char text[160];
-    snprintf(text, sizeof text, "chunk %lld of stream %d is damaged and left out",
+    snprintf(text, sizeof text, "chunk %lld of stream %d is damaged and skipped",
              (long long)chunk->seq, chunk->stream);
     replay->counts->damaged_chunks++;
     pass_remark(replay, WB_LOG_WARNING, chunk->t_ns, "damage", text);
@@ -201,19 +201,19 @@ static void lose_file(struct replay *replay, struct file *file, int64_t t_ns, co
     file->lost = true;
 }
 
-/* Files whose last piece never came. */
+/* Reports files whose last piece is missing. */
 static void lose_unfinished(struct replay *replay)
 {
     for (int i = 0; i < replay->n_channels; i++) {
         struct file *const file = replay->channels[i].file;
         if (file && !file->lost) {
             replay->counts->damaged_chunks++;
-            lose_file(replay, file, 0, "pieces of it are not there");
+            lose_file(replay, file, 0, "some of its pieces are missing");
         }
     }
 }
 
-/* Adds a piece; with the last one the file is read. */
+/* Adds a piece; after the last one the file is decoded. */
 static enum wb_status play_piece(struct replay *replay, struct file *file,
                                  const struct wb_chunk *chunk)
 {
@@ -221,7 +221,7 @@ static enum wb_status play_piece(struct replay *replay, struct file *file,
     struct wb_reason why = {.text = ""};
     if (file->lost)
         return WB_OK;
-    if (!file->bytes) /* with the first piece: of a file that is not there none is taken */
+    if (!file->bytes) /* allocated with the first piece, not for a file without pieces */
         file->bytes = malloc(file->foreign.size + 1);
     if (!file->bytes)
         return wb_fail(WB_ERR_MEMORY, "out of memory for the file '%s'", file->foreign.name);
@@ -236,7 +236,7 @@ static enum wb_status play_piece(struct replay *replay, struct file *file,
     wb_hash_bytes(file->bytes, file->n, sha256);
     if (strcmp(sha256, file->foreign.sha256) != 0) {
         replay->counts->damaged_chunks++;
-        lose_file(replay, file, chunk->t_ns, "its bytes are not those that were imported");
+        lose_file(replay, file, chunk->t_ns, "its SHA-256 differs from that of the imported file");
         return WB_OK;
     }
     const enum wb_status status =
@@ -245,14 +245,14 @@ static enum wb_status play_piece(struct replay *replay, struct file *file,
         lose_file(replay, file, chunk->t_ns, why.text);
     free(file->bytes);
     file->bytes = NULL;
-    file->lost = true; /* further pieces are none of it */
+    file->lost = true; /* complete: ignore further pieces */
     return WB_OK;
 }
 
 static enum wb_status play_chunk(void *context, const struct wb_chunk *chunk)
 {
     struct replay *replay = context;
-    /* The time of a damaged chunk is none to wait for. */
+    /* The time of a damaged chunk is not reliable: do not wait for it. */
     if (chunk->intact && !wait_until_due(replay, chunk->t_ns)) {
         replay->interrupted = true;
         return WB_ERR_TIMEOUT; /* ends the walk; wb_replay_run() turns it into WB_OK */
@@ -270,7 +270,7 @@ static enum wb_status play_chunk(void *context, const struct wb_chunk *chunk)
         return play_piece(replay, channel->file, chunk);
     if (!channel || !channel->driver)
         return WB_OK;
-    /* Two halves of lines around what is missing would make one that no instrument sent. */
+    /* After a gap, drivers must discard an incomplete line: it would be joined to the next one. */
     if (chunk->n == 0 || chunk->seq != channel->next_seq)
         channel->driver->receive(channel->state, chunk->t_ns, NULL, 0, &replay->counting);
     channel->next_seq = chunk->seq + 1;
@@ -315,8 +315,9 @@ enum wb_status wb_replay_rig(struct wb_recording *recording, struct wb_rig *rig)
     char *text = NULL;
     enum wb_status status = wb_recording_meta(recording, "rig", &text);
     if (status == WB_ERR_NOT_FOUND)
-        return wb_fail(WB_ERR_DATA, "the recording does not say which rig made it: without the "
-                                    "rig its bytes cannot be decoded");
+        return wb_fail(WB_ERR_DATA,
+                       "the recording contains no rig file: without it the bytes cannot "
+                       "be decoded");
     WB_TRY(status);
     status = wb_rig_parse(text, "the recording's rig", rig, NULL);
     free(text);

@@ -110,7 +110,7 @@ static enum wb_status find_start(void *context, const struct wb_chunk *chunk)
     if (!chunk->intact)
         return WB_OK;
     *first_ns = chunk->t_ns;
-    return WB_ERR_TIMEOUT; /* the first one is enough */
+    return WB_ERR_TIMEOUT; /* ends the walk after the first intact chunk */
 }
 
 enum wb_status wb_sample_columns_start(struct wb_recording *recording, int64_t *first_ns)

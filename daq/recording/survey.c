@@ -13,13 +13,14 @@
 
 #define WB_LOG_DOMAIN "survey"
 
-/* s; the stage reports a few times a second, and a computer may hesitate. */
+/* s, lower bound of the limit of silence: the stage reports a few times a second, and a computer
+ * may stall. */
 #define LEAST_LIMIT 0.6
 
-struct looking {
+struct survey_state {
     struct wb_survey *survey;
     int64_t next_seq[WB_SURVEY_STREAMS];
-    /* Time in which no stream brought anything, up to now and up to each stream's last chunk. */
+    /* Sum of the times without data of any stream, up to now and up to each stream's last chunk. */
     double quiet, quiet_before[WB_SURVEY_STREAMS]; /* s */
     bool has_tare;
 };
@@ -33,7 +34,7 @@ static int find_stream(const struct wb_survey *survey, int id)
     return -1;
 }
 
-/* Sequence numbers count from 0; a number above the expected one is a gap. */
+/* Sequence numbers begin at 0; a number above the expected one shows a gap. */
 static void check_order(struct wb_survey_stream *stream, int64_t *next, int64_t seq)
 {
     if (seq < *next) {
@@ -47,21 +48,21 @@ static void check_order(struct wb_survey_stream *stream, int64_t *next, int64_t 
     *next = seq == INT64_MAX ? seq : seq + 1;
 }
 
-/* Between two chunks of any streams, times up to this are the streams' own rhythm. */
+/* Longer times without data of any stream count as a stall of the recording computer. */
 #define SHORTEST_QUIET_NS (100 * WB_NS_PER_MS)
 
-/* Silence of a stream while others went on, until now. */
-static void note_alone(struct looking *looking, int i, int64_t t_ns)
+/* Updates the longest silence of a stream during which other streams sent data. */
+static void note_alone(struct survey_state *state, int i, int64_t t_ns)
 {
-    struct wb_survey_stream *const stream = &looking->survey->streams[i];
+    struct wb_survey_stream *const stream = &state->survey->streams[i];
     const double all = wb_survey_seconds(stream->last_ns, t_ns);
-    const double shared = looking->quiet - looking->quiet_before[i];
+    const double shared = state->quiet - state->quiet_before[i];
     if (!stream->is_file && stream->chunks > 0 && all < 1e9 &&
         all - shared > wb_seconds_from_ns(stream->alone_silent_ns))
         stream->alone_silent_ns = wb_ns_from_seconds(all - shared);
 }
 
-/* Chunks come in order of time, so only damaged stamps are too far apart for an int64_t. */
+/* Only damaged time stamps have a difference that exceeds an int64_t. */
 static void note_silence(struct wb_survey_stream *stream, int64_t t_ns)
 {
     uint64_t silence_ns = (uint64_t)t_ns - (uint64_t)stream->last_ns;
@@ -85,8 +86,8 @@ static void check_time(struct wb_survey *survey, struct wb_survey_stream *stream
 
 static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
 {
-    struct looking *looking = context;
-    struct wb_survey *survey = looking->survey;
+    struct survey_state *state = context;
+    struct wb_survey *survey = state->survey;
     int i = find_stream(survey, chunk->stream);
     if (i < 0) {
         survey->undeclared++;
@@ -95,15 +96,15 @@ static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
     struct wb_survey_stream *stream = &survey->streams[i];
     survey->damaged += !chunk->intact;
     stream->damaged += !chunk->intact;
-    /* Of a damaged chunk only what was to be expected is believed. */
-    if (!chunk->intact && chunk->seq != looking->next_seq[i])
+    /* Count a damaged chunk only if its sequence number is the expected one. */
+    if (!chunk->intact && chunk->seq != state->next_seq[i])
         return WB_OK;
-    check_order(stream, &looking->next_seq[i], chunk->seq);
+    check_order(stream, &state->next_seq[i], chunk->seq);
     const double quiet = survey->chunks > 0 ? wb_survey_seconds(survey->last_ns, chunk->t_ns) : 0.0;
     if (survey->n_streams > 1 && quiet > wb_seconds_from_ns(SHORTEST_QUIET_NS) && quiet < 1e6)
-        looking->quiet += quiet;
-    note_alone(looking, i, chunk->t_ns);
-    looking->quiet_before[i] = looking->quiet;
+        state->quiet += quiet;
+    note_alone(state, i, chunk->t_ns);
+    state->quiet_before[i] = state->quiet;
     check_time(survey, stream, chunk->t_ns);
     stream->chunks++;
     stream->bytes += chunk->n;
@@ -114,12 +115,12 @@ static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
 
 static enum wb_status look_at_event(void *context, const struct wb_event *event)
 {
-    struct looking *looking = context;
-    struct wb_survey *survey = looking->survey;
+    struct survey_state *state = context;
+    struct wb_survey *survey = state->survey;
     survey->events++;
-    /* Before the tare instruments may still be finding their rhythm. */
-    looking->has_tare |= strcmp(event->kind, "tare") == 0;
-    survey->refused_events += looking->has_tare && strcmp(event->kind, "refused") == 0;
+    /* Before the tare, instruments may still send incomplete lines. */
+    state->has_tare |= strcmp(event->kind, "tare") == 0;
+    survey->refused_events += state->has_tare && strcmp(event->kind, "refused") == 0;
     survey->drop_events += strcmp(event->kind, "drop") == 0;
     survey->lost_events += strcmp(event->kind, "stream_lost") == 0;
     return WB_OK;
@@ -150,7 +151,7 @@ static enum wb_status look_at_meta(void *context, const char *key, const char *v
     return WB_OK;
 }
 
-/* A walk that breaks off is a finding; running out of memory is a failure. */
+/* Damage found by a walk is a finding; other errors are failures. */
 static enum wb_status note_walk(struct wb_survey *survey, enum wb_status status)
 {
     if (status != WB_ERR_DATA)
@@ -161,7 +162,7 @@ static enum wb_status note_walk(struct wb_survey *survey, enum wb_status status)
 
 /* --- samples --- */
 
-/* What frames and lines say of those that never came. */
+/* Losses by the time stamps of frames and the arrival of lines. */
 struct losses {
     struct wb_loss load, mocap;
 };
@@ -184,7 +185,7 @@ static void note_loss(struct wb_survey_stream *stream, const struct wb_loss *los
 
 static enum wb_status decode_all(struct wb_recording *recording, struct wb_survey *survey)
 {
-    /* A recording without its rig holds bytes all the same; that is told elsewhere. */
+    /* Without a rig nothing can be decoded; file_problem() reports that. */
     struct wb_rig rig;
     if (!survey->has_rig || wb_replay_rig(recording, &rig) != WB_OK)
         return WB_OK;
@@ -211,7 +212,8 @@ static enum wb_status decode_all(struct wb_recording *recording, struct wb_surve
     return WB_OK;
 }
 
-/* What the rig file calls a lost stream. A stage that rests is asked for its state less often. */
+/* The limit of silence in the rig file, raised because the state of a stage at rest is queried less
+ * often. */
 static void note_limit(struct wb_recording *recording, struct wb_survey *survey)
 {
     struct wb_rig rig;
@@ -234,15 +236,15 @@ enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct
             .id = stream->id, .role = stream->role, .is_file = wb_recording_foreign_is(stream)};
         survey->n_streams++;
     }
-    struct looking looking = {.survey = survey};
+    struct survey_state state = {.survey = survey};
     WB_TRY(note_walk(survey, wb_recording_each_meta(recording, look_at_meta, survey)));
-    WB_TRY(note_walk(survey, wb_recording_each_chunk(recording, look_at_chunk, &looking)));
+    WB_TRY(note_walk(survey, wb_recording_each_chunk(recording, look_at_chunk, &state)));
     for (int i = 0; i < survey->n_streams; i++) {
         survey->missing += survey->streams[i].missing;
-        note_alone(&looking, i, survey->last_ns); /* to the end */
+        note_alone(&state, i, survey->last_ns); /* silence at the end */
     }
     note_limit(recording, survey);
-    WB_TRY(note_walk(survey, wb_recording_each_event(recording, look_at_event, &looking)));
+    WB_TRY(note_walk(survey, wb_recording_each_event(recording, look_at_event, &state)));
     WB_TRY(note_walk(survey, wb_recording_each_clock(recording, look_at_clock, survey)));
     WB_TRY(wb_recording_check(recording, &survey->check));
     survey->broken |= survey->check.is_broken;
@@ -261,7 +263,7 @@ double wb_survey_seconds(int64_t from_ns, int64_t to_ns)
     return (double)((uint64_t)to_ns - (uint64_t)from_ns) * 1e-9;
 }
 
-/* --- what is wrong --- */
+/* --- problems --- */
 
 #define FILE_PROBLEMS 11
 #define ROW_PROBLEMS 5
@@ -278,12 +280,12 @@ static bool stream_problem(const struct wb_survey *survey, int which, char *text
     const char *role = wb_role_name(stream->role);
     switch (which % STREAM_PROBLEMS) {
     case 0:
-        snprintf(text, size, "%s stream %d: nothing was received", role, stream->id);
+        snprintf(text, size, "%s stream %d: no data received", role, stream->id);
         return stream->chunks == 0 && !survey->cut_short;
     case 1:
         snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s damaged (CRC-32)", role, stream->id,
                  stream->damaged, plural(stream->damaged));
-        return stream->damaged > 0 && !survey->check.is_protected; /* told with the other rows */
+        return stream->damaged > 0 && !survey->check.is_protected; /* else see row_problem() */
     case 2:
         snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s missing in %" PRIu64 " place%s",
                  role, stream->id, stream->missing, plural(stream->missing), stream->gaps,
@@ -324,15 +326,15 @@ static bool row_problem(const struct wb_survey *survey, int which, char *text, s
                  check->lost == 1 ? " is" : "s are", check->lost_where);
         return check->lost > 0;
     case 2:
-        snprintf(text, size, "%" PRIu64 " row%s not in the place of writing: %s", check->displaced,
+        snprintf(text, size, "%" PRIu64 " row%s not in the order of writing: %s", check->displaced,
                  check->displaced == 1 ? " is" : "s are", check->displaced_where);
         return check->displaced > 0;
     case 3:
-        snprintf(text, size, "%" PRIu64 " row%s behind the end that closing wrote",
-                 check->after_digest, check->after_digest == 1 ? " stands" : "s stand");
+        snprintf(text, size, "%" PRIu64 " row%s after the digest that closing wrote",
+                 check->after_digest, check->after_digest == 1 ? " is" : "s are");
         return check->after_digest > 0;
     default:
-        snprintf(text, size, "the digest of all rows is not what closing wrote");
+        snprintf(text, size, "the digest of all rows differs from that written on closing");
         return check->is_closed && !check->digest_fits && check->damaged == 0 && check->lost == 0 &&
                check->displaced == 0;
     }
@@ -343,38 +345,39 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
     switch (which) {
     case 0:
         snprintf(text, size, "%s",
-                 survey->cut_short ? "the file is cut short: look for the original"
+                 survey->cut_short ? "the file is truncated: use the original file"
                                    : "it was not closed properly: a crash, a power cut, a full "
                                      "disk, or it is still being recorded");
         return !survey->closed;
     case 1:
         snprintf(text, size, "the database is damaged: not all rows can be read");
-        /* Damaged rows are named one by one. */
+        /* Damaged rows are listed separately. */
         return survey->broken && !survey->cut_short &&
                (survey->check.is_broken || survey->check.damaged == 0);
     case 2:
-        snprintf(text, size, "the recording lists no stream of any instrument");
+        snprintf(text, size, "the recording declares no stream");
         return survey->n_streams == 0;
     case 3:
-        snprintf(text, size, "%" PRIu64 " chunk%s of no declared stream", survey->undeclared,
+        snprintf(text, size, "%" PRIu64 " chunk%s of undeclared streams", survey->undeclared,
                  plural(survey->undeclared));
         return survey->undeclared > 0;
     case 4:
-        snprintf(text, size, "drops noted while recording: %" PRIu64 " (%" PRId64 " chunk%s)",
+        snprintf(text, size, "drops during recording: %" PRIu64 " (%" PRId64 " chunk%s)",
                  survey->drop_events, survey->dropped_chunks < 0 ? 0 : survey->dropped_chunks,
                  survey->dropped_chunks == 1 ? "" : "s");
         return survey->drop_events > 0 || survey->dropped_chunks > 0;
     case 5:
-        snprintf(text, size, "a stream fell silent %" PRIu64 " time%s while recording",
+        snprintf(text, size, "a stream was silent for too long %" PRIu64 " time%s during recording",
                  survey->lost_events, plural(survey->lost_events));
         return survey->lost_events > 0;
     case 6:
         snprintf(text, size,
-                 "lines that were not understood came during the test, noted %" PRIu64 " time%s",
+                 "lines that could not be decoded were received during the test (%" PRIu64
+                 " event%s)",
                  survey->refused_events, plural(survey->refused_events));
         return survey->refused_events > 0;
     case 7:
-        snprintf(text, size, "the rig's description is missing: nothing can be decoded");
+        snprintf(text, size, "the rig file is missing: nothing can be decoded");
         return !survey->has_rig;
     case 8:
         snprintf(text, size, "%s", survey->log_problem);
@@ -384,7 +387,7 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
                  survey->recovered_missing);
         return survey->is_recovered && survey->recovered_missing[0];
     default:
-        snprintf(text, size, "the specimen's description is missing: it cannot be aligned");
+        snprintf(text, size, "the specimen file is missing: the recording cannot be aligned");
         return !survey->has_specimen;
     }
 }

@@ -1,5 +1,5 @@
-/* A survey of a whole recording: what it holds, and what is missing or damaged. A stream is what
- * one instrument sent, a chunk one read or datagram of it. */
+/* Survey of a recording: its contents, and missing or damaged parts. A stream holds the data of one
+ * instrument, a chunk is one read or datagram of a stream. */
 #ifndef WB_DAQ_RECORDING_SURVEY_H
 #define WB_DAQ_RECORDING_SURVEY_H
 
@@ -15,63 +15,62 @@
 struct wb_survey_stream {
     int id;
     enum wb_role role;
-    bool is_file; /* a file of another program: its pieces come at times of no meaning */
+    bool is_file; /* a file of another program: the times of its pieces have no meaning */
     uint64_t chunks, bytes;
-    uint64_t damaged;  /* chunks whose CRC does not fit; their time and number do not count */
-    uint64_t missing;  /* sequence numbers that are not there */
-    uint64_t gaps;     /* places where they are missing */
-    uint64_t repeated; /* sequence numbers that come twice or backwards */
+    uint64_t damaged;  /* chunks with a wrong CRC; their time and number are ignored */
+    uint64_t missing;  /* missing sequence numbers */
+    uint64_t gaps;     /* groups of consecutive missing numbers */
+    uint64_t repeated; /* sequence numbers that are repeated or out of order */
     int64_t first_ns, last_ns;
     int64_t longest_silence_ns; /* between two chunks */
-    int64_t alone_silent_ns;    /* the same without the times in which all streams were silent, as
-                                   when the recording computer stood still and read them later */
-    uint64_t samples;           /* decoded; 0 unless decoding was asked for and worked */
-    double rate;                /* samples/s between first and last chunk; 0 unknown */
-    struct wb_loss_counts loss; /* samples that the instrument sent and that never came */
-    bool is_losing;             /* and they are more than chance */
+    int64_t alone_silent_ns;    /* the same without times in which all streams were silent because
+                                   the recording computer stalled */
+    uint64_t samples;           /* decoded samples; 0 if nothing was decoded */
+    double rate;                /* samples/s between first and last chunk; 0: unknown */
+    struct wb_loss_counts loss; /* samples sent but not received */
+    bool is_losing;             /* the loss exceeds chance */
 };
 
 struct wb_survey {
     struct wb_recording_check check; /* of every row */
-    int n_streams;                   /* at most WB_SURVEY_STREAMS; further ones are not looked at */
+    int n_streams;                   /* at most WB_SURVEY_STREAMS; further ones are ignored */
     struct wb_survey_stream streams[WB_SURVEY_STREAMS];
     uint64_t chunks, bytes, damaged, missing;
-    uint64_t undeclared; /* chunks of streams that were never declared */
+    uint64_t undeclared; /* chunks of undeclared streams */
     uint64_t events, drop_events, clock_rows;
-    uint64_t refused_events;     /* remarks on refused lines after the tare */
-    int64_t silence_limit_ns;    /* alone_silent_ns beyond it is a fault; of the rig; 0 unknown */
-    uint64_t lost_events;        /* times a stream fell silent for too long */
-    int64_t dropped_chunks;      /* what the writer counted; -1 when it was not written down */
-    int64_t first_ns, last_ns;   /* of all chunks; 0 without any */
-    bool closed;                 /* closed properly and not cut short */
+    uint64_t refused_events;     /* events "refused" (rejected lines) after the tare */
+    int64_t silence_limit_ns;    /* of the rig, for alone_silent_ns; 0: unknown */
+    uint64_t lost_events;        /* times a stream was silent for too long */
+    int64_t dropped_chunks;      /* counted by the writer; -1: not recorded */
+    int64_t first_ns, last_ns;   /* of all chunks; 0 without chunks */
+    bool closed;                 /* closed properly and not truncated */
     bool cut_short;              /* the file is shorter than its header says */
-    char log_problem[240];       /* what is wrong with its write-ahead log; "" nothing */
-    bool is_recovered;           /* made from a damaged file, */
-    char recovered_missing[200]; /* of which this is missing; "" nothing */
-    bool broken;                 /* a table breaks off or cannot be read */
+    char log_problem[240];       /* problem of its write-ahead log; "": none */
+    bool is_recovered;           /* recovered from a damaged file */
+    char recovered_missing[200]; /* description of the rows missing after recovery; "": none */
+    bool broken;                 /* a table cannot be read completely */
     bool decoded;                /* samples were counted */
     bool has_rig, has_specimen;  /* meta values that replay and alignment need */
     bool is_virtual;             /* recorded from a virtual rig */
 };
 
-/* Reads all tables; with `decode` the bytes also go through the drivers, and samples are counted.
- * Faults of the recording are not failures of this function: they are in *survey (tables that break
- * off are also logged). */
+/* Reads all tables; with `decode` also decodes the bytes and counts samples. Problems of the
+ * recording are no failures of this function: they are stored in *survey (damaged tables are also
+ * logged). */
 WB_MUST_CHECK enum wb_status wb_survey_run(struct wb_recording *recording, bool decode,
                                            struct wb_survey *survey);
 
-/* True when nothing is missing, damaged, dropped or cut short. */
+/* True if wb_survey_problem() finds no problem. */
 bool wb_survey_is_whole(const struct wb_survey *survey);
 
 /* Seconds from the first chunk to the last. */
 double wb_survey_duration(const struct wb_survey *survey);
 
-/* Seconds from one stamp to a later one, of any values (a damaged file may hold any). */
+/* Seconds between two time stamps, without overflow for any values (a file may be damaged). */
 double wb_survey_seconds(int64_t from_ns, int64_t to_ns);
 
-/* Describes the next fault in one line, beginning with *at = 0; false when there is no further
- * one. `text` receives for example "mocap stream 1: 12 chunks missing in 2 places"; 256 bytes hold
- * it. */
+/* Describes the next problem in one line, beginning with *at = 0; false if there are no more.
+ * `text` (256 bytes) receives for example "mocap stream 1: 12 chunks missing in 2 places". */
 bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size);
 
 #endif

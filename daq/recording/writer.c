@@ -15,7 +15,7 @@
 
 #define WB_LOG_DOMAIN "writer"
 
-/* Pause before writing is tried again. */
+/* Time before a failed write is tried again. */
 #define RETRY_NS (200 * WB_NS_PER_MS)
 
 enum entry_kind {
@@ -33,12 +33,12 @@ struct entry {
     double t_device;
     int64_t rtt_ns;
     int64_t pushed_ns;
-    size_t n;       /* bytes that count for the capacity */
+    size_t n;       /* bytes that count against the capacity */
     size_t n_first; /* event, meta: length of the kind or key with its NUL; the text follows */
     uint8_t bytes[];
 };
 
-/* What one stream lost since the last "drop" event. */
+/* Losses of a stream since the last "drop" event. */
 struct loss {
     uint64_t chunks, bytes, probes;
     int64_t first_ns, last_ns;
@@ -47,25 +47,25 @@ struct loss {
 struct wb_writer {
     struct wb_recording *recording;
     struct wb_writer_settings settings;
-    bool is_synchronous; /* in virtual time, where there is no thread */
-    int64_t tried_ns;    /* then: when it was written last */
+    bool is_synchronous; /* no thread, in virtual time: wb_writer_tick() writes */
+    int64_t tried_ns;    /* if synchronous: time of the last write */
     pthread_t thread;
     pthread_mutex_t lock;
     pthread_cond_t wake;
-    /* Under the lock. */
+    /* Protected by the lock. */
     struct entry *first, *last;            /* pushed, not yet taken by the thread */
-    size_t waiting_bytes, waiting_entries; /* all that is not on the disk */
-    int64_t oldest_ns;                     /* of it, when it was pushed; 0: there is none */
+    size_t waiting_bytes, waiting_entries; /* not yet on the disk */
+    int64_t oldest_ns;                     /* when the oldest of these was pushed; 0: none */
     bool finishing;
-    int interrupts;         /* that had come before */
-    enum wb_status failing; /* of the last try */
-    enum wb_status status;  /* of the whole, once it is over */
+    int interrupts;         /* number of interrupts when finishing began */
+    enum wb_status failing; /* of the last attempt to write */
+    enum wb_status status;  /* final status */
     struct loss losses[WB_WRITER_STREAMS];
     uint64_t dropped[WB_WRITER_STREAMS];
     struct wb_writer_counts counts;
-    /* Of the writing thread: taken and not yet on the disk. */
+    /* Used by the writing thread only: taken, not yet on the disk. */
     struct entry *taken, *last_taken;
-    /* Of the pushing thread. */
+    /* Used by the pushing thread only. */
     int64_t next_seq[WB_WRITER_STREAMS];
 };
 
@@ -109,7 +109,7 @@ static enum wb_status write_entry(struct wb_recording *recording, const struct e
     return WB_OK;
 }
 
-/* Of a chunk, under the lock. */
+/* Counts a dropped chunk; requires the lock. */
 static void count_dropped(struct wb_writer *writer, const struct entry *entry)
 {
     writer->dropped[entry->stream]++;
@@ -117,7 +117,7 @@ static void count_dropped(struct wb_writer *writer, const struct entry *entry)
     writer->counts.dropped_bytes += entry->n;
 }
 
-/* Two texts as one entry, the second cut to `most`; NULL without memory. */
+/* Makes an entry of two texts, the second truncated to `most`; NULL: out of memory. */
 static struct entry *make_texts(enum entry_kind kind, int64_t t_ns, const char *first,
                                 const char *second, size_t most)
 {
@@ -134,7 +134,7 @@ static struct entry *make_texts(enum entry_kind kind, int64_t t_ns, const char *
     return entry;
 }
 
-/* Counts an entry in, under the lock. */
+/* Adds an entry to the waiting counts; requires the lock. */
 static void count_waiting(struct wb_writer *writer, struct entry *entry)
 {
     entry->pushed_ns = wb_time_now_ns();
@@ -146,7 +146,7 @@ static void count_waiting(struct wb_writer *writer, struct entry *entry)
         writer->counts.most_waiting_bytes = writer->waiting_bytes;
 }
 
-/* Takes an entry over into what the thread writes. */
+/* Appends a list of entries to those that the thread writes. */
 static void take(struct wb_writer *writer, struct entry *first, struct entry *last)
 {
     if (writer->last_taken)
@@ -156,34 +156,34 @@ static void take(struct wb_writer *writer, struct entry *first, struct entry *la
     writer->last_taken = last;
 }
 
-/* An event that says what a stream lost for want of room, under the lock. */
+/* Adds a "drop" event for the losses of a stream; requires the lock. */
 static void take_loss(struct wb_writer *writer, int stream)
 {
     struct loss *const loss = &writer->losses[stream];
     char text[280];
     snprintf(text, sizeof text,
              "the %s stream (number %d) lost %llu chunks of %llu bytes and %llu clock probes from "
-             "%.3f s to %.3f s of the host's clock: the disk was too slow, or took nothing",
+             "%.3f s to %.3f s of the host's clock, because the disk was too slow or failed",
              role_of(writer->recording, stream), stream, (unsigned long long)loss->chunks,
              (unsigned long long)loss->bytes, (unsigned long long)loss->probes,
              wb_seconds_from_ns(loss->first_ns), wb_seconds_from_ns(loss->last_ns));
     struct entry *const entry = make_texts(ENTRY_EVENT, loss->first_ns, "drop", text, SIZE_MAX);
     if (!entry)
-        return; /* next time */
+        return; /* retried in the next round */
     wb_warn("%s", text);
     *loss = (struct loss){0};
     count_waiting(writer, entry);
     take(writer, entry, entry);
 }
 
-/* Everything that waits now. */
+/* Takes all waiting entries. */
 static void take_waiting(struct wb_writer *writer)
 {
     pthread_mutex_lock(&writer->lock);
     if (writer->first)
         take(writer, writer->first, writer->last);
     writer->first = writer->last = NULL;
-    /* While the disk fails more may get lost. */
+    /* While the disk fails, the losses may still grow. */
     for (int i = 0; i < WB_WRITER_STREAMS && writer->failing == WB_OK; i++) {
         if (writer->losses[i].chunks || writer->losses[i].probes)
             take_loss(writer, i);
@@ -191,7 +191,7 @@ static void take_waiting(struct wb_writer *writer)
     pthread_mutex_unlock(&writer->lock);
 }
 
-/* What was taken is on the disk, or given up: its room is free again. */
+/* Frees the taken entries, which are on the disk or given up. */
 static void release_taken(struct wb_writer *writer, bool is_written)
 {
     struct entry *entry = writer->taken;
@@ -209,8 +209,8 @@ static void release_taken(struct wb_writer *writer, bool is_written)
     pthread_mutex_unlock(&writer->lock);
 }
 
-/* One round: everything that waits, in one transaction. What fails stays and is written again in
- * the next one. */
+/* Writes all waiting entries in one transaction. After a failure they are kept for the next call.
+ */
 static enum wb_status write_waiting(struct wb_writer *writer)
 {
     take_waiting(writer);
@@ -229,7 +229,8 @@ static enum wb_status write_waiting(struct wb_writer *writer)
     return status;
 }
 
-/* So much waits that it is written before its time, unless the disk fails; under the lock. */
+/* Whether the queue is full enough to write early; false while the disk fails. Requires the lock.
+ */
 static bool is_urgent(const struct wb_writer *writer)
 {
     return writer->failing == WB_OK &&
@@ -237,7 +238,7 @@ static bool is_urgent(const struct wb_writer *writer)
             writer->waiting_entries >= writer->settings.capacity_entries / 4);
 }
 
-/* Waits for the next flush, or earlier when the queue fills or ends. True when finishing. */
+/* Waits until the next flush is due, the queue fills up or the writer finishes. True: finishing. */
 static bool wait_for_work(struct wb_writer *writer, int64_t due_ns)
 {
     struct timespec due = {.tv_sec = (time_t)(due_ns / WB_NS_PER_S),
@@ -250,15 +251,15 @@ static bool wait_for_work(struct wb_writer *writer, int64_t due_ns)
     return finishing;
 }
 
-/* At the end the disk gets time: what is in memory is lost with the process. */
+/* At the end, waits for a failing disk: data in memory would be lost with the process. */
 static enum wb_status write_rest(struct wb_writer *writer)
 {
     enum wb_status status = write_waiting(writer);
     const int64_t until_ns = wb_time_now_ns() + writer->settings.patience_ns;
     const double kilobytes = (double)writer->waiting_bytes * 1e-3;
     if (status != WB_OK && writer->settings.patience_ns > 0)
-        wb_warn("nothing can be written to the disk, and %.1f kB of the recording are in memory "
-                "only: make room on it within %.0f s and they are written; Ctrl-C gives it up",
+        wb_warn("nothing can be written to the disk; %.1f kB of the recording are in memory only: "
+                "make room on the disk within %.0f s, or press Ctrl-C to discard them",
                 kilobytes, wb_seconds_from_ns(writer->settings.patience_ns));
     while (status != WB_OK && wb_time_now_ns() < until_ns &&
            wb_interrupt_count() == writer->interrupts) {
@@ -266,12 +267,12 @@ static enum wb_status write_rest(struct wb_writer *writer)
         status = write_waiting(writer);
     }
     if (status != WB_OK)
-        wb_error("the last %.1f kB of the recording are lost; what was written before stays",
+        wb_error("the last %.1f kB of the recording are lost; all earlier data are on the disk",
                  kilobytes);
     return status;
 }
 
-/* Writes what is left and closes the recording. */
+/* Writes the remaining entries and closes the recording. */
 static void end(struct wb_writer *writer)
 {
     enum wb_status status = write_rest(writer);
@@ -297,8 +298,8 @@ static void *run(void *argument)
         if (!finishing)
             status = write_waiting(writer);
     }
-    /* A full disk must not end the process before the stage is stopped: the signal is blocked in
-     * this thread, so closing belongs here too. */
+    /* Closing is done in this thread, which blocks SIGXFSZ: a file size limit must not end the
+     * process before the stage is stopped. */
     end(writer);
     return NULL;
 }
@@ -313,7 +314,7 @@ void wb_writer_tick(struct wb_writer *writer)
     if (now_ns - writer->tried_ns < interval_ns && !is_urgent(writer))
         return;
     writer->tried_ns = now_ns;
-    (void)write_waiting(writer); /* a failure is kept, and tried again */
+    (void)write_waiting(writer); /* a failure is stored in the state and retried */
 }
 
 /* --- starting and finishing --- */
@@ -326,7 +327,8 @@ static enum wb_status start_thread(struct wb_writer *writer)
     pthread_cond_init(&writer->wake, &attributes);
     pthread_condattr_destroy(&attributes);
     pthread_mutex_init(&writer->lock, NULL);
-    /* Ctrl-C wakes the poll loop, not this thread; "file too large" becomes an error code. */
+    /* All signals are blocked in this thread: Ctrl-C must wake the poll loop, and SIGXFSZ is turned
+     * into an error code. */
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -345,8 +347,9 @@ enum wb_status wb_writer_start(struct wb_writer **out, struct wb_recording *reco
 {
     *out = NULL;
     if (wb_recording_n_streams(recording) > WB_WRITER_STREAMS)
-        return wb_fail(WB_ERR_ARGUMENT, "a recording takes at most %d streams", WB_WRITER_STREAMS);
-    /* What fails later is written again by the thread, which does not have this. */
+        return wb_fail(WB_ERR_ARGUMENT, "a recording can have at most %d streams",
+                       WB_WRITER_STREAMS);
+    /* The thread retries only its own entries, not rows that were appended before. */
     WB_TRY(wb_recording_flush(recording));
     struct wb_writer *writer = calloc(1, sizeof *writer);
     if (!writer)
@@ -394,7 +397,7 @@ static bool has_room(const struct wb_writer *writer, size_t n)
            writer->waiting_bytes + n <= writer->settings.capacity_bytes;
 }
 
-/* Appends under the lock; the thread is woken when the queue gets long. */
+/* Appends an entry and wakes the thread if the queue is long; requires the lock. */
 static void append(struct wb_writer *writer, struct entry *entry)
 {
     if (writer->last)
@@ -428,12 +431,12 @@ static bool known_stream(const struct wb_writer *writer, int stream)
 {
     if (stream >= 0 && stream < wb_recording_n_streams(writer->recording))
         return true;
-    wb_error("stream %d was not declared; its bytes are not recorded", stream);
+    wb_error("stream %d is not declared; its data are not recorded", stream);
     return false;
 }
 
-/* Takes the entry, or frees it and counts what is lost of its stream. `entry` is NULL when there
- * was no memory for it; `like` says what it would have been. */
+/* Queues the entry, or frees it and counts the loss if the queue is full. `entry` is NULL if it
+ * could not be allocated; `like` then describes the loss. */
 static bool offer(struct wb_writer *writer, struct entry *entry, const struct entry *like)
 {
     pthread_mutex_lock(&writer->lock);
@@ -486,7 +489,7 @@ bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_n
     return offer(writer, entry, &like);
 }
 
-/* Beyond the limits: there are few of them and each one matters. */
+/* Queues events and meta values even if the queue is full: they are few and important. */
 static void push_texts(struct wb_writer *writer, enum entry_kind kind, int64_t t_ns,
                        const char *first, const char *second, size_t most)
 {
@@ -513,9 +516,9 @@ void wb_writer_push_meta(struct wb_writer *writer, const char *key, const char *
     push_texts(writer, ENTRY_META, 0, key, value, SIZE_MAX);
 }
 
-/* --- asking --- */
+/* --- queries --- */
 
-/* The lock is no part of what const promises. */
+/* The lock is not part of the state that const protects. */
 static pthread_mutex_t *lock_of(const struct wb_writer *writer)
 {
     return (pthread_mutex_t *)&writer->lock;

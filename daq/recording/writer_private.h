@@ -1,4 +1,4 @@
-/* What only tests ask of daq/recording/writer.h. */
+/* Functions of daq/recording/writer.h that only tests call. */
 #ifndef WB_DAQ_RECORDING_WRITER_PRIVATE_H
 #define WB_DAQ_RECORDING_WRITER_PRIVATE_H
 

@@ -84,7 +84,7 @@ static uint64_t visit(const char *path)
     return chunks;
 }
 
-/* What is recovered, if anything is, opens without a word of damage. */
+/* A recovered file, if there is one, opens without a message about damage. */
 static void recover(const char *path)
 {
     char to[96];
@@ -138,7 +138,7 @@ static uint64_t random_below(uint64_t bound)
     return (random_state * UINT64_C(2685821657736338717)) % bound;
 }
 
-/* One kind of damage that disks, transfers and people do. */
+/* A kind of damage caused by disks, transfers or users. */
 static size_t damage(uint8_t *bytes, size_t n)
 {
     size_t at = random_below(n), length = 1 + random_below(600);
@@ -216,7 +216,7 @@ int main(int argc, char **argv)
     free(sources[0]);
     free(sources[1]);
     count_trials("Damaged recordings opened, surveyed and recovered", (uint64_t)cases,
-                 "files: no crash, nothing that a checksum contradicts");
+                 "files: no crash, no data with a wrong checksum");
     printf("%ld damaged recordings, chunks read from %ld of them\n", cases, opened);
     /* If nothing could be opened, nothing was tested. */
     return whole && opened > cases / 4 ? 0 : 1;

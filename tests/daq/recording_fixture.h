@@ -1,4 +1,4 @@
-/* What the tests of recordings share: a folder of their own, a log that is kept, and a small
+/* Common part of the tests of recordings: a folder of their own, stored log messages, and a small
  * recording with known contents. */
 #ifndef WB_TESTS_DAQ_RECORDING_FIXTURE_H
 #define WB_TESTS_DAQ_RECORDING_FIXTURE_H
@@ -109,7 +109,7 @@ static inline void bench_make(const char *path, int64_t n)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-/* What a walk met. */
+/* Result of a walk. */
 struct bench_tally {
     int64_t chunks, damaged, missing, next[3];
     int64_t last_ns;

@@ -1,5 +1,5 @@
-/* The index of recordings: what is read of it, and how it grows. (tests/analysis/report/bench has
- * what campaigns take from it.) */
+/* The index of recordings: reading and appending. (tests/analysis/report/bench tests its use by
+ * campaigns.) */
 #include "daq/recording/index.h"
 
 #include <stdlib.h>
@@ -36,7 +36,7 @@ static struct wb_index_entry example(const char *file)
     return entry;
 }
 
-static void an_exclusion_has_somebody_and_a_reason(void **state)
+static void exclusion_needs_a_person_and_a_reason(void **state)
 {
     (void)state;
     struct wb_index index;
@@ -63,7 +63,7 @@ static void an_exclusion_has_somebody_and_a_reason(void **state)
     }
 }
 
-static void what_is_appended_is_read_again_and_what_was_there_stays(void **state)
+static void appended_entry_is_read_back_and_contents_are_kept(void **state)
 {
     (void)state;
     static const char before[] = "# mine\n" HEAD "  notes: no newline at the end";
@@ -95,7 +95,7 @@ static void what_is_appended_is_read_again_and_what_was_there_stays(void **state
     wb_index_release(&index);
 }
 
-static void an_index_is_begun_and_lists_a_file_once(void **state)
+static void index_is_created_and_lists_a_file_once(void **state)
 {
     (void)state;
     char path[WB_PATH];
@@ -106,7 +106,7 @@ static void an_index_is_begun_and_lists_a_file_once(void **state)
     assert_int_equal(wb_index_append(path, &second), WB_OK);
     keep_messages();
     assert_int_equal(wb_index_append(path, &packed), WB_ERR_EXISTS);
-    assert_message("lists 'b.wbr.zst' already");
+    assert_message("lists 'b.wbr.zst'");
     struct wb_index index;
     assert_int_equal(wb_index_read(&index, path, NULL), WB_OK);
     assert_int_equal(index.n, 2);
@@ -114,7 +114,7 @@ static void an_index_is_begun_and_lists_a_file_once(void **state)
     wb_index_release(&index);
 }
 
-static void a_file_that_cannot_be_continued_stays_as_it_is(void **state)
+static void file_that_cannot_be_appended_is_unchanged(void **state)
 {
     (void)state;
     static const char *const texts[] = {
@@ -129,7 +129,7 @@ static void a_file_that_cannot_be_continued_stays_as_it_is(void **state)
         const char *const path = write_index(texts[i]);
         keep_messages();
         assert_int_equal(wb_index_append(path, &entry), WB_ERR_FORMAT);
-        assert_message("cannot be continued with an entry for 'b.wbr'");
+        assert_message("index.yaml': an entry for 'b.wbr'");
         char *text;
         assert_int_equal(wb_file_read(path, &text, NULL), WB_OK);
         assert_string_equal(text, texts[i]);
@@ -137,7 +137,7 @@ static void a_file_that_cannot_be_continued_stays_as_it_is(void **state)
     }
 }
 
-static void the_index_beside_a_recording_is_asked_by_name_and_checksum(void **state)
+static void index_beside_a_recording_is_searched_by_name_and_checksum(void **state)
 {
     (void)state;
     char recording[WB_PATH];
@@ -151,7 +151,7 @@ static void the_index_beside_a_recording_is_asked_by_name_and_checksum(void **st
     assert_string_equal(entry.excluded.by, "me");
     assert_string_equal(why.text, "");
     assert_false(wb_index_look_up(&entry, recording, SHA_B, &why));
-    assert_non_null(strstr(why.text, "lists other data as 'a.wbr.zst' (sha256 aaaaaaaaaaaa...)"));
+    assert_non_null(strstr(why.text, "(sha256 aaaaaaaaaaaa...)"));
     assert_true(wb_index_look_up(&entry, recording, NULL, &why));
     write_index("- file: a.wbr\n");
     why = (struct wb_reason){.text = ""};
@@ -162,15 +162,15 @@ static void the_index_beside_a_recording_is_asked_by_name_and_checksum(void **st
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(an_exclusion_has_somebody_and_a_reason, make_folder,
+        cmocka_unit_test_setup_teardown(exclusion_needs_a_person_and_a_reason, make_folder,
                                         remove_folder),
-        cmocka_unit_test_setup_teardown(what_is_appended_is_read_again_and_what_was_there_stays,
+        cmocka_unit_test_setup_teardown(appended_entry_is_read_back_and_contents_are_kept,
                                         make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(an_index_is_begun_and_lists_a_file_once, make_folder,
+        cmocka_unit_test_setup_teardown(index_is_created_and_lists_a_file_once, make_folder,
                                         remove_folder),
-        cmocka_unit_test_setup_teardown(a_file_that_cannot_be_continued_stays_as_it_is, make_folder,
+        cmocka_unit_test_setup_teardown(file_that_cannot_be_appended_is_unchanged, make_folder,
                                         remove_folder),
-        cmocka_unit_test_setup_teardown(the_index_beside_a_recording_is_asked_by_name_and_checksum,
+        cmocka_unit_test_setup_teardown(index_beside_a_recording_is_searched_by_name_and_checksum,
                                         make_folder, remove_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

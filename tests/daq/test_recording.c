@@ -1,4 +1,4 @@
-/* Recordings that go well: round trip, order, one file at the end, compressed, read-only. */
+/* Recordings without damage: round trip, order, a single file at the end, compressed, read-only. */
 #include <fcntl.h>
 #include <sqlite3.h>
 #include <sys/wait.h>
@@ -147,7 +147,7 @@ static void recording_is_never_overwritten(void **state)
     assert_non_null(strstr(bench->message, "never overwritten"));
     assert_int_equal(wb_hash_file(bench->path, after), WB_OK);
     assert_string_equal(before, after);
-    /* Nor is a log that an earlier recording of this name left. */
+    /* Nor is the remaining log of an earlier recording with this name. */
     char other[128], wal[136];
     snprintf(other, sizeof other, "%s/other.wbr", bench->folder);
     snprintf(wal, sizeof wal, "%s-wal", other);
@@ -178,7 +178,7 @@ static void closed_recording_is_one_plain_file_with_its_mark(void **state)
     assert_int_equal(header[19], 1);
 }
 
-/* The bytes of a row as docs/file-formats.md gives them, put together by hand. */
+/* The bytes of a row by docs/file-formats.md, assembled independently. */
 static void any_sqlite_reads_it_and_the_checksums_are_those_of_zlib(void **state)
 {
     static const char first[] = "stream\0"
@@ -274,7 +274,7 @@ static void compressed_recording_reads_the_same_and_has_the_same_checksum(void *
     assert_hash_while_open(packed, plain_sum);
     assert_int_equal(wb_hash_file(bench->path, file_sum), WB_OK);
     assert_string_equal(plain_sum, file_sum);
-    /* Twice the same bytes, smaller ones, and the zstd tool takes them. */
+    /* Reproducible, smaller, and accepted by the zstd tool. */
     assert_int_equal(wb_hash_file(packed, packed_sum), WB_OK);
     assert_int_equal(wb_hash_file(again, file_sum), WB_OK);
     assert_string_equal(packed_sum, file_sum);
@@ -321,7 +321,7 @@ static int read_in_read_only_folder(struct bench *bench)
     char probe[128];
     snprintf(probe, sizeof probe, "%s/probe", bench->folder);
     if (open(probe, O_CREAT | O_WRONLY, 0600) >= 0)
-        return 2; /* the folder is not read-only: the test would prove nothing */
+        return 2; /* the folder is not read-only: the test would be meaningless */
     struct wb_recording *recording = NULL;
     if (wb_recording_open(&recording, bench->path) != WB_OK)
         return 3;
@@ -349,7 +349,7 @@ static void unclosed_recording_is_read_from_a_read_only_folder(void **state)
     struct wb_recording *recording = NULL;
     assert_int_equal(wb_recording_create(&recording, live), WB_OK);
     bench_fill(recording, 50);
-    /* A copy taken while it records is what a crash would leave. */
+    /* A copy made during recording equals the file after a crash. */
     snprintf(wal, sizeof wal, "%s-wal", live);
     snprintf(copy_of_wal, sizeof copy_of_wal, "%s-wal", bench->path);
     bench_copy(live, bench->path);
@@ -389,7 +389,7 @@ static void path_with_odd_characters_is_opened(void **state)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-static void wrong_use_is_refused(void **state)
+static void wrong_use_is_rejected(void **state)
 {
     struct bench *bench = *state;
     struct wb_recording *recording = NULL;
@@ -422,7 +422,7 @@ int main(void)
         FACT(unclosed_recording_is_read_from_a_read_only_folder),
         FACT(onlooker_reads_a_recording_that_is_being_written),
         FACT(path_with_odd_characters_is_opened),
-        FACT(wrong_use_is_refused),
+        FACT(wrong_use_is_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

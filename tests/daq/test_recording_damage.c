@@ -1,5 +1,5 @@
-/* Recordings that go badly: killed, cut short, damaged, foreign, on a full disk. What was flushed
- * stays readable, and each failure is one message. */
+/* Recordings with problems: killed, truncated, damaged, of another program, on a full disk. Flushed
+ * data stay readable, and each failure gives one message. */
 #include <fcntl.h>
 #include <sched.h>
 #include <signal.h>
@@ -57,7 +57,7 @@ static void killed_writer_leaves_what_was_flushed(void **state)
     assert_int_equal(wb_recording_hash(recording, open_sum), WB_OK);
     assert_int_equal(wb_recording_close(recording), WB_OK);
 
-    /* It is told by its sum, log included, and is not compressed without the log. */
+    /* Its checksum includes the log, and it is not compressed without the log. */
     char sum[65], expected[80], command[400];
     assert_int_equal(wb_recording_sha256(bench->path, sum, NULL), WB_OK);
     assert_string_equal(open_sum, sum);
@@ -72,7 +72,7 @@ static void killed_writer_leaves_what_was_flushed(void **state)
     assert_memory_equal(sum, expected, 64);
     snprintf(command, sizeof command, "%s/packed.zst", bench->folder);
     assert_int_equal(wb_recording_compress(bench->path, command), WB_ERR_BUSY);
-    /* What the manual says makes it one plain file. */
+    /* The command of the manual makes it a single file. */
     run_sql(bench->path, "PRAGMA journal_mode=DELETE");
     assert_false(bench_exists(bench->folder, "test.wbr-wal"));
     assert_int_equal(wb_recording_open(&recording, bench->path), WB_OK);
@@ -104,7 +104,7 @@ static void truncated_recording_gives_what_is_left(void **state)
         struct wb_recording *recording = NULL;
         assert_int_equal(wb_recording_open(&recording, cut), WB_OK);
         assert_int_equal(bench->messages, 1);
-        assert_non_null(strstr(bench->message, "cut short"));
+        assert_non_null(strstr(bench->message, "is truncated"));
         assert_false(wb_recording_is_complete(recording));
         struct bench_tally tally;
         assert_int_equal(bench_walk(recording, &tally), WB_ERR_DATA);
@@ -115,7 +115,7 @@ static void truncated_recording_gives_what_is_left(void **state)
     }
 }
 
-static void file_cut_to_nearly_nothing_is_refused(void **state)
+static void file_cut_to_nearly_nothing_is_rejected(void **state)
 {
     struct bench *bench = *state;
     bench_make(bench->path, 20);
@@ -183,15 +183,14 @@ static void truncated_compressed_recording_gives_what_is_left(void **state)
     char open_hex[65];
     assert_int_equal(wb_recording_hash(recording, open_hex), WB_OK);
     assert_int_equal(wb_recording_close(recording), WB_OK);
-    /* One message in all; the hash is of what is left, so the same commands serve as with others.
-     */
+    /* One message in total; the hash is that of the remaining data. */
     assert_int_equal(wb_recording_sha256(packed, hex, NULL), WB_OK);
     assert_string_equal(open_hex, hex);
-    assert_non_null(strstr(bench->message, "cut short"));
-    assert_null(strstr(bench->message, "breaks off"));
+    assert_non_null(strstr(bench->message, "is truncated"));
+    assert_null(strstr(bench->message, "table "));
 }
 
-static void what_is_no_recording_is_refused_with_the_reason(void **state)
+static void what_is_no_recording_is_rejected_with_the_reason(void **state)
 {
     struct bench *bench = *state;
     struct wb_recording *recording = NULL;
@@ -219,7 +218,7 @@ static void what_is_no_recording_is_refused_with_the_reason(void **state)
     assert_int_equal(wb_recording_open(&recording, bench->folder), WB_ERR_IO);
 }
 
-static void missing_table_is_told_and_the_others_are_read(void **state)
+static void missing_table_is_reported_and_the_others_are_read(void **state)
 {
     struct bench *bench = *state;
     bench_make(bench->path, 10);
@@ -246,7 +245,7 @@ static void view_instead_of_a_table_is_not_run(void **state)
 {
     struct bench *bench = *state;
     bench_make(bench->path, 10);
-    /* Endless, if it ran. */
+    /* Would not end if it were executed. */
     run_sql(bench->path, "DROP TABLE event; CREATE VIEW event AS WITH RECURSIVE c(x) AS"
                          " (SELECT 1 UNION ALL SELECT x+1 FROM c) SELECT x AS rowid, x AS t_ns,"
                          " x AS kind, x AS text FROM c");
@@ -260,8 +259,8 @@ static void view_instead_of_a_table_is_not_run(void **state)
 
 /* --- full disks --- */
 
-/* Pushes chunks until the writer says that it cannot keep more, then reads what is there. 0 when
- * all is as promised. */
+/* Pushes chunks until the writer reports that it cannot keep more, then checks the file. Returns 0
+ * if it is correct. */
 static int fill_until_full(struct bench *bench, const char *path, const char *reason)
 {
     struct wb_recording *recording = NULL;
@@ -300,11 +299,11 @@ static int fill_until_full(struct bench *bench, const char *path, const char *re
         return 13;
     static const uint8_t much[20000];
     if (wb_writer_push_chunk(writer, 0, 0, much, sizeof much) || wb_writer_drops(writer, 0) == 0)
-        return 14; /* what there is no room for is refused */
+        return 14; /* chunks without space are rejected */
     snprintf(first, sizeof first, "%s", bench->message);
     if (wb_writer_finish(writer) != WB_ERR_IO)
         return 15;
-    /* Why, and at the end that something is lost. */
+    /* The reason, and at the end the loss. */
     if (bench->messages != 2 || !strstr(first, reason) || !strstr(bench->message, "are lost"))
         return 16;
     if (wb_recording_open(&recording, path) != WB_OK)
@@ -314,7 +313,7 @@ static int fill_until_full(struct bench *bench, const char *path, const char *re
     struct bench_tally tally;
     if (bench_walk(recording, &tally) != WB_OK || !tally.exact || tally.damaged)
         return 19;
-    /* 100 KiB of room held at least 60 KiB of chunks. */
+    /* 100 KiB of space contain at least 60 KiB of chunks. */
     if (tally.chunks < 200)
         return 20;
     return wb_recording_close(recording) == WB_OK ? 0 : 21;
@@ -343,7 +342,7 @@ static int fill_to_size_limit(struct bench *bench)
     struct rlimit limit = {.rlim_cur = 300 << 10, .rlim_max = RLIM_INFINITY};
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0)
         return 1;
-    return fill_until_full(bench, bench->path, "largest file size");
+    return fill_until_full(bench, bench->path, "maximum file size");
 }
 
 static void size_limit_is_one_message_and_what_was_flushed_is_readable(void **state)
@@ -378,7 +377,7 @@ static void full_disk_is_one_message_and_what_was_flushed_is_readable(void **sta
     assert_int_equal(code, 0);
 }
 
-static void place_that_takes_no_files_is_told(void **state)
+static void place_that_takes_no_files_is_reported(void **state)
 {
     struct bench *bench = *state;
     struct wb_recording *recording = NULL;
@@ -393,15 +392,15 @@ int main(void)
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
         FACT(killed_writer_leaves_what_was_flushed),
         FACT(truncated_recording_gives_what_is_left),
-        FACT(file_cut_to_nearly_nothing_is_refused),
+        FACT(file_cut_to_nearly_nothing_is_rejected),
         FACT(flipped_bit_is_found_by_the_crc_and_only_there),
         FACT(truncated_compressed_recording_gives_what_is_left),
-        FACT(what_is_no_recording_is_refused_with_the_reason),
-        FACT(missing_table_is_told_and_the_others_are_read),
+        FACT(what_is_no_recording_is_rejected_with_the_reason),
+        FACT(missing_table_is_reported_and_the_others_are_read),
         FACT(view_instead_of_a_table_is_not_run),
         FACT(size_limit_is_one_message_and_what_was_flushed_is_readable),
         FACT(full_disk_is_one_message_and_what_was_flushed_is_readable),
-        FACT(place_that_takes_no_files_is_told),
+        FACT(place_that_takes_no_files_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

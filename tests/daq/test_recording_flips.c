@@ -1,6 +1,6 @@
-/* Every bit of a closed recording, flipped alone: either it is noticed, when the file is opened,
- * read or surveyed, or all that is read is as it was written. So is every length the file may be
- * cut to.
+/* Every bit of a closed recording, flipped alone: either the damage is detected when the file is
+ * opened, read or surveyed, or all data read are correct. The same for every truncation of the
+ * file.
  *
  * `test_recording_flips [STEP]` tries every STEP-th bit and length; 1 is all of them. */
 #include <fcntl.h>
@@ -15,7 +15,7 @@
 
 static size_t step = 97;
 
-/* All that the recording says goes into one hash. */
+/* Hash of the whole contents of a recording. */
 
 static void add_text(struct wb_hash *hash, const char *text)
 {
@@ -62,7 +62,7 @@ static enum wb_status add_meta(void *context, const char *key, const char *value
     return WB_OK;
 }
 
-/* Reads everything. False when something is noticed: by a status or by the survey. */
+/* Reads everything. False if damage is detected, by a status or by the survey. */
 static bool read_all(const char *path, char hex[WB_SHA256_TEXT])
 {
     struct wb_recording *recording = NULL;
@@ -158,7 +158,7 @@ static void every_bit_is_noticed_or_without_effect(void **state)
     assert_true(read_all(bench->path, expected));
     flip_all(bench->path, expected, &n_tried, &n_noticed);
     count_trials("Every bit of a recording flipped", n_tried,
-                 "bits: %zu noticed, %zu change nothing that is read", n_noticed,
+                 "bits: %zu detected, %zu without effect on the data", n_noticed,
                  n_tried - n_noticed);
     /* A third of the file holds rows. */
     assert_true(n_noticed > n_tried / 4);
@@ -175,7 +175,7 @@ static void every_bit_of_a_compressed_one_is_noticed_or_without_effect(void **st
     assert_int_equal(wb_recording_compress(bench->path, packed), WB_OK);
     flip_all(packed, expected, &n_tried, &n_noticed);
     count_trials("Every bit of a compressed recording flipped", n_tried,
-                 "bits: %zu noticed, %zu change nothing that is read", n_noticed,
+                 "bits: %zu detected, %zu without effect on the data", n_noticed,
                  n_tried - n_noticed);
     assert_true(n_noticed > n_tried / 2);
 }
@@ -193,7 +193,7 @@ static void every_truncation_is_noticed(void **state)
         if (read_all(bench->path, hex))
             fail_msg("cut to %zu of %zu bytes, and nobody notices", n, size);
     }
-    count_trials("A recording cut to every length", n_tried, "lengths: all noticed");
+    count_trials("A recording truncated to every length", n_tried, "lengths: all detected");
     free(bytes);
 }
 

@@ -1,5 +1,5 @@
-/* Damaged recordings brought back: what is found was written, it is at least what SQLite reads, and
- * the damaged files stay as they were. */
+/* Recovery of damaged recordings: recovered data are correct and at least those that SQLite reads,
+ * and the damaged files are not changed. */
 #include <fcntl.h>
 
 #include "base/file.h"
@@ -17,7 +17,7 @@ enum {
     FRAME = 24 + PAGE
 };
 
-/* The file in which a case is tried, and what comes of it. */
+/* The file of a case, and its result. */
 struct names {
     char in[128], log[136], out[128];
 };
@@ -54,7 +54,7 @@ static struct names make_closed(const struct bench *bench)
     return names;
 }
 
-/* How many chunks SQLite reads as they were written. A damaged tree may lead to one twice. */
+/* Number of correct chunks that SQLite reads. A damaged tree may contain a chunk twice. */
 static int64_t read_chunks(const char *path)
 {
     struct wb_recording *recording = NULL;
@@ -66,8 +66,8 @@ static int64_t read_chunks(const char *path)
     return tally.next[0] + tally.next[1] + tally.next[2] - tally.missing;
 }
 
-/* Recovers; the new recording is whole in itself and holds nothing that was not written. Returns
- * its chunks. */
+/* Recovers; checks that the new recording is consistent and contains only data that were written.
+ * Returns its number of chunks. */
 static int64_t recover(const struct names *names, struct wb_recover *found)
 {
     struct wb_recording *recording = NULL;
@@ -114,7 +114,7 @@ static void closed_recording_comes_back_whole(void **state)
     char text[200], *value = NULL;
     wb_recover_missing(&found, text, sizeof text);
     assert_string_equal(text, "");
-    /* All else is there as well, and where it came from. */
+    /* All other rows, and the origin, are present. */
     struct wb_recording *recording = NULL;
     struct wb_survey survey;
     assert_int_equal(wb_recording_open(&recording, names.out), WB_OK);
@@ -145,7 +145,7 @@ static void damaged_files_stay_as_they_were(void **state)
     assert_int_equal(wb_hash_file(names.in, after[0]), WB_OK);
     assert_int_equal(wb_hash_file(names.log, after[1]), WB_OK);
     assert_memory_equal(before, after, sizeof before);
-    /* Nothing but the new recording was made. */
+    /* No other file was created. */
     snprintf(command, sizeof command, "test $(ls %s | wc -l) = 3", bench->folder);
     assert_int_equal(system(command), 0);
 }
@@ -158,7 +158,7 @@ static void unclosed_recording_comes_back_with_its_log(void **state)
     int at = 0;
     assert_int_equal(recover(&names, &found), 3 * CHUNKS);
     assert_int_equal(found.missing, 0);
-    /* Whether more was written nobody knows, and the new recording goes on to say so. */
+    /* It is unknown whether more was written, which the new recording states. */
     assert_false(found.is_end_known);
     assert_false(wb_recover_is_whole(&found));
     struct wb_recording *recording = NULL;
@@ -166,14 +166,14 @@ static void unclosed_recording_comes_back_with_its_log(void **state)
     assert_int_equal(wb_recording_open(&recording, names.out), WB_OK);
     assert_int_equal(wb_survey_run(recording, false, &survey), WB_OK);
     assert_false(wb_survey_is_whole(&survey));
-    bool told = false;
+    bool reported = false;
     while (wb_survey_problem(&survey, &at, text, sizeof text))
-        told |= strstr(text, "recovered from a damaged file; missing: the end") != NULL;
-    assert_true(told);
+        reported |= strstr(text, "recovered from a damaged file; missing: ") != NULL;
+    assert_true(reported);
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-static void missing_log_is_told(void **state)
+static void missing_log_is_reported(void **state)
 {
     struct bench *const bench = *state;
     const struct names names = make_unclosed(bench);
@@ -182,14 +182,14 @@ static void missing_log_is_told(void **state)
     assert_int_equal(unlink(names.log), 0);
     bench->messages = 0;
     assert_int_equal(wb_recording_open(&recording, names.in), WB_OK);
-    assert_non_null(strstr(bench->message, "'damaged.wbr-wal' is not beside it"));
+    assert_non_null(strstr(bench->message, "'damaged.wbr-wal' is missing"));
     assert_int_equal(wb_recording_close(recording), WB_OK);
-    /* The file has at least what its first checkpoint brought. */
+    /* The file contains at least the data of its first checkpoint. */
     if (wb_recover_run(names.in, names.out, &found, NULL) == WB_OK)
         assert_true(found.is_log_missing);
 }
 
-/* Once a second: then the file alone, copied without its log, has all but the last second. */
+/* A checkpoint per second: the file without its log lacks only the last second. */
 static void what_was_flushed_goes_from_the_log_into_the_file(void **state)
 {
     struct bench *const bench = *state;
@@ -207,7 +207,7 @@ static void what_was_flushed_goes_from_the_log_into_the_file(void **state)
     assert_int_equal(found.missing, 0);
 }
 
-/* Behind a bad frame SQLite finds nothing; here one page is lost at most. */
+/* After a damaged frame SQLite finds nothing; here at most one page is lost. */
 static void flipped_bit_in_the_log_costs_a_page_at_most(void **state)
 {
     struct bench *const bench = *state;
@@ -228,7 +228,7 @@ static void flipped_bit_in_the_log_costs_a_page_at_most(void **state)
         flip(names.log, at, (int)(trials++ % 8));
     }
     count_trials("A bit flipped in the write-ahead log", trials,
-                 "places: `recover` brings at least %lld of %d chunks, SQLite alone %lld",
+                 "positions: `recover` recovers at least %lld of %d chunks, SQLite alone %lld",
                  (long long)least, 3 * CHUNKS, (long long)least_read);
     assert_true(least > 3 * CHUNKS - 40);
     assert_true(least_read < 3 * CHUNKS / 2);
@@ -244,7 +244,7 @@ static void cut_files_and_logs_give_what_is_left(void **state)
         assert_int_equal(truncate(names.in, n), 0);
         const int64_t n_read = read_chunks(names.in), n_found = recover(&names, &found);
         assert_true(n_found >= n_read);
-        /* Where the bytes that are gone say nothing. */
+        /* Damage in bytes without data. */
         if (wb_recover_is_whole(&found))
             assert_int_equal(n_found, 3 * CHUNKS);
         trials++;
@@ -258,8 +258,8 @@ static void cut_files_and_logs_give_what_is_left(void **state)
             assert_true(recover(&names, &found) >= n_read);
         trials++;
     }
-    count_trials("A recording or its log cut short", trials,
-                 "lengths: `recover` brings at least what SQLite reads");
+    count_trials("A recording or its log truncated", trials,
+                 "lengths: `recover` recovers at least what SQLite reads");
 }
 
 static uint64_t random_state;
@@ -272,7 +272,7 @@ static uint64_t random_below(uint64_t bound)
     return (random_state * UINT64_C(2685821657736338717)) % bound;
 }
 
-/* Zeros, rubbish, or a page of the same file, over a part of it. */
+/* Overwrites a part of the file with zeros, random bytes, or another page of it. */
 static void spoil(const char *path)
 {
     char *bytes = NULL;
@@ -333,12 +333,12 @@ static void any_damage_leaves_only_what_was_written(void **state)
         least = n < least ? n : least;
     }
     count_trials("Pages of a recording and its log overwritten", TRIALS,
-                 "cases: at least %lld of %d chunks come back, none other than it was written",
+                 "cases: at least %lld of %d chunks recovered, none of them wrong",
                  (long long)least, 3 * CHUNKS);
     assert_true(least > CHUNKS);
 }
 
-/* Makes a recording whose first rows are those of any other, and the rest its own. */
+/* Makes a recording whose first rows are common to all, and the others its own. */
 static void make_alike(const char *path, int n_chunks, uint8_t own)
 {
     struct wb_recording *recording = NULL;
@@ -354,8 +354,8 @@ static void make_alike(const char *path, int n_chunks, uint8_t own)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-/* The log holds rows of a transaction that failed, whose numbers were used again: those that went
- * on count, not those that stand in the log. */
+/* The log contains rows of a failed transaction whose numbers were used again: the continued rows
+ * must be kept, not those in the log. */
 static void rows_that_were_written_anew_count(void **state)
 {
     struct bench *const bench = *state;
@@ -438,12 +438,12 @@ static void compressed_recordings_come_back_as_far_as_they_go(void **state)
     assert_true(wb_recover_is_whole(&found));
     assert_int_equal(truncate(names.in, size_of(names.in) / 2), 0);
     unlink(names.out);
-    /* What a compressed file holds comes in blocks: half of it may hold no row. */
+    /* A compressed file is decoded in blocks: half of it may contain no row. */
     if (wb_recover_run(names.in, names.out, &found, NULL) == WB_OK)
         assert_false(wb_recover_is_whole(&found));
 }
 
-static void what_is_no_recording_is_refused(void **state)
+static void what_is_no_recording_is_rejected(void **state)
 {
     struct bench *const bench = *state;
     const struct names names = name(bench);
@@ -483,7 +483,7 @@ int main(void)
         FACT(closed_recording_comes_back_whole),
         FACT(damaged_files_stay_as_they_were),
         FACT(unclosed_recording_comes_back_with_its_log),
-        FACT(missing_log_is_told),
+        FACT(missing_log_is_reported),
         FACT(what_was_flushed_goes_from_the_log_into_the_file),
         FACT(flipped_bit_in_the_log_costs_a_page_at_most),
         FACT(cut_files_and_logs_give_what_is_left),
@@ -492,7 +492,7 @@ int main(void)
         FACT(rows_over_several_pages_come_back),
         FACT(older_recordings_come_back_too),
         FACT(compressed_recordings_come_back_as_far_as_they_go),
-        FACT(what_is_no_recording_is_refused),
+        FACT(what_is_no_recording_is_rejected),
         FACT(existing_files_are_not_overwritten),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -126,7 +126,7 @@ static struct log *feed_directly(struct wb_recording *recording, const struct wb
                                        .mocap = take_mocap,
                                        .stage = take_stage,
                                        .remark = take_remark}};
-    /* A live driver has said hello before it hears anything. */
+    /* A live driver has sent its start commands before it receives anything. */
     struct wb_outbox outbox;
     for (int i = 0; i < 3; i++) {
         feeding.driver_state[i] = calloc(1, feeding.driver[i]->state_size);
@@ -258,7 +258,7 @@ static void damaged_chunks_are_counted_remarked_and_left_out(void **state)
     free(log);
 }
 
-/* Every chunk of the load cell ends amid a line; each is damaged once, and missing once. */
+/* Every chunk of the load cell ends within a line; each is damaged once, and missing once. */
 static void no_halves_of_lines_around_a_gap_make_a_reading(void **state)
 {
     struct bench *bench = *state;
@@ -288,8 +288,8 @@ static void no_halves_of_lines_around_a_gap_make_a_reading(void **state)
             trials++;
         }
     }
-    count_trials("A chunk damaged or missing amid a line", (uint64_t)trials,
-                 "chunks: no reading that was never sent");
+    count_trials("A chunk damaged or missing within a line", (uint64_t)trials,
+                 "chunks: no wrong reading");
 }
 
 static void unknown_protocol_leaves_out_its_stream_only(void **state)
@@ -306,7 +306,7 @@ static void unknown_protocol_leaves_out_its_stream_only(void **state)
     assert_int_equal(counts.stage_reports, SMALL_REPORTS);
 }
 
-static void recording_without_its_rig_is_refused_with_the_reason(void **state)
+static void recording_without_its_rig_is_rejected_with_the_reason(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, false);
@@ -314,7 +314,7 @@ static void recording_without_its_rig_is_refused_with_the_reason(void **state)
     struct wb_rig rig;
     assert_int_equal(wb_recording_open(&recording, bench->path), WB_OK);
     assert_int_equal(wb_replay_rig(recording, &rig), WB_ERR_DATA);
-    assert_non_null(strstr(bench->message, "which rig"));
+    assert_non_null(strstr(bench->message, "no rig file"));
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
@@ -329,7 +329,7 @@ int main(void)
         FACT(damaged_chunks_are_counted_remarked_and_left_out),
         FACT(no_halves_of_lines_around_a_gap_make_a_reading),
         FACT(unknown_protocol_leaves_out_its_stream_only),
-        FACT(recording_without_its_rig_is_refused_with_the_reason),
+        FACT(recording_without_its_rig_is_rejected_with_the_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,5 @@
-/* Recordings on storage that fails: the power goes, the recorder is killed, the disk is full, slow,
- * or says no. What was flushed is there, what comes meanwhile is kept, and nothing is ever read
- * that was not written.
+/* Recordings on failing storage: a power cut, a killed recorder, a full, slow or failing disk.
+ * Flushed data are present, data received meanwhile are kept, and only written data are ever read.
  *
  * `test_storage [KILLS] [CUTS]` kills so many recorders and cuts the power so many times. */
 #include <sched.h>
@@ -31,19 +30,19 @@ static uint64_t random_below(uint64_t bound)
     return (random_state * UINT64_C(2685821657736338717)) % bound;
 }
 
-/* --- the power goes --- */
+/* --- power cut --- */
 
 enum {
     FLUSHES = 60
 };
 
-/* What was flushed when so many operations had been done. */
+/* Data flushed after this number of operations. */
 struct flushed {
     size_t operations;
     int64_t chunks;
 };
 
-/* Writes a recording, with what it has flushed after each flush; closes it at the end. */
+/* Writes a recording and notes the flushed data after each flush; closes it at the end. */
 static void record_in_steps(const char *path, struct flushed flushed[FLUSHES + 1])
 {
     struct wb_recording *recording = NULL;
@@ -61,7 +60,7 @@ static void record_in_steps(const char *path, struct flushed flushed[FLUSHES + 1
                                  WB_OK);
             }
         }
-        /* From the log into the file now and then, as once a second. */
+        /* Occasional checkpoints, like those once a second. */
         if (i % 7 == 0)
             recording->checkpoint_ns -= 2 * WB_NS_PER_S;
         assert_int_equal(wb_recording_flush(recording), WB_OK);
@@ -104,13 +103,13 @@ static void power_that_goes_leaves_what_was_flushed(void **state)
         n_complete += wb_recording_is_complete(recording);
         assert_int_equal(wb_recording_close(recording), WB_OK);
     }
-    count_trials("The power goes while a recording is written", n_cuts,
-                 "moments: all that was flushed is there, nothing else than was written");
-    /* The moments were of all kinds. */
+    count_trials("A power cut while a recording is written", n_cuts,
+                 "moments: all flushed data present, no other data than were written");
+    /* All kinds of moments occurred. */
     assert_true(n_more > 0 && n_complete > 0 && n_complete < n_cuts);
 }
 
-/* --- the recorder is killed --- */
+/* --- killed recorder --- */
 
 enum {
     RING = 4096
@@ -118,11 +117,11 @@ enum {
 
 struct shared {
     atomic_int_least64_t pushed; /* chunks of stream 0 */
-    atomic_int_least64_t safe;   /* of them so many are on the disk, by what the writer says */
+    atomic_int_least64_t safe;   /* of them on the disk according to the writer */
     atomic_int_least64_t worst_ns;
 };
 
-/* Writes a byte to `told` whenever more chunks are safe. */
+/* Writes a byte to `told` whenever more chunks are on the disk. */
 static void record_until_killed(const char *path, struct shared *shared, int told)
 {
     static int64_t pushed_ns[RING];
@@ -147,7 +146,7 @@ static void record_until_killed(const char *path, struct shared *shared, int tol
         atomic_store(&shared->pushed, seq + 1);
         wb_writer_state(writer, &lag);
         const int64_t now_ns = wb_time_now_ns();
-        /* What was pushed before the oldest that waits is on the disk. */
+        /* Entries pushed before the oldest waiting one are on the disk. */
         while (safe < seq && safe + RING > seq && pushed_ns[safe % RING] < now_ns - lag.lag_ns &&
                lag.lag_ns > 0 && pushed_ns[(safe + 1) % RING] < now_ns - lag.lag_ns)
             safe++;
@@ -188,7 +187,7 @@ static void killed_recorders_leave_what_the_writer_called_safe(void **state)
         const int64_t wanted = 11 + (int64_t)random_below(100);
         while (atomic_load(&shared->safe) < wanted)
             assert_int_equal(read(told[0], &byte, 1), 1);
-        /* Not just behind a flush. */
+        /* Not only right after a flush. */
         const int64_t more = atomic_load(&shared->pushed) + (int64_t)random_below(60);
         while (atomic_load(&shared->pushed) < more && waitpid(child, &status, WNOHANG) == 0)
             sched_yield();
@@ -215,7 +214,7 @@ static void killed_recorders_leave_what_the_writer_called_safe(void **state)
     }
     munmap(shared, sizeof *shared);
     count_trials("A recorder is killed (SIGKILL)", n_kills,
-                 "kills: of %llu chunks that the writer called safe none is missing, none is wrong",
+                 "kills: of %llu chunks confirmed by the writer none is missing or wrong",
                  (unsigned long long)n_safe);
     print_message("%llu chunks that were not yet safe are gone; the disk was %.1f ms behind at "
                   "most\n",
@@ -223,7 +222,7 @@ static void killed_recorders_leave_what_the_writer_called_safe(void **state)
     assert_true(n_safe >= 11 * n_kills);
 }
 
-/* --- the disk says no --- */
+/* --- failing disk --- */
 
 static int set_up_virtual_time(void **state)
 {
@@ -315,11 +314,11 @@ static void writing_goes_on_where_the_disk_stopped(void **state)
         assert_int_equal(unlink(bench->path), 0);
     }
     count_trials("A full disk, short writes, I/O errors, failing syncs", trials,
-                 "failures: writing goes on behind them, nothing is lost");
+                 "failures: writing continues afterwards, nothing is lost");
 }
 
-/* The power may go when a sync has failed and the next one has not: nothing of what the failed one
- * was for is taken for kept. */
+/* A power cut after a failed sync and a successful one: the data of the failed sync must not count
+ * as written before they are synced again. */
 static void failed_sync_keeps_nothing(void **state)
 {
     struct bench *const bench = *state;
@@ -336,7 +335,7 @@ static void failed_sync_keeps_nothing(void **state)
                      WB_OK);
     assert_int_not_equal(wb_recording_flush(recording), WB_OK);
     fault_vfs_set(FAULT_NONE);
-    /* Again, and nothing more than again: now it is flushed. */
+    /* The same data again, without additions: now they are flushed. */
     assert_int_equal(wb_recording_append_chunk(recording, 0, 20, bench_time(0, 20), bytes, n),
                      WB_OK);
     assert_int_equal(wb_recording_flush(recording), WB_OK);
@@ -376,7 +375,7 @@ static void memory_has_a_bound_and_what_it_cannot_keep_is_counted(void **state)
     wait_until_failing(writer, true);
     assert_int_equal(wb_writer_status(writer), WB_OK);
     push(writer, &seq, 200);
-    /* The loop is told while there is still some room. */
+    /* The loop is notified while there is still some space. */
     assert_int_equal(wb_writer_status(writer), WB_ERR_IO);
     wb_writer_counts(writer, &counts);
     assert_true(counts.dropped_chunks > 0);
@@ -410,7 +409,7 @@ static void disk_that_never_comes_back_leaves_what_was_flushed(void **state)
     wait_until_failing(writer, true);
     bench->messages = 0;
     assert_int_equal(wb_writer_finish(writer), WB_ERR_IO);
-    /* What is in memory and how to save it, then that it is lost. */
+    /* First the amount in memory and how to save it, then the loss. */
     assert_int_equal(bench->messages, 2);
     assert_non_null(strstr(bench->message, "of the recording are lost"));
     fault_vfs_end();
@@ -418,9 +417,9 @@ static void disk_that_never_comes_back_leaves_what_was_flushed(void **state)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-/* --- a disk that hangs --- */
+/* --- hanging disk --- */
 
-/* A push that waited for the disk would wait for ever here. */
+/* A push that waits for the disk would never return here. */
 static void disk_that_hangs_never_holds_up_who_pushes(void **state)
 {
     struct bench *const bench = *state;
@@ -434,7 +433,7 @@ static void disk_that_hangs_never_holds_up_who_pushes(void **state)
     push(writer, &seq, 10);
     gate_await(&gate, 1);
     push(writer, &seq, 5000);
-    /* How far the disk is behind shows while it hangs. */
+    /* The delay of the disk is visible while it hangs. */
     wb_writer_state(writer, &now);
     const int64_t lag_ns = now.lag_ns;
     assert_true(lag_ns > 0);
@@ -448,8 +447,8 @@ static void disk_that_hangs_never_holds_up_who_pushes(void **state)
     fault_vfs_end();
     struct wb_recording *const recording = bench_open(bench->path, true, 3 * seq);
     assert_int_equal(wb_recording_close(recording), WB_OK);
-    count_trials("The disk hangs while chunks come", (uint64_t)(3 * seq),
-                 "chunks: taken without waiting, all recorded");
+    count_trials("The disk hangs while chunks arrive", (uint64_t)(3 * seq),
+                 "chunks: accepted without waiting, all recorded");
 }
 
 int main(int argc, char **argv)

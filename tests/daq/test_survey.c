@@ -1,5 +1,5 @@
-/* The survey finds what is missing or damaged, and nothing else; the export writes what is there.
- */
+/* The survey finds missing and damaged data, and no other problems; the export writes the readable
+ * data. */
 #include "base/file.h"
 #include "daq/recording/export.h"
 #include "daq/recording/replay.h"
@@ -60,17 +60,17 @@ static void each_kind_of_harm_to_an_old_recording_is_found_and_named(void **stat
          "mocap stream 1: 3 chunks missing in 2 places"},
         {"DELETE FROM chunk WHERE stream = 2 AND seq = 0", "stage stream 2: 1 chunk missing"},
         {"UPDATE chunk SET seq = 3 WHERE stream = 2 AND seq = 19", "repeated or out of order"},
-        {"DELETE FROM chunk WHERE stream = 1", "mocap stream 1: nothing was received"},
+        {"DELETE FROM chunk WHERE stream = 1", "mocap stream 1: no data received"},
         {"DELETE FROM meta WHERE key = 'closed'", "not closed properly"},
-        {"DELETE FROM meta WHERE key = 'rig'", "rig's description is missing"},
-        {"DELETE FROM meta WHERE key = 'specimen'", "specimen's description is missing"},
+        {"DELETE FROM meta WHERE key = 'rig'", "rig file is missing"},
+        {"DELETE FROM meta WHERE key = 'specimen'", "specimen file is missing"},
         {"UPDATE meta SET value = '7' WHERE key = 'dropped_chunks'", "(7 chunks)"},
         {"INSERT INTO event VALUES(1, 'drop', 'load stream 0 lost 1 chunks')",
-         "drops noted while recording: 1 "},
+         "drops during recording: 1 "},
         {"INSERT INTO event VALUES(1, 'stream_lost', 'mocap')",
-         "a stream fell silent 1 time while"},
-        {"INSERT INTO chunk VALUES(9, 0, 1, x'00', 0)", "1 chunk of no declared stream"},
-        {"INSERT INTO event VALUES(1, 'tare', '{}'), (2, 'refused', 'x')", "noted 1 time"},
+         "a stream was silent for too long 1 time "},
+        {"INSERT INTO chunk VALUES(9, 0, 1, x'00', 0)", "1 chunk of undeclared streams"},
+        {"INSERT INTO event VALUES(1, 'tare', '{}'), (2, 'refused', 'x')", "(1 event)"},
         {"UPDATE meta SET value = value || '\nlimits: {stream_lost_s: 0.6}' WHERE key = 'rig';"
          "DELETE FROM chunk WHERE stream = 1 AND seq >= 6",
          "mocap stream 1: silent for 0."},
@@ -126,7 +126,7 @@ static void each_kind_of_harm_to_a_row_is_found_and_its_place_named(void **state
          "UPDATE chunk SET n = 51 WHERE n = 1000",
          "2 rows are damaged (CRC-32): row 50 (stream 0, chunk 42)"},
         {"UPDATE chunk SET chain = chain + 1 WHERE n = 60",
-         "2 rows are not in the place of writing: row 60 (stream "},
+         "2 rows are not in the order of writing: row 60 (stream "},
         {"UPDATE chunk SET crc32 = crc32 + 1 WHERE n = 60", "1 row is damaged (CRC-32): row 60 "},
         {"PRAGMA user_version = 1; UPDATE clock SET rtt_ns = 0", "1 row is damaged"},
         {"DROP TABLE clock", "the database is damaged"},
@@ -162,8 +162,8 @@ static void old_recording_reads_the_same_and_is_partly_protected(void **state)
     assert_int_equal(old.events, survey.events);
 }
 
-/* The recording computer stood still, and all came later: nothing is lost. Refused lines before the
- * tare are an instrument finding its rhythm. */
+/* The recording computer stalled, and all data arrived later: nothing is lost. Rejected lines
+ * before the tare are tolerated. */
 static void what_all_streams_share_is_no_harm(void **state)
 {
     struct bench *bench = *state;

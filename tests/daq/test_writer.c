@@ -1,11 +1,11 @@
-/* The writer queue: nothing lost with room, every loss counted and recorded without, never a wait
- * for the disk. */
+/* The writer's queue: no loss while there is space; otherwise every loss is counted and recorded;
+ * it never waits for the disk. */
 #include "base/units.h"
 #include "daq/recording/writer_private.h"
 #include "tests/daq/gate.h"
 #include "tests/daq/recording_fixture.h"
 
-/* Settings of a writer that writes every millisecond and passes the gate before. */
+/* Settings of a writer that passes the gate and writes every millisecond. */
 static struct wb_writer_settings settings_of(struct gate *gate)
 {
     struct wb_writer_settings settings;
@@ -126,11 +126,12 @@ static void full_queue_drops_counts_and_records_every_chunk_and_no_event(void **
     struct wb_writer_settings settings = settings_of(&gate);
     settings.capacity_bytes = 20000;
     struct wb_writer *writer = start(bench->path, &settings);
-    /* Else its first round may come amid the pushes and tell of their losses in two parts. */
+    /* Otherwise its first round may occur between the pushes and report their losses in two parts.
+     */
     gate_await(&gate, 1);
     uint64_t refused[2] = {0};
     int64_t first_refused[2] = {-1, -1};
-    /* The disk stalls all the while: a push that waited for it would wait for ever. */
+    /* The disk stalls during this time: a push that waits for it would never return. */
     for (int64_t seq = 0; seq < 400; seq++) {
         for (int stream = 0; stream < 2; stream++) {
             bool taken = push(writer, stream, seq);
@@ -148,7 +149,7 @@ static void full_queue_drops_counts_and_records_every_chunk_and_no_event(void **
     gate_set(&gate, false);
     struct wb_writer_counts counts;
     gate_await_rounds(&gate);
-    /* There is room again: the last chunks close the gaps at their ends. */
+    /* There is space again: the last chunks end the gaps. */
     assert_true(push(writer, 0, 400));
     assert_true(push(writer, 1, 400));
     wb_writer_counts(writer, &counts);
@@ -205,7 +206,7 @@ static void queue_of_few_entries_drops_by_number(void **state)
     assert_int_equal(wb_writer_finish(writer), WB_OK);
 }
 
-static void undeclared_stream_is_refused(void **state)
+static void undeclared_stream_is_rejected(void **state)
 {
     struct bench *bench = *state;
     struct wb_writer *writer = start(bench->path, NULL);
@@ -241,7 +242,7 @@ int main(void)
         FACT(flushed_chunks_are_on_disk_while_recording_goes_on),
         FACT(full_queue_drops_counts_and_records_every_chunk_and_no_event),
         FACT(queue_of_few_entries_drops_by_number),
-        FACT(undeclared_stream_is_refused),
+        FACT(undeclared_stream_is_rejected),
         FACT(long_texts_are_cut_not_lost),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
