@@ -30,7 +30,7 @@ meson test -C "$build" $wanted >&2
 [ "$quick" = quick ] || "$build/tests/bench/bench_acquisition" 600 >&2
 
 table() {
-    echo '| what happens | tried | what came of it | test |'
+    echo '| event | trials | result | test |'
     echo '| --- | --- | --- | --- |'
     sort -t "$(printf '\t')" -k1,1 -k3,3 "$trials" |
         awk -F '\t' '

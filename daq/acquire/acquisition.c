@@ -20,18 +20,19 @@
 
 #define WB_LOG_DOMAIN "acquisition"
 
-/* Drivers are promised a tick at least every 20 ms; this also bounds how late Ctrl-C is seen. */
+/* Period of the drivers' ticks, and therefore also the longest reaction time to Ctrl-C. */
 #define TICK_NS (20 * WB_NS_PER_MS)
-/* Reads of one stream in one step, so that a flood on one cannot starve the others. */
+/* Reads of one stream in one step, at most, so that a flood on one cannot starve the others. */
 #define READS_A_STEP 64
-/* Being late by more than this is a stall. */
+/* A delay of the loop longer than this counts as a stall. */
 #define STALL_NS (30 * WB_NS_PER_MS)
-/* A stall that is told: the stage may have gone on for a whole second, unwatched. */
-#define TOLD_STALL_NS (1000 * WB_NS_PER_MS)
+/* Stalls longer than this are reported: the stage may have moved unwatched for a second. */
+#define REPORTED_STALL_NS (1000 * WB_NS_PER_MS)
+/* A loss that lasts longer than this is reported: late frames are missing only until they arrive.
+ */
 #define LASTING_LOSS_NS (500 * WB_NS_PER_MS)
-#define RATE_PERIOD_NS (500 * WB_NS_PER_MS)
-/* Between two looks for a port that went away. */
-#define LOOK_AGAIN_NS (100 * WB_NS_PER_MS)
+#define RATE_PERIOD_NS (500 * WB_NS_PER_MS) /* over which sample rates are measured */
+#define REOPEN_NS (100 * WB_NS_PER_MS)      /* between two attempts to reopen a port */
 
 /* One open stream with its driver. */
 struct line {
@@ -41,23 +42,23 @@ struct line {
     void *state;
     struct wb_stream *stream;
     int id; /* in the recording */
-    bool reported_lost, told_loss;
-    int64_t losing_ns;      /* since then samples are missing; 0: none are */
-    int64_t write_again_ns; /* after a port that took no bytes: not before */
-    int64_t gone_ns;        /* when its device went away, */
-    int64_t look_again_ns;  /* and when it is looked for again */
+    bool reported_lost, reported_loss;
+    int64_t losing_ns;      /* time since which samples are missing; 0: none are */
+    int64_t write_again_ns; /* next write attempt after the port accepted no bytes */
+    int64_t gone_ns;        /* when its device was disconnected */
+    int64_t reopen_ns;      /* next attempt to reopen it */
     uint64_t counted;       /* valid samples so far */
     uint64_t rate_from;     /* counted at rate_ns */
     int64_t rate_ns;
     bool has_rate;
     struct wb_remark_gate gate;
-    uint64_t kernel_drops; /* datagrams the kernel lost, as far as told */
-    struct wb_loss loss;   /* by frames' stamps, or by the arrival of lines */
+    uint64_t kernel_drops; /* datagrams dropped by the kernel that have been reported */
+    struct wb_loss loss;   /* by the frames' time stamps, or by the arrival of lines */
 };
 
 struct wb_acquisition {
     struct wb_rig rig;
-    struct wb_sink sinks[2]; /* see every sample, in this order */
+    struct wb_sink sinks[2]; /* receive every sample, in this order */
     struct wb_writer *writer;
     int n_lines;
     struct line lines[WB_INTERLOCK_ROLES];
@@ -69,13 +70,13 @@ struct wb_acquisition {
     struct wb_acquisition_latest latest;
     int64_t next_tick_ns;
     int64_t woken_ns;   /* end of the last wait for bytes */
-    int64_t storage_ns; /* from then on what came was not on the disk */
-    int64_t deaf_ns;    /* of all time since the start: nobody listened */
+    int64_t storage_ns; /* arrival of the oldest data that are not on the disk */
+    int64_t stalled_ns; /* sum of all stalls since the start */
     struct wb_outbox outbox;
     uint8_t buffer[WB_STREAM_READ_MAX];
 };
 
-/* An event for the recording, if there is one. */
+/* Records an event, if there is a recording. */
 static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *text)
 {
     if (a->writer)
@@ -85,7 +86,7 @@ static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind,
 void wb_acquisition_raise_priority(void)
 {
     if (!wb_time_is_virtual() && setpriority(PRIO_PROCESS, 0, -15) != 0)
-        wb_debug("the priority stays as it is: %s", strerror(errno));
+        wb_debug("the scheduling priority cannot be raised: %s", strerror(errno));
 }
 
 bool wb_acquisition_marker_measured(const struct wb_marker *marker)
@@ -105,21 +106,21 @@ void wb_acquisition_event(struct wb_acquisition *a, const char *kind, const char
 
 /* --- sending --- */
 
-/* A stage that went away is not asked again; its silence is then known, not waited for. A load cell
- * may come back: what its silence allows is left to it. */
+/* A disconnected stage counts as lost at once. A disconnected load cell may be reconnected within
+ * its allowed silence. */
 static void lose_device(struct line *line)
 {
     struct wb_acquisition *const a = line->owner;
     a->latest.stream[line->role].gone = true;
     line->gone_ns = wb_time_now_ns();
-    line->look_again_ns = line->gone_ns + LOOK_AGAIN_NS;
+    line->reopen_ns = line->gone_ns + REOPEN_NS;
     if (line->role == WB_ROLE_STAGE)
         a->interlock.lost[line->role] = true;
 }
 
-/* False when a write would have to wait: asked before all writes that are not urgent, because
- * waiting for one instrument must not delay the hold byte to another. */
-static bool takes_bytes(const struct line *line)
+/* False if a write would block. Checked before all writes that are not urgent, because waiting for
+ * one instrument must not delay the hold byte to another. */
+static bool is_writable(const struct line *line)
 {
     int descriptors[2];
     if (wb_stream_descriptors(line->stream, descriptors) == 0)
@@ -128,9 +129,9 @@ static bool takes_bytes(const struct line *line)
     return poll(&polled, 1, 0) > 0;
 }
 
-/* Writes what a driver put into the outbox, and empties it. A port that takes no bytes is left
- * alone for a second, so that waiting for it cannot hold up the others; urgent bytes are always
- * tried. */
+/* Writes the contents of the outbox and empties it. After a port accepted no bytes, writes to it
+ * are skipped for a second, so that waiting for it cannot delay the others; urgent bytes are always
+ * written. */
 static enum wb_status send_outbox(struct line *line, bool urgent)
 {
     struct wb_acquisition *const a = line->owner;
@@ -142,7 +143,7 @@ static enum wb_status send_outbox(struct line *line, bool urgent)
         status = WB_ERR_IO;
     else if (!urgent && now_ns < line->write_again_ns)
         status = WB_ERR_TIMEOUT;
-    else if (!urgent && outbox->n_entries > 0 && !takes_bytes(line)) {
+    else if (!urgent && outbox->n_entries > 0 && !is_writable(line)) {
         line->write_again_ns = now_ns + WB_NS_PER_S;
         status = WB_ERR_TIMEOUT;
     }
@@ -151,7 +152,7 @@ static enum wb_status send_outbox(struct line *line, bool urgent)
         begin = outbox->ends[i];
         if (status == WB_ERR_TIMEOUT)
             line->write_again_ns = now_ns + WB_NS_PER_S;
-        /* A datagram that finds no listener is not the end of a network stream. */
+        /* A failed datagram does not disconnect a network stream. */
         else if (status != WB_OK && line->role != WB_ROLE_MOCAP)
             lose_device(line);
     }
@@ -176,7 +177,7 @@ static enum wb_status send_command(struct line *line, enum wb_stage_command comm
 
 /* --- stopping --- */
 
-/* The interlock has just tripped: the hold byte goes out before anything else. */
+/* Called when the interlock trips: sends the hold byte before anything else. */
 static void hold_now(struct wb_acquisition *a)
 {
     if (a->stop.state != WB_STOP_NONE)
@@ -206,7 +207,7 @@ static void hold_now(struct wb_acquisition *a)
     }
 }
 
-/* Once, when the stop is over: what came of it. */
+/* Records the result of a completed stop, once. */
 static void report_stop(struct wb_acquisition *a)
 {
     if (!wb_stop_over(&a->stop) || a->reported_stop == a->stop.state)
@@ -227,7 +228,7 @@ static void report_stop(struct wb_acquisition *a)
     }
 }
 
-/* What is due of a stop that is under way. */
+/* Takes the next step of a stop in progress. */
 static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
 {
     struct line *const stage = a->by_role[WB_ROLE_STAGE];
@@ -243,7 +244,7 @@ static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
         break;
     case WB_STOP_DO_RESET:
         status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
-        wb_warn("the stage did not confirm the feed hold within %d ms: a soft reset stops it",
+        wb_warn("the stage did not confirm the feed hold within %d ms: a soft reset is sent",
                 (int)(WB_STOP_CONFIRM_NS / WB_NS_PER_MS));
         push_event(a, wb_time_now_ns(), "reset",
                    status == WB_OK ? "hold not confirmed in time: soft reset sent"
@@ -288,7 +289,7 @@ void wb_acquisition_arm(struct wb_acquisition *a, const struct wb_interlock_sett
     if (!isfinite(start_position) && a->latest.has_stage)
         start_position = a->latest.stage.position;
     a->interlock.start_position = start_position;
-    /* Streams that were not opened send nothing. */
+    /* Streams that are not open cannot fall silent. */
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
         if (!a->by_role[role])
             a->interlock.settings.stream_lost_ns[role] = 0;
@@ -321,7 +322,7 @@ enum wb_status wb_acquisition_command(struct wb_acquisition *a, enum wb_stage_co
     const bool was_moving = a->moving;
     if (command != WB_STAGE_COMMAND_STATUS)
         a->latest.stage_error[0] = '\0';
-    /* Set first: a command that may have left in part counts as moving. */
+    /* Set before sending: after a partial write the stage may move. */
     a->moving = a->moving || moves;
     const enum wb_status status = send_command(stage, command, distance, speed);
     if (status == WB_ERR_BUSY)
@@ -344,9 +345,9 @@ const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *a)
     return &a->stop;
 }
 
-/* --- receiving: what the drivers deliver --- */
+/* --- samples from the drivers --- */
 
-/* To both sinks. */
+/* Passes a sample to both sinks. */
 #define PASS_ON(a, member, ...)                                                                    \
     do {                                                                                           \
         for (int i_ = 0; i_ < 2; i_++)                                                             \
@@ -437,13 +438,13 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
     if (held > 0) {
         char more[96];
         snprintf(more, sizeof more,
-                 "%u more remarks on the %s stream came within the same second and are not stored",
-                 held, wb_role_name(line->role));
+                 "%u more remarks on the %s stream within the same second were not stored", held,
+                 wb_role_name(line->role));
         push_event(a, t_ns, "remarks", more);
     }
     if (store)
         push_event(a, t_ns, kind, text);
-    /* Chatter is for the recording; what hints at trouble is for the operator too. */
+    /* All remarks are recorded; only warnings are also shown to the operator. */
     if (level > WB_LOG_WARNING)
         wb_debug("%s: %s", wb_role_name(line->role), text);
     else if (wb_remark_gate_show(&line->gate, t_ns, kind))
@@ -451,7 +452,7 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
     PASS_ON(a, remark, level, t_ns, kind, text);
 }
 
-/* Datagrams that the kernel threw away never reached us: the recording says so. */
+/* Records and reports datagrams that the kernel dropped. */
 static void note_kernel_drops(struct line *line, int64_t t_ns)
 {
     const uint64_t drops = wb_stream_kernel_drops(line->stream);
@@ -460,7 +461,7 @@ static void note_kernel_drops(struct line *line, int64_t t_ns)
     char text[120];
     snprintf(text, sizeof text,
              "the %s stream lost %" PRIu64
-             " datagrams: this computer did not read them in time; close other programs",
+             " datagrams that this computer did not read in time: close other programs",
              wb_role_name(line->role), drops - line->kernel_drops);
     line->kernel_drops = drops;
     push_event(line->owner, t_ns, "drop", text);
@@ -494,8 +495,8 @@ static void read_line(struct line *line)
         }
         if (n == 0)
             return;
-        /* Not the wake-up's time: where this process stalls between the two, the read also takes
-         * what came meanwhile, and a stamp before the arrival is one that no clock fit can bear. */
+        /* Not the time of waking up: if this process stalls in between, the read also returns later
+         * bytes, and a stamp before their arrival would spoil the fit of the clocks. */
         const int64_t t_ns = wb_time_now_ns();
         note_kernel_drops(line, t_ns);
         state->chunks++;
@@ -509,16 +510,16 @@ static void read_line(struct line *line)
 
 /* --- the loop --- */
 
-/* Questions and greetings: what became of them shows in what comes back. A failed write was told,
- * and a device that went away is noted. */
-static void send_or_note(struct line *line)
+/* Sends queries and start commands. A failure needs no handling here: the replies show whether they
+ * arrived, failed writes are logged, and a disconnected device is marked. */
+static void send_unchecked(struct line *line)
 {
     if (send_outbox(line, false) != WB_OK)
-        wb_debug("the %s took no bytes", wb_role_name(line->role));
+        wb_debug("the %s accepted no bytes", wb_role_name(line->role));
 }
 
-/* What could not be set at the port. */
-static void tell_caution(const struct line *line, int64_t now_ns)
+/* Reports a setting that could not be applied to the port. */
+static void report_caution(const struct line *line, int64_t now_ns)
 {
     const char *const caution = wb_stream_caution(line->stream);
     if (!caution[0])
@@ -527,33 +528,33 @@ static void tell_caution(const struct line *line, int64_t now_ns)
     push_event(line->owner, now_ns, "latency", caution);
 }
 
-/* A load cell's port that went away may be plugged in again, and is greeted as at the start. A
- * chunk without bytes tells every decoder that what follows does not belong to what came before. */
-static void look_again(struct line *line, int64_t now_ns)
+/* Tries to reopen the disconnected port of a load cell and starts the instrument again. An empty
+ * chunk makes every decoder discard an incomplete line from before the interruption. */
+static void try_to_reopen(struct line *line, int64_t now_ns)
 {
     struct wb_acquisition *const a = line->owner;
     const struct wb_sink sink = sink_of(line);
-    if (line->role != WB_ROLE_LOAD || now_ns < line->look_again_ns)
+    if (line->role != WB_ROLE_LOAD || now_ns < line->reopen_ns)
         return;
-    line->look_again_ns = now_ns + LOOK_AGAIN_NS;
+    line->reopen_ns = now_ns + REOPEN_NS;
     if (!wb_stream_reopen(line->stream))
         return;
     char text[240];
     snprintf(text, sizeof text,
-             "the load cell's port came back after %.2f s: an indicator that was without power "
-             "has another zero, look at the force at the end of the test",
+             "the load cell's port was reconnected after %.2f s: after a loss of power the "
+             "indicator has a different zero; check the force at the end of the test",
              wb_seconds_from_ns(now_ns - line->gone_ns));
     push_event(a, now_ns, "reconnected", text);
     wb_warn("%s", text);
     a->latest.stream[line->role].gone = false;
     line->write_again_ns = 0;
-    tell_caution(line, now_ns);
+    report_caution(line, now_ns);
     if (a->writer)
         (void)wb_writer_push_chunk(a->writer, line->id, now_ns, "", 0);
     line->driver->receive(line->state, now_ns, NULL, 0, &sink);
     wb_outbox_clear(&a->outbox);
     line->driver->start(line->state, now_ns, &a->outbox);
-    send_or_note(line);
+    send_unchecked(line);
 }
 
 static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
@@ -561,21 +562,21 @@ static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
         if (a->latest.stream[line->role].gone)
-            look_again(line, now_ns);
+            try_to_reopen(line, now_ns);
         if (a->latest.stream[line->role].gone)
             continue;
         wb_outbox_clear(&a->outbox);
         line->driver->tick(line->state, now_ns, &a->outbox);
-        send_or_note(line);
+        send_unchecked(line);
     }
-    /* A late tick is not made up for, or a stall would end in a burst. */
+    /* Missed ticks are skipped: catching up after a stall would cause a burst of commands. */
     a->next_tick_ns += TICK_NS;
     if (a->next_tick_ns <= now_ns)
         a->next_tick_ns = now_ns + TICK_NS;
 }
 
-/* Once, where it lasts: a frame that is overtaken is missing only until it comes. */
-static void tell_loss(struct line *line, int64_t now_ns)
+/* Reports a lasting loss, once. */
+static void report_loss(struct line *line, int64_t now_ns)
 {
     const struct wb_acquisition_stream_state *const state = &line->owner->latest.stream[line->role];
     const char *const name = wb_role_name(line->role);
@@ -584,14 +585,14 @@ static void tell_loss(struct line *line, int64_t now_ns)
         line->losing_ns = 0;
     else if (line->losing_ns == 0)
         line->losing_ns = now_ns;
-    if (line->losing_ns == 0 || now_ns - line->losing_ns < LASTING_LOSS_NS || line->told_loss)
+    if (line->losing_ns == 0 || now_ns - line->losing_ns < LASTING_LOSS_NS || line->reported_loss)
         return;
-    line->told_loss = true;
-    snprintf(text, sizeof text, "%s: of %" PRIu64 " samples %" PRIu64 " never came", name,
-             state->loss.received + state->loss.missing, state->loss.missing);
+    line->reported_loss = true;
+    snprintf(text, sizeof text, "%s: %" PRIu64 " of %" PRIu64 " samples did not arrive", name,
+             state->loss.missing, state->loss.received + state->loss.missing);
     push_event(line->owner, now_ns, "loss", text);
-    wb_warn("samples of the %s stream are lost on the way: %" PRIu64 " so far", name,
-            state->loss.missing);
+    wb_warn("samples of the %s stream are lost between instrument and computer: %" PRIu64 " so far",
+            name, state->loss.missing);
 }
 
 static void note_losses(struct wb_acquisition *a, int64_t now_ns)
@@ -602,9 +603,9 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
         const bool lost = a->interlock.lost[line->role] || state->gone;
         if (lost != line->reported_lost) {
             push_event(a, now_ns, lost ? "stream_lost" : "stream_found", wb_role_name(line->role));
-            /* A device that went away has been told already. */
+            /* A disconnected device has been reported already. */
             if (lost && !state->gone)
-                wb_warn("the %s stream is lost: nothing valid comes from %s",
+                wb_warn("the %s stream is lost: no valid data arrive from %s",
                         wb_role_name(line->role), wb_stream_address(line->stream));
             else if (!lost)
                 wb_info("the %s stream is back", wb_role_name(line->role));
@@ -613,7 +614,7 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
         state->lost = lost;
         state->loss = wb_loss_counts(&line->loss);
         state->is_losing = wb_loss_is_significant(&line->loss);
-        tell_loss(line, now_ns);
+        report_loss(line, now_ns);
         state->ready = !state->gone && line->driver->ready(line->state);
         state->drops = line->kernel_drops;
         if (a->writer)
@@ -638,10 +639,10 @@ static void note_rates(struct wb_acquisition *a, int64_t now_ns)
     }
 }
 
-/* Told from here on: flushes are due ten times a second. */
+/* A longer delay until data are on the disk is reported; the writer flushes ten times a second. */
 #define STORAGE_LAG_NS (800 * WB_NS_PER_MS)
 
-/* The disk cannot be written to, or is too slow. The test continues; new data stay in memory. */
+/* Reports a disk that fails or is too slow. The test continues; new data are kept in memory. */
 static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
 {
     if (!a->writer)
@@ -654,15 +655,16 @@ static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
         a->storage_ns = now_ns - state->lag_ns;
         push_event(a, now_ns, "storage",
                    state->failing != WB_OK
-                       ? "nothing can be written to the disk; new data stay in memory"
-                       : "the disk is late; what comes is in memory");
+                       ? "nothing can be written to the disk; new data are kept in memory"
+                       : "the disk is too slow; new data are kept in memory");
         wb_warn("%s: the data of the last %.1f s are in memory only%s",
-                state->failing != WB_OK ? "nothing can be written to the disk" : "the disk is late",
+                state->failing != WB_OK ? "nothing can be written to the disk"
+                                        : "the disk is too slow",
                 wb_seconds_from_ns(state->lag_ns),
-                state->failing != WB_OK ? "; make room on it during the test" : "");
+                state->failing != WB_OK ? "; make room on the disk during the test" : "");
     } else if (!late && a->latest.is_storage_late) {
         char text[120];
-        snprintf(text, sizeof text, "all is on the disk again, after %.1f s",
+        snprintf(text, sizeof text, "all data are on the disk again after %.1f s",
                  wb_seconds_from_ns(now_ns - a->storage_ns));
         push_event(a, now_ns, "storage", text);
         wb_warn("%s", text);
@@ -670,16 +672,16 @@ static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
     a->latest.is_storage_late = late;
 }
 
-/* As long as its silence is allowed. */
-static bool may_come_back(const struct line *line)
+/* Whether the port may still be reconnected within the allowed silence of the stream. */
+static bool may_be_reconnected(const struct line *line)
 {
     const struct wb_interlock *const interlock = &line->owner->interlock;
     return line->role == WB_ROLE_LOAD && interlock->settings.stream_lost_ns[line->role] > 0 &&
            !wb_interlock_expires(interlock, line->role, wb_time_now_ns());
 }
 
-/* What no sample shows but silence: devices that went away, a full disk, Ctrl-C. */
-static void check_rest(struct wb_acquisition *a)
+/* Checks for Ctrl-C, disconnected devices and a full disk, which no sample shows. */
+static void check_conditions(struct wb_acquisition *a)
 {
     if (!a->interlock.armed || a->interlock.reason != WB_INTERLOCK_NONE)
         return;
@@ -689,10 +691,10 @@ static void check_rest(struct wb_acquisition *a)
     }
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
-        if (!a->latest.stream[line->role].gone || may_come_back(line))
+        if (!a->latest.stream[line->role].gone || may_be_reconnected(line))
             continue;
         char text[WB_INTERLOCK_TEXT];
-        snprintf(text, sizeof text, "the %s's port %s went away: check its cable and power",
+        snprintf(text, sizeof text, "the %s's port %s was disconnected: check its cable and power",
                  line->role == WB_ROLE_LOAD ? "load cell" : "stage",
                  wb_stream_address(line->stream));
         wb_acquisition_stop(a, WB_INTERLOCK_STREAM_LOST, text);
@@ -704,34 +706,33 @@ static void check_rest(struct wb_acquisition *a)
             "nothing can be written to the disk, and the memory for new data is nearly full");
 }
 
-/* Silence up to `heard_ns`, which is a time before the streams were read: what comes later may wait
- * to be read. And before a stream is called lost, it is read once more: a process can be kept from
- * running just between waking up and looking at the clock. */
-static void judge_silence(struct wb_acquisition *a, int64_t heard_ns)
+/* Checks the streams for silence up to `until_ns`, a time before they were read: later data may not
+ * have been read yet. A stream is read once more before it counts as lost, because the process may
+ * have been suspended between waking up and reading the clock. */
+static void judge_silence(struct wb_acquisition *a, int64_t until_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
-        if (wb_interlock_expires(&a->interlock, line->role, heard_ns))
+        if (wb_interlock_expires(&a->interlock, line->role, until_ns))
             read_line(line);
     }
-    if (wb_interlock_tick(&a->interlock, heard_ns))
+    if (wb_interlock_tick(&a->interlock, until_ns))
         hold_now(a);
 }
 
-/* Time in which this process was kept from running, or from waiting for bytes, says nothing about
- * the instruments: those that are asked for each sample could not be asked. It does not count as
- * their silence. */
-static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
+/* Time in which this process could not run or wait for bytes does not count as silence of the
+ * instruments: polled instruments could not be polled either. */
+static void discount_stall(struct wb_acquisition *a, int64_t stalled_ns)
 {
     if (stalled_ns < STALL_NS)
         return;
-    a->deaf_ns += stalled_ns;
+    a->stalled_ns += stalled_ns;
     wb_interlock_discount(&a->interlock, stalled_ns);
-    if (stalled_ns < TOLD_STALL_NS || !a->interlock.armed)
+    if (stalled_ns < REPORTED_STALL_NS || !a->interlock.armed)
         return;
     char text[160];
     snprintf(text, sizeof text,
-             "the recorder stood still for %.1f s: no limit was watched in that time",
+             "the recorder was stalled for %.1f s: no limit was checked in that time",
              wb_seconds_from_ns(stalled_ns));
     push_event(a, wb_time_now_ns(), "stall", text);
     wb_warn("%s", text);
@@ -755,7 +756,7 @@ static enum wb_status wait_for_bytes(struct wb_acquisition *a, int64_t deadline_
         if (a->latest.stream[a->lines[i].role].gone)
             continue;
         const int n = wb_stream_descriptors(a->lines[i].stream, descriptors);
-        readable[i] = n == 0; /* a memory stream is simply asked */
+        readable[i] = n == 0; /* a memory stream has no descriptor and is always read */
         for (int k = 0; k < n; k++) {
             polled[n_polled] = (struct pollfd){.fd = descriptors[k], .events = POLLIN};
             owner[n_polled++] = i;
@@ -764,7 +765,7 @@ static enum wb_status wait_for_bytes(struct wb_acquisition *a, int64_t deadline_
     const int n_ready = wb_time_wait(polled, n_polled, deadline_ns);
     *woken_ns = wb_time_now_ns();
     if (n_ready < 0 && errno != EINTR)
-        return wb_fail(WB_ERR_IO, "cannot wait for the instruments: %s", strerror(errno));
+        return wb_fail(WB_ERR_IO, "waiting for the instruments failed: %s", strerror(errno));
     for (size_t k = 0; n_ready > 0 && k < n_polled; k++)
         if (polled[k].revents != 0)
             readable[owner[k]] = true;
@@ -782,15 +783,15 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
     deadline_ns = earlier(deadline_ns, wb_stop_deadline(&a->stop));
     if (wait_for_bytes(a, deadline_ns, readable, &woken_ns) != WB_OK)
         return WB_ACQUISITION_FAILED;
-    /* From the last waking up to the beginning of this wait, and from its end to waking up. The
-     * deadline of a wait that began late has passed before. */
+    /* A stall is the time from the last waking up to the beginning of this wait, plus the time from
+     * the end of the wait to waking up. If the wait began late, its deadline had already passed. */
     const int64_t end_ns = deadline_ns > begun_ns ? deadline_ns : begun_ns;
-    forgive_stall(a, begun_ns - a->woken_ns + (woken_ns > end_ns ? woken_ns - end_ns : 0));
+    discount_stall(a, begun_ns - a->woken_ns + (woken_ns > end_ns ? woken_ns - end_ns : 0));
     a->woken_ns = woken_ns;
     for (int i = 0; i < a->n_lines; i++)
         if (readable[i])
             read_line(&a->lines[i]);
-    check_rest(a);
+    check_conditions(a);
     judge_silence(a, woken_ns);
     const int64_t now_ns = wb_time_now_ns();
     follow_stop(a, now_ns);
@@ -807,8 +808,8 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
 
 /* --- opening and closing --- */
 
-/* A stage that loses its position whenever a command opens its port would have to be homed each
- * time. */
+/* An edge on DTR resets some controllers at each opening of the port; the stage would then lose its
+ * position and have to be homed. */
 static bool must_keep_dtr(const char *address)
 {
     return strncmp(address, "serial:", 7) == 0 && !strstr(address, ",dtr=");
@@ -824,11 +825,11 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
     line->id = a->n_lines;
     line->driver = wb_drivers_find(role, protocol);
     if (!line->driver)
-        return wb_fail_to(why, WB_ERR_UNSUPPORTED, "the %s protocol '%s' is not known",
-                          wb_role_name(role), protocol);
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED, "unknown %s protocol '%s'", wb_role_name(role),
+                          protocol);
     line->state = calloc(1, line->driver->state_size);
     if (!line->state)
-        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for the %s driver", protocol);
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory for the %s driver", protocol);
     enum wb_status status = line->driver->init(line->state, &a->rig);
     char kept[WB_RIG_TEXT + 16];
     snprintf(kept, sizeof kept, "%s%s", address,
@@ -840,15 +841,15 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
         memset(line, 0, sizeof *line);
         return status;
     }
-    a->n_lines++; /* from here on closing frees it */
+    a->n_lines++; /* from here on wb_acquisition_close() frees the line */
     a->by_role[role] = line;
     a->latest.stream[role].open = true;
     a->latest.stream[role].caution = wb_stream_caution(line->stream);
     return WB_OK;
 }
 
-/* Opens what is wanted and can be opened; the status of the first that cannot. `why` by role, or
- * NULL: the first failure is logged and ends it. */
+/* Opens the streams of `roles`; returns the status of the first failure. With `why` (indexed by
+ * role) the others are opened nevertheless; NULL: the first failure is logged and is the last. */
 static enum wb_status open_lines(struct wb_acquisition *a, unsigned roles, struct wb_reason *why)
 {
     const struct wb_rig *const rig = &a->rig;
@@ -877,7 +878,7 @@ static enum wb_status create(struct wb_acquisition **out, const struct wb_rig *r
 {
     struct wb_acquisition *const a = calloc(1, sizeof *a);
     if (!a)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the acquisition");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the acquisition");
     a->rig = *rig;
     if (sink)
         a->sinks[0] = *sink;
@@ -907,7 +908,7 @@ enum wb_status wb_acquisition_open_each(struct wb_acquisition **out, const struc
     WB_TRY(create(&a, rig, sink));
     if (open_lines(a, roles, why) == WB_ERR_MEMORY) {
         wb_acquisition_close(a);
-        return wb_fail(WB_ERR_MEMORY, "no memory for the acquisition");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the acquisition");
     }
     *out = a;
     return WB_OK;
@@ -936,10 +937,10 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
         line->rate_ns = now_ns;
-        tell_caution(line, now_ns);
+        report_caution(line, now_ns);
         wb_outbox_clear(&a->outbox);
         line->driver->start(line->state, now_ns, &a->outbox);
-        send_or_note(line);
+        send_unchecked(line);
     }
 }
 
@@ -952,7 +953,7 @@ void wb_acquisition_close(struct wb_acquisition *a)
         if (a->started && line->driver->stop && !a->latest.stream[line->role].gone) {
             wb_outbox_clear(&a->outbox);
             line->driver->stop(line->state, &a->outbox);
-            send_or_note(line);
+            send_unchecked(line);
         }
         wb_stream_close(line->stream);
         free(line->state);
@@ -962,7 +963,7 @@ void wb_acquisition_close(struct wb_acquisition *a)
 
 int64_t wb_acquisition_listened_ns(const struct wb_acquisition *a)
 {
-    return a->woken_ns - a->deaf_ns;
+    return a->woken_ns - a->stalled_ns;
 }
 
 const struct wb_acquisition_latest *wb_acquisition_latest(const struct wb_acquisition *a)

@@ -1,15 +1,16 @@
-/* The acquisition loop: one poll() over the streams of a bench, stamps taken right after wake-up,
- * raw bytes to the writer, then into the drivers, decoded samples to the interlock and the caller.
+/* The acquisition loop: one poll() over the streams of a bench. Bytes are stamped when they are
+ * read and passed first to the writer, then to the drivers; decoded samples are passed to the
+ * interlock, then to the caller.
  *
  *     WB_TRY(wb_acquisition_open(&a, &rig, roles, &sink));   ports are open, nothing is sent yet
- *     wb_acquisition_start(a, writer);                       the instruments are greeted
+ *     wb_acquisition_start(a, writer);                       starts the instruments
  *     while (wb_acquisition_step(a, timeout) == WB_ACQUISITION_CONTINUE) ...
  *     wb_acquisition_close(a);
  *
- * The stage is stopped from within: a sample that trips the armed interlock has the hold byte
- * written before anything else happens to that sample (but storing its bytes), and the following
- * steps ask for confirmation and send a soft reset when it does not come (daq/acquire/interlock.h).
- * The interlock is armed by wb_acquisition_arm(). Everything is used by one thread.
+ * The loop itself stops the stage: when a sample trips the armed interlock, its bytes are stored
+ * and the hold byte is sent before the sample is processed further. The following steps request
+ * confirmation and send a soft reset if it does not arrive (daq/acquire/interlock.h).
+ * wb_acquisition_arm() arms the interlock. All functions must be called by one thread.
  */
 #ifndef WB_DAQ_ACQUIRE_ACQUISITION_H
 #define WB_DAQ_ACQUIRE_ACQUISITION_H
@@ -28,7 +29,7 @@
 
 struct wb_acquisition; /* opaque */
 
-/* Which streams to open: bits `1 << role`. */
+/* Set of streams to open: bits `1 << role`. */
 #define WB_ACQUISITION_LOAD (1u << WB_ROLE_LOAD)
 #define WB_ACQUISITION_MOCAP (1u << WB_ROLE_MOCAP)
 #define WB_ACQUISITION_STAGE (1u << WB_ROLE_STAGE)
@@ -36,122 +37,122 @@ struct wb_acquisition; /* opaque */
 
 enum wb_acquisition_end {
     WB_ACQUISITION_CONTINUE,
-    WB_ACQUISITION_DONE,  /* every stream has gone: there is nothing left to wait for */
-    WB_ACQUISITION_FAILED /* the loop itself cannot continue; a message was logged */
+    WB_ACQUISITION_DONE,  /* all streams are disconnected */
+    WB_ACQUISITION_FAILED /* the loop cannot continue; a message was logged */
 };
 
-/* Opens the streams of the wanted roles and prepares their drivers; the first that fails ends it,
- * with its own message. `sink` (may be NULL) is copied; it sees every live sample after the
- * interlock did. Nothing is sent to any instrument. */
+/* Opens the streams of `roles` and initialises their drivers, up to the first failure, whose
+ * message is logged. `sink` (may be NULL) is copied; it receives every live sample after the
+ * interlock. Nothing is sent to any instrument. */
 WB_MUST_CHECK enum wb_status wb_acquisition_open(struct wb_acquisition **out,
                                                  const struct wb_rig *rig, unsigned roles,
                                                  const struct wb_sink *sink);
 
-/* The same for a bench that may not be whole: a stream that cannot be opened is left out (it is not
- * `open` in the latest), and `why` has the reason by role. Fails without memory only. */
+/* The same for an incomplete bench: streams that cannot be opened are skipped (not `open` in the
+ * latest values), with the reason in `why` by role. Fails only if out of memory. */
 WB_MUST_CHECK enum wb_status wb_acquisition_open_each(struct wb_acquisition **out,
                                                       const struct wb_rig *rig, unsigned roles,
                                                       const struct wb_sink *sink,
                                                       struct wb_reason why[WB_INTERLOCK_ROLES]);
 
-/* A second sink, copied, that sees everything after the first one. */
+/* Adds a second sink, which is copied and called after the first one. */
 void wb_acquisition_add_sink(struct wb_acquisition *acquisition, const struct wb_sink *sink);
 
-/* Greets the instruments (connect, start to stream); from here on bytes are stored. `writer` is
- * borrowed and may be NULL (nothing is stored). Its recording has the streams declared in the order
- * above. */
+/* Starts the instruments (connects, requests data) and the recording of bytes. `writer` is borrowed
+ * and may be NULL (nothing is stored). Its recording must declare the streams in the order load,
+ * mocap, stage. */
 void wb_acquisition_start(struct wb_acquisition *acquisition, struct wb_writer *writer);
 
-/* Waits for bytes at most `timeout_ns` (and never longer than 20 ms), and does all that is due. */
+/* Waits for bytes at most `timeout_ns` (and 20 ms), then processes them and sends due commands. */
 enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *acquisition, int64_t timeout_ns);
 
-/* Says goodbye to the instruments and closes the streams; accepts NULL. It does not stop the stage:
- * every caller has done that before. */
+/* Sends shutdown commands to the instruments and closes the streams; accepts NULL. The caller must
+ * have stopped the stage before. */
 void wb_acquisition_close(struct wb_acquisition *acquisition);
 
 /* --- the stage and its interlock --- */
 
-/* Sets limits and watches them from now on. Silence counts from now. `start_position` (m, machine)
- * is where travel is counted from; NaN takes the last reported position. */
+/* Arms the interlock with these limits; silence counts from now. Travel is counted from
+ * `start_position` (m, machine); NaN: from the last reported position. Does nothing once the
+ * interlock has tripped. */
 void wb_acquisition_arm(struct wb_acquisition *acquisition,
                         const struct wb_interlock_settings *settings, double start_position);
-/* Limits trip no longer; silences are still noted. */
+/* Limits no longer trip; silent streams are still marked as lost. */
 void wb_acquisition_disarm(struct wb_acquisition *acquisition);
-/* Force subtracted before it is compared with the force limit, N. */
+/* Sets the force (N) that is subtracted from a reading before comparison with the force limit. */
 void wb_acquisition_set_tare(struct wb_acquisition *acquisition, double tare);
 const struct wb_interlock *wb_acquisition_interlock(const struct wb_acquisition *acquisition);
 
-/* Sends a command. WB_ERR_BUSY (without a message) while an earlier line is not answered yet; once
- * the interlock has tripped all but STATUS is refused with WB_ERR_ARGUMENT. */
+/* Sends a command. WB_ERR_BUSY (without a message): an earlier command is not answered yet.
+ * WB_ERR_ARGUMENT: the interlock has tripped, which rejects every command except STATUS. */
 WB_MUST_CHECK enum wb_status wb_acquisition_command(struct wb_acquisition *acquisition,
                                                     enum wb_stage_command command, double distance,
                                                     double speed);
 
-/* The caller saw the last motion end where it should: there is nothing to hold any more. */
+/* The last motion has ended: a stop then sends no hold byte. */
 void wb_acquisition_motion_ended(struct wb_acquisition *acquisition);
-/* A motion command was sent and its end not seen. */
+/* True after a motion command until wb_acquisition_motion_ended() or a confirmed stop. */
 bool wb_acquisition_moving(const struct wb_acquisition *acquisition);
 
-/* Stops the stage now, for a reason of the caller's: trips the interlock, writes the hold byte if a
- * motion may be under way. The following steps complete the stop. */
+/* Stops the stage for a reason given by the caller: trips the interlock and sends the hold byte if
+ * the stage may be moving. The following steps complete the stop. */
 void wb_acquisition_stop(struct wb_acquisition *acquisition, enum wb_interlock_reason reason,
                          const char *text);
-/* How far the stop has come. */
+/* State of the stop. */
 const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *acquisition);
 
-/* --- the latest, for live lines and sequences --- */
+/* --- latest values, for status lines and sequences --- */
 
 struct wb_acquisition_stream_state {
-    bool open, gone;  /* gone: the device is not there; a load cell's is looked for again */
-    bool ready, lost; /* lost: silent for longer than the interlock allows */
+    bool open, gone;  /* gone: the device was disconnected; reopening is tried for a load cell */
+    bool ready, lost; /* lost: disconnected, or silent for longer than the interlock allows */
     double rate;      /* valid samples/s, smoothed over about a second */
     uint64_t samples; /* decoded, valid or not */
     uint64_t chunks, bytes;
-    struct wb_diagnosis heard;  /* its first bytes, for what to say when nothing is understood */
-    uint64_t drops;             /* reads lost by the writer, and datagrams lost in the kernel */
-    struct wb_loss_counts loss; /* samples that the instrument sent and that never came */
-    bool is_losing;             /* and they are more than chance */
-    const char *caution;        /* see wb_stream_caution(); "" or, of no stream, NULL */
+    struct wb_diagnosis heard;  /* its first bytes, to find the cause if they cannot be decoded */
+    uint64_t drops;             /* reads dropped by the writer, and datagrams by the kernel */
+    struct wb_loss_counts loss; /* samples sent but not received */
+    bool is_losing;             /* the loss exceeds chance */
+    const char *caution;        /* see wb_stream_caution(); NULL if the stream is not open */
 };
 
 struct wb_acquisition_latest {
-    enum wb_role source; /* whose bytes were decoded last: a remark in a sink is of this stream */
+    enum wb_role source; /* stream that is being decoded: the origin of a remark in a sink */
     struct wb_acquisition_stream_state stream[WB_INTERLOCK_ROLES]; /* by role */
     bool has_load, has_mocap, has_stage;
-    struct wb_load_sample load; /* the last valid one */
-    bool unit_contradicts;      /* the last reading's unit, valid or not: see sample.h */
-    int markers_seen;           /* measured ones in the last frame */
+    struct wb_load_sample load; /* the last valid reading */
+    bool unit_contradicts;      /* of the last reading, valid or not: see sample.h */
+    int markers_seen;           /* measured markers in the last frame */
     int64_t mocap_ns;           /* arrival of the last frame */
     struct wb_stage_report stage;
     uint64_t stage_reports;
     bool has_settings;
     struct wb_stage_settings settings; /* of the stage's firmware */
-    struct wb_writer_state storage;    /* how far the disk is behind */
-    bool is_storage_late;              /* so far that it was told */
-    char stage_error[160];             /* last complaint of the stage since the last command; "" */
+    struct wb_writer_state storage;    /* delay of the disk */
+    bool is_storage_late;              /* the disk fails or its delay has been reported */
+    char stage_error[160];             /* last error of the stage since the last command; "" */
 };
 
-/* Current values; owned by the acquisition, refreshed by each step. */
+/* The latest values; owned by the acquisition, updated by each step. */
 const struct wb_acquisition_latest *wb_acquisition_latest(const struct wb_acquisition *acquisition);
 
 /* True for a marker that the cameras measured in this frame (not occluded, not filled in). */
 bool wb_acquisition_marker_measured(const struct wb_marker *marker);
 
-/* Writes an event into the recording (none: does nothing), stamped now. */
+/* Records an event, stamped with the current time; does nothing without a recording. */
 void wb_acquisition_event(struct wb_acquisition *acquisition, const char *kind, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));
 
-/* Asks the system to run this thread, and those it will start, before others: on a machine busy
- * with other work a loop may be kept waiting for a second, and with it the hold byte. The kernel's
- * worker that delivers a terminal's bytes stays at the usual priority: beside four busy processes
- * on two cores it is late by 0.1 s at most while it is woken 200 times a second, and by seconds, at
- * any priority of ours, while it is woken thousands of times. Not everybody is allowed to; then
- * nothing happens. */
+/* Raises the scheduling priority of this thread and of threads started later: on a busy machine the
+ * loop, and thus the hold byte, may otherwise be delayed by a second. The kernel's worker that
+ * delivers the bytes of a terminal keeps its usual priority: with four busy processes on two cores
+ * it is late by at most 0.1 s when woken 200 times a second, but by seconds when woken thousands of
+ * times a second, whatever our priority. Has no effect without the permission to raise priorities.
+ */
 void wb_acquisition_raise_priority(void);
 
-/* That clock at the last waking up, less all time in which this loop was kept from running or from
- * waiting for bytes: what deadlines are counted in, or an instrument would be blamed for silence
- * that nobody listened to. */
+/* The monotonic clock at the last waking up minus the sum of all stalls of this loop. Timeouts of
+ * instruments use it, so that a stall of this computer does not count as silence. */
 int64_t wb_acquisition_listened_ns(const struct wb_acquisition *acquisition);
 
 #endif

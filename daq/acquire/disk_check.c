@@ -15,13 +15,13 @@
 #define WB_LOG_DOMAIN "disk"
 
 #define FLUSHES 16
-/* What comes between two flushes of a test: some kilobytes, and as many of the log. */
+/* Bytes written between two flushes of a test: some kilobytes of data and as many of the log. */
 #define FLUSH_BYTES 16384
-/* Flushes are due so often (daq/recording/writer.h). */
+/* s between two flushes (daq/recording/writer.h). */
 #define FLUSH_PERIOD 0.1
-/* A database and its log take more room than the bytes that came. */
+/* Space of the database and its log per received byte. */
 #define ROOM_FACTOR 3.0
-#define TESTS 10.0
+#define TESTS 10.0 /* that must fit on the disk */
 #define MEGABYTE 1e6
 
 static int by_size(const void *a, const void *b)
@@ -30,7 +30,7 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Errno of a failed attempt; 0. */
+/* Returns 0, or the errno of a failure. */
 static int time_flushes(int file, struct wb_disk_check *check)
 {
     static const char bytes[FLUSH_BYTES] = "wirebench: how fast is this disk?\n";
@@ -56,8 +56,8 @@ static enum wb_status fail(int error, const char *folder, struct wb_reason *why)
                                   : error == ENOENT                 ? WB_ERR_NOT_FOUND
                                                                     : WB_ERR_IO;
     return wb_fail_to(why, status,
-                      "nothing can be written in the folder '%s': %s: make room there or see to "
-                      "its permissions, or choose another folder (--folder)",
+                      "nothing can be written to the folder '%s': %s; free disk space, check its "
+                      "permissions, or choose another folder (--folder)",
                       folder, strerror(error));
 }
 
@@ -88,20 +88,21 @@ bool wb_disk_check_judge(const struct wb_disk_check *check, const char *folder, 
 {
     const double need = ROOM_FACTOR * rate * duration;
     if (check->usual > FLUSH_PERIOD)
-        snprintf(text, WB_DISK_CHECK_TEXT,
-                 "the disk of '%s' needs %.0f ms to make data safe, a recording asks for it every "
-                 "%.0f ms: record to a disk of this computer (--folder), not to a network or a "
-                 "memory card",
-                 folder, check->usual * 1e3, FLUSH_PERIOD * 1e3);
+        snprintf(
+            text, WB_DISK_CHECK_TEXT,
+            "the disk of '%s' needs %.0f ms for a flush, but a recording flushes every %.0f ms: "
+            "record to a disk of this computer (--folder), not to a network drive or a memory "
+            "card",
+            folder, check->usual * 1e3, FLUSH_PERIOD * 1e3);
     else if (check->free < TESTS * need)
         snprintf(text, WB_DISK_CHECK_TEXT,
-                 "'%s' has room for %.0f MB, a test of %.0f s takes about %.1f MB: make room for "
-                 "%.0f of them",
+                 "'%s' has %.0f MB free, and a test of %.0f s takes about %.1f MB: free space for "
+                 "%.0f tests",
                  folder, check->free / MEGABYTE, duration, need / MEGABYTE, TESTS);
     else {
         snprintf(text, WB_DISK_CHECK_TEXT,
-                 "'%s': data are safe after %.1f ms (longest %.1f ms); %.0f MB free, a test of "
-                 "%.0f s takes about %.1f MB",
+                 "'%s': a flush takes %.1f ms (longest %.1f ms); %.0f MB free, a test of %.0f s "
+                 "takes about %.1f MB",
                  folder, check->usual * 1e3, check->longest * 1e3, check->free / MEGABYTE, duration,
                  need / MEGABYTE);
         return true;

@@ -8,8 +8,8 @@
 #include "base/units.h"
 #include "daq/protocol/tic.h"
 
-/* Questions for a report while the stop is not confirmed: often enough to see it well within the
- * deadline, and not more often than a controller answers. */
+/* Period of status queries while the stop is not confirmed: several within the deadline, but not
+ * faster than a controller replies. */
 #define ASK_PERIOD_NS (60 * WB_NS_PER_MS)
 
 const char *wb_interlock_reason_name(enum wb_interlock_reason reason)
@@ -55,7 +55,7 @@ void wb_interlock_init(struct wb_interlock *interlock, const struct wb_interlock
         interlock->last_ns[role] = now_ns;
 }
 
-/* The first reason stays. */
+/* Only the first trip has an effect. */
 static bool trip(struct wb_interlock *interlock, enum wb_interlock_reason reason, int64_t t_ns,
                  const char *format, ...) __attribute__((format(printf, 4, 5)));
 
@@ -82,7 +82,7 @@ bool wb_interlock_trip(struct wb_interlock *interlock, enum wb_interlock_reason 
 static void renew(struct wb_interlock *interlock, enum wb_role role, int64_t t_ns)
 {
     interlock->last_ns[role] = t_ns;
-    interlock->forgiven_ns[role] = 0;
+    interlock->discounted_ns[role] = 0;
     interlock->lost[role] = false;
 }
 
@@ -93,18 +93,18 @@ bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_samp
         renew(interlock, WB_ROLE_LOAD, sample->t_ns);
     if (!interlock->armed)
         return false;
-    /* Before the overload, which a wrong unit may only pretend. */
+    /* Checked before the overload, which may be an artefact of a wrong unit. */
     if (sample->unit_changed)
         return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
-                    "the load cell changed its unit while it was read: set the unit back");
-    /* Where something is loaded and about to be freed, the line's unit is good enough. */
+                    "the load cell changed its unit during the test: restore the previous unit");
+    /* While a loaded specimen is released, the unit of the line is accepted. */
     if (sample->unit_contradicts && !limit->overload_allowed)
         return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
-                    "the load cell prints another unit than load_cell.unit of the rig file: set "
-                    "one of the two right");
+                    "the unit that the load cell prints is not load_cell.unit of the rig file: "
+                    "correct one of them");
     if (sample->overload && !limit->overload_allowed)
         return trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
-                    "the load cell reports overload: it is loaded beyond its range");
+                    "the load cell reports overload: the load exceeds its range");
     if (!sample->valid)
         return false;
     if (limit->overload > 0.0 && !(fabs(sample->force) <= limit->overload))
@@ -142,8 +142,8 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
     if (report->state == WB_STAGE_HOLD || report->state == WB_STAGE_OTHER)
         return trip(interlock, WB_INTERLOCK_STAGE, report->t_ns,
                     report->state == WB_STAGE_HOLD
-                        ? "the stage went on hold without a command"
-                        : "the stage left its normal operation (door, check or sleep mode)");
+                        ? "the stage entered hold without a command"
+                        : "the stage left normal operation (door, check or sleep mode)");
     const double travel = limit->down * (report->position - interlock->start_position);
     if (!isfinite(travel))
         return false;
@@ -153,7 +153,7 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
                     travel / WB_MM, limit->travel / WB_MM);
     if (limit->rise > 0.0 && travel < -limit->rise)
         return trip(interlock, WB_INTERLOCK_TRAVEL, report->t_ns,
-                    "the stage is %.2f mm above where it started, beyond the limit of %.2f mm",
+                    "the stage is %.2f mm above its start, beyond the limit of %.2f mm",
                     -travel / WB_MM, limit->rise / WB_MM);
     return false;
 }
@@ -172,10 +172,10 @@ bool wb_interlock_expires(const struct wb_interlock *interlock, enum wb_role rol
 void wb_interlock_discount(struct wb_interlock *interlock, int64_t stalled_ns)
 {
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
-        const int64_t left_ns = WB_INTERLOCK_DISCOUNTED_NS - interlock->forgiven_ns[role];
-        const int64_t forgiven_ns = stalled_ns < left_ns ? stalled_ns : left_ns;
-        interlock->forgiven_ns[role] += forgiven_ns;
-        interlock->last_ns[role] += forgiven_ns;
+        const int64_t left_ns = WB_INTERLOCK_DISCOUNTED_NS - interlock->discounted_ns[role];
+        const int64_t discounted_ns = stalled_ns < left_ns ? stalled_ns : left_ns;
+        interlock->discounted_ns[role] += discounted_ns;
+        interlock->last_ns[role] += discounted_ns;
     }
 }
 
@@ -191,7 +191,7 @@ bool wb_interlock_tick(struct wb_interlock *interlock, int64_t now_ns)
         if (!interlock->armed)
             continue;
         if (trip(interlock, WB_INTERLOCK_STREAM_LOST, interlock->last_ns[role] + allowed,
-                 "the %s has sent no valid sample for %.2f s", names[role],
+                 "the %s sent no valid sample for %.2f s", names[role],
                  wb_seconds_from_ns(now_ns - interlock->last_ns[role])))
             tripped = true;
     }

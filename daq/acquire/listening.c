@@ -12,16 +12,16 @@
 
 #define WB_LOG_DOMAIN "listening"
 
-/* Frequent ones first. GRBL has the first, a Tic the second; where neither brings a byte, nothing
- * prints by itself. */
+/* The most frequent settings first. GRBL uses the first, a Tic the second. If no byte arrives at
+ * these two, no instrument sends by itself, and the others are not tried. */
 static const char *const lines[] = {"115200,8n1", "9600,8n1", "38400,8n1", "57600,8n1",
                                     "19200,8n1",  "4800,8n1", "2400,8n1",  "2400,7e1",
                                     "9600,7e1",   "1200,8n1", "1200,7o1"};
 #define SILENT_LINES 2
 #define ASK_AGAIN_NS (500 * WB_NS_PER_MS)
 
-/* The question of the controllers that use this rate; 0: none. */
-static size_t question(size_t line, uint8_t bytes[WB_TIC_ASK_BYTES])
+/* Writes the status query of the controllers that use this rate; returns its length, 0: none. */
+static size_t status_query(size_t line, uint8_t bytes[WB_TIC_ASK_BYTES])
 {
     if (line == 0) {
         bytes[0] = '?';
@@ -54,14 +54,14 @@ static enum wb_listening_found judge(const struct wb_diagnosis *diagnosis, bool 
     default:
         break;
     }
-    /* Answers to as many questions, and nothing else. */
+    /* Only complete replies to the queries, and no other bytes. */
     if (asked_tic && diagnosis->n % WB_TIC_STATUS_BYTES == 0 &&
         wb_tic_decode_status((const uint8_t *)diagnosis->bytes, &status))
         return WB_LISTENING_TIC;
     return WB_LISTENING_UNKNOWN;
 }
 
-/* The second line: the first may be the rest of one. */
+/* Copies the second line: the first one may be incomplete. */
 static void take_sample(const struct wb_diagnosis *diagnosis, char sample[48])
 {
     const char *const end = diagnosis->bytes + diagnosis->n;
@@ -80,7 +80,7 @@ static bool is_known(enum wb_listening_found found)
     return found != WB_LISTENING_NOTHING && found != WB_LISTENING_UNKNOWN;
 }
 
-/* Listens to an open port of line i, until it is known what it is. */
+/* Reads an open port with line setting i until the instrument is identified or the time is over. */
 static enum wb_status listen_to(struct wb_stream *stream, size_t i,
                                 const struct wb_listening_settings *settings,
                                 struct wb_diagnosis *diagnosis, enum wb_listening_found *found)
@@ -89,7 +89,7 @@ static enum wb_status listen_to(struct wb_stream *stream, size_t i,
     const int64_t patience_ns = settings->patience_ns * (i == 0 && settings->asks ? 3 : 1);
     int64_t ask_ns = begun_ns, now_ns = begun_ns;
     uint8_t bytes[1024], ask[WB_TIC_ASK_BYTES];
-    const size_t n_ask = settings->asks ? question(i, ask) : 0;
+    const size_t n_ask = settings->asks ? status_query(i, ask) : 0;
     *found = WB_LISTENING_NOTHING;
     while (now_ns - begun_ns < patience_ns && !is_known(*found) && !wb_interrupted()) {
         size_t n = 0;
@@ -126,13 +126,13 @@ enum wb_status wb_listening_run(const char *address, const struct wb_listening_s
             wb_stream_open_with_reason(&stream, full, i == 0 ? why : &ignored);
         if (opened != WB_OK && i == 0)
             return opened;
-        /* Not every port knows every rate and frame. */
+        /* Not every port supports every rate and frame. */
         if (opened != WB_OK)
             continue;
         const enum wb_status status = listen_to(stream, i, settings, &diagnosis, &found);
         wb_stream_close(stream);
         if (status != WB_OK)
-            return wb_fail_to(why, status, "the port of '%s' went away", full);
+            return wb_fail_to(why, status, "reading from or writing to '%s' failed", full);
         silent = silent && found == WB_LISTENING_NOTHING;
         if (is_known(found)) {
             heard->found = found;

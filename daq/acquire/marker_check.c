@@ -5,11 +5,11 @@
 #include "base/vec3.h"
 #include "daq/acquire/acquisition.h"
 
-#define MAX_CANDIDATES 32
+#define MAX_CANDIDATES 32 /* measured markers considered in a frame */
 
 struct cloud {
     int n;
-    int index[MAX_CANDIDATES];    /* in the frame */
+    int index[MAX_CANDIDATES];    /* in frame->markers */
     double at[MAX_CANDIDATES][3]; /* m */
 };
 
@@ -26,15 +26,15 @@ static void gather(const struct wb_mocap_frame *frame, struct cloud *cloud)
     }
 }
 
-/* A straight wire laid through two points of the cloud, and the markers that fit it. */
-struct lay {
+/* A straight wire through two points of the cloud, and the markers that fit it. */
+struct line_fit {
     int markers[2], points[2]; /* marker i is at point i */
     struct wb_marker_places places;
-    double misfit; /* m, sum of distances: breaks ties */
+    double misfit; /* m, sum of the distances to the line; decides between equal counts */
 };
 
 static void fit(const struct cloud *cloud, const struct wb_specimen *specimen, double tolerance,
-                struct lay *lay)
+                struct line_fit *lay)
 {
     const double *const s = specimen->markers;
     const double *const p = cloud->at[lay->points[0]], *const q = cloud->at[lay->points[1]];
@@ -61,13 +61,12 @@ static void fit(const struct cloud *cloud, const struct wb_specimen *specimen, d
     }
 }
 
-/* Tries marker i at every point and marker j at every other one that is as far away as it should
- * be. */
+/* Tries marker i at every point and marker j at every other point at the expected distance. */
 static void try_pair(const struct cloud *cloud, const struct wb_specimen *specimen,
-                     const int markers[2], double tolerance, struct lay *best)
+                     const int markers[2], double tolerance, struct line_fit *best)
 {
     const double apart = specimen->markers[markers[1]] - specimen->markers[markers[0]];
-    struct lay lay = {.markers = {markers[0], markers[1]}};
+    struct line_fit lay = {.markers = {markers[0], markers[1]}};
     for (int p = 0; p < cloud->n; p++) {
         for (int q = 0; q < cloud->n; q++) {
             if (q == p ||
@@ -93,15 +92,15 @@ void wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_s
     for (int m = 1; m < n; m++)
         spacing = fmin(spacing, specimen->markers[m] - specimen->markers[m - 1]);
     const double tolerance = 0.4 * spacing;
-    struct lay best = {.misfit = (double)INFINITY};
+    struct line_fit best = {.misfit = (double)INFINITY};
     for (int m = 0; m < WB_SPECIMEN_MAX_MARKERS; m++)
         best.places.index[m] = -1;
-    /* Pairs far apart fix the line well; when one end is hidden, the next one serves. */
+    /* Distant pairs define the line best; if an end is hidden, the next marker is used. */
     for (int i = 0; i < n; i++)
         for (int j = n - 1; j > i && j - i >= n / 2 && best.places.n_seen < n; j--)
             try_pair(&cloud, specimen, (const int[]){i, j}, tolerance, &best);
     *places = best.places;
-    /* One marker alone fixes no line, but it is seen. */
+    /* One marker does not define a line, but it counts as seen. */
     if (places->n_seen == 0 && cloud.n > 0) {
         places->index[0] = cloud.index[0];
         places->n_seen = 1;

@@ -1,6 +1,6 @@
-/* Checks whether all markers of a specimen are seen. Markers are identified by geometry, because
- * the ids of bare markers change: on the unloaded, nearly straight wire they lie on a line at their
- * arc lengths. A stray reflection is therefore not mistaken for a missing marker.
+/* Finds the markers of a specimen in a frame. They are identified by geometry, because the ids of
+ * single markers change: on the unloaded, nearly straight wire they lie on a line at their arc
+ * lengths. A stray reflection is therefore not mistaken for a missing marker.
  */
 #ifndef WB_DAQ_ACQUIRE_MARKER_CHECK_H
 #define WB_DAQ_ACQUIRE_MARKER_CHECK_H
@@ -9,23 +9,22 @@
 #include "daq/protocol/sample.h"
 #include "daq/protocol/specimen.h"
 
-/* Where the specimen's markers are in a frame: for each an index into frame->markers, -1 when it
- * was not seen. */
+/* For each marker of the specimen its index in frame->markers; -1: not seen. */
 struct wb_marker_places {
     int n_seen;
     int index[WB_SPECIMEN_MAX_MARKERS];
 };
 
-/* Looks for the specimen's markers among the measured ones of a frame of the unloaded wire. A
- * marker may lie off the line by 0.4 of the smallest spacing: the wire's bow, its sag and the
- * markers' height. With symmetric spacing the two ends cannot be distinguished; the count does not
- * need it. Frames with more than 32 measured markers are searched among the first 32. */
+/* Searches for the specimen's markers among the measured markers of a frame of the unloaded wire. A
+ * marker may be off the line by 0.4 of the smallest spacing, which allows for bow, sag and the
+ * height of the markers. With symmetric spacing the two ends cannot be distinguished. Only the
+ * first 32 measured markers of a frame are searched. */
 void wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_specimen *specimen,
                            struct wb_marker_places *places);
 
-/* The measured marker of a frame that is nearest to a place (m, server's frame) and less than
- * `reach` (m) away: its index, -1 where there is none. From one frame to the next a marker moves
- * far less than WB_MARKER_CHECK_REACH, and no other one is so near. */
+/* Index of the measured marker of a frame nearest to `at` (m, server's frame) and less than `reach`
+ * (m) away; -1: none. Between two frames a marker moves far less than WB_MARKER_CHECK_REACH, and
+ * the other markers are farther away. */
 int wb_marker_check_nearest(const struct wb_mocap_frame *frame, const double at[3], double reach);
 #define WB_MARKER_CHECK_REACH (5.0 * WB_MM)
 

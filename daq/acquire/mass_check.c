@@ -13,18 +13,19 @@
 
 #define WB_LOG_DOMAIN "check"
 
-#define CONNECT_NS (6 * WB_NS_PER_S)
-/* Time of the rig for a hung mass to come to rest and for the cell's filter to follow, s. */
+#define CONNECT_NS (6 * WB_NS_PER_S) /* for the first reading, and for late readings */
+/* s of rig time, least time for the mass and the cell's filter to settle. */
 #define SETTLE 2.0
-/* The reading is still when two windows of this length (s, of the rig) that follow each other have
- * the same mean, to so many standard errors or to that share of the capacity; and when it scatters
- * no more than wb_rig_noise_allowed(). */
+/* The reading is stable when two consecutive windows of STILL_WINDOW (s of rig time) have the same
+ * mean, within STILL_ERRORS standard errors or within STILL_SHARE of the capacity, and the scatter
+ * does not exceed wb_rig_noise_allowed(). */
 #define STILL_WINDOW 0.5
 #define STILL_ERRORS 4.0
 #define STILL_SHARE 1e-4
-/* s of the rig: a mass that still swings then does not come to rest by itself. */
+/* s of rig time after which a reading that is not stable is an error. */
 #define STILL_PATIENCE 60.0
 #define LEAST_READINGS 10
+/* Parts of a point whose means give the standard error of slow fluctuations. */
 #define N_PARTS 8
 
 struct wb_mass_check {
@@ -35,14 +36,14 @@ struct wb_mass_check {
     int64_t window_ns; /* begin of `window` */
     struct wb_average window, window_before;
     bool is_still;
-    struct wb_average all, parts[N_PARTS]; /* of the point that is read */
+    struct wb_average all, parts[N_PARTS]; /* readings of the current point */
     double reading;
     bool overload;
     int index, n;
     struct wb_cell_point points[WB_RIG_MASSES];
 };
 
-static int64_t of_the_rig(const struct wb_mass_check *check, double seconds)
+static int64_t ns_of_rig_time(const struct wb_mass_check *check, double seconds)
 {
     return wb_ns_from_seconds(seconds / check->rig.time_scale);
 }
@@ -56,7 +57,7 @@ static double error_of(const struct wb_average *average)
 static void compare_windows(struct wb_mass_check *check, int64_t now_ns)
 {
     const struct wb_average *const now = &check->window, *const before = &check->window_before;
-    if (now_ns - check->window_ns < of_the_rig(check, STILL_WINDOW) || now->n < LEAST_READINGS)
+    if (now_ns - check->window_ns < ns_of_rig_time(check, STILL_WINDOW) || now->n < LEAST_READINGS)
         return;
     const double allowed = fmax(STILL_ERRORS * hypot(error_of(now), error_of(before)),
                                 STILL_SHARE * check->rig.load_cell.capacity);
@@ -90,7 +91,7 @@ enum wb_status wb_mass_check_open(struct wb_mass_check **out, const struct wb_ri
 {
     struct wb_mass_check *const check = calloc(1, sizeof *check);
     if (!check)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the check");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the check");
     check->rig = *rig;
     check->n = n;
     for (int i = 0; i < n; i++)
@@ -128,21 +129,22 @@ static void watch_connection(struct wb_mass_check *check, int64_t waited_ns)
     const char *const address = check->rig.load_cell.address;
     char cause[WB_DIAGNOSIS_TEXT];
     if (load->gone) {
-        FAIL(check, "the load cell's port %s went away: check its cable and power", address);
+        FAIL(check, "the load cell's port %s was disconnected: check its cable and power", address);
     } else if (check->phase == WB_MASS_CHECK_CONNECTING && !isfinite(check->reading) &&
                waited_ns > CONNECT_NS + check->rig.load_cell.settle_ns) {
         const struct wb_diagnosis no_stage = {0};
         wb_diagnosis_load(&load->heard, &no_stage, &check->rig, cause);
-        FAIL(check, "the load cell at %s sent no reading within %d s (%" PRIu64 " bytes came): %s",
+        FAIL(check,
+             "the load cell at %s sent no reading within %d s (%" PRIu64 " bytes received): %s",
              address, (int)(CONNECT_NS / WB_NS_PER_S), load->bytes, cause);
     }
 }
 
-/* A reading that ends: too few in their time, or none still in the patience that it has. */
+/* Fails if there are too few readings in the allowed time, or if they do not become stable. */
 static void watch_reading(struct wb_mass_check *check, int64_t waited_ns)
 {
     const char *const address = check->rig.load_cell.address;
-    const int64_t settle_ns = of_the_rig(check, STILL_PATIENCE) + CONNECT_NS;
+    const int64_t settle_ns = ns_of_rig_time(check, STILL_PATIENCE) + CONNECT_NS;
     if (check->phase == WB_MASS_CHECK_READING && waited_ns > check->duration_ns + CONNECT_NS)
         FAIL(check, "the load cell at %s sends too few readings: at least 10 are needed", address);
     else if (check->phase == WB_MASS_CHECK_SETTLING && waited_ns > settle_ns &&
@@ -150,9 +152,9 @@ static void watch_reading(struct wb_mass_check *check, int64_t waited_ns)
         FAIL(check, "the load cell at %s sends too few readings: at least 10 are needed", address);
     else if (check->phase == WB_MASS_CHECK_SETTLING && waited_ns > settle_ns)
         FAIL(check,
-             "the load cell's reading does not come to rest with %g g (scatter %.3f mN, at most "
-             "%.3f mN is still): let the mass hang without swinging and shield it from draught, or "
-             "set load_cell.noise_mg to the cell's own noise",
+             "the load cell's reading with %g g does not become stable (scatter %.3f mN; expected "
+             "at most %.3f mN): keep the mass from swinging and shield it from draught, or set "
+             "load_cell.noise_mg to the cell's noise",
              check->points[check->index].mass / WB_G,
              wb_average_deviation(&check->window_before) / WB_MN,
              wb_rig_noise_allowed(&check->rig.load_cell) / WB_MN);
@@ -164,15 +166,14 @@ static void watch(struct wb_mass_check *check, int64_t now_ns)
     if (wb_interrupted())
         FAIL(check, "stopped by the operator");
     else if (check->overload)
-        FAIL(check, "the load cell reports overload: the mass is beyond its range");
+        FAIL(check, "the load cell reports overload: the mass exceeds its range");
     else
         watch_connection(check, waited_ns);
     if (check->phase != WB_MASS_CHECK_FAILED)
         watch_reading(check, waited_ns);
 }
 
-/* Keeps the point that was read. */
-static void keep_point(struct wb_mass_check *check)
+static void store_point(struct wb_mass_check *check)
 {
     struct wb_cell_point *const point = &check->points[check->index];
     struct wb_average means = {0};
@@ -188,7 +189,7 @@ static void keep_point(struct wb_mass_check *check)
 
 static void end_reading(struct wb_mass_check *check)
 {
-    keep_point(check);
+    store_point(check);
     if (check->index + 1 == check->n) {
         enter(check, WB_MASS_CHECK_DONE);
         return;
@@ -207,7 +208,7 @@ static void advance(struct wb_mass_check *check, int64_t now_ns)
         break;
     case WB_MASS_CHECK_SETTLING:
         compare_windows(check, now_ns);
-        if (check->is_still && waited_ns >= of_the_rig(check, SETTLE))
+        if (check->is_still && waited_ns >= ns_of_rig_time(check, SETTLE))
             enter(check, WB_MASS_CHECK_READING);
         break;
     case WB_MASS_CHECK_READING:

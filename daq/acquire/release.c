@@ -5,22 +5,22 @@
 
 #include "base/units.h"
 
-/* A strand may be declared slack whose reading falls by less than this share of the capacity over
- * LEVEL_OVER. */
+/* The reading is level if it falls by less than LEVEL_SHARE of the capacity over LEVEL_OVER. */
 #define LEVEL_SHARE 1e-3
 #define LEVEL_OVER (0.5 * WB_MM)
-#define LOOSE_SHARE 0.25 /* of the capacity: what may hang on a cell whose zero is not known */
-#define ZERO_SHARE 0.02  /* of the capacity: how far a known zero may have drifted */
+#define LOOSE_SHARE 0.25 /* of the capacity: largest reading of a slack strand, zero unknown */
+#define ZERO_SHARE 0.02  /* of the capacity: largest drift of a known zero */
 #define CERTAINTY 3.0    /* standard errors */
 
+/* Length of a step up. */
 #define STEP (1.0 * WB_MM)
-#define LOADED_STEP (2.0 * WB_MM) /* while more hangs on the cell than a slack strand */
+#define LOADED_STEP (2.0 * WB_MM) /* while the reading is not near zero */
 
-/* A rest is read in groups, until two in a row agree: whatever was still on its way from the cell
- * when the clamp came to rest then counts no longer. */
+/* The readings of a rest are averaged in groups until two consecutive groups agree: thus readings
+ * delayed from before the standstill do not count. */
 #define GROUP_READINGS 4
 #define GROUP_NS (150 * WB_NS_PER_MS)
-#define GROUPS_MAX 16 /* a reading that does not calm down is taken as it is then */
+#define GROUPS_MAX 16 /* after this many groups an unstable reading is accepted */
 
 void wb_release_init(struct wb_release *release, const struct wb_rig *rig, double zero)
 {
@@ -49,7 +49,7 @@ static double mean_of(const struct wb_release_group *group)
     return group->sum / group->n;
 }
 
-/* N2, of one reading: the scatter seen, at least the noise that the rig file tells. */
+/* N2, variance of one reading: from the scatter, but at least the noise of the rig file. */
 static double variance(const struct wb_release *release)
 {
     const struct wb_release_group *const groups[] = {&release->before, &release->now};
@@ -62,7 +62,7 @@ static double variance(const struct wb_release *release)
     return fmax(squares / n, release->noise * release->noise);
 }
 
-/* Both groups are full. */
+/* Whether the means of both groups (which must be full) agree. */
 static bool groups_agree(const struct wb_release *release)
 {
     const double apart = fabs(mean_of(&release->now) - mean_of(&release->before));
@@ -87,7 +87,8 @@ static double error_of_mean(const struct wb_release *release)
     return sqrt(variance(release) / (release->now.n + release->before.n));
 }
 
-/* Level readings at two rests like this one would be seen to be level over the least way. */
+/* Whether the standard error is small enough to recognise level readings at two such rests that are
+ * WB_RELEASE_LEVEL_WAY apart. */
 static bool is_sharp(const struct wb_release *release)
 {
     const double slope = LEVEL_SHARE * release->capacity / LEVEL_OVER;
@@ -100,7 +101,7 @@ static void end_rest(struct wb_release *release)
     push_place(release, (release->now.sum + release->before.sum) / n, error_of_mean(release));
 }
 
-/* An overloaded cell has no number to tell, but the strand is surely not slack. */
+/* An overloaded cell gives no number, but the strand is certainly not slack. */
 static void add_overload(struct wb_release *release, int64_t t_ns)
 {
     struct wb_release_group *const group = &release->overloaded;
@@ -134,7 +135,7 @@ void wb_release_add(struct wb_release *release, const struct wb_load_sample *sam
         return;
     }
     if (agrees) {
-        /* A noisy cell is read for longer: the strand is then seen slack after a shorter way. */
+        /* Averaging longer with a noisy cell detects a slack strand after a shorter travel. */
         release->before.n += now->n;
         release->before.sum += now->sum;
         release->before.squares += now->squares;
@@ -144,8 +145,8 @@ void wb_release_add(struct wb_release *release, const struct wb_load_sample *sam
     memset(now, 0, sizeof *now);
 }
 
-/* What a slack strand may leave on the cell. The force of an overloaded cell, NaN, is neither that
- * nor level: it compares false. */
+/* Whether a slack strand could cause this reading. The NaN of an overloaded cell compares false,
+ * here and in is_level(). */
 static bool near_zero(const struct wb_release *release, const struct wb_release_place *place)
 {
     if (!isfinite(release->zero))
@@ -154,7 +155,7 @@ static bool near_zero(const struct wb_release *release, const struct wb_release_
            ZERO_SHARE * release->capacity + CERTAINTY * place->error;
 }
 
-/* True when the reading falls by less than a slack strand's may, even if chance hides a part. */
+/* Whether the reading is level between two rests, even if noise hides a part of the change. */
 static bool is_level(const struct wb_release *release, const struct wb_release_place *a,
                      const struct wb_release_place *b)
 {

@@ -5,7 +5,7 @@
 
 #include "base/units.h"
 
-#define SHOW_PERIOD_NS (10 * WB_NS_PER_S)
+#define SHOW_PERIOD_NS (10 * WB_NS_PER_S) /* between two displayed remarks of one kind */
 
 bool wb_remark_gate_store(struct wb_remark_gate *gate, int64_t t_ns, unsigned *held)
 {
@@ -34,7 +34,7 @@ bool wb_remark_gate_show(struct wb_remark_gate *gate, int64_t t_ns, const char *
             slot = i;
             break;
         }
-        /* Another kind makes room where it was shown longest ago. */
+        /* A new kind replaces the one shown longest ago. */
         if (gate->shown[i].t_ns < gate->shown[slot].t_ns)
             slot = i;
     }

@@ -9,11 +9,12 @@
 #include "base/units.h"
 #include "daq/acquire/stage_check.h"
 
-/* An earlier line that is not answered keeps a command waiting; the driver stops waiting after 2 s.
- */
+/* A command waits while an earlier one is unanswered; the driver itself gives up after 2 s. */
 #define SEND_NS (4 * WB_NS_PER_S)
 
-#define RAMP_S 0.5 /* to reach a speed, of a stage that hides its acceleration */
+#define RAMP_S                                                                                     \
+    0.5 /* assumed time of acceleration if the stage does not report its acceleration              \
+         */
 
 double wb_sequence_travel(const struct wb_sequence *sequence, double position)
 {
@@ -24,14 +25,14 @@ void wb_sequence_enter(struct wb_sequence *sequence, int phase)
 {
     sequence->phase = phase;
     sequence->phase_ns = wb_time_now_ns();
-    sequence->heard_ns = wb_acquisition_listened_ns(sequence->acquisition);
+    sequence->listened_ns = wb_acquisition_listened_ns(sequence->acquisition);
     sequence->reports_seen = wb_acquisition_latest(sequence->acquisition)->stage_reports;
     sequence->idle_reports = 0;
 }
 
 int64_t wb_sequence_lasts_ns(const struct wb_sequence *sequence)
 {
-    return wb_acquisition_listened_ns(sequence->acquisition) - sequence->heard_ns;
+    return wb_acquisition_listened_ns(sequence->acquisition) - sequence->listened_ns;
 }
 
 void wb_sequence_set_end(struct wb_sequence *sequence, enum wb_sequence_end end, const char *format,
@@ -62,7 +63,7 @@ void wb_sequence_give_up(struct wb_sequence *sequence, enum wb_interlock_reason 
     wb_sequence_enter(sequence, WB_SEQUENCE_STOP);
 }
 
-/* False, and all is given up, when the stage cannot do this jog as its firmware is set. */
+/* Checks a jog against the firmware's settings; if it is not possible, ends the sequence. */
 static bool jog_is_possible(struct wb_sequence *sequence)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(sequence->acquisition);
@@ -84,9 +85,9 @@ static bool jog_is_possible(struct wb_sequence *sequence)
 static void begin_watch(struct wb_sequence *sequence)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(sequence->acquisition);
-    const double told = latest->has_settings ? latest->settings.acceleration : 0.0;
+    const double reported = latest->has_settings ? latest->settings.acceleration : 0.0;
     const struct wb_motion_limits top = {sequence->speed,
-                                         told > 0.0 ? told : sequence->speed / RAMP_S};
+                                         reported > 0.0 ? reported : sequence->speed / RAMP_S};
     const double from = wb_sequence_travel(sequence, latest->stage.position);
     if (sequence->command == WB_STAGE_COMMAND_JOG)
         wb_speed_watch_begin(&sequence->watch, from, from + sequence->distance, &top);
@@ -116,7 +117,7 @@ bool wb_sequence_note_speed(struct wb_sequence *sequence, char *text, size_t siz
     return wb_speed_watch_is_off(&sequence->watch);
 }
 
-/* Offers the command of this phase to the stage. */
+/* Sends the command of this phase, or keeps it for the next step if the stage is busy. */
 static void try_to_send(struct wb_sequence *sequence)
 {
     if (!jog_is_possible(sequence))
@@ -160,7 +161,7 @@ void wb_sequence_jog_to(struct wb_sequence *sequence, double target, double spee
                      target - wb_sequence_travel(sequence, latest->stage.position), speed, phase);
 }
 
-/* The interlock tripped by itself; the hold byte has already left. */
+/* Ends the sequence if the interlock has tripped; the hold byte has been sent already. */
 static void note_trip(struct wb_sequence *sequence, bool started)
 {
     const struct wb_interlock *const interlock = wb_acquisition_interlock(sequence->acquisition);
@@ -180,10 +181,10 @@ bool wb_sequence_wait(struct wb_sequence *sequence, int64_t timeout_ns, bool sta
     if (wb_acquisition_step(sequence->acquisition, timeout_ns) == WB_ACQUISITION_FAILED &&
         sequence->phase < WB_SEQUENCE_STOP)
         wb_sequence_give_up(sequence, WB_INTERLOCK_STREAM_LOST,
-                            "the instruments cannot be waited for");
+                            "waiting for the instruments failed: see the previous message");
     follow_watch(sequence);
     note_trip(sequence, started);
-    /* Before the interlock is armed nothing moves. */
+    /* While the interlock is armed, the acquisition handles Ctrl-C; before, the stage stands. */
     if (wb_interrupted() && sequence->phase < WB_SEQUENCE_STOP)
         wb_sequence_give_up(sequence, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
     if (!sequence->unsent || sequence->phase >= WB_SEQUENCE_STOP)

@@ -14,7 +14,7 @@ static bool check_load(const struct wb_acquisition_latest *latest, const struct 
     char sent[96], cause[WB_DIAGNOSIS_TEXT];
     if (latest->has_load)
         return true;
-    snprintf(sent, sizeof sent, "nothing within %g s", waited);
+    snprintf(sent, sizeof sent, "no data within %g s", waited);
     if (load->bytes > 0)
         snprintf(sent, sizeof sent, "%" PRIu64 " bytes, but no reading that can be decoded",
                  load->bytes);
@@ -33,13 +33,13 @@ static bool check_stage(const struct wb_acquisition_latest *latest, const struct
         return true;
     wb_diagnosis_stage(&stage->heard, rig, cause);
     snprintf(text, WB_SILENCE_TEXT,
-             "the stage at %s gave no status within %g s (%" PRIu64 " bytes came): %s",
+             "the stage at %s sent no status within %g s (%" PRIu64 " bytes received): %s",
              rig->stage.address, waited, stage->bytes, cause);
     return false;
 }
 
-/* Where the group is joined, and where it should be. */
-static void suggest_card(const struct wb_rig *rig, char *text, size_t size)
+/* Appends the checks of this computer's network: interface of the multicast group and firewall. */
+static void suggest_network_checks(const struct wb_rig *rig, char *text, size_t size)
 {
     struct wb_network_card card;
     struct wb_udp_address address;
@@ -51,16 +51,15 @@ static void suggest_card(const struct wb_rig *rig, char *text, size_t size)
         snprintf(text, size, ", and the firewall of this computer");
     else if (strcmp(address.interface, card.address) == 0 ||
              strcmp(address.interface, card.name) == 0)
-        snprintf(
-            text, size,
-            ", its multicast group, and that the firewall of this computer lets UDP port %d in",
-            address.group_port);
+        snprintf(text, size,
+                 ", its multicast group, and that the firewall of this computer admits UDP port %d",
+                 address.group_port);
     else
         snprintf(text, size,
-                 ", and its multicast group, which is joined on %s, while the server is reached by "
-                 "%s: write interface=%s in mocap.address; and let UDP port %d through the "
-                 "firewall of this computer",
-                 address.interface[0] ? address.interface : "a card that the system chose",
+                 ", and its multicast group: it is joined on %s, but the server is reached through "
+                 "%s; write interface=%s in mocap.address, and admit UDP port %d in the firewall "
+                 "of this computer",
+                 address.interface[0] ? address.interface : "an interface chosen by the system",
                  card.name, card.address, address.group_port);
 }
 
@@ -72,14 +71,14 @@ static bool check_mocap(const struct wb_acquisition_latest *latest, const struct
         return true;
     if (latest->stream[WB_ROLE_MOCAP].bytes == 0) {
         snprintf(text, WB_SILENCE_TEXT,
-                 "no NatNet answer from %s within %g s: check that the server streams, its address "
+                 "no NatNet reply from %s within %g s: check that the server streams, its address "
                  "and the firewall of its computer",
                  rig->mocap.address, waited);
         return false;
     }
-    suggest_card(rig, card, sizeof card);
+    suggest_network_checks(rig, card, sizeof card);
     snprintf(text, WB_SILENCE_TEXT,
-             "the NatNet server at %s answers but sent no frame within %g s: check that it streams "
+             "the NatNet server at %s replies but sent no frame within %g s: check that it streams "
              "live frames with labelled markers%s",
              rig->mocap.address, waited, card);
     return false;

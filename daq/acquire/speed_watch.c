@@ -5,9 +5,9 @@
 
 #include "base/units.h"
 
-#define LEAST_S 1.0
-#define TOLERANCE 0.01
-#define LATE_S 0.05 /* a report may arrive so much later than another */
+#define LEAST_S 1.0    /* shortest time over which the speed is measured */
+#define TOLERANCE 0.01 /* of the speed, relative */
+#define LATE_S 0.05    /* variation of the delay of reports */
 
 void wb_speed_watch_begin(struct wb_speed_watch *watch, double from, double to,
                           const struct wb_motion_limits *top)
@@ -23,7 +23,7 @@ void wb_speed_watch_add(struct wb_speed_watch *watch, int64_t t_ns, double trave
 {
     const double low = fmin(watch->from, watch->to) + watch->ramp;
     const double high = fmax(watch->from, watch->to) - watch->ramp;
-    /* Not the start itself, where it may still stand. */
+    /* The end points are excluded: the stage may stand there. */
     if (!(travel >= low && travel <= high) || travel == watch->from || travel == watch->to)
         return;
     if (watch->n++ == 0) {

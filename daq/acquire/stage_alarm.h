@@ -1,4 +1,4 @@
-/* Why a stage is in alarm, whatever its controller is. */
+/* Reason of a stage's alarm, for every kind of controller. */
 #ifndef WB_DAQ_ACQUIRE_STAGE_ALARM_H
 #define WB_DAQ_ACQUIRE_STAGE_ALARM_H
 
@@ -6,8 +6,8 @@
 
 #include "daq/protocol/sample.h"
 
-/* Of a stage in state Alarm, a few words: "ALARM:1, hard limit: ..." of GRBL, "low VIN: ..." of a
- * Tic. */
+/* Describes the alarm of a stage in state Alarm: "ALARM:1, hard limit: ..." for GRBL, "low VIN:
+ * ..." for a Tic. */
 void wb_stage_alarm_reason(const struct wb_stage_report *report, char *text, size_t size);
 
 #endif

@@ -9,7 +9,7 @@
 #include "daq/protocol/tic.h"
 
 #define S_PER_MIN 60.0
-#define ROUNDING 1e-3             /* of a setting: printed with three decimals */
+#define ROUNDING 1e-3             /* relative; settings are printed with three decimals */
 #define NEAR_LIMIT (0.01 * WB_MM) /* a few steps of the motor */
 
 static int number(const struct wb_rig *rig, int first)
@@ -17,12 +17,13 @@ static int number(const struct wb_rig *rig, int first)
     return first + rig->stage.axis - 'X';
 }
 
-/* A limit of the firmware as its user sees it: "$110" in mm/min, "Max speed" in the Tic's units. */
+/* A limit of the firmware under the name and in the unit of its user interface: "$110" in mm/min,
+ * "Max speed" in the Tic's units. */
 struct limit_name {
     char name[24];
     double unit; /* SI */
     const char *unit_name;
-    double most; /* that it can be set to, in its unit */
+    double most; /* largest possible setting, in its unit */
 };
 
 static struct limit_name name_limit(const struct wb_rig *rig, int first)
@@ -41,8 +42,8 @@ static struct limit_name name_limit(const struct wb_rig *rig, int first)
     return limit;
 }
 
-/* Soft limits count only where the stage stands within them: firmware built to count upwards from
- * its switch has others, which it does not tell. */
+/* Soft limits are used only if the stage is within them: firmware compiled to count upwards from
+ * its switch has different limits, which it does not report. */
 static bool has_limits(const struct wb_stage_settings *settings, double position)
 {
     return settings->soft_limits && position <= NEAR_LIMIT &&
@@ -60,8 +61,8 @@ static bool check_units(const struct wb_stage_settings *settings, const struct w
     const double expected = rig->stage.steps;
     if (expected > 0.0 && fabs(settings->steps - expected) > ROUNDING * expected) {
         snprintf(text, WB_INTERLOCK_TEXT,
-                 "the stage is set to $%d=%g steps/mm, the rig file says stage.steps_per_mm %g: "
-                 "every way would be wrong by their ratio; set one of the two right",
+                 "the stage's firmware has $%d=%g steps/mm, but stage.steps_per_mm of the rig file "
+                 "is %g: every travel would be wrong by their ratio; correct one of them",
                  number(rig, WB_GRBL_STEPS), settings->steps * WB_MM, expected * WB_MM);
         return false;
     }
@@ -76,26 +77,26 @@ static bool check_speed(const struct wb_stage_settings *settings, const struct w
         const struct limit_name limit = name_limit(rig, WB_GRBL_RATE);
         if (speed > limit.most * limit.unit * (1.0 + ROUNDING)) {
             snprintf(text, WB_INTERLOCK_TEXT,
-                     "the stage's controller makes %g mm/s at most with %g steps/mm, and %g mm/s "
-                     "are wanted: choose a lower speed, or a coarser step mode and its "
-                     "stage.steps_per_mm",
-                     limit.most * limit.unit / WB_MM / scale, rig->stage.steps * WB_MM,
-                     speed / WB_MM / scale);
+                     "%g mm/s exceeds the stage controller's maximum of %g mm/s with %g steps/mm: "
+                     "choose a lower speed, or a coarser step mode with its stage.steps_per_mm",
+                     speed / WB_MM / scale, limit.most * limit.unit / WB_MM / scale,
+                     rig->stage.steps * WB_MM);
             return false;
         }
         snprintf(text, WB_INTERLOCK_TEXT,
-                 "the stage's firmware allows %g mm/s at most (%s=%.9g %s), and %g mm/s are "
-                 "wanted: set %s=%.0f or choose a lower speed",
-                 settings->speed / WB_MM / scale, limit.name, settings->speed / limit.unit,
-                 limit.unit_name, speed / WB_MM / scale, limit.name, ceil(speed / limit.unit));
+                 "%g mm/s exceeds the %g mm/s that the stage's firmware allows (%s=%.9g %s): set "
+                 "%s=%.0f or choose a lower speed",
+                 speed / WB_MM / scale, settings->speed / WB_MM / scale, limit.name,
+                 settings->speed / limit.unit, limit.unit_name, limit.name,
+                 ceil(speed / limit.unit));
         return false;
     }
     const double braking = speed / settings->acceleration;
     if (braking > WB_STAGE_CHECK_BRAKING * (1.0 + ROUNDING)) {
         const struct limit_name limit = name_limit(rig, WB_GRBL_ACCELERATION);
         snprintf(text, WB_INTERLOCK_TEXT,
-                 "the stage needs %.1f s to brake from %g mm/s (%s=%.9g %s), too long to stop it "
-                 "safely: set %s=%.0f or choose a lower speed",
+                 "the stage needs %.1f s to brake from %g mm/s (%s=%.9g %s), too long for a safe "
+                 "stop: set %s=%.0f or choose a lower speed",
                  braking, speed / WB_MM / scale, limit.name, settings->acceleration / limit.unit,
                  limit.unit_name, limit.name, ceil(speed / WB_STAGE_CHECK_BRAKING / limit.unit));
         return false;
@@ -114,9 +115,9 @@ bool wb_stage_check(const struct wb_stage_settings *settings, const struct wb_ri
         return false;
     if (has_limits(settings, motion->from) && !has_limits(settings, motion->to)) {
         snprintf(text, WB_INTERLOCK_TEXT,
-                 "a move to the machine position %.3f mm goes beyond the stage's soft limits, %g "
-                 "mm to 0 ($%d): the stage stands at %.3f mm; choose a shorter way, or home the "
-                 "stage if it does not stand there",
+                 "a move to machine position %.3f mm exceeds the stage's soft limits, %g mm to 0 "
+                 "($%d): choose a shorter travel, or home the stage if its present position is not "
+                 "the reported %.3f mm",
                  motion->to / WB_MM, -settings->travel / WB_MM, number(rig, WB_GRBL_TRAVEL),
                  motion->from / WB_MM);
         return false;

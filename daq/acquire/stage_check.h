@@ -1,7 +1,7 @@
-/* Whether the stage can do a motion as its firmware is set, and may: a controller that would go on
- * when this computer dies is not moved. GRBL says nothing of most of it: it
- * slows a jog down to its largest speed, and reports inches, without a word. Pure decisions; the
- * reason of a refusal is written for the operator. */
+/* Checks a motion against the settings of the stage's firmware. GRBL itself reports few of these
+ * problems: it silently limits the speed of a jog and silently reports inches. A controller that
+ * would continue to move after a crash of this computer is rejected. Only decisions; the reason of
+ * a failure is a message for the operator. */
 #ifndef WB_DAQ_ACQUIRE_STAGE_CHECK_H
 #define WB_DAQ_ACQUIRE_STAGE_CHECK_H
 
@@ -11,26 +11,25 @@
 #include "daq/protocol/rig.h"
 #include "daq/protocol/sample.h"
 
-/* Braking may take so long, s: from a higher speed the short jogs that lead the stage
- * (daq/protocol/jog_feed.h) would not fit into the firmware's buffer. */
+/* Longest braking time, s: at a higher speed the short jogs of daq/protocol/jog_feed.h would not
+ * fit into the firmware's buffer. */
 #define WB_STAGE_CHECK_BRAKING 1.0
 
 struct wb_stage_motion {
-    double from, to; /* m, machine positions; NaN: not known */
-    double speed;    /* m/s of the host's time */
+    double from, to; /* m, machine positions; NaN: unknown */
+    double speed;    /* m/s of host time */
 };
 
-/* True when all is well, or writes the reason. What the firmware did not tell is not checked. */
+/* True if the motion is possible; otherwise `text` receives the reason. Settings that the firmware
+ * did not report are not checked. */
 bool wb_stage_check(const struct wb_stage_settings *settings, const struct wb_rig *rig,
                     const struct wb_stage_motion *motion, char text[WB_INTERLOCK_TEXT]);
 
-/* The same for a test: down by `travel` (m) from a machine position at the rig's speed, and back.
- */
+/* The same for a test: `travel` (m) down from a machine position at the rig's speed. */
 bool wb_stage_check_test(const struct wb_stage_settings *settings, const struct wb_rig *rig,
                          double position, double travel, char text[WB_INTERLOCK_TEXT]);
 
-/* m: how far the stage may go up from a machine position before its soft limit; infinite where it
- * has none. */
+/* m, travel up from a machine position to the soft limit; infinite without soft limits. */
 double wb_stage_check_way_up(const struct wb_stage_settings *settings, const struct wb_rig *rig,
                              double position);
 

@@ -14,16 +14,15 @@
 
 #define WB_LOG_DOMAIN "stage"
 
-/* A report that comes sooner after a command may be the answer to an earlier question. */
+/* A report within this time after a command may be older than the command. */
 #define STALE_NS (300 * WB_NS_PER_MS)
 #define RESET_NS (4 * WB_NS_PER_S)
 #define HOMING_NS (180 * WB_NS_PER_S)
 
-/* Release: at the end of the machine's travel steps become smaller, down to this; it keeps so far
- * away from it at most. */
+/* Release: near the end of the machine's travel steps become smaller, down to this length. */
 #define LEAST_STEP (0.25 * WB_MM)
-#define REST_NS (10 * WB_NS_PER_S) /* readings enough for one rest come within */
-#define GROWTH_SHARE 0.05          /* of the capacity: it goes the wrong way */
+#define REST_NS (10 * WB_NS_PER_S) /* timeout for the readings of one rest */
+#define GROWTH_SHARE 0.05          /* of the capacity: allowed growth of the force in a release */
 
 enum phase {
     PHASE_CONNECT,
@@ -43,7 +42,7 @@ static const char *const phase_names[] = {
 struct wb_stage_job {
     struct wb_sequence run;
     struct wb_stage_job_request request;
-    double most, reach; /* m, release: of one step, and of all of them */
+    double most, reach; /* m, release: longest step, and sum of all steps */
     double first_force; /* N; NaN before the first reading */
     struct wb_release release;
     bool standing;
@@ -80,15 +79,14 @@ enum wb_status wb_stage_job_open(struct wb_stage_job **out, const struct wb_rig 
     const double reach = fabs(request->distance);
     if (request->kind == WB_STAGE_JOB_JOG && !(reach >= 1e-6 && reach <= rig->stage.travel))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "a jog of %g mm is not possible: at least 0.001 mm and at most the stage's "
-                       "travel of %g mm at a time",
-                       request->distance / WB_MM, rig->stage.travel / WB_MM);
+                       "jog: expected 0.001 mm to %g mm (the stage's travel) up or down, not %g mm",
+                       rig->stage.travel / WB_MM, request->distance / WB_MM);
     if (request->kind == WB_STAGE_JOB_RELEASE && request->without_load_cell)
-        return wb_fail(WB_ERR_ARGUMENT, "a release watches the load: it needs the load cell; "
-                                        "without it, unlock and jog");
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "release needs the load cell; without it run 'unlock', then 'jog'");
     struct wb_stage_job *const job = calloc(1, sizeof *job);
     if (!job)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the stage's job");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the stage's job");
     job->run.rig = *rig;
     job->request = *request;
     job->first_force = (double)NAN;
@@ -120,15 +118,15 @@ static void arm(struct wb_stage_job *job)
     wb_interlock_default_settings(&settings, &job->run.rig);
     settings.rise = settings.travel = job->run.rig.stage.travel + 1.0 * WB_MM;
     if (job->request.kind == WB_STAGE_JOB_HOME) {
-        /* A homing controller is busy and says nothing; its position jumps in the end. */
+        /* A controller sends no reports while it is homing, and its position jumps at the end. */
         settings.stream_lost_ns[WB_ROLE_STAGE] = 0;
         settings.rise = settings.travel = 0.0;
         settings.alarm_allowed = true;
     }
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
-        /* It may be beyond its limits now: that is what is being mended. It must not grow. */
+        /* The force may exceed its limits at the beginning, but it must not grow. */
         const bool is_overloaded = !isfinite(job->first_force);
-        /* An overloaded cell gives its first number just below its overload. */
+        /* The first number that an overloaded cell gives will be just below its overload. */
         const double force =
             is_overloaded ? job->run.rig.load_cell.overload : fabs(job->first_force);
         const double growth = GROWTH_SHARE * job->run.rig.load_cell.capacity;
@@ -141,8 +139,8 @@ static void arm(struct wb_stage_job *job)
     wb_acquisition_arm(job->run.acquisition, &settings, job->run.start_position);
 }
 
-/* Release: the stage stands; the readings from now on tell whether the strand is slack. */
-static void rest(struct wb_stage_job *job, double travel)
+/* Release: begins a rest, whose readings show whether the strand is slack. */
+static void begin_rest(struct wb_stage_job *job, double travel)
 {
     wb_acquisition_motion_ended(job->run.acquisition);
     wb_sequence_enter(&job->run, PHASE_REST);
@@ -155,13 +153,13 @@ static void end_release(struct wb_stage_job *job)
     finish(job);
 }
 
-/* m: no test goes further down, so no release needs to go further up. */
+/* m, longest travel of a test: a release needs at most the same travel up. */
 static double longest_test(const struct wb_rig *rig)
 {
     return rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel;
 }
 
-/* Release: the next step up, or the end of them. */
+/* Release: begins the next step up, or ends the release at the end of the travel. */
 static void step_up(struct wb_stage_job *job, double travel)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
@@ -178,17 +176,18 @@ static void step_up(struct wb_stage_job *job, double travel)
     else
         snprintf(now, sizeof now, "overload now");
     if (left <= WB_SEQUENCE_TOLERANCE)
-        wb_sequence_set_end(&job->run, WB_SEQUENCE_STILL_LOADED,
-                            "went up by %.2f mm, but the reading did not level off (%s): look at "
-                            "the strand; if it is slack the specimen is free, and if not release "
-                            "again or jog up (jog -MM)",
-                            -travel / WB_MM, now);
+        wb_sequence_set_end(
+            &job->run, WB_SEQUENCE_STILL_LOADED,
+            "moved up by %.2f mm, but the reading did not level off (%s): check the "
+            "strand; if it is slack, the specimen is free; if not, run release "
+            "again or jog up (jog -MM)",
+            -travel / WB_MM, now);
     else if (step < LEAST_STEP)
         wb_sequence_set_end(
             &job->run, WB_SEQUENCE_STILL_LOADED,
-            "went up by %.2f mm to the end of the machine, but the reading did not level "
-            "off (%s): look at the strand; if it is tight still, take the specimen out of its "
-            "clamp; the stage is free to jog down",
+            "moved up by %.2f mm to the end of the machine's travel, but the reading did not level "
+            "off (%s): check the strand; if it is still taut, take the specimen out of its clamp; "
+            "the stage can jog down",
             -travel / WB_MM, now);
     if (job->run.end != WB_SEQUENCE_RUNNING)
         end_release(job);
@@ -213,7 +212,7 @@ static void begin_motion(struct wb_stage_job *job)
     }
     if (!isfinite(job->run.start_position)) {
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE,
-                            "the stage does not tell its position: set $10=1 in its firmware");
+                            "the stage does not report its position: set $10=1 in its firmware");
         return;
     }
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
@@ -221,7 +220,7 @@ static void begin_motion(struct wb_stage_job *job)
                                           : longest_test(&job->run.rig);
         job->most = job->reach;
         wb_release_init(&job->release, &job->run.rig, job->request.zero);
-        rest(job, 0.0);
+        begin_rest(job, 0.0);
         return;
     }
     wb_sequence_jog_to(&job->run, job->request.distance, job->request.speed, PHASE_MOVE);
@@ -231,10 +230,11 @@ static void give_up_in_alarm(struct wb_stage_job *job, const struct wb_stage_rep
 {
     char reason[256];
     wb_stage_alarm_reason(report, reason, sizeof reason);
-    wb_sequence_give_up(&job->run, WB_INTERLOCK_ALARM,
-                        "the stage is in alarm (%s): mend the cause, then run 'home', or 'unlock' "
-                        "if it has no limit switch",
-                        reason);
+    wb_sequence_give_up(
+        &job->run, WB_INTERLOCK_ALARM,
+        "the stage is in alarm (%s): remove the cause, then run 'home', or 'unlock' "
+        "if it has no limit switch",
+        reason);
 }
 
 static void step_connect(struct wb_stage_job *job)
@@ -271,35 +271,35 @@ static void step_connect(struct wb_stage_job *job)
         else
             wb_sequence_give_up(
                 &job->run, WB_INTERLOCK_STAGE,
-                "the stage is moving at somebody else's command: wait until it stands, or stop "
-                "it with 'unlock'");
+                "the stage is moving at the command of another program: wait until it stops, or "
+                "stop it with 'unlock'");
         return;
     }
     const int64_t allowed_ns =
         wb_ns_from_seconds(job->request.connect_timeout) + job->run.rig.load_cell.settle_ns;
     if (latest->stream[WB_ROLE_STAGE].gone)
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
-                            "the stage's port %s went away: check its cable and power",
+                            "the stage's port %s was disconnected: check its cable and power",
                             job->run.rig.stage.address);
     else if (load->gone)
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
-                            "the load cell's port %s went away: check its cable and power",
+                            "the load cell's port %s was disconnected: check its cable and power",
                             job->run.rig.load_cell.address);
     else if (wb_sequence_lasts_ns(&job->run) > allowed_ns && !stage_speaks) {
         wb_diagnosis_stage(&latest->stream[WB_ROLE_STAGE].heard, &job->run.rig, cause);
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
-                            "the stage at %s gave no status within %g s: %s",
+                            "the stage at %s sent no status within %g s: %s",
                             job->run.rig.stage.address, job->request.connect_timeout, cause);
     } else if (wb_sequence_lasts_ns(&job->run) > allowed_ns) {
         wb_diagnosis_load(&load->heard, &latest->stream[WB_ROLE_STAGE].heard, &job->run.rig, cause);
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
-                            "the load cell at %s sent no reading within %g s: %s; or move blindly "
-                            "with --without-load-cell",
+                            "the load cell at %s sent no reading within %g s: %s; to move without "
+                            "watching the force, use --without-load-cell",
                             job->run.rig.load_cell.address, job->request.connect_timeout, cause);
     }
 }
 
-/* True when a report came that cannot be older than the command of this phase. */
+/* True if a new report cannot be older than the command of this phase. */
 static bool fresh_report(struct wb_stage_job *job, int64_t stale_ns)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
@@ -326,7 +326,7 @@ static void step_reset(struct wb_stage_job *job)
     if (wb_sequence_lasts_ns(&job->run) > RESET_NS)
         wb_sequence_give_up(
             &job->run, WB_INTERLOCK_STAGE,
-            "the stage does not come back from its reset: switch it off and on, then run 'home'");
+            "the stage did not restart after its reset: switch it off and on, then run 'home'");
 }
 
 static void step_unlock(struct wb_stage_job *job)
@@ -335,7 +335,7 @@ static void step_unlock(struct wb_stage_job *job)
     if (fresh_report(job, STALE_NS) && latest->stage.state == WB_STAGE_IDLE)
         begin_motion(job);
     else if (wb_sequence_lasts_ns(&job->run) > RESET_NS)
-        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "the stage does not unlock%s%s",
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "the stage did not unlock%s%s",
                             latest->stage_error[0] ? ": " : "", latest->stage_error);
 }
 
@@ -373,13 +373,13 @@ static void step_move(struct wb_stage_job *job)
     if (wb_sequence_lasts_ns(&job->run) > job->run.allowed_ns)
         wb_sequence_give_up(
             &job->run, WB_INTERLOCK_STAGE,
-            "the stage did not arrive at its target in time: check that nothing blocks it");
+            "the stage did not reach its target in time: check that nothing blocks it");
     if (!fresh_report(job, 0) || latest->stage.state != WB_STAGE_IDLE)
         return;
     const double travel = wb_sequence_travel(&job->run, latest->stage.position);
     const bool releases = job->request.kind == WB_STAGE_JOB_RELEASE;
     if (fabs(travel - job->run.target) <= WB_SEQUENCE_TOLERANCE && releases) {
-        rest(job, travel);
+        begin_rest(job, travel);
         return;
     }
     if (fabs(travel - job->run.target) <= WB_SEQUENCE_TOLERANCE) {
@@ -397,7 +397,7 @@ static void step_move(struct wb_stage_job *job)
         step_up(job, travel);
         return;
     }
-    /* It stands: no hold is needed, which would only have to be released again. */
+    /* The stage has stopped already; a feed hold would have to be released again. */
     if (job->run.idle_reports >= 2 && latest->stage_error[0]) {
         wb_acquisition_motion_ended(job->run.acquisition);
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "the stage stopped after %.2f mm: %s",
@@ -411,7 +411,7 @@ static void step_move(struct wb_stage_job *job)
     }
 }
 
-/* Release: the reading is level, and not known to be that of a slack strand. */
+/* Release: ends with a level reading that does not prove a slack strand. */
 static void end_level(struct wb_stage_job *job, enum wb_release_verdict verdict)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
@@ -421,26 +421,26 @@ static void end_level(struct wb_stage_job *job, enum wb_release_verdict verdict)
     if (verdict == WB_RELEASE_LEVEL)
         wb_sequence_set_end(
             &job->run, WB_SEQUENCE_STILL_LOADED,
-            "went up by %.2f mm, and the reading no longer changes (%.2f mN). Either the strand is "
-            "slack, or the clamp does not go with the stage and the wire is still bent: look at "
-            "the strand before you touch the specimen. If it hangs slack the specimen is free. "
-            "With the cell's zero (--zero-mn, which record says after a stop) release tells them "
-            "apart",
+            "moved up by %.2f mm, and the reading no longer changes (%.2f mN): either the strand "
+            "is "
+            "slack, or the clamp does not follow the stage and the wire is still bent; check the "
+            "strand before you touch the specimen; if it is slack, the specimen is free; with "
+            "--zero-mn (record prints the value after a stop) release can distinguish the two",
             up, force);
     else if (isfinite(zero))
         wb_sequence_set_end(
             &job->run, WB_SEQUENCE_STILL_LOADED,
-            "went up by %.2f mm, but the reading stays at %.2f mN, where a slack strand leaves "
-            "%.2f mN (--zero-mn): the wire is still bent and the clamp does not go with the "
-            "stage, or something else hangs on the cell, or it was zeroed since. Look at the "
-            "clamp and the strand before you touch the specimen",
+            "moved up by %.2f mm, but the reading stays at %.2f mN instead of the %.2f mN of a "
+            "slack strand (--zero-mn): the clamp does not follow the stage and the wire is still "
+            "bent, or the cell carries another load or was zeroed meanwhile; check clamp and "
+            "strand before you touch the specimen",
             up, force, zero);
     else
         wb_sequence_set_end(&job->run, WB_SEQUENCE_STILL_LOADED,
-                            "went up by %.2f mm, but the reading stays at %.2f mN, more than a "
-                            "slack strand leaves on the load cell: does the clamp go with the "
-                            "stage? Look at it, at the strand and at what hangs on the cell "
-                            "before you touch the specimen, then jog",
+                            "moved up by %.2f mm, but the reading stays at %.2f mN, more than a "
+                            "slack strand can cause: check that the clamp follows the stage, the "
+                            "strand and the load of the cell before you touch the specimen, then "
+                            "jog",
                             up, force);
     end_release(job);
 }
@@ -454,16 +454,17 @@ static void step_rest(struct wb_stage_job *job)
         if (wb_sequence_lasts_ns(&job->run) > REST_NS)
             wb_sequence_give_up(
                 &job->run, WB_INTERLOCK_STREAM_LOST,
-                "the load cell at %s sends too few readings to see the strand go slack",
+                "the load cell at %s sends too few readings to detect a slack strand",
                 job->run.rig.load_cell.address);
         break;
     case WB_RELEASE_GO_UP:
-        /* A report without a position says nothing of how far up it may go: the next one will. */
+        /* Without a position the allowed travel is unknown: wait for the next report. */
         if (isfinite(latest->stage.position))
             step_up(job, wb_sequence_travel(&job->run, latest->stage.position));
         else if (wb_sequence_lasts_ns(&job->run) > REST_NS)
-            wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
-                                "the stage does not tell its position: set $10=1 in its firmware");
+            wb_sequence_give_up(
+                &job->run, WB_INTERLOCK_STREAM_LOST,
+                "the stage does not report its position: set $10=1 in its firmware");
         break;
     case WB_RELEASE_SLACK:
         wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE,

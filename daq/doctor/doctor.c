@@ -16,7 +16,7 @@
 
 #define WB_LOG_DOMAIN "doctor"
 
-/* At each baud rate that is tried. */
+/* Time at each baud rate that is tried. */
 #define LISTENING_NS (1200 * WB_NS_PER_MS)
 
 enum phase {
@@ -79,7 +79,7 @@ static enum wb_status start(struct wb_doctor *doctor)
     WB_TRY(wb_rig_read(test->rig_path, &doctor->rig));
     if (test->specimen_path)
         WB_TRY(wb_specimen_read(test->specimen_path, &doctor->specimen));
-    /* A take of Motive's own is the test's. */
+    /* Motive records a take only during a test. */
     doctor->rig.mocap.record_take = false;
     seen->rig = &doctor->rig;
     seen->specimen = test->specimen_path ? &doctor->specimen : NULL;
@@ -97,7 +97,7 @@ enum wb_status wb_doctor_open(struct wb_doctor **out, const struct wb_doctor_req
 {
     struct wb_doctor *const doctor = calloc(1, sizeof *doctor);
     if (!doctor)
-        return wb_fail(WB_ERR_MEMORY, "no memory to look at the bench");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the check of the bench");
     doctor->request = *request;
     const enum wb_status status = start(doctor);
     if (status != WB_OK) {
@@ -109,8 +109,8 @@ enum wb_status wb_doctor_open(struct wb_doctor **out, const struct wb_doctor_req
     return WB_OK;
 }
 
-/* All that were opened answer. */
-static bool are_heard(const struct wb_acquisition_latest *latest)
+/* Whether all instruments that were opened are ready and have sent samples. */
+static bool are_ready(const struct wb_acquisition_latest *latest)
 {
     const struct wb_acquisition_stream_state *const stream = latest->stream;
     const bool has[WB_INTERLOCK_ROLES] = {[WB_ROLE_LOAD] = latest->has_load,
@@ -134,7 +134,7 @@ bool wb_doctor_step(struct wb_doctor *doctor, int64_t timeout_ns)
     if (ended || wb_interrupted()) {
         enter(doctor, PHASE_DONE);
     } else if (doctor->phase == PHASE_CONNECT &&
-               (are_heard(wb_acquisition_latest(doctor->acquisition)) || lasted_ns > allowed_ns)) {
+               (are_ready(wb_acquisition_latest(doctor->acquisition)) || lasted_ns > allowed_ns)) {
         doctor->seen.listening = true;
         enter(doctor, PHASE_LISTEN);
     } else if (doctor->phase == PHASE_LISTEN) {
@@ -145,7 +145,7 @@ bool wb_doctor_step(struct wb_doctor *doctor, int64_t timeout_ns)
     return doctor->phase != PHASE_DONE;
 }
 
-/* Of a load cell whose bytes are no text: at which baud rate they are. */
+/* Finds the baud rate of a load cell whose bytes cannot be read as text. */
 static void find_rate(const struct wb_doctor *doctor, struct wb_doctor_report *report)
 {
     const struct wb_acquisition_stream_state *const load =
@@ -162,7 +162,7 @@ static void find_rate(const struct wb_doctor *doctor, struct wb_doctor_report *r
         return;
     struct wb_doctor_item *const item = wb_doctor_add(report, "load cell", WB_DOCTOR_NOT_READY);
     snprintf(item->text, sizeof item->text,
-             "with %s it prints readings ('%s'): set load_cell.address: %.*s,%s", heard.line,
+             "readings are received with %s ('%s'): set load_cell.address: %.*s,%s", heard.line,
              heard.sample, (int)strcspn(address, ","), address, heard.line);
 }
 
@@ -193,7 +193,7 @@ void wb_doctor_close(struct wb_doctor *doctor, struct wb_doctor_report *report)
     struct wb_doctor_seen *const seen = &doctor->seen;
     if (report) {
         memset(report, 0, sizeof *report);
-        /* What it points to goes with the acquisition, which is closed last. */
+        /* The copy has pointers into the acquisition, which is therefore closed after judging. */
         seen->latest = *wb_acquisition_latest(doctor->acquisition);
         report->is_virtual = doctor->rig.is_virtual;
         wb_doctor_judge(seen, &doctor->request.test, report);

@@ -33,7 +33,7 @@ double wb_doctor_trend_slope(const struct wb_doctor_trend *trend, double *error)
     *error = (double)INFINITY;
     if (!(trend->n >= 3.0) || !(spread > 0.0))
         return 0.0;
-    /* The scatter about the line is at most that of readings within their range. */
+    /* Bounds the scatter about the line by the range of the readings. */
     *error = 0.25 * (trend->highest - trend->lowest) / sqrt(spread);
     return (trend->tf - trend->t * trend->f / trend->n) / spread;
 }
@@ -84,7 +84,7 @@ static void note_remark(void *context, enum wb_log_level level, int64_t t_ns, co
     if (i == WB_DOCTOR_REMARKS)
         return;
     struct wb_doctor_remark *const remark = &seen->remarks[role][i];
-    /* A graver one of the same kind is not covered by a later one. */
+    /* A later remark does not replace a more severe one of the same kind. */
     if (i < seen->n_remarks[role] && level > remark->level)
         return;
     seen->n_remarks[role] += i == seen->n_remarks[role];

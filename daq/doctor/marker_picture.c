@@ -9,8 +9,8 @@
 #include "daq/acquire/acquisition.h"
 #include "daq/acquire/marker_check.h"
 
-#define COLUMNS 78 /* of the canvas; its left border takes two */
-#define ROWS 11
+#define COLUMNS 78     /* of the canvas; the left border takes two more */
+#define ROWS 11        /* of the canvas */
 #define CELL_RATIO 2.0 /* a character is twice as high as wide */
 #define LEAST_MARGIN 2
 
@@ -33,8 +33,7 @@ static char sign_of(int marker)
     return signs[marker];
 }
 
-/* The level direction in which the measured markers extend most; of the two, that from the first
- * of the specimen's markers to the last. */
+/* The horizontal direction in which the measured markers extend most. */
 static void find_direction(const struct wb_mocap_frame *frame, int up, double direction[3])
 {
     const int a = (up + 1) % 3, b = (up + 2) % 3;
@@ -95,7 +94,7 @@ static void collect(struct view *view, const struct wb_mocap_frame *frame,
     }
 }
 
-/* The canvas shows all points, and is at least as wide as the specimen is long. */
+/* Chooses a scale at which the canvas shows all points and the length of the specimen. */
 static void choose_scale(struct view *view, double length)
 {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -129,7 +128,7 @@ static void plot(struct view *view)
         memset(view->canvas[row], ' ', COLUMNS);
         view->canvas[row][COLUMNS] = '\0';
     }
-    /* Strays first: the specimen's markers cover them. */
+    /* Strays are drawn first, so that the specimen's markers cover them. */
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < view->n; i++) {
             const struct point *const point = &view->points[i];
@@ -154,7 +153,7 @@ static void put(char *text, size_t size, const char *border, char *line)
     snprintf(text + used, size - used, "%s%s\n", border, line);
 }
 
-/* The specimen's markers below the wire, the first below the first that is seen. */
+/* Draws the markers of the specimen file below the picture, aligned at one marker that is seen. */
 static void put_specimen(const struct view *view, const struct wb_specimen *specimen,
                          const struct wb_marker_places *places, char *text, size_t size)
 {
@@ -197,7 +196,7 @@ void wb_marker_picture(const struct wb_mocap_frame *frame, const struct wb_speci
     choose_scale(&view, specimen ? specimen->length : 0.0);
     plot(&view);
     snprintf(text, size, "the cameras see, from the side (%c up, %.3g mm a column%s):\n", up,
-             view.scale / WB_MM, specimen ? "; * not the wire's" : "");
+             view.scale / WB_MM, specimen ? "; * other marker" : "");
     int first = 0, last = ROWS - 1;
     while (first < ROWS / 2 && is_blank(view.canvas[first]) && is_blank(view.canvas[first + 1]))
         first++;
@@ -208,8 +207,8 @@ void wb_marker_picture(const struct wb_mocap_frame *frame, const struct wb_speci
     if (!specimen)
         return;
     char title[96];
-    snprintf(title, sizeof title, "the specimen file says%s:",
-             places.n_seen < specimen->n_markers ? " (? is not seen)" : "");
+    snprintf(title, sizeof title, "according to the specimen file%s:",
+             places.n_seen < specimen->n_markers ? " (? not seen)" : "");
     put(text, size, "", title);
     put_specimen(&view, specimen, &places, text, size);
 }

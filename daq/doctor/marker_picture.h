@@ -1,4 +1,4 @@
-/* What the cameras see beside what the specimen file says, as text for a terminal. */
+/* Text picture of the seen markers and of the markers of the specimen file, for a terminal. */
 #ifndef WB_DAQ_DOCTOR_MARKER_PICTURE_H
 #define WB_DAQ_DOCTOR_MARKER_PICTURE_H
 
@@ -7,11 +7,11 @@
 #include "daq/protocol/sample.h"
 #include "daq/protocol/specimen.h"
 
-/* Draws a frame from the side, seen at right angles to the wire: up is `up` ('y' or 'z'), the
- * measured markers that are the specimen's as the digits and letters of their order in the file,
- * others as '*'; below, at the same scale, the specimen's markers at their arc lengths, a '?' below
- * each that is not seen. `specimen` may be NULL. Lines of at most 80 columns, each with its line
- * end; "" for a frame without measured markers and no specimen. */
+/* Draws a frame from the side, perpendicular to the wire, with `up` ('y' or 'z') upwards. Measured
+ * markers of the specimen are shown as digits and letters in the order of the file, others as '*'.
+ * Below, at the same scale, the specimen's markers at their arc lengths, with a '?' below each
+ * marker that is not seen. `specimen` may be NULL. Lines of at most 80 columns, each with a line
+ * end; "" without measured markers and specimen. */
 void wb_marker_picture(const struct wb_mocap_frame *frame, const struct wb_specimen *specimen,
                        char up, char *text, size_t size);
 

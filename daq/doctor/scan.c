@@ -20,8 +20,8 @@
 
 #define WB_LOG_DOMAIN "scan"
 
-#define PATIENCE_NS (1200 * WB_NS_PER_MS) /* at each baud rate: a slow instrument prints twice */
-#define ANSWER_NS WB_NS_PER_S
+#define PATIENCE_NS (1200 * WB_NS_PER_MS) /* per baud rate: two lines of a slow instrument */
+#define REPLY_NS WB_NS_PER_S              /* time for NatNet servers to reply */
 #define MOST_CARDS 32
 
 /* --- ports --- */
@@ -34,7 +34,7 @@ bool wb_scan_add_port(struct wb_scan *scan, const char *address)
     return true;
 }
 
-/* Whether a port that is there already leads to the same device. */
+/* Whether a port of the scan leads to the same device. */
 static bool has_device(const struct wb_scan *scan, const char *path)
 {
     char wanted[PATH_MAX], other[PATH_MAX];
@@ -89,10 +89,10 @@ static void ask(int descriptor, const char *host, int port)
     const size_t n = wb_natnet_encode_connect(bytes, sizeof bytes, "wirebench", false);
     if (inet_pton(AF_INET, host, &to.sin_addr) == 1 &&
         sendto(descriptor, bytes, n, 0, (struct sockaddr *)&to, sizeof to) < 0)
-        wb_debug("nothing can be sent to %s: %s", host, strerror(errno));
+        wb_debug("sending to %s failed: %s", host, strerror(errno));
 }
 
-/* The address that a rig file needs: of a multicast server the group and the card towards it. */
+/* Writes the server's address for a rig file; for multicast with the group and the interface. */
 static void write_address(char address[WB_SCAN_ADDRESS], const struct sockaddr_in *from,
                           const struct wb_natnet_server *info)
 {
@@ -109,8 +109,8 @@ static void write_address(char address[WB_SCAN_ADDRESS], const struct sockaddr_i
              has_card ? ",interface=" : "", has_card ? card.address : "");
 }
 
-static void take_answer(struct wb_scan *scan, const uint8_t *bytes, size_t n,
-                        const struct sockaddr_in *from)
+static void add_reply(struct wb_scan *scan, const uint8_t *bytes, size_t n,
+                      const struct sockaddr_in *from)
 {
     struct wb_natnet_packet packet;
     struct wb_natnet_fault fault = {0};
@@ -156,10 +156,11 @@ enum wb_status wb_scan_find_servers(struct wb_scan *scan, const char *address)
     const int on = 1, descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     const int64_t begun_ns = wb_time_now_ns();
     if (descriptor < 0)
-        return wb_fail(WB_ERR_IO, "no socket to look for NatNet servers: %s", strerror(errno));
+        return wb_fail(WB_ERR_IO, "a socket to search for NatNet servers cannot be created: %s",
+                       strerror(errno));
     (void)setsockopt(descriptor, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
     const enum wb_status status = ask_all(descriptor, address);
-    while (status == WB_OK && wb_time_now_ns() - begun_ns < ANSWER_NS && !wb_interrupted()) {
+    while (status == WB_OK && wb_time_now_ns() - begun_ns < REPLY_NS && !wb_interrupted()) {
         struct pollfd polled = {.fd = descriptor, .events = POLLIN};
         struct sockaddr_in from;
         socklen_t size = sizeof from;
@@ -168,8 +169,8 @@ enum wb_status wb_scan_find_servers(struct wb_scan *scan, const char *address)
             recvfrom(descriptor, bytes, sizeof bytes, 0, (struct sockaddr *)&from, &size);
         if (n <= 0)
             continue;
-        take_answer(scan, bytes, (size_t)n, &from);
-        /* A unicast server would begin to stream here. */
+        add_reply(scan, bytes, (size_t)n, &from);
+        /* Disconnect, or a unicast server would start to stream to this computer. */
         const size_t n_bye = wb_natnet_encode_empty(bytes, sizeof bytes, WB_NATNET_DISCONNECT);
         (void)sendto(descriptor, bytes, n_bye, 0, (struct sockaddr *)&from, size);
     }

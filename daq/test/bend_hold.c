@@ -10,7 +10,7 @@
 
 #define WB_LOG_DOMAIN "record"
 
-/* The first idle report may be older than the command. */
+/* Consecutive idle reports that prove a standstill; the first one may be older than the command. */
 #define STANDING_REPORTS 2
 
 void wb_bend_hold_begin(struct wb_bend_hold *hold, struct wb_sequence *run, int held,
@@ -27,7 +27,7 @@ void wb_bend_hold_begin(struct wb_bend_hold *hold, struct wb_sequence *run, int 
                          "\"tension_mN\": %.6g}",
                          cycle, name, wb_sequence_travel(run, latest->stage.position) / WB_MM,
                          tension / WB_MN);
-    /* Not the hold byte, which locks a stage that happens to stand between two short jogs. */
+    /* A feed hold would lock a stage that happens to stand between two short jogs. */
     wb_sequence_send(run, WB_STAGE_COMMAND_JOG_CANCEL, 0.0, run->rig.stage.speed, held);
 }
 
@@ -36,7 +36,7 @@ double wb_bend_hold_lasts(const struct wb_bend_hold *hold)
     return hold->is_on ? wb_seconds_from_ns(wb_time_now_ns() - hold->at_ns) : (double)NAN;
 }
 
-static void see_it_stand(struct wb_bend_hold *hold, struct wb_sequence *run)
+static void wait_for_standstill(struct wb_bend_hold *hold, struct wb_sequence *run)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(run->acquisition);
     if (latest->stage_reports != run->reports_seen) {
@@ -50,20 +50,18 @@ static void see_it_stand(struct wb_bend_hold *hold, struct wb_sequence *run)
                 wb_sequence_travel(run, latest->stage.position) / WB_MM);
     } else if (wb_sequence_lasts_ns(run) > run->allowed_ns) {
         wb_sequence_give_up(run, WB_INTERLOCK_STAGE,
-                            "the test was to be held, and the stage does not come to a stand");
+                            "the stage did not stop in time after the test was put on hold");
     }
 }
 
 void wb_bend_hold_step(struct wb_bend_hold *hold, struct wb_sequence *run, double most)
 {
     if (!hold->stands)
-        see_it_stand(hold, run);
+        wait_for_standstill(hold, run);
     else if (wb_bend_hold_lasts(hold) > most)
-        wb_sequence_give_up(
-            run, WB_INTERLOCK_INTERRUPT,
-            "held for %g s, the longest that is allowed (--hold-most-s), and nobody "
-            "went on with it",
-            most);
+        wb_sequence_give_up(run, WB_INTERLOCK_INTERRUPT,
+                            "held for longer than %g s without being resumed (--hold-most-s)",
+                            most);
 }
 
 void wb_bend_hold_end(struct wb_bend_hold *hold, struct wb_sequence *run, const char *how,
@@ -79,7 +77,7 @@ void wb_bend_hold_end(struct wb_bend_hold *hold, struct wb_sequence *run, const 
                          tension / WB_MN, how);
 }
 
-/* --- from a recording --- */
+/* --- reading from a recording --- */
 
 static double number_of(const struct wb_json *json, const char *key, double unit)
 {
@@ -87,7 +85,7 @@ static double number_of(const struct wb_json *json, const char *key, double unit
     return wb_json_get_number(json, key, &value) ? value * unit : (double)NAN;
 }
 
-enum wb_status wb_bend_hold_read(const struct wb_event *event, struct wb_bend_hold_recorded *told)
+enum wb_status wb_bend_hold_read(const struct wb_event *event, struct wb_bend_hold_recorded *hold)
 {
     struct wb_json *json;
     struct wb_reason why;
@@ -96,21 +94,21 @@ enum wb_status wb_bend_hold_read(const struct wb_event *event, struct wb_bend_ho
     if (wb_json_parse_with_reason(&json, event->text, event->kind, &why) != WB_OK)
         return WB_ERR_DATA;
     if (strcmp(event->kind, WB_BEND_HOLD_END) == 0) {
-        told->to_ns = event->t_ns;
-        told->after = number_of(json, "tension_mN", WB_MN);
+        hold->to_ns = event->t_ns;
+        hold->after = number_of(json, "tension_mN", WB_MN);
         wb_json_destroy(json);
         return WB_OK;
     }
     const bool is_ours = wb_json_get_integer(json, "cycle", &cycle) && cycle > 0 &&
                          cycle < INT32_MAX && wb_json_get_text(json, "phase", &phase);
     if (is_ours) {
-        *told = (struct wb_bend_hold_recorded){.from_ns = event->t_ns,
+        *hold = (struct wb_bend_hold_recorded){.from_ns = event->t_ns,
                                                .to_ns = INT64_MAX,
                                                .cycle = (int)cycle,
                                                .travel = number_of(json, "travel_mm", WB_MM),
                                                .before = number_of(json, "tension_mN", WB_MN),
                                                .after = (double)NAN};
-        snprintf(told->phase, sizeof told->phase, "%s", phase);
+        snprintf(hold->phase, sizeof hold->phase, "%s", phase);
     }
     wb_json_destroy(json);
     return is_ours ? WB_OK : WB_ERR_DATA;

@@ -26,8 +26,7 @@ char *wb_bend_recording_yaml_part(const char *yaml, const char *key)
             return strdup("");
         begin++;
     }
-    /* The part ends where the next line starts at the margin with something that is not a comment.
-     */
+    /* The block ends at the next unindented line that is not a comment. */
     const char *end = begin;
     do {
         end = strchr(end, '\n');
@@ -66,7 +65,7 @@ static enum wb_status set_truth(struct wb_recording *recording,
     char *const truth = wb_bend_recording_yaml_part(text ? text : description->rig_text, "truth");
     free(text);
     if (!truth)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the rig's truth");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the true values of the virtual rig");
     const enum wb_status status = wb_recording_set_meta(recording, "truth", truth);
     free(truth);
     return status;
@@ -83,7 +82,7 @@ static enum wb_status set_circumstances(struct wb_recording *recording,
 {
     char text[256];
     wb_time_format(wb_time_utc(), text);
-    /* When an imported test was made, its files do not say. */
+    /* The files of an imported test do not contain its date. */
     WB_TRY(wb_recording_set_meta(recording, description->imported ? "imported_utc" : "start_utc",
                                  text));
     snprintf(text, sizeof text, "%" PRId64, description->monotonic_start_ns);
@@ -94,7 +93,7 @@ static enum wb_status set_circumstances(struct wb_recording *recording,
     return wb_recording_set_meta(recording, "host", text);
 }
 
-/* The last check of the load cell, if there is one beside the rig file. */
+/* Stores the last check of the load cell, if the rig file has a log of checks. */
 static enum wb_status set_check(struct wb_recording *recording,
                                 const struct wb_bend_recording *description)
 {
@@ -106,11 +105,12 @@ static enum wb_status set_check(struct wb_recording *recording,
         return WB_OK;
     if (!check.passed)
         wb_warn(
-            "the last check of the load cell, on %s, did not pass: calibrate it or check it again",
+            "the last check of the load cell, on %s, failed: calibrate the cell or check it again",
             check.utc);
     if (strcmp(check.serial_number, serial) != 0)
-        wb_warn("the last check was of the load cell '%s', the rig file now has '%s': check again",
-                check.serial_number, serial);
+        wb_warn(
+            "the last check was made with load cell '%s', but the rig file has '%s': check again",
+            check.serial_number, serial);
     return wb_recording_set_meta(recording, "load_cell_check", line);
 }
 
@@ -170,9 +170,9 @@ enum wb_status wb_bend_recording_create(struct wb_recording **out,
     if (status == WB_OK)
         status = wb_recording_flush(recording);
     if (status != WB_OK) {
-        /* Already told; what matters is that no half-made file blocks the next try. */
+        /* The error is already logged. An incomplete file must not block the next attempt. */
         if (wb_recording_close(recording) != WB_OK)
-            wb_debug("the unfinished recording did not close cleanly");
+            wb_debug("the incomplete recording could not be closed cleanly");
         unlink(description->path);
         return status;
     }

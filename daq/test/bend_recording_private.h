@@ -1,12 +1,12 @@
-/* What only tests ask of daq/test/bend_recording.h. */
+/* Functions of daq/test/bend_recording.h that only tests call. */
 #ifndef WB_DAQ_TEST_BEND_RECORDING_PRIVATE_H
 #define WB_DAQ_TEST_BEND_RECORDING_PRIVATE_H
 
 #include "daq/test/bend_recording.h"
 
-/* The text of a top-level key of a YAML block map, the key's own line included, or "" when it is
- * not there; allocated, NULL when out of memory. (For the truth of a virtual rig, which is stored
- * but never read.) */
+/* Extracts the text of a top-level key of a YAML block map, including the key's own line; "" if the
+ * key is missing. Allocated; NULL when out of memory. (For the true values of a virtual rig, which
+ * are stored but never parsed.) */
 char *wb_bend_recording_yaml_part(const char *yaml, const char *key);
 
 #endif

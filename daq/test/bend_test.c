@@ -27,9 +27,9 @@
 
 #define WB_LOG_DOMAIN "record"
 
-#define LEAST_READINGS 10 /* of a tare */
-#define MOST_CHECKS 3     /* a marker that cameras hide for a moment is looked for again */
-#define CHECK_TIMEOUT_NS (5 * WB_NS_PER_S)
+#define LEAST_READINGS 10 /* of the load cell for a tare */
+#define MOST_CHECKS 3     /* start checks before a missing marker ends the test: it may be hidden */
+#define CHECK_TIMEOUT_NS (5 * WB_NS_PER_S) /* for the readings and frames of a start check */
 
 enum phase {
     PHASE_CONNECT,
@@ -43,27 +43,27 @@ enum phase {
 };
 
 struct wb_bend_test {
-    struct wb_rig rig;                   /* as its file has it; the run's has the cycle's speed */
-    struct wb_bend_test_request request; /* its paths and sink are not kept beyond open */
+    struct wb_rig rig;                   /* of the rig file; run.rig has the speed of the cycle */
+    struct wb_bend_test_request request; /* paths and sink are valid during open only */
     char output_path[WB_PATH], rig_path[WB_PATH];
     struct wb_sequence run;
     struct wb_specimen specimen;
     struct wb_writer *writer;
     int64_t started_ns;
     int cycle;         /* from 1 */
-    double later_time; /* s: of the cycles after this one */
+    double later_time; /* s of rig time of the cycles after this one */
     struct wb_start_check check;
     int n_checks;
-    struct wb_average zero; /* N, of the tare */
+    struct wb_average zero; /* N, readings of the tare */
     struct wb_tip_watch tip;
-    bool motion_agrees; /* the first motion was seen as the stage reported it */
+    bool motion_agrees; /* the cameras confirmed the first millimetres of travel */
     struct wb_clamp_watch clamp;
     uint64_t reports_followed;
     struct wb_first_force first_force;
     enum wb_first_force_verdict force_verdict;
-    bool force_told;
-    struct wb_force_drop force_drop;      /* of this way down */
-    char force_text[WB_START_CHECK_TEXT]; /* why it is wrong */
+    bool force_reported;
+    struct wb_force_drop force_drop;      /* of the loading of this cycle */
+    char force_text[WB_START_CHECK_TEXT]; /* reason of WB_FIRST_FORCE_WRONG */
     bool has_tare;
     struct wb_bend_hold hold;
     struct wb_bend_test_result result;
@@ -107,15 +107,15 @@ void wb_bend_test_default_request(struct wb_bend_test_request *request)
     request->rest_time = 2.0;
 }
 
-/* Rig time in s as host time: a virtual rig may run faster. */
+/* Converts s of rig time to host time: a virtual rig may run faster. */
 static int64_t host_ns(const struct wb_bend_test *test, double rig_seconds)
 {
     return wb_ns_from_seconds(rig_seconds / test->run.rig.time_scale);
 }
 
-/* --- every way out --- */
+/* --- ending the test --- */
 
-/* The last events. Nothing moves any more, or nobody listens. */
+/* Records the last events. The stage has stopped, or it no longer replies. */
 static void finish(struct wb_bend_test *test)
 {
     static const char *const why[] = {"running",     "done",         "limit",
@@ -168,7 +168,7 @@ static void step_stop(struct wb_bend_test *test)
 
 /* --- connecting --- */
 
-static void complain_silence(struct wb_bend_test *test)
+static void give_up_on_silence(struct wb_bend_test *test)
 {
     static const enum wb_role order[] = {WB_ROLE_LOAD, WB_ROLE_STAGE, WB_ROLE_MOCAP};
     char text[WB_SILENCE_TEXT];
@@ -180,29 +180,29 @@ static void complain_silence(struct wb_bend_test *test)
         return;
     }
     wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
-                        "the instruments answer, but not all are ready within %g s",
+                        "the instruments reply, but not all of them are ready after %g s",
                         test->request.connect_timeout);
 }
 
-static bool gone(const struct wb_bend_test *test, enum wb_role role)
+static bool is_disconnected(const struct wb_bend_test *test, enum wb_role role)
 {
     return wb_acquisition_latest(test->run.acquisition)->stream[role].gone;
 }
 
 /* --- start check --- */
 
-static void refuse(struct wb_bend_test *test, const char *text)
+static void fail_start_check(struct wb_bend_test *test, const char *text)
 {
     wb_acquisition_event(test->run.acquisition, "check", "refused: %s", text);
     wb_sequence_give_up(&test->run, WB_INTERLOCK_STAGE, "start check: %s", text);
 }
 
-/* Arms the interlock with what is known so far: start position, tare. */
+/* Arms the interlock with the start position and, once it is known, the tare. */
 static void arm(struct wb_bend_test *test)
 {
     struct wb_interlock_settings settings;
     wb_interlock_default_settings(&settings, &test->run.rig);
-    /* The return ends at the start; beyond it nothing is known to be free. */
+    /* The return ends at the start position; the space above it may not be free. */
     settings.rise = 1.0 * WB_MM;
     if (!test->has_tare)
         settings.force = 0.0;
@@ -216,38 +216,38 @@ static void step_connect(struct wb_bend_test *test)
     const int64_t allowed_ns =
         wb_ns_from_seconds(test->request.connect_timeout) + test->run.rig.load_cell.settle_ns;
     char text[WB_START_CHECK_TEXT];
-    if (gone(test, WB_ROLE_LOAD))
+    if (is_disconnected(test, WB_ROLE_LOAD))
         wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
-                            "the load cell's port %s went away: check its cable and power",
+                            "the load cell's port %s was disconnected: check its cable and power",
                             test->run.rig.load_cell.address);
-    else if (gone(test, WB_ROLE_STAGE))
+    else if (is_disconnected(test, WB_ROLE_STAGE))
         wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
-                            "the stage's port %s went away: check its cable and power",
+                            "the stage's port %s was disconnected: check its cable and power",
                             test->run.rig.stage.address);
     else if (latest->storage.failing != WB_OK)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_DISK,
-                            "the recording cannot be written: the message before says why");
+                            "the recording cannot be written: see the previous message");
     else if (!wb_start_check_unit(latest->unit_contradicts, &test->run.rig, test->rig_path, text)) {
-        /* Before there is a valid reading: in kg for g all of them may be beyond the range. */
+        /* Checked before the first valid reading: with kg read as g, all may be out of range. */
         test->result.recorded = true;
-        refuse(test, text);
+        fail_start_check(test, text);
     } else if (latest->has_load && latest->has_mocap && latest->has_stage &&
                latest->stream[WB_ROLE_MOCAP].ready && latest->stream[WB_ROLE_LOAD].ready &&
                latest->stream[WB_ROLE_STAGE].ready) {
         test->result.recorded = true;
-        /* Before the interlock, whose message would be the poorer one. */
+        /* Checked before the interlock is armed: this message is more specific. */
         if (!wb_start_check_stage(&latest->stage, test->rig_path, text)) {
-            refuse(test, text);
+            fail_start_check(test, text);
             return;
         }
         arm(test);
         wb_sequence_enter(&test->run, PHASE_CHECK);
     } else if (wb_sequence_lasts_ns(&test->run) > allowed_ns) {
-        complain_silence(test);
+        give_up_on_silence(test);
     }
 }
 
-/* Whether the stage can do the whole test as its firmware is set. */
+/* Whether the settings of the stage's firmware allow the whole test. */
 static bool check_settings(const struct wb_bend_test *test, char text[WB_START_CHECK_TEXT])
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
@@ -273,8 +273,8 @@ static void step_check(struct wb_bend_test *test)
     if (!enough)
         snprintf(text, sizeof text,
                  "only %" PRId64
-                 " readings of the load cell and %d frames of the cameras came in %.1f "
-                 "s, at least 10 of each are needed",
+                 " readings of the load cell and %d frames of the cameras arrived in %.1f "
+                 "s: at least 10 of each are needed",
                  check->load.n, check->n_frames, wb_seconds_from_ns(waited_ns));
     if (enough && !wb_start_check_markers(check, &test->specimen, text) &&
         ++test->n_checks < MOST_CHECKS) {
@@ -286,12 +286,12 @@ static void step_check(struct wb_bend_test *test)
         !check_settings(test, text) || !wb_start_check_markers(check, &test->specimen, text) ||
         !wb_start_check_chain(check, &test->specimen, &test->run.rig, text) ||
         !wb_start_check_zero(check, &test->run.rig, test->rig_path, text)) {
-        refuse(test, text);
+        fail_start_check(test, text);
         return;
     }
-    /* Later it may come back; with nothing moved yet there is nothing to lose. */
+    /* During a test a failing disk is tolerated for a while; a test is not started on one. */
     if (latest->storage.failing != WB_OK) {
-        refuse(test, "nothing can be written to the disk: see the message before");
+        fail_start_check(test, "nothing can be written to the disk: see the previous message");
         return;
     }
     test->run.start_position = latest->stage.position;
@@ -305,7 +305,7 @@ static void step_check(struct wb_bend_test *test)
 
 /* --- tare and cycles --- */
 
-/* True when the motion under way has ended at its target; stops the test when it cannot. */
+/* True once the current motion has ended at its target; ends the test if the motion fails. */
 static bool arrived(struct wb_bend_test *test)
 {
     char text[80];
@@ -314,7 +314,7 @@ static bool arrived(struct wb_bend_test *test)
         if (wb_sequence_lasts_ns(&test->run) > test->run.allowed_ns)
             wb_sequence_give_up(
                 &test->run, WB_INTERLOCK_STAGE,
-                "the stage did not arrive at %.2f mm in time: check that nothing blocks it",
+                "the stage did not reach %.2f mm in time: check that nothing blocks it",
                 test->run.target / WB_MM);
         return false;
     }
@@ -324,7 +324,7 @@ static bool arrived(struct wb_bend_test *test)
         test->run.idle_reports = 0;
         if (wb_sequence_lasts_ns(&test->run) > test->run.allowed_ns)
             wb_sequence_give_up(&test->run, WB_INTERLOCK_STAGE,
-                                "the stage is at %.2f mm and did not arrive at %.2f mm in time: "
+                                "the stage is at %.2f mm and did not reach %.2f mm in time: "
                                 "check that nothing blocks it",
                                 travel / WB_MM, test->run.target / WB_MM);
         return false;
@@ -332,7 +332,7 @@ static bool arrived(struct wb_bend_test *test)
     if (fabs(travel - test->run.target) <= WB_SEQUENCE_TOLERANCE) {
         wb_acquisition_motion_ended(test->run.acquisition);
         if (wb_sequence_note_speed(&test->run, text, sizeof text))
-            wb_warn("the stage moved %s: was its feed overridden, or does it stall?", text);
+            wb_warn("the stage moved %s: check its feed override and whether it stalls", text);
         return true;
     }
     /* The first idle reports may be older than the command. */
@@ -340,17 +340,17 @@ static bool arrived(struct wb_bend_test *test)
     const bool refused = latest->stage_error[0] && test->run.idle_reports >= 2;
     if (!refused && (test->run.idle_reports < 5 || wb_sequence_lasts_ns(&test->run) <= WB_NS_PER_S))
         return false;
-    /* It stands: no hold is needed, which would only have to be released again. */
+    /* The stage has stopped already; a feed hold would have to be released again. */
     wb_acquisition_motion_ended(test->run.acquisition);
     wb_sequence_give_up(&test->run, WB_INTERLOCK_STAGE,
-                        "the stage stands at %.2f mm instead of %.2f mm%s%s", travel / WB_MM,
+                        "the stage stopped at %.2f mm instead of %.2f mm%s%s", travel / WB_MM,
                         test->run.target / WB_MM, refused ? ": " : "",
                         refused ? latest->stage_error : "");
     return false;
 }
 
-/* From here on the force must not fall while the stage goes down. */
-static void watch_drop_anew(struct wb_bend_test *test)
+/* The force drop is judged against the peak of this loading only. */
+static void restart_drop_watch(struct wb_bend_test *test)
 {
     test->force_drop = (struct wb_force_drop){.noise = test->first_force.noise,
                                               .share = test->run.rig.limits.force_drop};
@@ -371,7 +371,7 @@ static void begin_cycle(struct wb_bend_test *test)
     test->later_time = later_time(test);
     test->run.rig.stage.speed = wb_bend_test_speed(&test->request, &test->rig, test->cycle);
     test->result.started = true;
-    watch_drop_anew(test);
+    restart_drop_watch(test);
     wb_acquisition_event(test->run.acquisition, "cycle_start", "%d", test->cycle);
     wb_sequence_jog_to(&test->run, test->request.travel, test->run.rig.stage.speed, PHASE_DOWN);
 }
@@ -393,8 +393,8 @@ static void step_tare(struct wb_bend_test *test)
     begin_cycle(test);
 }
 
-/* Half a second's way: reports of the stage and frames are that old at most. */
-static double uncertain_way(const struct wb_bend_test *test)
+/* m that the stage may travel between its last report and a frame: half a second at its speed. */
+static double position_uncertainty(const struct wb_bend_test *test)
 {
     const struct wb_rig *const rig = &test->run.rig;
     return 0.5 * rig->stage.speed * fmax(rig->time_scale, 1.0);
@@ -404,20 +404,20 @@ static void check_motion(struct wb_bend_test *test)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
     const double travel = wb_sequence_travel(&test->run, latest->stage.position);
-    const double ahead = uncertain_way(test);
+    const double ahead = position_uncertainty(test);
     char text[WB_START_CHECK_TEXT];
     if (test->motion_agrees || !(travel >= WB_FIRST_MOTION))
         return;
     test->motion_agrees = wb_first_motion_agrees(&test->tip, travel, ahead, &test->run.rig, text);
     if (test->motion_agrees)
         wb_acquisition_event(test->run.acquisition, "first_motion",
-                             "the markers moved with the stage, %.2f mm on its way",
+                             "the markers moved with the stage, at %.2f mm of travel",
                              travel / WB_MM);
     else if (travel >= WB_FIRST_MOTION + ahead)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_MOTION, "%s", text);
 }
 
-/* Once the first motion agreed: does the clamp go on with the stage? */
+/* Compares clamp and stage at each report, once the first motion has agreed. */
 static void check_clamp(struct wb_bend_test *test)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
@@ -427,17 +427,17 @@ static void check_clamp(struct wb_bend_test *test)
     test->reports_followed = latest->stage_reports;
     if (wb_clamp_watch_add(&test->clamp, &test->tip, latest->stage.t_ns,
                            wb_sequence_travel(&test->run, latest->stage.position),
-                           uncertain_way(test), text))
+                           position_uncertainty(test), text))
         wb_sequence_give_up(&test->run, WB_INTERLOCK_MOTION, "%s", text);
 }
 
-/* The first force is judged at the reading that completes it, and told here. */
+/* Reports the verdict that on_load() has found. */
 static void check_force(struct wb_bend_test *test)
 {
     const enum wb_first_force_verdict verdict = test->force_verdict;
-    if (test->force_told || verdict == WB_FIRST_FORCE_OPEN)
+    if (test->force_reported || verdict == WB_FIRST_FORCE_OPEN)
         return;
-    test->force_told = true;
+    test->force_reported = true;
     if (verdict == WB_FIRST_FORCE_WRONG)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_MOTION, "%s", test->force_text);
     else
@@ -447,7 +447,7 @@ static void check_force(struct wb_bend_test *test)
                              test->first_force.taut / WB_MM);
 }
 
-static void turn(struct wb_bend_test *test)
+static void begin_unloading(struct wb_bend_test *test)
 {
     wb_acquisition_event(test->run.acquisition, "turn", "%d", test->cycle);
     wb_sequence_jog_to(&test->run, 0.0, test->run.rig.stage.speed, PHASE_UP);
@@ -464,13 +464,13 @@ static void step_down(struct wb_bend_test *test)
         wb_sequence_enter(&test->run, PHASE_DWELL);
 }
 
-/* A cell that went away may come back, as in the rest. */
+/* While the load cell is disconnected, the dwell restarts, as the rest does. */
 static void step_dwell(struct wb_bend_test *test)
 {
-    if (gone(test, WB_ROLE_LOAD))
+    if (is_disconnected(test, WB_ROLE_LOAD))
         wb_sequence_enter(&test->run, PHASE_DWELL);
     if (wb_sequence_lasts_ns(&test->run) >= host_ns(test, test->request.dwell_time))
-        turn(test);
+        begin_unloading(test);
 }
 
 static void step_up(struct wb_bend_test *test)
@@ -482,10 +482,11 @@ static void step_up(struct wb_bend_test *test)
 
 static void step_rest(struct wb_bend_test *test)
 {
-    /* A cell that went away may come back; its silence ends the test otherwise. The rest begins
-     * again then: it is measured whole, and what waited in the port is read before the next way
-     * down, where a force of the way up would look like a break. */
-    if (gone(test, WB_ROLE_LOAD))
+    /* While the load cell is disconnected, the rest restarts (the interlock ends the test if the
+     * cell stays silent). Thus the rest is recorded in full, and readings that were delayed in the
+     * port are read before the next loading, where a force of the unloading would look like a
+     * break. */
+    if (is_disconnected(test, WB_ROLE_LOAD))
         wb_sequence_enter(&test->run, PHASE_REST);
     if (wb_sequence_lasts_ns(&test->run) < host_ns(test, test->request.rest_time))
         return;
@@ -501,7 +502,7 @@ static void step_rest(struct wb_bend_test *test)
     finish(test);
 }
 
-/* --- held by the operator --- */
+/* --- hold and resume --- */
 
 bool wb_bend_test_hold(struct wb_bend_test *test)
 {
@@ -513,10 +514,10 @@ bool wb_bend_test_hold(struct wb_bend_test *test)
     return true;
 }
 
-/* The wire relaxed meanwhile: what is measured from its force begins anew. */
-static void go_on_down(struct wb_bend_test *test)
+/* The wire has relaxed during the hold: checks that use its force restart. */
+static void resume_loading(struct wb_bend_test *test)
 {
-    watch_drop_anew(test);
+    restart_drop_watch(test);
     if (test->force_verdict == WB_FIRST_FORCE_OPEN)
         wb_first_force_begin(&test->first_force, wb_average_deviation(&test->zero), &test->run.rig);
 }
@@ -531,7 +532,7 @@ bool wb_bend_test_resume(struct wb_bend_test *test)
     const double left = test->run.target - wb_sequence_travel(&test->run, latest->stage.position);
     const bool is_there = fabs(left) <= WB_SEQUENCE_TOLERANCE;
     if (phase == PHASE_DOWN)
-        go_on_down(test);
+        resume_loading(test);
     if (phase == PHASE_REST || (phase == PHASE_UP && is_there))
         wb_sequence_enter(&test->run, PHASE_REST);
     else if (is_there)
@@ -541,9 +542,9 @@ bool wb_bend_test_resume(struct wb_bend_test *test)
     return true;
 }
 
-/* --- the samples it sees --- */
+/* --- samples --- */
 
-/* A specimen that breaks or slips: the stage is held by the reading that shows it. */
+/* Stops the stage at once, at the reading that shows a break or slip. */
 static void watch_drop(struct wb_bend_test *test, const struct wb_load_sample *sample)
 {
     char text[WB_START_CHECK_TEXT];
@@ -581,9 +582,9 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
         wb_tip_watch_follow(&test->tip, frame);
 }
 
-/* --- its speeds --- */
+/* --- speeds --- */
 
-/* Reads the speeds, m/s; false where one is not a number of a stage. */
+/* Parses the speeds, m/s; false if one is not a number in the stage's range. */
 static bool read_speeds(const char *text, double speeds[WB_BEND_TEST_MOST_SPEEDS], int *n)
 {
     *n = 0;
@@ -624,21 +625,21 @@ enum wb_status wb_bend_test_check_request(const struct wb_bend_test_request *req
     const double travel = request->travel;
     const double limit = rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel;
     if (request->cycles < 1)
-        return wb_fail_to(why, WB_ERR_ARGUMENT, "expected at least one cycle, not %d: see --cycles",
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "cycles: expected at least 1, not %d (--cycles)",
                           request->cycles);
     double speeds[WB_BEND_TEST_MOST_SPEEDS];
     int n;
     if (!read_speeds(request->speeds, speeds, &n))
         return wb_fail_to(why, WB_ERR_ARGUMENT,
-                          "speeds '%s': expected up to %d numbers from %g to %g mm/s, separated by "
-                          "commas: see --speeds",
-                          request->speeds, WB_BEND_TEST_MOST_SPEEDS, slowest / WB_MM,
-                          fastest / WB_MM);
+                          "speeds: expected up to %d numbers from %g to %g mm/s, separated by "
+                          "commas, not '%s' (--speeds)",
+                          WB_BEND_TEST_MOST_SPEEDS, slowest / WB_MM, fastest / WB_MM,
+                          request->speeds);
     if (!(travel > 0.0) || !(travel <= limit))
         return wb_fail_to(why, WB_ERR_ARGUMENT,
-                          "a travel of %g mm is not free: the rig file allows up to %g mm "
-                          "(stage.travel_mm, limits.travel_mm); choose less with --travel-mm",
-                          travel / WB_MM, limit / WB_MM);
+                          "travel: expected more than 0 and at most the %g mm that the rig file "
+                          "allows (stage.travel_mm, limits.travel_mm), not %g mm (--travel-mm)",
+                          limit / WB_MM, travel / WB_MM);
     return WB_OK;
 }
 
@@ -657,7 +658,7 @@ enum wb_status wb_bend_test_specimen(const struct wb_bend_test_request *request,
     return wb_specimen_read(request->specimen_path, specimen);
 }
 
-/* When the load cell was last found right. */
+/* Warns, or fails, if the last check of the load cell is too old. */
 static enum wb_status check_cell(const struct wb_rig *rig, const char *rig_path)
 {
     char text[WB_CHECK_DUE_TEXT];
@@ -682,7 +683,7 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
         WB_TRY(check_cell(&test->run.rig, request->rig_path));
     if (wb_file_exists(request->output_path))
         return wb_fail(WB_ERR_EXISTS,
-                       "'%s' exists: a recording is never overwritten, choose another name",
+                       "'%s' exists: recordings are never overwritten; choose another name",
                        request->output_path);
     const struct wb_sink sink = {.context = test, .load = on_load, .mocap = on_mocap};
     WB_TRY(wb_acquisition_open(&test->run.acquisition, &test->run.rig, WB_ACQUISITION_ALL, &sink));
@@ -709,7 +710,7 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
     const enum wb_status status = wb_writer_start(&test->writer, recording, request->writer);
     if (status != WB_OK) {
         if (wb_recording_close(recording) != WB_OK)
-            wb_debug("the unused recording did not close cleanly");
+            wb_debug("the unused recording could not be closed cleanly");
         unlink(request->output_path);
         return status;
     }
@@ -725,7 +726,7 @@ enum wb_status wb_bend_test_open(struct wb_bend_test **out,
 {
     struct wb_bend_test *const test = calloc(1, sizeof *test);
     if (!test)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the test");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the test");
     test->request = *request;
     test->result.hold_latency = test->result.confirm_latency = (double)NAN;
     test->run.start_position = (double)NAN;
@@ -798,8 +799,8 @@ void wb_bend_test_stop(struct wb_bend_test *test)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
 }
 
-/* Rig time of what is left of this cycle, and of the cycles after it. Acceleration of the stage,
- * some tenths of a second at each end, is not counted. */
+/* s of host time left for this cycle and those after it. The acceleration of the stage, some tenths
+ * of a second at each end, is neglected. */
 static double time_left(const struct wb_bend_test *test, double travel)
 {
     const struct wb_bend_test_request *const request = &test->request;

@@ -2,23 +2,12 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/timing.h"
 #include "base/units.h"
 
-/* s: clocks of computers that share a folder may differ by so much. */
-#define AHEAD 3600.0
-
-/* Seconds since 1970 of "2026-01-15T10:00:00Z"; false when it is no such text. */
-static bool read_utc(const char *utc, int64_t *seconds)
-{
-    struct tm moment = {0};
-    const char *const end = strptime(utc, "%Y-%m-%dT%H:%M:%SZ", &moment);
-    if (!end || *end != '\0')
-        return false;
-    *seconds = (int64_t)timegm(&moment);
-    return true;
-}
+/* s, tolerated difference between the clocks of computers that share a folder. */
+#define CLOCK_DIFFERENCE 3600.0
 
 enum wb_check_due wb_check_due(const struct wb_rig_load_cell *cell, const char *rig_path,
                                int64_t now_s, char text[WB_CHECK_DUE_TEXT])
@@ -31,18 +20,18 @@ enum wb_check_due wb_check_due(const struct wb_rig_load_cell *cell, const char *
         return WB_CHECK_DUE_HOLDS;
     const double days = cell->check_due / WB_DAY;
     wb_check_log_last(rig_path, line);
-    if (!wb_check_log_parse(line, &entry) || !read_utc(entry.utc, &then_s) ||
+    if (!wb_check_log_parse(line, &entry) || !wb_time_parse(entry.utc, &then_s) ||
         strcmp(entry.serial_number, cell->serial_number) != 0) {
         snprintf(text, WB_CHECK_DUE_TEXT,
-                 "no check of this load cell is in the log beside '%s', whose check_due_days (%g) "
-                 "asks for one: run 'wirebench stage %s check'",
+                 "check_due_days of '%s' is %g, but its log has no check of this load cell: run "
+                 "'wirebench stage %s check'",
                  rig_path, days, rig_path);
         return WB_CHECK_DUE_TOO_LATE;
     }
     const double age = (double)(now_s - then_s);
-    if (age < -AHEAD) {
+    if (age < -CLOCK_DIFFERENCE) {
         snprintf(text, WB_CHECK_DUE_TEXT,
-                 "the last check of the load cell, on %s, lies ahead of this computer's clock: set "
+                 "the last check of the load cell, on %s, is later than this computer's clock: set "
                  "the clock, then run 'wirebench stage %s check'",
                  entry.utc, rig_path);
         return WB_CHECK_DUE_LATE;
@@ -51,9 +40,9 @@ enum wb_check_due wb_check_due(const struct wb_rig_load_cell *cell, const char *
         return WB_CHECK_DUE_HOLDS;
     const bool refused = age > 2.0 * cell->check_due;
     snprintf(text, WB_CHECK_DUE_TEXT,
-             "the last check of the load cell, on %s, is %.1f days old, check_due_days of '%s' is "
-             "%g%s: run 'wirebench stage %s check'",
+             "the last check of the load cell, on %s, is %.1f days old, and check_due_days of '%s' "
+             "is %g%s: run 'wirebench stage %s check'",
              entry.utc, age / WB_DAY, rig_path, days,
-             refused ? " and no test begins after twice that" : "", rig_path);
+             refused ? "; no test is started after twice that time" : "", rig_path);
     return refused ? WB_CHECK_DUE_TOO_LATE : WB_CHECK_DUE_LATE;
 }

@@ -1,5 +1,5 @@
-/* Whether the load cell's check still holds: the age of its last entry in the log beside the rig
- * file (check_log.h) against load_cell.check_due_days. */
+/* Whether the load cell is due for a check: compares the age of the last entry in the rig's log of
+ * checks (check_log.h) with load_cell.check_due_days. */
 #ifndef WB_DAQ_TEST_CHECK_DUE_H
 #define WB_DAQ_TEST_CHECK_DUE_H
 
@@ -11,14 +11,14 @@
 #define WB_CHECK_DUE_TEXT 768
 
 enum wb_check_due {
-    WB_CHECK_DUE_HOLDS,   /* or the rig file does not ask */
-    WB_CHECK_DUE_LATE,    /* older than check_due, or its date lies ahead: a test warns */
-    WB_CHECK_DUE_TOO_LATE /* older than twice of it, or there is none: a test is refused */
+    WB_CHECK_DUE_HOLDS,   /* recent enough, or the rig file requires no checks */
+    WB_CHECK_DUE_LATE,    /* older than check_due, or its date is in the future: a test warns */
+    WB_CHECK_DUE_TOO_LATE /* older than twice check_due, or missing: no test is started */
 };
 
-/* At `now_s`, seconds since 1970-01-01 UTC. `text` says why, with the command that mends it; ""
- * when the check holds. A check of a cell with another serial number is none of this one. Whether
- * the check passed is another matter (bend_recording.c warns of it). */
+/* Judges the last check at `now_s`, seconds since 1970-01-01 UTC. `text` receives the reason and
+ * the command to run; "" for WB_CHECK_DUE_HOLDS. A check of a cell with another serial number does
+ * not count. A check that failed counts here; bend_recording.c warns about it. */
 enum wb_check_due wb_check_due(const struct wb_rig_load_cell *cell, const char *rig_path,
                                int64_t now_s, char text[WB_CHECK_DUE_TEXT]);
 

@@ -52,7 +52,7 @@ static void format(const struct wb_check_log_entry *entry, char line[WB_CHECK_LO
              entry->passed ? "yes" : "no", serial);
 }
 
-/* What must stand before the line: the heading of a new file, or the end of a line cut short. */
+/* Text to write before the new line: the heading of a new file, or the end of a truncated line. */
 static const char *lead_in(int file)
 {
     const off_t end = lseek(file, 0, SEEK_END);
@@ -71,9 +71,9 @@ enum wb_status wb_check_log_append(const char *rig_path, const struct wb_check_l
     format(entry, line);
     const int file = open(path, O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
     if (file < 0)
-        return wb_fail(WB_ERR_IO, "'%s' cannot be opened to add the check: %s", path,
+        return wb_fail(WB_ERR_IO, "the log of checks '%s' cannot be opened: %s", path,
                        strerror(errno));
-    (void)flock(file, LOCK_EX); /* so that two who begin it write one heading */
+    (void)flock(file, LOCK_EX); /* two processes that create the log must write one heading */
     const int n = snprintf(text, sizeof text, "%s%s\n", lead_in(file), line);
     const ssize_t written = write(file, text, (size_t)n);
     const int error = written < 0 ? errno : ENOSPC;
@@ -92,7 +92,7 @@ void wb_check_log_last(const char *rig_path, char line[WB_CHECK_LOG_LINE])
     if (wb_check_log_path(path, rig_path) != WB_OK || !wb_file_exists(path) ||
         wb_file_read(path, &text, NULL) != WB_OK)
         return;
-    /* A line without its end was not written whole. */
+    /* A line without a line end is incomplete. */
     for (char *at = text, *end; (end = strchr(at, '\n')); at = end + 1) {
         *end = '\0';
         if (end > at && end[-1] == '\r')
@@ -141,9 +141,8 @@ bool wb_check_log_parse(const char *line, struct wb_check_log_entry *entry)
 
 double wb_check_log_age(const struct wb_check_log_entry *entry)
 {
-    struct tm utc = {0};
-    const char *const end = strptime(entry->utc, "%Y-%m-%dT%H:%M:%S", &utc);
-    return end ? (double)(wb_time_utc() - (int64_t)timegm(&utc)) : HUGE_VAL;
+    int64_t utc;
+    return wb_time_parse(entry->utc, &utc) ? (double)(wb_time_utc() - utc) : HUGE_VAL;
 }
 
 void wb_check_log_describe(const struct wb_check_log_entry *entry, char text[WB_CHECK_LOG_LINE])

@@ -5,10 +5,12 @@
 
 #include "base/units.h"
 
-#define REPORTS 3
-#define LEAST_OFF (2.0 * WB_MM)
-#define SHARE_OFF 0.15 /* steps per mm and scale of the cameras may be off: `align` tells */
-#define FRESH_NS (300 * WB_NS_PER_MS)
+#define REPORTS 3               /* consecutive contradicting reports that are believed */
+#define LEAST_OFF (2.0 * WB_MM) /* difference that is always tolerated */
+/* Tolerated difference as a fraction of the travel: errors of the stage's steps per mm and of the
+ * cameras' scale, which `align` reports. */
+#define SHARE_OFF 0.15
+#define FRESH_NS (300 * WB_NS_PER_MS) /* greatest age of the clamp's position */
 
 bool wb_clamp_watch_add(struct wb_clamp_watch *watch, const struct wb_tip_watch *tip, int64_t t_ns,
                         double travel, double ahead, char text[WB_START_CHECK_TEXT])
@@ -25,8 +27,8 @@ bool wb_clamp_watch_add(struct wb_clamp_watch *watch, const struct wb_tip_watch 
     if (watch->n_off < REPORTS)
         return false;
     snprintf(text, WB_START_CHECK_TEXT,
-             "the stage says that it is at %.1f mm, and the cameras see the clamp at %.1f mm: does "
-             "it jam, does a coupling slip, or did the motor lose steps?",
+             "the stage reports %.1f mm of travel, but the cameras see the clamp at %.1f mm: check "
+             "whether the clamp jams, a coupling slips or the motor loses steps",
              travel / WB_MM, moved / WB_MM);
     return true;
 }

@@ -1,6 +1,6 @@
-/* The clamp against the stage, all the way: a clamp that jams, a coupling that slips or a motor
- * that loses its steps is seen by the cameras, while the stage goes on counting. The first
- * millimetres are judged more closely (first_motion.h).
+/* Compares the clamp's position with the stage's reports during the whole travel. If the clamp
+ * jams, a coupling slips or the motor loses steps, the stage still counts steps; only the cameras
+ * see the difference. first_motion.h judges the first millimetres more strictly.
  */
 #ifndef WB_DAQ_TEST_CLAMP_WATCH_H
 #define WB_DAQ_TEST_CLAMP_WATCH_H
@@ -11,18 +11,19 @@
 #include "daq/test/start_check.h"
 #include "daq/test/tip_watch.h"
 
-/* All zero is the beginning. */
+/* All zero: initial state. */
 struct wb_clamp_watch {
-    bool has_end; /* which end of the wire is the clamp's: chosen by the first report, because */
-    int end;      /* later a bent tip may have moved more */
-    int n_off;    /* reports in a row that the cameras contradict */
+    bool has_end; /* `end` is known */
+    int end;      /* end of the wire at the clamp, chosen at the first report: later the tip of a
+                     bent wire may have moved more */
+    int n_off;    /* consecutive reports that the cameras contradict */
 };
 
-/* The first call is for a stage that has gone some millimetres down.
- * A report of the stage that arrived at t_ns with that `travel` (m, down from the start), which may
- * be `ahead` (m) off what the cameras saw last. True where the clamp is somewhere else, by more
- * than 2 mm and 15 % of the travel, at three reports in a row; `text` says where. A clamp that the
- * cameras have not seen for 0.3 s is not judged. */
+/* Adds a report of the stage that arrived at t_ns: `travel` (m, down from the start), by which the
+ * cameras may lag by `ahead` (m). Returns true, with a message in `text`, if the clamp's position
+ * has differed at three consecutive reports by more than 2 mm plus 15 % of the travel plus `ahead`.
+ * A clamp that the cameras have not seen for 0.3 s is not judged. The first call must come after
+ * some millimetres of travel. */
 bool wb_clamp_watch_add(struct wb_clamp_watch *watch, const struct wb_tip_watch *tip, int64_t t_ns,
                         double travel, double ahead, char text[WB_START_CHECK_TEXT]);
 

@@ -5,16 +5,16 @@
 
 #include "base/units.h"
 
-#define BEYOND_NOISE 8.0 /* standard deviations; no zero of a good cell gets there by chance */
-#define LEAST_BEYOND 3   /* readings in a row */
-#define FILTER_DELAYS 8.0
-#define STRETCH (1.5 * WB_MM)
-#define STALL 0.2 /* s that this computer may be late; a fast rig goes far meanwhile */
-#define LEAST_READINGS 20
-/* Where a bent wire must have pulled: at the least, and at the most. */
+#define BEYOND_NOISE 8.0      /* standard deviations that noise alone does not reach */
+#define LEAST_BEYOND 3        /* consecutive readings beyond the noise that show a taut strand */
+#define FILTER_DELAYS 8.0     /* time for the cell's filter to settle, in delays of the filter */
+#define STRETCH (1.5 * WB_MM) /* deflection over which the slope is measured */
+#define STALL 0.2             /* s that this computer may stall; matters for a fast virtual rig */
+#define LEAST_READINGS 20     /* of the slope */
+/* Bounds of the deflection at which a force must have appeared. */
 #define FORCELESS_LEAST (4.0 * WB_MM)
 #define FORCELESS_MOST (15.0 * WB_MM)
-/* Of the capacity: a cell whose display rounds has no noise at all. */
+/* Lower bound of the noise as a fraction of the capacity: rounded readings may not scatter. */
 #define LEAST_NOISE 1e-4
 
 void wb_first_force_begin(struct wb_first_force *force, double noise, const struct wb_rig *rig)
@@ -31,7 +31,8 @@ double wb_first_force_slope(const struct wb_first_force *force)
     return force->products / force->squares;
 }
 
-static void take(struct wb_first_force *force, double deflection, double tension)
+/* Updates the regression of tension on deflection. */
+static void add_reading(struct wb_first_force *force, double deflection, double tension)
 {
     force->n++;
     const double off = deflection - force->mean_deflection;
@@ -41,13 +42,14 @@ static void take(struct wb_first_force *force, double deflection, double tension
     force->products += off * (tension - force->mean_tension);
 }
 
-/* The way by which a wire at the lower bound pulls by twice what counts as no noise. */
-static double forceless_way(const struct wb_first_force *force,
-                            const struct wb_first_force_bounds *bounds)
+/* m of deflection at which a wire with the lowest stiffness pulls with twice the force that counts
+ * as beyond the noise. */
+static double forceless_deflection(const struct wb_first_force *force,
+                                   const struct wb_first_force_bounds *bounds)
 {
-    const double way =
+    const double deflection =
         bounds->lowest > 0.0 ? 2.0 * BEYOND_NOISE * force->noise / bounds->lowest : FORCELESS_MOST;
-    return fmax(FORCELESS_LEAST, fmin(FORCELESS_MOST, way));
+    return fmax(FORCELESS_LEAST, fmin(FORCELESS_MOST, deflection));
 }
 
 static bool becomes_taut(struct wb_first_force *force, double deflection, double tension)
@@ -65,22 +67,22 @@ static enum wb_first_force_verdict judge(const struct wb_first_force *force,
     const double unit = WB_MN / WB_MM, slope = wb_first_force_slope(force);
     if (slope <= 0.0)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the force falls by %.3g mN per mm while the wire is bent: turn load_cell.sign of "
-                 "the rig file round if the cell reads tension as negative, and look whether the "
-                 "strand pulls the tip up",
+                 "the force falls by %.3g mN per mm of deflection: reverse load_cell.sign in the "
+                 "rig file if the cell reads tension as negative, and check that the strand pulls "
+                 "the tip up",
                  -slope / unit);
     else if (bounds->lowest > 0.0 && slope < bounds->lowest)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the force rises by %.3g mN per mm of deflection, and %s gives %.3g at the "
-                 "least: are load_cell.unit and scale of the rig file right, and wire and "
-                 "length_mm of the specimen file? Does the clamp hold the wire?",
-                 slope / unit, bounds->of, bounds->lowest / unit);
+                 "the force rises by %.3g mN per mm of deflection; expected at least %.3g by %s: "
+                 "check load_cell.unit and load_cell.scale in the rig file, wire and length_mm in "
+                 "the specimen file, and that the wire does not slip in the clamp",
+                 slope / unit, bounds->lowest / unit, bounds->of);
     else if (bounds->highest > 0.0 && slope > bounds->highest)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the force rises by %.3g mN per mm of deflection, and %s gives %.3g at the "
-                 "most: are load_cell.unit and scale of the rig file right, and wire and "
-                 "length_mm of the specimen file? Does anything hold the tip?",
-                 slope / unit, bounds->of, bounds->highest / unit);
+                 "the force rises by %.3g mN per mm of deflection; expected at most %.3g by %s: "
+                 "check load_cell.unit and load_cell.scale in the rig file, wire and length_mm in "
+                 "the specimen file, and that nothing blocks the tip",
+                 slope / unit, bounds->highest / unit, bounds->of);
     else
         return WB_FIRST_FORCE_AGREES;
     return WB_FIRST_FORCE_WRONG;
@@ -92,19 +94,19 @@ enum wb_first_force_verdict wb_first_force_add(struct wb_first_force *force, dou
                                                char text[WB_START_CHECK_TEXT])
 {
     if (!force->is_taut && !becomes_taut(force, deflection, tension)) {
-        if (deflection < forceless_way(force, bounds))
+        if (deflection < forceless_deflection(force, bounds))
             return WB_FIRST_FORCE_OPEN;
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the wire is bent by %.1f mm and the cell reads no force (%.3g mN, noise %.2g "
-                 "mN): does the strand pull at the cell, is the cell switched on, and are its "
-                 "unit and scale in the rig file right?",
-                 deflection / WB_MM, tension / WB_MN, force->noise / WB_MN);
+                 "the cell shows no force (%.3g mN, noise %.2g mN) at %.1f mm of deflection: check "
+                 "that the strand pulls at the cell, that the cell is on, and load_cell.unit and "
+                 "load_cell.scale in the rig file",
+                 tension / WB_MN, force->noise / WB_MN, deflection / WB_MM);
         return WB_FIRST_FORCE_WRONG;
     }
     const double way = deflection - force->taut - force->settled;
     if (way < 0.0)
         return WB_FIRST_FORCE_OPEN;
-    take(force, deflection, tension);
+    add_reading(force, deflection, tension);
     if (way < force->stretch || force->n < LEAST_READINGS)
         return WB_FIRST_FORCE_OPEN;
     return judge(force, bounds, text);

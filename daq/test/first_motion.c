@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+/* Accepted motion of the markers as a fraction of the stage's travel. */
 #define LEAST_SHARE 0.5
 #define MOST_SHARE 1.5
 #define UPRIGHT 0.7 /* cosine: within 45 degrees of the vertical axis */
@@ -19,25 +20,26 @@ bool wb_first_motion_agrees(const struct wb_tip_watch *watch, double travel, dou
         moved[k] = watch->at[clamp][k] - watch->rest[clamp][k].mean;
     const double size = wb_tip_watch_moved(watch, clamp), down = -moved[watch->up];
     if (size < LEAST_SHARE * travel)
-        snprintf(text, WB_START_CHECK_TEXT,
-                 "the stage says that it went %.1f mm, the markers moved by %.2f mm only: does the "
-                 "motor turn the spindle, is the clamp fixed to the stage, are its steps per mm "
-                 "($100) right, and is the take live?",
-                 travel / WB_MM, size / WB_MM);
+        snprintf(
+            text, WB_START_CHECK_TEXT,
+            "the stage reports %.1f mm of travel, but the markers moved by %.2f mm only: check "
+            "that the motor turns the spindle, that the clamp is fixed to the stage, the "
+            "stage's steps per mm ($100), and that Motive is in live mode",
+            travel / WB_MM, size / WB_MM);
     else if (size > MOST_SHARE * (travel + ahead))
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the stage says that it went %.1f mm, the markers moved by %.2f mm: are the "
-                 "stage's steps per mm ($100) right, and the cameras calibrated?",
+                 "the stage reports %.1f mm of travel, but the markers moved by %.2f mm: check the "
+                 "stage's steps per mm ($100) and the calibration of the cameras",
                  travel / WB_MM, size / WB_MM);
     else if (fabs(down) < UPRIGHT * size)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the stage went down, and the markers moved by (%.1f, %.1f, %.1f) mm, not along "
+                 "the stage moved down, but the markers moved by (%.1f, %.1f, %.1f) mm, not along "
                  "%c: set mocap.up of the rig file to the vertical axis",
                  moved[0] / WB_MM, moved[1] / WB_MM, moved[2] / WB_MM, up);
     else if (down < 0.0)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the markers went up by %.1f mm where the stage should go down: set stage.down of "
-                 "the rig file to %+d, or turn the cameras' %c axis upwards",
+                 "the markers moved up by %.1f mm while the stage should move down: set stage.down "
+                 "of the rig file to %+d, or make the cameras' %c axis point up",
                  -down / WB_MM, -rig->stage.down, up);
     else
         return true;

@@ -16,14 +16,14 @@ bool wb_force_drop_add(struct wb_force_drop *drop, double tension, char text[WB_
         mean += drop->recent[i] / WB_FORCE_DROP_MEAN;
     drop->peak = mean > drop->peak ? mean : drop->peak;
     const double fallen = drop->peak - mean;
-    /* A force that was never there is another fault: first_force.h. */
+    /* A missing force is reported by first_force.h. */
     if (!(drop->peak > BEYOND_NOISE * drop->noise) || !(fallen > drop->share * drop->peak) ||
         !(fallen > BEYOND_NOISE * drop->noise))
         return false;
     snprintf(text, WB_START_CHECK_TEXT,
-             "the force fell from %.1f to %.1f mN while the wire was bent further: the wire or the "
-             "strand broke, or the wire slips in its clamp. Where a specimen does so unharmed, "
-             "raise limits.force_drop_percent of the rig file",
+             "the force fell from %.1f to %.1f mN during loading: the wire or the strand broke, or "
+             "the wire slips in its clamp; if such a drop is normal for this specimen, raise "
+             "limits.force_drop_percent in the rig file",
              drop->peak / WB_MN, mean / WB_MN);
     return true;
 }

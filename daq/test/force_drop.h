@@ -1,5 +1,5 @@
-/* A force that falls while the wire is bent further: the wire or the strand broke, or the wire
- * slips in its clamp. What follows measures nothing, and the stage would go on to the end.
+/* Detects a drop of the force during loading: the wire or the strand broke, or the wire slips in
+ * its clamp. The test is then stopped, because later readings would be meaningless.
  */
 #ifndef WB_DAQ_TEST_FORCE_DROP_H
 #define WB_DAQ_TEST_FORCE_DROP_H
@@ -10,18 +10,17 @@
 
 #define WB_FORCE_DROP_MEAN 4 /* readings that are averaged */
 
-/* All zero, but for its first two members, is the beginning of a way down. */
+/* Initial state of a loading: all zero except `noise` and `share`. */
 struct wb_force_drop {
     double noise; /* N, standard deviation of a reading at rest */
-    double share; /* of the peak that the force may fall by; 0: not watched */
+    double share; /* allowed drop as a fraction of the peak; 0: not checked */
     int n;
     double recent[WB_FORCE_DROP_MEAN]; /* N */
-    double peak;                       /* N, of the mean of the recent ones */
+    double peak;                       /* N, largest mean of the recent readings */
 };
 
-/* A reading (N, of the strand's tension) on the way down. True where the force fell from its peak
- * by more than the share and by more than its noise explains; `text` says what happened to the
- * specimen. */
+/* Adds a reading (N, strand tension) during loading. True if the mean force fell from its peak by
+ * more than `share` and by more than noise can explain; `text` then holds the message. */
 bool wb_force_drop_add(struct wb_force_drop *drop, double tension, char text[WB_START_CHECK_TEXT]);
 
 #endif

@@ -14,7 +14,7 @@
 
 #define WB_LOG_DOMAIN "series"
 
-#define MOST_NUMBER 999999
+#define MOST_NUMBER 999999 /* of a recording */
 #define DEFAULT_OUTPUT "{series}-{number:03}-{specimen}.wbr"
 
 /* By enum wb_series_question. */
@@ -22,13 +22,13 @@ static const char *const questions[] = {"markers_mm", "marker_offset_mm", "notes
 
 /* --- the template of names --- */
 
-/* What a placeholder stands for; `sample` 0: any. */
+/* Values of the placeholders; `sample` 0: any (a wildcard). */
 struct fields {
     const struct wb_series *series;
     int number, sample;
 };
 
-/* Letters, digits and the marks that no shell and no pattern takes for something else. */
+/* Letters, digits and the characters without a special meaning in shells and patterns. */
 static bool is_plain(const char *text)
 {
     return text[strspn(
@@ -48,7 +48,7 @@ static void put_specimen(struct wb_text *text, const struct fields *fields)
     wb_text_append(text, "%s-L%g-%d", wire, like->length / WB_MM, fields->sample);
 }
 
-/* Appends what "{NAME}" or "{NAME:0N}" stands for; false when nothing does. */
+/* Appends the value of "{NAME}" or "{NAME:0N}"; false for an unknown placeholder. */
 static bool put_field(struct wb_text *text, const char *field, const struct fields *fields)
 {
     int width = 0, end = -1;
@@ -68,7 +68,7 @@ static bool put_field(struct wb_text *text, const char *field, const struct fiel
     return true;
 }
 
-/* False, with the part at fault in `field`, for a template with anything else in braces. */
+/* Expands the template; false, with the placeholder in `field`, if a placeholder is invalid. */
 static bool expand(struct wb_text *text, const struct fields *fields, char field[32])
 {
     for (const char *c = fields->series->output; *c;) {
@@ -115,7 +115,7 @@ static enum wb_status check_output(const struct wb_config_node *root,
                                 field);
     if (!strstr(series->output, "{number"))
         return wb_config_refuse(root, "output",
-                                "expected {number} in the name, or two tests would have one name");
+                                "expected {number} in the name, because names must be unique");
     const size_t n = strlen(name);
     if (!is_short || n < 5 || strcmp(name + n - 4, ".wbr") != 0 || !is_plain(name))
         return wb_config_refuse(root, "output",
@@ -153,7 +153,7 @@ static enum wb_status find_files(const struct wb_config_node *root, struct wb_se
         WB_TRY(wb_file_join(series->rig, series->folder, rig));
     if (!wb_file_exists(series->specimen_path) &&
         wb_file_find_data(series->specimen_path, specimen) != WB_OK)
-        return wb_config_refuse(root, "specimen", "'%s' is not there", specimen);
+        return wb_config_refuse(root, "specimen", "'%s' does not exist", specimen);
     return wb_specimen_read(series->specimen_path, &series->like);
 }
 
@@ -212,7 +212,8 @@ enum wb_status wb_series_specimen(const struct wb_series *series, int sample,
     const char *const markers = answer_to(answers, WB_SERIES_MARKERS);
     const char *const offset = answer_to(answers, WB_SERIES_OFFSET);
     struct wb_specimen specimen;
-    wb_text_append(text, "# Like '%s', in series %s.\nwire: '%s'\nlength_mm: %.10g\nsample: %d\n",
+    wb_text_append(text,
+                   "# Based on '%s', in series %s.\nwire: '%s'\nlength_mm: %.10g\nsample: %d\n",
                    wb_file_name(series->specimen_path), series->name, like->wire,
                    like->length / WB_MM, sample);
     if (like->length_uncertainty > 0.0)
@@ -233,15 +234,15 @@ enum wb_status wb_series_specimen(const struct wb_series *series, int sample,
     return wb_specimen_parse(wb_text_string(text), "specimen", &specimen, why);
 }
 
-/* --- how far it has come --- */
+/* --- progress of the series --- */
 
 static bool is_of(const struct wb_series *series, const struct wb_index_entry *entry)
 {
     return strcmp(entry->series, series->name) == 0;
 }
 
-/* Whether a file of the folder is the recording of that number, or belongs to it. `whole`: is it.
- */
+/* Whether `name` is the recording of that number; without `whole` also a file that belongs to it,
+ * such as one with .zst or -wal appended. */
 static bool is_named(const struct wb_series *series, const char *name, int number, bool whole)
 {
     const struct fields any = {series, number, 0};
@@ -250,13 +251,13 @@ static bool is_named(const struct wb_series *series, const char *name, int numbe
     (void)expand(&pattern, &any, field);
     if (!whole)
         wb_text_append(&pattern, "*");
-    const bool is = fnmatch(wb_text_string(&pattern), name, 0) == 0;
+    const bool matches = fnmatch(wb_text_string(&pattern), name, 0) == 0;
     wb_text_release(&pattern);
-    return is;
+    return matches;
 }
 
-/* The number of a file that the template could have named; 0: it could not. Every row of digits
- * and every part of one is tried: the template may put digits right beside the number. */
+/* The number in a file name that matches the template; 0: no match. Every part of every sequence of
+ * digits is tried, because the template may have other digits next to the number. */
 static int number_of(const struct wb_series *series, const char *name, bool whole)
 {
     int largest = 0;
@@ -299,7 +300,7 @@ enum wb_status wb_series_next_number(const struct wb_series *series, const char 
         largest = used > largest ? used : largest;
     }
     if (largest >= MOST_NUMBER)
-        return wb_fail(WB_ERR_ARGUMENT, "'%s' has no number left after %d: choose another folder",
+        return wb_fail(WB_ERR_ARGUMENT, "'%s': no number is free after %d; choose another folder",
                        folder, largest);
     *number = largest + 1;
     return WB_OK;

@@ -1,17 +1,17 @@
-/* A series: tests of several specimens of one wire at one length, one after the other. Its file:
+/* A series: consecutive tests of several specimens of one wire at one length. Its file:
  *
  *     series: type1-85                       # its name
- *     specimen: type1-L85.yaml               # a specimen file that all specimens are like
- *     specimens: 6                           # how many; their samples are counted up
+ *     specimen: type1-L85.yaml               # specimen file that applies to all specimens
+ *     specimens: 6                           # number of specimens; their sample numbers increase
  *     first_sample: 1                        # optional
- *     ask: [markers_mm, notes]               # optional: what else differs from one to the next
- *     rig: bench.yaml                        # optional: the command line may name it
- *     output: "{series}-{number:03}-{specimen}.wbr"   # optional, this by default
+ *     ask: [markers_mm, notes]               # optional: values asked for before each test
+ *     rig: bench.yaml                        # optional: may be given on the command line
+ *     output: "{series}-{number:03}-{specimen}.wbr"   # optional; this is the default
  *     cycles: 1                              # optional, as for a single test
  *     travel_mm: 53
  *
- * How far a series has come is seen in the folder of its recordings and in the index there
- * (daq/recording/index.h), and nowhere else: it may be interrupted at any moment and gone on with.
+ * The progress of a series is stored only in the folder of its recordings and in its index
+ * (daq/recording/index.h): a series may be interrupted at any time and continued later.
  */
 #ifndef WB_DAQ_TEST_SERIES_H
 #define WB_DAQ_TEST_SERIES_H
@@ -26,8 +26,8 @@
 #include "daq/recording/index.h"
 #include "daq/test/bend_test.h"
 
-/* What the operator is asked before each test; the first two replace the key of the specimen file
- * that has the same name. */
+/* Values that the operator enters before each test; the first two replace the key of the same name
+ * in the specimen file. */
 enum wb_series_question {
     WB_SERIES_MARKERS,
     WB_SERIES_OFFSET,
@@ -37,20 +37,20 @@ enum wb_series_question {
 extern const char
     *const wb_series_questions[]; /* "markers_mm", "marker_offset_mm", "notes", NULL */
 
-#define WB_SERIES_FILE 256 /* of a recording's name, with the NUL */
+#define WB_SERIES_FILE 256 /* bytes of the name of a recording, with the NUL */
 
 struct wb_series {
-    char folder[WB_PATH]; /* of its file */
+    char folder[WB_PATH]; /* of the series file */
     char name[64];
     char specimen_path[WB_PATH];
-    struct wb_specimen like; /* of that file */
+    struct wb_specimen like; /* contents of specimen_path */
     int n_specimens, first_sample;
     bool asks[WB_SERIES_QUESTIONS];
-    char rig[WB_PATH]; /* "": the command line names it */
-    char output[160];  /* template of names */
+    char rig[WB_PATH]; /* "": given on the command line */
+    char output[160];  /* template of the recordings' names */
 };
 
-/* Reads the file; cycles and travel go to `request`. Errors name file, line and key. */
+/* Reads the file; `request` receives cycles and travel. Errors give file, line and key. */
 WB_MUST_CHECK enum wb_status wb_series_read(struct wb_series *series, const char *path,
                                             struct wb_bend_test_request *request);
 
@@ -59,27 +59,26 @@ WB_MUST_CHECK enum wb_status wb_series_read(struct wb_series *series, const char
 void wb_series_file(const struct wb_series *series, int number, int sample,
                     char file[WB_SERIES_FILE]);
 
-/* The specimen of a sample as the text of a specimen file. `answers` replace keys; NULL or "": as
- * in the file that it is like. WB_ERR_FORMAT with the reason in `why` for an answer that is none.
- */
+/* Writes the specimen file of a sample to `text`. `answers` replace keys; NULL or "": the value of
+ * the series' specimen file. WB_ERR_FORMAT, with the reason in `why`: an answer is invalid. */
 WB_MUST_CHECK enum wb_status wb_series_specimen(const struct wb_series *series, int sample,
                                                 const char *const answers[WB_SERIES_QUESTIONS],
                                                 struct wb_text *text, struct wb_reason *why);
 
-/* The next number: above those of all files in `folder` that the template could have named, with
- * whatever follows (.zst, -wal), and above those that the index has for this series. */
+/* The next free number: larger than that of every file in `folder` whose name begins as the
+ * template (thus also .zst and -wal files), and of every entry of this series in the index. */
 WB_MUST_CHECK enum wb_status wb_series_next_number(const struct wb_series *series,
                                                    const char *folder, const struct wb_index *index,
                                                    int *number);
 
-/* The next sample; 0: all are done. One is done when the index has a test of it that is not to be
- * repeated. *n_done receives how many are. */
+/* The next sample; 0: all samples are done. A sample is done if the index has a test of it that is
+ * not marked for repetition. *n_done receives the number of samples done. */
 int wb_series_next_sample(const struct wb_series *series, const struct wb_index *index,
                           int *n_done);
 
-/* The recording of the lowest number from `number` on that lies in `folder` and that the index does
- * not list: a test was interrupted before the operator said what to make of it. *number receives
- * its number, 0 when there is none. */
+/* Finds the recording in `folder` with the lowest number not below *number that the index does not
+ * list: the test was interrupted before the operator accepted or excluded it. *number receives its
+ * number, or 0 if there is none. */
 WB_MUST_CHECK enum wb_status wb_series_find_unlisted(const struct wb_series *series,
                                                      const char *folder,
                                                      const struct wb_index *index, int *number,

@@ -11,15 +11,15 @@
 #include "daq/acquire/marker_check.h"
 #include "daq/acquire/stage_alarm.h"
 
-#define ZERO_SHARE 0.1
-#define COUNTERWEIGHT_SHARE 0.5
-#define NOISE_TIMES 5.0
-#define SEEN_SHARE 0.5
-#define MARKER_NOISE (0.1 * WB_MM) /* where the rig file has none */
-#define LINK_TOLERANCE (1.3 * WB_MM)
-#define CHAIN_TOLERANCE (1.0 * WB_MM)
-#define CHAIN_SHARE 0.01
-/* Places so far apart, in lengths of the specimen, are in another unit. */
+#define ZERO_SHARE 0.1                /* tolerance of the zero, fraction of the capacity */
+#define COUNTERWEIGHT_SHARE 0.5       /* tolerance of the zero, fraction of the counterweight */
+#define NOISE_TIMES 5.0               /* accepted marker noise, multiple of the expected noise */
+#define SEEN_SHARE 0.5                /* fraction of the frames that must show a marker */
+#define MARKER_NOISE (0.1 * WB_MM)    /* expected if the rig file has no marker_noise_mm */
+#define LINK_TOLERANCE (1.3 * WB_MM)  /* of a distance between neighbouring markers */
+#define CHAIN_TOLERANCE (1.0 * WB_MM) /* of the sum of these distances, or, */
+#define CHAIN_SHARE 0.01              /* if larger, this fraction of the sum */
+/* Markers this many specimen lengths apart are given in another unit. */
 #define OTHER_UNIT 100.0
 #define LEAST_READINGS 10
 #define LEAST_FRAMES 10
@@ -53,15 +53,15 @@ static double distance_to_mean(const struct wb_average place[3], const double at
     return wb_vec3_distance(mean, at);
 }
 
-/* With symmetric spacing the markers may be counted from the other end than in frames before. */
+/* With symmetric spacing, a frame may number the markers from the other end than earlier frames. */
 static bool is_mirrored(const struct wb_start_check *check, const double first[3], int n)
 {
     return check->n_full > 0 &&
            distance_to_mean(check->place[n - 1], first) < distance_to_mean(check->place[0], first);
 }
 
-/* A frame that shows all of them: where one is missing, the others may be taken for their
- * neighbours. */
+/* Adds a frame that shows all markers. In incomplete frames a marker may be mistaken for its
+ * neighbour. */
 static void add_full_frame(struct wb_start_check *check, const struct wb_mocap_frame *frame,
                            const struct wb_marker_places *places, int n)
 {
@@ -110,28 +110,28 @@ bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_
         if (isfinite(report->position))
             return true;
         snprintf(text, size,
-                 "the stage does not tell its position: set $10=1 in its firmware, then "
+                 "the stage does not report its position: set $10=1 in its firmware, then "
                  "run 'wirebench stage %s home'",
                  rig_path);
         break;
     case WB_STAGE_ALARM:
         wb_stage_alarm_reason(report, reason, sizeof reason);
         snprintf(text, size,
-                 "the stage is in alarm (%s): mend the cause, then run 'wirebench stage %s home', "
+                 "the stage is in alarm (%s): remove the cause, then run 'wirebench stage %s home' "
                  "or, if it has no limit switch, 'wirebench stage %s unlock'",
                  reason, rig_path, rig_path);
         break;
     case WB_STAGE_HOLD:
         snprintf(text, size,
-                 "the stage is on hold from before: run 'wirebench stage %s release', or 'unlock' "
-                 "if nothing is loaded",
+                 "the stage is on hold since an earlier command: run 'wirebench stage %s release', "
+                 "or 'unlock' if nothing is loaded",
                  rig_path);
         break;
     case WB_STAGE_RUN:
     case WB_STAGE_JOG:
     case WB_STAGE_HOME:
         snprintf(text, size,
-                 "the stage is moving, at somebody else's command: wait until it stands, "
+                 "the stage is moving at the command of another program: wait until it stops, "
                  "or stop it with 'wirebench stage %s unlock'",
                  rig_path);
         break;
@@ -149,10 +149,12 @@ bool wb_start_check_unit(bool contradicts, const struct wb_rig *rig, const char 
 {
     if (!contradicts)
         return true;
-    snprintf(text, WB_START_CHECK_TEXT,
-             "the load cell prints another unit than load_cell.unit: %s of %s: remove that key if "
-             "the instrument is right, or set the instrument's unit; force limits would be wrong",
-             rig->load_cell.unit, rig_path);
+    snprintf(
+        text, WB_START_CHECK_TEXT,
+        "the unit that the load cell prints is not that of load_cell.unit: %s in %s, therefore "
+        "force limits would be wrong: remove the key if the instrument is right, or set the "
+        "instrument's unit",
+        rig->load_cell.unit, rig_path);
     return false;
 }
 
@@ -172,22 +174,22 @@ bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_
     }
     if (n_missing > 0 && check->n_measured == 0 && check->n_hidden > 0)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "every marker that the cameras send is hidden from them or filled in by a model: "
-                 "is the bench lit and in view? In Motive stream the measured markers, without a "
-                 "rigid body or skeleton of this wire");
+                 "every marker that the cameras send is occluded or filled in by a model: check "
+                 "lighting and view of the bench; in Motive stream the measured markers, without a "
+                 "rigid body or skeleton for this wire");
     else if (n_missing > 0 && check->spread > OTHER_UNIT * specimen->length)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the markers lie up to %.0f m apart, the wire is %g mm long: does the server send "
-                 "millimetres without saying so? Set its unit to metres",
+                 "the markers are up to %.0f m apart, but the wire is %g mm long: the server "
+                 "probably sends millimetres; set its unit to metres",
                  check->spread, specimen->length / WB_MM);
     else if (n_missing == n)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "none of the %d markers is seen on a wire of %g mm: do the cameras stream, and is "
-                 "it this specimen?",
+                 "0 of %d markers seen on a wire of %g mm: check that the cameras stream and that "
+                 "this is the specimen of the specimen file",
                  n, specimen->length / WB_MM);
     else if (n_missing > 0)
         snprintf(text, WB_START_CHECK_TEXT,
-                 "%d of %d markers seen; not seen, counted from one end: %s", n - n_missing, n,
+                 "%d of %d markers seen; missing, counted from one end: %s", n - n_missing, n,
                  missing);
     return n_missing == 0;
 }
@@ -198,8 +200,8 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Standard deviation of a coordinate, of the marker amidst all: now and then a reflection is taken
- * for one of them. */
+/* m, standard deviation of a coordinate: the median over the markers, because a reflection is
+ * sometimes mistaken for one of them. */
 static double place_noise(const struct wb_start_check *check, int n_markers)
 {
     double deviation[WB_SPECIMEN_MAX_MARKERS];
@@ -213,7 +215,8 @@ static double place_noise(const struct wb_start_check *check, int n_markers)
     return deviation[n_markers / 2];
 }
 
-/* Where every link is off alike, it is the scale; otherwise a marker or two. */
+/* True if all distances between neighbours differ by the same factor, thus by the cameras' scale;
+ * false if single markers are misplaced. */
 static bool is_scaled(const struct wb_start_check *check, const struct wb_specimen *specimen,
                       double factor)
 {
@@ -248,27 +251,27 @@ bool wb_start_check_chain(const struct wb_start_check *check, const struct wb_sp
     if (noise == 0.0)
         snprintf(
             text, WB_START_CHECK_TEXT,
-            "every marker has the same place in %d frames to the last bit: is the take paused, "
-            "or the stream a still picture? Set Motive to live",
+            "the positions of all markers are identical in %d frames: the take is probably paused; "
+            "set Motive to live mode",
             check->n_frames);
     else if (!(noise <= NOISE_TIMES * expected))
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the markers scatter by %.2f mm, more than %.2f mm: does the wire still swing, or "
-                 "the stage shake? Otherwise calibrate the cameras, or set mocap.marker_noise_mm",
+                 "marker noise is %.2f mm, more than %.2f mm: check whether the wire swings or the "
+                 "stage vibrates; otherwise calibrate the cameras or set mocap.marker_noise_mm",
                  noise / WB_MM, NOISE_TIMES * expected / WB_MM);
     else if (!(fabs(chain - length) <= fmax(CHAIN_TOLERANCE, CHAIN_SHARE * length)) &&
              is_scaled(check, specimen, factor))
         snprintf(text, WB_START_CHECK_TEXT,
-                 "from marker to marker the wire is %.1f mm long, length_mm and markers_mm of the "
-                 "specimen file say %.1f: measure it with a ruler; if the file is right, the "
+                 "the cameras measure %.1f mm from the first to the last marker, but markers_mm of "
+                 "the specimen file gives %.1f mm: measure with a ruler; if the file is right, the "
                  "cameras' scale is off by %+.1f %%: calibrate them with the wand",
                  chain / WB_MM, length / WB_MM, (factor - 1.0) / WB_PERCENT);
     else if (!(fabs(worst) <= LINK_TOLERANCE))
-        snprintf(text, WB_START_CHECK_TEXT,
-                 "markers %d and %d are %.1f mm apart, markers_mm of the specimen file says %.1f "
-                 "(counted from one end): move the marker, or put its place right in the file",
-                 at + 1, at + 2, check->link[at].mean / WB_MM,
-                 (check->link[at].mean - worst) / WB_MM);
+        snprintf(
+            text, WB_START_CHECK_TEXT,
+            "markers %d and %d (counted from one end) are %.1f mm apart, but markers_mm of the "
+            "specimen file gives %.1f mm: move the marker or correct the file",
+            at + 1, at + 2, check->link[at].mean / WB_MM, (check->link[at].mean - worst) / WB_MM);
     else
         return true;
     return false;
@@ -286,24 +289,25 @@ bool wb_start_check_zero(const struct wb_start_check *check, const struct wb_rig
         allowed = fmin(allowed, COUNTERWEIGHT_SHARE * expected);
     if (!(fabs(zero - expected) <= allowed) && expected > 0.0) {
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the load cell reads %.2f mN, not the counterweight's %.2f mN within %.2f mN "
-                 "(load_cell.tare is counterweight): does it hang free, is the cell zeroed "
-                 "without it, its unit right? After a stop: 'wirebench stage %s release'",
+                 "the load cell reads %.2f mN; expected the counterweight's %.2f mN within %.2f mN "
+                 "(load_cell.tare is counterweight): check that the counterweight hangs freely, "
+                 "that the cell was zeroed without it, and the cell's unit; after a stop run "
+                 "'wirebench stage %s release'",
                  zero / WB_MN, expected / WB_MN, allowed / WB_MN, rig_path);
         return false;
     }
     if (!(fabs(zero - expected) <= allowed)) {
         snprintf(text, WB_START_CHECK_TEXT,
                  "the unloaded load cell reads %.2f mN, more than %g %% of its capacity of %.1f "
-                 "mN: is the strand slack (after a stop: 'wirebench stage %s release'), the cell "
-                 "zeroed, its unit right?",
+                 "mN: check that the strand is slack (after a stop run 'wirebench stage %s "
+                 "release'), that the cell is zeroed, and its unit",
                  zero / WB_MN, ZERO_SHARE / WB_PERCENT, cell->capacity / WB_MN, rig_path);
         return false;
     }
     if (!(noise <= noise_allowed)) {
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the %s load cell's noise is %.3f mN, more than %.3f mN: is something "
-                 "touching it, or the counterweight swinging?",
+                 "the %s load cell's noise is %.3f mN, more than %.3f mN: check that nothing "
+                 "touches it and that the counterweight does not swing",
                  expected > 0.0 ? "resting" : "unloaded", noise / WB_MN, noise_allowed / WB_MN);
         return false;
     }

@@ -6,9 +6,9 @@
 #include "base/vec3.h"
 #include "daq/acquire/marker_check.h"
 
-#define SMOOTHING 0.1
+#define SMOOTHING 0.1 /* weight of a new frame in the exponential average */
 
-/* Finds both ends anew near where they were; false when one is hidden (it keeps its place). */
+/* Finds both ends near their last positions; false if one is hidden (its position is kept). */
 static bool follow_ends(struct wb_tip_watch *watch, const struct wb_mocap_frame *frame)
 {
     bool both = true;
@@ -52,7 +52,7 @@ void wb_tip_watch_follow(struct wb_tip_watch *watch, const struct wb_mocap_frame
 {
     if (!watch->settled || !follow_ends(watch, frame))
         return;
-    /* Which end is the tip shows by itself: it is the one that stays higher. */
+    /* The absolute value makes it irrelevant which end is the tip. */
     const int up = watch->up;
     const double now = fabs((watch->at[1][up] - watch->rest[1][up].mean) -
                             (watch->at[0][up] - watch->rest[0][up].mean));

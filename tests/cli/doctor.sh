@@ -95,7 +95,7 @@ wrong_group() {
     said grouped '^frames .* frames/s'
     sed 's/group=239.255.42.99/group=239.255.42.98/' "$own/rig.yaml" >"$own/other.yaml"
     look other 4 "$own/other.yaml" "$specimen"
-    said other '^cameras +NOT READY .*answers but sent no frame.*interface=|^cameras +NOT READY .*answers but sent no frame.*firewall'
+    said other '^cameras +NOT READY .*replies but sent no frame.*interface=|^cameras +NOT READY .*replies but sent no frame.*firewall'
     said other '^cameras +note .*239.255.42.99'
     finish
 }

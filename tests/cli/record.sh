@@ -132,7 +132,7 @@ recorder_killed() { # NAME RIG.yaml POSITION
     [ $code = 3 ] && grep -q 'no longer changes' "$folder/$1.out" || fail "$1: $(cat "$folder/$1.out")"
     "$wirebench" recover "$folder/$1.wbr" -o "$folder/$1-recovered.wbr" >"$folder/$1.out" 2>&1
     code=$?
-    [ $code = 3 ] && grep -q 'missing: the end' "$folder/$1.out" || fail "$1: recover: $(cat "$folder/$1.out")"
+    [ $code = 3 ] && grep -q 'missing: .*the end' "$folder/$1.out" || fail "$1: recover: $(cat "$folder/$1.out")"
     mv "$folder/$1-recovered.wbr" "$folder/$1.wbr"
     rm -f "$folder/$1.wbr-wal" "$folder/$1.wbr-shm"
     readable "$1" cycle_start
@@ -144,7 +144,7 @@ rig_stalls() {
     begin stalled
     wait_for_motion stalled $recorder
     kill -STOP "$rig"
-    finish stalled 3 'has sent no valid sample for'
+    finish stalled 3 'sent no valid sample for'
     kill -CONT "$rig"
     readable stalled 'soft reset'
     end_rig "$rig"

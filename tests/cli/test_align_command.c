@@ -157,7 +157,7 @@ static void damaged_or_cut_recordings_are_not_complete(void **state)
     assert_int_equal(wb_file_join(path, folder, "cut.wbr"), WB_OK);
     assert_int_equal(wb_file_write(path, bytes, size * 199 / 200), WB_OK);
     free(bytes);
-    expect("align $DIR/cut.wbr -o $DIR/cut", 3, "its end is missing", "cut short");
+    expect("align $DIR/cut.wbr -o $DIR/cut", 3, "its end is missing", "is truncated");
     char packed[WB_PATH];
     struct stat there;
     assert_int_equal(wb_file_join(packed, folder, "cut.wbr.zst"), WB_OK);
@@ -165,7 +165,7 @@ static void damaged_or_cut_recordings_are_not_complete(void **state)
     assert_int_equal(wb_recording_compress(path, packed), WB_OK);
     assert_int_equal(stat(packed, &there), 0);
     assert_int_equal(truncate(packed, there.st_size * 199 / 200), 0);
-    expect("align $DIR/cut.wbr.zst -o $DIR/cut-packed", 3, "its end is missing", "cut short");
+    expect("align $DIR/cut.wbr.zst -o $DIR/cut-packed", 3, "its end is missing", "is truncated");
 }
 
 static void settings_reach_the_rows(void **state)

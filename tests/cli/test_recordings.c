@@ -149,7 +149,7 @@ static void recover_exits_3_when_something_is_missing(void **state)
     tool(bench, "recover $REC -o $DIR/less.wbr --json", &o);
     assert_int_equal(o.code, 3);
     assert_non_null(strstr(o.out, "\"missing_rows\": 3"));
-    assert_non_null(strstr(o.out, "of stream 1 3 of 49 chunks"));
+    assert_non_null(strstr(o.out, "stream 1: 3 of 49 chunks"));
     tool(bench, "verify $DIR/less.wbr", &o);
     assert_int_equal(o.code, 3);
     assert_non_null(strstr(o.out, "recovered from a damaged file; missing: 3 rows"));
@@ -249,17 +249,17 @@ static void truncated_recording_gives_one_warning_and_what_is_left(void **state)
     assert_int_equal(truncate(bench->path, there.st_size * 7 / 10), 0);
     tool(bench, "replay --rate max $REC", &o);
     assert_int_equal(o.code, 3);
-    assert_non_null(strstr(o.err, "cut short"));
+    assert_non_null(strstr(o.err, "is truncated"));
     tool(bench, "verify $REC", &o);
     assert_int_equal(o.code, 3);
-    assert_non_null(strstr(o.out, "the file is cut short"));
+    assert_non_null(strstr(o.out, "the file is truncated"));
     assert_null(strstr(o.out, "not closed properly"));
     tool(bench, "info $REC", &o);
     assert_int_equal(o.code, 3);
     /* One message, and no second one. */
     const char *const said = strstr(o.err, "wirebench:");
     assert_non_null(said);
-    assert_non_null(strstr(said, "MB could be read; look for the original"));
+    assert_non_null(strstr(said, "MB could be read; use the original"));
     assert_null(strstr(said + 1, "wirebench:"));
 }
 
@@ -282,8 +282,8 @@ static void bad_input_is_one_message_and_the_proper_exit_code(void **state)
         {"replay $DIR/none.wbr", "none.wbr", 1},
         {"info /etc/passwd", "not a recording", 1},
         {"info $DIR", "cannot read", 1},
-        {"replay $REC", "which rig", 1},
-        {"export $REC -o $DIR/out", "which rig", 1},
+        {"replay $REC", "no rig file", 1},
+        {"export $REC -o $DIR/out", "no rig file", 1},
         {"info --no-such-option $REC", "no-such-option", 2},
     };
     small_make(bench->path, false);

@@ -127,7 +127,7 @@ static inline void assert_events(struct fixture *fixture, const char *const *exp
     }
 }
 
-/* A new bench in the place of the one that was used; streams may be silent for so long. */
+/* Replaces the used bench by a new one, whose streams may be silent for `stream_lost_s`. */
 static inline void renew(struct fixture *fixture, double stream_lost)
 {
     fake_stop(fixture->bench);

@@ -31,11 +31,11 @@ struct fake_bench {
 
     /* Faults and forces, set by the test. */
     bool load_silent, mocap_silent, stage_silent;
-    bool mocap_dead;       /* answers nothing at all */
+    bool mocap_dead;       /* does not reply at all */
     bool stage_deaf;       /* ignores the hold byte */
-    bool stage_wild;       /* ignores the soft reset too, and answers nothing then */
+    bool stage_wild;       /* also ignores the soft reset, and does not reply afterwards */
     bool stage_refuses;    /* answers jogs with error:15 */
-    bool stage_forgets_ok; /* obeys the next jog, but its answer is lost */
+    bool stage_forgets_ok; /* executes the next jog, but its reply is lost */
     bool starts_anew;      /* resets itself into alarm at the next byte */
     bool is_slow;          /* moves at half the commanded speed */
     bool stage_overshoots; /* moves beyond the target */
@@ -44,8 +44,8 @@ struct fake_bench {
     int soft_travel_mm;    /* and $130: reported only, not enforced */
     bool hides_settings;   /* answers $$ with error:1 */
     int fastest_mm_min;    /* $110 */
-    int reports_of_100;    /* how many questions for the state are answered; 0: all */
-    int readings_at_once;  /* the load cell's arrive so many in one piece; 0: each by itself */
+    int reports_of_100;    /* status queries that are answered; 0: all */
+    int readings_at_once;  /* readings of the load cell per read; 0: one */
     bool overload, other_unit, garbage, raw_counts;
     int load_baud; /* at which the load cell prints text; 0: at any */
     bool raise_alarm;
@@ -57,15 +57,15 @@ struct fake_bench {
     int breaks_mm;      /* no force beyond this travel; 0: never */
     int markers_follow; /* percent of the stage's travel, downwards, */
     bool markers_level; /* or sideways */
-    int force_limit_mg; /* the first reading beyond it is timed */
+    int force_limit_mg; /* the time of the first reading beyond it is stored */
 
     /* Times of what it sent and received, ns of virtual time; 0: not yet. What it sends arrives
      * WB_SIM_PORT_DELAY_NS later. */
     int64_t limit_sent_ns, hold_ns, reset_ns, load_last_ns, frame_last_ns;
     int holds;
-    int takes; /* times it was asked to record a take of its own */
+    int takes; /* number of requests to record a take */
 
-    /* Its own. */
+    /* Private. */
     double position_mm, target_mm, feed_mm_s;
     const char *state; /* of the stage */
     int64_t moved_ns, next_load_ns, next_frame_ns;
@@ -74,7 +74,7 @@ struct fake_bench {
     int32_t frame;
     char line[256];
     size_t n_line;
-    char readings[4096]; /* that wait to be sent together */
+    char readings[4096]; /* waiting to be sent together */
     size_t n_readings;
     int readings_held, questions;
     int swing_side; /* of the next reading: +1, -1 */
@@ -136,7 +136,7 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
 {
     struct grbl_jog jog;
     if (grbl_jog_parse(line, &jog)) {
-        /* Jogs in a row are one way, as GRBL's planner joins them. */
+        /* Consecutive jogs form one motion, as in GRBL's planner. */
         const double from = fake_moves(bench) ? bench->target_mm : bench->position_mm;
         const double target = jog.relative ? from + jog.target_mm : jog.target_mm;
         if (bench->stage_refuses || (bench->has_top && target < 0.0)) {
@@ -173,7 +173,7 @@ static inline void fake_hold(struct fake_bench *bench)
     if (bench->holds++ == 0)
         bench->hold_ns = wb_time_now_ns();
     if (bench->stage_deaf) {
-        /* It may stand between two short jogs: it runs on all the same. */
+        /* Between two short jogs the stage may stand; the jog is still running. */
         if (bench->stage_overshoots && strcmp(bench->state, "Idle") == 0) {
             bench->target_mm = bench->position_mm + 1.0;
             bench->state = "Jog";
@@ -351,7 +351,7 @@ static inline void fake_load_bytes(void *context, int64_t now_ns, const void *by
     (void)context, (void)now_ns, (void)bytes, (void)n;
 }
 
-/* --- what happens by itself --- */
+/* --- spontaneous events --- */
 
 static inline bool fake_alarm_is_due(const struct fake_bench *bench)
 {
@@ -417,7 +417,7 @@ static inline struct fake_bench *fake_start(void)
     return bench;
 }
 
-/* All cables come out. */
+/* Unplugs all cables. */
 static inline void fake_unplug(struct fake_bench *bench)
 {
     wb_sim_port_unplug(bench->load);

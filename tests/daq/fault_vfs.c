@@ -292,7 +292,7 @@ size_t fault_vfs_operations(void)
     return n;
 }
 
-/* --- after the power went --- */
+/* --- after a power cut --- */
 
 struct image {
     uint8_t *bytes;
@@ -359,7 +359,7 @@ void fault_vfs_rebuild(const char *folder, size_t n, uint64_t seed)
             if (layer.operations[i].name == name && layer.operations[i].kind == SYNC)
                 synced = i;
         }
-        /* Mostly a mixture; now and then all or nothing of what was not synced. */
+        /* Usually a mixture; sometimes all or none of the data that were not synced. */
         const uint64_t lot = random_below(8);
         for (size_t i = 0; i < n; i++) {
             if (layer.operations[i].name == name && (i < synced || lot != 0))

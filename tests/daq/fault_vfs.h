@@ -1,9 +1,8 @@
-/* Storage that fails: a layer of SQLite's file system under which writes, truncations and syncs are
- * written down and can be made to fail.
+/* Failing storage: a layer of SQLite's file system that records writes, truncations and syncs and
+ * can make them fail.
  *
- * From what was written down the files can be made as they may be after the power went at any
- * moment: what was synced is there; of each later write each sector may be there or not, in any
- * order.
+ * From this record the files can be reconstructed as they may be after a power cut at any moment:
+ * synced data are present; of later writes each sector may be present or not, in any order.
  */
 #ifndef WB_TESTS_DAQ_FAULT_VFS_H
 #define WB_TESTS_DAQ_FAULT_VFS_H
@@ -21,22 +20,22 @@ enum fault {
     FAULT_KINDS
 };
 
-/* Puts the layer under all files that are opened from now on, and forgets what was written down. */
+/* Installs the layer for all files opened from now on, and clears its record. */
 void fault_vfs_begin(void);
-/* Takes it away; no file may be open. What was written down stays. */
+/* Removes the layer; no file may be open. The record is kept. */
 void fault_vfs_end(void);
 
 /* From now on; may be called by any thread. */
 void fault_vfs_set(enum fault fault);
 
-/* Called by the thread that syncs, before each sync; NULL: nothing is. */
+/* Sets a function that is called before each sync by the syncing thread; NULL: none. */
 void fault_vfs_on_sync(void (*hook)(void *context), void *context);
 
-/* Operations written down so far. */
+/* Number of recorded operations. */
 size_t fault_vfs_operations(void);
 
-/* Makes in `folder` the files as they may be when the power goes after `n` operations. Files keep
- * their names; those that are not there any more are not made. Random by `seed`. */
+/* Reconstructs in `folder` the files as they may be after a power cut after `n` operations. Files
+ * keep their names; deleted files are omitted. Random by `seed`. */
 void fault_vfs_rebuild(const char *folder, size_t n, uint64_t seed);
 
 #endif

@@ -31,8 +31,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n);
 
 #include "tests/trials.h"
 
-/* More than this beyond what the seeds took is no decoder's need, KiB. A sanitizer keeps what was
- * freed. */
+/* KiB, largest accepted memory in excess of that for the seeds. A sanitizer retains freed memory.
+ */
 #define FUZZ_MEMORY 65536
 
 static inline long fuzz_memory(void)
@@ -113,7 +113,7 @@ static inline void fuzz_run(const uint8_t *bytes, size_t n)
     free(copy);
 }
 
-/* Runs what was found before; a corpus that is named must be there. Returns how many inputs. */
+/* Runs the inputs of the corpus, which must exist if it is named. Returns their number. */
 static inline int fuzz_corpus(const char *folder)
 {
     static uint8_t bytes[FUZZ_MAX];
@@ -180,7 +180,7 @@ static inline int fuzz_main(int argc, char **argv, const uint8_t *const *seeds, 
 #endif
     printf("%zu seeds, %d inputs found before, %lu mutations\n", n_seeds, n_found, n_runs);
     count_trials("Packets, lines and files of any bytes into a decoder", n_seeds + n_runs,
-                 "inputs: no crash, no property broken, %.1f MiB at most", (double)more / 1024.0);
+                 "inputs: no crash, no property violated, %.1f MiB at most", (double)more / 1024.0);
     return 0;
 }
 

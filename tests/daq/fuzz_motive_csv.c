@@ -1,4 +1,4 @@
-/* Any bytes are a take of Motive, or refused. */
+/* Any bytes are read as a take of Motive or rejected. */
 #include "tests/daq/fuzz_take.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)

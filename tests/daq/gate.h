@@ -1,5 +1,5 @@
-/* A gate that a writer's thread passes before each round, for its tests: they hold it up, and wait
- * until it came to the gate. */
+/* A gate that a writer's thread passes before each round: tests can stop the thread there and wait
+ * until it has reached the gate. */
 #ifndef WB_TESTS_DAQ_GATE_H
 #define WB_TESTS_DAQ_GATE_H
 
@@ -46,7 +46,7 @@ static inline int gate_arrived(struct gate *gate)
     return arrived;
 }
 
-/* Waits until the thread has come to the gate so many times in all. */
+/* Waits until the thread has reached the gate this many times in total. */
 static inline void gate_await(struct gate *gate, int arrived)
 {
     pthread_mutex_lock(&gate->lock);
@@ -55,8 +55,8 @@ static inline void gate_await(struct gate *gate, int arrived)
     pthread_mutex_unlock(&gate->lock);
 }
 
-/* Waits for the second round from now: what was pushed before has been written then, or has failed.
- * The gate is open. */
+/* Waits for the second round from now; entries pushed before have then been written or have failed.
+ * The gate must be open. */
 static inline void gate_await_rounds(struct gate *gate)
 {
     gate_await(gate, gate_arrived(gate) + 2);

@@ -28,7 +28,7 @@ static inline void old_recording_run(const char *path, const char *sql)
     sqlite3_close(db);
 }
 
-/* Makes a recording, which was closed, one of schema 1 that says the same. */
+/* Converts a closed recording to schema 1. */
 static inline void old_recording_make(const char *path)
 {
     old_recording_run(

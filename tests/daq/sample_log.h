@@ -1,5 +1,5 @@
-/* Keeps all samples of a sink as bytes, field by field, so that two decodings can be compared bit
- * for bit (struct padding says nothing). */
+/* Stores all samples of a sink as bytes, field by field, so that two decodings can be compared bit
+ * for bit (struct padding is undefined). */
 #ifndef WB_TESTS_DAQ_SAMPLE_LOG_H
 #define WB_TESTS_DAQ_SAMPLE_LOG_H
 
@@ -84,7 +84,7 @@ static inline void sample_log_release(struct sample_log *log)
         wb_text_release(&log->bytes[role]);
 }
 
-/* Replays a recording with the rig stored in it, and compares with what was seen live. */
+/* Replays a recording with the rig stored in it, and compares the samples with the live ones. */
 static inline void assert_replay_identical(const char *path, const struct sample_log *live)
 {
     struct wb_recording *recording;

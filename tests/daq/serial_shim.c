@@ -1,6 +1,6 @@
-/* Preloaded into test_stream_serial: lends a pseudo-terminal what libserialport wants of a serial
- * port, so that the real libserialport code runs without hardware. libserialport 0.1 looks up
- * /sys/class/tty/NAME (lstat, readlink, opendir), opens /dev/NAME and uses the modem
+/* Preloaded into test_stream_serial: gives a pseudo-terminal the properties that libserialport
+ * needs of a serial port, so that the real libserialport code runs without hardware. libserialport
+ * 0.1 looks up /sys/class/tty/NAME (lstat, readlink, opendir), opens /dev/NAME and uses the modem
  * lines (TIOCMGET, TIOCMSET), which pseudo-terminals lack; they also know 8 bits without parity
  * only.
  *
@@ -67,7 +67,7 @@ static void find_next(const char *name, void *function, size_t size)
     memcpy(function, &found, size);
 }
 
-/* Where a path really leads; NULL with errno set when it must fail. */
+/* The real target of a path; NULL with errno set if the call must fail. */
 static const char *lead(const char *path, char *space)
 {
     const char *port = getenv("WB_SHIM_PORT"), *sysfs = getenv("WB_SHIM_SYSFS");

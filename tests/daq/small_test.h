@@ -106,7 +106,7 @@ static inline void small_stage(struct wb_recording *recording)
     }
 }
 
-/* Writes the recording; without `rig` it lacks its descriptions. */
+/* Writes the recording; without `rig` it lacks rig and specimen. */
 static inline void small_make(const char *path, bool rig)
 {
     struct wb_recording *recording = NULL;

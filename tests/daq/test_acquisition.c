@@ -1,5 +1,5 @@
-/* The acquisition loop against a small bench in virtual time: what it stores, what it reports, and
- * that it never waits longer than it may. */
+/* The acquisition loop with a small bench in virtual time: stored data, reports, and the limits of
+ * its waits. */
 #include "base/file.h"
 #include "base/timing.h"
 
@@ -184,7 +184,7 @@ static void rates_and_latest_values_are_those_of_the_bench(void **state)
         assert_true(latest->stream[role].ready && !latest->stream[role].lost);
 }
 
-/* As a process does that is kept from running between two reads. */
+/* Like a process that is suspended between two reads. */
 static void stall_at_every_40th(void *context, const struct wb_load_sample *sample)
 {
     int *const n = context;
@@ -210,7 +210,7 @@ static enum wb_status take_stamp(void *context, const struct wb_chunk *chunk)
 
 /* Bytes that come during a stall are read after it: their stamp may not be that of the wake-up
  * before it. */
-static void no_stamp_is_before_its_bytes_arrived(void **state)
+static void no_stamp_is_earlier_than_the_arrival_of_its_bytes(void **state)
 {
     struct fixture *const fixture = *state;
     struct stamps stamps = {0};
@@ -245,7 +245,7 @@ static void clock_probes_bracket_the_server_clock(void **state)
     assert_true(fixture->worst_offset_ms < 0.01);
 }
 
-static void a_silent_stream_is_lost_and_found_again(void **state)
+static void silent_stream_is_lost_and_found_again(void **state)
 {
     struct fixture *const fixture = *state;
     start(fixture);
@@ -268,7 +268,7 @@ static void a_silent_stream_is_lost_and_found_again(void **state)
     assert_non_null(strstr(lost, "stream_found: mocap"));
 }
 
-static void rubbish_floods_neither_recording_nor_terminal(void **state)
+static void invalid_bytes_flood_neither_recording_nor_terminal(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->garbage = true;
@@ -285,7 +285,7 @@ static void rubbish_floods_neither_recording_nor_terminal(void **state)
     assert_int_equal(fixture->n_chunks[WB_ROLE_LOAD], 100);
 }
 
-static void a_step_waits_20_ms_at_most(void **state)
+static void step_waits_20_ms_at_most(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->load_silent = fixture->bench->mocap_silent = true;
@@ -299,7 +299,7 @@ static void a_step_waits_20_ms_at_most(void **state)
     }
 }
 
-static void unplugging_everything_is_done_and_not_a_busy_loop(void **state)
+static void unplugging_everything_ends_the_loop_without_busy_waiting(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_acquisition *serial;
@@ -319,7 +319,7 @@ static void unplugging_everything_is_done_and_not_a_busy_loop(void **state)
     wb_acquisition_close(serial);
 }
 
-static void after_a_trip_no_motion_is_taken_until_it_is_cleared(void **state)
+static void after_a_trip_motions_are_rejected_until_it_is_cleared(void **state)
 {
     struct fixture *const fixture = *state;
     start(fixture);
@@ -349,13 +349,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(every_byte_is_stored_and_decodes_the_same_again),
         TEST(rates_and_latest_values_are_those_of_the_bench),
-        TEST(no_stamp_is_before_its_bytes_arrived),
+        TEST(no_stamp_is_earlier_than_the_arrival_of_its_bytes),
         TEST(clock_probes_bracket_the_server_clock),
-        TEST(a_silent_stream_is_lost_and_found_again),
-        TEST(rubbish_floods_neither_recording_nor_terminal),
-        TEST(a_step_waits_20_ms_at_most),
-        TEST(unplugging_everything_is_done_and_not_a_busy_loop),
-        TEST(after_a_trip_no_motion_is_taken_until_it_is_cleared),
+        TEST(silent_stream_is_lost_and_found_again),
+        TEST(invalid_bytes_flood_neither_recording_nor_terminal),
+        TEST(step_waits_20_ms_at_most),
+        TEST(unplugging_everything_ends_the_loop_without_busy_waiting),
+        TEST(after_a_trip_motions_are_rejected_until_it_is_cleared),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

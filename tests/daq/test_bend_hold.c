@@ -77,7 +77,7 @@ static void open_test(struct fixture *fixture, struct wb_bend_test **test)
 
 /* --- going on --- */
 
-static void a_held_stage_stands_and_then_goes_on_with_its_way(void **state)
+static void held_stage_stands_and_then_goes_on_with_its_way(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -116,7 +116,7 @@ static void a_held_stage_stands_and_then_goes_on_with_its_way(void **state)
 }
 
 /* The wire relaxes: its force falls by far more than limits.force_drop_percent. */
-static void a_force_that_falls_while_it_is_held_is_no_break(void **state)
+static void force_that_falls_while_it_is_held_is_no_break(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -131,7 +131,7 @@ static void a_force_that_falls_while_it_is_held_is_no_break(void **state)
     assert_int_equal(result.end, WB_SEQUENCE_DONE);
 }
 
-static void a_break_after_a_hold_stops_the_test_all_the_same(void **state)
+static void break_after_a_hold_stops_the_test_all_the_same(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -151,7 +151,7 @@ static bool rests(const struct wb_bend_test_status *status)
     return strcmp(status->phase, "rest") == 0;
 }
 
-static void a_rest_that_was_held_begins_again(void **state)
+static void rest_that_was_held_begins_again(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -204,7 +204,7 @@ static void what_does_not_move_cannot_be_held_nor_resumed(void **state)
 
 /* --- ending --- */
 
-static void a_stop_while_held_ends_in_order(void **state)
+static void stop_while_held_ends_in_order(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -222,7 +222,7 @@ static void a_stop_while_held_ends_in_order(void **state)
     assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
 }
 
-static void a_stop_while_it_brakes_for_a_hold_stops_the_stage(void **state)
+static void stop_while_it_brakes_for_a_hold_stops_the_stage(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -251,7 +251,7 @@ static void limits_are_watched_while_it_is_held(void **state)
     assert_true(result.standing);
 }
 
-static void a_stage_that_does_not_come_to_a_stand_is_stopped(void **state)
+static void stage_that_does_not_stop_after_hold_is_stopped(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -263,7 +263,7 @@ static void a_stage_that_does_not_come_to_a_stand_is_stopped(void **state)
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
-    assert_non_null(strstr(result.text, "stage has sent no valid sample"));
+    assert_non_null(strstr(result.text, "stage sent no valid sample"));
     assert_true(fixture->bench->holds > 0);
 }
 
@@ -293,19 +293,19 @@ static void events_are_read_back(void **state)
                              .kind = WB_BEND_HOLD_START,
                              .text = "{\"cycle\": 2, \"phase\": \"up\", \"travel_mm\": 20.5, "
                                      "\"tension_mN\": 41.5}"};
-    struct wb_bend_hold_recorded told;
-    assert_int_equal(wb_bend_hold_read(&event, &told), WB_OK);
-    assert_true(told.from_ns == 7 && told.to_ns == INT64_MAX && isnan(told.after));
-    assert_int_equal(told.cycle, 2);
-    assert_string_equal(told.phase, "up");
-    assert_close(told.travel, 20.5 * WB_MM, 1e-12);
-    assert_close(told.before, 41.5 * WB_MN, 1e-12);
+    struct wb_bend_hold_recorded hold;
+    assert_int_equal(wb_bend_hold_read(&event, &hold), WB_OK);
+    assert_true(hold.from_ns == 7 && hold.to_ns == INT64_MAX && isnan(hold.after));
+    assert_int_equal(hold.cycle, 2);
+    assert_string_equal(hold.phase, "up");
+    assert_close(hold.travel, 20.5 * WB_MM, 1e-12);
+    assert_close(hold.before, 41.5 * WB_MN, 1e-12);
     struct wb_event end = {.t_ns = 9,
                            .kind = WB_BEND_HOLD_END,
                            .text = "{\"lasted_s\": 3, \"tension_mN\": 40, \"how\": \"resumed\"}"};
-    assert_int_equal(wb_bend_hold_read(&end, &told), WB_OK);
-    assert_true(told.to_ns == 9);
-    assert_close(told.after, 40.0 * WB_MN, 1e-12);
+    assert_int_equal(wb_bend_hold_read(&end, &hold), WB_OK);
+    assert_true(hold.to_ns == 9);
+    assert_close(hold.after, 40.0 * WB_MN, 1e-12);
     static const char *const bad[] = {"",
                                       "{",
                                       "{}",
@@ -315,7 +315,7 @@ static void events_are_read_back(void **state)
                                       "{\"cycle\": 1, \"phase\": 3}"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         snprintf(event.text, sizeof event.text, "%s", bad[i]);
-        assert_int_equal(wb_bend_hold_read(&event, &told), WB_ERR_DATA);
+        assert_int_equal(wb_bend_hold_read(&event, &hold), WB_ERR_DATA);
     }
 }
 
@@ -323,16 +323,16 @@ int main(void)
 {
 #define ON_A_BENCH(fact) cmocka_unit_test_setup_teardown(fact, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        ON_A_BENCH(a_held_stage_stands_and_then_goes_on_with_its_way),
-        ON_A_BENCH(a_force_that_falls_while_it_is_held_is_no_break),
-        ON_A_BENCH(a_break_after_a_hold_stops_the_test_all_the_same),
-        ON_A_BENCH(a_rest_that_was_held_begins_again),
+        ON_A_BENCH(held_stage_stands_and_then_goes_on_with_its_way),
+        ON_A_BENCH(force_that_falls_while_it_is_held_is_no_break),
+        ON_A_BENCH(break_after_a_hold_stops_the_test_all_the_same),
+        ON_A_BENCH(rest_that_was_held_begins_again),
         ON_A_BENCH(time_left_stands_still_while_it_is_held),
         ON_A_BENCH(what_does_not_move_cannot_be_held_nor_resumed),
-        ON_A_BENCH(a_stop_while_held_ends_in_order),
-        ON_A_BENCH(a_stop_while_it_brakes_for_a_hold_stops_the_stage),
+        ON_A_BENCH(stop_while_held_ends_in_order),
+        ON_A_BENCH(stop_while_it_brakes_for_a_hold_stops_the_stage),
         ON_A_BENCH(limits_are_watched_while_it_is_held),
-        ON_A_BENCH(a_stage_that_does_not_come_to_a_stand_is_stopped),
+        ON_A_BENCH(stage_that_does_not_stop_after_hold_is_stopped),
         ON_A_BENCH(nobody_holds_it_for_ever),
         cmocka_unit_test(events_are_read_back),
     };

@@ -1,5 +1,5 @@
-/* The bending test against a small bench in virtual time: the whole sequence, and every way it is
- * stopped, with the moment of the hold byte. */
+/* The bending test with a small bench in virtual time: the whole sequence, and every kind of stop
+ * with the time of the hold byte. */
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -22,7 +22,7 @@ static bool takes_tare(const struct wb_bend_test_status *status)
     return strcmp(status->phase, "tare") == 0;
 }
 
-/* The hold byte left in the step that read what arrived at `shown_ns`. */
+/* Asserts that the hold byte was sent in the step that read the data of `shown_ns`. */
 static void assert_held_at(const struct fixture *fixture, int64_t shown_ns)
 {
     assert_int_equal(fixture->bench->hold_ns, shown_ns);
@@ -75,7 +75,7 @@ static bool is_coming_up(const struct wb_bend_test_status *status)
 
 /* The stage of the fixture's rig moves at 1 mm/s; it stays at the turn for 2 s, and 2 s of rest end
  * a cycle. */
-static void time_left_is_the_way_left_and_ends_at_zero(void **state)
+static void time_left_follows_from_the_remaining_travel_and_ends_at_zero(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -161,7 +161,7 @@ static void cycles_have_their_dwell_and_their_speeds_in_turn(void **state)
 }
 
 /* A hold at the turn is followed by the whole dwell. */
-static void a_hold_in_the_dwell_is_followed_by_the_dwell(void **state)
+static void hold_during_the_dwell_is_followed_by_the_dwell(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -195,7 +195,7 @@ static void speeds_that_are_no_list_are_rejected(void **state)
     }
 }
 
-static void meta_tells_who_what_and_how(void **state)
+static void meta_values_describe_the_test(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -238,7 +238,7 @@ static void meta_tells_who_what_and_how(void **state)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-static void a_part_of_a_yaml_text_ends_at_the_next_key(void **state)
+static void part_of_a_yaml_text_ends_at_the_next_key(void **state)
 {
     (void)state;
     static const char yaml[] = "a: 1\ntruth:\n  b: 2\n\n  c: 3\n# note\nd: 4\n";
@@ -296,7 +296,7 @@ static void force_limit_holds_at_the_reading_beyond_it_and_the_specimen_stays(vo
     assert_true(result.standing && result.displaced && !result.soft_reset);
     assert_non_null(strstr(result.text, "force limit of 100.0 mN"));
     assert_close(result.hold_latency, 0.0, 0.0);
-    /* It is asked in the same step. */
+    /* It is queried in the same step. */
     assert_close(result.confirm_latency, wb_seconds_from_ns(WB_SIM_PORT_DELAY_NS), 1e-12);
     assert_string_equal(fixture->bench->state, "Hold:0");
     assert_close(fixture->bench->position_mm, 100e-3 / WB_STANDARD_GRAVITY / 500e-6, 0.05);
@@ -358,7 +358,7 @@ static void silent_streams_hold_at_their_expiry(void **state)
     }
 }
 
-static void a_stall_of_our_own_is_not_taken_for_silence(void **state)
+static void own_stall_does_not_count_as_silence(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -372,9 +372,9 @@ static void a_stall_of_our_own_is_not_taken_for_silence(void **state)
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     if (result.end != WB_SEQUENCE_DONE)
         fail_msg("ended early: %s", result.text);
-    /* But the stage went on unwatched, and that is told. */
+    /* The stage moved unwatched, which is recorded. */
     read_events(fixture);
-    if (!strstr(fixture->events, "stall: the recorder stood still for 1.2 s"))
+    if (!strstr(fixture->events, "stall: the recorder was stalled for 1.2 s"))
         fail_msg("no stall in: %s", fixture->events);
 }
 
@@ -383,7 +383,7 @@ struct staller {
     bool stalled;
 };
 
-/* Once, in mid-motion: whatever arrives meanwhile waits unread. */
+/* Once, during a motion: data that arrive meanwhile remain unread. */
 static void stall_once(void *context, const struct wb_load_sample *sample)
 {
     struct staller *const staller = context;
@@ -394,7 +394,7 @@ static void stall_once(void *context, const struct wb_load_sample *sample)
     wb_virtual_time_stall(800 * MS);
 }
 
-static void a_stall_within_a_step_is_not_taken_for_silence(void **state)
+static void stall_within_a_step_does_not_count_as_silence(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -414,7 +414,7 @@ static void a_stall_within_a_step_is_not_taken_for_silence(void **state)
     assert_null(strstr(fixture->events, "stream_lost"));
 }
 
-static void a_stage_running_on_is_held_at_the_travel_limit(void **state)
+static void stage_beyond_its_target_is_held_at_the_travel_limit(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -427,18 +427,18 @@ static void a_stage_running_on_is_held_at_the_travel_limit(void **state)
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_non_null(strstr(result.text, "travel limit of 58.00 mm"));
     assert_true(result.standing);
-    /* It is asked five times a second. */
+    /* It is queried five times a second. */
     assert_close(fixture->bench->position_mm, 58.1, 0.101);
 }
 
-static void a_stage_deaf_to_hold_is_reset_after_500_ms(void **state)
+static void stage_that_ignores_hold_is_reset_after_500_ms(void **state)
 {
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_and_get_down(fixture, &test);
-    bench->stage_deaf = bench->stage_overshoots = true; /* or it would come to rest by itself */
+    bench->stage_deaf = bench->stage_overshoots = true; /* otherwise it would stop by itself */
     bench->overload = true;
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
@@ -451,7 +451,7 @@ static void a_stage_deaf_to_hold_is_reset_after_500_ms(void **state)
     assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
 }
 
-static void a_stage_that_obeys_nothing_is_called_moving(void **state)
+static void stage_that_ignores_all_commands_counts_as_moving(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -534,7 +534,7 @@ static void ctrl_c_before_any_motion_sends_no_hold(void **state)
     assert_string_equal(fixture->bench->state, "Idle");
 }
 
-static void an_unplugged_bench_ends_the_test_and_keeps_the_recording(void **state)
+static void unplugged_bench_ends_the_test_and_keeps_the_recording(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -544,7 +544,7 @@ static void an_unplugged_bench_ends_the_test_and_keeps_the_recording(void **stat
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
-    assert_non_null(strstr(result.text, "went away"));
+    assert_non_null(strstr(result.text, "was disconnected"));
     assert_false(result.standing);
     assert_replay_identical(fixture->output, &fixture->log);
 }
@@ -564,8 +564,8 @@ static bool storage_is_late(const struct wb_bend_test_status *status)
     return status->latest->is_storage_late;
 }
 
-/* The specimen is not spent for a disk that is full for a while. */
-static void a_full_disk_is_told_and_what_comes_is_kept_until_there_is_room(void **state)
+/* The test is not ended by a disk that is full temporarily. */
+static void full_disk_is_reported_and_data_are_kept_until_there_is_space(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -587,7 +587,7 @@ static void a_full_disk_is_told_and_what_comes_is_kept_until_there_is_room(void 
     assert_replay_identical(fixture->output, &fixture->log);
 }
 
-static void a_disk_that_stays_full_stops_the_stage_before_memory_ends(void **state)
+static void full_disk_stops_the_stage_before_memory_is_full(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -613,14 +613,14 @@ static void a_disk_that_stays_full_stops_the_stage_before_memory_ends(void **sta
     assert_non_null(strstr(fixture->events, "cycle_start: 1"));
 }
 
-static void a_first_motion_that_the_cameras_see_otherwise_ends_the_test(void **state)
+static void first_motion_that_contradicts_the_cameras_ends_the_test(void **state)
 {
     struct fixture *const fixture = *state;
     static const struct {
         int follow;
         bool level;
         const char *word;
-    } faults[] = {{0, false, "is the take live"},
+    } faults[] = {{0, false, "live mode"},
                   {100, true, "set mocap.up"},
                   {-100, false, "set stage.down of the rig file to -1"}};
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
@@ -645,7 +645,7 @@ static void a_first_motion_that_the_cameras_see_otherwise_ends_the_test(void **s
     }
 }
 
-static void a_stage_that_refuses_to_move_is_told(void **state)
+static void stage_that_rejects_a_motion_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -659,7 +659,7 @@ static void a_stage_that_refuses_to_move_is_told(void **state)
     assert_int_equal(fixture->bench->holds, 0); /* it stands, and is not left on hold */
 }
 
-static void a_lost_answer_of_the_stage_only_delays_the_next_motion(void **state)
+static void lost_reply_of_the_stage_only_delays_the_next_motion(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -682,29 +682,29 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(complete_test_goes_down_and_back_and_records_it),
-        TEST(time_left_is_the_way_left_and_ends_at_zero),
+        TEST(time_left_follows_from_the_remaining_travel_and_ends_at_zero),
         TEST(cycles_have_their_dwell_and_their_speeds_in_turn),
-        TEST(a_hold_in_the_dwell_is_followed_by_the_dwell),
+        TEST(hold_during_the_dwell_is_followed_by_the_dwell),
         TEST(speeds_that_are_no_list_are_rejected),
-        TEST(meta_tells_who_what_and_how),
-        TEST(a_part_of_a_yaml_text_ends_at_the_next_key),
+        TEST(meta_values_describe_the_test),
+        TEST(part_of_a_yaml_text_ends_at_the_next_key),
         TEST(force_limit_holds_at_the_reading_beyond_it_and_the_specimen_stays),
         TEST(overload_unit_change_and_alarm_hold_at_their_arrival),
         TEST(silent_streams_hold_at_their_expiry),
-        TEST(a_stall_of_our_own_is_not_taken_for_silence),
-        TEST(a_stall_within_a_step_is_not_taken_for_silence),
-        TEST(a_stage_running_on_is_held_at_the_travel_limit),
-        TEST(a_stage_deaf_to_hold_is_reset_after_500_ms),
-        TEST(a_stage_that_obeys_nothing_is_called_moving),
+        TEST(own_stall_does_not_count_as_silence),
+        TEST(stall_within_a_step_does_not_count_as_silence),
+        TEST(stage_beyond_its_target_is_held_at_the_travel_limit),
+        TEST(stage_that_ignores_hold_is_reset_after_500_ms),
+        TEST(stage_that_ignores_all_commands_counts_as_moving),
         TEST(ctrl_c_stops_the_stage_and_closes_the_recording),
         TEST(closing_in_mid_test_stops_the_stage_first),
         TEST(ctrl_c_before_any_motion_sends_no_hold),
-        TEST(an_unplugged_bench_ends_the_test_and_keeps_the_recording),
-        TEST(a_full_disk_is_told_and_what_comes_is_kept_until_there_is_room),
-        TEST(a_disk_that_stays_full_stops_the_stage_before_memory_ends),
-        TEST(a_first_motion_that_the_cameras_see_otherwise_ends_the_test),
-        TEST(a_stage_that_refuses_to_move_is_told),
-        TEST(a_lost_answer_of_the_stage_only_delays_the_next_motion),
+        TEST(unplugged_bench_ends_the_test_and_keeps_the_recording),
+        TEST(full_disk_is_reported_and_data_are_kept_until_there_is_space),
+        TEST(full_disk_stops_the_stage_before_memory_is_full),
+        TEST(first_motion_that_contradicts_the_cameras_ends_the_test),
+        TEST(stage_that_rejects_a_motion_is_reported),
+        TEST(lost_reply_of_the_stage_only_delays_the_next_motion),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

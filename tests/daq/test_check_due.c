@@ -35,7 +35,7 @@ static enum wb_check_due at(int64_t now_s, char text[WB_CHECK_DUE_TEXT])
     return wb_check_due(&cell, rig, now_s, text);
 }
 
-static void a_check_holds_until_it_is_due(void **state)
+static void check_is_valid_until_it_is_due(void **state)
 {
     (void)state;
     char text[WB_CHECK_DUE_TEXT];
@@ -46,7 +46,7 @@ static void a_check_holds_until_it_is_due(void **state)
     assert_int_equal(at(THEN + 60 * DAY, text), WB_CHECK_DUE_LATE);
 }
 
-static void past_twice_that_no_test_begins_and_the_command_is_told(void **state)
+static void after_twice_the_time_no_test_is_started(void **state)
 {
     (void)state;
     char text[WB_CHECK_DUE_TEXT], command[160];
@@ -58,7 +58,7 @@ static void past_twice_that_no_test_begins_and_the_command_is_told(void **state)
     assert_non_null(strstr(text, command));
 }
 
-static void a_rig_that_does_not_ask_is_left_alone(void **state)
+static void rig_without_due_date_needs_no_check(void **state)
 {
     (void)state;
     char text[WB_CHECK_DUE_TEXT];
@@ -66,7 +66,7 @@ static void a_rig_that_does_not_ask_is_left_alone(void **state)
     assert_int_equal(at(THEN + 1000 * DAY, text), WB_CHECK_DUE_HOLDS);
 }
 
-static void the_check_of_another_cell_is_none(void **state)
+static void check_of_another_cell_does_not_count(void **state)
 {
     (void)state;
     char text[WB_CHECK_DUE_TEXT];
@@ -74,7 +74,7 @@ static void the_check_of_another_cell_is_none(void **state)
     assert_int_equal(at(THEN, text), WB_CHECK_DUE_TOO_LATE);
 }
 
-static void a_check_that_lies_ahead_is_told(void **state)
+static void check_in_the_future_is_reported(void **state)
 {
     (void)state;
     char text[WB_CHECK_DUE_TEXT];
@@ -88,11 +88,9 @@ static void a_check_that_lies_ahead_is_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(a_check_holds_until_it_is_due),
-        TEST(past_twice_that_no_test_begins_and_the_command_is_told),
-        TEST(a_rig_that_does_not_ask_is_left_alone),
-        TEST(the_check_of_another_cell_is_none),
-        TEST(a_check_that_lies_ahead_is_told),
+        TEST(check_is_valid_until_it_is_due),      TEST(after_twice_the_time_no_test_is_started),
+        TEST(rig_without_due_date_needs_no_check), TEST(check_of_another_cell_does_not_count),
+        TEST(check_in_the_future_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,7 +41,7 @@ static char *contents(void)
     return text;
 }
 
-static void the_log_lies_beside_the_rig_file(void **state)
+static void log_is_beside_the_rig_file(void **state)
 {
     (void)state;
     static const char *const cases[][2] = {{"a/b.yaml", "a/b.checks.csv"},
@@ -75,7 +75,7 @@ static void checks_are_appended_under_one_heading(void **state)
     free(text);
 }
 
-static void the_last_check_reads_back(void **state)
+static void last_check_is_read_back(void **state)
 {
     (void)state;
     char line[WB_CHECK_LOG_LINE], text[WB_CHECK_LOG_LINE];
@@ -100,7 +100,7 @@ static void the_last_check_reads_back(void **state)
                               "LS270, no. 1 and more, passed");
 }
 
-static void a_line_cut_short_neither_counts_nor_spoils_the_next(void **state)
+static void truncated_line_is_ignored_and_does_not_affect_the_next(void **state)
 {
     (void)state;
     char line[WB_CHECK_LOG_LINE];
@@ -121,7 +121,7 @@ static void a_line_cut_short_neither_counts_nor_spoils_the_next(void **state)
     free(text);
 }
 
-static void rubbish_is_no_check(void **state)
+static void invalid_lines_are_not_checks(void **state)
 {
     (void)state;
     static const char *const lines[] = {
@@ -147,7 +147,7 @@ static void rubbish_is_no_check(void **state)
     assert_string_equal(line, "");
 }
 
-static void many_at_once_lose_nothing(void **state)
+static void many_appends_at_once_lose_nothing(void **state)
 {
     (void)state;
     enum {
@@ -175,7 +175,7 @@ static void many_at_once_lose_nothing(void **state)
     free(text);
 }
 
-static void a_log_that_cannot_be_written_is_told(void **state)
+static void unwritable_log_is_reported(void **state)
 {
     (void)state;
     struct wb_check_log_entry entry = check("2026-01-15T10:00:00Z", 10.0, "X");
@@ -188,13 +188,13 @@ static void a_log_that_cannot_be_written_is_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(the_log_lies_beside_the_rig_file),
+        TEST(log_is_beside_the_rig_file),
         TEST(checks_are_appended_under_one_heading),
-        TEST(the_last_check_reads_back),
-        TEST(a_line_cut_short_neither_counts_nor_spoils_the_next),
-        TEST(rubbish_is_no_check),
-        TEST(many_at_once_lose_nothing),
-        TEST(a_log_that_cannot_be_written_is_told),
+        TEST(last_check_is_read_back),
+        TEST(truncated_line_is_ignored_and_does_not_affect_the_next),
+        TEST(invalid_lines_are_not_checks),
+        TEST(many_appends_at_once_lose_nothing),
+        TEST(unwritable_log_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The clamp against the stage, on made-up places of the wire's two ends. */
+/* Comparison of clamp and stage, with synthetic positions of the wire's ends. */
 #include "daq/test/clamp_watch.h"
 
 #include <string.h>
@@ -36,7 +36,7 @@ static bool judge(double travel_mm, double clamp_mm, double tip_mm)
     return is_off;
 }
 
-static void a_clamp_that_goes_with_the_stage_is_well(void **state)
+static void clamp_that_follows_the_stage_is_accepted(void **state)
 {
     (void)state;
     assert_false(judge(3.0, 3.1, 0.1));
@@ -46,14 +46,14 @@ static void a_clamp_that_goes_with_the_stage_is_well(void **state)
     assert_false(judge(-0.5, 0.5, 16.0));
 }
 
-static void a_clamp_that_jams_is_told_on_both_ways(void **state)
+static void jammed_clamp_is_reported_in_both_directions(void **state)
 {
     (void)state;
     assert_false(judge(5.0, 5.0, 0.1));
     assert_false(judge(8.0, 5.0, 0.1));
     assert_true(judge(9.0, 5.0, 0.1));
     assert_non_null(
-        strstr(text, "at 9.0 mm, and the cameras see the clamp at 5.0 mm: does it jam"));
+        strstr(text, "reports 9.0 mm of travel, but the cameras see the clamp at 5.0 mm"));
     assert_false(judge(50.0, 50.0, 2.0));
     assert_true(judge(20.0, 40.0, 10.0));
 }
@@ -79,8 +79,8 @@ static void one_report_alone_or_a_clamp_not_seen_is_not_judged(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_clamp_that_goes_with_the_stage_is_well, set_up),
-        cmocka_unit_test_setup(a_clamp_that_jams_is_told_on_both_ways, set_up),
+        cmocka_unit_test_setup(clamp_that_follows_the_stage_is_accepted, set_up),
+        cmocka_unit_test_setup(jammed_clamp_is_reported_in_both_directions, set_up),
         cmocka_unit_test_setup(one_report_alone_or_a_clamp_not_seen_is_not_judged, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

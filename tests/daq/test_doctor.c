@@ -1,5 +1,5 @@
-/* The bench is looked at while one thing after another is wrong with it: doctor names the thing and
- * the rest is still told. */
+/* `doctor` with one fault of the bench after another: the fault is named, and the other items are
+ * still reported. */
 #include "daq/doctor/doctor.h"
 
 #include "base/interrupt_private.h"
@@ -65,7 +65,7 @@ static void look(struct fixture *fixture)
     wb_doctor_close(doctor, &fixture->report);
 }
 
-/* Whether an item of this name and verdict says these words. */
+/* Whether an item with this name and verdict contains these words. */
 static bool has(const struct fixture *fixture, const char *name, enum wb_doctor_verdict verdict,
                 const char *words)
 {
@@ -99,7 +99,7 @@ static void expect_ready(const struct fixture *fixture)
     assert_true(wb_doctor_is_ready(&fixture->report));
 }
 
-static void a_bench_that_is_well_is_ready_and_stays_where_it_is(void **state)
+static void bench_that_is_well_is_ready_and_stays_where_it_is(void **state)
 {
     struct fixture *const fixture = *state;
     look(fixture);
@@ -124,25 +124,25 @@ static void silent_instruments_are_named_and_the_others_still_judged(void **stat
     fixture->bench->load_silent = true;
     fixture->bench->mocap_dead = true;
     look(fixture);
-    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "nothing within");
-    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "no NatNet answer");
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "no data within");
+    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "no NatNet reply");
     expect(fixture, "stage", WB_DOCTOR_READY, "idle");
     assert_false(wb_doctor_is_ready(&fixture->report));
     assert_string_equal(fixture->report.picture, "");
 }
 
-static void answers_without_frames_are_told_from_no_answers(void **state)
+static void answers_without_frames_are_reported_from_no_answers(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->mocap_silent = true;
     fixture->bench->stage_silent = true;
     look(fixture);
-    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "answers but sent no frame");
-    expect(fixture, "stage", WB_DOCTOR_NOT_READY, "gave no status");
+    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "replies but sent no frame");
+    expect(fixture, "stage", WB_DOCTOR_NOT_READY, "sent no status");
     expect(fixture, "zero", WB_DOCTOR_READY, "mN");
 }
 
-static void a_load_cell_out_of_range_or_not_understood_is_not_ready(void **state)
+static void load_cell_out_of_range_or_not_understood_is_not_ready(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->force_mg = 5000;
@@ -155,17 +155,17 @@ static void a_load_cell_out_of_range_or_not_understood_is_not_ready(void **state
     expect(fixture, "load cell", WB_DOCTOR_NOTE, "####");
 }
 
-static void a_load_cell_of_another_baud_rate_is_found_at_it(void **state)
+static void load_cell_of_another_baud_rate_is_found_at_it(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->load_baud = 38400;
     look(fixture);
-    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "no text");
-    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "with 38400,8n1 it prints readings");
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "not text");
+    expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "with 38400,8n1");
     assert_true(has(fixture, "load cell", WB_DOCTOR_NOT_READY, "sim:fake_cell,38400,8n1"));
 }
 
-static void a_stage_in_alarm_or_too_slow_is_not_ready(void **state)
+static void stage_in_alarm_or_too_slow_is_not_ready(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->fastest_mm_min = 30;
@@ -177,7 +177,7 @@ static void a_stage_in_alarm_or_too_slow_is_not_ready(void **state)
     assert_false(has(fixture, "travel", WB_DOCTOR_READY, ""));
 }
 
-static void a_travel_that_the_rig_file_forbids_is_not_ready(void **state)
+static void travel_that_the_rig_file_forbids_is_not_ready(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->request.test.travel = 59.0 * WB_MM;
@@ -185,7 +185,7 @@ static void a_travel_that_the_rig_file_forbids_is_not_ready(void **state)
     expect(fixture, "travel", WB_DOCTOR_NOT_READY, "--travel-mm");
 }
 
-static void a_marker_that_is_missing_is_named_and_asked_for_in_the_picture(void **state)
+static void marker_that_is_missing_is_named_and_asked_for_in_the_picture(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->markers = FAKE_MARKERS - 1;
@@ -195,7 +195,7 @@ static void a_marker_that_is_missing_is_named_and_asked_for_in_the_picture(void 
     assert_non_null(strstr(fixture->report.picture, "?\n"));
 }
 
-/* A take is the test's, not that of a look at the bench. */
+/* Takes are recorded by tests, not by `doctor`. */
 static void the_server_is_not_asked_to_record(void **state)
 {
     struct fixture *const fixture = *state;
@@ -260,11 +260,11 @@ static void ports_that_are_missing_or_in_use_are_reported(void **state)
     look(fixture);
     expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "does not exist");
     expect(fixture, "stage", WB_DOCTOR_NOT_READY, "does not exist");
-    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "no NatNet answer");
-    expect(fixture, "disk", WB_DOCTOR_READY, "data are safe after");
+    expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "no NatNet reply");
+    expect(fixture, "disk", WB_DOCTOR_READY, "a flush takes");
 }
 
-static void a_folder_that_is_not_there_cannot_take_a_recording(void **state)
+static void folder_that_is_not_there_cannot_take_a_recording(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->request.folder = "/nonexistent";
@@ -277,19 +277,19 @@ int main(void)
 {
 #define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest facts[] = {
-        FACT(a_bench_that_is_well_is_ready_and_stays_where_it_is),
+        FACT(bench_that_is_well_is_ready_and_stays_where_it_is),
         FACT(silent_instruments_are_named_and_the_others_still_judged),
-        FACT(answers_without_frames_are_told_from_no_answers),
-        FACT(a_load_cell_out_of_range_or_not_understood_is_not_ready),
-        FACT(a_load_cell_of_another_baud_rate_is_found_at_it),
-        FACT(a_stage_in_alarm_or_too_slow_is_not_ready),
-        FACT(a_travel_that_the_rig_file_forbids_is_not_ready),
-        FACT(a_marker_that_is_missing_is_named_and_asked_for_in_the_picture),
+        FACT(answers_without_frames_are_reported_from_no_answers),
+        FACT(load_cell_out_of_range_or_not_understood_is_not_ready),
+        FACT(load_cell_of_another_baud_rate_is_found_at_it),
+        FACT(stage_in_alarm_or_too_slow_is_not_ready),
+        FACT(travel_that_the_rig_file_forbids_is_not_ready),
+        FACT(marker_that_is_missing_is_named_and_asked_for_in_the_picture),
         FACT(the_server_is_not_asked_to_record),
         FACT(without_a_specimen_markers_are_counted_and_the_bench_may_be_ready),
         FACT(the_last_check_of_the_load_cell_counts),
         FACT(ports_that_are_missing_or_in_use_are_reported),
-        FACT(a_folder_that_is_not_there_cannot_take_a_recording),
+        FACT(folder_that_is_not_there_cannot_take_a_recording),
     };
     return cmocka_run_group_tests(facts, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* What doctor is made of, each by itself: the picture of the markers, the disk, who has a port, by
- * which card a server is reached, and what the samples add up to. */
+/* Parts of `doctor`: the picture of the markers, the check of the disk, the user of a port, the
+ * network interface towards a server, and the collected samples. */
 #include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
@@ -49,7 +49,7 @@ static const char *line_of(const char *picture, const char *text, char line[128]
     return line;
 }
 
-static void a_wire_is_drawn_to_scale_in_80_columns_with_its_file_below(void **state)
+static void wire_is_drawn_to_scale_in_80_columns_with_its_file_below(void **state)
 {
     char text[4096], line[128];
     struct wb_mocap_frame frame;
@@ -66,12 +66,12 @@ static void a_wire_is_drawn_to_scale_in_80_columns_with_its_file_below(void **st
     assert_int_equal(strchr(wire, '5') - begin, 73);
     assert_true(strlen(wire) <= 80);
     char below[128];
-    line_of(strstr(text, "file says"), "1 ", below);
+    line_of(strstr(text, "specimen file"), "1 ", below);
     assert_string_equal(wire, below);
     assert_null(strchr(text, '?'));
 }
 
-static void a_missing_marker_is_asked_for_and_a_stray_is_a_star(void **state)
+static void missing_marker_is_a_question_mark_and_a_stray_is_a_star(void **state)
 {
     char text[4096], line[128];
     struct wb_mocap_frame frame;
@@ -83,8 +83,9 @@ static void a_missing_marker_is_asked_for_and_a_stray_is_a_star(void **state)
     stray[2] = 1.95F;
     wb_marker_picture(&frame, &specimen, 'y', text, sizeof text);
     char below[128];
-    line_of(strstr(text, "is not seen"), "1 ", below);
-    line_of(strstr(text, "is not seen"), "?", line);
+    const char *const drawn = strchr(strstr(text, "(? not seen)"), '\n') + 1;
+    line_of(drawn, "1 ", below);
+    line_of(drawn, "?", line);
     assert_int_equal(strchr(line, '?') - line, strchr(below, '3') - below);
     char star[128];
     const char *const canvas = strchr(text, '\n') + 1;
@@ -94,7 +95,7 @@ static void a_missing_marker_is_asked_for_and_a_stray_is_a_star(void **state)
     assert_null(strchr(star, '1'));
 }
 
-static void a_picture_needs_no_specimen_and_nothing_measured_is_none(void **state)
+static void picture_needs_no_specimen_and_is_empty_without_measured_markers(void **state)
 {
     char text[4096];
     struct wb_mocap_frame frame;
@@ -111,7 +112,7 @@ static void a_picture_needs_no_specimen_and_nothing_measured_is_none(void **stat
     assert_string_equal(text, "");
 }
 
-static void a_disk_is_judged_by_its_speed_and_its_room(void **state)
+static void disk_is_judged_by_speed_and_free_space(void **state)
 {
     char text[WB_DISK_CHECK_TEXT];
     const struct wb_disk_check good = {.n = 16, .usual = 5e-3, .longest = 0.3, .free = 1e9};
@@ -124,10 +125,10 @@ static void a_disk_is_judged_by_its_speed_and_its_room(void **state)
     assert_false(wb_disk_check_judge(&slow, "here", 1e4, 120.0, text));
     assert_non_null(strstr(text, "120 ms"));
     assert_false(wb_disk_check_judge(&full, "here", 1e4, 120.0, text));
-    assert_non_null(strstr(text, "room for 1 MB"));
+    assert_non_null(strstr(text, "1 MB free"));
 }
 
-static void measuring_a_disk_leaves_nothing_behind(void **state)
+static void measuring_a_disk_leaves_no_files(void **state)
 {
     char folder[32], command[64];
     struct wb_disk_check check;
@@ -144,7 +145,7 @@ static void measuring_a_disk_leaves_nothing_behind(void **state)
     assert_non_null(strstr(why.text, "--folder"));
 }
 
-static void the_process_that_has_a_port_is_named(void **state)
+static void process_that_has_a_port_open_is_named(void **state)
 {
     char path[64], user[WB_PORT_USER_TEXT], expected[32];
     int ready[2], quit[2];
@@ -173,7 +174,7 @@ static void the_process_that_has_a_port_is_named(void **state)
     assert_false(wb_port_user("/dev/null-of-no-name", user));
 }
 
-static void the_card_towards_a_server_is_found_and_named_where_frames_stay_away(void **state)
+static void interface_towards_a_server_is_reported_if_frames_are_missing(void **state)
 {
     struct wb_network_card card;
     struct wb_acquisition_latest *const latest = calloc(1, sizeof *latest);
@@ -199,7 +200,7 @@ static void the_card_towards_a_server_is_found_and_named_where_frames_stay_away(
     free(rig);
 }
 
-static void the_slope_of_the_force_is_that_of_its_readings(void **state)
+static void slope_of_the_force_is_that_of_its_readings(void **state)
 {
     struct wb_doctor_seen *const seen = calloc(1, sizeof *seen);
     const struct wb_sink sink = wb_doctor_seen_sink(seen);
@@ -256,7 +257,7 @@ static enum wb_doctor_verdict judge_axis(char up, const double direction[3])
     return WB_DOCTOR_UNKNOWN;
 }
 
-static void a_wire_that_rises_along_the_up_axis_shows_a_wrong_one(void **state)
+static void wire_that_rises_along_the_up_axis_shows_a_wrong_one(void **state)
 {
     const double c = cos(0.5), s = sin(0.5);
     const double along_x[3] = {1.0, 0.0, 0.0}, towards_z[3] = {c, 0.0, s},
@@ -273,15 +274,15 @@ static void a_wire_that_rises_along_the_up_axis_shows_a_wrong_one(void **state)
 int main(void)
 {
     const struct CMUnitTest facts[] = {
-        cmocka_unit_test(a_wire_is_drawn_to_scale_in_80_columns_with_its_file_below),
-        cmocka_unit_test(a_missing_marker_is_asked_for_and_a_stray_is_a_star),
-        cmocka_unit_test(a_picture_needs_no_specimen_and_nothing_measured_is_none),
-        cmocka_unit_test(a_disk_is_judged_by_its_speed_and_its_room),
-        cmocka_unit_test(measuring_a_disk_leaves_nothing_behind),
-        cmocka_unit_test(the_process_that_has_a_port_is_named),
-        cmocka_unit_test(the_card_towards_a_server_is_found_and_named_where_frames_stay_away),
-        cmocka_unit_test(the_slope_of_the_force_is_that_of_its_readings),
-        cmocka_unit_test(a_wire_that_rises_along_the_up_axis_shows_a_wrong_one),
+        cmocka_unit_test(wire_is_drawn_to_scale_in_80_columns_with_its_file_below),
+        cmocka_unit_test(missing_marker_is_a_question_mark_and_a_stray_is_a_star),
+        cmocka_unit_test(picture_needs_no_specimen_and_is_empty_without_measured_markers),
+        cmocka_unit_test(disk_is_judged_by_speed_and_free_space),
+        cmocka_unit_test(measuring_a_disk_leaves_no_files),
+        cmocka_unit_test(process_that_has_a_port_open_is_named),
+        cmocka_unit_test(interface_towards_a_server_is_reported_if_frames_are_missing),
+        cmocka_unit_test(slope_of_the_force_is_that_of_its_readings),
+        cmocka_unit_test(wire_that_rises_along_the_up_axis_shows_a_wrong_one),
     };
     return cmocka_run_group_tests(facts, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The first force of a test, on made-up readings. */
+/* The first force of a test, with synthetic readings. */
 #include "daq/test/first_force.h"
 
 #include <string.h>
@@ -32,7 +32,7 @@ static double follow(double stiffness, double noise, const struct wb_first_force
     return deflection;
 }
 
-static void a_force_that_rises_as_the_wire_should_agrees(void **state)
+static void plausible_force_agrees(void **state)
 {
     (void)state;
     char text[WB_START_CHECK_TEXT];
@@ -45,15 +45,14 @@ static void a_force_that_rises_as_the_wire_should_agrees(void **state)
     }
 }
 
-static void each_wrong_force_is_told_with_what_mends_it(void **state)
+static void each_wrong_force_is_reported_with_its_remedy(void **state)
 {
     (void)state;
     static const struct {
         double stiffness;
         const char *word;
-    } faults[] = {{-2.0, "load_cell.sign"},        {-2000.0, "load_cell.sign"},
-                  {0.4, "gives 0.5 at the least"}, {6.0, "gives 5 at the most"},
-                  {2000.0, "unit and scale"},      {0.0, "reads no force"}};
+    } faults[] = {{-2.0, "load_cell.sign"}, {-2000.0, "load_cell.sign"}, {0.4, "at least 0.5 by"},
+                  {6.0, "at most 5 by"},    {2000.0, "load_cell.scale"}, {0.0, "shows no force"}};
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
         char text[WB_START_CHECK_TEXT] = "";
         enum wb_first_force_verdict verdict;
@@ -77,8 +76,8 @@ static void without_bounds_only_the_sign_is_judged(void **state)
     assert_int_equal(verdict, WB_FIRST_FORCE_WRONG);
 }
 
-/* At the lower bound the force leaves the noise late: no reason to stop. */
-static void a_soft_wire_under_noise_is_waited_for(void **state)
+/* At the lower bound the force exceeds the noise late, which must not stop the test. */
+static void soft_wire_under_noise_is_waited_for(void **state)
 {
     (void)state;
     static const struct wb_first_force_bounds soft = {0.05, 5.0, "the wire"};
@@ -92,10 +91,10 @@ static void a_soft_wire_under_noise_is_waited_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_force_that_rises_as_the_wire_should_agrees),
-        cmocka_unit_test(each_wrong_force_is_told_with_what_mends_it),
+        cmocka_unit_test(plausible_force_agrees),
+        cmocka_unit_test(each_wrong_force_is_reported_with_its_remedy),
         cmocka_unit_test(without_bounds_only_the_sign_is_judged),
-        cmocka_unit_test(a_soft_wire_under_noise_is_waited_for),
+        cmocka_unit_test(soft_wire_under_noise_is_waited_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

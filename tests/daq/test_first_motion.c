@@ -1,4 +1,4 @@
-/* The first motion: cameras against stage, on made-up frames. */
+/* Comparison of cameras and stage in the first motion, with synthetic frames. */
 #include "daq/test/first_motion.h"
 
 #include <string.h>
@@ -41,7 +41,7 @@ static bool judge(double x, double y, double z, double travel, char text[WB_STAR
     return wb_first_motion_agrees(&watch, travel, 0.5e-3, &rig, text);
 }
 
-static void a_clamp_that_goes_down_with_the_stage_agrees(void **state)
+static void clamp_that_follows_the_stage_agrees(void **state)
 {
     (void)state;
     char text[WB_START_CHECK_TEXT];
@@ -51,15 +51,15 @@ static void a_clamp_that_goes_down_with_the_stage_agrees(void **state)
     assert_true(judge(0.2e-3, -2.0e-3, 0.1e-3, 2.0e-3, text));
 }
 
-static void each_fault_is_told_with_what_mends_it(void **state)
+static void each_fault_is_reported_with_its_remedy(void **state)
 {
     (void)state;
     static const struct {
         double moved[3];
         const char *word;
     } faults[] = {
-        {{0.0, 0.0, 0.0}, "is the take live"},
-        {{0.0, -0.5e-3, 0.0}, "is the clamp fixed"},
+        {{0.0, 0.0, 0.0}, "live mode"},
+        {{0.0, -0.5e-3, 0.0}, "the clamp is fixed"},
         {{0.0, -6e-3, 0.0}, "($100)"},
         {{0.0, 0.0, -2e-3}, "set mocap.up"},
         {{2e-3, 0.1e-3, 0.0}, "not along y"},
@@ -74,7 +74,7 @@ static void each_fault_is_told_with_what_mends_it(void **state)
     }
 }
 
-static void what_was_not_found_at_rest_is_not_judged(void **state)
+static void wire_not_found_at_rest_is_not_judged(void **state)
 {
     (void)state;
     const struct wb_tip_watch watch = {0};
@@ -85,9 +85,9 @@ static void what_was_not_found_at_rest_is_not_judged(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_clamp_that_goes_down_with_the_stage_agrees),
-        cmocka_unit_test(each_fault_is_told_with_what_mends_it),
-        cmocka_unit_test(what_was_not_found_at_rest_is_not_judged),
+        cmocka_unit_test(clamp_that_follows_the_stage_agrees),
+        cmocka_unit_test(each_fault_is_reported_with_its_remedy),
+        cmocka_unit_test(wire_not_found_at_rest_is_not_judged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

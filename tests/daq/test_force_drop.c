@@ -1,4 +1,4 @@
-/* A force that falls on the way down, on made-up readings. */
+/* A drop of the force during loading, with synthetic readings. */
 #include "daq/test/force_drop.h"
 
 #include <math.h>
@@ -17,8 +17,8 @@ static double noise(uint32_t *random)
     return sum - 6.0;
 }
 
-/* 53 mm at 1 mm/s and 80 readings/s: a spring of 1 N/m that softens; from `at` mm on the force is
- * multiplied by `left`. Returns where it was told, mm; NaN: not. */
+/* 53 mm at 1 mm/s and 80 readings/s: a softening spring of 1 N/m; from `at` mm on the force is
+ * multiplied by `left`. Returns the position of the report, mm; NaN: none. */
 static double bend(double at, double left, double share, char text[WB_START_CHECK_TEXT])
 {
     struct wb_force_drop drop = {.noise = 1e-4, .share = share};
@@ -32,7 +32,7 @@ static double bend(double at, double left, double share, char text[WB_START_CHEC
     return (double)NAN;
 }
 
-static void a_break_and_a_slip_are_told_at_once(void **state)
+static void break_and_slip_are_reported_at_once(void **state)
 {
     (void)state;
     char text[WB_START_CHECK_TEXT];
@@ -43,17 +43,17 @@ static void a_break_and_a_slip_are_told_at_once(void **state)
     }
 }
 
-static void noise_and_a_force_that_rises_are_not_told(void **state)
+static void noise_and_rising_force_are_not_reported(void **state)
 {
     (void)state;
     char text[WB_START_CHECK_TEXT];
     assert_true(isnan(bend(1e9, 1.0, 0.1, text)));
     assert_true(isnan(bend(20.0, 0.93, 0.1, text)));
-    /* Of a force that is hardly more than noise nothing is known. */
+    /* A force close to the noise is not judged. */
     assert_true(isnan(bend(0.5, 0.0, 0.1, text)));
 }
 
-static void a_share_of_nothing_watches_nothing(void **state)
+static void share_of_zero_disables_the_watch(void **state)
 {
     (void)state;
     char text[WB_START_CHECK_TEXT];
@@ -63,9 +63,9 @@ static void a_share_of_nothing_watches_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_break_and_a_slip_are_told_at_once),
-        cmocka_unit_test(noise_and_a_force_that_rises_are_not_told),
-        cmocka_unit_test(a_share_of_nothing_watches_nothing),
+        cmocka_unit_test(break_and_slip_are_reported_at_once),
+        cmocka_unit_test(noise_and_rising_force_are_not_reported),
+        cmocka_unit_test(share_of_zero_disables_the_watch),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,7 +67,7 @@ static void overload_is_on_the_reading_with_its_tare(void **state)
     assert_int_equal(interlock.reason, WB_INTERLOCK_OVERLOAD);
 }
 
-static void the_cell_saying_overload_trips_without_a_number(void **state)
+static void overload_reported_by_the_cell_trips_without_a_number(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -79,7 +79,7 @@ static void the_cell_saying_overload_trips_without_a_number(void **state)
     assert_false(wb_interlock_load(&interlock, &sample));
 }
 
-static void a_reading_that_is_not_a_number_trips(void **state)
+static void reading_that_is_not_a_number_trips(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -97,7 +97,7 @@ static void unit_change_trips(void **state)
     assert_int_equal(interlock.reason, WB_INTERLOCK_UNIT);
 }
 
-static void a_unit_that_contradicts_trips_unless_something_is_to_be_freed(void **state)
+static void contradicting_unit_trips_except_during_release(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -148,7 +148,7 @@ static void alarm_and_unasked_hold_trip(void **state)
     assert_int_equal(interlock.reason, WB_INTERLOCK_STAGE);
 }
 
-static void silence_trips_at_its_expiry_and_not_before(void **state)
+static void silence_trips_at_its_limit_and_not_before(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -167,7 +167,7 @@ static void silence_trips_at_its_expiry_and_not_before(void **state)
     assert_false(interlock.lost[WB_ROLE_MOCAP]);
 }
 
-static void time_nobody_listened_is_no_silence_up_to_5_s(void **state)
+static void stalls_up_to_5_s_do_not_count_as_silence(void **state)
 {
     (void)state;
     struct wb_interlock interlock;
@@ -195,7 +195,7 @@ static void time_nobody_listened_is_no_silence_up_to_5_s(void **state)
     assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 22 * S - 1));
 }
 
-static void invalid_readings_are_no_sign_of_life(void **state)
+static void invalid_readings_do_not_end_a_silence(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -206,7 +206,7 @@ static void invalid_readings_are_no_sign_of_life(void **state)
     assert_true(wb_interlock_tick(&interlock, 11 * S));
 }
 
-static void unarmed_it_notes_silence_but_trips_on_nothing(void **state)
+static void unarmed_interlock_detects_silence_but_does_not_trip(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -261,7 +261,7 @@ static void give(struct wb_stop *stop, enum wb_stage_state state, int64_t t_ns)
     wb_stop_report(stop, &report);
 }
 
-static void hold_is_confirmed_by_the_report_of_it(void **state)
+static void hold_is_confirmed_by_its_report(void **state)
 {
     (void)state;
     struct wb_stop stop;
@@ -290,7 +290,7 @@ static void one_idle_report_may_be_older_than_the_hold(void **state)
     assert_int_equal(stop.state, WB_STOP_STANDING);
 }
 
-static void a_hold_that_is_not_confirmed_becomes_a_soft_reset(void **state)
+static void unconfirmed_hold_is_followed_by_a_soft_reset(void **state)
 {
     (void)state;
     struct wb_stop stop;
@@ -308,7 +308,7 @@ static void a_hold_that_is_not_confirmed_becomes_a_soft_reset(void **state)
     assert_true(stop.reset_ns != 0);
 }
 
-static void a_reset_that_is_not_confirmed_is_a_failure(void **state)
+static void reset_that_is_not_confirmed_is_a_failure(void **state)
 {
     (void)state;
     struct wb_stop stop;
@@ -323,24 +323,24 @@ static void a_reset_that_is_not_confirmed_is_a_failure(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(time_nobody_listened_is_no_silence_up_to_5_s),
+        cmocka_unit_test(stalls_up_to_5_s_do_not_count_as_silence),
         cmocka_unit_test(force_beyond_the_limit_trips_once),
         cmocka_unit_test(force_limit_is_on_the_tared_reading_of_either_sign),
         cmocka_unit_test(overload_is_on_the_reading_with_its_tare),
-        cmocka_unit_test(the_cell_saying_overload_trips_without_a_number),
-        cmocka_unit_test(a_reading_that_is_not_a_number_trips),
+        cmocka_unit_test(overload_reported_by_the_cell_trips_without_a_number),
+        cmocka_unit_test(reading_that_is_not_a_number_trips),
         cmocka_unit_test(unit_change_trips),
-        cmocka_unit_test(a_unit_that_contradicts_trips_unless_something_is_to_be_freed),
+        cmocka_unit_test(contradicting_unit_trips_except_during_release),
         cmocka_unit_test(travel_is_counted_from_the_start_and_downwards),
         cmocka_unit_test(alarm_and_unasked_hold_trip),
-        cmocka_unit_test(silence_trips_at_its_expiry_and_not_before),
-        cmocka_unit_test(invalid_readings_are_no_sign_of_life),
-        cmocka_unit_test(unarmed_it_notes_silence_but_trips_on_nothing),
+        cmocka_unit_test(silence_trips_at_its_limit_and_not_before),
+        cmocka_unit_test(invalid_readings_do_not_end_a_silence),
+        cmocka_unit_test(unarmed_interlock_detects_silence_but_does_not_trip),
         cmocka_unit_test(defaults_come_from_the_rig),
-        cmocka_unit_test(hold_is_confirmed_by_the_report_of_it),
+        cmocka_unit_test(hold_is_confirmed_by_its_report),
         cmocka_unit_test(one_idle_report_may_be_older_than_the_hold),
-        cmocka_unit_test(a_hold_that_is_not_confirmed_becomes_a_soft_reset),
-        cmocka_unit_test(a_reset_that_is_not_confirmed_is_a_failure),
+        cmocka_unit_test(unconfirmed_hold_is_followed_by_a_soft_reset),
+        cmocka_unit_test(reset_that_is_not_confirmed_is_a_failure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

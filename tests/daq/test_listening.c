@@ -1,5 +1,4 @@
-/* Instruments on a port whose baud rate counts: at another one they send rubbish and understand
- * nothing. */
+/* Instruments on a port with a baud rate: at other rates they send and receive invalid bytes. */
 #include "daq/acquire/listening.h"
 
 #include <stdlib.h>
@@ -89,7 +88,7 @@ static struct wb_listening listen_to(bool asks)
     return heard;
 }
 
-static void a_load_cell_that_prints_is_found_at_its_baud_rate(void **state)
+static void printing_load_cell_is_found_at_its_baud_rate(void **state)
 {
     struct port port;
     (void)state;
@@ -102,7 +101,7 @@ static void a_load_cell_that_prints_is_found_at_its_baud_rate(void **state)
     end(&port);
 }
 
-static void what_is_understood_at_no_rate_is_unknown_and_silence_is_silence(void **state)
+static void undecodable_bytes_are_unknown_and_silence_is_reported(void **state)
 {
     struct port port;
     (void)state;
@@ -115,7 +114,7 @@ static void what_is_understood_at_no_rate_is_unknown_and_silence_is_silence(void
     end(&port);
 }
 
-static void stages_answer_their_question_and_are_not_asked_without_leave(void **state)
+static void stages_reply_to_queries_that_are_sent_only_with_permission(void **state)
 {
     struct port port;
     (void)state;
@@ -132,7 +131,7 @@ static void stages_answer_their_question_and_are_not_asked_without_leave(void **
     end(&port);
 }
 
-static void a_port_that_is_not_there_is_a_reason(void **state)
+static void missing_port_is_a_reason(void **state)
 {
     const struct wb_listening_settings settings = {.patience_ns = 1};
     struct wb_listening heard;
@@ -146,10 +145,10 @@ static void a_port_that_is_not_there_is_a_reason(void **state)
 int main(void)
 {
     const struct CMUnitTest facts[] = {
-        cmocka_unit_test(a_load_cell_that_prints_is_found_at_its_baud_rate),
-        cmocka_unit_test(what_is_understood_at_no_rate_is_unknown_and_silence_is_silence),
-        cmocka_unit_test(stages_answer_their_question_and_are_not_asked_without_leave),
-        cmocka_unit_test(a_port_that_is_not_there_is_a_reason),
+        cmocka_unit_test(printing_load_cell_is_found_at_its_baud_rate),
+        cmocka_unit_test(undecodable_bytes_are_unknown_and_silence_is_reported),
+        cmocka_unit_test(stages_reply_to_queries_that_are_sent_only_with_permission),
+        cmocka_unit_test(missing_port_is_a_reason),
     };
     return cmocka_run_group_tests(facts, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Seeing a strand go slack, with scripted readings: what is decided depends on what was read, not
- * on when it arrived. */
+/* Detection of a slack strand with scripted readings: the decision depends on the readings, not on
+ * their arrival. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,15 +15,15 @@ struct bench {
     struct wb_rig rig;
     double (*load)(double travel); /* N */
     double noise;                  /* N, uniform to both sides */
-    double zero;                   /* N, what the release knows of it; NaN: nothing */
-    double overload;               /* N, beyond which the cell reads no number; 0: none */
+    double zero;                   /* N, zero given to the release; NaN: unknown */
+    double overload;               /* N, above which the cell reports overload; 0: never */
     int64_t period_ns;             /* of the readings */
-    int at_once;                   /* so many arrive together */
-    int late;                      /* so many from before the step arrive after it... */
-    int late_every;                /* ... at every so many-th rest; 0: never */
+    int at_once;                   /* readings that arrive together */
+    int late;                      /* readings from before the step that arrive after it... */
+    int late_every;                /* ... at every n-th rest; 0: never */
     int64_t t_ns;
     uint64_t seed;
-    /* What came of it. */
+    /* Result. */
     double travel;
     int rests;
 };
@@ -55,8 +55,8 @@ static double heavy(double travel)
     return 80.0 * WB_MN;
 }
 
-/* A clamp that jams with the wire bent: less hangs on the cell than a hook and a counterweight may.
- */
+/* A clamp that jams while the wire is bent, with a smaller load than hook and counterweight may
+ * have. */
 static double jammed(double travel)
 {
     (void)travel;
@@ -127,12 +127,12 @@ static enum wb_release_verdict release_from(struct bench *bench, double travel)
 
 static void check_seen_below_12_mm(const struct bench *bench)
 {
-    /* It takes 0.75 mm of level reading to see it, and no more than two steps. */
+    /* Detection needs 0.75 mm of level readings, and at most two steps. */
     assert_true(bench->travel <= 11.25 * WB_MM + 1e-9);
     assert_true(bench->travel > 9.0 * WB_MM);
 }
 
-static void a_slack_strand_is_seen(void **state)
+static void slack_strand_is_detected(void **state)
 {
     (void)state;
     struct bench bench = make(slack_below_12_mm);
@@ -143,7 +143,7 @@ static void a_slack_strand_is_seen(void **state)
     check_seen_below_12_mm(&bench);
 }
 
-static void the_way_readings_arrive_does_not_matter(void **state)
+static void division_of_readings_into_reads_does_not_matter(void **state)
 {
     (void)state;
     static const int at_once[] = {1, 3, 17, 200, 1500};
@@ -159,9 +159,8 @@ static void the_way_readings_arrive_does_not_matter(void **state)
     }
 }
 
-/* Readings of the place before that are handed over when the clamp stands at the next: the strand
- * would seem to have the same load at both. */
-static void late_readings_do_not_pretend_a_slack_strand(void **state)
+/* Readings of one position that arrive at the next one, which would give the same load at both. */
+static void late_readings_do_not_suggest_a_slack_strand(void **state)
 {
     (void)state;
     for (int every = 1; every <= 3; every++) {
@@ -175,8 +174,8 @@ static void late_readings_do_not_pretend_a_slack_strand(void **state)
     }
 }
 
-/* A cell as noisy as 1 % of its capacity: it is read for longer, and the way stays short. */
-static void a_noisy_cell_is_read_for_longer(void **state)
+/* A cell with a noise of 1 % of its capacity: it is read for longer, and the travel stays short. */
+static void noisy_cell_is_read_for_longer(void **state)
 {
     (void)state;
     int within = 0;
@@ -191,7 +190,7 @@ static void a_noisy_cell_is_read_for_longer(void **state)
     assert_true(within >= 45);
 }
 
-static void a_noisy_cell_needs_a_longer_way_and_tells_no_lie(void **state)
+static void noisy_cell_needs_a_longer_travel_and_gives_no_wrong_verdict(void **state)
 {
     (void)state;
     struct bench bench = make(slack_below_12_mm);
@@ -206,7 +205,7 @@ static void a_noisy_cell_needs_a_longer_way_and_tells_no_lie(void **state)
     }
 }
 
-static void a_strand_that_is_slack_from_the_start_moves_one_step(void **state)
+static void strand_that_is_slack_from_the_start_moves_one_step(void **state)
 {
     (void)state;
     struct bench bench = make(slack_below_12_mm);
@@ -214,7 +213,7 @@ static void a_strand_that_is_slack_from_the_start_moves_one_step(void **state)
     assert_close(bench.travel, 7.0 * WB_MM, 1e-12);
 }
 
-static void a_level_reading_far_from_zero_is_no_slack_strand_and_ends_it(void **state)
+static void level_reading_far_from_zero_ends_the_release_without_slack(void **state)
 {
     (void)state;
     struct bench bench = make(heavy);
@@ -222,7 +221,7 @@ static void a_level_reading_far_from_zero_is_no_slack_strand_and_ends_it(void **
     assert_close(bench.travel, 26.0 * WB_MM, 1e-12);
 }
 
-static void a_clamp_that_jams_is_no_slack_strand(void **state)
+static void jammed_clamp_is_not_a_slack_strand(void **state)
 {
     (void)state;
     struct bench bench = make(jammed);
@@ -231,7 +230,7 @@ static void a_clamp_that_jams_is_no_slack_strand(void **state)
     assert_int_equal(release_from(&bench, 32.0 * WB_MM), WB_RELEASE_STUCK);
 }
 
-static void a_zero_far_from_nothing_is_a_zero(void **state)
+static void zero_may_have_a_large_offset(void **state)
 {
     (void)state;
     struct bench bench = make(jammed);
@@ -242,7 +241,7 @@ static void a_zero_far_from_nothing_is_a_zero(void **state)
     assert_int_equal(release_from(&bench, 32.0 * WB_MM), WB_RELEASE_STUCK);
 }
 
-static void without_a_zero_a_level_reading_is_never_said_to_be_slack(void **state)
+static void without_a_zero_a_level_reading_is_not_called_slack(void **state)
 {
     (void)state;
     double (*const loads[])(double) = {slack_below_12_mm, soft, jammed, jams_on_the_way};
@@ -253,14 +252,14 @@ static void without_a_zero_a_level_reading_is_never_said_to_be_slack(void **stat
     }
 }
 
-static void an_overloaded_cell_is_relieved(void **state)
+static void overloaded_cell_is_unloaded(void **state)
 {
     (void)state;
     struct bench bench = make(slack_below_12_mm);
     bench.overload = 60.0 * WB_MN;
     assert_int_equal(release_from(&bench, 40.0 * WB_MM), WB_RELEASE_SLACK);
     check_seen_below_12_mm(&bench);
-    /* However far it goes: an overload is never taken for a level reading. */
+    /* For any travel: an overload does not count as a level reading. */
     bench = make(heavy);
     bench.overload = 60.0 * WB_MN;
     assert_int_equal(release_from(&bench, 40.0 * WB_MM), WB_RELEASE_GO_UP);
@@ -284,17 +283,17 @@ static void invalid_readings_do_not_count(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_slack_strand_is_seen),
-        cmocka_unit_test(the_way_readings_arrive_does_not_matter),
-        cmocka_unit_test(late_readings_do_not_pretend_a_slack_strand),
-        cmocka_unit_test(a_noisy_cell_is_read_for_longer),
-        cmocka_unit_test(a_noisy_cell_needs_a_longer_way_and_tells_no_lie),
-        cmocka_unit_test(a_strand_that_is_slack_from_the_start_moves_one_step),
-        cmocka_unit_test(a_level_reading_far_from_zero_is_no_slack_strand_and_ends_it),
-        cmocka_unit_test(a_clamp_that_jams_is_no_slack_strand),
-        cmocka_unit_test(a_zero_far_from_nothing_is_a_zero),
-        cmocka_unit_test(without_a_zero_a_level_reading_is_never_said_to_be_slack),
-        cmocka_unit_test(an_overloaded_cell_is_relieved),
+        cmocka_unit_test(slack_strand_is_detected),
+        cmocka_unit_test(division_of_readings_into_reads_does_not_matter),
+        cmocka_unit_test(late_readings_do_not_suggest_a_slack_strand),
+        cmocka_unit_test(noisy_cell_is_read_for_longer),
+        cmocka_unit_test(noisy_cell_needs_a_longer_travel_and_gives_no_wrong_verdict),
+        cmocka_unit_test(strand_that_is_slack_from_the_start_moves_one_step),
+        cmocka_unit_test(level_reading_far_from_zero_ends_the_release_without_slack),
+        cmocka_unit_test(jammed_clamp_is_not_a_slack_strand),
+        cmocka_unit_test(zero_may_have_a_large_offset),
+        cmocka_unit_test(without_a_zero_a_level_reading_is_not_called_slack),
+        cmocka_unit_test(overloaded_cell_is_unloaded),
         cmocka_unit_test(invalid_readings_do_not_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* The file of a series, the names of its recordings, and how far it has come. */
+/* The file of a series, the names of its recordings, and its progress. */
 #include "daq/test/series.h"
 
 #include <stdlib.h>
@@ -68,7 +68,7 @@ static void the_file_says_what_is_tested_and_how(void **state)
     assert_string_equal(series.rig, expected);
 }
 
-static void what_is_wrong_is_refused_with_its_line(void **state)
+static void what_is_wrong_is_rejected_with_its_line(void **state)
 {
     (void)state;
     static const char *const cases[][2] = {
@@ -115,7 +115,7 @@ static void names_follow_the_template(void **state)
     assert_string_equal(file, "tall-001-odd_wire_-L100-2.wbr");
 }
 
-static void a_specimen_is_like_the_file_but_for_its_sample_and_the_answers(void **state)
+static void specimen_is_like_the_file_but_for_its_sample_and_the_answers(void **state)
 {
     (void)state;
     const struct wb_series series = series_of("");
@@ -151,7 +151,7 @@ static int next_number(const struct wb_series *series, const struct wb_index *in
     return number;
 }
 
-static void a_number_is_above_all_that_were_ever_used(void **state)
+static void number_is_above_all_that_were_ever_used(void **state)
 {
     (void)state;
     const struct wb_series series = series_of("");
@@ -174,7 +174,7 @@ static void a_number_is_above_all_that_were_ever_used(void **state)
     assert_int_equal(next_number(&series, &index), 51);
 }
 
-static void digits_beside_the_number_are_told_apart(void **state)
+static void digits_beside_the_number_are_reported_apart(void **state)
 {
     (void)state;
     const struct wb_series series = series_of("output: '5{number}6.wbr'\n");
@@ -186,7 +186,7 @@ static void digits_beside_the_number_are_told_apart(void **state)
     assert_int_equal(next_number(&wide, &index), 5);
 }
 
-static void a_sample_is_done_unless_its_tests_are_to_be_repeated(void **state)
+static void sample_is_done_unless_its_tests_are_to_be_repeated(void **state)
 {
     (void)state;
     const struct wb_series series = series_of("first_sample: 2\n");
@@ -243,12 +243,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         FACT(the_file_says_what_is_tested_and_how),
-        FACT(what_is_wrong_is_refused_with_its_line),
+        FACT(what_is_wrong_is_rejected_with_its_line),
         FACT(names_follow_the_template),
-        FACT(a_specimen_is_like_the_file_but_for_its_sample_and_the_answers),
-        FACT(a_number_is_above_all_that_were_ever_used),
-        FACT(digits_beside_the_number_are_told_apart),
-        FACT(a_sample_is_done_unless_its_tests_are_to_be_repeated),
+        FACT(specimen_is_like_the_file_but_for_its_sample_and_the_answers),
+        FACT(number_is_above_all_that_were_ever_used),
+        FACT(digits_beside_the_number_are_reported_apart),
+        FACT(sample_is_done_unless_its_tests_are_to_be_repeated),
         FACT(recordings_that_nobody_judged_are_found_in_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -24,7 +24,7 @@ static struct wb_speed_watch watch_motion(double from, double to, double share, 
     return watch;
 }
 
-static void the_speed_is_that_between_the_ramps(void **state)
+static void speed_is_measured_between_the_ramps(void **state)
 {
     (void)state;
     struct wb_speed_watch watch = watch_motion(0.0, 50.0 * WB_MM, 1.0, 0.0);
@@ -35,7 +35,7 @@ static void the_speed_is_that_between_the_ramps(void **state)
     assert_true(wb_speed_watch_is_off(&watch));
 }
 
-static void late_reports_are_no_other_speed(void **state)
+static void late_reports_do_not_change_the_speed(void **state)
 {
     (void)state;
     struct wb_speed_watch watch = watch_motion(0.0, 4.0 * WB_MM, 1.0, 0.04);
@@ -45,7 +45,7 @@ static void late_reports_are_no_other_speed(void **state)
     assert_true(wb_speed_watch_is_off(&watch));
 }
 
-static void a_short_motion_tells_nothing(void **state)
+static void short_motion_gives_no_speed(void **state)
 {
     (void)state;
     const struct wb_speed_watch watch = watch_motion(0.0, 2.0 * WB_MM, 1.0, 0.0);
@@ -56,9 +56,9 @@ static void a_short_motion_tells_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_speed_is_that_between_the_ramps),
-        cmocka_unit_test(late_reports_are_no_other_speed),
-        cmocka_unit_test(a_short_motion_tells_nothing),
+        cmocka_unit_test(speed_is_measured_between_the_ramps),
+        cmocka_unit_test(late_reports_do_not_change_the_speed),
+        cmocka_unit_test(short_motion_gives_no_speed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,7 +34,7 @@ static void assert_refused(const char *words)
         fail_msg("'%s' does not say '%s'", text, words);
 }
 
-static void a_well_set_stage_passes(void **state)
+static void correctly_configured_stage_passes(void **state)
 {
     (void)state;
     assert_true(wb_stage_check(&settings, &rig, &motion, text));
@@ -42,17 +42,18 @@ static void a_well_set_stage_passes(void **state)
     assert_true(wb_stage_check(&settings, &rig, &motion, text));
 }
 
-static void a_speed_above_the_firmwares_is_refused(void **state)
+static void speed_above_the_firmwares_is_rejected(void **state)
 {
     (void)state;
     motion.speed = 10.0 * WB_MM;
     assert_true(wb_stage_check(&settings, &rig, &motion, text));
     settings.speed = 30.0 * WB_MM / 60.0;
     motion.speed = 1.0 * WB_MM;
-    assert_refused("0.5 mm/s at most ($111=30 mm/min), and 1 mm/s are wanted: set $111=60");
+    assert_refused("1 mm/s exceeds the 0.5 mm/s");
+    assert_refused("($111=30 mm/min): set $111=60");
 }
 
-static void a_speed_that_takes_too_long_to_brake_is_refused(void **state)
+static void speed_that_takes_too_long_to_brake_is_rejected(void **state)
 {
     (void)state;
     settings.acceleration = motion.speed = 5.0 * WB_MM;
@@ -61,21 +62,21 @@ static void a_speed_that_takes_too_long_to_brake_is_refused(void **state)
     assert_refused("needs 2.5 s to brake from 5 mm/s ($121=2 mm/s2)");
 }
 
-static void inches_are_refused(void **state)
+static void inches_are_rejected(void **state)
 {
     (void)state;
     settings.inches = true;
     assert_refused("set $13=0");
 }
 
-static void other_steps_than_the_rig_files_are_refused(void **state)
+static void steps_that_differ_from_the_rig_file_are_rejected(void **state)
 {
     (void)state;
     rig.stage.steps = 400.0 / WB_MM;
-    assert_refused("$101=800 steps/mm, the rig file says stage.steps_per_mm 400");
+    assert_refused("$101=800 steps/mm, but stage.steps_per_mm of the rig file is 400");
 }
 
-static void a_move_beyond_the_soft_limits_is_refused(void **state)
+static void move_beyond_the_soft_limits_is_rejected(void **state)
 {
     (void)state;
     motion.to = 0.0;
@@ -83,7 +84,7 @@ static void a_move_beyond_the_soft_limits_is_refused(void **state)
     motion.to = 0.5 * WB_MM;
     assert_refused("-64 mm to 0 ($131)");
     motion.to = -64.5 * WB_MM;
-    assert_refused("the stage stands at -62.000 mm");
+    assert_refused("-62.000 mm");
     settings.soft_limits = false;
     assert_true(wb_stage_check(&settings, &rig, &motion, text));
     /* Firmware that counts upwards from its switch. */
@@ -93,7 +94,7 @@ static void a_move_beyond_the_soft_limits_is_refused(void **state)
     assert_true(wb_stage_check(&settings, &rig, &motion, text));
 }
 
-static void the_way_up_ends_at_the_soft_limit(void **state)
+static void travel_up_ends_at_the_soft_limit(void **state)
 {
     (void)state;
     assert_close(wb_stage_check_way_up(&settings, &rig, -62.0 * WB_MM), 2.0 * WB_MM, 1e-12);
@@ -103,7 +104,7 @@ static void the_way_up_ends_at_the_soft_limit(void **state)
     assert_true(isinf(wb_stage_check_way_up(&settings, &rig, -62.0 * WB_MM)));
 }
 
-static void what_the_firmware_did_not_tell_is_not_checked(void **state)
+static void unreported_settings_are_not_checked(void **state)
 {
     (void)state;
     settings.speed = settings.acceleration = settings.travel = settings.steps = (double)NAN;
@@ -116,7 +117,7 @@ static void what_the_firmware_did_not_tell_is_not_checked(void **state)
 #define TEST(name) cmocka_unit_test_setup(name, set_up)
 
 /* In the words of the Tic Control Center. */
-static void a_tic_is_refused_in_its_own_units(void **state)
+static void tic_is_rejected_in_its_own_units(void **state)
 {
     (void)state;
     strcpy(rig.stage.protocol, "tic");
@@ -125,17 +126,17 @@ static void a_tic_is_refused_in_its_own_units(void **state)
     settings.soft_limits = false;
     assert_true(wb_stage_check(&settings, &rig, &motion, text));
     motion.speed = 12.0 * WB_MM;
-    assert_refused("(Max speed=320000000 pulses/10000 s), and 12 mm/s are wanted: set Max "
-                   "speed=384000000");
+    assert_refused("12 mm/s exceeds the 10 mm/s");
+    assert_refused("(Max speed=320000000 pulses/10000 s): set Max speed=384000000");
     motion.speed = 16.0 * WB_MM;
-    assert_refused("makes 15.625 mm/s at most with 3200 steps/mm");
+    assert_refused("15.625 mm/s with 3200 steps/mm");
     motion.speed = 10.0 * WB_MM;
     settings.acceleration = 5.0 * WB_MM;
-    assert_refused("(Max acceleration=1600000 pulses/s/100 s), too long to stop it safely: set Max "
+    assert_refused("(Max acceleration=1600000 pulses/s/100 s), too long for a safe stop: set Max "
                    "acceleration=3200000");
 }
 
-static void a_fault_of_the_controller_is_refused_first(void **state)
+static void controller_fault_is_reported_first(void **state)
 {
     (void)state;
     strcpy(settings.fault, "the timeout is off: switch it on");
@@ -146,16 +147,16 @@ static void a_fault_of_the_controller_is_refused_first(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(a_well_set_stage_passes),
-        TEST(a_speed_above_the_firmwares_is_refused),
-        TEST(a_speed_that_takes_too_long_to_brake_is_refused),
-        TEST(inches_are_refused),
-        TEST(other_steps_than_the_rig_files_are_refused),
-        TEST(a_move_beyond_the_soft_limits_is_refused),
-        TEST(the_way_up_ends_at_the_soft_limit),
-        TEST(what_the_firmware_did_not_tell_is_not_checked),
-        TEST(a_tic_is_refused_in_its_own_units),
-        TEST(a_fault_of_the_controller_is_refused_first),
+        TEST(correctly_configured_stage_passes),
+        TEST(speed_above_the_firmwares_is_rejected),
+        TEST(speed_that_takes_too_long_to_brake_is_rejected),
+        TEST(inches_are_rejected),
+        TEST(steps_that_differ_from_the_rig_file_are_rejected),
+        TEST(move_beyond_the_soft_limits_is_rejected),
+        TEST(travel_up_ends_at_the_soft_limit),
+        TEST(unreported_settings_are_not_checked),
+        TEST(tic_is_rejected_in_its_own_units),
+        TEST(controller_fault_is_reported_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

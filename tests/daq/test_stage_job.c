@@ -1,5 +1,5 @@
-/* Setting the bench by hand, against a small bench in virtual time: jog, home, unlock, release, and
- * the check of the load cell with a mass. */
+/* Single jobs of the stage with a small bench in virtual time: jog, home, unlock, release, and the
+ * check of the load cell with a mass. */
 #include "base/interrupt_private.h"
 #include "base/log.h"
 #include "base/timing.h"
@@ -14,7 +14,7 @@ struct fixture {
     struct fake_bench *bench;
     char path[64];
     struct wb_rig rig;
-    double zero; /* N, what a release knows of the cell's */
+    double zero; /* N, zero of the cell given to a release */
 };
 
 static void keep_quiet(void *context, enum wb_log_level level, const char *domain,
@@ -85,7 +85,7 @@ static void jog_moves_by_the_distance_down_and_up(void **state)
     assert_int_equal(fixture->bench->holds, 0);
 }
 
-static void a_slow_jog_is_told(void **state)
+static void slow_jog_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->is_slow = true;
@@ -110,7 +110,7 @@ static void jog_stops_at_the_reading_beyond_the_force_limit(void **state)
     assert_close(bench->position_mm, (bench->force_limit_mg - bench->force_mg) / 500.0, 0.03);
 }
 
-static void jog_beyond_the_travel_is_refused(void **state)
+static void jog_beyond_the_travel_is_rejected(void **state)
 {
     struct fixture *const fixture = *state;
     const struct wb_stage_job_request request = {.kind = WB_STAGE_JOB_JOG, .distance = 0.061};
@@ -119,7 +119,7 @@ static void jog_beyond_the_travel_is_refused(void **state)
     assert_null(job);
 }
 
-static void jog_of_a_locked_stage_says_how_to_unlock(void **state)
+static void jog_of_a_locked_stage_is_rejected_with_the_remedy(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->state = "Alarm";
@@ -129,8 +129,8 @@ static void jog_of_a_locked_stage_says_how_to_unlock(void **state)
     assert_non_null(strstr(result.text, "'unlock'"));
 }
 
-/* What an Arduino does that is reset by the edge on DTR: home, close, open, and all is lost. */
-static void a_stage_reset_by_opening_its_port_is_told(void **state)
+/* An Arduino that is reset by an edge on DTR: home, close, open, and the position is lost. */
+static void stage_reset_by_opening_its_port_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->starts_anew = true;
@@ -138,17 +138,17 @@ static void a_stage_reset_by_opening_its_port_is_told(void **state)
     fixture->bench->starts_anew = true;
     struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
     assert_int_equal(result.end, WB_SEQUENCE_FAILED);
-    assert_non_null(strstr(result.text, "started anew when the port was opened"));
-    assert_non_null(strstr(result.text, "dtr=on or off"));
+    assert_non_null(strstr(result.text, "restarted when the port was opened"));
+    assert_non_null(strstr(result.text, "dtr=on or dtr=off"));
     assert_non_null(strstr(result.text, "run 'home'"));
-    /* A reset of our own is none of that. */
+    /* Our own reset does not count. */
     assert_int_equal(run(fixture, WB_STAGE_JOB_UNLOCK, 0.0).end, WB_SEQUENCE_DONE);
     fixture->bench->state = "Alarm";
     result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
     assert_null(strstr(result.text, "anew"));
 }
 
-static void jog_without_a_reading_is_refused(void **state)
+static void jog_without_a_reading_is_rejected(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->load_silent = true;
@@ -188,7 +188,7 @@ static void unlock_brings_the_stage_to_idle_from_anything(void **state)
     struct fixture *const fixture = *state;
     static const char *const states[] = {"Hold:0", "Alarm", "Idle", "Door:0", "Sleep", "Jog"};
     for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
-        fixture->bench->target_mm = 50.0; /* of somebody's jog, at no speed */
+        fixture->bench->target_mm = 50.0; /* of another program's jog, speed unknown */
         fixture->bench->state = states[i];
         assert_int_equal(run(fixture, WB_STAGE_JOB_UNLOCK, 0.0).end, WB_SEQUENCE_DONE);
         assert_string_equal(fixture->bench->state, "Idle");
@@ -205,14 +205,14 @@ static void release_goes_up_until_the_strand_is_slack(void **state)
     bench->state = "Hold:0";
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
     assert_int_equal(result.end, WB_SEQUENCE_DONE);
-    /* The strand is slack from 12 mm up; it is seen over 0.75 mm, in steps of 1 mm. */
+    /* The strand is slack above 12 mm; detected over 0.75 mm, in steps of 1 mm. */
     assert_true(bench->position_mm < 11.25);
     assert_true(bench->position_mm > 9.0);
     assert_close(result.force, 0.15e-3 * WB_STANDARD_GRAVITY, 0.02e-3 * WB_STANDARD_GRAVITY);
     assert_true(result.change < -0.05);
 }
 
-static void release_waits_for_a_lost_answer(void **state)
+static void release_waits_after_a_lost_reply(void **state)
 {
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
@@ -226,8 +226,8 @@ static void release_waits_for_a_lost_answer(void **state)
     assert_true(bench->position_mm < 11.25);
 }
 
-/* What a busy machine does to the bytes: reports are few, readings come many at a time. */
-static void release_does_not_mind_how_bytes_are_handed_over(void **state)
+/* Effects of a busy computer: few reports, many readings at a time. */
+static void release_is_independent_of_the_division_into_reads(void **state)
 {
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
@@ -260,8 +260,8 @@ release_that_meets_the_end_of_the_machine_says_so_and_leaves_the_stage_usable(vo
     assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 2.0).end, WB_SEQUENCE_DONE);
 }
 
-/* By default it goes no further than a test may go down, here 12 mm, and says what to do. */
-static void release_ends_after_the_longest_way_of_a_test(void **state)
+/* By default it moves at most by the travel of a test, here 12 mm, and gives the remedy. */
+static void release_ends_after_the_longest_travel_of_a_test(void **state)
 {
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
@@ -270,12 +270,12 @@ static void release_ends_after_the_longest_way_of_a_test(void **state)
     fixture->rig.limits.travel = 12.0 * WB_MM;
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
     assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
-    assert_non_null(strstr(result.text, "went up by 12.00 mm"));
-    assert_non_null(strstr(result.text, "look at the strand"));
+    assert_non_null(strstr(result.text, "moved up by 12.00 mm"));
+    assert_non_null(strstr(result.text, "check the strand"));
     assert_close(bench->position_mm, 28.0, 1e-3);
 }
 
-/* The stage tells its soft limits: it stops before them and no command of it is refused. */
+/* With reported soft limits the release stops before them and no command is rejected. */
 static void release_ends_at_the_soft_limit(void **state)
 {
     struct fixture *const fixture = *state;
@@ -285,18 +285,18 @@ static void release_ends_at_the_soft_limit(void **state)
     bench->slack_mm = -60;
     bench->has_soft_limits = true;
     bench->soft_travel_mm = 27;
-    bench->state = "Hold:0"; /* deaf: its settings come later */
+    bench->state = "Hold:0"; /* no replies: its settings arrive later */
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
     assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
-    assert_non_null(strstr(result.text, "went up by 7.00 mm to the end of the machine"));
+    assert_non_null(strstr(result.text, "moved up by 7.00 mm to the end of the machine"));
     assert_close(bench->position_mm, -27.0, 1e-3);
     const struct wb_stage_job_result jog = run(fixture, WB_STAGE_JOB_JOG, -0.5);
     assert_int_equal(jog.end, WB_SEQUENCE_FAILED);
-    assert_non_null(strstr(jog.text, "beyond the stage's soft limits, -27 mm to 0"));
+    assert_non_null(strstr(jog.text, "soft limits, -27 mm to 0"));
     assert_close(bench->position_mm, -27.0, 1e-3);
 }
 
-/* A reading that stays level far from zero will not change on the rest of the way either. */
+/* A reading that is level far from zero will not change with more travel. */
 static void release_ends_soon_when_the_reading_does_not_change(void **state)
 {
     struct fixture *const fixture = *state;
@@ -310,8 +310,8 @@ static void release_ends_soon_when_the_reading_does_not_change(void **state)
     assert_close(bench->position_mm, 24.0, 1e-3);
 }
 
-/* The clamp jams with the wire bent: 3.7 g, 36.7 mN on a cell of 20 g. Nobody is told to touch it.
- */
+/* The clamp jams while the wire is bent: 3.7 g, 36.7 mN on a cell of 20 g. The message must not
+ * call the specimen free. */
 static void release_of_a_jammed_clamp_does_not_say_free(void **state)
 {
     struct fixture *const fixture = *state;
@@ -322,13 +322,13 @@ static void release_of_a_jammed_clamp_does_not_say_free(void **state)
     struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
     assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
     if (!strstr(result.text, "stays at 36.") ||
-        !strstr(result.text, "the clamp does not go with the stage"))
+        !strstr(result.text, "the clamp does not follow the stage"))
         fail_msg("'%s' does not say what is wrong", result.text);
     assert_null(strstr(result.text, "free"));
     fixture->zero = (double)NAN;
     result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
     assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
-    assert_non_null(strstr(result.text, "look at the strand before you touch the specimen"));
+    assert_non_null(strstr(result.text, "the strand before you touch the specimen"));
 }
 
 static void release_may_begin_beyond_the_limits(void **state)
@@ -344,20 +344,20 @@ static void release_may_begin_beyond_the_limits(void **state)
     assert_int_equal(bench->holds, 0);
 }
 
-static void release_stops_when_up_loads(void **state)
+static void release_stops_when_moving_up_increases_the_load(void **state)
 {
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
     bench->spring_mg_mm = 50;
     assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_SEQUENCE_DONE);
     bench->force_mg = 20000;
-    bench->spring_mg_mm = -600; /* 2 g now, and more when it goes up */
+    bench->spring_mg_mm = -600; /* 2 g now, increasing upwards */
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
     assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_true(bench->position_mm > 10.0);
 }
 
-static void release_says_when_it_saw_no_slack(void **state)
+static void release_reports_when_no_slack_was_found(void **state)
 {
     struct fixture *const fixture = *state;
     assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 15.0).end, WB_SEQUENCE_DONE);
@@ -368,7 +368,7 @@ static void release_says_when_it_saw_no_slack(void **state)
 
 /* --- the load cell's check --- */
 
-/* Runs the program; `hung_mg` are what really hangs, where the program asks for masses_g. */
+/* Runs the program; `hung_mg` are the true masses when it prompts for masses_g. */
 static void check(struct fixture *fixture, const double *masses, const int *hung_mg, int n,
                   struct wb_cell_point *points)
 {
@@ -394,7 +394,7 @@ static struct wb_cell_deviation check_10_g(struct fixture *fixture, int hung_mg)
     return wb_cell_calibration_deviation(&points[0], &points[1], fixture->rig.gravity);
 }
 
-static void a_good_cell_reads_the_mass(void **state)
+static void good_cell_reads_the_mass(void **state)
 {
     const struct wb_cell_deviation result = check_10_g(*state, 10000);
     assert_close(result.mass, 10e-3, 6e-6);
@@ -402,12 +402,12 @@ static void a_good_cell_reads_the_mass(void **state)
     assert_true(result.uncertainty > 0.0 && result.uncertainty < 3e-6);
 }
 
-static void a_cell_off_by_2_percent_is_seen(void **state)
+static void cell_error_of_2_percent_is_detected(void **state)
 {
     assert_close(check_10_g(*state, 10200).relative, 0.02, 1e-3);
 }
 
-static void a_series_is_asked_for_in_turn(void **state)
+static void masses_of_a_series_are_requested_in_turn(void **state)
 {
     struct fixture *const fixture = *state;
     static const double masses[] = {0.0, 5e-3, 10e-3, 0.0};
@@ -422,9 +422,9 @@ static void a_series_is_asked_for_in_turn(void **state)
     }
 }
 
-/* The mass swings for 2.5 s, longer than the program waits in any case: until then it does not
- * read, and then it reads the mass at rest. */
-static void a_swinging_mass_is_waited_for(void **state)
+/* The mass swings for 2.5 s, longer than the least waiting time: reading begins when it is at rest.
+ */
+static void swinging_mass_is_waited_for(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_mass_check *check;
@@ -458,30 +458,30 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(jog_moves_by_the_distance_down_and_up),
-        TEST(a_slow_jog_is_told),
+        TEST(slow_jog_is_reported),
         TEST(jog_stops_at_the_reading_beyond_the_force_limit),
-        TEST(jog_beyond_the_travel_is_refused),
-        TEST(jog_of_a_locked_stage_says_how_to_unlock),
-        TEST(a_stage_reset_by_opening_its_port_is_told),
-        TEST(jog_without_a_reading_is_refused),
+        TEST(jog_beyond_the_travel_is_rejected),
+        TEST(jog_of_a_locked_stage_is_rejected_with_the_remedy),
+        TEST(stage_reset_by_opening_its_port_is_reported),
+        TEST(jog_without_a_reading_is_rejected),
         TEST(ctrl_c_stops_a_jog),
         TEST(home_waits_for_the_end_of_homing),
         TEST(unlock_brings_the_stage_to_idle_from_anything),
         TEST(release_goes_up_until_the_strand_is_slack),
-        TEST(release_waits_for_a_lost_answer),
-        TEST(release_does_not_mind_how_bytes_are_handed_over),
+        TEST(release_waits_after_a_lost_reply),
+        TEST(release_is_independent_of_the_division_into_reads),
         TEST(release_that_meets_the_end_of_the_machine_says_so_and_leaves_the_stage_usable),
-        TEST(release_ends_after_the_longest_way_of_a_test),
+        TEST(release_ends_after_the_longest_travel_of_a_test),
         TEST(release_ends_at_the_soft_limit),
         TEST(release_ends_soon_when_the_reading_does_not_change),
         TEST(release_of_a_jammed_clamp_does_not_say_free),
         TEST(release_may_begin_beyond_the_limits),
-        TEST(release_stops_when_up_loads),
-        TEST(release_says_when_it_saw_no_slack),
-        TEST(a_good_cell_reads_the_mass),
-        TEST(a_cell_off_by_2_percent_is_seen),
-        TEST(a_series_is_asked_for_in_turn),
-        TEST(a_swinging_mass_is_waited_for),
+        TEST(release_stops_when_moving_up_increases_the_load),
+        TEST(release_reports_when_no_slack_was_found),
+        TEST(good_cell_reads_the_mass),
+        TEST(cell_error_of_2_percent_is_detected),
+        TEST(masses_of_a_series_are_requested_in_turn),
+        TEST(swinging_mass_is_waited_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

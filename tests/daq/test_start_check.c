@@ -1,5 +1,5 @@
-/* The start check: markers told by geometry, zero, stage; and the gate that keeps remarks from
- * becoming a flood. */
+/* The start check: markers identified by geometry, zero, stage; and the gate that limits remarks.
+ */
 #include <stdlib.h>
 
 #include "base/units.h"
@@ -60,7 +60,7 @@ static void all_markers_of_a_bowed_wire_are_found_at_any_angle(void **state)
     }
 }
 
-static void each_missing_marker_is_missed_and_no_stray_stands_in(void **state)
+static void each_missing_marker_is_detected_and_not_replaced_by_a_stray(void **state)
 {
     (void)state;
     for (int missing = 0; missing < N; missing++) {
@@ -73,7 +73,7 @@ static void each_missing_marker_is_missed_and_no_stray_stands_in(void **state)
                 place(&frame, m, 3e-3, 0.4);
         wb_marker_check_frame(&frame, &specimen, &places);
         assert_int_equal(places.n_seen, N - 1);
-        /* The spacing is symmetric to 0.1 mm, so either end may be called the clamp. */
+        /* The spacing is symmetric to 0.1 mm, so that either end may be taken for the clamp. */
         assert_true(places.index[missing] < 0 || places.index[N - 1 - missing] < 0);
         for (int m = 0; m < N; m++)
             assert_true(places.index[m] < 0 || places.index[m] >= 2); /* no stray */
@@ -91,7 +91,7 @@ static void occluded_and_filled_in_markers_are_not_seen(void **state)
     assert_int_equal(count(&frame), N - 2);
 }
 
-static void no_and_one_and_far_too_many_markers_are_survived(void **state)
+static void zero_one_and_too_many_markers_are_handled(void **state)
 {
     (void)state;
     struct wb_mocap_frame frame = {.n_markers = 0};
@@ -108,7 +108,7 @@ static void no_and_one_and_far_too_many_markers_are_survived(void **state)
     assert_true(count(&frame) >= N - 1);
 }
 
-static void a_marker_may_be_lost_in_less_than_half_of_the_frames(void **state)
+static void marker_may_be_lost_in_less_than_half_of_the_frames(void **state)
 {
     (void)state;
     for (int lost = 4; lost <= 6; lost += 2) {
@@ -124,7 +124,7 @@ static void a_marker_may_be_lost_in_less_than_half_of_the_frames(void **state)
         assert_int_equal(wb_start_check_markers(&check, &specimen, text), lost < 5);
         if (lost > 5)
             assert_string_equal(text,
-                                "6 of 7 markers seen; not seen, counted from one end: 4 (42.5 mm)");
+                                "6 of 7 markers seen; missing, counted from one end: 4 (42.5 mm)");
     }
 }
 
@@ -146,7 +146,7 @@ static struct wb_start_check frames(double noise, double factor)
     return check;
 }
 
-static void a_still_picture_is_no_measurement(void **state)
+static void identical_frames_are_rejected(void **state)
 {
     (void)state;
     const struct wb_rig rig = {.name = ""};
@@ -154,25 +154,25 @@ static void a_still_picture_is_no_measurement(void **state)
     const struct wb_start_check measured = frames(1e-4, 1.0), still = frames(0.0, 1.0);
     assert_true(wb_start_check_markers(&still, &specimen, text));
     assert_false(wb_start_check_chain(&still, &specimen, &rig, text));
-    assert_non_null(strstr(text, "the same place in 20 frames"));
+    assert_non_null(strstr(text, "identical in 20 frames"));
     assert_true(wb_start_check_chain(&measured, &specimen, &rig, text));
 }
 
-static void cameras_in_another_scale_are_told_from_a_wrong_file(void **state)
+static void wrong_camera_scale_is_distinguished_from_a_wrong_file(void **state)
 {
     (void)state;
     const struct wb_rig rig = {.name = ""};
     char text[WB_START_CHECK_TEXT] = "";
     struct wb_start_check check = frames(1e-4, 1.03);
     assert_false(wb_start_check_chain(&check, &specimen, &rig, text));
-    assert_non_null(strstr(text, "87.6 mm long"));
+    assert_non_null(strstr(text, "measure 87.6 mm"));
     assert_non_null(strstr(text, "scale is off by +3.0 %"));
     check = frames(1e-4, 1000.0);
     assert_false(wb_start_check_markers(&check, &specimen, text));
     assert_non_null(strstr(text, "millimetres"));
 }
 
-static void markers_that_a_model_fills_in_are_told(void **state)
+static void model_filled_markers_are_reported(void **state)
 {
     (void)state;
     struct wb_start_check check = {0};
@@ -216,7 +216,7 @@ static void zero_is_judged_by_capacity_and_noise(void **state)
     assert_false(wb_start_check_zero(&check, &rig, "my/rig.yaml", text));
 }
 
-static void a_tare_with_the_counterweight_expects_its_weight(void **state)
+static void tare_with_the_counterweight_expects_its_weight(void **state)
 {
     (void)state;
     struct wb_rig rig = {.gravity = 10.0,
@@ -233,11 +233,11 @@ static void a_tare_with_the_counterweight_expects_its_weight(void **state)
     assert_true(wb_start_check_zero(&check, &rig, "rig.yaml", text));
     check = readings(0.041, 1e-4);
     assert_false(wb_start_check_zero(&check, &rig, "rig.yaml", text));
-    /* An unloaded cell within a tenth of its capacity of it all the same is not right, */
+    /* An unloaded cell within a tenth of its capacity of the counterweight is rejected, */
     check = readings(0.0, 1e-4);
     assert_false(wb_start_check_zero(&check, &rig, "rig.yaml", text));
     assert_non_null(strstr(text, "load_cell.tare is counterweight"));
-    /* nor a heavy counterweight that is off by more than that. */
+    /* also a heavy counterweight with a larger deviation. */
     rig.strand.counterweight = 10e-3;
     check = readings(0.121, 1e-4);
     assert_false(wb_start_check_zero(&check, &rig, "rig.yaml", text));
@@ -269,7 +269,7 @@ static void stage_must_be_idle_at_a_known_position(void **state)
     }
 }
 
-static void average_is_the_textbook_one(void **state)
+static void average_agrees_with_the_definition(void **state)
 {
     (void)state;
     struct wb_average average = {0};
@@ -318,17 +318,17 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_markers_of_a_bowed_wire_are_found_at_any_angle),
-        cmocka_unit_test(each_missing_marker_is_missed_and_no_stray_stands_in),
+        cmocka_unit_test(each_missing_marker_is_detected_and_not_replaced_by_a_stray),
         cmocka_unit_test(occluded_and_filled_in_markers_are_not_seen),
-        cmocka_unit_test(no_and_one_and_far_too_many_markers_are_survived),
-        cmocka_unit_test(a_marker_may_be_lost_in_less_than_half_of_the_frames),
-        cmocka_unit_test(a_still_picture_is_no_measurement),
-        cmocka_unit_test(cameras_in_another_scale_are_told_from_a_wrong_file),
-        cmocka_unit_test(markers_that_a_model_fills_in_are_told),
+        cmocka_unit_test(zero_one_and_too_many_markers_are_handled),
+        cmocka_unit_test(marker_may_be_lost_in_less_than_half_of_the_frames),
+        cmocka_unit_test(identical_frames_are_rejected),
+        cmocka_unit_test(wrong_camera_scale_is_distinguished_from_a_wrong_file),
+        cmocka_unit_test(model_filled_markers_are_reported),
         cmocka_unit_test(zero_is_judged_by_capacity_and_noise),
-        cmocka_unit_test(a_tare_with_the_counterweight_expects_its_weight),
+        cmocka_unit_test(tare_with_the_counterweight_expects_its_weight),
         cmocka_unit_test(stage_must_be_idle_at_a_known_position),
-        cmocka_unit_test(average_is_the_textbook_one),
+        cmocka_unit_test(average_agrees_with_the_definition),
         cmocka_unit_test(gate_stores_20_a_second_and_counts_the_rest),
         cmocka_unit_test(gate_shows_each_kind_once_in_10_s),
     };

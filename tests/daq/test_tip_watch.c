@@ -1,5 +1,5 @@
-/* The deflection on the live line: followed from frame to frame, whichever end is called the clamp,
- * through hidden frames and past a stray. */
+/* The deflection in the status line: tracked from frame to frame for either order of the ends, with
+ * hidden markers and strays. */
 #include "base/units.h"
 #include "daq/test/tip_watch.h"
 #include "tests/check.h"
@@ -19,7 +19,7 @@ static void set(struct wb_mocap_frame *frame, char up, double x, double height)
     marker->position[up == 'z' ? 1 : 2] = 0.3F;
 }
 
-/* A wire whose clamp has gone down by `travel`; the tip keeps its height and comes inwards. */
+/* A wire whose clamp has moved down by `travel`; the tip keeps its height and moves inwards. */
 static struct wb_mocap_frame view(char up, bool backwards, double travel, bool tip_hidden)
 {
     struct wb_mocap_frame frame = {.n_markers = 0};
@@ -60,7 +60,7 @@ static void deflection_is_the_tip_s_rise_above_the_clamp(void **state)
     assert_close(deflection_after('z', false, 0.03), 0.03, 1e-5);
 }
 
-static void without_both_ends_it_never_settles(void **state)
+static void both_ends_are_needed_for_the_rest(void **state)
 {
     (void)state;
     struct wb_tip_watch watch = {0};
@@ -77,7 +77,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(deflection_is_the_tip_s_rise_above_the_clamp),
-        cmocka_unit_test(without_both_ends_it_never_settles),
+        cmocka_unit_test(both_ends_are_needed_for_the_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

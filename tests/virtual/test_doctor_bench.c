@@ -202,7 +202,7 @@ static void wrong_wire_length_is_reported_with_both_lengths(void **state)
            "length_mm: 88\nsample: 1\nmarkers_mm: [0, 14.7, 29.3, 44, 58.7, 73.3, 88]");
     fixture->request.test.specimen_path = fixture->changed;
     look(fixture);
-    const char *const text = expect(fixture, "scale", WB_DOCTOR_NOT_READY, " mm long");
+    const char *const text = expect(fixture, "scale", WB_DOCTOR_NOT_READY, "markers_mm");
     assert_non_null(strstr(text, "85."));
     assert_non_null(strstr(text, "88.0"));
 }
@@ -260,8 +260,8 @@ static const struct {
     uint64_t seed;
 } faults[] = {
     {"loss=20", "frames", "% of the frames never came", WB_DOCTOR_NOT_READY, "frames", 1},
-    {"garbage=20", "load cell", "not understood", WB_DOCTOR_NOTE, "load cell", 1},
-    {"garbage=20", "cameras", "refused", WB_DOCTOR_NOTE, "load cell", 1},
+    {"garbage=20", "load cell", "cannot be decoded", WB_DOCTOR_NOTE, "load cell", 1},
+    {"garbage=20", "cameras", "rejected at byte", WB_DOCTOR_NOTE, "load cell", 1},
     {"duplicates=20", "frames", "arrive twice", WB_DOCTOR_NOTE, NULL, 1},
     {"reorder=20", "frames", "after the next one", WB_DOCTOR_NOTE, NULL, 1},
     {"delay=150", "delay", "later", WB_DOCTOR_NOTE, NULL, 1},

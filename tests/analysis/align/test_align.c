@@ -786,7 +786,7 @@ static void unreadable_parts_are_reported_with_the_reason(void **state)
     overwrite(path, 0.97);
     keep_messages();
     assert_int_equal(run(path, &why), WB_OK);
-    assert_non_null(strstr(kept.error, "table chunk breaks off"));
+    assert_non_null(strstr(kept.error, "table chunk is damaged"));
     assert_string_equal(why.text, "");
     assert_true(warns("the recording breaks off"));
 
@@ -794,7 +794,7 @@ static void unreadable_parts_are_reported_with_the_reason(void **state)
     keep_messages();
     assert_int_equal(run(path, &why), WB_ERR_DATA);
     assert_string_equal(kept.error, "");
-    const char *const lost = strstr(why.text, "table chunk breaks off");
+    const char *const lost = strstr(why.text, "table chunk is damaged");
     assert_non_null(lost);
     const char *const failed = strstr(lost, "; ");
     assert_non_null(failed);

@@ -585,7 +585,7 @@ static void a_channel_of_a_take_is_its_force(void **state)
     wb_force_table_release(&force);
     snprintf(foreign.channel, sizeof foreign.channel, "Fx");
     assert_int_equal(wb_foreign_channel(&foreign, &take, &rig, &force, NULL), WB_ERR_DATA);
-    assert_message("there are Fz (N)");
+    assert_message("Fz (N)");
     wb_take_release(&take);
 }
 
