@@ -4,16 +4,17 @@
 
 #include "base/units.h"
 
-/* A limit so many times beyond the data would press them flat. */
+/* A limit beyond the data by a larger factor is not shown, because it would compress the curve. */
 #define NEAR_LIMIT 1.4
 #define NO_CYCLE (-1)
 
-/* What the axes have to hold, m and N. */
+/* Range of the data, m and N. */
 struct extent {
     double deflection, lowest, force;
 };
 
-static void hold_points(struct extent *extent, const struct wb_live_frame_point *points, size_t n)
+static void extend_by_points(struct extent *extent, const struct wb_live_frame_point *points,
+                             size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         extent->deflection = fmax(extent->deflection, (double)points[i].deflection);
@@ -26,8 +27,8 @@ void wb_live_chart_range(struct wb_live_chart *chart, const struct wb_live_plan 
                          const struct wb_live_history *history)
 {
     struct extent extent = {.deflection = plan->travel};
-    hold_points(&extent, history->points, history->n_points);
-    hold_points(&extent, plan->earlier, plan->n_earlier);
+    extend_by_points(&extent, history->points, history->n_points);
+    extend_by_points(&extent, plan->earlier, plan->n_earlier);
     double deflection = extent.deflection, force = extent.force;
     for (int i = 0; i < plan->n_predicted; i++)
         force = fmax(force, plan->tension[i]);
@@ -70,7 +71,7 @@ static void draw_limits(const struct wb_live_chart *chart, const struct wb_live_
     }
 }
 
-/* Curves of points with one number; that of `bright` stands out. */
+/* Draws a curve per number (cycle or test) of the points; that of `bright` is highlighted. */
 static void draw_points(const struct wb_live_chart *chart, struct wb_live_raster *raster,
                         const struct wb_live_frame_point *points, size_t n, int bright)
 {
@@ -107,7 +108,7 @@ void wb_live_chart_draw(const struct wb_live_chart *chart, const struct wb_live_
 void wb_live_chart_wire(const struct wb_live_plan *plan, const struct wb_live_frame *frame,
                         struct wb_live_raster *raster, double place[WB_SPECIMEN_MAX_MARKERS][2])
 {
-    /* Room for the way of the tip, and a little below for a wire that sags. */
+    /* Space for the travel of the tip, and some below for the sag of the wire. */
     const double below = 0.05 * plan->length;
     const double scale = fmin((raster->width - 3) / plan->length,
                               (raster->height - 2) / (plan->travel + 2.0 * below));

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Pixels of a glyph, five lines from the top, '#' is on. */
+/* Pixels of a glyph, five lines from the top; '#' is a set pixel. */
 struct glyph {
     char character;
     int width;

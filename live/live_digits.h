@@ -5,8 +5,8 @@
 #define WB_LIVE_DIGITS_ROWS 3
 #define WB_LIVE_DIGITS_TEXT 192
 
-/* One row (0 to 2, from the top) of a number as UTF-8 text. Digits, '-', '.' and ':' are drawn,
- * each 4 columns wide with its gap, the last two 2; others are left out, and what does not fit. */
+/* One row (0 to 2, from the top) of a number as UTF-8 text. Digits and '-' are 4 columns wide with
+ * their gap, '.' and ':' 2; other characters, and those that do not fit, are omitted. */
 void wb_live_digits_row(const char *number, int row, char text[WB_LIVE_DIGITS_TEXT]);
 
 #endif

@@ -7,8 +7,8 @@
 #include "base/log.h"
 #include "base/units.h"
 
-/* One event whose data is a JSON document; destroys it. A document on several lines would need the
- * field's name on each of them. */
+/* Appends an event with a JSON document as data, and destroys the document. The document is written
+ * on one line, because each line of an event needs the name of its field. */
 static void append_document(struct wb_text *text, const char *name, struct wb_json *root)
 {
     char *json = NULL;
@@ -101,7 +101,7 @@ static void append_state(struct wb_text *text, const struct wb_live_history *his
     append_document(text, "state", root);
 }
 
-/* [cycle, mm, mN] each; numbers only, and many: written directly. */
+/* Appends points as [cycle, mm, mN]; written directly for speed. */
 static void append_list(struct wb_text *text, const struct wb_live_frame_point *points, size_t n)
 {
     wb_text_append(text, "[");

@@ -14,12 +14,11 @@
 
 #define WB_LOG_DOMAIN "live"
 
-/* What may wait for a view, bytes as the kernel counts them: about a second of frames. A view that
- * was stopped has that much to catch up with. */
+/* Size of a view's socket buffer (bytes as counted by the kernel): about a second of frames. */
 #define SOCKET_BYTES 65536
-#define LOW_PRIORITY 5
+#define LOW_PRIORITY 5 /* nice value of the views */
 
-/* --- the child --- */
+/* --- child process --- */
 
 static void become_a_view(const struct wb_live_feed *feed)
 {
@@ -29,10 +28,11 @@ static void become_a_view(const struct wb_live_feed *feed)
         signal(ignored[i], SIG_IGN);
     for (size_t i = 0; i < sizeof usual / sizeof usual[0]; i++)
         signal(usual[i], SIG_DFL);
-    /* With an end of the recorder's open here, an earlier view would not see the recorder go. */
+    /* Close the recorder's ends: otherwise an earlier view would not see that the recorder ended.
+     */
     for (int i = 0; i < feed->n_views; i++)
         close(feed->view[i].socket);
-    /* Of no use where it is refused: then the view is as important as others. */
+    /* A failure is ignored: the view then runs at normal priority. */
     (void)setpriority(PRIO_PROCESS, 0, LOW_PRIORITY);
 }
 
@@ -44,9 +44,10 @@ enum wb_status wb_live_feed_start(struct wb_live_feed *feed, int (*run)(int sock
     if (feed->n_views == WB_LIVE_FEED_VIEWS)
         return wb_fail(WB_ERR_ARGUMENT, "expected at most %d live views", WB_LIVE_FEED_VIEWS);
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
-        return wb_fail(WB_ERR_IO, "no socket for a live view: %s", strerror(errno));
+        return wb_fail(WB_ERR_IO, "a socket for a live view cannot be created: %s",
+                       strerror(errno));
     (void)setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
-    fflush(NULL); /* or the child would write what waits in stdout a second time */
+    fflush(NULL); /* otherwise the child would write buffered output a second time */
     const pid_t process = fork();
     if (process == 0) {
         close(ends[0]);
@@ -57,7 +58,8 @@ enum wb_status wb_live_feed_start(struct wb_live_feed *feed, int (*run)(int sock
     close(ends[1]);
     if (process < 0) {
         close(ends[0]);
-        return wb_fail(WB_ERR_IO, "no process for a live view: %s", strerror(errno));
+        return wb_fail(WB_ERR_IO, "a process for a live view cannot be started: %s",
+                       strerror(errno));
     }
     struct wb_live_feed_view *const view = &feed->view[feed->n_views];
     view->socket = ends[0];
@@ -70,7 +72,7 @@ enum wb_status wb_live_feed_start(struct wb_live_feed *feed, int (*run)(int sock
 
 /* --- sending --- */
 
-/* True when the view's socket took it. */
+/* True if the packet was sent; false if the socket buffer is full or the view has ended. */
 static bool put(struct wb_live_feed_view *view, const void *packet, size_t size)
 {
     if (atomic_load(&view->is_gone))
@@ -86,7 +88,7 @@ void wb_live_feed_add_point(struct wb_live_feed *feed, const struct wb_live_fram
     feed->ring[feed->n_points++ % WB_LIVE_FEED_RING] = *point;
 }
 
-/* The first points that this view has not had, as many as a frame holds. */
+/* Fills in the oldest points not yet sent to this view, as many as a frame holds. */
 static void fill_points(const struct wb_live_feed *feed, struct wb_live_feed_view *view,
                         struct wb_live_frame *frame)
 {
@@ -142,7 +144,7 @@ int wb_live_feed_key(struct wb_live_feed *feed)
     return 0;
 }
 
-/* --- the end --- */
+/* --- end --- */
 
 bool wb_live_feed_has_ended(struct wb_live_feed *feed, int index)
 {
@@ -156,8 +158,8 @@ bool wb_live_feed_has_ended(struct wb_live_feed *feed, int index)
     return view->has_ended;
 }
 
-/* Waits for a view until a deadline; true when it has ended. */
-static bool ends_until(struct wb_live_feed *feed, int index, int64_t deadline_ns)
+/* Waits for the end of a view until a deadline; true if it has ended. */
+static bool wait_for_end(struct wb_live_feed *feed, int index, int64_t deadline_ns)
 {
     while (!wb_live_feed_has_ended(feed, index)) {
         if (wb_time_now_ns() >= deadline_ns)
@@ -173,11 +175,11 @@ void wb_live_feed_stop(struct wb_live_feed *feed, int patience_ms)
     for (int i = 0; i < feed->n_views; i++)
         close(feed->view[i].socket);
     for (int i = 0; i < feed->n_views; i++) {
-        if (ends_until(feed, i, deadline_ns))
+        if (wait_for_end(feed, i, deadline_ns))
             continue;
         kill(feed->view[i].process, SIGKILL); /* ends a stopped process as well */
-        /* But not one that waits for a dead network drive: that is left behind. */
-        (void)ends_until(feed, i, wb_time_now_ns() + WB_NS_PER_S);
+        /* A process that waits for a dead network drive cannot be killed: do not wait longer. */
+        (void)wait_for_end(feed, i, wb_time_now_ns() + WB_NS_PER_S);
     }
     feed->n_views = 0;
 }

@@ -1,7 +1,8 @@
-/* What the recorder tells its live views: packets of fixed layout through a socket between two
- * processes of one program. Each begins with a header whose version and size a reader checks.
+/* Packets between the recorder and its live views: fixed layout, through a socket between two
+ * processes of one program. Each packet begins with a header, whose version and size the reader
+ * checks.
  *
- * Units are SI. A number that is not known is NaN.
+ * Units are SI. Unknown numbers are NaN.
  */
 #ifndef WB_LIVE_LIVE_FRAME_H
 #define WB_LIVE_LIVE_FRAME_H
@@ -13,7 +14,7 @@
 #include "daq/protocol/specimen.h"
 
 #define WB_LIVE_FRAME_VERSION 1
-#define WB_LIVE_FRAME_POINTS 64 /* of the curve, in one frame */
+#define WB_LIVE_FRAME_POINTS 64 /* points of the curve per frame */
 #define WB_LIVE_FRAME_TEXT 256
 
 enum wb_live_frame_kind {
@@ -26,21 +27,21 @@ struct wb_live_frame_header {
     uint32_t kind, version, size; /* size: of the whole packet, bytes */
 };
 
-/* The test in a word. */
+/* State of the test. */
 enum wb_live_frame_word {
-    WB_LIVE_FRAME_CONNECTING, /* instruments are waited for */
-    WB_LIVE_FRAME_READY,      /* they answer; start check and tare */
+    WB_LIVE_FRAME_CONNECTING, /* waiting for the instruments */
+    WB_LIVE_FRAME_READY,      /* all instruments reply; start check and tare */
     WB_LIVE_FRAME_TESTING,
-    WB_LIVE_FRAME_HELD,    /* by the operator, who may go on with it */
-    WB_LIVE_FRAME_STOPPED, /* ended by a limit or the operator; the stage stands */
-    WB_LIVE_FRAME_FAULTED, /* it failed, or the stage did not confirm that it stands */
+    WB_LIVE_FRAME_HELD,    /* by the operator, who may resume it */
+    WB_LIVE_FRAME_STOPPED, /* ended by a limit or the operator; the stage has stopped */
+    WB_LIVE_FRAME_FAULTED, /* failed, or the stage did not confirm its stop */
     WB_LIVE_FRAME_DONE
 };
 
-/* One point of the curve; 0 < cycle. */
+/* A point of the curve. */
 struct wb_live_frame_point {
-    float deflection, force; /* m, N */
-    int32_t cycle;
+    float deflection, force; /* m; N, strand tension */
+    int32_t cycle;           /* from 1 */
 };
 
 struct wb_live_frame_stream {
@@ -52,27 +53,28 @@ struct wb_live_frame_stream {
 
 struct wb_live_frame {
     struct wb_live_frame_header header;
-    uint64_t number;         /* of the frame, from 1; those that were dropped count */
-    uint64_t frames_dropped; /* that this view did not take in time */
-    uint64_t points_dropped; /* of the curve, for the same reason */
+    uint64_t number;         /* of the frame, from 1, including dropped frames */
+    uint64_t frames_dropped; /* frames not sent because this view was too slow */
+    uint64_t points_dropped; /* points of the curve, for the same reason */
     enum wb_live_frame_word word;
     char phase[16];                /* as in struct wb_bend_test_status */
-    char text[WB_LIVE_FRAME_TEXT]; /* why the test ended or how it is held; "" while it runs */
+    char text[WB_LIVE_FRAME_TEXT]; /* reason of the end, or state of a hold; "" while it runs */
     int32_t cycle, cycles;
     double elapsed, time_left; /* s of host time */
-    double force, peak, deflection, travel;
+    double force, peak;        /* N, strand tension: present, and largest so far */
+    double deflection, travel; /* m */
     struct wb_live_frame_stream stream[WB_INTERLOCK_ROLES]; /* by role */
-    double disk_lag;  /* s: age of the oldest that is not on the disk */
-    double disk_fill; /* of the memory for what waits, 0 to 1 */
+    double disk_lag;  /* s, age of the oldest data that are not on the disk */
+    double disk_fill; /* used fraction of the writer's queue, 0 to 1 */
     bool is_disk_failing, is_disk_late;
-    uint64_t bytes; /* that came from the instruments */
+    uint64_t bytes; /* received from the instruments */
     int32_t n_markers;
-    bool are_markers_found; /* they were all seen at once, and are followed since */
+    bool are_markers_found; /* all markers were seen in one frame, and are tracked since then */
     uint32_t seen;          /* bit i: marker i was measured in the last frame of the cameras */
-    float marker[WB_SPECIMEN_MAX_MARKERS][2]; /* m, from the clamp's marker: along the wire at rest,
-                                                 and up; where it was seen last */
+    float marker[WB_SPECIMEN_MAX_MARKERS][2]; /* m, last seen position relative to the clamp's
+                                                 marker: along the wire at rest, and up */
     int32_t n_points;
-    struct wb_live_frame_point point[WB_LIVE_FRAME_POINTS]; /* since the last frame taken */
+    struct wb_live_frame_point point[WB_LIVE_FRAME_POINTS]; /* new since the last frame sent */
 };
 
 /* A message of the log. */
@@ -89,14 +91,14 @@ struct wb_live_frame_key {
     int32_t key; /* one of WB_LIVE_FRAME_KEYS */
 };
 
-/* A header for a packet of this kind. */
+/* Header of a packet of this kind. */
 static inline struct wb_live_frame_header wb_live_frame_header(enum wb_live_frame_kind kind,
                                                                uint32_t size)
 {
     return (struct wb_live_frame_header){(uint32_t)kind, WB_LIVE_FRAME_VERSION, size};
 }
 
-/* Whether `n` bytes are a whole packet of this kind. */
+/* Whether `n` bytes are a complete packet of this kind. */
 static inline bool wb_live_frame_is(const struct wb_live_frame_header *header, long n,
                                     enum wb_live_frame_kind kind, uint32_t size)
 {
@@ -104,8 +106,8 @@ static inline bool wb_live_frame_is(const struct wb_live_frame_header *header, l
            header->version == WB_LIVE_FRAME_VERSION && header->size == size;
 }
 
-/* The word as people read it: "connecting", "ready", "test in progress", "held", "stopped",
- * "faulted", "done". */
+/* Name of the state: "connecting", "ready", "test in progress", "held", "stopped", "faulted",
+ * "done". */
 static inline const char *wb_live_frame_word(enum wb_live_frame_word word)
 {
     static const char *const words[] = {

@@ -10,7 +10,7 @@
 #include "base/timing.h"
 #include "base/units.h"
 
-#define DISK_NS (2 * WB_NS_PER_S)
+#define DISK_NS (2 * WB_NS_PER_S) /* between two checks of the disk */
 
 static void thin(struct wb_live_history *history)
 {
@@ -37,7 +37,7 @@ static bool take_frame(struct wb_live_history *history, const struct wb_live_fra
     return true;
 }
 
-/* True when it was understood. */
+/* Adds a packet; false if it is invalid. */
 static bool take(struct wb_live_history *history, const void *packet, ssize_t n)
 {
     struct wb_live_frame_header header;

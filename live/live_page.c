@@ -21,28 +21,28 @@
 #define WB_LOG_DOMAIN "live"
 
 #define MOST_CLIENTS 16
-/* How long the last state may take to reach the clients. */
+/* Time for sending the last state to the clients. */
 #define LINGER_NS (300 * WB_NS_PER_MS)
-#define BLOCK 16384 /* bytes of a response that libmicrohttpd asks for at once */
+#define BLOCK 16384 /* bytes of a response per call of libmicrohttpd */
 
 struct server;
 
-/* One connection that follows the events. */
+/* A connection that receives events. */
 struct client {
     struct server *server;
     struct client *next;
     struct MHD_Connection *connection;
     struct wb_live_events_cursor cursor;
-    struct wb_text text; /* what it is to get, */
-    size_t sent;         /* and how much of that it has */
-    bool is_waiting;     /* suspended until there is news */
+    struct wb_text text; /* events to send */
+    size_t sent;         /* bytes of it already sent */
+    bool is_waiting;     /* suspended until there are new events */
 };
 
 struct server {
     const struct wb_live_plan *plan;
     struct wb_live_history history;
     struct client *clients;
-    bool is_over; /* the recorder has gone */
+    bool is_over; /* the recorder has ended */
 };
 
 static volatile sig_atomic_t told_to_end;
@@ -64,7 +64,7 @@ enum wb_status wb_live_page_listen(int port, int *listener, int *taken)
     const int on = 1;
     const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (descriptor < 0)
-        return wb_fail(WB_ERR_IO, "no socket for --serve: %s", strerror(errno));
+        return wb_fail(WB_ERR_IO, "a socket for --serve cannot be created: %s", strerror(errno));
     (void)setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     if (bind(descriptor, (struct sockaddr *)&address, sizeof address) != 0 ||
         listen(descriptor, MOST_CLIENTS) != 0 ||
@@ -72,8 +72,8 @@ enum wb_status wb_live_page_listen(int port, int *listener, int *taken)
         const int reason = errno;
         close(descriptor);
         return wb_fail(reason == EADDRINUSE ? WB_ERR_BUSY : WB_ERR_IO,
-                       "port %d of 127.0.0.1 cannot be served: %s; choose another with --serve, 0 "
-                       "takes a free one",
+                       "port %d of 127.0.0.1 cannot be used: %s; choose another port with --serve, "
+                       "or 0 for a free one",
                        port, strerror(reason));
     }
     *listener = descriptor;
@@ -83,7 +83,7 @@ enum wb_status wb_live_page_listen(int port, int *listener, int *taken)
 
 /* --- events --- */
 
-/* Bytes of the events for one client; without news its connection is suspended. */
+/* Gives the bytes of a client's events; without new events the connection is suspended. */
 static ssize_t read_events(void *context, uint64_t position, char *buffer, size_t most)
 {
     struct client *const client = context;
@@ -109,8 +109,8 @@ static ssize_t read_events(void *context, uint64_t position, char *buffer, size_
     return (ssize_t)n;
 }
 
-/* The connection has ended. */
-static void forget_client(void *context)
+/* Frees a client after the end of its connection. */
+static void free_client(void *context)
 {
     struct client *const client = context;
     struct client **at = &client->server->clients;
@@ -141,9 +141,9 @@ static struct MHD_Response *follow_events(struct server *server, struct MHD_Conn
     client->next = server->clients;
     server->clients = client;
     struct MHD_Response *const response = MHD_create_response_from_callback(
-        MHD_SIZE_UNKNOWN, BLOCK, read_events, client, forget_client);
+        MHD_SIZE_UNKNOWN, BLOCK, read_events, client, free_client);
     if (!response)
-        forget_client(client);
+        free_client(client);
     else
         (void)MHD_add_response_header(response, "Content-Type", "text/event-stream");
     return response;
@@ -151,8 +151,8 @@ static struct MHD_Response *follow_events(struct server *server, struct MHD_Conn
 
 /* --- requests --- */
 
-/* This computer under its own names, whatever the port: it may come through a tunnel. */
-static bool names_us(struct MHD_Connection *connection)
+/* Whether the request addresses this computer by name, with any port (it may use a tunnel). */
+static bool is_local_request(struct MHD_Connection *connection)
 {
     static const char *const names[] = {"127.0.0.1", "localhost"};
     const char *const host =
@@ -165,7 +165,7 @@ static bool names_us(struct MHD_Connection *connection)
     return false;
 }
 
-static enum MHD_Result refuse(struct MHD_Connection *connection, unsigned code, const char *words)
+static enum MHD_Result reject(struct MHD_Connection *connection, unsigned code, const char *words)
 {
     struct MHD_Response *const response = MHD_create_response_from_buffer(
         strlen(words), (void *)(uintptr_t)words, MHD_RESPMEM_PERSISTENT);
@@ -182,10 +182,11 @@ static enum MHD_Result answer(void *context, struct MHD_Connection *connection, 
 {
     struct MHD_Response *response;
     (void)version, (void)data, (void)n_data, (void)request;
-    if (!names_us(connection))
-        return refuse(connection, MHD_HTTP_FORBIDDEN, "this page is for this computer only\n");
+    if (!is_local_request(connection))
+        return reject(connection, MHD_HTTP_FORBIDDEN,
+                      "only requests to this computer are accepted\n");
     if (strcmp(method, "GET") != 0)
-        return refuse(connection, MHD_HTTP_METHOD_NOT_ALLOWED, "this page can only be read\n");
+        return reject(connection, MHD_HTTP_METHOD_NOT_ALLOWED, "only GET is supported\n");
     if (strcmp(path, "/events") == 0) {
         response = follow_events(context, connection);
     } else if (strcmp(path, "/") == 0) {
@@ -194,7 +195,7 @@ static enum MHD_Result answer(void *context, struct MHD_Connection *connection, 
         if (response)
             (void)MHD_add_response_header(response, "Content-Type", "text/html; charset=utf-8");
     } else {
-        return refuse(connection, MHD_HTTP_NOT_FOUND, "there is / and /events\n");
+        return reject(connection, MHD_HTTP_NOT_FOUND, "only / and /events exist\n");
     }
     if (!response)
         return MHD_NO;
@@ -209,7 +210,7 @@ static enum MHD_Result answer(void *context, struct MHD_Connection *connection, 
 
 /* --- the process --- */
 
-/* Until the recorder has gone, and the clients have heard of it. */
+/* Serves until the recorder has ended and the clients have received that event. */
 static void serve(struct server *server, struct MHD_Daemon *daemon, int socket)
 {
     const union MHD_DaemonInfo *const info = MHD_get_daemon_info(daemon, MHD_DAEMON_INFO_EPOLL_FD);
@@ -249,7 +250,7 @@ int wb_live_page_run(int socket, void *context)
     if (!daemon)
         return 1;
     serve(&server, daemon, socket);
-    wake_clients(&server); /* it must not be stopped with any suspended */
+    wake_clients(&server); /* the daemon must not be stopped with suspended connections */
     MHD_stop_daemon(daemon);
     wb_live_history_release(&server.history);
     return 0;

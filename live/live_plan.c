@@ -6,7 +6,7 @@
 #include "fe/rod/section.h"
 #include "fe/trial/loading_steps.h"
 
-/* Rows as points of the curve; where the strand is slack there is no force to draw. */
+/* Adds rows as points of the curve, except rows with a slack strand. */
 static void take_rows(struct wb_live_plan *plan, const struct wb_loading_steps *loading)
 {
     for (int i = 0; i < loading->n_rows && plan->n_predicted < WB_LIVE_PLAN_POINTS; i++) {

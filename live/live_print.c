@@ -19,7 +19,7 @@ static const char *begin_layer(int layer)
     return sequences[layer];
 }
 
-/* The number that stands beside a row of the raster, or blanks. */
+/* Appends the tick label of a row of the raster, or blanks. */
 static void append_tick(const struct wb_live_chart *chart, const struct wb_live_raster *raster,
                         int row, bool is_unicode, struct wb_text *text)
 {
@@ -49,7 +49,7 @@ static void append_row(const struct wb_live_print *print, const struct wb_live_r
                    print->is_coloured && layer != WB_LIVE_RASTER_NONE ? "\033[m" : "");
 }
 
-/* The deflection's axis and its numbers, as many as there is room for. */
+/* Appends the axis of deflection and its tick labels, as many as fit. */
 static void append_axis(const struct wb_live_print *print, const struct wb_live_chart *chart,
                         int columns, struct wb_text *text)
 {
@@ -80,7 +80,7 @@ void wb_live_print_curve(const struct wb_live_print *print, const struct wb_live
     wb_live_raster_init(&raster, print->columns - MARGIN, print->rows - 3, print->is_unicode);
     wb_live_chart_range(&chart, plan, history);
     wb_live_chart_draw(&chart, plan, history, &raster);
-    wb_text_append(text, "force (mN) over deflection (mm)\n");
+    wb_text_append(text, "tension (mN) over deflection (mm)\n");
     for (int row = 0; row < raster.rows; row++) {
         append_tick(&chart, &raster, row, print->is_unicode, text);
         append_row(print, &raster, row, text);

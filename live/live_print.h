@@ -1,5 +1,4 @@
-/* Curves as lines of text: the chart of the live view, printed where a view has the terminal no
- * more. */
+/* Prints the chart of the live view as lines of text, after the view has left the terminal. */
 #ifndef WB_LIVE_LIVE_PRINT_H
 #define WB_LIVE_LIVE_PRINT_H
 
@@ -11,12 +10,12 @@
 
 struct wb_live_print {
     int columns, rows; /* of the whole drawing, in characters */
-    bool is_unicode;   /* Braille; else ASCII */
-    bool is_coloured;  /* with the terminal's sequences for bright and faint */
+    bool is_unicode;   /* Braille patterns; false: ASCII */
+    bool is_coloured;  /* with terminal sequences for bright and faint */
 };
 
-/* Appends force over deflection of the history's points: the last cycle bright, earlier ones faint,
- * what the plan predicts dotted; with axes. */
+/* Appends a chart of strand tension over deflection with axes: the last cycle bright, earlier ones
+ * faint, the prediction dotted. */
 void wb_live_print_curve(const struct wb_live_print *print, const struct wb_live_plan *plan,
                          const struct wb_live_history *history, struct wb_text *text);
 

@@ -36,7 +36,7 @@ void wb_live_raster_line(struct wb_live_raster *raster, const double from[2], co
 {
     const double across = to[0] - from[0], up = to[1] - from[1];
     const double longest = fmax(fabs(across), fabs(up));
-    /* What is far outside, or not a number, is not walked along. */
+    /* Skip lines that are far outside or not a number. */
     if (!(longest <= 8.0 * (raster->width + raster->height)))
         return;
     const int steps = (int)ceil(longest);

@@ -1,12 +1,12 @@
-/* A drawing of dots in a block of character cells: 2 x 4 dots a cell as Braille patterns where the
- * terminal has them, else 1 x 2 as the characters ' . and : of ASCII. Dots are about square. */
+/* A drawing of dots in a block of character cells: 2 x 4 dots per cell as Braille patterns or, in
+ * ASCII, 1 x 2 dots as the characters ' . and : . Dots are about square. */
 #ifndef WB_LIVE_LIVE_RASTER_H
 #define WB_LIVE_LIVE_RASTER_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Of a cell the colour of its highest layer is shown. */
+/* A cell has the colour of its highest layer. */
 enum wb_live_raster_layer {
     WB_LIVE_RASTER_NONE,
     WB_LIVE_RASTER_LIMIT,
@@ -26,15 +26,15 @@ struct wb_live_raster {
     uint8_t layer[WB_LIVE_RASTER_ROWS][WB_LIVE_RASTER_COLUMNS];
 };
 
-/* An empty drawing; sizes beyond the largest are cut. */
+/* Begins an empty drawing; its size is limited to the largest. */
 void wb_live_raster_init(struct wb_live_raster *raster, int columns, int rows, bool is_unicode);
 
-/* A line between two points in dots, x from the left, y from the bottom, as far as it is within the
- * drawing; of every `period` dots one is set (1: all of them). */
+/* Draws a line between two points given in dots, x from the left, y from the bottom, clipped to the
+ * drawing; sets one of every `period` dots (1: all). */
 void wb_live_raster_line(struct wb_live_raster *raster, const double from[2], const double to[2],
                          enum wb_live_raster_layer layer, int period);
 
-/* The character of a cell as UTF-8 text, row 0 at the top. "" for an empty one. */
+/* The character of a cell as UTF-8 text, row 0 at the top; "": empty cell. */
 const char *wb_live_raster_text(const struct wb_live_raster *raster, int column, int row,
                                 char text[4]);
 

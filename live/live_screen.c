@@ -12,7 +12,7 @@
 #include "live/live_chart.h"
 #include "live/live_digits.h"
 
-/* Without a frame for so long the view says so. */
+/* Age of the last frame after which the view warns. */
 #define STALE_S 1.0
 
 enum pair {
@@ -43,7 +43,7 @@ void wb_live_screen_prepare(void)
     init_pair(PAIR_TITLE, COLOR_BLACK, COLOR_WHITE);
 }
 
-/* Text cut to the columns that there are. */
+/* Writes a text, truncated to the available columns. */
 static void put(int row, int column, int columns, int attributes, const char *text)
 {
     if (columns <= 0 || row < 0 || row >= LINES || column >= COLS)
@@ -74,7 +74,7 @@ static const char *clock_of(double seconds, char text[32])
     return text;
 }
 
-/* --- the line at the top --- */
+/* --- title --- */
 
 static int word_colour(enum wb_live_frame_word word)
 {
@@ -113,7 +113,7 @@ static void draw_title(const struct wb_live_screen *screen)
         else
             snprintf(text, sizeof text, "%s, %s", frame->phase, clock);
         if (age > STALE_S) {
-            snprintf(word, sizeof word, "NO NEWS FOR %.0f s", age);
+            snprintf(word, sizeof word, "NO DATA FOR %.0f s", age);
             colour = PAIR_BAD;
         }
     }
@@ -155,7 +155,7 @@ static void draw_raster(const struct wb_live_raster *raster, int top, int left)
 
 static const char *heading_of(const struct box *box)
 {
-    return box->columns < 72 ? "mN over mm" : "force (mN) over deflection (mm)";
+    return box->columns < 72 ? "mN over mm" : "tension (mN) over deflection (mm)";
 }
 
 static void draw_axes(const struct box *box, const struct wb_live_chart *chart)
@@ -184,7 +184,7 @@ static void draw_axes(const struct box *box, const struct wb_live_chart *chart)
     }
 }
 
-/* What the colours mean, and limits beyond the axes. */
+/* Legend of the colours, and limits beyond the axes. */
 static void draw_legend(const struct wb_live_screen *screen, const struct box *box,
                         const struct wb_live_chart *chart)
 {
@@ -215,14 +215,14 @@ static void draw_curve(const struct wb_live_screen *screen, const struct box *bo
     wb_live_raster_init(&raster, box->columns - MARGIN, box->rows - 3, screen->is_unicode);
     wb_live_chart_range(&chart, screen->plan, screen->history);
     wb_live_chart_draw(&chart, screen->plan, screen->history, &raster);
-    /* A very large window is larger than the raster: the axes are the curve's. */
+    /* In a very large window the axes have the size of the raster, which is limited. */
     draw_axes(&(struct box){box->row, box->column, raster.rows + 3, raster.columns + MARGIN},
               &chart);
     draw_legend(screen, box, &chart);
     draw_raster(&raster, box->row + 1, box->column + MARGIN);
 }
 
-/* The wire by its markers, each a sign of its own. */
+/* Draws the wire and its markers. */
 static void draw_shape(const struct wb_live_screen *screen, const struct box *box)
 {
     const struct wb_live_frame *const frame = &screen->history->frame;
@@ -230,7 +230,7 @@ static void draw_shape(const struct wb_live_screen *screen, const struct box *bo
     put(box->row, box->column, box->columns, A_NORMAL, "the wire, from the clamp");
     if (!screen->history->has_frame || !frame->are_markers_found) {
         put(box->row + 1, box->column + MARGIN, box->columns - MARGIN, COLOR_PAIR(PAIR_FAINT),
-            "its markers have not been seen all at once yet");
+            "not all markers have been seen in one frame yet");
         return;
     }
     double place[WB_SPECIMEN_MAX_MARKERS][2];
@@ -249,19 +249,19 @@ static void draw_shape(const struct wb_live_screen *screen, const struct box *bo
     }
 }
 
-/* --- the panel of numbers --- */
+/* --- panel of numbers --- */
 
 struct figure {
     const char *name, *unit;
     char value[32];
 };
 
-static int take_figures(const struct wb_live_screen *screen, struct figure figures[4])
+static int get_figures(const struct wb_live_screen *screen, struct figure figures[4])
 {
     const struct wb_live_frame *const frame = &screen->history->frame;
     const double unknown = screen->history->has_frame ? 1.0 : (double)NAN;
-    figures[0] = (struct figure){.name = "force", .unit = "mN"};
-    figures[1] = (struct figure){.name = "peak", .unit = "mN"};
+    figures[0] = (struct figure){.name = "tension", .unit = "mN"};
+    figures[1] = (struct figure){.name = "peak tension", .unit = "mN"};
     figures[2] = (struct figure){.name = "deflection", .unit = "mm"};
     figures[3] = (struct figure){.name = "time left", .unit = ""};
     number_or_dash(frame->force * unknown, WB_MN, 2, figures[0].value);
@@ -271,16 +271,16 @@ static int take_figures(const struct wb_live_screen *screen, struct figure figur
     return 4;
 }
 
-/* Returns the row behind them. */
+/* Returns the row after the figures. */
 static int draw_figures(const struct wb_live_screen *screen, const struct box *box, bool large)
 {
     struct figure figures[4];
     char text[96], line[WB_LIVE_DIGITS_TEXT];
-    const int n = take_figures(screen, figures);
+    const int n = get_figures(screen, figures);
     int row = box->row;
     for (int i = 0; i < n; i++) {
         if (!large) {
-            snprintf(text, sizeof text, "%-11s %10s %s", figures[i].name, figures[i].value,
+            snprintf(text, sizeof text, "%-12s %9s %s", figures[i].name, figures[i].value,
                      figures[i].unit);
             put(row++, box->column, box->columns, A_BOLD, text);
             continue;
@@ -330,11 +330,11 @@ static int draw_streams(const struct wb_live_screen *screen, const struct box *b
         char text[128];
         int colour = PAIR_GOOD;
         if (!screen->history->has_frame || !stream->is_ready) {
-            snprintf(text, sizeof text, "%-8s waited for", names[role]);
+            snprintf(text, sizeof text, "%-8s connecting", names[role]);
             colour = PAIR_WARN;
         } else if (stream->is_gone || stream->is_lost) {
             snprintf(text, sizeof text, "%-8s %s", names[role],
-                     stream->is_gone ? "WENT AWAY" : "SILENT");
+                     stream->is_gone ? "DISCONNECTED" : "SILENT");
             colour = PAIR_BAD;
         } else if (stream->gaps + stream->drops > 0) {
             snprintf(text, sizeof text, "%-8s %.0f Hz, %" PRIu64 " gaps, %" PRIu64 " lost",
@@ -358,11 +358,11 @@ static int draw_disk(const struct wb_live_screen *screen, const struct box *box,
         snprintf(room, sizeof room, ", for %.3g h", hours);
     snprintf(text, sizeof text, "disk     %.3g GB free%s", room_left / 1e9, room);
     if (!isfinite(room_left))
-        snprintf(text, sizeof text, "disk     room not known");
+        snprintf(text, sizeof text, "disk     free space unknown");
     put(row++, box->column, box->columns,
         COLOR_PAIR(isfinite(hours) && hours < 1.0 ? PAIR_BAD : PAIR_GOOD), text);
     if (frame->is_disk_failing)
-        snprintf(text, sizeof text, "         TAKES NOTHING, memory %.0f %%",
+        snprintf(text, sizeof text, "         FAILS, memory %.0f %% full",
                  frame->disk_fill / WB_PERCENT);
     else
         snprintf(text, sizeof text, "         %.1f s behind", frame->disk_lag);
@@ -414,8 +414,9 @@ static void draw_keys(const struct wb_live_screen *screen)
                 : "m  mark this moment    h  hold    q  stop the test");
 }
 
-/* --- all of it --- */
+/* --- screen --- */
 
+/* Least size of the window for the curve, for the wire, and for large digits. */
 #define LEAST_ROWS 16
 #define LEAST_COLUMNS 60
 #define ROWS_FOR_SHAPE 32
@@ -436,7 +437,7 @@ void wb_live_screen_draw(const struct wb_live_screen *screen)
     if (LINES < LEAST_ROWS || COLS < LEAST_COLUMNS) {
         const struct box box = {2, 1, LINES - 3, COLS - 2};
         const int row = draw_figures(screen, &box, false);
-        put(row, 1, COLS - 2, COLOR_PAIR(PAIR_FAINT), "a larger window shows the curve");
+        put(row, 1, COLS - 2, COLOR_PAIR(PAIR_FAINT), "enlarge the window to see the curve");
     } else {
         const int panel = COLS >= 96 ? 36 : 32;
         const int n_messages = LINES >= 36 ? 4 : 2;

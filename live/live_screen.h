@@ -1,4 +1,4 @@
-/* What the live view shows on a terminal: drawn with ncurses into the window that it has begun. */
+/* Draws the live view on a terminal with ncurses, which must have been initialised. */
 #ifndef WB_LIVE_LIVE_SCREEN_H
 #define WB_LIVE_LIVE_SCREEN_H
 
@@ -13,10 +13,10 @@ struct wb_live_screen {
     bool is_unicode;
 };
 
-/* Colours; once, after ncurses has begun. */
+/* Defines the colours; call once after ncurses was initialised. */
 void wb_live_screen_prepare(void);
 
-/* Draws all of it, for the size that the window has now. */
+/* Draws the whole view for the present size of the window. */
 void wb_live_screen_draw(const struct wb_live_screen *screen);
 
 #endif

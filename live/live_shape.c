@@ -5,9 +5,9 @@
 #include "base/units.h"
 #include "daq/acquire/marker_check.h"
 
-/* Looking for markers is slow, following them is not. */
+/* Frames between two searches for all markers, which are slow; tracking is fast. */
 #define LOOK_EVERY 12
-/* The clamp has sunk so far against the other end that noise is no explanation. */
+/* The end that has moved down relative to the other by this much is the clamp. */
 #define CLAMP_SINKS (1.0 * WB_MM)
 
 static void find(struct wb_live_shape *shape, const struct wb_mocap_frame *frame,
@@ -38,7 +38,7 @@ static void find(struct wb_live_shape *shape, const struct wb_mocap_frame *frame
     shape->is_found = length > 0.0;
 }
 
-/* A marker that is hidden goes where its nearest seen neighbours go, so that it is found again. */
+/* Moves a hidden marker like its nearest visible neighbours, so that it is found again. */
 static void carry_hidden(struct wb_live_shape *shape, double moved[WB_SPECIMEN_MAX_MARKERS][3])
 {
     for (int i = 0; i < shape->n; i++) {
@@ -90,7 +90,7 @@ void wb_live_shape_follow(struct wb_live_shape *shape, const struct wb_mocap_fra
     find_clamp(shape);
 }
 
-/* The index here of the i-th marker from the clamp. */
+/* Index of the i-th marker counted from the clamp. */
 static int from_clamp(const struct wb_live_shape *shape, int i)
 {
     return shape->clamp == 0 ? i : shape->n - 1 - i;

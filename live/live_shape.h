@@ -1,6 +1,6 @@
-/* The specimen's markers from frame to frame, in the clamp's frame, for live views. The analysis
- * identifies markers anew and exactly from the recording (analysis/align/markers.h); this is
- * enough to see the wire bend and a marker go missing.
+/* Tracks the specimen's markers from frame to frame for live views, with positions relative to the
+ * clamp. Approximate: the analysis identifies the markers exactly from the recording
+ * (analysis/align/markers.h).
  */
 #ifndef WB_LIVE_LIVE_SHAPE_H
 #define WB_LIVE_LIVE_SHAPE_H
@@ -11,24 +11,24 @@
 #include "daq/protocol/sample.h"
 #include "daq/protocol/specimen.h"
 
-/* All zero is not started. */
+/* All zero: initial state. */
 struct wb_live_shape {
-    bool is_found;       /* all markers were seen at once, and are followed since */
-    bool is_clamp_known; /* which end is the clamp: it sinks against the other one */
+    bool is_found;       /* all markers were seen in one frame, and are tracked since then */
+    bool is_clamp_known; /* the clamp's end was found: it moves down relative to the other */
     int n, clamp, up;    /* markers; index of the clamp's; index of the vertical coordinate */
     int frames_looked;
-    double at[WB_SPECIMEN_MAX_MARKERS][3]; /* m, server's frame: where each was seen last */
-    double rest[2];                        /* m: heights of the two ends at first */
-    double along[3];                       /* horizontal direction from the first to the last */
+    double at[WB_SPECIMEN_MAX_MARKERS][3]; /* m, server's frame, last seen position of each */
+    double rest[2];                        /* m, initial heights of both ends */
+    double along[3];                       /* horizontal direction from first to last marker */
     uint32_t seen;                         /* bit i: measured in the last frame */
 };
 
-/* Takes a frame. `up` as in the rig file: 'y' or 'z'. */
+/* Adds a frame. `up` as in the rig file: 'y' or 'z'. */
 void wb_live_shape_follow(struct wb_live_shape *shape, const struct wb_mocap_frame *frame,
                           const struct wb_specimen *specimen, char up);
 
-/* Place of marker i, counted from the clamp as in the specimen's file, m: along the wire at rest
- * and up, from the clamp's marker. */
+/* Position of marker i (counted from the clamp as in the specimen file) relative to the clamp's
+ * marker, m: along the wire at rest, and up. */
 void wb_live_shape_place(const struct wb_live_shape *shape, int i, float place[2]);
 
 /* Bit i: marker i, counted from the clamp, was measured in the last frame. */

@@ -6,8 +6,8 @@
 
 #include "base/units.h"
 
-/* Points of the curve per second of rig time, and at most per second of the host's: a virtual rig
- * may run fast. */
+/* Points of the curve per second of rig time, but at most per second of host time, because a
+ * virtual rig may run fast. */
 #define POINTS_PER_S 20.0
 #define MOST_POINTS_PER_S 500.0
 
@@ -65,11 +65,11 @@ static void fill_text(const struct wb_bend_test_status *status, char text[WB_LIV
 {
     const bool is_held = isfinite(status->held) && status->end == WB_SEQUENCE_RUNNING;
     if (is_held && !status->hold_stands)
-        snprintf(text, WB_LIVE_FRAME_TEXT, "the stage comes to a stand");
+        snprintf(text, WB_LIVE_FRAME_TEXT, "the stage is stopping");
     else if (is_held)
         snprintf(text, WB_LIVE_FRAME_TEXT,
-                 "held at %.2f mm for %.0f s: press r to resume, q to end the test; it ends by "
-                 "itself in %.0f s",
+                 "held at %.2f mm for %.0f s: press r to resume, q to end the test (ends "
+                 "automatically in %.0f s)",
                  status->travel / WB_MM, status->held, fmax(status->hold_left, 0.0));
     else
         snprintf(text, WB_LIVE_FRAME_TEXT, "%.*s", WB_LIVE_FRAME_TEXT - 1, status->end_text);

@@ -18,7 +18,7 @@
 #include "live/live_plan.h"
 #include "live/live_screen.h"
 
-#define DRAW_NS (100 * WB_NS_PER_MS)
+#define DRAW_NS (100 * WB_NS_PER_MS) /* between two drawings */
 
 static volatile sig_atomic_t told_to_end;
 
@@ -33,7 +33,7 @@ bool wb_live_terminal_is_there(void)
     return isatty(STDIN_FILENO) && isatty(STDERR_FILENO) && tcgetpgrp(STDIN_FILENO) == getpgrp();
 }
 
-/* A key for the recorder; where the socket is full it is lost, and is pressed again. */
+/* Sends a key to the recorder; if the socket is full, the key is lost. */
 static void send_key(int socket, int key)
 {
     const struct wb_live_frame_key packet = {
@@ -60,7 +60,7 @@ static void follow(int socket, struct wb_live_screen *screen, struct wb_live_his
                                   {.fd = STDIN_FILENO, .events = POLLIN}};
         if (wb_time_wait(polled, 2, wb_time_now_ns() + 200 * WB_NS_PER_MS) < 0 && errno != EINTR)
             return;
-        /* A terminal that was hung up is readable for ever. */
+        /* After a hangup the terminal is always readable. */
         if (polled[1].revents & (POLLHUP | POLLERR | POLLNVAL))
             return;
         goes_on = wb_live_history_receive(history, socket);
@@ -73,7 +73,8 @@ static void follow(int socket, struct wb_live_screen *screen, struct wb_live_his
     }
 }
 
-/* A Ctrl-S by mistake would halt the view, and with it the keys that hold and stop the test. */
+/* Disables flow control: Ctrl-S would stop the view, including the keys that hold and stop the
+ * test. */
 static void ignore_flow_control(void)
 {
     struct termios modes;
@@ -94,7 +95,7 @@ int wb_live_terminal_run(int socket, void *context)
     SCREEN *const terminal = newterm(NULL, stderr, stdin);
     if (!terminal)
         return 1;
-    /* ncurses has handlers of its own that end the process. */
+    /* Replaces the handlers of ncurses, which would end the process. */
     sigemptyset(&action.sa_mask);
     sigaction(SIGTERM, &action, NULL);
     sigaction(SIGHUP, &action, NULL);

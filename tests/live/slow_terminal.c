@@ -1,7 +1,7 @@
-/* A terminal as a slow connection gives it: it takes so many bytes a second, and its window changes
- * its size all the time, down to a single cell. SIGUSR1 makes it hang, a second one makes it
- * continue; it prints "the terminal is full" once a program that writes to it would have to wait.
- * What is read from standard input are its keys; what it shows goes to standard output.
+/* A terminal with a slow connection: it accepts BYTES_PER_SECOND, and its window changes its size
+ * all the time, down to a single cell. SIGUSR1 makes it hang, a second one makes it continue; it
+ * prints "the terminal is full" once a program that writes to it would block. Standard input gives
+ * its keys; its output goes to standard output.
  *
  *     slow_terminal BYTES_PER_SECOND COMMAND...
  */
@@ -43,7 +43,7 @@ static bool copy(int from, int to, size_t most)
     return n > 0 && write(to, bytes, (size_t)n) == n;
 }
 
-/* Whether a write to the terminal would block. Opened each time: a terminal that somebody has open
+/* Whether a write to the terminal would block. Opened each time, because a terminal that is open
  * never reads as ended. */
 static bool is_full(int terminal)
 {

@@ -30,7 +30,7 @@
 #define TRAVEL_MM 20.0
 #define WORDS 16
 
-/* A key that the operator presses at a time of the test. */
+/* A key pressed by the operator during the test. */
 struct press {
     double at; /* s since the test was opened */
     int key;
@@ -46,11 +46,11 @@ struct show {
     struct wb_live_source source;
     struct wb_live_plan plan;
     struct wb_live_history history;
-    int view;                        /* the view's end of the socket; -1: there is none */
+    int view;                        /* the view's end of the socket; -1: no view */
     bool is_slow;                    /* it reads nothing until the test has ended */
-    double dies;                     /* s: it closes its end then; 0: it stays */
+    double dies;                     /* s, when it closes its end; 0: never */
     const struct press *presses;     /* by time, up to a key of 0; NULL: none */
-    void (*look)(struct show *show); /* after each frame; NULL: nothing looks */
+    void (*look)(struct show *show); /* called after each frame; NULL: none */
     /* Seen: */
     enum wb_live_frame_word words[WORDS]; /* each as it changed */
     int n_words;
@@ -85,7 +85,7 @@ static int tear_down(void **state)
 {
     struct show *const show = *state;
     wb_log_set_sink(NULL, NULL);
-    if (wb_time_is_virtual()) { /* a fact has failed on its way */
+    if (wb_time_is_virtual()) { /* an assertion has failed */
         (void)!wb_bend_test_close(show->test, NULL);
         wb_virtual_test_end(&show->virtual, &show->request);
     }
@@ -98,7 +98,7 @@ static int tear_down(void **state)
     return removed;
 }
 
-/* A view without a process of its own. */
+/* A view in this process. */
 static void connect_view(struct show *show)
 {
     const int bytes = 65536;
@@ -166,7 +166,7 @@ static void press_keys(struct show *show, double elapsed)
     }
 }
 
-/* What the view does when a frame was sent. */
+/* Actions of the view after a frame was sent. */
 static void watch(struct show *show)
 {
     struct wb_bend_test_status status;
@@ -240,8 +240,8 @@ static void assert_words(const struct show *show, int n, const enum wb_live_fram
 
 /* --- the screen --- */
 
-/* The text on a terminal of this size, line by line, in show->screen; returns how many bytes above
- * 127 the terminal received. */
+/* Draws on a terminal of this size; show->screen receives the text line by line. Returns the number
+ * of bytes above 127 that the terminal received. */
 static int draw(struct show *show, int rows, int columns, bool is_unicode)
 {
     const struct wb_live_screen screen = {&show->plan, &show->history, is_unicode};
@@ -293,8 +293,8 @@ static void draw_on_the_way(struct show *show)
         drawn_before = true;
         assert_true(draw(show, 40, 110, true) > 0);
         assert_shows(show, "connecting");
-        assert_shows(show, "waited for");
-        assert_shows(show, "its markers have not been seen all at once yet");
+        assert_shows(show, "connecting");
+        assert_shows(show, "not all markers have been seen");
     }
     if (frame->word == WB_LIVE_FRAME_DONE) {
         drawn_at_the_end = true;
@@ -302,7 +302,7 @@ static void draw_on_the_way(struct show *show)
         assert_shows(show, "\n done ");
         wb_virtual_time_stall(3 * WB_NS_PER_S);
         draw(show, 40, 110, true);
-        assert_shows(show, "NO NEWS FOR 3 s");
+        assert_shows(show, "NO DATA FOR 3 s");
     }
     if (drawn_while_testing || !(frame->deflection >= 10.0 * WB_MM))
         return;
@@ -311,7 +311,7 @@ static void draw_on_the_way(struct show *show)
     assert_shows(show, "VIRTUAL RIG  type1, 85 mm, sample 1");
     assert_shows(show, "test in progress");
     assert_shows(show, "down, cycle 1 of 1");
-    assert_shows(show, "force (mN) over deflection (mm)");
+    assert_shows(show, "tension (mN) over deflection (mm)");
     assert_shows(show, "the wire, from the clamp");
     assert_shows(show, "●●●●●●●");
     assert_shows(show, "120 Hz, no gaps");
@@ -326,12 +326,12 @@ static void draw_on_the_way(struct show *show)
     assert_shows(show, "test in progress");
     assert_shows(show, "*******");
     draw(show, 15, 60, true);
-    assert_shows(show, "a larger window shows the curve");
+    assert_shows(show, "enlarge the window to see the curve");
     assert_false(shows(show, "deflection (mm)"));
     draw(show, 16, 60, true);
     assert_shows(show, "mN over mm");
     draw(show, 90, 300, true);
-    assert_shows(show, "force (mN) over deflection (mm)");
+    assert_shows(show, "tension (mN) over deflection (mm)");
     draw(show, 120, 70, true);
     assert_shows(show, "mN over mm");
     draw(show, 1, 1, true);
@@ -413,7 +413,7 @@ static void no_view_changes_a_byte_of_the_recording(void **state)
         const struct wb_live_feed_view *const view = &show->feed.view[0];
         const uint64_t dropped = view->frames_dropped;
         if (kind == 2) {
-            /* The socket held the first frames; the last was not among them. */
+            /* The socket contained the first frames, without the last one. */
             assert_true(show->history.has_frame);
             assert_true(dropped > 0);
             assert_int_equal(show->history.frame.number + dropped, show->feed.n_frames);
@@ -440,7 +440,7 @@ static void no_view_changes_a_byte_of_the_recording(void **state)
     free(alone);
 }
 
-/* The events of one kind in the recording: how many, and the text of the last. */
+/* Number of events of one kind in the recording, and the text of the last. */
 struct found {
     const char *kind;
     int n;
@@ -522,7 +522,7 @@ static void key_q_ends_a_held_test(void **state)
     assert_recorded_once(show, "hold_end", "stopped");
 }
 
-static void a_hold_that_no_key_ends_is_ended_by_its_limit(void **state)
+static void hold_that_no_key_ends_is_ended_by_its_limit(void **state)
 {
     struct show *const show = *state;
     static const struct press presses[] = {{15.0, 'h'}, {0.0, 0}};
@@ -561,7 +561,7 @@ int main(void)
         FACT(no_view_changes_a_byte_of_the_recording),
         FACT(keys_of_the_view_mark_hold_and_resume),
         FACT(key_q_ends_a_held_test),
-        FACT(a_hold_that_no_key_ends_is_ended_by_its_limit),
+        FACT(hold_that_no_key_ends_is_ended_by_its_limit),
         FACT(messages_reach_the_view),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

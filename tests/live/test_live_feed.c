@@ -1,5 +1,5 @@
-/* The recorder's side of live views: whatever a view does, nothing waits and what is lost is
- * counted. Views here are small programs that leave in shared memory what came to them. */
+/* The recorder's side of live views: it never waits for a view, and losses are counted. The views
+ * here are small programs that store what they receive in shared memory. */
 #include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@
 
 #define PUSHES 100000
 
-/* What a view saw. */
+/* Data received by a view. */
 struct seen {
     volatile int frames, points, is_in_order, began, stops, sends;
     volatile uint64_t last_number, told_dropped;
@@ -29,8 +29,8 @@ static int set_up(void **state)
     (void)state;
     seen = mmap(NULL, sizeof *seen, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     feed = calloc(1, sizeof *feed);
-    signal(SIGPIPE, SIG_DFL); /* the feed is not to need it ignored */
-    alarm(50);                /* what hangs is ended */
+    signal(SIGPIPE, SIG_DFL); /* the feed must work without ignoring it */
+    alarm(50);                /* ends a hanging test */
     return seen == MAP_FAILED || !feed;
 }
 
@@ -43,7 +43,7 @@ static int tear_down(void **state)
     return munmap(seen, sizeof *seen);
 }
 
-/* Counts frames and points until the recorder has gone. Stops itself first, or sends a key. */
+/* Counts frames and points until the recorder has ended. Stops itself first, or sends a key. */
 static int count_all(int socket, void *context)
 {
     struct seen *const s = context;
@@ -104,7 +104,7 @@ static void add_points(int from, int n)
         wb_live_feed_add_point(feed, &(struct wb_live_frame_point){0.0f, 0.0f, i});
 }
 
-/* Pushes frames, at the pace of the view, until it has taken so many points. */
+/* Pushes frames at the pace of the view until it has received this many points. */
 static void push_until_points(int n)
 {
     while (seen->points < n) {
@@ -113,7 +113,7 @@ static void push_until_points(int n)
     }
 }
 
-static void a_stopped_view_never_holds_up_and_its_frames_are_counted(void **state)
+static void stopped_view_causes_no_delay_and_its_frames_are_counted(void **state)
 {
     (void)state;
     seen->stops = 1;
@@ -159,7 +159,7 @@ static void points_beyond_the_ring_are_dropped_oldest_first_and_counted(void **s
     assert_int_equal(feed->view[0].sent_points, 123 + WB_LIVE_FRAME_POINTS);
 }
 
-static void a_killed_view_is_noticed_and_nothing_else_happens(void **state)
+static void killed_view_is_noticed_without_other_effects(void **state)
 {
     (void)state;
     start(end_at_once);
@@ -173,7 +173,7 @@ static void a_killed_view_is_noticed_and_nothing_else_happens(void **state)
     assert_int_equal(feed->view[0].frames_dropped, 10);
 }
 
-static void a_dead_view_does_not_take_from_the_other(void **state)
+static void dead_view_does_not_affect_the_other(void **state)
 {
     (void)state;
     start(end_at_once);
@@ -189,7 +189,7 @@ static void a_dead_view_does_not_take_from_the_other(void **state)
 
 static volatile pid_t first_view, second_view;
 
-/* The first view has seen the recorder go: the other need not be waited for. */
+/* The first view has seen the end of the recorder: do not wait for the other. */
 static void kill_second(int number, siginfo_t *info, void *context)
 {
     (void)number, (void)context;
@@ -197,12 +197,12 @@ static void kill_second(int number, siginfo_t *info, void *context)
         kill(second_view, SIGKILL);
 }
 
-static void a_view_sees_the_recorder_go_whatever_another_does(void **state)
+static void view_detects_the_end_of_the_recorder_independent_of_others(void **state)
 {
     (void)state;
     struct sigaction action = {.sa_sigaction = kill_second, .sa_flags = SA_SIGINFO}, before;
     sigemptyset(&action.sa_mask);
-    /* The second view stands still: it is not to hold the first one's socket open. */
+    /* The second view is stopped: it must not keep the first one's socket open. */
     start(count_all);
     while (!seen->began)
         (void)poll(NULL, 0, 1);
@@ -218,7 +218,7 @@ static void a_view_sees_the_recorder_go_whatever_another_does(void **state)
     assert_false(feed->view[1].ended_well);
 }
 
-static void a_view_that_does_not_end_is_killed(void **state)
+static void view_that_does_not_end_is_killed(void **state)
 {
     (void)state;
     seen->stops = 1;
@@ -230,7 +230,7 @@ static void a_view_that_does_not_end_is_killed(void **state)
     assert_false(feed->view[0].ended_well);
 }
 
-static void a_key_comes_back_once(void **state)
+static void key_is_received_once(void **state)
 {
     (void)state;
     int key = 0;
@@ -263,7 +263,7 @@ static void packets_of_another_version_or_size_end_a_view(void **state)
     }
 }
 
-static void a_long_test_is_thinned_and_keeps_its_ends(void **state)
+static void long_test_is_thinned_and_keeps_its_ends(void **state)
 {
     (void)state;
     struct wb_live_history history = {0};
@@ -291,21 +291,20 @@ static void a_long_test_is_thinned_and_keeps_its_ends(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_stopped_view_never_holds_up_and_its_frames_are_counted,
+        cmocka_unit_test_setup_teardown(stopped_view_causes_no_delay_and_its_frames_are_counted,
                                         set_up, tear_down),
         cmocka_unit_test_setup_teardown(points_wait_for_a_view_that_was_slow, set_up, tear_down),
         cmocka_unit_test_setup_teardown(points_beyond_the_ring_are_dropped_oldest_first_and_counted,
                                         set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_killed_view_is_noticed_and_nothing_else_happens, set_up,
+        cmocka_unit_test_setup_teardown(killed_view_is_noticed_without_other_effects, set_up,
                                         tear_down),
-        cmocka_unit_test_setup_teardown(a_dead_view_does_not_take_from_the_other, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(a_view_sees_the_recorder_go_whatever_another_does, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(a_view_that_does_not_end_is_killed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_key_comes_back_once, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(dead_view_does_not_affect_the_other, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(view_detects_the_end_of_the_recorder_independent_of_others,
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(view_that_does_not_end_is_killed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(key_is_received_once, set_up, tear_down),
         cmocka_unit_test(packets_of_another_version_or_size_end_a_view),
-        cmocka_unit_test(a_long_test_is_thinned_and_keeps_its_ends),
+        cmocka_unit_test(long_test_is_thinned_and_keeps_its_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

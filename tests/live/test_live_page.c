@@ -1,5 +1,5 @@
-/* The web page of a live view, asked by a client of a few lines: what it serves, what it refuses,
- * and that no client holds up another. */
+/* The web page of a live view with a minimal client: accepted and rejected requests, and that no
+ * client delays another. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <netinet/in.h>
@@ -43,7 +43,7 @@ static int set_up(void **state)
 {
     (void)state;
     int index;
-    alarm(50); /* what hangs is ended */
+    alarm(50); /* ends a hanging test */
     feed = calloc(1, sizeof *feed);
     memset(&frame, 0, sizeof frame);
     frame.force = 12.5 * WB_MN;
@@ -76,7 +76,7 @@ static int ask(const char *request)
     return client;
 }
 
-/* Reads until the words have come, pushing frames meanwhile; or, with NULL, until the end. */
+/* Reads until the words were received, pushing frames meanwhile; NULL: until the end. */
 static void hear(int client, const char *words)
 {
     size_t n = 0;
@@ -152,7 +152,7 @@ static double number_of(const struct wb_live_history *history, const char *key)
     return value;
 }
 
-static void the_room_on_the_disk_is_told_in_bytes_and_in_time(void **state)
+static void free_space_is_given_in_bytes_and_time(void **state)
 {
     (void)state;
     struct wb_live_history history = {.has_frame = true};
@@ -164,7 +164,7 @@ static void the_room_on_the_disk_is_told_in_bytes_and_in_time(void **state)
     history.frame.bytes = 1000000000;
     wb_time_sleep(WB_VIRTUAL_TIME_START_NS + 2 * WB_NS_PER_S - 1);
     wb_live_history_check_disk(&history, plan.recording);
-    assert_true(isnan(number_of(&history, "disk_left_h"))); /* a look every two seconds */
+    assert_true(isnan(number_of(&history, "disk_left_h"))); /* a check every two seconds */
     wb_time_sleep(WB_VIRTUAL_TIME_START_NS + 2 * WB_NS_PER_S);
     wb_live_history_check_disk(&history, plan.recording);
     assert_close_relative(number_of(&history, "disk_left_h") * 3600.0 * 1e-2,
@@ -172,7 +172,7 @@ static void the_room_on_the_disk_is_told_in_bytes_and_in_time(void **state)
     wb_virtual_time_end();
 }
 
-static void a_disk_that_cannot_be_asked_has_unknown_room(void **state)
+static void disk_that_cannot_be_queried_has_unknown_free_space(void **state)
 {
     (void)state;
     struct wb_live_history history = {.frame = {.elapsed = 10.0, .bytes = 1000}};
@@ -183,7 +183,7 @@ static void a_disk_that_cannot_be_asked_has_unknown_room(void **state)
     assert_true(isnan(history.disk_free) && isnan(history.disk_left));
 }
 
-static void a_client_that_comes_later_has_all_of_the_curve(void **state)
+static void client_that_comes_later_has_all_of_the_curve(void **state)
 {
     (void)state;
     for (int i = 0; i < 500; i++)
@@ -198,7 +198,7 @@ static void a_client_that_comes_later_has_all_of_the_curve(void **state)
     close(second);
 }
 
-static void a_client_that_never_reads_holds_up_nobody(void **state)
+static void client_that_never_reads_holds_up_nobody(void **state)
 {
     (void)state;
     const int lazy = ask(GET("/events"));
@@ -253,7 +253,7 @@ static void the_last_state_and_the_end_reach_the_clients(void **state)
     assert_heard("event: end\n");
 }
 
-static void a_port_in_use_is_told_with_what_to_do(void **state)
+static void port_in_use_is_reported_with_its_remedy(void **state)
 {
     (void)state;
     int first, second, taken, other;
@@ -261,8 +261,8 @@ static void a_port_in_use_is_told_with_what_to_do(void **state)
     keep_messages();
     assert_int_equal(wb_live_page_listen(taken, &second, &other), WB_ERR_BUSY);
     release_messages();
-    assert_message("cannot be served");
-    assert_message("choose another with --serve");
+    assert_message("cannot be used");
+    assert_message("choose another port with --serve");
     close(first);
 }
 
@@ -273,13 +273,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         ON_A_PAGE(the_page_is_whole_and_fetches_nothing_from_elsewhere),
         ON_A_PAGE(events_bring_the_plan_the_curve_and_the_state),
-        cmocka_unit_test(the_room_on_the_disk_is_told_in_bytes_and_in_time),
-        cmocka_unit_test(a_disk_that_cannot_be_asked_has_unknown_room),
-        ON_A_PAGE(a_client_that_comes_later_has_all_of_the_curve),
-        ON_A_PAGE(a_client_that_never_reads_holds_up_nobody),
+        cmocka_unit_test(free_space_is_given_in_bytes_and_time),
+        cmocka_unit_test(disk_that_cannot_be_queried_has_unknown_free_space),
+        ON_A_PAGE(client_that_comes_later_has_all_of_the_curve),
+        ON_A_PAGE(client_that_never_reads_holds_up_nobody),
         ON_A_PAGE(it_can_only_be_read_and_only_from_here),
         ON_A_PAGE(the_last_state_and_the_end_reach_the_clients),
-        cmocka_unit_test(a_port_in_use_is_told_with_what_to_do),
+        cmocka_unit_test(port_in_use_is_reported_with_its_remedy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The predicted curve of a live view against the closed form, and where there is none. */
+/* The predicted curve of a live view compared with the closed form, and a missing prediction. */
 #include <math.h>
 #include <string.h>
 
@@ -55,7 +55,7 @@ static void small_elastic_deflections_follow_3EI_over_L_cubed(void **state)
     assert_close(plan.travel_limit, 60.0 * WB_MM, 0.0);
 }
 
-static void weight_and_counterweight_are_carried_by_the_strand(void **state)
+static void strand_carries_weight_and_counterweight(void **state)
 {
     (void)state;
     static struct wb_live_plan plan;
@@ -72,7 +72,7 @@ static void weight_and_counterweight_are_carried_by_the_strand(void **state)
     assert_close(plan.tension[0], expected, 0.01 * expected);
 }
 
-static void a_wire_without_properties_has_no_prediction(void **state)
+static void wire_without_properties_has_no_prediction(void **state)
 {
     (void)state;
     static struct wb_live_plan plan;
@@ -87,8 +87,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_elastic_deflections_follow_3EI_over_L_cubed),
-        cmocka_unit_test(weight_and_counterweight_are_carried_by_the_strand),
-        cmocka_unit_test(a_wire_without_properties_has_no_prediction),
+        cmocka_unit_test(strand_carries_weight_and_counterweight),
+        cmocka_unit_test(wire_without_properties_has_no_prediction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

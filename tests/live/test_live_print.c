@@ -34,13 +34,13 @@ static const char *line_of(const struct wb_text *text, int number, size_t *n)
     return line;
 }
 
-static void a_curve_stands_between_its_axes(void **state)
+static void curve_is_drawn_between_its_axes(void **state)
 {
     (void)state;
     size_t n;
     struct wb_text text = print(false, false);
     const char *line = line_of(&text, 0, &n);
-    assert_memory_equal(line, "force (mN) over deflection (mm)", n);
+    assert_memory_equal(line, "tension (mN) over deflection (mm)", n);
     /* Ten rows, the axis, its numbers. */
     line = line_of(&text, 1, &n);
     assert_int_equal(n, 50);
@@ -110,7 +110,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(earlier_tests_are_faint_and_within_the_axes),
-        cmocka_unit_test(a_curve_stands_between_its_axes),
+        cmocka_unit_test(curve_is_drawn_between_its_axes),
         cmocka_unit_test(the_last_cycle_is_bright_and_colours_end_with_their_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -40,7 +40,7 @@ static void without_unicode_a_cell_has_two_dots(void **state)
     assert_string_equal(wb_live_raster_text(&raster, 3, 0, text), ":");
 }
 
-static void what_is_outside_or_no_number_leaves_no_dot(void **state)
+static void points_outside_or_nan_are_not_drawn(void **state)
 {
     (void)state;
     static const uint8_t none[WB_LIVE_RASTER_ROWS][WB_LIVE_RASTER_COLUMNS];
@@ -58,7 +58,7 @@ static void what_is_outside_or_no_number_leaves_no_dot(void **state)
     assert_int_equal(raster.rows, WB_LIVE_RASTER_ROWS);
 }
 
-static void a_line_joins_its_ends_and_the_higher_layer_colours_a_cell(void **state)
+static void line_joins_its_ends_and_the_higher_layer_colours_a_cell(void **state)
 {
     (void)state;
     wb_live_raster_init(&raster, 10, 5, true);
@@ -91,8 +91,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_dot_of_a_cell_is_its_bit_of_the_braille_pattern),
         cmocka_unit_test(without_unicode_a_cell_has_two_dots),
-        cmocka_unit_test(what_is_outside_or_no_number_leaves_no_dot),
-        cmocka_unit_test(a_line_joins_its_ends_and_the_higher_layer_colours_a_cell),
+        cmocka_unit_test(points_outside_or_nan_are_not_drawn),
+        cmocka_unit_test(line_joins_its_ends_and_the_higher_layer_colours_a_cell),
         cmocka_unit_test(digits_are_three_rows_of_half_blocks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

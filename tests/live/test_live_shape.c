@@ -1,4 +1,4 @@
-/* The specimen's markers followed from frame to frame. */
+/* Tracking of the specimen's markers from frame to frame. */
 #include <string.h>
 
 #include "base/units.h"
@@ -50,7 +50,7 @@ static void assert_parabola(const struct wb_live_shape *shape)
     }
 }
 
-static void markers_are_told_from_the_clamp_whichever_end_it_is(void **state)
+static void markers_are_counted_from_the_clamp_at_either_end(void **state)
 {
     (void)state;
     for (int turned = 0; turned < 2; turned++) {
@@ -62,7 +62,7 @@ static void markers_are_told_from_the_clamp_whichever_end_it_is(void **state)
     }
 }
 
-static void a_hidden_marker_is_told_and_found_again_where_the_wire_went(void **state)
+static void hidden_marker_is_reported_and_found_again_on_the_bent_wire(void **state)
 {
     (void)state;
     struct wb_mocap_frame frame;
@@ -77,7 +77,7 @@ static void a_hidden_marker_is_told_and_found_again_where_the_wire_went(void **s
     }
 }
 
-static void nothing_is_followed_before_all_markers_were_seen_at_once(void **state)
+static void tracking_begins_after_all_markers_were_seen_in_one_frame(void **state)
 {
     (void)state;
     struct wb_live_shape shape = {0};
@@ -95,9 +95,9 @@ static void nothing_is_followed_before_all_markers_were_seen_at_once(void **stat
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(markers_are_told_from_the_clamp_whichever_end_it_is),
-        cmocka_unit_test(a_hidden_marker_is_told_and_found_again_where_the_wire_went),
-        cmocka_unit_test(nothing_is_followed_before_all_markers_were_seen_at_once),
+        cmocka_unit_test(markers_are_counted_from_the_clamp_at_either_end),
+        cmocka_unit_test(hidden_marker_is_reported_and_found_again_on_the_bent_wire),
+        cmocka_unit_test(tracking_begins_after_all_markers_were_seen_in_one_frame),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -215,9 +215,9 @@ lost_with_nohup() {
 slow_and_resized() {
     local terminal_bytes_per_s=4000
     begin_held slow C.UTF-8 --live --travel-mm 5
-    wait_until "$script" grep -qa 'a larger window shows the curve' "$folder/slow.screen" ||
+    wait_until "$script" grep -qa 'enlarge the window to see the curve' "$folder/slow.screen" ||
         fail 'slow: not in a small window'
-    wait_until "$script" grep -qa 'force (mN) over deflection (mm)' "$folder/slow.screen" ||
+    wait_until "$script" grep -qa 'tension (mN) over deflection (mm)' "$folder/slow.screen" ||
         fail 'slow: not in a large window'
     printf r >&8
     finish slow 0
