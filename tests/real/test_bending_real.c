@@ -240,7 +240,7 @@ static void copper_has_the_listed_slopes_and_strengths(void **state)
     assert_close(strength[1], 236e6, 0.6e6);
     assert_true(proof[0] > 151e6 && proof[1] < 184e6);
     assert_int_equal(result.youngs_modulus.n, 0);
-    /* Many exponents fit the soft copper alike. */
+    /* Many exponents fit the soft copper equally well. */
     assert_false(result.identifiable);
     wb_tensile_release(&result);
     for (int i = 0; i < 4; i++)

@@ -38,7 +38,7 @@ static int release(void **state)
     return 0;
 }
 
-/* Least and largest of a number over the curvatures in a range where seating does not decide. */
+/* Range of a number over the curvatures at which seating has no influence. */
 enum number {
     RATIO,
     CHI,
@@ -64,7 +64,7 @@ static void range_of(int layer, enum number number, double from, double to, doub
     printf("layer %d: %.3f to %.3f\n", layer, *low, *high);
 }
 
-static void moments_over_those_of_sliding_wires_are_the_listed_ones(void **state)
+static void ratios_to_moments_of_sliding_wires_are_the_listed_ones(void **state)
 {
     (void)state;
     double low, high;
@@ -86,8 +86,8 @@ static void insulation_makes_the_wires_stiffer_by_a_quarter_to_a_half(void **sta
     assert_true(low > 1.24 && high < 1.45);
 }
 
-/* The six wires are near sliding; what is wound round them brings them away from it. */
-static void bare_wires_slide_nearly_and_the_cable_does_not(void **state)
+/* The six wires are close to sliding; the layers around them increase the moment. */
+static void bare_wires_slide_almost_freely_and_the_cable_does_not(void **state)
 {
     (void)state;
     double low, high;
@@ -101,7 +101,7 @@ static void bare_wires_slide_nearly_and_the_cable_does_not(void **state)
 
 /* Two series whose wires differ by a quarter: one degree of freedom, so that the moment of sliding
  * wires is hardly known, and yet chi, whose scale is the bonded moment, is. */
-static void intervals_hold_the_two_series(void **state)
+static void intervals_contain_the_two_series(void **state)
 {
     (void)state;
     const struct wb_machines_layer *const layer = &results.cable.layers[0];
@@ -122,10 +122,10 @@ int main(void)
         return SKIPPED;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moments_over_those_of_sliding_wires_are_the_listed_ones),
+        cmocka_unit_test(ratios_to_moments_of_sliding_wires_are_the_listed_ones),
         cmocka_unit_test(insulation_makes_the_wires_stiffer_by_a_quarter_to_a_half),
-        cmocka_unit_test(bare_wires_slide_nearly_and_the_cable_does_not),
-        cmocka_unit_test(intervals_hold_the_two_series),
+        cmocka_unit_test(bare_wires_slide_almost_freely_and_the_cable_does_not),
+        cmocka_unit_test(intervals_contain_the_two_series),
     };
     return cmocka_run_group_tests(tests, load, release);
 }

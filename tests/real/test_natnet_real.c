@@ -24,7 +24,7 @@ static struct wb_natnet_packet packet_of(const char *name)
     bytes = NULL;
     assert_int_equal(wb_file_read(path, &bytes, &size), WB_OK);
     assert_int_equal(wb_natnet_decode_packet((const uint8_t *)bytes, size, &packet, &fault), WB_OK);
-    /* The header accounts for the whole datagram. */
+    /* The length in the header is that of the whole datagram. */
     assert_int_equal(packet.n_payload + WB_NATNET_HEADER, size);
     return packet;
 }
@@ -123,7 +123,7 @@ static void natnet_3_0_frame_has_its_listed_values(void **state)
     assert_close((double)first[2], -0.885828, 5e-7);
 }
 
-/* Why the legacy list is never joined to the labelled one. */
+/* Reason for not adding the legacy list to the labelled one. */
 static void legacy_list_repeats_the_labelled_markers_bit_for_bit(void **state)
 {
     (void)state;
@@ -156,7 +156,7 @@ static void natnet_2_10_frame_with_a_skeleton_has_its_listed_values(void **state
     assert_int_equal(frame.n_force_plates, 0);
 }
 
-static void server_info_tells_name_and_version(void **state)
+static void server_info_gives_name_and_version(void **state)
 {
     (void)state;
     const struct wb_natnet_server v2 = read_server("serverinfo_packet_v2.bin");
@@ -176,7 +176,7 @@ static void server_info_tells_name_and_version(void **state)
     assert_memory_equal(v3.group, group, 4);
 }
 
-static void echo_answer_repeats_the_stamp_of_the_question(void **state)
+static void echo_response_repeats_the_stamp_of_the_request(void **state)
 {
     (void)state;
     struct wb_natnet_fault fault;
@@ -191,7 +191,7 @@ static void echo_answer_repeats_the_stamp_of_the_question(void **state)
     assert_true(ticks == UINT64_C(0x149cde48504));
 }
 
-static void other_messages_are_told_by_their_number(void **state)
+static void other_messages_are_reported_by_their_number(void **state)
 {
     (void)state;
     assert_int_equal(packet_of("connect_packet_v3.bin").message, WB_NATNET_CONNECT);
@@ -214,8 +214,8 @@ static void real_3_0_frame_is_encoded_as_the_server_did(void **state)
     assert_memory_equal(encoded, bytes, n);
 }
 
-/* A frame read as another version than its own is refused, not misread. */
-static void frames_are_refused_under_a_wrong_version(void **state)
+/* A frame decoded as another version than its own is rejected, not misread. */
+static void frames_are_rejected_under_a_wrong_version(void **state)
 {
     (void)state;
     static const struct {
@@ -246,11 +246,11 @@ int main(void)
         cmocka_unit_test(natnet_3_0_frame_has_its_listed_values),
         cmocka_unit_test(legacy_list_repeats_the_labelled_markers_bit_for_bit),
         cmocka_unit_test(natnet_2_10_frame_with_a_skeleton_has_its_listed_values),
-        cmocka_unit_test(server_info_tells_name_and_version),
-        cmocka_unit_test(echo_answer_repeats_the_stamp_of_the_question),
-        cmocka_unit_test(other_messages_are_told_by_their_number),
+        cmocka_unit_test(server_info_gives_name_and_version),
+        cmocka_unit_test(echo_response_repeats_the_stamp_of_the_request),
+        cmocka_unit_test(other_messages_are_reported_by_their_number),
         cmocka_unit_test(real_3_0_frame_is_encoded_as_the_server_did),
-        cmocka_unit_test(frames_are_refused_under_a_wrong_version),
+        cmocka_unit_test(frames_are_rejected_under_a_wrong_version),
     };
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     free(bytes);

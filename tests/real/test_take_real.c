@@ -121,7 +121,7 @@ static void six_c3d_files_decode_to_the_same_points(void **state)
     }
 }
 
-static void trc_files_have_what_their_headers_say(void **state)
+static void trc_files_agree_with_their_headers(void **state)
 {
     (void)state;
     static const struct {
@@ -161,7 +161,7 @@ int main(void)
         cmocka_unit_test(motive_1_21_has_its_250_frames),
         cmocka_unit_test(motive_1_23_jumps_and_misses_6_75_percent),
         cmocka_unit_test(six_c3d_files_decode_to_the_same_points),
-        cmocka_unit_test(trc_files_have_what_their_headers_say),
+        cmocka_unit_test(trc_files_agree_with_their_headers),
     };
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     wb_take_release(&take);
