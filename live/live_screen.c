@@ -153,9 +153,12 @@ static void draw_raster(const struct wb_live_raster *raster, int top, int left)
 
 #define MARGIN 8 /* columns for the numbers of the force axis */
 
+/* The longest heading that leaves room for the legend. */
 static const char *heading_of(const struct box *box)
 {
-    return box->columns < 72 ? "mN over mm" : "tension (mN) over deflection (mm)";
+    if (box->columns < 72)
+        return "mN over mm";
+    return box->columns < 88 ? "tension, mN over mm" : "tension (mN) over deflection (mm)";
 }
 
 static void draw_axes(const struct box *box, const struct wb_live_chart *chart)
