@@ -94,12 +94,12 @@ static const char *const swapped =
 /* Whether the bytes contain line ends, but not those of the rig file. */
 static bool lacks_terminator(const struct wb_diagnosis *load, const struct wb_rig *rig)
 {
-    const char *const told = rig->load_cell.terminator;
-    if (strcmp(told, "crlf") == 0)
+    const char *const terminator = rig->load_cell.terminator;
+    if (strcmp(terminator, "crlf") == 0)
         return !has(load->bytes, load->n, "\r\n");
-    if (strcmp(told, "cr") == 0)
+    if (strcmp(terminator, "cr") == 0)
         return !memchr(load->bytes, '\r', load->n);
-    return strcmp(told, "lf") == 0 && !memchr(load->bytes, '\n', load->n);
+    return strcmp(terminator, "lf") == 0 && !memchr(load->bytes, '\n', load->n);
 }
 
 /* Whether the second complete line is a number without a unit. */

@@ -101,7 +101,7 @@ struct wb_recording_cursor {
 WB_MUST_CHECK enum wb_status wb_recording_cursor_open(struct wb_recording_cursor *cursor,
                                                       struct wb_recording *recording,
                                                       const char *columns, const char *table,
-                                                      bool tell);
+                                                      bool report);
 /* False at the end. */
 bool wb_recording_cursor_step(struct wb_recording_cursor *cursor);
 /* Records that rows are missing at this point. */

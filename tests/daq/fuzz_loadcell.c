@@ -1,6 +1,6 @@
-/* Any bytes from a load cell are readings or refused, and how they are cut into reads does not
- * matter. Input: a byte of settings, then the bytes of the line. With bit 6 the settings are those
- * of a preset. */
+/* Any bytes from a load cell give readings or are rejected, independent of the division into reads.
+ * Input: a byte of settings, then the bytes of the line. With bit 6 the settings are those of a
+ * preset. */
 #include "tests/daq/fuzz_driver.h"
 
 #include <math.h>

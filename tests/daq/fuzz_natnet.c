@@ -1,5 +1,6 @@
-/* Any datagram under any version is decoded or refused, within its bytes and our arrays; the client
- * survives any sequence of them. Input: major, minor, then the datagram. */
+/* Any datagram of any version is decoded or rejected, without access outside its bytes and the
+ * arrays of the frame; the client accepts any sequence of them. Input: major, minor, then the
+ * datagram. */
 #include "tests/daq/fuzz_driver.h"
 
 #include "daq/protocol/natnet_encode.h"

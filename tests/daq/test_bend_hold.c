@@ -1,4 +1,4 @@
-/* A test that its operator holds: what the stage does, what is recorded, and how a hold ends. */
+/* A test held by its operator: motion of the stage, recorded events, and the ends of a hold. */
 #include <math.h>
 
 #include "base/timing.h"
@@ -77,7 +77,7 @@ static void open_test(struct fixture *fixture, struct wb_bend_test **test)
 
 /* --- going on --- */
 
-static void held_stage_stands_and_then_goes_on_with_its_way(void **state)
+static void held_stage_stops_and_then_resumes_its_move(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -116,7 +116,7 @@ static void held_stage_stands_and_then_goes_on_with_its_way(void **state)
 }
 
 /* The wire relaxes: its force falls by far more than limits.force_drop_percent. */
-static void force_that_falls_while_it_is_held_is_no_break(void **state)
+static void force_that_falls_during_a_hold_is_not_a_break(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -151,7 +151,7 @@ static bool rests(const struct wb_bend_test_status *status)
     return strcmp(status->phase, "rest") == 0;
 }
 
-static void rest_that_was_held_begins_again(void **state)
+static void interrupted_rest_begins_again_after_a_hold(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -169,7 +169,7 @@ static void rest_that_was_held_begins_again(void **state)
     assert_int_equal(result.holds, 1);
 }
 
-static void time_left_stands_still_while_it_is_held(void **state)
+static void time_left_does_not_change_during_a_hold(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -185,7 +185,7 @@ static void time_left_stands_still_while_it_is_held(void **state)
     assert_int_equal(wb_bend_test_close(test, NULL), WB_OK);
 }
 
-static void what_does_not_move_cannot_be_held_nor_resumed(void **state)
+static void resting_stage_cannot_be_held_or_resumed(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -204,7 +204,7 @@ static void what_does_not_move_cannot_be_held_nor_resumed(void **state)
 
 /* --- ending --- */
 
-static void stop_while_held_ends_in_order(void **state)
+static void stop_during_a_hold_ends_in_order(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -237,7 +237,7 @@ static void stop_while_it_brakes_for_a_hold_stops_the_stage(void **state)
     assert_int_equal(fixture->bench->holds, 1);
 }
 
-static void limits_are_watched_while_it_is_held(void **state)
+static void limits_are_checked_during_a_hold(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_bend_test *test;
@@ -284,7 +284,7 @@ static void nobody_holds_it_for_ever(void **state)
     assert_int_equal(fixture->bench->holds, 0);
 }
 
-/* --- what a recording tells --- */
+/* --- reading from a recording --- */
 
 static void events_are_read_back(void **state)
 {
@@ -323,15 +323,15 @@ int main(void)
 {
 #define ON_A_BENCH(fact) cmocka_unit_test_setup_teardown(fact, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        ON_A_BENCH(held_stage_stands_and_then_goes_on_with_its_way),
-        ON_A_BENCH(force_that_falls_while_it_is_held_is_no_break),
+        ON_A_BENCH(held_stage_stops_and_then_resumes_its_move),
+        ON_A_BENCH(force_that_falls_during_a_hold_is_not_a_break),
         ON_A_BENCH(break_after_a_hold_stops_the_test_all_the_same),
-        ON_A_BENCH(rest_that_was_held_begins_again),
-        ON_A_BENCH(time_left_stands_still_while_it_is_held),
-        ON_A_BENCH(what_does_not_move_cannot_be_held_nor_resumed),
-        ON_A_BENCH(stop_while_held_ends_in_order),
+        ON_A_BENCH(interrupted_rest_begins_again_after_a_hold),
+        ON_A_BENCH(time_left_does_not_change_during_a_hold),
+        ON_A_BENCH(resting_stage_cannot_be_held_or_resumed),
+        ON_A_BENCH(stop_during_a_hold_ends_in_order),
         ON_A_BENCH(stop_while_it_brakes_for_a_hold_stops_the_stage),
-        ON_A_BENCH(limits_are_watched_while_it_is_held),
+        ON_A_BENCH(limits_are_checked_during_a_hold),
         ON_A_BENCH(stage_that_does_not_stop_after_hold_is_stopped),
         ON_A_BENCH(nobody_holds_it_for_ever),
         cmocka_unit_test(events_are_read_back),

@@ -58,7 +58,7 @@ static void jammed_clamp_is_reported_in_both_directions(void **state)
     assert_true(judge(20.0, 40.0, 10.0));
 }
 
-static void one_report_alone_or_a_clamp_not_seen_is_not_judged(void **state)
+static void one_report_or_a_hidden_clamp_is_not_judged(void **state)
 {
     (void)state;
     assert_false(judge(5.0, 5.0, 0.1));
@@ -81,7 +81,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(clamp_that_follows_the_stage_is_accepted, set_up),
         cmocka_unit_test_setup(jammed_clamp_is_reported_in_both_directions, set_up),
-        cmocka_unit_test_setup(one_report_alone_or_a_clamp_not_seen_is_not_judged, set_up),
+        cmocka_unit_test_setup(one_report_or_a_hidden_clamp_is_not_judged, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

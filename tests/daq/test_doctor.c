@@ -118,7 +118,7 @@ static void bench_that_is_well_is_ready_and_stays_where_it_is(void **state)
     assert_int_equal(fixture->bench->holds, 0);
 }
 
-static void silent_instruments_are_named_and_the_others_still_judged(void **state)
+static void silent_instruments_are_named_and_the_others_are_still_checked(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->load_silent = true;
@@ -185,7 +185,7 @@ static void travel_that_the_rig_file_forbids_is_not_ready(void **state)
     expect(fixture, "travel", WB_DOCTOR_NOT_READY, "--travel-mm");
 }
 
-static void marker_that_is_missing_is_named_and_asked_for_in_the_picture(void **state)
+static void missing_marker_is_named_and_drawn_in_the_picture(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->markers = FAKE_MARKERS - 1;
@@ -196,7 +196,7 @@ static void marker_that_is_missing_is_named_and_asked_for_in_the_picture(void **
 }
 
 /* Takes are recorded by tests, not by `doctor`. */
-static void the_server_is_not_asked_to_record(void **state)
+static void server_is_not_asked_to_record(void **state)
 {
     struct fixture *const fixture = *state;
     char command[160];
@@ -228,7 +228,7 @@ static void log_check(const struct fixture *fixture, const char *utc, const char
     assert_int_equal(wb_check_log_append(fixture->rig_path, &entry), WB_OK);
 }
 
-static void the_last_check_of_the_load_cell_counts(void **state)
+static void last_check_of_the_load_cell_counts(void **state)
 {
     struct fixture *const fixture = *state;
     char now[WB_TIME_TEXT];
@@ -278,16 +278,16 @@ int main(void)
 #define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest facts[] = {
         FACT(bench_that_is_well_is_ready_and_stays_where_it_is),
-        FACT(silent_instruments_are_named_and_the_others_still_judged),
+        FACT(silent_instruments_are_named_and_the_others_are_still_checked),
         FACT(answers_without_frames_are_reported_from_no_answers),
         FACT(load_cell_out_of_range_or_not_understood_is_not_ready),
         FACT(load_cell_of_another_baud_rate_is_found_at_it),
         FACT(stage_in_alarm_or_too_slow_is_not_ready),
         FACT(travel_that_the_rig_file_forbids_is_not_ready),
-        FACT(marker_that_is_missing_is_named_and_asked_for_in_the_picture),
-        FACT(the_server_is_not_asked_to_record),
+        FACT(missing_marker_is_named_and_drawn_in_the_picture),
+        FACT(server_is_not_asked_to_record),
         FACT(without_a_specimen_markers_are_counted_and_the_bench_may_be_ready),
-        FACT(the_last_check_of_the_load_cell_counts),
+        FACT(last_check_of_the_load_cell_counts),
         FACT(ports_that_are_missing_or_in_use_are_reported),
         FACT(folder_that_is_not_there_cannot_take_a_recording),
     };

@@ -74,7 +74,7 @@ static void each_fault_is_reported_with_its_remedy(void **state)
     }
 }
 
-static void wire_not_found_at_rest_is_not_judged(void **state)
+static void wire_without_markers_at_rest_is_not_judged(void **state)
 {
     (void)state;
     const struct wb_tip_watch watch = {0};
@@ -87,7 +87,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(clamp_that_follows_the_stage_agrees),
         cmocka_unit_test(each_fault_is_reported_with_its_remedy),
-        cmocka_unit_test(wire_not_found_at_rest_is_not_judged),
+        cmocka_unit_test(wire_without_markers_at_rest_is_not_judged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -212,7 +212,7 @@ static void every_preset_has_lines_of_its_manual(void **state)
 }
 
 /* A row of docs/instruments.md describes the connection: "| `NAME` | ... | LINE |". */
-static void every_preset_stands_in_the_documents(void **state)
+static void every_preset_is_documented(void **state)
 {
     (void)state;
     char path[WB_PATH], row[64], *text;
@@ -368,7 +368,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_of_the_manuals_are_read),
         cmocka_unit_test(every_preset_has_lines_of_its_manual),
-        cmocka_unit_test(every_preset_stands_in_the_documents),
+        cmocka_unit_test(every_preset_is_documented),
         cmocka_unit_test(no_preset_waits_for_a_stable_load),
         cmocka_unit_test(preset_sets_port_commands_and_unit),
         cmocka_unit_test(keys_of_the_file_override_the_preset),

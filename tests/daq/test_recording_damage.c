@@ -190,7 +190,7 @@ static void truncated_compressed_recording_gives_what_is_left(void **state)
     assert_null(strstr(bench->message, "table "));
 }
 
-static void what_is_no_recording_is_rejected_with_the_reason(void **state)
+static void other_files_are_rejected_with_the_reason(void **state)
 {
     struct bench *bench = *state;
     struct wb_recording *recording = NULL;
@@ -395,7 +395,7 @@ int main(void)
         FACT(file_cut_to_nearly_nothing_is_rejected),
         FACT(flipped_bit_is_found_by_the_crc_and_only_there),
         FACT(truncated_compressed_recording_gives_what_is_left),
-        FACT(what_is_no_recording_is_rejected_with_the_reason),
+        FACT(other_files_are_rejected_with_the_reason),
         FACT(missing_table_is_reported_and_the_others_are_read),
         FACT(view_instead_of_a_table_is_not_run),
         FACT(size_limit_is_one_message_and_what_was_flushed_is_readable),

@@ -104,7 +104,7 @@ static off_t size_of(const char *path)
     return there.st_size;
 }
 
-static void closed_recording_comes_back_whole(void **state)
+static void closed_recording_is_recovered_completely(void **state)
 {
     const struct names names = make_closed(*state);
     struct wb_recover found;
@@ -150,7 +150,7 @@ static void damaged_files_stay_as_they_were(void **state)
     assert_int_equal(system(command), 0);
 }
 
-static void unclosed_recording_comes_back_with_its_log(void **state)
+static void unclosed_recording_is_recovered_with_its_log(void **state)
 {
     const struct names names = make_unclosed(*state);
     struct wb_recover found;
@@ -190,7 +190,7 @@ static void missing_log_is_reported(void **state)
 }
 
 /* A checkpoint per second: the file without its log lacks only the last second. */
-static void what_was_flushed_goes_from_the_log_into_the_file(void **state)
+static void checkpoints_move_flushed_data_from_the_log_to_the_file(void **state)
 {
     struct bench *const bench = *state;
     const struct names names = name(bench);
@@ -234,7 +234,7 @@ static void flipped_bit_in_the_log_costs_a_page_at_most(void **state)
     assert_true(least_read < 3 * CHUNKS / 2);
 }
 
-static void cut_files_and_logs_give_what_is_left(void **state)
+static void truncated_files_and_logs_give_the_intact_rows(void **state)
 {
     struct bench *const bench = *state;
     struct names names = make_closed(bench);
@@ -393,7 +393,7 @@ static void rows_that_were_written_anew_count(void **state)
 }
 
 /* Rows of more than a page. */
-static void rows_over_several_pages_come_back(void **state)
+static void rows_over_several_pages_are_recovered(void **state)
 {
     static const size_t sizes[] = {4000, 4040, 4050, 4060, 4070, 4100, 8000, 8150, 20000, 65536};
     const struct names names = name(*state);
@@ -416,7 +416,7 @@ static void rows_over_several_pages_come_back(void **state)
     assert_int_equal(found.streams[0].chunks, sizeof sizes / sizeof sizes[0]);
 }
 
-static void older_recordings_come_back_too(void **state)
+static void older_recordings_are_recovered(void **state)
 {
     const struct names names = make_closed(*state);
     struct wb_recover found;
@@ -426,7 +426,7 @@ static void older_recordings_come_back_too(void **state)
     assert_true(wb_recover_is_whole(&found));
 }
 
-static void compressed_recordings_come_back_as_far_as_they_go(void **state)
+static void truncated_compressed_recordings_are_recovered_up_to_their_end(void **state)
 {
     struct bench *const bench = *state;
     struct names names = name(bench);
@@ -443,7 +443,7 @@ static void compressed_recordings_come_back_as_far_as_they_go(void **state)
         assert_false(wb_recover_is_whole(&found));
 }
 
-static void what_is_no_recording_is_rejected(void **state)
+static void other_files_are_rejected(void **state)
 {
     struct bench *const bench = *state;
     const struct names names = name(bench);
@@ -480,19 +480,19 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
-        FACT(closed_recording_comes_back_whole),
+        FACT(closed_recording_is_recovered_completely),
         FACT(damaged_files_stay_as_they_were),
-        FACT(unclosed_recording_comes_back_with_its_log),
+        FACT(unclosed_recording_is_recovered_with_its_log),
         FACT(missing_log_is_reported),
-        FACT(what_was_flushed_goes_from_the_log_into_the_file),
+        FACT(checkpoints_move_flushed_data_from_the_log_to_the_file),
         FACT(flipped_bit_in_the_log_costs_a_page_at_most),
-        FACT(cut_files_and_logs_give_what_is_left),
+        FACT(truncated_files_and_logs_give_the_intact_rows),
         FACT(any_damage_leaves_only_what_was_written),
         FACT(rows_that_were_written_anew_count),
-        FACT(rows_over_several_pages_come_back),
-        FACT(older_recordings_come_back_too),
-        FACT(compressed_recordings_come_back_as_far_as_they_go),
-        FACT(what_is_no_recording_is_rejected),
+        FACT(rows_over_several_pages_are_recovered),
+        FACT(older_recordings_are_recovered),
+        FACT(truncated_compressed_recordings_are_recovered_up_to_their_end),
+        FACT(other_files_are_rejected),
         FACT(existing_files_are_not_overwritten),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

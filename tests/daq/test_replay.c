@@ -72,7 +72,7 @@ static struct log *play(const char *path, double rate, int stop_after,
     return log;
 }
 
-static void every_recorded_sample_comes_back(void **state)
+static void replay_gives_every_recorded_sample(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, true);
@@ -322,7 +322,7 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
-        FACT(every_recorded_sample_comes_back),
+        FACT(replay_gives_every_recorded_sample),
         FACT(replayed_samples_equal_live_ones_bit_for_bit),
         FACT(rate_sets_the_pace),
         FACT(interrupt_ends_it_with_what_was_played),

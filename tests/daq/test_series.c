@@ -45,7 +45,7 @@ static struct wb_series series_of(const char *more)
     return series;
 }
 
-static void the_file_says_what_is_tested_and_how(void **state)
+static void file_gives_specimens_and_settings_of_the_tests(void **state)
 {
     (void)state;
     struct wb_series series;
@@ -68,7 +68,7 @@ static void the_file_says_what_is_tested_and_how(void **state)
     assert_string_equal(series.rig, expected);
 }
 
-static void what_is_wrong_is_rejected_with_its_line(void **state)
+static void wrong_entry_is_rejected_with_its_line(void **state)
 {
     (void)state;
     static const char *const cases[][2] = {
@@ -174,7 +174,7 @@ static void number_is_above_all_that_were_ever_used(void **state)
     assert_int_equal(next_number(&series, &index), 51);
 }
 
-static void digits_beside_the_number_are_reported_apart(void **state)
+static void digits_beside_the_number_are_reported_separately(void **state)
 {
     (void)state;
     const struct wb_series series = series_of("output: '5{number}6.wbr'\n");
@@ -212,7 +212,7 @@ static void sample_is_done_unless_its_tests_are_to_be_repeated(void **state)
     assert_int_equal(n_done, 3);
 }
 
-static void recordings_that_nobody_judged_are_found_in_order(void **state)
+static void recordings_without_a_decision_are_found_in_order(void **state)
 {
     (void)state;
     const struct wb_series series = series_of("");
@@ -242,14 +242,14 @@ static void recordings_that_nobody_judged_are_found_in_order(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        FACT(the_file_says_what_is_tested_and_how),
-        FACT(what_is_wrong_is_rejected_with_its_line),
+        FACT(file_gives_specimens_and_settings_of_the_tests),
+        FACT(wrong_entry_is_rejected_with_its_line),
         FACT(names_follow_the_template),
         FACT(specimen_is_like_the_file_but_for_its_sample_and_the_answers),
         FACT(number_is_above_all_that_were_ever_used),
-        FACT(digits_beside_the_number_are_reported_apart),
+        FACT(digits_beside_the_number_are_reported_separately),
         FACT(sample_is_done_unless_its_tests_are_to_be_repeated),
-        FACT(recordings_that_nobody_judged_are_found_in_order),
+        FACT(recordings_without_a_decision_are_found_in_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -396,7 +396,7 @@ static void memory_has_a_bound_and_what_it_cannot_keep_is_counted(void **state)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-static void disk_that_never_comes_back_leaves_what_was_flushed(void **state)
+static void failed_disk_keeps_flushed_data(void **state)
 {
     struct bench *const bench = *state;
     fault_vfs_begin();
@@ -462,7 +462,7 @@ int main(int argc, char **argv)
         IN_VIRTUAL_TIME(writing_goes_on_where_the_disk_stopped),
         FACT(failed_sync_keeps_nothing),
         IN_VIRTUAL_TIME(memory_has_a_bound_and_what_it_cannot_keep_is_counted),
-        IN_VIRTUAL_TIME(disk_that_never_comes_back_leaves_what_was_flushed),
+        IN_VIRTUAL_TIME(failed_disk_keeps_flushed_data),
         FACT(disk_that_hangs_never_holds_up_who_pushes),
     };
     if (argc > 1)

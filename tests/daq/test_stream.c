@@ -183,7 +183,7 @@ static void closed_master_is_a_lost_stream(void **state)
 }
 
 /* As /dev/serial/by-id leads to a USB adapter that was plugged in again. */
-static void lost_pseudo_terminal_comes_back_through_its_link_under_another_number(void **state)
+static void lost_pseudo_terminal_is_found_through_its_link_under_another_number(void **state)
 {
     (void)state;
     char folder[32], link[64], address[80], slave[64], again[64], byte;
@@ -304,7 +304,7 @@ static void datagrams_pass_one_a_read(void **state)
     close(server);
 }
 
-static void largest_datagram_passes_whole(void **state)
+static void largest_datagram_is_received_completely(void **state)
 {
     (void)state;
     int server;
@@ -403,7 +403,7 @@ static void overrun_socket_counts_what_the_kernel_dropped(void **state)
     close(server);
 }
 
-static void multicast_data_and_unicast_answers_come_through_one_stream(void **state)
+static void one_stream_receives_multicast_data_and_unicast_replies(void **state)
 {
     (void)state;
     int port, group_port;
@@ -514,15 +514,15 @@ int main(void)
         FACT(pseudo_terminal_passes_bytes_unchanged),
         FACT(second_opener_of_a_pseudo_terminal_is_reported_it_is_busy),
         FACT(closed_master_is_a_lost_stream),
-        FACT(lost_pseudo_terminal_comes_back_through_its_link_under_another_number),
+        FACT(lost_pseudo_terminal_is_found_through_its_link_under_another_number),
         FACT(full_pseudo_terminal_times_out),
         FACT(missing_pseudo_terminal_and_plain_file_are_reported_apart),
         FACT(datagrams_pass_one_a_read),
-        FACT(largest_datagram_passes_whole),
+        FACT(largest_datagram_is_received_completely),
         FACT(server_that_is_not_there_is_no_error_of_the_stream),
         FACT(datagrams_of_strangers_are_ignored),
         FACT(overrun_socket_counts_what_the_kernel_dropped),
-        FACT(multicast_data_and_unicast_answers_come_through_one_stream),
+        FACT(one_stream_receives_multicast_data_and_unicast_replies),
         FACT(memory_gives_one_pushed_run_a_read),
         FACT(memory_keeps_what_was_written),
         FACT(other_streams_take_no_pushed_bytes),

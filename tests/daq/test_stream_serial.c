@@ -146,7 +146,7 @@ static bool hangs_up_at_closing(const struct bench *bench, const char *address)
     return (set.c_cflag & HUPCL) != 0;
 }
 
-static void dtr_stays_after_closing_if_told(void **state)
+static void dtr_stays_after_closing_if_configured(void **state)
 {
     const struct bench *const bench = *state;
     assert_true(hangs_up_at_closing(bench, "serial:" PORT ",115200,8n1"));
@@ -179,7 +179,7 @@ static void stages_port_keeps_dtr_by_default(void **state)
     }
 }
 
-static void bytes_pass_unchanged_both_ways(void **state)
+static void bytes_pass_unchanged_in_both_directions(void **state)
 {
     struct bench *bench = *state;
     struct wb_stream *stream = open_stream("serial:" PORT ",9600");
@@ -365,7 +365,7 @@ static enum wb_status count_latency(void *context, const struct wb_event *event)
 }
 
 /* A line for the operator at the start, and an event of the recording. */
-static void the_latency_is_reported_at_the_start_and_recorded(void **state)
+static void latency_is_reported_at_the_start_and_recorded(void **state)
 {
     struct bench *bench = *state;
     struct wb_acquisition *acquisition;
@@ -401,9 +401,9 @@ int main(void)
 #define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
         FACT(line_settings_reach_the_terminal),
         FACT(dtr_and_rts_lines_are_set),
-        FACT(dtr_stays_after_closing_if_told),
+        FACT(dtr_stays_after_closing_if_configured),
         FACT(stages_port_keeps_dtr_by_default),
-        FACT(bytes_pass_unchanged_both_ways),
+        FACT(bytes_pass_unchanged_in_both_directions),
         FACT(write_that_nobody_takes_times_out),
         FACT(unplugged_port_is_reported_and_found_again),
         FACT(busy_port_says_so),
@@ -411,7 +411,7 @@ int main(void)
         FACT(missing_port_lists_those_that_exist),
         FACT(pseudo_terminal_is_sent_to_its_own_scheme),
         FACT(latency_timer_that_stays_high_is_reported),
-        FACT(the_latency_is_reported_at_the_start_and_recorded),
+        FACT(latency_is_reported_at_the_start_and_recorded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,7 +49,7 @@ static void whole_recording_has_no_problem(void **state)
     assert_close(wb_survey_duration(&survey), 1.0, 0.02);
 }
 
-static void each_kind_of_harm_to_an_old_recording_is_found_and_named(void **state)
+static void each_kind_of_damage_to_an_old_recording_is_found_and_named(void **state)
 {
     static const struct {
         const char *sql, *words;
@@ -104,7 +104,7 @@ static void expect_among(const struct wb_survey *survey, const char *words)
 }
 
 /* Rows 1 to 3 are the streams, 4 to 8 meta, then the chunks. */
-static void each_kind_of_harm_to_a_row_is_found_and_its_place_named(void **state)
+static void each_kind_of_damage_to_a_row_is_found_with_its_position(void **state)
 {
     static const struct {
         const char *sql, *words;
@@ -164,7 +164,7 @@ static void old_recording_reads_the_same_and_is_partly_protected(void **state)
 
 /* The recording computer stalled, and all data arrived later: nothing is lost. Rejected lines
  * before the tare are tolerated. */
-static void what_all_streams_share_is_no_harm(void **state)
+static void gap_shared_by_all_streams_is_no_problem(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, true);
@@ -282,9 +282,9 @@ int main(void)
     static const struct CMUnitTest tests[] = {
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
         FACT(whole_recording_has_no_problem),
-        FACT(what_all_streams_share_is_no_harm),
-        FACT(each_kind_of_harm_to_an_old_recording_is_found_and_named),
-        FACT(each_kind_of_harm_to_a_row_is_found_and_its_place_named),
+        FACT(gap_shared_by_all_streams_is_no_problem),
+        FACT(each_kind_of_damage_to_an_old_recording_is_found_and_named),
+        FACT(each_kind_of_damage_to_a_row_is_found_with_its_position),
         FACT(old_recording_reads_the_same_and_is_partly_protected),
         FACT(export_writes_every_sample_with_units_and_says_virtual_rig),
         FACT(export_into_a_folder_that_is_not_there_fails_with_one_message),

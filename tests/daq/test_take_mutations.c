@@ -1,7 +1,7 @@
-/* Five hundred structural changes of a take in each format, and of a table of the force (rows,
- * columns, separators, encodings, truncations) end in a refusal with a reason, or in a take that
- * counts what is missing: of the frames that it has, no place is anywhere but where the file has
- * it, or where another row or column of the file has it. */
+/* Five hundred structural changes (rows, columns, separators, encodings, truncations) of a take in
+ * each format, and of a table of the force. Either the file is rejected with a reason, or the take
+ * counts its missing frames and has only positions of the file, possibly those of another row or
+ * column. */
 #include <math.h>
 #include <stdlib.h>
 

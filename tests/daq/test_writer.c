@@ -217,7 +217,7 @@ static void undeclared_stream_is_rejected(void **state)
     assert_int_equal(wb_writer_finish(NULL), WB_OK);
 }
 
-static void long_texts_are_cut_not_lost(void **state)
+static void long_texts_are_truncated(void **state)
 {
     struct bench *bench = *state;
     struct wb_writer *writer = start(bench->path, NULL);
@@ -243,7 +243,7 @@ int main(void)
         FACT(full_queue_drops_counts_and_records_every_chunk_and_no_event),
         FACT(queue_of_few_entries_drops_by_number),
         FACT(undeclared_stream_is_rejected),
-        FACT(long_texts_are_cut_not_lost),
+        FACT(long_texts_are_truncated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

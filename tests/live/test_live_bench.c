@@ -1,6 +1,6 @@
-/* Live views of whole tests on the virtual bench, in virtual time: what a view shows of a test,
- * what its keys do, and that no view changes a byte of the recording. The view is the test itself,
- * at the other end of the feed's socket. */
+/* Live views of whole tests on the virtual bench, in virtual time: contents of the view, effects of
+ * its keys, and that no view changes a byte of the recording. The test plays the view, at the other
+ * end of the feed's socket. */
 #include <curses.h>
 #include <fcntl.h>
 #include <locale.h>

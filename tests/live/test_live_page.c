@@ -104,7 +104,7 @@ static void assert_heard(const char *words)
 
 #define GET(path) "GET " path " HTTP/1.1\r\nHost: localhost:1234\r\nConnection: close\r\n\r\n"
 
-static void the_page_is_whole_and_fetches_nothing_from_elsewhere(void **state)
+static void page_is_complete_and_fetches_nothing_from_other_hosts(void **state)
 {
     (void)state;
     const int client = ask(GET("/"));
@@ -214,7 +214,7 @@ static void client_that_never_reads_holds_up_nobody(void **state)
     close(lazy);
 }
 
-static void it_can_only_be_read_and_only_from_here(void **state)
+static void page_is_read_only_and_served_to_this_host_only(void **state)
 {
     (void)state;
     static const struct {
@@ -237,7 +237,7 @@ static void it_can_only_be_read_and_only_from_here(void **state)
     }
 }
 
-static void the_last_state_and_the_end_reach_the_clients(void **state)
+static void last_state_and_end_reach_the_clients(void **state)
 {
     (void)state;
     const int client = ask(GET("/events"));
@@ -271,14 +271,14 @@ int main(void)
     signal(SIGPIPE, SIG_IGN); /* of this client's own sockets */
 #define ON_A_PAGE(fact) cmocka_unit_test_setup_teardown(fact, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        ON_A_PAGE(the_page_is_whole_and_fetches_nothing_from_elsewhere),
+        ON_A_PAGE(page_is_complete_and_fetches_nothing_from_other_hosts),
         ON_A_PAGE(events_bring_the_plan_the_curve_and_the_state),
         cmocka_unit_test(free_space_is_given_in_bytes_and_time),
         cmocka_unit_test(disk_that_cannot_be_queried_has_unknown_free_space),
         ON_A_PAGE(client_that_comes_later_has_all_of_the_curve),
         ON_A_PAGE(client_that_never_reads_holds_up_nobody),
-        ON_A_PAGE(it_can_only_be_read_and_only_from_here),
-        ON_A_PAGE(the_last_state_and_the_end_reach_the_clients),
+        ON_A_PAGE(page_is_read_only_and_served_to_this_host_only),
+        ON_A_PAGE(last_state_and_end_reach_the_clients),
         cmocka_unit_test(port_in_use_is_reported_with_its_remedy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -63,7 +63,7 @@ static void curve_is_drawn_between_its_axes(void **state)
     wb_text_release(&text);
 }
 
-static void the_last_cycle_is_bright_and_colours_end_with_their_line(void **state)
+static void last_cycle_is_bright_and_colours_end_with_their_line(void **state)
 {
     (void)state;
     size_t n;
@@ -111,7 +111,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(earlier_tests_are_faint_and_within_the_axes),
         cmocka_unit_test(curve_is_drawn_between_its_axes),
-        cmocka_unit_test(the_last_cycle_is_bright_and_colours_end_with_their_line),
+        cmocka_unit_test(last_cycle_is_bright_and_colours_end_with_their_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

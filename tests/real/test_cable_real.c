@@ -1,10 +1,10 @@
 /* The layers of a real cable at equal curvature, by the campaign of its report. Needs
  * WIREBENCH_REAL_DATA; skipped (exit status 77) without.
  *
- * The ranges are those of a look at the same files with other means: measured moment over that of
- * sliding wires 1.6 to 1.8 for group 4, 2.1 to 2.5 for 5b, 7 to 11 for 7; 5b over 4 is 1.24 to
- * 1.44. Group 4 is looked at up to 4 mm from where seating does not decide, the others up to their
- * reach. */
+ * The ranges are from an independent evaluation of the same files: measured moment relative to that
+ * of sliding wires 1.6 to 1.8 for group 4, 2.1 to 2.5 for 5b, 7 to 11 for 7; 5b relative to 4 1.24
+ * to 1.44. Group 4 is compared up to 4 mm, from the deflection at which seating has no influence;
+ * the others up to the end of their curves. */
 #include <stdlib.h>
 
 #include "analysis/report/machines/machines_kind.h"
