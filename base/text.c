@@ -81,6 +81,24 @@ void wb_text_append_escaped(struct wb_text *text, const char *raw)
     }
 }
 
+void wb_text_append_quoted(struct wb_text *text, const char *word)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "._-/+,:=@%";
+    if (word[0] && !word[strspn(word, plain)]) {
+        wb_text_append(text, "%s", word);
+        return;
+    }
+    wb_text_append(text, "'");
+    for (const char *c = word; *c; c++) {
+        if (*c == '\'')
+            wb_text_append(text, "'\\''");
+        else
+            wb_text_append_bytes(text, c, 1);
+    }
+    wb_text_append(text, "'");
+}
+
 const char *wb_text_string(const struct wb_text *text)
 {
     return text->bytes ? text->bytes : "";

@@ -21,6 +21,10 @@ void wb_text_append_bytes(struct wb_text *text, const void *bytes, size_t n);
 /* Appends with &, <, >, " and ' escaped for HTML, SVG and Pango markup. */
 void wb_text_append_escaped(struct wb_text *text, const char *raw);
 
+/* Appends a word so that a POSIX shell reads it back as it is: in single quotes where it is empty
+ * or has characters with a meaning in a shell. */
+void wb_text_append_quoted(struct wb_text *text, const char *word);
+
 /* The current text; "" if empty. Owned by `text`. */
 const char *wb_text_string(const struct wb_text *text);
 

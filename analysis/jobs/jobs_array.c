@@ -69,7 +69,7 @@ static enum wb_status find_self(char program[WB_PATH])
 static void append_words(struct wb_text *text, const char *const *words)
 {
     for (; *words; words++) {
-        wb_jobs_plan_quote(text, *words);
+        wb_text_append_quoted(text, *words);
         wb_text_append(text, " ");
     }
 }

@@ -46,10 +46,10 @@ static int open_log(const struct wb_jobs_plan_item *item, const char *partial)
     wb_text_append(&line, "wirebench");
     for (const char *const *word = item->job->arguments; *word; word++) {
         wb_text_append(&line, " ");
-        wb_jobs_plan_quote(&line, *word);
+        wb_text_append_quoted(&line, *word);
     }
     wb_text_append(&line, " -o ");
-    wb_jobs_plan_quote(&line, partial);
+    wb_text_append_quoted(&line, partial);
     wb_text_append(&line, "\n");
     const ssize_t written = write(log, wb_text_string(&line), line.length);
     const bool whole = !line.failed && written == (ssize_t)line.length;

@@ -421,21 +421,3 @@ void wb_jobs_plan_clear(struct wb_jobs_plan *plan)
     }
     plan->drawn = false;
 }
-
-void wb_jobs_plan_quote(struct wb_text *text, const char *word)
-{
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                "._-/+,:=@%";
-    if (word[0] && strspn(word, plain) == strlen(word)) {
-        wb_text_append(text, "%s", word);
-        return;
-    }
-    wb_text_append(text, "'");
-    for (const char *c = word; *c; c++) {
-        if (*c == '\'')
-            wb_text_append(text, "'\\''");
-        else
-            wb_text_append_bytes(text, c, 1);
-    }
-    wb_text_append(text, "'");
-}

@@ -88,9 +88,6 @@ void wb_jobs_plan_fail(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item
 void wb_jobs_plan_draw(struct wb_jobs_plan *plan, int at_once, const char *note);
 void wb_jobs_plan_clear(struct wb_jobs_plan *plan); /* the line; before other messages */
 
-/* Appends a word, quoted for a shell. */
-void wb_jobs_plan_quote(struct wb_text *text, const char *word);
-
 /* "45 s", "12 min", "3 h 05 min". */
 void wb_jobs_plan_duration(char text[32], double seconds);
 

@@ -39,21 +39,12 @@ enum wb_status wb_simulation_find(struct wb_simulation *simulation,
     return wb_file_join(simulation->path, folder, given);
 }
 
-/* Adds a word as a shell takes it: in quotes when it holds more than plain characters. */
 static void show(struct wb_simulation *simulation, const char *word)
 {
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                "_-+=./:,@%";
     struct wb_text *const command = &simulation->command;
-    const bool quoted = word[strspn(word, plain)] != '\0';
-    wb_text_append(command, "%s%s", command->length > 0 ? " " : "", quoted ? "'" : "");
-    for (const char *c = word; *c; c++) {
-        if (quoted && *c == '\'')
-            wb_text_append(command, "'\\''");
-        else
-            wb_text_append_bytes(command, c, 1);
-    }
-    wb_text_append(command, "%s", quoted ? "'" : "");
+    if (command->length > 0)
+        wb_text_append(command, " ");
+    wb_text_append_quoted(command, word);
 }
 
 static enum wb_status show_command(struct wb_simulation *simulation, const char *shown)

@@ -38,11 +38,23 @@ static void an_invalid_size_is_recorded_as_failure(void **state)
     wb_text_release(&text);
 }
 
+static void words_are_quoted_for_the_shell(void **state)
+{
+    (void)state;
+    struct wb_text text = {0};
+    wb_text_append_quoted(&text, "data/type3-L85.yaml");
+    wb_text_append_quoted(&text, "");
+    wb_text_append_quoted(&text, "a wire's $x");
+    assert_string_equal(wb_text_string(&text), "data/type3-L85.yaml'''a wire'\\''s $x'");
+    wb_text_release(&text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(text_grows_by_appending),
         cmocka_unit_test(markup_is_escaped),
+        cmocka_unit_test(words_are_quoted_for_the_shell),
         cmocka_unit_test(an_invalid_size_is_recorded_as_failure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
