@@ -15,13 +15,13 @@
 static void print_meaning(const struct wb_cycle_calibration *c,
                           const struct wb_cycle_calibrate_settings *settings)
 {
-    printf("intervals: 95 %%, with all that the budget below knows");
+    printf("intervals: 95 %%, with all contributions of the budget below");
     if (settings->pooled_degrees > 0)
         printf("; scatter pooled over several wires, %g with %d degrees of freedom",
                settings->pooled_deviation, settings->pooled_degrees);
     printf("\ncandidates: range over the laws with a misfit of at most twice the best\n");
     if (c->n_members == 1 && !isfinite(c->rigidity.deviation))
-        printf("one specimen: how specimens scatter is not known and not in the intervals\n");
+        printf("one specimen: the scatter between specimens is unknown and not in the intervals\n");
 }
 
 static void print_numbers(const struct wb_cycle_calibration *c,
@@ -33,38 +33,40 @@ static void print_numbers(const struct wb_cycle_calibration *c,
     wb_print_quantities(&properties, "candidates");
     if (!c->has_unloading)
         printf("no residual curvature ratio and no loop energy: the tests have no unloading\n");
-    printf("the data of all specimens begin at a curvature of %.2g 1/m; below it%s",
-           c->secant.resolved, c->has_unloading ? "" : " the law speaks alone\n");
+    printf("the data of all specimens begin at a curvature of %.2g 1/m; ", c->secant.resolved);
     if (c->has_unloading)
-        printf(", and over less than %.2g 1/m behind the turn, the law speaks alone\n",
+        printf("below it, and in the first %.2g 1/m of unloading, values come from the law alone\n",
                c->unloading.resolved);
+    else
+        printf("below it, values come from the law alone\n");
     if (!c->is_rigidity_resolved)
-        printf("EI at zero curvature is not resolved: take a stiffness at the curvatures of your "
-               "use\n");
+        printf("the data do not resolve EI at zero curvature: use a stiffness at the curvature of "
+               "your application\n");
     print_meaning(c, settings);
-    printf("largest curvature that all specimens reached: %s 1/m; beyond it the law is not "
-           "measured\n",
+    printf("largest curvature that all specimens reached: %s 1/m; beyond it the law is "
+           "extrapolated\n",
            wb_print_number(c->largest_curvature, curvature));
 }
 
 static void print_rule(const struct wb_cycle_calibration *c)
 {
     printf("law: %s; %s\n", wb_candidate_name(c->chosen),
-           !c->has_unloading ? "its hardening rule is untested: the tests have no unloading"
+           !c->has_unloading ? "its hardening rule is not tested: the tests have no unloading"
            : c->is_stopped   ? "undecided: stopped before all laws were fitted to all specimens"
-           : c->is_followed  ? "it follows loading and unloading"
-                             : "no law follows loading and unloading");
+           : c->is_followed  ? "fits loading and unloading"
+                             : "no law fits loading and unloading");
     if (c->has_unloading && !c->is_stopped && !c->is_followed)
-        printf("it misses both ways by %.2f %% of F_max, expected at most %g %%\n",
+        printf("its misfit over loading and unloading is %.2f %% of F_max, expected at most %g "
+               "%%\n",
                c->ranked[0].misfit / WB_PERCENT, WB_CYCLE_LARGEST_FOLLOWED / WB_PERCENT);
     if (!c->has_unloading)
-        printf("loading alone does not tell EI from early yield: EI may be 25 %% low\n");
-    printf("%-28s %8s %8s %8s %12s %14s\n", "candidate", "misfit %", "numbers", "weight",
+        printf("loading alone cannot separate EI from early yield: EI may be 25 %% low\n");
+    printf("%-28s %8s %10s %8s %12s %14s\n", "candidate", "misfit %", "parameters", "weight",
            "EI N mm2", "residual ratio");
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &c->ranked[i];
         char rigidity[WB_PRINT_NUMBER], residual_curvature_ratio[WB_PRINT_NUMBER];
-        printf("%-28s %8.3f %8d %8.3f %12s %14s%s%s\n", wb_candidate_name(rank->candidate),
+        printf("%-28s %8.3f %10d %8.3f %12s %14s%s%s\n", wb_candidate_name(rank->candidate),
                rank->misfit / WB_PERCENT, rank->n_free, rank->weight,
                wb_print_number(rank->rigidity.value / WB_NMM2, rigidity),
                c->has_unloading
@@ -81,13 +83,13 @@ static void print_rule(const struct wb_cycle_calibration *c)
         printf("%s: %s\n", wb_candidate_name(c->ranked[i].candidate), wb_text_string(&numbers));
         wb_text_release(&numbers);
     }
-    printf(
-        "weight: by the misfit on %.0f residuals that count, as neighbours miss alike, and a law's "
-        "free numbers; repeat noise of the readings %.3f %% of F_max\n",
-        c->n_independent, c->repeat_noise / WB_PERCENT);
+    printf("weight: from the misfit over %.0f effective residuals (neighbouring residuals are "
+           "correlated) and the number of free parameters; repeatability of the readings %.3f %% "
+           "of F_max\n",
+           c->n_independent, c->repeat_noise / WB_PERCENT);
 }
 
-/* What would tell K and n. */
+/* How to make K and n identifiable. */
 static void print_remedy(const struct wb_cycle_calibration *c)
 {
     const double length = c->members[0].data.info.length / WB_MM;
@@ -98,7 +100,7 @@ static void print_remedy(const struct wb_cycle_calibration *c)
     else if (!c->has_unloading)
         printf("; record the unloading");
     else
-        printf("; a larger deflection tells more");
+        printf("; use a larger deflection");
     printf("\n");
 }
 
@@ -114,14 +116,14 @@ static void print_ludwik_number(const struct wb_cycle_calibration *c, const char
     print_remedy(c);
 }
 
-/* Numbers that hang together mean little one by one. */
+/* Strongly correlated parameters mean little one by one. */
 static void print_correlation(const struct wb_cycle_calibration *c)
 {
     const struct wb_cycle_fit *const fit = &c->members[0].answers[c->chosen].fit;
     char a[24], b[24];
     int one, other;
     if (wb_cycle_fit_strongest(fit, &one, &other))
-        printf("  strongest correlation of these numbers: %.2f, of %s and %s (specimen %d)\n",
+        printf("  strongest correlation of these parameters: %.2f, of %s and %s (specimen %d)\n",
                fit->correlation[one][other], wb_cycle_fit_number(fit, one, a),
                wb_cycle_fit_number(fit, other, b), c->members[0].sample);
 }
@@ -170,9 +172,10 @@ static void print_law(const struct wb_cycle_calibration *c)
     print_correlation(c);
     if (wb_law_is_plain(law))
         return;
-    printf("Ludwik equivalent, isotropic, of the first loading (misfit %.2f %% of M; its unloading "
-           "is not the wire's)\n",
-           c->ludwik_misfit / WB_PERCENT);
+    printf(
+        "Ludwik equivalent, isotropic, of the first loading only (misfit %.2f %% of M; not valid "
+        "for unloading)\n",
+        c->ludwik_misfit / WB_PERCENT);
     printf("  E %s MPa,", wb_print_number(c->ludwik.youngs_modulus / WB_MPA, a));
     printf(" sigma_Y %s MPa,", wb_print_number(c->ludwik.yield_stress / WB_MPA, a));
     printf(" K %s MPa,", wb_print_number(c->ludwik.strength_coefficient / WB_MPA, a));
@@ -194,7 +197,7 @@ static void print_specimens(const struct wb_cycle_calibration *c)
             left[WB_PRINT_NUMBER];
         printf("%-9d %6g %6.2f +- %4.2f %9.2f %9.2f %11s %9.3f %9s %14s %9d%s%s\n", member->sample,
                length / WB_MM, bow.tip / WB_MM, bow.deviation / WB_MM, bow.uneven / WB_MM,
-               /* Adding zero makes no number "-0.00". */
+               /* Adding zero avoids "-0.00". */
                round(100.0 * fit->level / WB_MM) / 100.0 + 0.0,
                wb_print_number(member->data.residual_deflection / WB_MM, left),
                fit->misfit / WB_PERCENT,
@@ -208,21 +211,20 @@ static void print_specimens(const struct wb_cycle_calibration *c)
     }
     printf("uneven: natural offset of the middle from that of an even curvature\n");
     if (c->has_unloading)
-        printf(
-            "residual mm: residual deflection as measured, where the force has come down to that "
-            "at zero deflection\nresidual ratio: residual curvature over the largest curvature\n");
+        printf("residual mm: measured deflection at which the force has returned to its value at "
+               "zero deflection\nresidual ratio: residual curvature over the largest curvature\n");
     if (c->specimens_for_5_percent > 0)
         printf("specimens needed for EI within +-5 %%: %d\n", c->specimens_for_5_percent);
 }
 
-/* Of the numbers' standard uncertainties; in brackets what is in no interval. */
+/* Standard uncertainties; those in brackets are not part of the intervals. */
 static void print_budget(const struct wb_cycle_calibration *c)
 {
     struct wb_budget_column columns[WB_BUDGET_COLUMNS];
     char name[WB_BUDGET_TEXT], value[WB_PRINT_NUMBER];
     const int n = wb_cycle_budget_columns(c, columns);
     bool is_stated = true;
-    printf("standard uncertainty, %%, and what makes it up:\n");
+    printf("standard uncertainty, %%, and its contributions:\n");
     for (int k = 0; k < n; k++)
         printf("  %c: %s\n", 'a' + k, columns[k].name);
     printf("%-42s", "");
@@ -279,14 +281,6 @@ static void print_all(const struct wb_calibrate_cycle *cycle)
     wb_text_release(&settings);
 }
 
-static int count_doubts(const struct wb_cycle_remarks *remarks)
-{
-    int n = 0;
-    for (int i = 0; i < remarks->n; i++)
-        n += remarks->items[i].severity == WB_CHECK_DOUBT;
-    return n;
-}
-
 static void append_found(struct wb_text *text, const struct wb_cycle_calibration *c)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
@@ -300,7 +294,7 @@ static void append_found(struct wb_text *text, const struct wb_cycle_calibration
         c->has_unloading ? WB_QUANTITY_UNLOADING_STIFFNESS : WB_QUANTITY_SECANT_STIFFNESS;
     const struct wb_cycle_stiffness *const of = c->has_unloading ? &c->unloading : &c->secant;
     int at = wb_cycle_stiffness_near_one(of);
-    if (of->curvature[at] < of->resolved) /* the law's alone */
+    if (of->curvature[at] < of->resolved) /* determined by the law alone */
         at = wb_cycle_stiffness_resolved(of);
     wb_finding_append_quantity(text, &properties, stiffness, at);
     if (c->has_unloading) {
@@ -310,47 +304,40 @@ static void append_found(struct wb_text *text, const struct wb_cycle_calibration
     wb_text_append(text, "; intervals of 95 %%");
 }
 
-/* Without their scatter the intervals are those of these specimens, not of the product. */
-static bool has_scatter(const struct wb_cycle_calibration *c)
-{
-    return isfinite(c->rigidity.deviation);
-}
-
-static bool is_enough(const struct wb_calibrate_cycle *cycle)
-{
-    char worst[WB_BUDGET_TEXT];
-    double known;
-    const double at_most = cycle->settings.at_most;
-    return !(at_most > 0.0) ||
-           wb_cycle_budget_is_within(&cycle->calibration, at_most, worst, &known);
-}
-
 static void append_trust(struct wb_text *text, const struct wb_calibrate_cycle *cycle)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    const int doubts = count_doubts(&cycle->remarks);
+    const struct wb_cycle_verdict *const v = &cycle->verdict;
     struct wb_properties properties;
     wb_properties_from_cycle(c, &properties);
-    if (c->is_stopped) {
+    switch (v->first) {
+    case WB_CYCLE_STOPPED:
         wb_text_append(text, "no: stopped before all laws were fitted to all specimens");
-    } else if (!wb_cycle_calibrate_is_converged(c)) {
+        break;
+    case WB_CYCLE_NOT_CONVERGED:
         wb_text_append(text, "no: the fit of a specimen did not converge");
-    } else if (c->has_unloading && !c->is_followed) {
+        break;
+    case WB_CYCLE_NO_LAW_FITS:
         wb_text_append(text, "no: no law fits loading and unloading within %g %% of F_max",
                        WB_CYCLE_LARGEST_FOLLOWED / WB_PERCENT);
-    } else if (doubts > 0) {
-        wb_text_append(text, "not yet: %d doubt%s above", doubts, doubts == 1 ? "" : "s");
-    } else if (!is_enough(cycle)) {
-        wb_text_append(text, "no: the uncertainty exceeds %g %% (--at-most)",
-                       cycle->settings.at_most / WB_PERCENT);
-    } else if (!c->has_unloading) {
+        break;
+    case WB_CYCLE_DOUBTFUL:
+        wb_text_append(text, "not yet: %d doubt%s above", v->n_doubts, v->n_doubts == 1 ? "" : "s");
+        break;
+    case WB_CYCLE_UNCERTAIN:
+        wb_text_append(text, "no: the uncertainty of %s exceeds %g %% (--at-most)", v->worst,
+                       v->at_most / WB_PERCENT);
+        break;
+    case WB_CYCLE_LOADING_ONLY:
         wb_text_append(text, "for loading only: unloading was not recorded, and the hardening rule "
                              "is not tested");
-    } else {
+        break;
+    default:
+        /* Without the scatter the intervals are those of these specimens, not of the product. */
         wb_text_append(text, "%s: %s, fits loading and unloading within %.2g %% of F_max",
-                       has_scatter(c) ? "yes" : "for this specimen", wb_candidate_name(c->chosen),
-                       properties.rms / WB_PERCENT);
-        if (!has_scatter(c))
+                       v->has[WB_CYCLE_SCATTER_UNKNOWN] ? "for this specimen" : "yes",
+                       wb_candidate_name(c->chosen), properties.rms / WB_PERCENT);
+        if (v->has[WB_CYCLE_SCATTER_UNKNOWN])
             wb_text_append(text, "; one specimen cannot show how specimens differ");
     }
 }
@@ -358,30 +345,26 @@ static void append_trust(struct wb_text *text, const struct wb_calibrate_cycle *
 static void append_next(struct wb_text *text, const struct wb_calibrate_cycle *cycle,
                         const char *output)
 {
+    static const char *const next[WB_CYCLE_RESTRICTIONS] = {
+        [WB_CYCLE_STOPPED] = "run the same command again and let it finish",
+        [WB_CYCLE_NO_LAW_FITS] = "look at the curves (wirebench quicklook): a strand that slips, a "
+                                 "load cell that creeps; otherwise use the ranges",
+        [WB_CYCLE_DOUBTFUL] = "resolve the doubts above, then calibrate again",
+        [WB_CYCLE_UNCERTAIN] = "reduce the largest contributions of the budget above",
+        [WB_CYCLE_LOADING_ONLY] = "record tests with unloading, then calibrate again",
+        [WB_CYCLE_SCATTER_UNKNOWN] = "record at least two more specimens, then calibrate all "
+                                     "together",
+    };
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    if (c->is_stopped)
-        wb_text_append(text, "run the same command again and let it finish");
-    else if (!wb_cycle_calibrate_is_converged(c))
+    const int first = cycle->verdict.first;
+    if (first == WB_CYCLE_NOT_CONVERGED) {
         wb_text_append(text, "run the same command again with a larger --fit-iterations (now %d)",
                        cycle->settings.fit.max_iterations);
-    else if (c->has_unloading && !c->is_followed)
-        wb_text_append(text,
-                       "look at the curves (wirebench quicklook): a strand that slips, a cell "
-                       "that creeps; otherwise use the ranges");
-    else if (count_doubts(&cycle->remarks) > 0)
-        wb_text_append(text, "resolve the doubts above, then calibrate again");
-    else if (!is_enough(cycle))
-        wb_text_append(text, "reduce the largest contributions of the budget above");
-    else if (!c->has_unloading)
-        wb_text_append(text, "record tests with unloading, then calibrate again");
-    else if (!has_scatter(c))
-        wb_text_append(text, "record at least two more specimens, then calibrate all together");
-    else if (!output)
-        wb_text_append(text, "run the same command with -o %s.yaml to keep the properties",
-                       c->members[0].data.info.wire);
-    else
-        wb_text_append(text, "wirebench validate %s DATASET..., with tests of another length",
-                       output);
+    } else if (first < WB_CYCLE_RESTRICTIONS) {
+        wb_text_append(text, "%s", next[first]);
+    } else {
+        wb_finding_append_validate(text, output, c->members[0].data.info.wire, "length");
+    }
 }
 
 void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle, const char *output,
@@ -415,6 +398,7 @@ enum wb_status wb_calibrate_cycle_draw(const struct wb_calibrate_cycle *cycle, c
     wb_figure_destroy(figure);
     return status;
 }
+
 static void put_settings(struct wb_json *object, const struct wb_cycle_calibrate_settings *settings)
 {
     for (int t = 0; t < WB_CYCLE_CALIBRATE_TABLES; t++) {

@@ -1,14 +1,14 @@
-/* What `wirebench calibrate` prints of a calibration on whole cycles. */
+/* Output of `wirebench calibrate` for a calibration on whole cycles. */
 #ifndef WB_CLI_CALIBRATE_CYCLE_H
 #define WB_CLI_CALIBRATE_CYCLE_H
 
-#include "analysis/calibration/cycle/cycle_calibrate.h"
-#include "analysis/calibration/cycle/cycle_check.h"
+#include "analysis/calibration/cycle/cycle_verdict.h"
 
 struct wb_calibrate_cycle {
     struct wb_cycle_calibrate_settings settings;
     struct wb_cycle_calibration calibration;
-    struct wb_cycle_remarks remarks; /* on the data and what was made of them */
+    struct wb_cycle_remarks remarks; /* on the data and the fits */
+    struct wb_cycle_verdict verdict; /* set by the caller before it prints */
 };
 
 /* `output`: the properties file that was written, or NULL; `figure` beside it, or NULL. */

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/paper/calibrate.h"
 #include "analysis/calibration/properties/method.h"
 #include "analysis/calibration/properties/properties.h"
@@ -31,8 +30,8 @@ struct options {
     struct wb_command_common common;
     struct wb_datasets datasets;
     enum wb_method method;
-    bool names_method;                       /* it was given */
-    const struct wb_setting *of[WB_METHODS]; /* the first option of either method that was given */
+    bool names_method;                       /* --method was given */
+    const struct wb_setting *of[WB_METHODS]; /* the first option of each method that was given */
     struct wb_calibrate_settings settings;   /* of the paper's method */
     struct wb_calibrate_cycle cycle;
     struct wb_three_point_calibrate_settings three_point;
@@ -40,7 +39,7 @@ struct options {
 
 enum {
     KEY_METHOD = WB_KEY_OWN,
-    /* In the help only: cli/calibrate_tensile.c and its siblings take them. */
+    /* Only for --help: cli/calibrate_tensile.c and its siblings parse them. */
     KEY_TENSILE,
     KEY_CONSTITUENTS,
     KEY_COMPLIANCE
@@ -48,8 +47,8 @@ enum {
 
 static const struct argp_option other_options[] = {
     {"method", KEY_METHOD, "METHOD", 0,
-     "cycle: a law and its hardening rule on loading and unloading; paper: E, sigma_Y, K and n on "
-     "the averaged loading (cycle; tests with a follower force: paper)",
+     "cycle: a law and its hardening rule, fitted to loading and unloading; paper: E, sigma_Y, K "
+     "and n, fitted to the averaged loading (cycle; tests with a follower force: paper)",
      0},
     {"tensile", KEY_TENSILE, NULL, 0,
      "Tensile tests of a conductor, jacket or tape; see `wirebench calibrate --tensile --help`", 0},
@@ -58,14 +57,15 @@ static const struct argp_option other_options[] = {
      "--constituents --help`",
      0},
     {"compliance", KEY_COMPLIANCE, NULL, 0,
-     "How much a machine gives way, from a stiff bar; see `wirebench calibrate --compliance "
-     "--help`",
+     "The compliance of a testing machine, from tests of a stiff bar; see `wirebench calibrate "
+     "--compliance --help`",
      0},
     {"output", 'o', "PROPERTIES.yaml", 0,
-     "Write the properties here, and measured and computed tension beside them (PROPERTIES.svg)",
+     "Write the properties to this file and, for whole cycles, a figure of measured and computed "
+     "tension to PROPERTIES.svg",
      0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties and the figure", 0},
-    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Of whole cycles: draw no figure", 0},
+    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "For whole cycles: draw no figure", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -125,16 +125,15 @@ static const struct argp argp = {
     .options = other_options,
     .parser = parse,
     .args_doc = "DATASET...",
-    .doc = "Calibrates a law of bending on datasets of one wire: flexural rigidity, moments, "
-           "residual curvature ratio and the hardening rule from the first loading and unloading "
-           "of each "
-           "specimen. With --method paper: E by eq. 10, the yield stress by eq. 11, K and n by "
-           "Nelder-Mead on the averaged first loading, with the beam under the test's own "
-           "loading.\v"
-           "Misfits and errors are over F_max, the largest force, or over "
-           "the largest deflection of tests with a follower force. Exit code 3: the data do not "
-           "support the hardening rule, or a search did not come to its end; the properties are "
-           "written.",
+    .doc = "Calibrates a bending law from the datasets of one wire: flexural rigidity, moments, "
+           "residual curvature ratio and hardening rule, from the first loading and unloading of "
+           "each specimen. With --method paper: E by eq. 10, the yield stress by eq. 11, K and n "
+           "by Nelder-Mead on the averaged first loading, with the beam under the load of the "
+           "test.\v"
+           "Misfits and errors are relative to F_max, the largest force, or, for tests with a "
+           "follower force, to the largest deflection. Exit code 3: no law fits loading and "
+           "unloading, a quantity is less certain than --at-most requires, a search did not "
+           "converge, or Ctrl-C stopped it; the properties are written.",
 };
 
 static bool report_beam_runs(void *context, int evaluation, double error, double size)
@@ -259,13 +258,13 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     const int n_remarks = wb_calibrate_remarks(r, remarks);
     for (int i = 0; i < n_remarks; i++)
         printf("note: %s\n", remarks[i]);
-    printf("first guess K0 = %.5g MPa, n0 = %.4g; %d beam runs, %d not converged; ended: %s\n",
+    printf("initial guess K0 = %.5g MPa, n0 = %.4g; %d beam runs, %d not converged; end: %s\n",
            r->first_strength_coefficient / WB_MPA, r->first_hardening_exponent, r->evaluations,
            r->failed_evaluations, wb_calibrate_end_text(r->end));
     if (r->restarted && r->restart_moved == 0.0)
-        printf("the restart from the optimum did not move it\n");
+        printf("the restart from the optimum found the same optimum\n");
     else if (r->restarted)
-        printf("the restart from the optimum moved it by %.2g\n", r->restart_moved);
+        printf("the restart moved the optimum by %.2g\n", r->restart_moved);
     printf("RMS %.3g, largest error %.3g ", r->rms, r->max_error);
     if (r->info.is_follower)
         printf("(of the deflection, over the largest measured, %.4g mm)\n",
@@ -275,8 +274,56 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     if (r->n_samples == 1)
         printf("one sample: no uncertainty\n");
     else
-        printf("scatter between samples %.3g, of it not due to their natural shapes %.3g\n",
+        printf("scatter between samples %.3g, of which %.3g is not due to their natural shapes\n",
                r->scatter_rms, r->residual_scatter_rms);
+}
+
+static void append_number(struct wb_text *text, const char *name, double value, double deviation,
+                          const char *unit)
+{
+    char a[WB_PRINT_NUMBER];
+    wb_text_append(text, "%s %s", name, wb_print_number(value, a));
+    if (isfinite(deviation))
+        wb_text_append(text, " +- %.*f", wb_print_decimals(deviation, 2), deviation);
+    wb_text_append(text, "%s%s", unit[0] ? " " : "", unit);
+}
+
+static void print_paper_finding(const struct options *o, const struct wb_calibrate_result *r)
+{
+    struct wb_finding finding = {.figure = NULL};
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    const int n_remarks = wb_calibrate_remarks(r, remarks);
+    const bool is_complete = wb_calibrate_is_complete(r->end);
+    char strength[WB_PRINT_NUMBER];
+    wb_text_append(&finding.found, "%s (%s, %d specimen%s): ", r->info.wire,
+                   wb_finding_source(&r->info), r->n_samples, r->n_samples == 1 ? "" : "s");
+    append_number(&finding.found, "E", r->material.youngs_modulus / WB_MPA,
+                  r->deviation[0] / WB_MPA, "MPa");
+    append_number(&finding.found, "; sigma_Y", r->material.yield_stress / WB_MPA,
+                  r->deviation[1] / WB_MPA, "MPa");
+    wb_text_append(&finding.found, "; K %s MPa; ",
+                   wb_print_number(r->material.strength_coefficient / WB_MPA, strength));
+    append_number(&finding.found, "n", r->material.hardening_exponent, r->deviation[3], "");
+    if (!is_complete)
+        wb_text_append(&finding.trust, "no: %s", wb_calibrate_end_text(r->end));
+    else if (n_remarks > 0)
+        wb_text_append(&finding.trust, "in part: read the %d note%s above", n_remarks,
+                       n_remarks == 1 ? "" : "s");
+    else
+        wb_text_append(&finding.trust,
+                       "for loading only: fits it within %.2g %% of %s (RMS); this method does not "
+                       "use the unloading",
+                       r->rms / WB_PERCENT,
+                       r->info.is_follower ? "the largest deflection" : "F_max");
+    if (is_complete && r->n_samples == 1)
+        wb_text_append(&finding.trust, "; one specimen cannot show how specimens differ");
+    if (is_complete)
+        wb_finding_append_validate(&finding.next, o->common.output, r->info.wire, "length");
+    else
+        wb_text_append(&finding.next,
+                       "run the same command again and let it finish; where the iterations ran "
+                       "out, with a larger --max-iterations");
+    wb_finding_print(&finding);
 }
 
 static enum wb_status calibrate_by_paper(struct options *o, struct wb_calibrate_result *result)
@@ -305,10 +352,12 @@ static int deliver_paper(const struct options *o, const struct wb_calibrate_resu
             return code;
     } else {
         print_text(o, result);
+        print_paper_finding(o, result);
     }
     const bool complete = wb_calibrate_is_complete(result->end);
     if (!complete)
-        wb_warn("%s: these are the best properties so far", wb_calibrate_end_text(result->end));
+        wb_warn("%s: the properties are the best that were found until then",
+                wb_calibrate_end_text(result->end));
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
@@ -344,12 +393,39 @@ static enum wb_status calibrate_on_cycles(struct options *o)
     return status;
 }
 
-/* Beside a YAML file only: not beside a device, and not in place of the properties. */
+/* Only beside a YAML file: /dev/stdout has no place beside it, and an output that ends in .svg
+ * would be overwritten by its figure. */
 static bool has_figure(const struct options *o)
 {
     return o->common.output && !o->common.no_figure &&
            (wb_command_ends_in(o->common.output, ".yaml") ||
             wb_command_ends_in(o->common.output, ".yml"));
+}
+
+static void warn_cycle(const struct options *o)
+{
+    const struct wb_cycle_calibration *const c = &o->cycle.calibration;
+    const struct wb_cycle_verdict *const v = &o->cycle.verdict;
+    const char *const wire = c->members[0].data.info.wire;
+    if (v->has[WB_CYCLE_NO_LAW_FITS])
+        wb_warn("wire '%s': no law fits loading and unloading within %g %% of F_max", wire,
+                WB_CYCLE_LARGEST_FOLLOWED / WB_PERCENT);
+    if (v->has[WB_CYCLE_UNCERTAIN] && isfinite(v->known))
+        wb_warn("wire '%s': the expanded uncertainty (95 %%) of %s is %.3g %%, expected at most "
+                "%g %% (--at-most): the budget shows the largest contributions",
+                wire, v->worst, v->known / WB_PERCENT, v->at_most / WB_PERCENT);
+    else if (v->has[WB_CYCLE_UNCERTAIN])
+        wb_warn("wire '%s': %s is unknown, so that --at-most %g cannot be met: calibrate several "
+                "specimens",
+                wire, v->worst, v->at_most / WB_PERCENT);
+    if (v->has[WB_CYCLE_NOT_CONVERGED])
+        wb_warn("wire '%s': the fit of a specimen did not converge within %d iterations "
+                "(--fit-iterations)",
+                wire, o->cycle.settings.fit.max_iterations);
+    if (v->has[WB_CYCLE_STOPPED])
+        wb_warn("stopped: %d of %d specimens are fitted, not with all laws; the properties are "
+                "preliminary and the hardening rule is undecided",
+                c->n_members, o->common.n);
 }
 
 static int deliver_cycle(const struct options *o)
@@ -375,63 +451,48 @@ static int deliver_cycle(const struct options *o)
     } else {
         wb_calibrate_cycle_print(&o->cycle, o->common.output, figure);
     }
-    const bool is_refuted = c->has_unloading && !c->is_followed && !c->is_stopped;
-    const bool is_converged = wb_cycle_calibrate_is_converged(c);
-    if (is_refuted)
-        wb_warn("wire '%s': no law follows loading and unloading within %g %% of F_max",
-                c->members[0].data.info.wire, 100.0 * WB_CYCLE_LARGEST_FOLLOWED);
-    char worst[WB_BUDGET_TEXT];
-    double known = 0.0;
-    const double at_most = o->cycle.settings.at_most;
-    const bool is_enough = !(at_most > 0.0) || wb_cycle_budget_is_within(c, at_most, worst, &known);
-    if (!is_enough)
-        wb_warn("wire '%s': %s is known within %.3g %% in 95 of 100 cases, expected at most %g %% "
-                "(--at-most): the budget says what would help",
-                c->members[0].data.info.wire, worst, 100.0 * known, 100.0 * at_most);
-    if (!is_converged)
-        wb_warn("wire '%s': the iterations ran out for a specimen (--fit-iterations)",
-                c->members[0].data.info.wire);
-    if (c->is_stopped)
-        wb_warn("stopped with %d of %d specimens fitted, not with all laws: these are the "
-                "properties so far, the hardening rule is undecided",
-                c->n_members, o->common.n);
-    return is_refuted || !is_enough || !is_converged || c->is_stopped ? WB_EXIT_INCOMPLETE
-                                                                      : WB_EXIT_OK;
+    warn_cycle(o);
+    return wb_cycle_verdict_is_complete(&o->cycle.verdict) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
 static int run_cycle(struct options *o)
 {
     const enum wb_status status = calibrate_on_cycles(o);
-    const int code = status == WB_OK ? deliver_cycle(o) : wb_command_exit(status);
+    int code = wb_command_exit(status);
+    if (status == WB_OK) {
+        o->cycle.verdict =
+            wb_cycle_verdict(&o->cycle.calibration, &o->cycle.remarks, &o->cycle.settings);
+        code = deliver_cycle(o);
+    }
     wb_cycle_calibrate_release(&o->cycle.calibration);
     return code;
 }
 
-/* --- which of them --- */
+/* --- the method --- */
 
 static enum wb_status choose_method(struct options *o)
 {
     enum wb_method chosen;
     WB_TRY(wb_method_choose(&chosen, o->datasets.pointers, o->common.inputs, o->datasets.n, NULL));
     if (chosen == WB_METHOD_PAPER && !o->names_method)
-        wb_info("a follower force: calibrated by the paper's method");
+        wb_info("tests with a follower force: --method paper is used");
     if (chosen == WB_METHOD_THREE_POINT && o->names_method)
-        wb_info("three-point bending: --method is for tests of cantilevers");
+        wb_info("three-point bending: --method is ignored, it applies to tests of cantilevers");
     if (chosen == WB_METHOD_THREE_POINT || !o->names_method)
         o->method = chosen;
     return WB_OK;
 }
 
-/* Options of the other method would do nothing. */
+/* Options of another method would be ignored silently. */
 static bool has_foreign_option(const struct options *o)
 {
     for (int m = 0; m < WB_METHODS; m++) {
         if (!o->of[m] || (enum wb_method)m == o->method)
             continue;
         if (m == WB_METHOD_THREE_POINT)
-            wb_error("--%s is for datasets of three-point bending", o->of[m]->option);
+            wb_error("--%s applies only to datasets of three-point bending", o->of[m]->option);
         else
-            wb_error("--%s is for --method %s: these datasets are calibrated by %s%s",
+            wb_error("--%s applies only to --method %s: these datasets are calibrated by %s%s",
                      o->of[m]->option, wb_method_name(m),
                      o->method == WB_METHOD_THREE_POINT ? "" : "--method ",
                      wb_method_name(o->method));
@@ -440,13 +501,13 @@ static bool has_foreign_option(const struct options *o)
     return false;
 }
 
-/* A pooled deviation without its degrees of freedom would do nothing. */
+/* A pooled deviation without its degrees of freedom would be ignored silently. */
 static bool has_half_a_pool(const struct options *o)
 {
     const struct wb_cycle_calibrate_settings *const s = &o->cycle.settings;
     const bool has_half = (s->pooled_deviation > 0.0) != (s->pooled_degrees > 0);
     if (has_half)
-        wb_error("--pooled-deviation and --pooled-degrees go together");
+        wb_error("--pooled-deviation and --pooled-degrees must be given together");
     return has_half;
 }
 
@@ -458,11 +519,10 @@ static enum wb_status begin(struct options *o)
                             WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
     WB_TRY(choose_method(o));
     char figure[WB_PATH];
-    if (o->method == WB_METHOD_CYCLE && has_figure(o) && !o->common.force &&
-        wb_file_exists(wb_finding_figure_path(figure, o->common.output)))
-        return wb_fail(WB_ERR_EXISTS,
-                       "'%s' exists; --force overwrites it, --no-figure draws no figure", figure);
-    return WB_OK;
+    if (o->method != WB_METHOD_CYCLE || !has_figure(o))
+        return WB_OK;
+    return wb_finding_check_figure(wb_finding_figure_path(figure, o->common.output),
+                                   o->common.force);
 }
 
 static int run(struct options *o)
@@ -478,7 +538,7 @@ static int run(struct options *o)
     return o->method == WB_METHOD_PAPER ? run_paper(o) : run_cycle(o);
 }
 
-/* Whether an argument before "--" is this one: other tests have options of their own. */
+/* Whether this word stands before "--": it selects a kind of test with options of its own. */
 static bool has_argument(int argc, char **argv, const char *wanted)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {

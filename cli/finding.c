@@ -8,11 +8,13 @@
 
 #include "cli/print.h"
 
+#define WB_LOG_DOMAIN "figure"
+
 enum {
     INDENT = 8 /* columns of the labels */
 };
 
-/* Columns of the terminal; 0: stdout is none, and lines are not wrapped. */
+/* Columns of the terminal; 0: stdout is not a terminal, and lines are not wrapped. */
 static int width_of_terminal(void)
 {
     struct winsize window = {0};
@@ -21,42 +23,47 @@ static int width_of_terminal(void)
     return window.ws_col > 2 * INDENT ? window.ws_col : 0;
 }
 
-static void print_line(const char *label, const char *text, int width)
+static void write_line(FILE *out, const char *label, const char *text, int width)
 {
     int column = INDENT;
     if (!text[0])
         return;
-    printf("%-*s", INDENT, label);
+    fprintf(out, "%-*s", INDENT, label);
     while (*text) {
         const int word = (int)strcspn(text, " ");
         if (width > 0 && column + word >= width && column > INDENT) {
-            printf("\n%*s", INDENT, "");
+            fprintf(out, "\n%*s", INDENT, "");
             column = INDENT;
         }
-        printf("%.*s", word, text);
+        fprintf(out, "%.*s", word, text);
         column += word;
         text += word;
         if (*text == ' ') {
-            printf(" ");
+            fprintf(out, " ");
             column++;
             text++;
         }
     }
-    printf("\n");
+    fprintf(out, "\n");
+}
+
+void wb_finding_write(FILE *out, struct wb_finding *finding)
+{
+    const int width = width_of_terminal();
+    fprintf(out, "\n");
+    write_line(out, "found", wb_text_string(&finding->found), width);
+    write_line(out, "trust", wb_text_string(&finding->trust), width);
+    if (finding->figure)
+        write_line(out, "figure", finding->figure, width);
+    write_line(out, "next", wb_text_string(&finding->next), width);
+    wb_text_release(&finding->found);
+    wb_text_release(&finding->trust);
+    wb_text_release(&finding->next);
 }
 
 void wb_finding_print(struct wb_finding *finding)
 {
-    const int width = width_of_terminal();
-    printf("\n");
-    print_line("found", wb_text_string(&finding->found), width);
-    print_line("trust", wb_text_string(&finding->trust), width);
-    if (finding->figure)
-        print_line("figure", finding->figure, width);
-    print_line("next", wb_text_string(&finding->next), width);
-    wb_text_release(&finding->found);
-    wb_text_release(&finding->trust);
-    wb_text_release(&finding->next);
+    wb_finding_write(stdout, finding);
 }
 
 void wb_finding_append_quantity(struct wb_text *text, const struct wb_properties *properties,
@@ -86,6 +93,22 @@ const char *wb_finding_source(const struct wb_test_info *info)
     return info->is_virtual ? "virtual rig" : info->is_simulation ? "simulation" : "measured";
 }
 
+void wb_finding_append_validate(struct wb_text *text, const char *output, const char *wire,
+                                const char *another)
+{
+    char file[WB_PATH];
+    if (output) {
+        wb_text_append(text, "wirebench validate ");
+        wb_text_append_quoted(text, output);
+        wb_text_append(text, " DATASET..., with tests of another %s", another);
+        return;
+    }
+    snprintf(file, sizeof file, "%s.yaml", wire);
+    wb_text_append(text, "run the same command with -o ");
+    wb_text_append_quoted(text, file);
+    wb_text_append(text, " to keep the properties");
+}
+
 const char *wb_finding_figure_path(char path[WB_PATH], const char *output)
 {
     const char *const dot = strrchr(wb_file_name(output), '.');
@@ -93,4 +116,21 @@ const char *wb_finding_figure_path(char path[WB_PATH], const char *output)
         (int)(dot && dot > wb_file_name(output) ? (size_t)(dot - output) : strlen(output));
     snprintf(path, WB_PATH, "%.*s.svg", stem < WB_PATH - 8 ? stem : WB_PATH - 8, output);
     return path;
+}
+
+const char *wb_finding_folder_figure_path(char path[WB_PATH], const char *folder)
+{
+    size_t n = strlen(folder);
+    while (n > 1 && folder[n - 1] == '/')
+        n--;
+    snprintf(path, WB_PATH, "%.*s.svg", n < WB_PATH - 8 ? (int)n : WB_PATH - 8, folder);
+    return path;
+}
+
+enum wb_status wb_finding_check_figure(const char *path, bool force)
+{
+    if (!force && wb_file_exists(path))
+        return wb_fail(WB_ERR_EXISTS,
+                       "'%s' exists; --force overwrites it, --no-figure draws no figure", path);
+    return WB_OK;
 }

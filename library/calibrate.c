@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/cycle/cycle_budget.h"
-#include "analysis/calibration/cycle/cycle_check.h"
+#include "analysis/calibration/cycle/cycle_verdict.h"
 #include "analysis/calibration/properties/method.h"
 #include "analysis/dataset/exclusion.h"
 #include "base/memory.h"
@@ -123,29 +122,28 @@ static enum wb_status run_paper(struct job *job, struct wb_text *text)
 static enum wb_status run_cycle(struct job *job, struct wb_text *text)
 {
     struct wb_cycle_calibration calibration = {0};
-    char worst[WB_BUDGET_TEXT];
-    double known;
     struct wb_cycle_remarks *const remarks = wb_memory_new(1, sizeof *remarks);
     const enum wb_status status =
         wb_cycle_check_calibrate(&calibration, remarks, job->datasets, job->n, &job->cycle, NULL);
     for (int i = 0; i < remarks->n; i++)
         wb_call_warn(remarks->items[i].text);
-    free(remarks);
     if (status == WB_OK) {
+        const struct wb_cycle_verdict verdict =
+            wb_cycle_verdict(&calibration, remarks, &job->cycle);
         wb_properties_format_cycle(text, &calibration, &job->cycle, job->origins, job->n);
-        if (calibration.is_stopped)
+        if (verdict.has[WB_CYCLE_STOPPED])
             set_missing(job,
                         "stopped before all laws were fitted: the hardening rule is undecided");
-        else if (!wb_cycle_calibrate_is_converged(&calibration))
+        else if (verdict.has[WB_CYCLE_NOT_CONVERGED])
             set_missing(job,
                         "the iterations were exhausted for a specimen (option fit-iterations)");
-        else if (calibration.has_unloading && !calibration.is_followed)
+        else if (verdict.has[WB_CYCLE_NO_LAW_FITS])
             set_missing(job, "no law fits loading and unloading (hardening_rule in the properties "
                              "has the misfits)");
-        else if (job->cycle.at_most > 0.0 &&
-                 !wb_cycle_budget_is_within(&calibration, job->cycle.at_most, worst, &known))
+        else if (verdict.has[WB_CYCLE_UNCERTAIN])
             set_missing(job, "the uncertainty of a value exceeds the limit (option at-most)");
     }
+    free(remarks);
     wb_cycle_calibrate_release(&calibration);
     return status;
 }
