@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/file_kind.h"
 #include "cli/finding.h"
 #include "cli/settings.h"
 
@@ -26,16 +27,15 @@ enum {
 };
 
 static const struct argp_option other_options[] = {
-    {"output", 'o', "DATASET", 0, "Folder to write; of several recordings, a folder in it for each",
-     0},
+    {"output", 'o', "DATASET", 0,
+     "Folder to write; for several recordings, each gets a folder in it", 0},
     {"rig", KEY_RIG, "FILE", 0,
-     "Rig file in place of the recorded one, where that was wrong; what differs is written into "
-     "the "
+     "Rig file that replaces a wrong one in the recording; the differences are written into the "
      "dataset",
      0},
-    {"specimen", KEY_SPECIMEN, "FILE", 0, "Specimen file in place of the recorded one, likewise",
-     0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+    {"specimen", KEY_SPECIMEN, "FILE", 0,
+     "Specimen file that replaces a wrong one in the recording, likewise", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -59,22 +59,22 @@ static const struct argp argp = {
     .options = other_options,
     .parser = parse,
     .args_doc = "REC.wbr...",
-    .doc = "Turns recordings (.wbr or .wbr.zst) into datasets: clocks mapped, markers identified, "
-           "tare, drift, filter delay and marker offset corrected, the clamp at the origin, cycles "
-           "and phases cut, the natural shape fitted. Every correction and its size is in "
-           "dataset.json.\v"
-           "One recording becomes the dataset DATASET; of several, each becomes DATASET/NAME, NAME "
-           "being its file name without ending. Exit code 3: a dataset is usable but incomplete "
-           "(gaps, damaged or lost data, a test that was cut short).",
+    .doc = "Converts recordings (.wbr or .wbr.zst) into datasets: maps clocks, identifies markers, "
+           "corrects tare, drift, filter delay and marker offset, moves the clamp to the origin, "
+           "separates cycles and phases, and fits the natural shape. dataset.json lists every "
+           "correction with its size.\v"
+           "One recording becomes the dataset DATASET; each of several becomes DATASET/NAME, where "
+           "NAME is its file name without ending. Exit code 3: a dataset is usable but incomplete "
+           "(gaps, damaged or lost data, a test that ended early).",
 };
 
-/* One recording's dataset and the folder it is written to. */
+/* The dataset of one recording and the folder that it is written to. */
 struct result {
     char folder[WB_PATH];
     struct wb_dataset dataset;
 };
 
-/* File name without .wbr or .wbr.zst. */
+/* The file name without .wbr or .wbr.zst. */
 static void base_name(char name[WB_PATH], const char *path)
 {
     snprintf(name, WB_PATH, "%s", wb_file_name(path));
@@ -98,7 +98,8 @@ static enum wb_status choose_folder(const struct options *o, struct result *resu
     WB_TRY(wb_file_join(results[i].folder, o->common.output, name));
     for (size_t k = 0; k < i; k++) {
         if (strcmp(results[k].folder, results[i].folder) == 0)
-            return wb_fail(WB_ERR_ARGUMENT, "two recordings are named '%s': align them apart",
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "two recordings are named '%s': align them with separate commands",
                            name);
     }
     return WB_OK;
@@ -106,8 +107,10 @@ static enum wb_status choose_folder(const struct options *o, struct result *resu
 
 static enum wb_status run(const struct options *o, struct result *results, size_t *n_done)
 {
-    for (size_t i = 0; i < (size_t)o->common.n; i++)
+    for (size_t i = 0; i < (size_t)o->common.n; i++) {
+        WB_TRY(wb_file_kind_check(o->common.inputs[i], WB_FILE_BIT(WB_FILE_RECORDING)));
         WB_TRY(choose_folder(o, results, i));
+    }
     for (size_t i = 0; i < (size_t)o->common.n && !wb_interrupted(); i++) {
         struct result *const result = &results[i];
         WB_TRY(wb_align_run(&result->dataset, o->common.inputs[i], &o->settings, NULL));
@@ -153,11 +156,17 @@ static void print_finding(const struct options *o, const struct result *results,
                        n_incomplete > 0 ? "" : "in part: ", n_warnings, n_warnings == 1 ? "" : "s");
     if (n_left + n_incomplete + n_warnings == 0)
         wb_text_append(&finding.trust, "yes: complete, without warnings");
-    if (is_one_wire)
-        wb_text_append(&finding.next, "wirebench calibrate %s%s -o %s.yaml", o->common.output,
-                       o->common.n > 1 ? "/*" : "", info->wire);
-    else
-        wb_text_append(&finding.next, "wirebench calibrate the datasets of each wire by itself");
+    if (is_one_wire) {
+        char file[WB_PATH];
+        snprintf(file, sizeof file, "%s.yaml", info->wire);
+        wb_text_append(&finding.next, "wirebench calibrate ");
+        wb_text_append_quoted(&finding.next, o->common.output);
+        wb_text_append(&finding.next, "%s -o ", o->common.n > 1 ? "/*" : "");
+        wb_text_append_quoted(&finding.next, file);
+    } else {
+        wb_text_append(&finding.next,
+                       "wirebench calibrate, separately for the datasets of each wire");
+    }
     wb_finding_print(&finding);
 }
 

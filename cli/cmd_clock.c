@@ -1,8 +1,9 @@
-/* wirebench clock: how well the times of a recording are known. */
+/* wirebench clock: the uncertainty of the times in a recording. */
 #include <stdio.h>
 
 #include "analysis/clock_report.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
 
 #define WB_LOG_DOMAIN "clock"
 
@@ -15,12 +16,13 @@ static const struct argp argp = {
     .options = option_table,
     .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr",
-    .doc = "Tells how well the times of a recording (.wbr or .wbr.zst) are known: offset and drift "
-           "of the cameras' clock against the host's, scatter of the load cell's arrivals, the lag "
-           "of the force behind the markers, measured where the motion is reversed, and what that "
-           "lag does to the area of the loop.\v"
-           "Exit codes: 0 the lag is as the rig file has it; 1 the recording could not be aligned; "
-           "3 the lag is not identifiable, or another than the rig file's.",
+    .doc =
+        "Prints how accurate the times of a recording (.wbr or .wbr.zst) are: offset and drift of "
+        "the cameras' clock against the host's, scatter of the arrival times of the load cell, "
+        "the lag of the force behind the markers, measured at reversals of the motion, and the "
+        "effect of that lag on the area of the loop.\v"
+        "Exit codes: 0 the lag agrees with the rig file; 1 the recording could not be aligned; "
+        "2 wrong usage; 3 the lag is not identifiable or differs from the rig file.",
 };
 
 static int print(const struct wb_clock_report *report, const struct wb_command_common *options)
@@ -45,7 +47,8 @@ int wb_cmd_clock(int argc, char **argv)
     struct wb_command_common options = {.noun = "recording"};
     struct wb_clock_report report;
     wb_command_parse(&argp, argc, argv, &options);
-    if (wb_clock_report_make(&report, options.input, NULL) != WB_OK)
+    if (wb_file_kind_check(options.input, WB_FILE_BIT(WB_FILE_RECORDING)) != WB_OK ||
+        wb_clock_report_make(&report, options.input, NULL) != WB_OK)
         return WB_EXIT_FAILED;
     int code = print(&report, &options);
     if (code == WB_EXIT_OK && !(report.identifiable && report.agrees))

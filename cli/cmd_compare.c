@@ -1,4 +1,4 @@
-/* wirebench compare: two batches side by side, by the properties of each. */
+/* wirebench compare: two batches, by the properties of each. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -6,6 +6,7 @@
 #include "analysis/report/compared.h"
 #include "base/number.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
 #include "cli/finding.h"
 
 #define WB_LOG_DOMAIN "compare"
@@ -23,8 +24,10 @@ static const double least_within = 1e-4, most_within = 2.0;
 
 static const struct argp_option option_table[] = {
     {"within", KEY_WITHIN, "X", 0,
-     "Limit of the logarithm of the ratio, 0.0001 to 2: 0.1 is -9.5 to +10.5 % (required)", 0},
-    {"output", 'o', "FILE.pdf", 0, "Write one page there", 0},
+     "Equivalence limit of the logarithm of the ratio, 0.0001 to 2: 0.1 is -9.5 to +10.5 % "
+     "(required)",
+     0},
+    {"output", 'o', "FILE.pdf", 0, "Write one page (PDF)", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Replace the file", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
@@ -42,9 +45,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (o->common.n > WB_COMPARE_SIDES)
-            argp_error(state, "name two properties files, not %d", o->common.n);
+            argp_error(state, "expected two properties files, not %d", o->common.n);
         if (o->common.n == WB_COMPARE_SIDES && !(o->within > 0.0))
-            argp_error(state, "say what counts as equivalent: --within X");
+            argp_error(state, "equivalence limit missing: --within X");
         break;
     }
     return wb_command_parse_common(key, argument, state, &o->common);
@@ -54,13 +57,13 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "A.yaml B.yaml",
-    .doc = "Compares two batches (lots, suppliers, temperatures) by the properties that "
-           "`calibrate` wrote of each: EI, residual curvature ratio and moments at the same "
-           "curvatures. The "
-           "interval of 90 % of the logarithm of the ratio B over A (Welch) lies within -X to X: "
-           "equivalent; outside as a whole: different; else it cannot tell, and says how many more "
-           "specimens to test.\v"
-           "Exit code 3: it cannot tell. Exit code 4: a quantity is different.",
+    .doc = "Compares two batches (lots, suppliers, temperatures) by their properties files of "
+           "`calibrate`: EI, residual curvature ratio and moments at the same curvatures. A "
+           "quantity is equivalent where the 90 % interval (Welch) of the logarithm of the ratio "
+           "B/A lies within -X to X, different where all of it lies outside, and undecided "
+           "otherwise; then the number of further specimens is printed.\v"
+           "Exit codes: 0 all quantities are equivalent; 1 a file cannot be used; 2 wrong usage; 3 "
+           "undecided; 4 a quantity is different.",
 };
 
 /* The ratio that is farthest from 1. */
@@ -88,7 +91,9 @@ static void append_next(struct wb_text *text, const struct wb_compare *c)
     else if (c->more > 0)
         wb_text_append(text, "test %d more specimens of each batch and compare again", c->more);
     else
-        wb_text_append(text, "a ratio lies at the limit: choose another --within");
+        wb_text_append(text,
+                       "a ratio lies at the limit: more specimens do not help, choose another "
+                       "--within");
 }
 
 static void print(const struct options *o, const struct wb_compare *c)
@@ -120,8 +125,8 @@ static void print(const struct options *o, const struct wb_compare *c)
     wb_finding_print(&finding);
 }
 
-/* What a page calls a file: its name, and where both files have the same the folders up to one that
- * differs. */
+/* The name of a file on the page: its file name or, where both are equal, its path from the first
+ * folder that differs. */
 static const char *name_of(const char *path, const char *other)
 {
     const char *at = path + strlen(path), *end = other + strlen(other);
@@ -139,6 +144,7 @@ static enum wb_status run(const struct options *o, struct wb_compare *compare,
 {
     struct wb_compared page = {.compare = compare};
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
+        WB_TRY(wb_file_kind_check(o->common.inputs[i], WB_FILE_BIT(WB_FILE_PROPERTIES)));
         WB_TRY(wb_properties_read(o->common.inputs[i], &properties[i]));
         WB_TRY(wb_hash_file(o->common.inputs[i], page.sha256[i]));
         page.properties[i] = &properties[i];

@@ -1,4 +1,4 @@
-/* wirebench doctor: is the bench ready for a test? */
+/* wirebench doctor: checks whether the bench is ready for a test. */
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -6,6 +6,7 @@
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
 #include "cli/live_line.h"
 #include "cli/settings.h"
 #include "daq/doctor/doctor.h"
@@ -29,7 +30,7 @@ enum {
 };
 
 static const struct argp_option option_table[] = {
-    {"folder", KEY_FOLDER, "DIR", 0, "Where recordings will go (the current folder)", 0},
+    {"folder", KEY_FOLDER, "DIR", 0, "Folder for the recordings (the current folder)", 0},
     {"scan", KEY_SCAN, NULL, 0, "Look for instruments and write a first rig file", 0},
     {"output", 'o', "RIG.yaml", 0, "The rig file that --scan writes; it must not exist", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
@@ -44,16 +45,17 @@ static void check_words(const struct options *options, struct argp_state *state)
         if (strncmp(options->words[i], "serial:", 7) != 0 &&
             strncmp(options->words[i], "pty:", 4) != 0 &&
             strncmp(options->words[i], "udp:", 4) != 0)
-            argp_error(state, "'%s' is no address: expected serial:PATH, pty:PATH or udp:HOST:PORT",
+            argp_error(state,
+                       "invalid address '%s': expected serial:PATH, pty:PATH or udp:HOST:PORT",
                        options->words[i]);
     if (options->scans)
         return;
     if (options->common.output)
-        argp_error(state, "-o goes with --scan");
+        argp_error(state, "-o needs --scan");
     if (options->n_words == 0)
-        argp_error(state, "no rig file given");
+        argp_error(state, "rig file missing");
     if (options->n_words > 2)
-        argp_error(state, "'%s' is one word too many", options->words[2]);
+        argp_error(state, "unexpected argument '%s'", options->words[2]);
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -68,7 +70,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_ARG:
         if (options->n_words == WORDS)
-            argp_error(state, "'%s' is one word too many", argument);
+            argp_error(state, "too many arguments: '%s'", argument);
         options->words[options->n_words++] = argument;
         return 0;
     case ARGP_KEY_END:
@@ -84,17 +86,18 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "RIG.yaml [SPECIMEN.yaml]\n--scan [ADDRESS...] -o RIG.yaml",
     .doc =
-        "Says whether the bench is ready for a test: opens the ports of the rig file, listens for "
-        "some seconds, and tells of each thing that a test needs whether it is well, or what is "
-        "wrong and how to mend it. The stage is not moved, and nothing is recorded.\v"
-        "The checks are those of `wirebench record`. With the specimen on the bench and its file "
-        "named, the markers are compared with it, and a picture shows both.\n\n"
-        "--scan listens at every free port with a USB adapter, asks whether it is a GRBL or a Tic, "
-        "asks for NatNet servers on all network cards, and writes a first rig file; with "
-        "addresses, "
-        "at these alone. It moves nothing and overwrites nothing.\n\n"
+        "Checks whether the bench is ready for a test: opens the ports of the rig file, listens "
+        "for "
+        "some seconds, and prints for each item that a test needs whether it is ready, or what is "
+        "wrong and how to fix it. The stage is not moved, and nothing is recorded.\v"
+        "The checks are those of `wirebench record`. With a specimen file, the markers on the "
+        "bench "
+        "are compared with it, and a picture shows both.\n\n"
+        "--scan listens at every free serial port with a USB adapter, queries it for a GRBL or a "
+        "Tic, searches NatNet servers on all network interfaces, and writes a first rig file; with "
+        "addresses, only at these. It moves nothing and overwrites nothing.\n\n"
         "Exit codes: 0 ready; 1 a file cannot be read or written; 2 wrong usage; 3 stopped by "
-        "Ctrl-C, or not all instruments were found; 4 not ready.",
+        "Ctrl-C, or --scan did not find all instruments; 4 not ready.",
 };
 
 static const struct wb_settings_source sources[] = {
@@ -136,13 +139,13 @@ static void print(const struct wb_doctor_report *report)
     if (n_wrong == 0)
         printf("%s is ready\n", bench);
     else
-        printf("%s is NOT READY: %d thing%s to mend\n", bench, n_wrong, n_wrong == 1 ? "" : "s");
+        printf("%s is NOT READY: %d problem%s to fix\n", bench, n_wrong, n_wrong == 1 ? "" : "s");
 }
 
 static int look_at_bench(const struct options *options, struct wb_doctor_report *report)
 {
     struct wb_doctor *doctor;
-    /* What the instruments remark is in the report. */
+    /* The report contains the remarks of the instruments. */
     wb_log_set_threshold(WB_LOG_ERROR);
     if (wb_doctor_open(&doctor, &options->request) != WB_OK)
         return WB_EXIT_FAILED;
@@ -168,7 +171,8 @@ static enum wb_status look_for_instruments(const struct options *options, struct
         if (strncmp(address, "udp:", 4) == 0)
             WB_TRY(wb_scan_find_servers(scan, address));
         else if (!wb_scan_add_port(scan, address))
-            return wb_fail(WB_ERR_ARGUMENT, "'%s' is too long, or one address too many", address);
+            return wb_fail(WB_ERR_ARGUMENT, "'%s': the address is too long, or there are too many",
+                           address);
     }
     for (int i = 0; i < scan->n_ports && !wb_interrupted(); i++) {
         wb_info("listening at %s", scan->ports[i].address);
@@ -180,7 +184,7 @@ static enum wb_status look_for_instruments(const struct options *options, struct
 static int scan_bench(const struct options *options)
 {
     static struct wb_scan scan;
-    struct wb_text text = {0};
+    struct wb_text text = {0}, next = {0};
     const char *const path = options->common.output;
     if (wb_file_exists(path)) {
         wb_error("'%s' exists: a rig file is never overwritten, choose another name", path);
@@ -195,11 +199,23 @@ static int scan_bench(const struct options *options)
     wb_text_release(&text);
     if (status != WB_OK)
         return WB_EXIT_FAILED;
-    printf("%s: %d port%s, %d NatNet server%s; replace every FILL IN, then run 'wirebench doctor "
-           "%s'\n",
+    wb_text_append_quoted(&next, path);
+    printf("%s: %d port%s, %d NatNet server%s; replace every FILL IN, then run: wirebench doctor "
+           "%s\n",
            path, scan.n_ports, scan.n_ports == 1 ? "" : "s", scan.n_servers,
-           scan.n_servers == 1 ? "" : "s", path);
+           scan.n_servers == 1 ? "" : "s", wb_text_string(&next));
+    wb_text_release(&next);
     return wb_scan_is_complete(&scan) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
+}
+
+static enum wb_status check_files(const struct options *options)
+{
+    const struct wb_bend_test_request *const test = &options->request.test;
+    WB_TRY(wb_file_kind_check(test->rig_path, WB_FILE_BIT(WB_FILE_RIG)));
+    return test->specimen_path
+               ? wb_file_kind_check(test->specimen_path,
+                                    WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE))
+               : WB_OK;
 }
 
 int wb_cmd_doctor(int argc, char **argv)
@@ -215,6 +231,8 @@ int wb_cmd_doctor(int argc, char **argv)
     options.request.test.rig_path = options.words[0];
     if (options.n_words > 1)
         options.request.test.specimen_path = wb_command_find(options.words[1], specimen);
+    if (check_files(&options) != WB_OK)
+        return WB_EXIT_FAILED;
     const int code = look_at_bench(&options, &report);
     if (code != WB_EXIT_OK)
         return code;

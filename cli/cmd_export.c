@@ -1,5 +1,5 @@
-/* wirebench export: a recording's samples as CSV; a recording's or dataset's tables as HDF5; with
- * --to, a wire's law as a card. */
+/* wirebench export: samples of a recording as CSV; tables of a recording or dataset as HDF5; with
+ * --to, the law of a wire as a card. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,22 +11,23 @@
 #include "cli/complete.h"
 #include "cli/export_card.h"
 #include "cli/export_hdf5.h"
+#include "cli/file_kind.h"
 #include "daq/recording/export.h"
 #include "daq/recording/replay.h"
 
 #define WB_LOG_DOMAIN "export"
 
-/* In the help only: cli/export_card.c takes it. */
+/* Only for --help: cli/export_card.c parses it. */
 #define KEY_TO WB_KEY_OWN
 
 static const struct argp_option option_table[] = {
     {"to", KEY_TO, "KIND", 0,
-     "Of a wire or properties file: a card for another program; see `wirebench export --to KIND "
-     "--help`",
+     "From a wire or properties file, write a card for another program; see `wirebench export --to "
+     "KIND --help`",
      0},
-    {"output", 'o', "DIR|FILE.h5", 0, "Folder to write CSV files into, or file to write", 0},
+    {"output", 'o', "DIR|FILE.h5", 0, "Folder for CSV files, or HDF5 file to write", 0},
     {"force", WB_KEY_FORCE, NULL, 0,
-     "Write into a folder that holds files already, or overwrite the file", 0},
+     "Write into a folder that contains files already, or overwrite the file", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -38,9 +39,9 @@ static const struct argp argp = {
     .doc = "Decodes a recording (.wbr or .wbr.zst) and writes load.csv, mocap.csv, stage.csv, "
            "events.csv and clock.csv. With -o FILE.h5 it writes the tables of a recording or a "
            "dataset into one HDF5 file, lengths in metres.\v"
-           "The numbers are what the instruments said: not tared, aligned or filtered; "
-           "'wirebench align' does that. Exit code 3: parts of the recording are missing or "
-           "damaged and left out.",
+           "The values are those of the instruments: not tared, aligned or filtered, which "
+           "'wirebench align' does. Exit code 3: parts of the recording are missing or damaged and "
+           "left out.",
 };
 
 static enum wb_status write_samples(struct wb_recording *recording,
@@ -96,12 +97,15 @@ int wb_cmd_export(int argc, char **argv)
     struct wb_recording *recording = NULL;
     struct wb_export_counts counts = {0};
     wb_command_parse(&argp, argc, argv, &options);
+    if (wb_file_kind_check(options.input,
+                           WB_FILE_BIT(WB_FILE_RECORDING) | WB_FILE_BIT(WB_FILE_DATASET)) != WB_OK)
+        return WB_EXIT_FAILED;
     if (wb_export_hdf5_is(options.output))
         return wb_export_hdf5(&options);
     if (wb_file_is_folder(options.input))
         return wb_command_exit(wb_fail(WB_ERR_UNSUPPORTED,
-                                       "'%s' is a folder: a dataset has its tables as CSV in it "
-                                       "already; -o FILE.h5 makes one HDF5 file of them",
+                                       "'%s' is a folder: a dataset contains its tables as CSV "
+                                       "already; use -o FILE.h5 for one HDF5 file",
                                        options.input));
     enum wb_status status = wb_recording_open(&recording, options.input);
     bool complete = status == WB_OK && wb_recording_is_complete(recording);
@@ -109,7 +113,7 @@ int wb_cmd_export(int argc, char **argv)
         status = write_samples(recording, &options, &counts);
     if (wb_recording_close(recording) != WB_OK)
         return WB_EXIT_FAILED;
-    /* Damage was logged while reading; what could be read has been written. */
+    /* Damage was logged while reading; the readable part was written. */
     bool written = status == WB_OK || (status == WB_ERR_DATA && counts.load + counts.mocap > 0);
     if (!written || print(&options, &counts) != WB_EXIT_OK)
         return WB_EXIT_FAILED;

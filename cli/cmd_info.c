@@ -1,4 +1,5 @@
-/* wirebench info: what a recording is, or a bundle (info_bundle.c). */
+/* wirebench info: describes a recording here, a bundle in info_bundle.c, other files in
+ * info_file.c. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,12 +25,27 @@ enum {
 };
 
 static const struct argp_option option_table[] = {
-    {"figure", KEY_FIGURE, "FILE", 0, "Draw a bundle's section: .svg, .png or .pdf", 0},
-    {"mesh", KEY_MESH, "NAME", 0, "With the lines of this mesh (that of the bundle's run)", 0},
+    {"figure", KEY_FIGURE, "FILE", 0, "Draw the section of a bundle: .svg, .png or .pdf", 0},
+    {"mesh", KEY_MESH, "NAME", 0, "Draw the lines of this mesh (that of the run)", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the figure", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
+
+/* Whether it is the name of a shipped bundle: there is no such file, or a folder of unknown kind.
+ */
+static bool is_shipped_name(const char *name, enum wb_file_kind kind)
+{
+    return kind == WB_FILE_UNKNOWN && !strchr(name, '/') &&
+           (!wb_file_exists(name) || wb_file_is_folder(name));
+}
+
+static bool is_bundle(const char *name)
+{
+    char found[WB_PATH];
+    const enum wb_file_kind kind = wb_file_kind_find(wb_command_find(name, found));
+    return kind == WB_FILE_BUNDLE || is_shipped_name(name, kind);
+}
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
@@ -48,8 +64,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (options->mesh && !options->figure)
-            argp_error(state, "--mesh goes with --figure");
-        if (options->figure && options->common.input && !wb_info_is_bundle(options->common.input))
+            argp_error(state, "--mesh needs --figure");
+        if (options->figure && options->common.input && !is_bundle(options->common.input))
             argp_error(state, "--figure applies to bundles, and '%s' is not a bundle",
                        options->common.input);
         break;
@@ -62,15 +78,19 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .args_doc = "REC.wbr|BUNDLE.yaml",
-    .doc = "Tells what a recording (.wbr or .wbr.zst) holds: specimen, rig, operator, streams with "
-           "their rates, events. Or what a bundle (fixtures/bundles, by name or path) is: wires, "
-           "packing, tape, diameters, density and "
-           "bounds of its flexural rigidity beside the published ones, meshes.\v"
-           "Exit code 3: something is missing or damaged; 'wirebench verify' says what.",
+    .args_doc = "FILE",
+    .doc =
+        "Prints the kind of a file or folder and the next command for it. Of a recording (.wbr or "
+        ".wbr.zst): specimen, rig, operator, streams with their rates, events. Of a bundle "
+        "(fixtures/bundles, by name or path): wires, packing, tape, diameters, density and "
+        "bounds of its flexural rigidity beside the published ones, meshes. Of a properties "
+        "file: its values. Of a dataset: a summary. Other kinds are recognised by their content, "
+        "but not checked.\v"
+        "Exit codes: 0 ok; 1 the file cannot be read or is of unknown kind; 2 wrong usage; 3 data "
+        "of a recording are missing or damaged, which 'wirebench verify' lists.",
 };
 
-/* What the command shows, read from the recording once. */
+/* The contents of a recording, read once. */
 struct facts {
     struct wb_recording *recording;
     struct wb_survey survey;
@@ -82,7 +102,7 @@ struct facts {
     struct wb_json *events;      /* array being filled */
 };
 
-/* The meta value of a key, "" where the recording has none; the caller frees it. */
+/* The metadata of a key, or ""; the caller frees it. */
 static char *meta(struct facts *facts, const char *key)
 {
     char *value = NULL;
@@ -99,7 +119,8 @@ static enum wb_status gather(struct facts *facts, const char *path)
         strcpy(facts->sha256, "");
     struct wb_reason why = {.text = ""};
     if (!wb_index_look_up(&facts->entry, path, facts->sha256, &why) && why.text[0])
-        wb_warn("whether the test was excluded is not known: %s", why.text);
+        wb_warn("the index beside the recording cannot be read, so that exclusion is unknown: %s",
+                why.text);
     if (facts->survey.has_rig)
         facts->has_rig = wb_replay_rig(facts->recording, &facts->rig) == WB_OK;
     if (facts->survey.has_specimen) {
@@ -121,9 +142,9 @@ static void print_meta(struct facts *facts, const char *label, const char *key)
     free(value);
 }
 
-#define SETTINGS_COLUMNS 86 /* of text behind its label, in a terminal of 100 */
+#define SETTINGS_COLUMNS 86 /* behind the label, in a terminal of 100 */
 
-/* What the index beside the recording says of it. */
+/* Series and exclusion, from the index beside the recording. */
 static void print_entry(const struct wb_index_entry *entry)
 {
     char text[WB_INDEX_EXCLUSION_TEXT];
@@ -134,7 +155,7 @@ static void print_entry(const struct wb_index_entry *entry)
         printf("  %-10s %s\n", "EXCLUDED", text);
 }
 
-/* What the stage's firmware was set to, as it printed it: settings side by side. */
+/* The settings of the stage's firmware, several on a line. */
 static void print_settings(struct facts *facts)
 {
     char *const value = meta(facts, "stage_settings"), *rest = NULL;
@@ -152,7 +173,7 @@ static void print_settings(struct facts *facts)
     free(value);
 }
 
-/* The load cell's last check before the test. */
+/* The last check of the load cell before the test. */
 static void print_check(struct facts *facts)
 {
     struct wb_check_log_entry check;
@@ -221,6 +242,10 @@ static enum wb_status print_text(struct facts *facts, const char *path)
     char problem[256];
     for (int at = 0; wb_survey_problem(survey, &at, problem, sizeof problem);)
         printf("  problem    %s\n", problem);
+    struct wb_text next = {0};
+    wb_file_kind_append_next(&next, WB_FILE_RECORDING, path);
+    printf("  %-10s %s\n", "next", wb_text_string(&next));
+    wb_text_release(&next);
     return status == WB_ERR_DATA ? WB_OK : status;
 }
 
@@ -304,6 +329,7 @@ static int print_json(struct facts *facts, const char *path)
     const struct wb_survey *survey = &facts->survey;
     struct wb_json *root = wb_json_create();
     wb_json_set_text(root, "recording", path);
+    wb_json_set_text(root, "kind", wb_file_kind_key(WB_FILE_RECORDING));
     wb_json_set_boolean(root, "virtual_rig", survey->is_virtual);
     wb_json_set_text(root, "sha256", facts->sha256);
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
@@ -334,11 +360,16 @@ static int print_json(struct facts *facts, const char *path)
 
 int wb_cmd_info(int argc, char **argv)
 {
-    struct wb_info_options all = {.common = {.noun = "recording or bundle file"}};
+    struct wb_info_options all = {.common = {.noun = "file"}};
+    char found[WB_PATH];
     wb_command_parse(&argp, argc, argv, &all);
+    all.common.input = wb_command_find(all.common.input, found);
     const struct wb_command_common options = all.common;
-    if (wb_info_is_bundle(options.input))
+    const enum wb_file_kind kind = wb_file_kind_find(options.input);
+    if (kind == WB_FILE_BUNDLE || is_shipped_name(options.input, kind))
         return wb_info_bundle(&all);
+    if (kind != WB_FILE_RECORDING)
+        return wb_info_file(&all, kind);
     struct facts facts = {.recording = NULL};
     enum wb_status status = gather(&facts, options.input);
     int code = wb_command_exit(status);

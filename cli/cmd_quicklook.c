@@ -1,14 +1,15 @@
-/* wirebench quicklook: one recording's curve, without a campaign. */
+/* wirebench quicklook: curve and shapes of one recording. */
 #include "analysis/align/align.h"
 #include "analysis/quicklook.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/file_kind.h"
 
 #define WB_LOG_DOMAIN "quicklook"
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -19,8 +20,8 @@ static const struct argp argp = {
     .args_doc = "REC.wbr",
     .doc = "Aligns one recording (.wbr or .wbr.zst) and writes its force-deflection curve and "
            "shapes as figures (SVG, PNG, PDF) and CSV, with a summary that is also printed.\v"
-           "Exit code 3: usable but incomplete (gaps, damaged or lost data, a test that was cut "
-           "short).",
+           "Exit code 3: usable but incomplete (gaps, damaged or lost data, a test that ended "
+           "early).",
 };
 
 static int deliver(const struct wb_dataset *dataset, const struct wb_command_common *options)
@@ -46,7 +47,8 @@ int wb_cmd_quicklook(int argc, char **argv)
     wb_command_parse(&argp, argc, argv, &options);
 
     wb_align_default_settings(&settings);
-    if (wb_align_run(&dataset, options.input, &settings, NULL) != WB_OK)
+    if (wb_file_kind_check(options.input, WB_FILE_BIT(WB_FILE_RECORDING)) != WB_OK ||
+        wb_align_run(&dataset, options.input, &settings, NULL) != WB_OK)
         return WB_EXIT_FAILED;
     const int code = deliver(&dataset, &options);
     wb_dataset_release(&dataset);

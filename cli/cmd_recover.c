@@ -1,9 +1,10 @@
-/* wirebench recover: what can still be found in a damaged recording. */
+/* wirebench recover: salvages the data of a damaged recording. */
 #include <inttypes.h>
 #include <stdio.h>
 
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
 #include "daq/recording/recover.h"
 
 #define WB_LOG_DOMAIN "recover"
@@ -18,11 +19,12 @@ static const struct argp argp = {
     .options = option_table,
     .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr -o NEW.wbr",
-    .doc = "Brings what can still be found in a damaged or unclosed recording (.wbr or .wbr.zst, "
-           "with the -wal beside it) into a new one. The old files are only read. Rows are looked "
-           "for page by page, and each counts that fits its checksum: behind damage too.\v"
-           "The new recording says what it was made from and what is missing. Exit codes: 0 all "
-           "that was recorded is there; 3 something is missing; 1 nothing could be written.",
+    .doc = "Copies the intact data of a damaged or unclosed recording (.wbr or .wbr.zst, with the "
+           "-wal file beside it) into a new one. The old files are only read. Rows are searched "
+           "page by page, also behind damaged pages, and kept where their checksum is correct.\v"
+           "The new recording states its source and what is missing. Exit codes: 0 complete; 1 "
+           "nothing could be written; 2 wrong usage; 3 data are missing, or the end of the "
+           "recording is unknown.",
 };
 
 static void print_text(const struct wb_command_common *options, const struct wb_recover *found)
@@ -37,7 +39,7 @@ static void print_text(const struct wb_command_common *options, const struct wb_
            wb_seconds_from_ns(found->last_ns - found->first_ns),
            found->is_protected
                ? ""
-               : ", partly protected (an older recording: of it the chunks' bytes alone have a "
+               : ", partly protected (an older recording: only the bytes of its chunks have a "
                  "checksum)");
     if (*missing)
         printf("  missing: %s\n", missing);
@@ -80,7 +82,8 @@ int wb_cmd_recover(int argc, char **argv)
                                         .destination = "recording goes: -o NEW.wbr"};
     struct wb_recover found;
     wb_command_parse(&argp, argc, argv, &options);
-    if (wb_recover_run(options.input, options.output, &found, NULL) != WB_OK)
+    if (wb_file_kind_check(options.input, WB_FILE_BIT(WB_FILE_RECORDING)) != WB_OK ||
+        wb_recover_run(options.input, options.output, &found, NULL) != WB_OK)
         return WB_EXIT_FAILED;
     if (!options.json)
         print_text(&options, &found);

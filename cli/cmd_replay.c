@@ -1,4 +1,4 @@
-/* wirebench replay: the bench from a recording. */
+/* wirebench replay: plays a recording through the decoders. */
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -6,6 +6,7 @@
 #include "base/timing.h"
 #include "base/units.h"
 #include "cli/bench_options.h"
+#include "cli/file_kind.h"
 #include "cli/live_line.h"
 #include "cli/settings.h"
 #include "daq/acquire/acquisition.h"
@@ -23,10 +24,10 @@ static const struct argp argp = {
     .options = other_options,
     .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr",
-    .doc = "Plays a recording (.wbr or .wbr.zst): the recorded bytes go through the same decoders "
-           "as on the bench, with a live line of force, travel and markers on the terminal; at the "
-           "end it prints what was decoded.\v"
-           "Ctrl-C ends it. Exit code 3: interrupted, or parts are missing or damaged.",
+    .doc = "Plays a recording (.wbr or .wbr.zst): the recorded bytes pass the same decoders as on "
+           "the bench, with a live line of force, travel and markers on the terminal; at the end "
+           "the numbers of decoded samples are printed.\v"
+           "Ctrl-C stops it. Exit code 3: interrupted, or parts are missing or damaged.",
 };
 
 /* The latest sample of each channel, for the live line. */
@@ -156,7 +157,8 @@ int wb_cmd_replay(int argc, char **argv)
     wb_setting_fill(&wb_bench_options_replay, &options);
     wb_settings_parse_table(&argp, &wb_bench_options_replay, &options, 1, argc, argv, &options);
     wb_interrupt_install();
-    if (wb_recording_open(&recording, options.common.input) != WB_OK)
+    if (wb_file_kind_check(options.common.input, WB_FILE_BIT(WB_FILE_RECORDING)) != WB_OK ||
+        wb_recording_open(&recording, options.common.input) != WB_OK)
         return WB_EXIT_FAILED;
     bool complete = wb_recording_is_complete(recording);
     int64_t started_ns = wb_time_now_ns();
@@ -164,7 +166,7 @@ int wb_cmd_replay(int argc, char **argv)
     double wall_s = wb_seconds_from_ns(wb_time_now_ns() - started_ns);
     if (wb_recording_close(recording) != WB_OK)
         return WB_EXIT_FAILED;
-    /* A database that breaks off was replayed up to that point. */
+    /* A truncated database is replayed up to its end. */
     if (status != WB_OK && !(status == WB_ERR_DATA && counts.chunks > 0))
         return WB_EXIT_FAILED;
     if (print(&options, &player, &counts, wall_s) != WB_EXIT_OK)

@@ -1,4 +1,4 @@
-/* wirebench report: a campaign's recordings, or its simulations, become its report. */
+/* wirebench report: the report of a campaign, from its recordings or simulations. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -9,14 +9,15 @@
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
 #include "cli/job_options.h"
 
 struct options {
     struct wb_command_common common;
     int threads;
-    const char *key;             /* to sign with; NULL: not */
-    const char *check;           /* folder of a signed report; NULL: a report is made */
-    bool lists;                  /* only what is outdated */
+    const char *key;             /* to sign with, or NULL */
+    const char *check;           /* folder of a signed report to check; NULL: make a report */
+    bool lists;                  /* --stale */
     struct wb_jobs_options jobs; /* for datasets that are missing */
 };
 
@@ -29,35 +30,35 @@ enum {
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Replace the report that the folder holds", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Replace the report in the folder", 0},
     {"threads", KEY_THREADS, "N", 0, "Threads to compute on, 1 to 16 (as many as cores, 4 at most)",
      0},
     {"sign", KEY_SIGN, "KEY", 0,
-     "Also write manifest.json, SHA-256 sums of the report and of what it is made from, and its "
-     "OpenPGP signature with this key of gpg",
+     "Also write manifest.json, the SHA-256 sums of the report and its inputs, and its OpenPGP "
+     "signature with this gpg key",
      0},
     {"check", KEY_CHECK, "DIR", 0,
-     "Check the signed report there: signature, files, and what comes out computed again; the "
-     "campaign file need be named only where it is not found",
+     "Check the signed report in this folder: signature, files, and the results computed again; "
+     "name the campaign file only where it is not found",
      0},
     {"stale", KEY_STALE, NULL, 0,
-     "Instead of a report, list the datasets that are missing or outdated, and why", 0},
+     "Make no report, but list the datasets that are missing or outdated, and why", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print all numbers, or the list, as one JSON object", 0},
     {0},
 };
 
-/* Whether all that is needed was given, and nothing beside it that makes no sense. */
+/* Checks that the required options were given, and no conflicting ones. */
 static error_t check_end(struct options *o, struct argp_state *state)
 {
     if (o->check) {
         if (o->key || o->common.output || o->lists)
-            argp_error(state, "--check makes no report: not with --sign, --stale or -o");
+            argp_error(state, "--check cannot be combined with --sign, --stale or -o");
         return 0;
     }
     if (!o->lists && !o->common.output)
-        argp_error(state, "say where the report goes: -o DIR, or list with --stale");
+        argp_error(state, "output missing: -o DIR, or --stale for a list");
     if (o->lists && (o->key || o->common.output || wb_jobs_wanted(&o->jobs)))
-        argp_error(state, "--stale makes nothing: not with --sign, -o, --solve or --slurm");
+        argp_error(state, "--stale cannot be combined with --sign, -o, --solve or --slurm");
     return wb_command_parse_common(ARGP_KEY_END, NULL, state, &o->common);
 }
 
@@ -95,21 +96,21 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "CAMPAIGN.yaml\n--check DIR [CAMPAIGN.yaml]",
     .doc = "Aligns the recordings of a campaign, calibrates and validates its wires and writes the "
-           "report: report.pdf, report.html, report.json and figures/ (SVG and PNG). A campaign of "
-           "the kind `comparison` compares datasets that `solve` made of wire models, one of the "
-           "kind `bundles` those of bundles.\v"
-           "What is missing or cannot be used is named in the report (exit code 3). Exit code 4: "
-           "all is written, but a limit of the campaign is exceeded. The same recordings or "
-           "datasets and the same revision give the same bytes. --solve and --slurm first make "
-           "the datasets that a campaign misses, those that are outdated too (recordings cannot be "
-           "computed); run the same command again to continue. Logs lie in DIR.jobs. "
-           "--check ends with exit code 0 where the same bytes come out again, or by another build "
-           "numbers within 1e-9, fitted ones within 1e-5; 3: the campaign is not here to be "
-           "computed.",
+           "report: report.pdf, report.html, report.json and figures/ (SVG and PNG). Campaigns of "
+           "kind `comparison` compare datasets of wire models computed by `solve`, those of kind "
+           "`bundles` datasets of bundles.\v"
+           "The same recordings or datasets and the same revision give the same bytes. --solve and "
+           "--slurm first compute the datasets that are missing or outdated (recordings cannot be "
+           "computed); run the same command again to continue. Their logs are in DIR.jobs.\n\n"
+           "Exit codes: 0 complete; 1 failed; 2 wrong usage; 3 data are missing or unusable, which "
+           "the report names, or with --stale a dataset is missing or outdated; 4 written, but a "
+           "limit of the campaign is exceeded. With --check: 0 the results are the same bytes or, "
+           "from another build, equal within 1e-9 (fitted values 1e-5); 1 a difference from the "
+           "signed report; 3 the campaign is not found, so that nothing was computed again.",
     .children = children,
 };
 
-/* The same text as the file's. */
+/* Prints report.json. */
 static enum wb_status print_json(const char *folder)
 {
     char path[WB_PATH], *text;
@@ -120,7 +121,7 @@ static enum wb_status print_json(const char *folder)
     return WB_OK;
 }
 
-/* Prints what was written and returns how it ended. */
+/* Prints the paths of the files and returns the exit code. */
 static int deliver(const struct options *o, enum wb_report_end end)
 {
     static const int codes[] = {[WB_REPORT_COMPLETE] = WB_EXIT_OK,
@@ -179,6 +180,8 @@ int wb_cmd_report(int argc, char **argv)
         .n_threads = options.threads,
         .jobs = &options.jobs,
     };
+    if (wb_file_kind_check(order.campaign, WB_FILE_BIT(WB_FILE_CAMPAIGN)) != WB_OK)
+        return WB_EXIT_FAILED;
     const bool existed = options.lists || wb_file_exists(order.folder);
     wb_interrupt_install();
     const enum wb_status status = wb_report_make(&end, wb_kinds, WB_KINDS, &order);

@@ -1,4 +1,4 @@
-/* wirebench rig: the virtual rig, until it is interrupted. */
+/* wirebench rig: runs the virtual rig until it is interrupted. */
 #include <errno.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "cli/bench_options.h"
+#include "cli/file_kind.h"
 #include "cli/settings.h"
 #include "daq/acquire/acquisition.h"
 
@@ -21,9 +22,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct wb_rig_options *const options = state->input;
     if (key == ARGP_KEY_END && !options->virtual.bench.specimen)
-        argp_error(state, "no --specimen given");
+        argp_error(state, "--specimen SPECIMEN.yaml is missing");
     if (key == ARGP_KEY_END && !options->run)
-        argp_error(state, "no folder for the rig file given (--run DIR)");
+        argp_error(state, "folder for the rig file missing: --run DIR");
     return wb_command_parse_common(key, argument, state, &options->common);
 }
 
@@ -31,12 +32,15 @@ static const struct argp argp = {
     .options = other_options,
     .parser = parse,
     .args_doc = "RIG.yaml --specimen SPECIMEN.yaml --run DIR",
-    .doc = "The virtual rig: stands in for the bench of RIG.yaml, with load cell and stage on "
-           "pseudo-terminals and the motion capture on a free UDP port of this machine.\v"
-           "When all is ready it writes DIR/rig.yaml, which `wirebench record` takes as its rig, "
-           "prints 'ready', and runs until Ctrl-C. Several rigs run side by side. RIG.yaml gives "
-           "protocols, capacity, noise, filter, frame rate, stage and strand; its addresses are "
-           "not used. The same seed and specimen give the same wire and the same noise.",
+    .doc =
+        "The virtual rig: simulates the bench of RIG.yaml, with load cell and stage on "
+        "pseudo-terminals and the motion capture on a free UDP port of this machine.\v"
+        "When it is ready it writes DIR/rig.yaml, the rig file for `wirebench record`, prints "
+        "'ready', and runs until Ctrl-C. Several rigs can run at once. RIG.yaml gives protocols, "
+        "capacity, noise, filter, frame rate, stage and strand; its addresses are not used. The "
+        "same seed and specimen give the same wire and the same noise.\n\n"
+        "Exit codes: 0 ended by Ctrl-C; 1 a file cannot be used, or the folder is in use; 2 wrong "
+        "usage.",
 };
 
 static const struct wb_settings_source sources[] = {
@@ -70,11 +74,11 @@ static enum wb_status lock_folder(struct wb_file_lock *lock, const char *folder)
     if (holder > 0)
         snprintf(who, sizeof who, " (process %ld)", holder);
     return wb_fail(status,
-                   "a rig runs in '%s' already%s: end it, or give this one another folder (--run)",
+                   "a rig is already running in '%s'%s: end it, or choose another folder (--run)",
                    folder, who);
 }
 
-/* Somebody may have put another file in its place, or changed it. */
+/* Another process may have replaced or changed the file. */
 static bool is_same_file(const char *path, const struct stat *before)
 {
     struct stat now;
@@ -94,6 +98,11 @@ int wb_cmd_rig(int argc, char **argv)
     options.virtual.bench.rig = wb_command_find(options.common.input, rig);
     options.virtual.bench.folder = options.run;
     options.virtual.bench.specimen = wb_command_find(options.virtual.bench.specimen, specimen);
+    if (wb_file_kind_check(options.virtual.bench.rig, WB_FILE_BIT(WB_FILE_RIG)) != WB_OK ||
+        wb_file_kind_check(options.virtual.bench.specimen,
+                           WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE)) !=
+            WB_OK)
+        return WB_EXIT_FAILED;
     wb_interrupt_install();
     wb_acquisition_raise_priority();
     if (wb_file_make_folder(options.run) != WB_OK ||
@@ -113,7 +122,7 @@ int wb_cmd_rig(int argc, char **argv)
         const bool known = stat(path, &written) == 0;
         fprintf(stderr, "ready\n");
         wb_bench_run(bench, &never);
-        /* The addresses end with the rig: the file must not be taken for a bench's. */
+        /* Its addresses are invalid from now on. */
         if (known && is_same_file(path, &written))
             remove(path);
     }

@@ -1,4 +1,4 @@
-/* wirebench stage: set the bench, free a specimen, check the load cell. */
+/* wirebench stage: moves the stage by hand, frees a specimen, checks the load cell. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +9,7 @@
 #include "cli/bench_options.h"
 #include "cli/check_cell.h"
 #include "cli/complete.h"
+#include "cli/file_kind.h"
 #include "cli/live_line.h"
 #include "cli/settings.h"
 #include "daq/acquire/acquisition.h"
@@ -17,7 +18,7 @@
 #define WB_LOG_DOMAIN "stage"
 
 static const struct argp_option other_options[] = {
-    {"output", 'o', "CERTIFICATE.pdf", 0, "Write check's series as a page", 0},
+    {"output", 'o', "CERTIFICATE.pdf", 0, "Write the series of check as a page", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Replace that file", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
     {0},
@@ -40,21 +41,21 @@ static int find_action(const char *name)
 static void check_words(const struct wb_stage_options *options, struct argp_state *state)
 {
     if (!options->rig_path)
-        argp_error(state, "no rig file given");
+        argp_error(state, "rig file missing");
     if (!options->action)
-        argp_error(state, "nothing to do given: home, jog MM, unlock, release or check MASS_G");
+        argp_error(state, "action missing: home, jog MM, unlock, release or check MASS_G");
     const int action = find_action(options->action);
     if (action < 0)
-        argp_error(state, "'%s' is not known: expected home, jog, unlock, release or check",
+        argp_error(state, "unknown action '%s': expected home, jog, unlock, release or check",
                    options->action);
     if (action == WB_STAGE_JOB_JOG && !options->value)
         argp_error(state, "jog needs a distance in mm, down positive: jog 2.5");
     if (action != ACTION_CHECK && (options->masses || options->common.output))
-        argp_error(state, "%s takes neither masses nor a certificate, check does", options->action);
+        argp_error(state, "--masses and -o apply only to check, not to %s", options->action);
     if (options->masses && options->value)
-        argp_error(state, "check takes one mass or --masses, not both");
+        argp_error(state, "check: one mass and --masses cannot be combined");
     if (options->common.output && !wb_command_ends_in(options->common.output, ".pdf"))
-        argp_error(state, "a certificate is written as NAME.pdf, not '%s'", options->common.output);
+        argp_error(state, "--output: expected NAME.pdf, not '%s'", options->common.output);
     if (options->value && action != WB_STAGE_JOB_JOG && action != WB_STAGE_JOB_RELEASE &&
         action != ACTION_CHECK)
         argp_error(state, "%s takes no number", options->action);
@@ -72,7 +73,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         else if (!options->value)
             options->value = argument;
         else
-            argp_error(state, "'%s' is one word too many", argument);
+            argp_error(state, "unexpected argument '%s'", argument);
         return 0;
     case ARGP_KEY_END:
         check_words(options, state);
@@ -88,23 +89,23 @@ static const struct argp argp = {
     .args_doc = "RIG.yaml home\nRIG.yaml jog MM\nRIG.yaml unlock\nRIG.yaml release [MM]\n"
                 "RIG.yaml check [MASS_G | --masses LIST]",
     .doc =
-        "Sets the bench by hand.\n\n"
-        "home     runs the stage's own homing cycle. Take the specimen off first.\n"
-        "jog MM   moves the clamp down (negative: up) at the rig's speed.\n"
-        "unlock   brings the stage out of hold or alarm without moving it.\n"
-        "release  frees a specimen after a stop: brings the stage out of hold or alarm and goes "
-        "slowly up until the strand is slack (the reading stays level over 0.75 mm, at the cell's "
-        "zero that --zero-mn gives), at most by MM (default: limits.travel_mm of the rig file). "
-        "Without the zero it ends at a level reading and asks to look at the strand.\n"
+        "Operates the bench by hand.\n\n"
+        "home     runs the stage's homing cycle. Remove the specimen first.\n"
+        "jog MM   moves the clamp down (negative: up) at the speed of the rig file.\n"
+        "unlock   clears hold or alarm of the stage without moving it.\n"
+        "release  frees a specimen after a stop: clears hold or alarm and moves slowly up until "
+        "the strand is slack (the reading is constant over 0.75 mm, at the zero of the load cell "
+        "that --zero-mn gives), at most by MM (limits.travel_mm of the rig file). Without "
+        "--zero-mn it ends at a constant reading and asks to look at the strand.\n"
         "check    compares the load cell with a known mass, or with a series of masses up and "
-        "down (default: the rig's check_masses_g, else its check_mass_g), and adds the outcome to "
-        "the log beside the rig file (RIG.checks.csv).\v"
-        "While the stage moves the load cell is watched: force limit, overload, a change of "
-        "unit, silence and alarms stop it, and so does Ctrl-C. Its reading is not tared here. "
-        "A release may begin beyond the limits, because that is what it mends; it stops when "
-        "the load grows by 5 % of the capacity, which means that up is not the way to unload.\n\n"
+        "down (check_masses_g of the rig file, else its check_mass_g), and adds the result to the "
+        "log beside the rig file (RIG.checks.csv).\v"
+        "While the stage moves, the load cell is monitored: force limit, overload, a change of "
+        "unit, silence, alarms and Ctrl-C stop the stage. The readings are not tared. A release "
+        "may begin beyond the limits; it stops when the load increases by 5 % of the capacity, "
+        "because then moving up does not unload the specimen.\n\n"
         "Exit codes: 0 done, check passed; 1 failed, check not passed; 2 wrong usage; 3 stopped "
-        "by a limit or Ctrl-C, or not seen slack.",
+        "by a limit or Ctrl-C, or the strand was not seen slack.",
 };
 
 /* --- jobs --- */
@@ -154,7 +155,7 @@ static void tell_job(const struct wb_rig *rig, const struct wb_stage_job_result 
         printf("\n");
     }
     if (!result->standing)
-        wb_error("the stage did not confirm that it stands: switch off its power before you touch "
+        wb_error("the stage did not confirm that it stopped: switch off its power before you touch "
                  "the bench");
 }
 
@@ -180,7 +181,7 @@ static int run_job(const struct wb_stage_options *options, const struct wb_rig *
     return result.end == WB_SEQUENCE_FAILED ? WB_EXIT_FAILED : WB_EXIT_INCOMPLETE;
 }
 
-/* `jog -2`: a negative number is no option. It is moved behind a "--". */
+/* Moves a negative number behind "--", so that `jog -2` is not parsed as an option. */
 static int shield_number(int argc, char **argv, char **shielded)
 {
     const char *number = NULL;
@@ -206,7 +207,7 @@ int wb_cmd_stage(int argc, char **argv)
     struct wb_rig rig;
     char *shielded[64];
     if (argc > 60) {
-        wb_error("stage: too many words");
+        wb_error("stage: too many arguments");
         return WB_EXIT_USAGE;
     }
     if (argc > 1) /* the first is the rig file */
@@ -216,7 +217,8 @@ int wb_cmd_stage(int argc, char **argv)
     wb_settings_parse_table(&argp, &wb_bench_options_stage, &options, 1, argc, shielded, &options);
     wb_interrupt_install();
     wb_acquisition_raise_priority();
-    if (wb_rig_read(options.rig_path, &rig) != WB_OK)
+    if (wb_file_kind_check(options.rig_path, WB_FILE_BIT(WB_FILE_RIG)) != WB_OK ||
+        wb_rig_read(options.rig_path, &rig) != WB_OK)
         return WB_EXIT_FAILED;
     const int action = find_action(options.action);
     if (action == ACTION_CHECK)

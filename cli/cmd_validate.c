@@ -1,4 +1,4 @@
-/* wirebench validate: properties against datasets they were not calibrated on. */
+/* wirebench validate: properties against datasets that were not used for the calibration. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -17,6 +17,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/file_kind.h"
 #include "cli/finding.h"
 #include "cli/settings.h"
 #include "cli/validate_three_point.h"
@@ -33,11 +34,10 @@ struct options {
 
 static const struct argp_option other_options[] = {
     {"output", 'o', "DIR", 0,
-     "Write forces, errors and scores of each group there as CSV, and a figure of each group of "
-     "cantilevers "
-     "under a tip force as SVG",
+     "Folder for forces, errors and scores of each group (CSV), and a figure of each group of "
+     "cantilevers under a tip force (SVG)",
      0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the output folder", 0},
     {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figures", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
@@ -48,14 +48,15 @@ static const struct argp argp = {
     .parser = wb_command_parse_only_common,
     .args_doc = "PROPERTIES.yaml DATASET...",
     .doc =
-        "Predicts tests with calibrated properties and scores each part of them apart: the first "
-        "loading (eqs. 18 and 19, beside a linear elastic prediction), the unloading, the "
-        "residual deflection, the energy that later cycles lose, and shapes. Datasets are "
-        "grouped by wire, length and loading, those of three-point bending by bench, and each "
-        "group is averaged.\v"
-        "Errors are over F_max, the largest force of the measured average, or over the largest "
-        "deflection of tests with a follower force. Exit code 3: a prediction was cut short "
-        "because the beam did not converge, or a three-point test cannot serve.",
+        "Predicts tests from calibrated properties and scores each part separately: the first "
+        "loading (eqs. 18 and 19, beside a linear elastic prediction), the unloading, the residual "
+        "deflection, the energy dissipated in later cycles, and the shapes. Datasets are grouped "
+        "by "
+        "wire, length and loading, those of three-point bending by bench, and each group is "
+        "averaged.\v"
+        "Errors are relative to F_max, the largest force of the measured average, or, for tests "
+        "with a follower force, to the largest deflection. Exit code 3: a prediction is incomplete "
+        "because the beam did not converge, or a three-point test cannot be used.",
 };
 
 static const struct wb_settings_source sources[] = {
@@ -78,7 +79,7 @@ static void note_option(void *input, const struct wb_setting *row)
         o->of[is_three_point] = row;
 }
 
-/* Options of tests that are not among the datasets would do nothing. */
+/* Options for a kind of test that is not among the datasets would be ignored silently. */
 static bool has_foreign_option(const struct options *o)
 {
     bool has[2] = {false, false};
@@ -87,7 +88,7 @@ static bool has_foreign_option(const struct options *o)
     for (int k = 0; k < 2; k++) {
         if (!o->of[k] || has[k])
             continue;
-        wb_error("--%s is for %s: there is none among the datasets", o->of[k]->option,
+        wb_error("--%s applies only to %s: no such dataset was given", o->of[k]->option,
                  k == 0 ? "tests of cantilevers" : "datasets of three-point bending");
         return true;
     }
@@ -140,7 +141,8 @@ static enum wb_status run_groups(struct options *o, const struct wb_properties *
     return WB_OK;
 }
 
-/* Name of a group's file: the wire's name with anything unusual in a path replaced. */
+/* The name of a group's file: slashes, spaces and control characters of the wire's name replaced.
+ */
 static void file_name(char *name, size_t size, const struct wb_test_info *info, const char *what)
 {
     snprintf(name, size, "%s-L%g%s%s", info->wire, info->length / WB_MM,
@@ -290,26 +292,26 @@ static void print_cycles(const struct wb_validate_result *r)
         return;
     }
     printf("  unloading      RMS %.3g, largest error %.3g%s\n", cycles->rms, cycles->largest_error,
-           r->is_rule_untested ? "; the rule of these properties is untested" : "");
+           r->is_rule_untested ? "; the hardening rule of these properties is not tested" : "");
     const double left = cycles->residual_measured, predicted = cycles->residual_computed;
     if (isfinite(left))
         printf("  residual deflection %.2f mm measured, %.2f mm predicted (%+.2f mm)\n",
                left / WB_MM, predicted / WB_MM, (predicted - left) / WB_MM);
     for (int i = 0; i < cycles->n_loops; i++) {
         const struct wb_validate_loop *const loop = &cycles->loops[i];
-        printf("  cycle %-2d       loses %.3g mJ measured, %.3g mJ predicted (%+.1f %%)\n",
+        printf("  cycle %-2d       dissipates %.3g mJ measured, %.3g mJ predicted (%+.1f %%)\n",
                loop->cycle, loop->measured / WB_MJ, loop->computed / WB_MJ,
                100.0 * (loop->computed / loop->measured - 1.0));
     }
 }
 
-/* The unloading and the residual deflection are those with the law as stiff as each specimen. */
+/* For unloading and residual deflection the law is scaled to the stiffness of each specimen. */
 static void print_bound(const struct wb_validate_result *r, enum wb_validate_part part)
 {
     static const char *const what[WB_VALIDATE_PARTS] = {
         [WB_VALIDATE_LOADING] = "RMS",
-        [WB_VALIDATE_UNLOADING] = "RMS, each specimen as stiff as its loading",
-        [WB_VALIDATE_RESIDUAL] = "mm off, each specimen as stiff as its loading",
+        [WB_VALIDATE_UNLOADING] = "RMS, law scaled to the loading of each specimen",
+        [WB_VALIDATE_RESIDUAL] = "mm error, law scaled to the loading of each specimen",
         [WB_VALIDATE_SHAPES] = "mm, RMS of the mean over the specimens",
     };
     const struct wb_validate_bound *const bound = &r->bounds[part];
@@ -323,27 +325,27 @@ static void print_bound(const struct wb_validate_result *r, enum wb_validate_par
 static void print_scatter(const struct wb_validate_result *r)
 {
     if (r->curve.n_samples > 1)
-        printf("  scatter        between samples %.3g, with each one's own natural shape %.3g\n",
+        printf("  scatter        between samples %.3g, corrected for their natural shapes %.3g\n",
                r->scatter_rms, r->residual_scatter_rms);
     if (!wb_validate_bounds_known(r))
         return;
     if (isfinite(r->stiffness_deviation))
-        printf("  bounds         for specimens that differ by %.1f %% in stiffness; a right law "
+        printf("  bounds         for specimens whose stiffness scatters by %.1f %%; a correct law "
                "exceeds one of them in one of twenty validations\n",
                100.0 * r->stiffness_deviation);
     else
-        printf("  bounds         a right law exceeds one of them in one of twenty validations\n");
+        printf("  bounds         a correct law exceeds one of them in one of twenty validations\n");
     for (int i = 0; i < WB_VALIDATE_PARTS; i++)
         print_bound(r, i);
     struct wb_text exceeded = {0};
     wb_validate_bounds_append(&exceeded, r);
     if (wb_validate_bounds_exceeded(r))
         printf(
-            "  verdict        beyond the bound: %s; the law is wrong, the specimens are of another "
-            "wire, or this is the one of twenty\n",
+            "  verdict        bound exceeded: %s; the law is wrong, the specimens are of another "
+            "wire, or this is the one validation of twenty\n",
             wb_text_string(&exceeded));
     else
-        printf("  verdict        no more than the scatter of specimens explains\n");
+        printf("  verdict        within the scatter of specimens\n");
     wb_text_release(&exceeded);
 }
 
@@ -369,8 +371,8 @@ static void print_group(const struct wb_validate_result *r)
                r->shape_max / WB_MM, r->n_shape_points);
     print_scatter(r);
     if (r->is_beyond)
-        printf("  beyond         the clamp is bent to %.3g /m, further than these properties are "
-               "known\n",
+        printf("  beyond         curvature at the clamp %.3g /m: above the range of these "
+               "properties\n",
                r->cycles.clamp_curvature);
 }
 
@@ -388,7 +390,7 @@ static void append_found(struct wb_text *text, const struct wb_validate_result *
                        r->cycles.residual_measured / WB_MM, r->cycles.residual_computed / WB_MM);
 }
 
-/* Whether the properties were calibrated on these very data. */
+/* Whether the calibration used this dataset. */
 static bool is_calibrated_on(const struct wb_properties *properties, const char *folder)
 {
     char path[WB_PATH], sha256[WB_SHA256_TEXT];
@@ -405,10 +407,10 @@ static bool is_calibrated_on(const struct wb_properties *properties, const char 
 static void append_verdict(struct wb_text *text, const struct wb_validate_result *r)
 {
     static const char *const verdicts[] = {
-        [WB_VALIDATE_PREDICTED] = "yes: within what the scatter of specimens explains",
-        [WB_VALIDATE_NOT_PREDICTED] = "no: beyond what the scatter of specimens explains: ",
-        [WB_VALIDATE_UNDECIDED] = "undecided: the scatter between specimens is not known",
-        [WB_VALIDATE_BEYOND] = "with care: bent further than the properties are known",
+        [WB_VALIDATE_PREDICTED] = "yes: within the scatter of specimens",
+        [WB_VALIDATE_NOT_PREDICTED] = "no: more than the scatter of specimens explains: ",
+        [WB_VALIDATE_UNDECIDED] = "undecided: the scatter between specimens is unknown",
+        [WB_VALIDATE_BEYOND] = "with care: bent beyond the range of the properties",
         [WB_VALIDATE_NOT_CONVERGED] = "no: the beam did not converge up to the largest deflection",
     };
     const enum wb_validate_verdict verdict = wb_validate_bounds_verdict(r);
@@ -417,18 +419,25 @@ static void append_verdict(struct wb_text *text, const struct wb_validate_result
         wb_validate_bounds_append(text, r);
 }
 
-/* By the worst verdict of the groups. */
+/* For the worst verdict of the groups. */
 static const char *next_of(enum wb_validate_verdict worst)
 {
     static const char *const next[] = {
         [WB_VALIDATE_NOT_PREDICTED] = "compare length, zeros and batch of these specimens with "
                                       "those of the calibration; then calibrate on both",
-        [WB_VALIDATE_UNDECIDED] = "calibrate on at least three specimens, which show the scatter",
+        [WB_VALIDATE_UNDECIDED] = "calibrate on at least three specimens, to measure the scatter",
         [WB_VALIDATE_BEYOND] = "calibrate on tests that are bent as far as these",
         [WB_VALIDATE_NOT_CONVERGED] = "refine the beam (--elements), or validate with a shorter "
                                       "travel (--largest-deflection-mm)",
     };
     return next[worst];
+}
+
+static void append_export(struct wb_text *text, const char *properties)
+{
+    wb_text_append(text, "wirebench export ");
+    wb_text_append_quoted(text, properties);
+    wb_text_append(text, " --to table -o CARD.json, for other programs");
 }
 
 /* Of cantilevers; tests of three-point bending have their own verdict. */
@@ -471,9 +480,7 @@ static void print_finding(const struct options *o, const struct wb_properties *p
     else if (worst != WB_VALIDATE_PREDICTED)
         wb_text_append(&finding.next, "%s", next_of(worst));
     else
-        wb_text_append(&finding.next,
-                       "wirebench export %s --to table -o CARD.json, for other programs",
-                       o->common.input);
+        append_export(&finding.next, o->common.input);
     wb_finding_print(&finding);
 }
 
@@ -528,11 +535,9 @@ int wb_cmd_validate(int argc, char **argv)
     wb_settings_parse(&command, argc, argv, &options);
 
     enum wb_status status =
-        wb_file_is_folder(options.common.input)
-            ? wb_fail(WB_ERR_ARGUMENT,
-                      "'%s' is a folder: the properties file comes first, then the datasets",
-                      options.common.input)
-            : wb_properties_read(options.common.input, &properties);
+        wb_file_kind_check(options.common.input, WB_FILE_BIT(WB_FILE_PROPERTIES));
+    if (status == WB_OK)
+        status = wb_properties_read(options.common.input, &properties);
     if (status == WB_OK)
         status =
             wb_datasets_read(&options.datasets, options.common.inputs + 1, options.common.n - 1,

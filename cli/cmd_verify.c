@@ -1,9 +1,10 @@
-/* wirebench verify: is anything missing or damaged in a recording? */
+/* wirebench verify: checks recordings for missing or damaged data. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/file_kind.h"
 #include "daq/recording/survey.h"
 
 #define WB_LOG_DOMAIN "verify"
@@ -17,11 +18,12 @@ static const struct argp argp = {
     .options = option_table,
     .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr...",
-    .doc = "Checks recordings (.wbr or .wbr.zst): the checksum and the place of every row, gaps in "
-           "the sequence numbers, frames and lines that never came, drops noted while recording, "
-           "silent or missing streams, and whether the file was closed properly.\v"
-           "Exit codes: 0 all is there; 1 a file could not be opened; 3 something is missing or "
-           "damaged, the rest is usable.",
+    .doc =
+        "Checks recordings (.wbr or .wbr.zst): checksum and position of every row, gaps in the "
+        "sequence numbers, frames and lines that did not arrive, drops logged during the "
+        "recording, silent or missing streams, and whether the file was closed properly.\v"
+        "Exit codes: 0 complete; 1 a file could not be opened; 2 wrong usage; 3 data are missing "
+        "or damaged, the rest is usable.",
 };
 
 static void print_text(const char *path, const char *sha256, const struct wb_survey *survey)
@@ -30,8 +32,8 @@ static void print_text(const char *path, const char *sha256, const struct wb_sur
     printf("%s: %s%s%s, %" PRIu64 " chunks in %.1f s, sha256 %s\n", path,
            survey->is_virtual ? "virtual rig, " : "", whole ? "whole" : "NOT WHOLE",
            survey->check.is_protected ? ""
-                                      : ", partly protected (an older recording: of it the chunks' "
-                                        "bytes alone have a checksum)",
+                                      : ", partly protected (an older recording: only the bytes of "
+                                        "its chunks have a checksum)",
            survey->chunks, wb_survey_duration(survey), sha256[0] ? sha256 : "unknown");
     char text[256];
     for (int at = 0; wb_survey_problem(survey, &at, text, sizeof text);)
@@ -92,6 +94,7 @@ static void add_json(struct wb_json *array, const char *path, const char *sha256
 static enum wb_status look(const char *path, struct wb_survey *survey, char sha256[65])
 {
     struct wb_recording *recording = NULL;
+    WB_TRY(wb_file_kind_check(path, WB_FILE_BIT(WB_FILE_RECORDING)));
     WB_TRY(wb_recording_open(&recording, path));
     enum wb_status status = wb_survey_run(recording, true, survey);
     if (status == WB_OK && wb_recording_hash(recording, sha256) != WB_OK)

@@ -9,7 +9,7 @@
 #include "analysis/quicklook.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "cli/command.h"
+#include "cli/file_kind.h"
 
 #define WB_LOG_DOMAIN "datasets"
 
@@ -24,7 +24,7 @@ static int by_name(const void *a, const void *b)
     return strcmp(a, b);
 }
 
-/* The names of datasets in a folder, as a text for a message: "data/a, data/b"; how many. */
+/* Lists the datasets in a folder, for a message: "data/a, data/b". Returns their number. */
 static int list_datasets(const char *folder, char *text, size_t size)
 {
     enum {
@@ -56,22 +56,16 @@ static int list_datasets(const char *folder, char *text, size_t size)
     return n;
 }
 
-/* The things that are most often given where a dataset is expected. */
 static enum wb_status check_name(const char *name)
 {
     char held[1024];
-    if (wb_command_ends_in(name, ".wbr") || wb_command_ends_in(name, ".wbr.zst"))
-        return wb_fail(WB_ERR_FORMAT,
-                       "'%s' is a recording: run `wirebench align` first, which makes a dataset of "
-                       "it",
-                       name);
     if (!wb_file_is_folder(name) || is_dataset(name))
-        return WB_OK;
+        return wb_file_kind_check(name, WB_FILE_BIT(WB_FILE_DATASET));
     const int n = list_datasets(name, held, sizeof held);
     if (n > 0)
-        return wb_fail(WB_ERR_FORMAT, "'%s' holds %s: %s; name those that are wanted", name,
+        return wb_fail(WB_ERR_FORMAT, "'%s' contains %s: %s; name the datasets themselves", name,
                        n == 1 ? "a dataset" : "several datasets", held);
-    return WB_OK;
+    return wb_file_kind_check(name, WB_FILE_BIT(WB_FILE_DATASET));
 }
 
 enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const *names, int n,

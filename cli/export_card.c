@@ -6,6 +6,7 @@
 
 #include "analysis/cards/card.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
 #include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "export"
@@ -32,7 +33,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct options *const o = state->input;
     if (key != KEY_TO)
         return wb_command_parse_common(key, argument, state, &o->common);
-    return 0; /* read before, for it says which options there are */
+    return 0; /* find_kind() has read it: the other options depend on it */
 }
 
 static const struct argp argp = {
@@ -40,17 +41,16 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "WIRE|FILE --to KIND",
     .doc = "Writes the law of a wire as a card, an input of another program, from a wire file with "
-           "properties (a shipped one by its name) or from a properties file that `wirebench "
-           "calibrate` wrote. The card says "
-           "units, law, interval, range of curvature, test conditions and checksums, and in its "
-           "first line whether virtual or simulated data are behind it.",
+           "properties (a shipped one by its name) or from a properties file of `wirebench "
+           "calibrate`. The card states units, law, interval, range of curvature, test conditions "
+           "and checksums; its first line says whether the data are virtual or simulated.",
 };
 
 static const struct wb_settings_source sources[] = {
     {.tables = &wb_card_table, .n_tables = 1, .offset = offsetof(struct options, settings)},
 };
 
-/* The argument of the last --to; NULL: there is none. */
+/* The argument of the last --to, or NULL. */
 static const char *find_kind(int argc, char **argv)
 {
     const char *name = NULL;
@@ -63,7 +63,7 @@ static const char *find_kind(int argc, char **argv)
     return name;
 }
 
-static enum wb_status put_out(const struct options *o, const struct wb_text *card)
+static enum wb_status write_card(const struct options *o, const struct wb_text *card)
 {
     if (o->common.output) {
         if (!o->common.force && wb_file_exists(o->common.output))
@@ -95,11 +95,14 @@ int wb_export_card(int argc, char **argv)
     char path[WB_PATH];
     enum wb_status status = wb_file_find_fixture(path, "wires", o.common.input, NULL);
     if (status == WB_OK)
+        status =
+            wb_file_kind_check(path, WB_FILE_BIT(WB_FILE_WIRE) | WB_FILE_BIT(WB_FILE_PROPERTIES));
+    if (status == WB_OK)
         status = wb_card_source_read(&source, path);
     if (status == WB_OK)
         status = wb_card_write(o.kind, &source, &o.settings, &card, NULL);
     if (status == WB_OK)
-        status = put_out(&o, &card);
+        status = write_card(&o, &card);
     wb_text_release(&card);
     return wb_command_exit(status);
 }

@@ -16,7 +16,7 @@ enum {
     MOST_TABLES = WB_SAMPLE_COLUMNS_TABLES + 1
 };
 
-/* What is exported. */
+/* The tables of one file. */
 struct job {
     const struct wb_command_common *options;
     int n;
@@ -57,7 +57,7 @@ static enum wb_status read_recording(struct job *job, struct wb_recording *recor
         return met;
     job->is_virtual = rig.is_virtual;
     job->damaged_chunks = counts.damaged_chunks;
-    /* Damage was logged while reading; what could be read is written. */
+    /* Damage was logged while reading; the readable part is written. */
     job->is_complete = status == WB_OK && met == WB_OK && counts.damaged_chunks == 0 &&
                        wb_recording_is_complete(recording);
     if (status == WB_ERR_DATA && counts.load_samples + counts.mocap_frames == 0)

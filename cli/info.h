@@ -1,23 +1,19 @@
-/* What `wirebench info` says of files that are no recordings. */
+/* `wirebench info` of files other than recordings. */
 #ifndef WB_CLI_INFO_H
 #define WB_CLI_INFO_H
 
-#include <stdbool.h>
-
 #include "cli/command.h"
+#include "cli/file_kind.h"
 
 struct wb_info_options {
     struct wb_command_common common;
-    /* Of a bundle. */
-    const char *figure; /* file of its section's drawing; NULL: none */
-    const char *mesh;   /* whose lines are drawn; NULL: that of the run */
+    /* For bundles. */
+    const char *figure; /* path of a drawing of the section, or NULL */
+    const char *mesh;   /* name of the mesh to draw; NULL: that of the run */
 };
 
-/* Whether a file's name says that it is a bundle's, or is that of no file: then of a shipped one.
- */
-bool wb_info_is_bundle(const char *name);
-
-/* Returns an exit code. */
-int wb_info_bundle(const struct wb_info_options *options);
+/* Each prints one file and returns an exit code. */
+int wb_info_bundle(const struct wb_info_options *options); /* also of a shipped one, by its name */
+int wb_info_file(const struct wb_info_options *options, enum wb_file_kind kind);
 
 #endif

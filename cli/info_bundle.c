@@ -1,4 +1,4 @@
-/* wirebench info BUNDLE.yaml: what a bundle is. */
+/* wirebench info BUNDLE.yaml. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,19 +14,10 @@
 #define WB_LOG_DOMAIN "info"
 
 enum {
-    OUTLINE = 20000 /* places looked at round a tape on a circle */
+    OUTLINE = 20000 /* points along the outline of a tape on a circle */
 };
 
 static const double pixels_of_a_point = 3.0;
-
-bool wb_info_is_bundle(const char *name)
-{
-    const bool is_recording =
-        wb_command_ends_in(name, ".wbr") || wb_command_ends_in(name, ".wbr.zst");
-    return wb_command_ends_in(name, ".yaml") || wb_command_ends_in(name, ".yml") ||
-           !(is_recording || strchr(name, '/') ||
-             (wb_file_exists(name) && !wb_file_is_folder(name)));
-}
 
 static const char *length_source(const struct wb_bundle_model *model)
 {
@@ -39,13 +30,13 @@ static const char *formulation(const struct wb_bundle_mesh *mesh)
     return mesh->formulation == WB_BUNDLE_ONE_POINT ? "one-point" : "2x2x1";
 }
 
-/* Where the tape lies on a wire, seen from the wire's middle. */
+/* The contact of the tape with a wire. */
 struct contact {
     bool touches;
-    double angle; /* rad */
+    double angle; /* rad, about the centre of the wire */
 };
 
-/* The outline of a tape on a circle is that of no wire: it is bonded to what is within reach. */
+/* A tape on a circle does not follow the wires: it is bonded to those within its bond reach. */
 static void find_round_contacts(const struct wb_bundle_model *model, struct contact *contacts)
 {
     const struct wb_hull *const hull = &model->tape.hull;
@@ -56,7 +47,7 @@ static void find_round_contacts(const struct wb_bundle_model *model, struct cont
         const int wire = wb_bundle_model_tape_wire(model, at.y, at.z, 0.0);
         if (wire < 0)
             continue;
-        /* The piece of the circle, turned to face the wire's middle. */
+        /* The component of the step that is perpendicular to the radius from the wire's centre. */
         const double y = at.y - model->packing.wire[wire].y;
         const double z = at.z - model->packing.wire[wire].z;
         const double facing = y * sin(at.normal) + z * cos(at.normal);
@@ -135,6 +126,10 @@ static void print_text(const struct wb_bundle_model *model, const char *figure)
         printf("  %-10s %s\n", "figure", figure);
     print_facts(model);
     print_meshes(model);
+    struct wb_text next = {0};
+    wb_file_kind_append_next(&next, WB_FILE_BUNDLE, model->path);
+    printf("  %-10s %s\n", "next", wb_text_string(&next));
+    wb_text_release(&next);
 }
 
 /* --- as JSON --- */
@@ -183,6 +178,7 @@ static int print_json(const struct wb_bundle_model *model, const char *figure)
     const int n = wb_bundle_model_facts(model, facts);
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "bundle", model->path);
+    wb_json_set_text(root, "kind", wb_file_kind_key(WB_FILE_BUNDLE));
     wb_json_set_text(root, "name", model->name);
     wb_json_set_text(root, "title", model->title);
     char sha256[WB_SHA256_TEXT];
@@ -216,10 +212,10 @@ static enum wb_status draw(const struct wb_info_options *options,
     return status;
 }
 
-static int tell(const struct wb_info_options *options, const struct wb_bundle_model *model)
+static int print(const struct wb_info_options *options, const struct wb_bundle_model *model)
 {
     if (options->mesh && !wb_bundle_model_mesh(model, options->mesh)) {
-        wb_error("%s: there is no mesh '%s'", model->path, options->mesh);
+        wb_error("%s: unknown mesh '%s'", model->path, options->mesh);
         return WB_EXIT_USAGE;
     }
     if (options->figure && draw(options, model) != WB_OK)
@@ -237,7 +233,7 @@ int wb_info_bundle(const struct wb_info_options *options)
     enum wb_status status = wb_file_find_fixture(path, "bundles", options->common.input, NULL);
     if (status == WB_OK)
         status = wb_bundle_model_read(model, path);
-    const int code = status == WB_OK ? tell(options, model) : wb_command_exit(status);
+    const int code = status == WB_OK ? print(options, model) : wb_command_exit(status);
     free(model);
     return code;
 }

@@ -18,12 +18,14 @@ enum {
 };
 
 static const struct argp_option option_table[] = {
-    {NULL, 0, NULL, 0, "Runs that are missing:", 2},
+    {NULL, 0, NULL, 0, "Missing and outdated datasets:", 2},
     {"solve", KEY_SOLVE, NULL, 0, "Compute them here, on all cores", 2},
     {"workers", KEY_WORKERS, "N", 0, "Runs at once (as many as cores; with --slurm, no limit)", 2},
     {"cores-per-run", KEY_CORES, "N", 0, "Threads that one run may use (1)", 2},
-    {"slurm", KEY_SLURM, NULL, 0, "Compute them as a Slurm job array, wait and collect", 2},
-    {"slurm-dry-run", KEY_DRY_RUN, NULL, 0, "Write the array's script and list, submit nothing", 2},
+    {"slurm", KEY_SLURM, NULL, 0,
+     "Compute them as a Slurm job array, wait for it and collect the datasets", 2},
+    {"slurm-dry-run", KEY_DRY_RUN, NULL, 0,
+     "Write the script and list of the array, but submit nothing", 2},
     {"slurm-partition", KEY_PARTITION, "NAME", 0, "Partition of the array", 2},
     {"slurm-account", KEY_ACCOUNT, "NAME", 0, "Account that is charged", 2},
     {"slurm-time", KEY_TIME, "TIME", 0, "Time limit of one run, as sbatch takes it (2:00:00)", 2},
@@ -36,7 +38,7 @@ static const struct argp_option option_table[] = {
 static void want(struct argp_state *state, struct wb_jobs_options *o, enum wb_jobs_where where)
 {
     if (o->where != WB_JOBS_NOWHERE && o->where != where)
-        argp_error(state, "--solve and --slurm: one of them");
+        argp_error(state, "--solve and --slurm cannot be combined");
     o->where = where;
 }
 
@@ -56,9 +58,9 @@ static void check(struct argp_state *state, const struct wb_jobs_options *o)
     const bool has_slurm_option =
         o->partition || o->account || o->time || o->memory || o->n_extra > 0;
     if (has_slurm_option && o->where != WB_JOBS_SLURM)
-        argp_error(state, "--slurm-...: only with --slurm");
+        argp_error(state, "options --slurm-... need --slurm");
     if ((o->workers > 0 || o->cores_per_job > 0) && o->where == WB_JOBS_NOWHERE)
-        argp_error(state, "--workers and --cores-per-run: only with --solve or --slurm");
+        argp_error(state, "--workers and --cores-per-run need --solve or --slurm");
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)

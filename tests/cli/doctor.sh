@@ -62,7 +62,7 @@ well() {
         fail "markers are judged without a specimen: $(cat "$folder/well.json")"
     look travel 4 "$folder/well/rig.yaml" "$specimen" --travel-mm 59
     said travel '^travel +NOT READY .*--travel-mm'
-    said travel '^the virtual rig is NOT READY: 1 thing to mend$'
+    said travel '^the virtual rig is NOT READY: 1 problem to fix$'
     finish
 }
 

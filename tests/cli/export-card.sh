@@ -40,9 +40,9 @@ expect 2 'expected one of calculix' type1 --to nastran
 expect 2 'without a kind, with -o FILE.h5' type1 --to hdf5
 expect 2 '--to mujoco' type1 --to table --segments 3
 expect 1 'none.yaml' "$folder/none.yaml" --to table
-expect 1 'expected a wire file' "$2/fixtures/materials/pvc.yaml" --to table
+expect 1 'is a material file, expected a properties file or a wire file' "$2/fixtures/materials/pvc.yaml" --to table
 printf 'SQLite format 3\0\0' >"$folder/test.wbr"
-expect 1 'without --to' "$folder/test.wbr" --to table
+expect 1 'is a recording, expected a properties file or a wire file' "$folder/test.wbr" --to table
 "$tool" export type1 --to table -o "$folder/once"
 expect 1 'exists; --force' type1 --to table -o "$folder/once"
 echo old >"$folder/once"

@@ -112,8 +112,8 @@ grep -q '^    faults: "loss=5,wrong-up"' "$folder/four/deep/rig.yaml" || fail "f
 [ "$(grep -c error: "$folder/one.log")" = 0 ] || fail "complained: $(cat "$folder/one.log")"
 
 refused 2 'name a rig file' --specimen "$specimen" --run "$folder/refused"
-refused 2 'no --specimen' "$rig" --run "$folder/refused"
-refused 2 'no folder' "$rig" --specimen "$specimen"
+refused 2 '--specimen SPECIMEN.yaml' "$rig" --run "$folder/refused"
+refused 2 '--run DIR' "$rig" --specimen "$specimen"
 refused 2 'one rig file at a time' "$rig" "$rig" --specimen "$specimen" --run "$folder/refused"
 refused 2 "--wire-law: expected kinematic, isotropic, mixed" "$rig" \
     --specimen "$specimen" --run "$folder/refused" --wire-law rubber

@@ -141,14 +141,14 @@ static void wrong_usage_and_files_are_refused(void **state)
 {
     (void)state;
     expect("info fixtures/bundles/12-type3.yaml --figure a.gif", 2, "--figure");
-    expect("info fixtures/bundles/12-type3.yaml --mesh paper", 2, "--mesh goes with --figure");
+    expect("info fixtures/bundles/12-type3.yaml --mesh paper", 2, "--mesh needs --figure");
     expect("info a.wbr --figure b.svg", 2, "--figure applies to bundles, and 'a.wbr'");
-    expect("info", 2, "name a recording or bundle file");
+    expect("info", 2, "name a file");
     expect("info none.yaml", 1, "none.yaml");
-    expect("info fixtures/bundles/12-type3.yaml --figure b.svg --mesh none", 2, "no mesh 'none'");
+    expect("info fixtures/bundles/12-type3.yaml --figure b.svg --mesh none", 2, "mesh 'none'");
     expect("info fixtures/bundles/12-type3.yaml --figure b.svg --mesh ''", 2, "--mesh: ");
     assert_false(wb_file_exists(path_of("b.svg")));
-    expect("info fixtures/wires/type1.yaml", 1, "type1.yaml:3: conductor_diameter_mm");
+    expect("info fixtures/wires/type1.yaml --figure b.svg", 2, "is not a bundle");
     expect("info fixtures/bundles/12-type3.yaml --figure none/b.svg", 1, "none/b.svg");
 }
 
