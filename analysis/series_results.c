@@ -24,7 +24,7 @@
 /* Deflection over length up to which the curve is taken for straight, as for the calibration's E.
  */
 #define ELASTIC_ZONE 0.05
-#define COLUMN 19 /* characters, of the table */
+#define COLUMN 16 /* characters, of the table */
 
 static const struct {
     const char *name, *unit, *key;
@@ -32,10 +32,9 @@ static const struct {
     int decimals;
 } quantities[] = {
     [WB_SERIES_PEAK_FORCE] = {"peak force", "mN", "peak_force_mN", WB_MN, 2},
-    [WB_SERIES_STIFFNESS] = {"initial stiffness", "mN/mm", "initial_stiffness_mN_per_mm",
-                             WB_MN / WB_MM, 3},
-    [WB_SERIES_RESIDUAL] = {"residual deflection", "mm", "residual_deflection_mm", WB_MM, 2},
-    [WB_SERIES_LOOP] = {"area of the loop", "mJ", "loop_area_mJ", WB_MJ, 3},
+    [WB_SERIES_STIFFNESS] = {"stiffness", "mN/mm", "initial_stiffness_mN_per_mm", WB_MN / WB_MM, 3},
+    [WB_SERIES_RESIDUAL] = {"residual", "mm", "residual_deflection_mm", WB_MM, 2},
+    [WB_SERIES_LOOP] = {"loop area", "mJ", "loop_area_mJ", WB_MJ, 3},
 };
 
 /* --- of one test --- */

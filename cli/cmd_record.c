@@ -1,16 +1,20 @@
-/* wirebench record: the paper's test, recorded. */
+/* wirebench record: runs a bending test and records it. */
+#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "analysis/align/align.h"
 #include "analysis/plot/figure.h"
 #include "analysis/quicklook.h"
+#include "analysis/series_results.h"
 #include "base/file.h"
 #include "base/timing.h"
 #include "base/units.h"
 #include "cli/bench_options.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
+#include "cli/finding.h"
 #include "cli/live_line.h"
 #include "cli/record_series.h"
 #include "cli/record_test.h"
@@ -24,11 +28,11 @@ struct options {
     struct wb_command_common common;
     struct wb_bend_test_request request;
     struct wb_record_views_options views;
-    const char *figure; /* the curve's file; NULL: not wanted */
-    const char *series; /* the file of a series; NULL: a single test */
+    const char *figure; /* path, or NULL */
+    const char *series; /* path of a series' file; NULL: a single test */
     bool is_virtual;
     struct wb_virtual_options bench;
-    const char *of_virtual; /* an option given that only a virtual test has; NULL: none */
+    const char *of_virtual; /* an option that only a virtual test has and that was given, or NULL */
     struct wb_virtual_test virtual;
 };
 
@@ -47,40 +51,42 @@ enum {
 static const struct argp_option argp_options[] = {
     {"specimen", OPTION_SPECIMEN, "SPECIMEN.yaml", 0, "The piece of wire on the bench", 0},
     {"series", OPTION_SERIES, "SERIES.yaml", 0,
-     "Test several specimens, one after the other, as this file says", 0},
+     "Test several specimens one after another, as described in this file", 0},
     {"output", 'o', "REC.wbr", 0,
-     "The recording to write; it must not exist. Of a series: the folder of its recordings", 0},
-    {"operator", OPTION_OPERATOR, "NAME", 0, "Who runs the test, for the recording", 0},
-    {"notes", OPTION_NOTES, "TEXT", 0, "Anything worth knowing later, for the recording", 0},
+     "The recording to write; it must not exist. For a series: the folder of its recordings", 0},
+    {"operator", OPTION_OPERATOR, "NAME", 0, "Name of the operator, stored in the recording", 0},
+    {"notes", OPTION_NOTES, "TEXT", 0, "Notes, stored in the recording", 0},
     {"live", OPTION_LIVE, NULL, 0,
-     "Show the test on the whole terminal: curve, wire, large figures, instruments", 0},
+     "Show the test full-screen in the terminal: curve, wire, large numbers, instruments", 0},
     {"serve", OPTION_SERVE, "PORT", 0,
-     "Show it as a web page at http://127.0.0.1:PORT/; 0 takes a free port", 0},
+     "Show the test as a web page at http://127.0.0.1:PORT/; 0 selects a free port", 0},
     {"figure", OPTION_FIGURE, "FILE", 0,
-     "Draw force over deflection at the end, as SVG, PNG or PDF; the file must not exist", 0},
+     "At the end, draw force over deflection as SVG, PNG or PDF; the file must not exist", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0,
-     "Test on a virtual bench like that of RIG.yaml, in virtual time: the whole test in a second "
-     "or "
-     "two, without instruments",
+     "Test on a virtual bench like that of RIG.yaml, in virtual time: a whole test takes one or "
+     "two "
+     "seconds and needs no instruments",
      0},
     {"start", OPTION_START, "DATE", 0,
-     "With --virtual: the date that the recording names, 2026-11-25 or 2026-11-25T14:03:00Z; "
-     "without it the real one",
+     "With --virtual: the date stored in the recording, 2026-11-25 or 2026-11-25T14:03:00Z (the "
+     "real date)",
      0},
     {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
     {0},
 };
 
-/* What the series' file says is not said a second time. */
+/* Settings of a series stand in its file only. */
 static error_t check_series(struct argp_state *state, const struct options *options)
 {
     if (options->request.specimen_path)
-        argp_error(state, "--series names the specimen in its file: leave out --specimen");
+        argp_error(state,
+                   "--specimen cannot be combined with --series, whose file names the specimen");
     for (size_t i = 0; i < wb_bend_test_table.n; i++) {
         const struct wb_setting *const row = &wb_bend_test_table.rows[i];
         if (wb_setting_differs(row, &options->request))
-            argp_error(state, "with --series, write %s into its file instead of --%s", row->name,
-                       row->option);
+            argp_error(state,
+                       "--%s cannot be combined with --series: write %s into the series' file",
+                       row->option, row->name);
     }
     return 0;
 }
@@ -88,10 +94,10 @@ static error_t check_series(struct argp_state *state, const struct options *opti
 static void check_virtual(struct argp_state *state, const struct options *options)
 {
     if (!options->is_virtual && options->of_virtual)
-        argp_error(state, "--%s is for a virtual test: add --virtual", options->of_virtual);
+        argp_error(state, "--%s needs --virtual", options->of_virtual);
     if (options->is_virtual && (options->views.live || options->views.serve))
-        argp_error(state, "a virtual test takes a second and cannot be watched: leave out --live "
-                          "and --serve, or start the bench with 'wirebench rig'");
+        argp_error(state, "--live and --serve cannot be combined with --virtual, which takes a "
+                          "second; for a virtual bench in real time use 'wirebench rig'");
 }
 
 static void note_option(void *input, const struct wb_setting *row)
@@ -129,7 +135,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case OPTION_FIGURE:
         options->figure = argument;
         if (!wb_figure_is_file(argument))
-            argp_error(state, "a figure is written as NAME.svg, NAME.png or NAME.pdf, not '%s'",
+            argp_error(state, "--figure: expected NAME.svg, NAME.png or NAME.pdf, not '%s'",
                        argument);
         return 0;
     case OPTION_VIRTUAL:
@@ -148,10 +154,10 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         if (options->series)
             return check_series(state, options);
         if (!request->specimen_path)
-            argp_error(state, "no --specimen given");
+            argp_error(state, "--specimen SPECIMEN.yaml is missing");
         if (options->common.output && !wb_command_ends_in(options->common.output, ".wbr"))
             argp_error(state,
-                       "a recording is written as NAME.wbr, not '%s'; compress it afterwards "
+                       "--output: expected NAME.wbr, not '%s'; compress the recording afterwards "
                        "with zstd",
                        options->common.output);
         break;
@@ -168,17 +174,18 @@ static const struct argp argp = {
         "RIG.yaml --specimen SPECIMEN.yaml -o REC.wbr\n[RIG.yaml] --series SERIES.yaml [-o DIR]",
     .doc =
         "Runs a cantilever test and records it: connects to the instruments of the rig file, "
-        "checks the start (all markers seen, zero of the load cell sane, travel free, stage "
-        "ready), takes the tare, moves the clamp down and back, N times.\v"
-        "Mount the specimen with the strand slack: the stage's position when the test starts is "
-        "its start position. Every limit of the rig file (force, overload, travel, a silent "
-        "instrument, an alarm of the stage) stops the stage; the specimen then stays where it "
-        "is, and 'wirebench stage RIG.yaml release' frees it.\n\n"
-        "Keys while it runs: m marks the moment in the recording, h holds the test where it is, r "
-        "resumes it, q stops; Ctrl-C stops too. "
-        "The stage is stopped before the recording is closed.\n\n"
+        "checks the start (all markers visible, zero of the load cell plausible, travel free, "
+        "stage ready), takes the tare, and moves the clamp down and back, N times.\v"
+        "Mount the specimen with the strand slack: the test starts at the current position of the "
+        "stage. Every limit of the rig file (force, overload, travel, a silent instrument, an "
+        "alarm "
+        "of the stage) stops the stage; the specimen then stays loaded until 'wirebench stage "
+        "RIG.yaml release' frees it.\n\n"
+        "Keys during the test: m marks the moment in the recording, h holds the test, r resumes "
+        "it, q stops it; Ctrl-C stops it, too. The stage is stopped before the recording is "
+        "closed.\n\n"
         "Exit codes: 0 complete; 1 failed before the first cycle, or nothing was recorded; 2 wrong "
-        "usage; 3 stopped early or data lost, what was recorded is usable.",
+        "usage; 3 stopped early or data lost, the recorded part is usable.",
 };
 
 static const struct wb_settings_source sources[] = {
@@ -235,25 +242,97 @@ static int print_json(const struct wb_bend_test_result *result, const char *outp
     return wb_command_print_json(root);
 }
 
-/* The curve of the test just recorded. */
-static enum wb_status draw_figure(const char *recording, const char *path)
+static bool draw_figure(const struct wb_series_test *test, const char *path)
 {
-    struct wb_align_settings settings;
-    struct wb_dataset dataset;
-    wb_align_default_settings(&settings);
-    WB_TRY(wb_align_run(&dataset, recording, &settings, NULL));
-    const enum wb_status status = wb_quicklook_draw(&dataset, path);
-    wb_dataset_release(&dataset);
-    return status;
+    const enum wb_status status = test->is_usable ? wb_quicklook_draw(&test->dataset, path)
+                                                  : wb_fail(WB_ERR_DATA, "%s", test->problem);
+    if (status != WB_OK)
+        wb_error("'%s' was not drawn: see the message before; the recording is not affected", path);
+    return status == WB_OK;
 }
 
-static void print_result(const struct wb_bend_test_result *result, const char *output)
+/* --- the last lines --- */
+
+static void append_found(struct wb_text *text, const struct wb_bend_test_result *result,
+                         const struct wb_series_test *test)
+{
+    const struct wb_test_info *const info = &test->dataset.info;
+    if (test->is_usable)
+        wb_text_append(text, "%s, L = %g mm, sample %d (%s): ", info->wire, info->length / WB_MM,
+                       info->sample, wb_finding_source(info));
+    else if (result->is_virtual)
+        wb_text_append(text, "virtual rig: ");
+    wb_text_append(text, "%d cycle%s", result->cycles_done, result->cycles_done == 1 ? "" : "s");
+    if (isfinite(test->values[WB_SERIES_PEAK_FORCE]))
+        wb_text_append(text, ", peak force %.1f mN", test->values[WB_SERIES_PEAK_FORCE] / WB_MN);
+    if (isfinite(test->values[WB_SERIES_RESIDUAL]))
+        wb_text_append(text, ", residual deflection %.1f mm",
+                       test->values[WB_SERIES_RESIDUAL] / WB_MM);
+}
+
+static void append_trust(struct wb_text *text, const struct wb_bend_test_result *result,
+                         const struct wb_series_test *test, int code)
+{
+    if (!test->is_usable) {
+        wb_text_append(text, "no: no curve can be made of this recording: %s", test->problem);
+        return;
+    }
+    const int n = (int)wb_json_length(wb_json_get(test->dataset.document, "warnings"));
+    if (result->end != WB_SEQUENCE_DONE)
+        wb_text_append(text, "in part: the test ended early");
+    else if (code != WB_EXIT_OK)
+        wb_text_append(text, "in part: data were lost, see the warning");
+    else if (result->holds > 0)
+        wb_text_append(text, "in part: the test was held, and the wire relaxed meanwhile");
+    else if (n > 0)
+        wb_text_append(text, "in part: complete, but aligned with %d warning%s, see above", n,
+                       n == 1 ? "" : "s");
+    else if (!wb_dataset_is_complete(&test->dataset))
+        wb_text_append(text, "in part: the aligned curve is incomplete");
+    else
+        wb_text_append(text, "yes: complete, nothing lost, aligned without warnings");
+}
+
+static void append_next(struct wb_text *text, const struct wb_bend_test_result *result,
+                        const struct wb_series_test *test, const char *output)
+{
+    char dataset[WB_PATH];
+    if (!result->is_virtual && (result->displaced || !result->standing)) {
+        wb_text_append(text, "follow the warning above before you touch the specimen");
+        return;
+    }
+    wb_text_append(text, test->is_usable ? "wirebench align " : "wirebench verify ");
+    wb_text_append_quoted(text, output);
+    if (!test->is_usable)
+        return;
+    snprintf(dataset, sizeof dataset, "%.*s", (int)(strlen(output) - strlen(".wbr")), output);
+    wb_text_append(text, " -o ");
+    wb_text_append_quoted(text, dataset);
+}
+
+static void print_result(const struct wb_bend_test_result *result, const char *output,
+                         const struct wb_series_results *results, const char *figure, int code)
 {
     char *text = NULL;
     size_t size;
     FILE *const memory = open_memstream(&text, &size);
-    if (memory)
+    if (memory) {
         wb_record_test_print(memory, result, output);
+        if (results->n > 0) {
+            const struct wb_series_test *const test = &results->tests[0];
+            struct wb_finding finding = {.figure = figure};
+            struct wb_text table = {0};
+            wb_series_results_append(results, &table);
+            /* Without the rows of means, which one test does not have. */
+            const char *const all = wb_text_string(&table), *const means = strstr(all, "\nmean ");
+            fprintf(memory, "%.*s\n", means ? (int)(means - all) : (int)strlen(all), all);
+            wb_text_release(&table);
+            append_found(&finding.found, result, test);
+            append_trust(&finding.trust, result, test, code);
+            append_next(&finding.next, result, test, output);
+            wb_finding_write(memory, &finding);
+        }
+    }
     if (memory && fclose(memory) == 0)
         wb_live_line_print(text);
     free(text);
@@ -261,6 +340,8 @@ static void print_result(const struct wb_bend_test_result *result, const char *o
 
 static int run_series(struct options *options)
 {
+    if (wb_file_kind_check(options->series, WB_FILE_BIT(WB_FILE_SERIES)) != WB_OK)
+        return WB_EXIT_FAILED;
     const struct wb_record_series series = {
         .path = options->series,
         .test = options->request,
@@ -271,6 +352,27 @@ static int run_series(struct options *options)
         .json = options->common.json,
     };
     return wb_record_series_run(&series);
+}
+
+/* `code` is that of the test; returns that of the command. */
+static int deliver(const struct options *o, const struct wb_bend_test_result *result, int code)
+{
+    const char *const output = o->request.output_path;
+    const int code_of_test = code;
+    struct wb_series_results results = {0};
+    bool has_figure = false;
+    if (result->started && (o->figure || !o->common.json))
+        (void)wb_series_results_add(&results, output, 1);
+    if (o->figure && results.n > 0) {
+        has_figure = draw_figure(&results.tests[0], o->figure);
+        code = !has_figure && code == WB_EXIT_OK ? WB_EXIT_INCOMPLETE : code;
+    }
+    if (o->common.json && print_json(result, output) != WB_EXIT_OK)
+        code = WB_EXIT_FAILED;
+    if (!o->common.json && result->recorded)
+        print_result(result, output, &results, has_figure ? o->figure : NULL, code_of_test);
+    wb_series_results_release(&results);
+    return code;
 }
 
 int wb_cmd_record(int argc, char **argv)
@@ -286,12 +388,20 @@ int wb_cmd_record(int argc, char **argv)
     wb_settings_parse(&command, argc, argv, &options);
     wb_bench_options_complete(&options.bench);
     options.virtual.settings = options.bench.bench;
-    options.request.rig_path =
-        options.is_virtual ? wb_command_find(options.common.input, rig) : options.common.input;
+    options.request.rig_path = options.is_virtual && options.common.input
+                                   ? wb_command_find(options.common.input, rig)
+                                   : options.common.input;
+    if (options.request.rig_path &&
+        wb_file_kind_check(options.request.rig_path, WB_FILE_BIT(WB_FILE_RIG)) != WB_OK)
+        return WB_EXIT_FAILED;
     if (options.series)
         return run_series(&options);
     options.request.output_path = options.common.output;
     options.request.specimen_path = wb_command_find(options.request.specimen_path, specimen);
+    if (wb_file_kind_check(options.request.specimen_path,
+                           WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE)) !=
+        WB_OK)
+        return WB_EXIT_FAILED;
     if (options.figure && wb_file_exists(options.figure)) {
         wb_error("'%s' exists: choose another name with --figure", options.figure);
         return WB_EXIT_FAILED;
@@ -299,15 +409,5 @@ int wb_cmd_record(int argc, char **argv)
     if (wb_record_test_run(&options.request, &options.views,
                            options.is_virtual ? &options.virtual : NULL, &result, &code) != WB_OK)
         return WB_EXIT_FAILED;
-    if (options.figure && result.started &&
-        draw_figure(options.request.output_path, options.figure) != WB_OK) {
-        wb_error("'%s' was not drawn: the message before says why; the recording is not affected",
-                 options.figure);
-        code = code == WB_EXIT_OK ? WB_EXIT_INCOMPLETE : code;
-    }
-    if (options.common.json && print_json(&result, options.request.output_path) != WB_EXIT_OK)
-        return WB_EXIT_FAILED;
-    if (!options.common.json && result.recorded)
-        print_result(&result, options.request.output_path);
-    return code;
+    return deliver(&options, &result, code);
 }

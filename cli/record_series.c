@@ -17,6 +17,7 @@
 #include "base/timing.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/finding.h"
 #include "cli/record_test.h"
 #include "daq/recording/recording.h"
 #include "daq/test/series.h"
@@ -34,14 +35,14 @@ struct run {
     char folder[WB_PATH], index_path[WB_PATH], operator_name[80];
     struct wb_index index;
     struct wb_series_results results;
-    bool is_scripted; /* stdin is no terminal */
-    bool is_over;     /* stopped by the operator, or nobody answers any more */
+    bool is_scripted; /* stdin is not a terminal */
+    bool is_over;     /* stopped by the operator, or stdin has ended */
 };
 
 /* --- questions --- */
 
-/* A line from stdin without its end; false when there is none any more, or on Ctrl-C. Byte by byte:
- * what follows the line belongs to the next question, or to the keys of a test. */
+/* Reads a line from stdin without its line end; false at the end of stdin or on Ctrl-C. Reads byte
+ * by byte: the bytes behind the line answer the next question, or are keys of a test. */
 static bool read_line(char *line, size_t size)
 {
     size_t n = 0;
@@ -65,7 +66,7 @@ static bool read_line(char *line, size_t size)
     return false;
 }
 
-/* Asks until there is an answer; false, and the series is over, where nobody answers. */
+/* Asks a question; false at the end of stdin or on Ctrl-C, and the series is over. */
 static bool ask(struct run *run, char answer[ANSWER], const char *question)
 {
     fprintf(stderr, "%s", question);
@@ -101,10 +102,10 @@ static void copy_meta(struct wb_recording *recording, const char *key, char *tex
     free(value);
 }
 
-/* How far a recording came. */
+/* The cycles of a recording. */
 struct progress {
     int begun, done; /* cycles */
-    bool is_whole;   /* as many as it was to have */
+    bool is_whole;   /* as many as were requested */
 };
 
 static enum wb_status count_cycles(void *context, const struct wb_event *event)
@@ -115,7 +116,7 @@ static enum wb_status count_cycles(void *context, const struct wb_event *event)
     return WB_OK;
 }
 
-/* What a recording says of itself, as an entry of the index. */
+/* Fills an entry of the index from the metadata of a recording. */
 static enum wb_status describe(const struct run *run, const char *path, int number,
                                struct wb_index_entry *entry, struct progress *progress)
 {
@@ -136,10 +137,10 @@ static enum wb_status describe(const struct run *run, const char *path, int numb
     if (status == WB_OK)
         status = wb_specimen_parse(text, entry->file, &specimen, NULL);
     else
-        wb_error("'%s' says nothing of its specimen", path);
+        wb_error("'%s' has no specimen in its metadata", path);
     free(text);
     if (wb_recording_each_event(recording, count_cycles, progress) != WB_OK)
-        wb_debug("the events before what is damaged count");
+        wb_debug("'%s': only events before the damage are counted", path);
     const enum wb_status closed = wb_recording_close(recording);
     progress->is_whole = progress->done > 0 && progress->done >= atoi(wanted);
     entry->cycles = progress->done;
@@ -150,7 +151,7 @@ static enum wb_status describe(const struct run *run, const char *path, int numb
     return status == WB_OK ? closed : status;
 }
 
-/* --- what is shown after each test --- */
+/* --- curves and table after each test --- */
 
 static void add_points(struct wb_live_history *history, const struct wb_series_test *test,
                        struct wb_live_plan *plan)
@@ -165,7 +166,7 @@ static void add_points(struct wb_live_history *history, const struct wb_series_t
     }
 }
 
-/* As the terminal's user has set it; the process keeps the plain locale, whose numbers it writes.
+/* From the user's locale; the process itself keeps the C locale, so that it writes decimal points.
  */
 static bool has_unicode(void)
 {
@@ -176,7 +177,7 @@ static bool has_unicode(void)
     return is;
 }
 
-/* The curves of all tests that count, and of the last one, on a terminal. */
+/* Draws the curves of all tests that are not excluded, and of the last one, on a terminal. */
 static void show_curves(const struct wb_series_results *results)
 {
     struct wb_live_history history = {0};
@@ -215,14 +216,18 @@ static void print_table(FILE *out, const struct wb_series_results *results)
     wb_text_release(&text);
 }
 
-static void draw_figure(const struct run *run)
+/* Whether the figure was drawn. */
+static bool draw_figure(const struct run *run)
 {
-    if (run->request->figure &&
-        wb_series_results_draw(&run->results, run->series.name, run->request->figure) != WB_OK)
-        wb_warn("'%s' was not drawn: the message before says why", run->request->figure);
+    if (!run->request->figure)
+        return false;
+    if (wb_series_results_draw(&run->results, run->series.name, run->request->figure) == WB_OK)
+        return true;
+    wb_warn("'%s' was not drawn: see the message before", run->request->figure);
+    return false;
 }
 
-/* --- the operator's judgement --- */
+/* --- the operator's decision --- */
 
 /* "x REASON", "r REASON". */
 static bool take_exclusion(const struct run *run, const char *answer,
@@ -230,12 +235,13 @@ static bool take_exclusion(const struct run *run, const char *answer,
 {
     const char *const reason = answer + 1 + strspn(answer + 1, " \t");
     if ((answer[0] != 'x' && answer[0] != 'r') || (answer[1] && answer[1] != ' ')) {
-        wb_warn("'%s' is not one of these answers", answer);
+        wb_warn("unknown answer '%s'", answer);
         return false;
     }
     if (!*reason || strlen(reason) >= sizeof exclusion->reason) {
-        wb_warn("a reason is needed, of less than %zu bytes: %c the wire slipped in its clamp",
-                sizeof exclusion->reason, answer[0]);
+        wb_warn(
+            "give a reason of less than %zu bytes, for example: %c the wire slipped in its clamp",
+            sizeof exclusion->reason, answer[0]);
         return false;
     }
     *exclusion = (struct wb_index_exclusion){.is_excluded = true, .is_repeated = answer[0] == 'r'};
@@ -245,18 +251,18 @@ static bool take_exclusion(const struct run *run, const char *answer,
     return true;
 }
 
-/* Fills in what the operator makes of a test; false where the series is over before. */
+/* Asks the operator whether the test counts; false where the series is over before. */
 static bool judge(struct run *run, struct wb_index_entry *entry, bool is_whole)
 {
     char answer[ANSWER], now_utc[32];
-    /* A key that was meant for the test is no judgement. */
+    /* Keys that were meant for the test are not an answer. */
     if (!run->is_scripted)
         tcflush(STDIN_FILENO, TCIFLUSH);
     for (;;) {
         if (!ask(run, answer,
                  is_whole ? "Enter: keep it; x REASON: exclude it; r REASON: exclude it and test "
                             "this sample again; q: stop here> "
-                          : "The test is not whole. k: keep it all the same; x REASON: exclude it; "
+                          : "The test is incomplete. k: keep it anyway; x REASON: exclude it; "
                             "r REASON: exclude it and test this sample again; q: stop here> "))
             return false;
         if ((is_whole && !answer[0]) || strcmp(answer, "k") == 0)
@@ -271,14 +277,15 @@ static bool judge(struct run *run, struct wb_index_entry *entry, bool is_whole)
     }
 }
 
-/* Shows a recorded test, asks what to make of it, and lists it. */
+/* Shows a recorded test, asks whether to keep it, and adds it to the index. */
 static enum wb_status settle(struct run *run, int number, const char *path)
 {
     struct wb_index_entry entry;
     struct progress progress;
     WB_TRY(describe(run, path, number, &entry, &progress));
     if (progress.begun == 0) {
-        wb_info("'%s' holds no cycle: it is kept, and not listed", wb_file_name(path));
+        wb_info("'%s' contains no cycle: the file is kept but not added to the index",
+                wb_file_name(path));
         return WB_OK;
     }
     struct wb_series_test *const test = wb_series_results_add(&run->results, path, number);
@@ -291,18 +298,19 @@ static enum wb_status settle(struct run *run, int number, const char *path)
     show_curves(&run->results);
     print_table(stderr, &run->results);
     if (!judge(run, &entry, progress.is_whole && test->is_usable)) {
-        wb_info("'%s' is not listed yet: the series asks again when it is continued", test->name);
+        wb_info("'%s' is not in the index yet: you will be asked again when the series continues",
+                test->name);
         return WB_OK;
     }
     test->excluded = entry.excluded;
-    draw_figure(run);
+    (void)draw_figure(run);
     WB_TRY(wb_index_append(run->index_path, &entry));
     return read_index(run);
 }
 
 /* --- one test --- */
 
-/* The questions of the series' file; false where the series is over before. */
+/* Asks the questions of the series' file; false where the series is over before. */
 static bool ask_questions(struct run *run, int sample, struct wb_text *specimen, char notes[ANSWER])
 {
     static const char *const what[] = {
@@ -327,8 +335,8 @@ static bool ask_questions(struct run *run, int sample, struct wb_text *specimen,
     }
 }
 
-#define MOST_EARLIER 30    /* tests whose curves the views show, */
-#define EARLIER_POINTS 200 /* each of about so many points */
+#define MOST_EARLIER 30    /* earlier tests whose curves the views show */
+#define EARLIER_POINTS 200 /* approximate number of points of each */
 
 static void add_earlier(const struct wb_series_test *test, struct wb_live_frame_point *points,
                         size_t *n)
@@ -342,8 +350,8 @@ static void add_earlier(const struct wb_series_test *test, struct wb_live_frame_
     }
 }
 
-/* The curves of the last tests that count, for the views of the next one. To be freed; NULL where
- * there are none. */
+/* The curves of the last tests that are not excluded, for the views of the next one. Caller frees;
+ * may be NULL. */
 static struct wb_live_frame_point *find_earlier(const struct wb_series_results *results, size_t *n)
 {
     struct wb_live_frame_point *const points =
@@ -377,12 +385,12 @@ static enum wb_status test_sample(struct run *run, int number, int sample, const
     struct wb_live_frame_point *const earlier = find_earlier(&run->results, &run->views.n_earlier);
     run->views.earlier = earlier;
     struct wb_virtual_test *const virtual = run->request->virtual;
-    if (virtual) /* another specimen is another draw */
+    if (virtual) /* the seed draws the specimen and its noise */
         virtual->settings.seed++;
     const enum wb_status status = wb_record_test_run(&test, &run->views, virtual, &result, &code);
     free(earlier);
     if (status != WB_OK)
-        return WB_OK; /* told; nothing was moved, and the specimen is asked for again */
+        return WB_OK; /* already reported; the same specimen is asked for again */
     if (!result.recorded)
         return WB_OK;
     wb_record_test_print(stderr, &result, file);
@@ -397,7 +405,7 @@ static enum wb_status next_test(struct run *run, int sample, int n_done)
     enum wb_status status = WB_OK;
     WB_TRY(wb_series_next_number(&run->series, run->folder, &run->index, &number));
     wb_series_file(&run->series, number, sample, file);
-    fprintf(stderr, "\n%s, specimen %d of %d: sample %d of %s, %g mm, goes to %s\n",
+    fprintf(stderr, "\n%s, specimen %d of %d: sample %d of %s, %g mm, recording %s\n",
             run->series.name, n_done + 1, run->series.n_specimens, sample, run->series.like.wire,
             run->series.like.length / WB_MM, file);
     snprintf(question, sizeof question,
@@ -412,9 +420,9 @@ static enum wb_status next_test(struct run *run, int sample, int n_done)
     return status;
 }
 
-/* --- all of it --- */
+/* --- the series --- */
 
-/* The tests that are listed, and those that nobody has judged. */
+/* Loads the tests of the index, and asks about recordings that are not in it. */
 static enum wb_status look_back(struct run *run)
 {
     char path[WB_PATH], file[WB_SERIES_FILE];
@@ -433,19 +441,19 @@ static enum wb_status look_back(struct run *run)
         if (number == 0)
             return WB_OK;
         WB_TRY(wb_file_join(path, run->folder, file));
-        fprintf(stderr, "\n%s was recorded, and nobody has said what to make of it.\n", file);
+        fprintf(stderr, "\n%s was recorded, but not yet kept or excluded.\n", file);
         WB_TRY(settle(run, number, path));
     }
     return WB_OK;
 }
 
-static enum wb_status go_on(struct run *run)
+static enum wb_status run_tests(struct run *run)
 {
     int n_done, sample = wb_series_next_sample(&run->series, &run->index, &n_done);
     fprintf(stderr, "series %s: %d of %d specimens done; recordings go to '%s'\n", run->series.name,
             n_done, run->series.n_specimens, run->folder);
     if (run->is_scripted)
-        wb_info("standard input is no terminal: answers are read from it line by line");
+        wb_info("standard input is not a terminal: answers are read from it line by line");
     while (!run->operator_name[0] && !run->is_over) {
         char answer[ANSWER];
         if (ask(run, answer, "Your name, for the recordings> "))
@@ -458,11 +466,90 @@ static enum wb_status go_on(struct run *run)
     return WB_OK;
 }
 
+/* --- the last lines --- */
+
+static void append_found(struct wb_text *text, const struct run *run, int n_done)
+{
+    const struct wb_series_results *const results = &run->results;
+    const struct wb_test_info *info = NULL;
+    int n_excluded = 0;
+    for (int i = 0; i < results->n; i++) {
+        const struct wb_series_test *const test = &results->tests[i];
+        info = test->is_usable ? &test->dataset.info : info;
+        n_excluded += test->excluded.is_excluded;
+    }
+    wb_text_append(text, "series %s: %d of %d specimens done, %d test%s", run->series.name, n_done,
+                   run->series.n_specimens, results->n, results->n == 1 ? "" : "s");
+    if (n_excluded > 0)
+        wb_text_append(text, " (%d excluded)", n_excluded);
+    if (info)
+        wb_text_append(text, " of %s, L = %g mm (%s)", info->wire, info->length / WB_MM,
+                       wb_finding_source(info));
+}
+
+static void append_trust(struct wb_text *text, const struct run *run, bool is_complete)
+{
+    const struct wb_series_results *const results = &run->results;
+    int n_kept = 0, n_unusable = 0, n_warned = 0;
+    for (int i = 0; i < results->n; i++) {
+        const struct wb_series_test *const test = &results->tests[i];
+        if (test->excluded.is_excluded)
+            continue;
+        n_kept++;
+        n_unusable += !test->is_usable;
+        n_warned += test->is_usable &&
+                    (!wb_dataset_is_complete(&test->dataset) ||
+                     wb_json_length(wb_json_get(test->dataset.document, "warnings")) > 0);
+    }
+    if (n_kept == 0)
+        wb_text_append(text, "no: no test was kept");
+    else if (n_unusable > 0)
+        wb_text_append(text, "in part: no curve can be made of %d of %d tests", n_unusable, n_kept);
+    else if (n_warned > 0)
+        wb_text_append(text, "in part: %d of %d tests are incomplete or were aligned with warnings",
+                       n_warned, n_kept);
+    else
+        wb_text_append(text, "%s: %d test%s aligned without warnings",
+                       is_complete ? "yes" : "in part, the series is not complete", n_kept,
+                       n_kept == 1 ? "" : "s");
+}
+
+static void append_next(struct wb_text *text, const struct run *run, bool is_complete)
+{
+    char folder[WB_PATH];
+    if (!is_complete) {
+        wb_text_append(text, "run the same command again to continue");
+        return;
+    }
+    wb_text_append(text, "wirebench align");
+    for (int i = 0; i < run->results.n; i++) {
+        const struct wb_series_test *const test = &run->results.tests[i];
+        char path[WB_PATH];
+        if (test->excluded.is_excluded || wb_file_join(path, run->folder, test->name) != WB_OK)
+            continue;
+        wb_text_append(text, " ");
+        wb_text_append_quoted(text, path);
+    }
+    if (wb_file_join(folder, run->folder, "datasets") != WB_OK)
+        return;
+    wb_text_append(text, " -o ");
+    wb_text_append_quoted(text, folder);
+}
+
+static void print_finding(const struct run *run, int n_done, bool is_complete, bool has_figure)
+{
+    struct wb_finding finding = {.figure = has_figure ? run->request->figure : NULL};
+    append_found(&finding.found, run, n_done);
+    append_trust(&finding.trust, run, is_complete);
+    append_next(&finding.next, run, is_complete);
+    wb_finding_print(&finding);
+}
+
 static int finish(struct run *run)
 {
     int n_done;
     const bool is_complete = wb_series_next_sample(&run->series, &run->index, &n_done) == 0;
-    draw_figure(run);
+    const bool has_figure = draw_figure(run);
     if (run->request->json) {
         struct wb_json *const root = wb_json_create();
         wb_json_set_text(root, "series", run->series.name);
@@ -474,6 +561,7 @@ static int finish(struct run *run)
             return WB_EXIT_FAILED;
     } else {
         print_table(stdout, &run->results);
+        print_finding(run, n_done, is_complete, has_figure);
     }
     if (!is_complete)
         wb_info("%d of %d specimens done; run the same command again to continue", n_done,
@@ -490,7 +578,7 @@ static enum wb_status prepare(struct run *run, char rig[WB_PATH])
     WB_TRY(wb_series_read(&run->series, request->path, &run->test));
     if (!run->test.rig_path && !run->series.rig[0])
         return wb_fail(WB_ERR_ARGUMENT,
-                       "no rig: name its file before --series, or with 'rig' in '%s'",
+                       "no rig: name the rig file before --series, or with 'rig' in '%s'",
                        request->path);
     if (!run->test.rig_path)
         run->test.rig_path = wb_command_find(run->series.rig, rig);
@@ -526,7 +614,7 @@ int wb_record_series_run(const struct wb_record_series *request)
         status = WB_ERR_EXISTS;
     }
     if (status == WB_OK)
-        status = go_on(&run);
+        status = run_tests(&run);
     const int code = status == WB_OK ? finish(&run) : WB_EXIT_FAILED;
     wb_series_results_release(&run.results);
     wb_index_release(&run.index);

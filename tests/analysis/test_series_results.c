@@ -62,8 +62,8 @@ static void mean_and_spread_are_of_the_tests_that_count(void **state)
     assert_null(wb_json_get(wb_json_item(wb_json_get(root, "tests"), 0), "excluded"));
     wb_series_results_append(&results, &text);
     assert_non_null(strstr(wb_text_string(&text), "  excluded: it slipped\n"));
-    assert_non_null(strstr(wb_text_string(&text), "mean                       23.00 "));
-    assert_non_null(strstr(wb_text_string(&text), "tests                          3 "));
+    assert_non_null(strstr(wb_text_string(&text), "mean                    23.00 "));
+    assert_non_null(strstr(wb_text_string(&text), "tests                       3 "));
     wb_text_release(&text);
     wb_json_destroy(root);
     wb_series_results_release(&results);
@@ -77,7 +77,7 @@ static void one_test_has_no_spread(void **state)
     struct wb_text text = {0};
     fill(&results, 1, peaks);
     wb_series_results_append(&results, &text);
-    assert_non_null(strstr(wb_text_string(&text), "\ns                             -- "));
+    assert_non_null(strstr(wb_text_string(&text), "\ns                          -- "));
     wb_text_release(&text);
     wb_series_results_release(&results);
 }

@@ -51,7 +51,7 @@ holds() { # FILE WORDS
 stopped_and_gone_on_with() {
     series a 'first note\n\n\n\n\nx the wire slipped\n' --figure "$folder/a.svg"
     expect a 3 '2 of 3 specimens done; run the same command again to continue'
-    holds a.err 'standard input is no terminal: answers are read from it'
+    holds a.err 'standard input is not a terminal: answers are read from it'
     holds a.out 'excluded: the wire slipped'
     grep -Eq '^tests +1 +1 +1 +1$' "$folder/a.out" || fail "a: not one test counts: $(cat "$folder/a.out")"
     [ -s "$folder/a.svg" ] || fail 'a: no figure'
@@ -116,9 +116,9 @@ killed_before_the_judgement() {
     exec 8>&-
     [ ! -e "$folder/b/index.yaml" ] || fail 'b: listed before it was judged'
     series b '\nn\nq\n'
-    expect b 3 'nobody has said what to make of it'
+    expect b 3 'not yet kept or excluded'
     expect b 3 '1 of 3 specimens done'
-    holds b.err 'goes to s-002-type1-L85-2.wbr'
+    holds b.err 'recording s-002-type1-L85-2.wbr'
     holds b/index.yaml "file: 's-001-type1-L85-1.wbr'"
 }
 
@@ -126,14 +126,14 @@ killed_before_the_judgement() {
 # next number, and is not in the index.
 wrong_answers_and_refused_tests() {
     series d 'n\n\nx\nwhat?\nk\nn\nq\n'
-    expect d 3 'a reason is needed'
+    expect d 3 'give a reason'
     holds d.err "'what?'"
     holds d.err '1 of 3 specimens done'
     # The bench's own ports are not there.
     virtual=()
     series d 'n\n\nn\nq\n'
     expect d 3 '1 of 3 specimens done'
-    [ "$(grep -c 'goes to s-002-type1-L85-2.wbr' "$folder/d.err")" = 2 ] ||
+    [ "$(grep -c 'recording s-002-type1-L85-2.wbr' "$folder/d.err")" = 2 ] ||
         fail "d: the specimen is not asked for again: $(cat "$folder/d.err")"
     printf 'series: s\nspecimen: like.yaml\nspecimens: 3\noutput: "{series}.wbr"\n' >"$folder/bad.yaml"
     "$wirebench" record "$rig" --series "$folder/bad.yaml" </dev/null >"$folder/e.out" 2>"$folder/e.err"
@@ -141,10 +141,10 @@ wrong_answers_and_refused_tests() {
     expect e 1 'bad.yaml:4: output: expected {number}'
     "$wirebench" record --series "$folder/series.yaml" </dev/null >"$folder/e.out" 2>"$folder/e.err"
     code=$?
-    expect e 1 "no rig: name its file before --series, or with 'rig'"
+    expect e 1 "name the rig file before --series, or with 'rig'"
     "$wirebench" record --series "$folder/series.yaml" --cycles 2 </dev/null >"$folder/e.out" 2>"$folder/e.err"
     code=$?
-    expect e 2 'write cycles into its file instead of --cycles'
+    expect e 2 '--cycles cannot be combined with --series: write cycles into'
 }
 
 for case in stopped_and_gone_on_with reported killed_before_the_judgement wrong_answers_and_refused_tests; do

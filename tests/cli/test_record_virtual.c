@@ -458,8 +458,8 @@ static void series_asks_again_for_a_specimen_whose_test_did_not_begin(void **sta
     run_with_input("answers", "record rig.yaml --series series.yaml -o f --operator me");
     assert_code(3);
     assert_said("expected the last marker at the strand");
-    assert_said("'s-001-type1-L85-1.wbr' holds no cycle");
-    assert_said("goes to s-002-type1-L85-1.wbr");
+    assert_said("'s-001-type1-L85-1.wbr' contains no cycle");
+    assert_said("recording s-002-type1-L85-1.wbr");
     assert_said("0 of 3 specimens done");
     assert_true(wb_file_exists("f/s-001-type1-L85-1.wbr"));
     assert_false(wb_file_exists("f/index.yaml"));
