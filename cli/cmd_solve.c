@@ -1,8 +1,11 @@
-/* wirebench solve: a simulated test. The kinds of models, and their options. */
+/* wirebench solve: a simulated test. The kinds of models and their options. */
+#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/dataset/dataset.h"
+#include "analysis/quicklook.h"
 #include "analysis/solve/solve.h"
 #include "base/interrupt.h"
 #include "base/number.h"
@@ -10,17 +13,23 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/complete.h"
+#include "cli/file_kind.h"
+#include "cli/finding.h"
+#include "cli/print.h"
 #include "cli/settings.h"
+
+#define WB_LOG_DOMAIN "solve"
 
 struct options {
     struct wb_command_common common;
-    struct wb_solve_settings settings; /* of kind 0: none was named */
+    struct wb_solve_settings settings; /* kind 0: no model was named */
+    bool has_shown;                    /* this process has printed the result: with mpirun, one */
 };
 
-/* What --help says of the kinds, in the order of their bits. */
+/* For --help, in the order of the bits of the kinds. */
 static const struct kind {
     const char *arguments, *summary;
-    const char *folder; /* of fixtures/ where its models ship; NULL: its options say what it is */
+    const char *folder; /* of fixtures/ with the shipped models; NULL: described by options */
 } kinds[WB_SOLVE_KINDS] = {
     {"--wire=NAME --length-mm=L --deflection-mm=D",
      "Computes a bending test with the 1D beam model of a homogenised wire, described by options.",
@@ -49,13 +58,16 @@ static const struct wb_settings_source sources[] = {
 };
 
 static const struct argp_option other_options[] = {
-    {"output", 'o', "DATASET", 0, "Write a dataset folder", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset, and the files of --vtk", 0},
+    {"output", 'o', "DATASET", 0,
+     "Write a dataset folder, and a figure of force over deflection to DATASET.svg", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset, its figure, and the files of --vtk",
+     0},
+    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figure", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object instead of CSV", 0},
     {0},
 };
 
-/* The kind's index; -1: there is none of that name. */
+/* The index of a kind; -1: unknown name. */
 static int find_kind(const char *name)
 {
     for (int i = 0; name && i < WB_SOLVE_KINDS; i++)
@@ -73,10 +85,11 @@ static void take_argument(struct argp_state *state, const char *argument,
         return;
     }
     if (s->kind != 0)
-        argp_error(state, "one model at a time, not '%s' too", argument);
+        argp_error(state, "one model at a time: unexpected argument '%s'", argument);
     const int kind = find_kind(argument);
     if (kind < 0) {
-        argp_error(state, "no model '%s'; there are cantilever, wire3d, wire1d, bundle, bending3p",
+        argp_error(state,
+                   "unknown model '%s': expected cantilever, wire3d, wire1d, bundle or bending3p",
                    argument);
         return;
     }
@@ -86,21 +99,21 @@ static void take_argument(struct argp_state *state, const char *argument,
 static void check(struct argp_state *state, const struct wb_solve_settings *s)
 {
     if (s->kind == 0)
-        argp_error(state, "name the model: cantilever, wire3d, wire1d, bundle or bending3p");
+        argp_error(state, "model missing: cantilever, wire3d, wire1d, bundle or bending3p");
     if (s->vtk_every > 0 && !s->vtk)
-        argp_error(state, "--vtk-every is for --vtk");
+        argp_error(state, "--vtk-every needs --vtk");
     if (s->sweep && !s->uncertain)
-        argp_error(state, "--sweep is for --uncertain");
+        argp_error(state, "--sweep needs --uncertain");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
-        argp_error(state, "--checkpoint-minutes is for --checkpoint");
+        argp_error(state, "--checkpoint-minutes needs --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)
-        argp_error(state, "name the %s file: %s %s.yaml",
+        argp_error(state, "the %s file is missing: %s %s.yaml",
                    s->kind == WB_SOLVE_THREE_POINT ? "wire's" : "model", wb_solve_settings_kind(s),
                    s->kind == WB_SOLVE_THREE_POINT ? "WIRE" : "MODEL");
     if (s->kind == WB_SOLVE_THREE_POINT && (s->span == 0.0 || s->deflection == 0.0))
-        argp_error(state, "--span-mm and --deflection-mm are needed");
+        argp_error(state, "--span-mm and --deflection-mm are required");
     if (s->kind == WB_SOLVE_CANTILEVER && (!s->wire || s->length == 0.0 || s->deflection == 0.0))
-        argp_error(state, "--wire, --length-mm and --deflection-mm are needed");
+        argp_error(state, "--wire, --length-mm and --deflection-mm are required");
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -119,7 +132,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     }
 }
 
-/* What --help says before and after the options; `only` a kind of that index, or all: -1. */
+/* The texts of --help before and after the options, of the kind of index `only` or of all (-1). */
 static void describe(int only, struct wb_text *arguments, struct wb_text *text)
 {
     for (int i = 0; i < WB_SOLVE_KINDS; i++) {
@@ -134,14 +147,12 @@ static void describe(int only, struct wb_text *arguments, struct wb_text *text)
                        kinds[i].arguments);
         wb_text_append(text, "%s: %s\n", wb_solve_settings_kinds[i], kinds[i].summary);
     }
-    wb_text_append(text, "The curve is printed as CSV or JSON, or written as a dataset.");
+    wb_text_append(text, "The curve is printed as CSV or JSON, or written as a dataset (-o).");
     if (only < 0)
-        wb_text_append(
-            text,
-            " Each kind has options of its own, which for example `wirebench solve bundle --help` "
-            "shows.");
-    wb_text_append(text, "\vExit code 3: the curve was cut short because the solver did not "
-                         "converge, or by Ctrl-C; what was computed is there.");
+        wb_text_append(text, " Each kind has options of its own: see, for example, `wirebench "
+                             "solve bundle --help`.");
+    wb_text_append(text, "\vExit code 3: the curve is incomplete because the solver did not "
+                         "converge or Ctrl-C stopped it; the computed part is written.");
 }
 
 static void parse_options(int argc, char **argv, struct options *options)
@@ -155,14 +166,14 @@ static void parse_options(int argc, char **argv, struct options *options)
         .n_sources = WB_COUNT(sources),
         .places = wb_solve_settings_kinds,
     };
-    /* Options may stand before the kind that they are of. */
+    /* Options may stand before their kind. */
     const int kind = find_kind(wb_settings_first_argument(&command, argc, argv));
     describe(kind, &arguments, &text);
     argp.args_doc = wb_text_string(&arguments);
     argp.doc = wb_text_string(&text);
     command.place = kind >= 0 ? 1U << kind : 0;
     if (kind >= 0) {
-        /* Messages and --help are of "wirebench solve bundle". */
+        /* Messages and --help name "wirebench solve bundle". */
         snprintf(name, sizeof name, "solve %s", wb_solve_settings_kinds[kind]);
         argv[0] = name;
         wb_complete_shipped(kinds[kind].folder);
@@ -178,7 +189,7 @@ static void parse_options(int argc, char **argv, struct options *options)
 
 /* --- the curve --- */
 
-/* What is printed of a row of three-point bending, besides cycle and phase. */
+/* The columns of a row of three-point bending, besides cycle and phase. */
 struct bending_column {
     const char *name;
     double value;
@@ -284,7 +295,9 @@ static int print_json(const struct wb_solve *solve)
 
 static enum wb_status show(void *context, const struct wb_solve *solve)
 {
-    const struct wb_command_common *const common = context;
+    struct options *const o = context;
+    const struct wb_command_common *const common = &o->common;
+    o->has_shown = true;
     if (common->json)
         return print_json(solve) == WB_EXIT_OK ? WB_OK : WB_ERR_MEMORY;
     struct wb_text text = {0};
@@ -296,16 +309,100 @@ static enum wb_status show(void *context, const struct wb_solve *solve)
     return WB_OK;
 }
 
+/* --- the last lines --- */
+
+/* Whether a figure is drawn, and its path. */
+static const char *figure_path(const struct options *o, char path[WB_PATH])
+{
+    if (!o->common.output || o->common.no_figure)
+        return NULL;
+    return wb_finding_folder_figure_path(path, o->common.output);
+}
+
+static void append_found(struct wb_text *text, const struct wb_dataset *dataset)
+{
+    char a[WB_PRINT_NUMBER], b[WB_PRINT_NUMBER];
+    double deflection = 0.0, force = 0.0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        deflection = fmax(deflection, fabs(dataset->rows[i].deflection));
+        force = fmax(force, fabs(dataset->rows[i].force));
+    }
+    wb_text_append(text, "%s (%s, %zu rows): largest deflection %s mm, largest force %s mN",
+                   dataset->info.wire, wb_finding_source(&dataset->info), dataset->n_rows,
+                   wb_print_number(deflection / WB_MM, a), wb_print_number(force / WB_MN, b));
+}
+
+static void append_next(struct wb_text *text, const struct options *o)
+{
+    if (o->settings.vtk) {
+        wb_text_append(text, "open the .pvd file in ");
+        wb_text_append_quoted(text, o->settings.vtk);
+        wb_text_append(text, " with ParaView");
+        return;
+    }
+    wb_text_append(text, "wirebench export ");
+    wb_text_append_quoted(text, o->common.output);
+    wb_text_append(text, " -o FILE.h5, for other programs");
+}
+
+/* Reads the dataset that was just written, so that figure and finding show what is on disk. */
+static enum wb_status print_finding(const struct options *o, bool is_complete)
+{
+    const unsigned tests = WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT);
+    char path[WB_PATH];
+    struct wb_finding finding = {.figure = figure_path(o, path)};
+    struct wb_dataset dataset;
+    WB_TRY(wb_dataset_read_kinds(&dataset, o->common.output, tests, NULL));
+    const enum wb_status status =
+        finding.figure ? wb_quicklook_draw(&dataset, finding.figure) : WB_OK;
+    if (status == WB_OK && !o->common.json) {
+        append_found(&finding.found, &dataset);
+        wb_text_append(&finding.trust,
+                       "%s; a computed test, which no measurement was compared with",
+                       is_complete ? "complete" : "in part: the curve ends early, see the warning");
+        append_next(&finding.next, o);
+        wb_finding_print(&finding);
+    }
+    wb_dataset_release(&dataset);
+    return status;
+}
+
+/* A file of another kind than the model's; one that does not exist is left to its reader. */
+static enum wb_status check_model(const struct wb_solve_settings *s)
+{
+    const bool is_wire = s->kind == WB_SOLVE_CANTILEVER || s->kind == WB_SOLVE_THREE_POINT;
+    const bool is_bundle = s->kind == WB_SOLVE_BUNDLE;
+    const char *const folder = is_wire ? "wires" : is_bundle ? "bundles" : "models";
+    const char *const name = s->kind == WB_SOLVE_CANTILEVER ? s->wire : s->model;
+    struct wb_reason why = {.text = ""};
+    char path[WB_PATH];
+    if (wb_file_find_named(path, folder, name, NULL, NULL, &why) != WB_OK)
+        return WB_OK;
+    return wb_file_kind_check(path, WB_FILE_BIT(is_wire     ? WB_FILE_WIRE
+                                                : is_bundle ? WB_FILE_BUNDLE
+                                                            : WB_FILE_MODEL));
+}
+
 int wb_cmd_solve(int argc, char **argv)
 {
     struct options options = {0};
+    char figure[WB_PATH];
     bool complete;
     wb_setting_fill(&wb_solve_settings_table, &options.settings);
     parse_options(argc, argv, &options);
     wb_interrupt_install();
-    const enum wb_status status = wb_solve_run(&options.settings, show, &options.common, &complete);
+    if (check_model(&options.settings) != WB_OK)
+        return WB_EXIT_FAILED;
+    /* In the way of a dataset, the message of wb_solve_run() is the better one. */
+    if (figure_path(&options, figure) &&
+        wb_file_kind_find(options.common.output) != WB_FILE_DATASET &&
+        wb_finding_check_figure(figure, options.common.force) != WB_OK)
+        return WB_EXIT_FAILED;
+    enum wb_status status = wb_solve_run(&options.settings, show, &options, &complete);
     if (status == WB_ERR_ARGUMENT)
-        return WB_EXIT_USAGE; /* a mesh that the bundle does not have, say */
+        return WB_EXIT_USAGE; /* for example a mesh that the bundle does not have */
+    if (status == WB_OK && options.has_shown && options.common.output)
+        status = print_finding(&options, complete);
     if (status != WB_OK)
         return wb_command_exit(status);
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;

@@ -35,7 +35,7 @@ static const char script[] =
     "rm -rf -- \"$output.partial\"\n"
     /* The script stays until its run ends: Slurm does not track an orphan, and might start the run
      * again while the orphan still writes. */
-    "\"$@\" -o \"$output.partial\" &\n"
+    "\"$@\" --no-figure -o \"$output.partial\" &\n"
     "run=$!\n"
     "trap 'kill $run' TERM\n"
     "wait $run; code=$?\n"

@@ -195,7 +195,7 @@ static void vtk_files_are_written_for_every_row_or_some(void **unused)
     assert_int_equal(states_in("anew/one.pvd"), 6);
 
     assert_int_not_equal(solve("--vtk-every 2"), 0);
-    assert_non_null(strstr(o.err, "--vtk-every is for --vtk"));
+    assert_non_null(strstr(o.err, "--vtk-every needs --vtk"));
 }
 
 static void what_was_overridden_is_told(void **unused)
@@ -243,7 +243,7 @@ static void options_of_others_are_refused(void **unused)
     assert_int_equal(solve("--mesh ''"), 2);
     assert_non_null(strstr(o.err, "--mesh: expected NAME, not ''"));
     assert_int_equal(solve("--checkpoint-minutes 10"), 2);
-    assert_non_null(strstr(o.err, "--checkpoint-minutes is for --checkpoint"));
+    assert_non_null(strstr(o.err, "--checkpoint-minutes needs --checkpoint"));
     assert_non_null(strstr(o.err, "Try `wirebench solve bundle --help'"));
     assert_int_not_equal(solve("--mass-scaling 0.5"), 0);
     assert_int_not_equal(solve("--cohesive-stiffness 0"), 0);
@@ -518,7 +518,7 @@ static void bands_of_what_nobody_stated_are_refused(void **unused)
     assert_non_null(strstr(o.err, "--cohesive-stiffness: bands"));
     tool("solve bundle template --sweep layers=1");
     assert_int_not_equal(o.code, 0);
-    assert_non_null(strstr(o.err, "--sweep is for --uncertain"));
+    assert_non_null(strstr(o.err, "--sweep needs --uncertain"));
     tool("solve bundle template --model section --runs 30");
     assert_int_equal(o.code, 2);
     assert_non_null(strstr(o.err, "--runs and --seed"));
