@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/finding.h"
 #include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "calibrate"
@@ -43,25 +44,53 @@ static const struct argp argp = {
     .options = other_options,
     .parser = parse,
     .args_doc = "DATASET...",
-    .doc = "How much a three-point bending machine gives way, from tests of a stiff elastic bar "
-           "whose flexural rigidity is known: compliance_mm_N of its machine file.\v"
-           "Exit code 3: the bar is not stiff enough, or not known well enough, to tell.",
+    .doc = "The compliance of a three-point bending machine (compliance_mm_N of its machine file), "
+           "from tests of a stiff elastic bar whose flexural rigidity is known.\v"
+           "Exit code 3: the compliance cannot be determined; a warning says whether the bar is "
+           "too compliant, too uncertain, yields or slips.",
 };
 
 static void print_text(const struct wb_machine_compliance *c, const struct wb_test_info *info)
 {
     printf("%s, three-point bending, span %g mm, %d test%s\n", info->wire, info->length / WB_MM,
            c->n_tests, c->n_tests == 1 ? "" : "s");
-    printf("the machine gives way %.3g mm/N, %.3g to %.3g (95 %%); the bar itself %.3g mm/N\n",
+    printf("compliance of the machine %.3g mm/N, %.3g to %.3g (95 %%); of the bar %.3g mm/N\n",
            c->value / WB_MM, c->low / WB_MM, c->high / WB_MM, c->of_bar / WB_MM);
-    printf("of the interval's half: readings %.2g, the bar's rigidity %.2g, friction %.2g mm/N\n",
+    printf("half width of the interval: readings %.2g, rigidity of the bar %.2g, friction %.2g "
+           "mm/N\n",
            c->of_readings / WB_MM, c->of_rigidity / WB_MM, c->of_friction / WB_MM);
-    printf("readings are %.2g mm off their line\n", c->misfit / WB_MM);
+    printf("the readings deviate from a straight line by %.2g mm (RMS)\n", c->misfit / WB_MM);
     if (c->has_unloading)
-        printf("during unloading %.3g mm/N; %.2g of %.3g mm are left\n", c->value_unloading / WB_MM,
+        printf("unloading %.3g mm/N; residual travel %.2g of %.3g mm\n", c->value_unloading / WB_MM,
                c->residual / WB_MM, c->most_travel / WB_MM);
     if (c->is_identifiable)
-        printf("in the machine file:\ncompliance_mm_N: %.3g\n", c->value / WB_MM);
+        printf("for the machine file:\ncompliance_mm_N: %.3g\n", c->value / WB_MM);
+}
+
+static void print_finding(const struct wb_machine_compliance *c, const struct wb_test_info *info)
+{
+    struct wb_finding finding = {.figure = NULL};
+    wb_text_append(&finding.found, "compliance %.3g mm/N (%.3g to %.3g), from %d test%s of %s (%s)",
+                   c->value / WB_MM, c->low / WB_MM, c->high / WB_MM, c->n_tests,
+                   c->n_tests == 1 ? "" : "s", info->wire, wb_finding_source(info));
+    if (!c->is_identifiable)
+        wb_text_append(&finding.trust,
+                       "no: cannot be determined from these tests, see the warning");
+    else if (!c->has_unloading)
+        wb_text_append(&finding.trust,
+                       "if the bar did not yield: unloading was not measured, so that this is not "
+                       "checked");
+    else
+        wb_text_append(&finding.trust, "yes: the readings are straight, and unloading follows "
+                                       "loading within 3 %%");
+    if (c->is_identifiable)
+        wb_text_append(&finding.next,
+                       "write compliance_mm_N: %.3g into the machine file and import the tests "
+                       "again",
+                       c->value / WB_MM);
+    else
+        wb_text_append(&finding.next, "test a stiffer bar, or with less force, up and down again");
+    wb_finding_print(&finding);
 }
 
 static int print_json(const struct wb_machine_compliance *c, const struct wb_test_info *info)
@@ -74,8 +103,8 @@ static int print_json(const struct wb_machine_compliance *c, const struct wb_tes
     wb_json_set_number(root, "high", c->high / WB_MM);
     wb_json_set_boolean(root, "told", c->is_identifiable);
     wb_json_set_boolean(root, "straight", c->is_straight);
-    wb_json_set_boolean(root, "has_way_back", c->has_unloading);
-    wb_json_set_boolean(root, "comes_back", c->is_reversible);
+    wb_json_set_boolean(root, "has_unloading", c->has_unloading);
+    wb_json_set_boolean(root, "is_reversible", c->is_reversible);
     wb_json_set_number(root, "way_back_mm_N", c->value_unloading / WB_MM);
     wb_json_set_number(root, "left_mm", c->residual / WB_MM);
     wb_json_set_number(root, "largest_travel_mm", c->most_travel / WB_MM);
@@ -103,34 +132,34 @@ static int deliver(const struct options *o, const struct wb_machine_compliance *
             return code;
     } else {
         print_text(c, info);
+        print_finding(c, info);
     }
     if (!c->has_unloading)
         wb_warn(
-            "no unloading was measured: a bar that yields early looks as straight, and makes the "
-            "machine too soft; its outer fibre was strained by %.2g %%, so its steel must not "
-            "yield below %.0f MPa",
+            "no unloading was measured: a bar that yields early gives a straight line as well, and "
+            "a compliance that is too large; the strain of its outer fibre was %.2g %%, so that "
+            "the bar must not yield below %.0f MPa",
             100.0 * c->strain, c->strain * youngs_modulus(&o->settings, info) / WB_MPA);
     if (c->is_identifiable)
         return WB_EXIT_OK;
     if (!c->is_reversible)
         wb_warn(
-            "the bar does not come back: %.2g of %.3g mm are left, and it gives way %.3g mm/N on "
-            "the way up, %.3g mm/N back: it yields, or slips; take less force, or a thicker bar "
-            "of harder steel",
-            c->residual / WB_MM, c->most_travel / WB_MM, c->value / WB_MM,
-            c->value_unloading / WB_MM);
+            "the bar yields or slips: residual travel %.2g of %.3g mm, slope %.3g mm/N during "
+            "loading and %.3g mm/N during unloading; use less force, or a thicker bar of harder "
+            "steel",
+            c->residual / WB_MM, c->most_travel / WB_MM, c->value / WB_MM, c->value_unloading / WB_MM);
     else if (!c->is_straight && c->low > 0.0)
-        wb_warn("the readings are no line: the bar yields or slips, or the machine has play; take "
-                "less force, or a thicker bar");
+        wb_warn("the readings are not on a straight line: the bar yields or slips, or the machine "
+                "has play; use less force, or a thicker bar");
     else if (c->of_rigidity > fmax(c->of_readings, c->of_friction))
-        wb_warn("the bar is not stiff enough to tell: it gives way %.3g mm/N itself, known within "
-                "%.2g %%; a bar %.2g times as stiff, or a shorter span, would do",
+        wb_warn("the bar is too compliant: its own compliance is %.3g mm/N, known within %.2g %%; "
+                "use a bar %.2g times as stiff, or a shorter span",
                 c->of_bar / WB_MM, 100.0 * c->of_rigidity / c->of_bar,
                 fmax(2.0, 4.0 * c->of_rigidity / fmax(fabs(c->value), 0.1 * c->of_rigidity)));
     else
         wb_warn("the machine's compliance cannot be determined: its uncertainty, mainly from %s, "
                 "exceeds its value",
-                c->of_readings > c->of_friction ? "the readings" : "the bounds of friction");
+                c->of_readings > c->of_friction ? "the readings" : "the range of friction");
     return WB_EXIT_INCOMPLETE;
 }
 

@@ -10,6 +10,9 @@
 #include "base/number.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
+#include "cli/finding.h"
+#include "cli/print.h"
 #include "cli/settings.h"
 #include "fe/material/material_file.h"
 
@@ -60,10 +63,10 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (!o->conductor || !(o->layers.conductor_diameter > 0.0))
-            argp_error(state, "say what the conductor is: --conductor MATERIAL "
+            argp_error(state, "the conductor is missing: --conductor MATERIAL "
                               "--conductor-diameter-mm D");
         if ((o->jacket != NULL) != (o->layers.outer_diameter > 0.0))
-            argp_error(state, "--jacket and --outer-diameter-mm go together");
+            argp_error(state, "--jacket and --outer-diameter-mm must be given together");
         break;
     default:
         break;
@@ -76,9 +79,9 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "",
     .doc = "A wire's flexural rigidity and Poisson's ratio by eqs. 8 and 9, and its bending moment "
-           "over curvature, from the materials of conductor and jacket. Of a stranded conductor "
-           "both limits: strands bonded to a plane section, and strands that slide without "
-           "friction.",
+           "over curvature, from the materials of conductor and jacket. For a stranded conductor "
+           "both bounds are given: strands bonded to a plane section, and strands that slide "
+           "without friction.",
 };
 
 static enum wb_status read_material(const char *name, struct wb_material *material)
@@ -86,6 +89,7 @@ static enum wb_status read_material(const char *name, struct wb_material *materi
     char path[WB_PATH];
     struct wb_material_file file;
     WB_TRY(wb_file_find_fixture(path, "materials", name, NULL));
+    WB_TRY(wb_file_kind_check(path, WB_FILE_BIT(WB_FILE_MATERIAL)));
     WB_TRY(wb_material_file_read(&file, path));
     if (!isfinite(file.material.poissons_ratio))
         return wb_fail(WB_ERR_DATA, "%s: poissons_ratio is missing, which eq. 9 needs", path);
@@ -124,7 +128,7 @@ static void print_text(const struct options *o, const struct table *table)
            bonded / wb_circle_second_moment(o->layers.outer_diameter) / WB_MPA);
     printf("%-22s %10.3g\n", "nu_eff, eq. 9", wb_layers_poissons_ratio(&o->layers));
     if (two)
-        printf("%-22s %10.3g\n", "metal in its circle", wb_layers_fill(&o->layers));
+        printf("%-22s %10.3g\n", "fill factor", wb_layers_fill(&o->layers));
     printf("\n%12s %14s%s\n", "kappa 1/m", "M N mm", two ? "   M N mm sliding" : "");
     for (int i = 0; i < POINTS; i++) {
         printf("%12.5g %14.6g", table->curvature[i], table->bonded[i] / WB_NMM);
@@ -132,6 +136,31 @@ static void print_text(const struct options *o, const struct table *table)
             printf(" %16.6g", table->sliding[i] / WB_NMM);
         putchar('\n');
     }
+}
+
+/* A computation from materials: no test of the wire confirms it. */
+static void print_finding(const struct options *o, const struct table *table)
+{
+    struct wb_finding finding = {.figure = NULL};
+    char a[WB_PRINT_NUMBER], b[WB_PRINT_NUMBER];
+    const bool two = o->layers.strands > 0;
+    wb_text_append(&finding.found, "computed from the materials: EI %s",
+                   wb_print_number(wb_layers_rigidity(&o->layers, two) / WB_NMM2, a));
+    if (two)
+        wb_text_append(&finding.found, " (sliding strands) to %s (bonded)",
+                       wb_print_number(wb_layers_rigidity(&o->layers, false) / WB_NMM2, a));
+    wb_text_append(&finding.found, " N mm2; M at %.4g 1/m ", table->curvature[POINTS - 1]);
+    if (two)
+        wb_text_append(&finding.found, "%s to ",
+                       wb_print_number(table->sliding[POINTS - 1] / WB_NMM, b));
+    wb_text_append(&finding.found, "%s N mm",
+                   wb_print_number(table->bonded[POINTS - 1] / WB_NMM, b));
+    wb_text_append(&finding.trust, two ? "as bounds: a real wire lies between sliding and bonded "
+                                         "strands; no test of the wire was used"
+                                       : "as an estimate: no test of the wire was used");
+    wb_text_append(&finding.next, "record bending tests of the wire and compare with wirebench "
+                                  "calibrate DATASET...");
+    wb_finding_print(&finding);
 }
 
 static int print_json(const struct options *o, const struct table *table)
@@ -167,5 +196,7 @@ int wb_calibrate_constituents(int argc, char **argv)
         code = print_json(&options, &table);
     else if (code == WB_EXIT_OK)
         print_text(&options, &table);
+    if (code == WB_EXIT_OK && !options.common.json)
+        print_finding(&options, &table);
     return code;
 }

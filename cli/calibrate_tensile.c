@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/finding.h"
 #include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "calibrate"
@@ -31,7 +32,7 @@ struct options {
 static const struct argp_option other_options[] = {
     {"tensile", KEY_TENSILE, NULL, 0, "Tensile tests", 0},
     {"output", 'o', "MATERIAL.yaml", 0, "Write a material file here", 0},
-    {"name", KEY_NAME, "NAME", 0, "The material's name (the wire's, and what was pulled)", 0},
+    {"name", KEY_NAME, "NAME", 0, "Name of the material (name of the wire and the constituent)", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the material file", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
@@ -53,12 +54,13 @@ static const struct argp argp = {
     .options = other_options,
     .parser = parse,
     .args_doc = "DATASET...",
-    .doc = "Properties of a conductor, a jacket or a tape from tensile tests that `import force` "
-           "made datasets of: slope of the start, proof stress, strength, stresses at plastic "
-           "strains, and K and n by eq. 7 and by least squares, with intervals over the "
-           "specimens.\v"
-           "With the travel of a crosshead for the elongation there is no E: a material file then "
-           "needs --youngs-modulus-mpa. Exit code 3: Ludwik's law does not meet the curves.",
+    .doc =
+        "Properties of a conductor, a jacket or a tape from datasets of tensile tests (`wirebench "
+        "import force`): initial slope, proof stress, strength, stresses at plastic strains, "
+        "and K and n by eq. 7 and by least squares, with intervals over the specimens.\v"
+        "The travel of a crosshead does not give E: a material file then needs "
+        "--youngs-modulus-mpa. Exit code 3: Ludwik's law does not fit every curve within "
+        "--alike, or no law could be fitted.",
 };
 
 /* --- text --- */
@@ -89,7 +91,7 @@ static void print_laws(const struct options *o, const struct wb_tensile_result *
 {
     if (r->direct_exponent.n == 0) {
         printf("no law is fitted: %s\n", r->specimens[0].start_is_straight
-                                             ? "too few points behind the yield point"
+                                             ? "too few points beyond the yield point"
                                              : "there is no plastic strain");
         return;
     }
@@ -98,22 +100,21 @@ static void print_laws(const struct options *o, const struct wb_tensile_result *
     print_number("  K", &r->direct_strength, WB_MPA, "MPa");
     print_number("  n", &r->direct_exponent, 1.0, "");
     if (!r->follows)
-        printf(
-            "  this law meets %d of %d curves within %.3g %% of the strength (--alike): take the "
-            "stresses above\n",
-            r->n_followed, r->n_specimens, o->settings.alike / WB_PERCENT);
+        printf("  this law fits %d of %d curves within %.3g %% of the strength (--alike): use the "
+               "stresses above\n",
+               r->n_followed, r->n_specimens, o->settings.alike / WB_PERCENT);
     if (r->identifiable)
-        printf("  n from %.3g to %.3g fits alike\n", r->n_low, r->n_high);
+        printf("  n from %.3g to %.3g fits equally well\n", r->n_low, r->n_high);
     else if (isfinite(r->n_low))
-        printf("  not identifiable: n from %.3g to %.3g fits alike, each with its own sigma_Y and "
-               "K; these numbers hold together only\n",
+        printf("  not identifiable: n from %.3g to %.3g fits equally well, each with its own "
+               "sigma_Y and K; use the three only together\n",
                r->n_low, r->n_high);
     if (isfinite(r->of_mean.rms) && r->n_specimens > 1) {
         printf("  of the mean curve: %.4g MPa, %.4g MPa, %.3g, misfit %.2g MPa",
                r->of_mean.yield_stress / WB_MPA, r->of_mean.strength_coefficient / WB_MPA,
                r->of_mean.hardening_exponent, r->of_mean.rms / WB_MPA);
         if (isfinite(r->of_mean_n_low))
-            printf("; n from %.3g to %.3g fits alike", r->of_mean_n_low, r->of_mean_n_high);
+            printf("; n from %.3g to %.3g fits equally well", r->of_mean_n_low, r->of_mean_n_high);
         putchar('\n');
     }
     printf("by eq. 7, with the proof stress as sigma_Y\n");
@@ -133,7 +134,7 @@ static void print_specimens(const struct wb_tensile_result *r)
 {
     printf(
         "\nsample  slack %%  slope MPa  proof MPa  strength MPa  at %%   sigma_Y MPa    K MPa      "
-        "n  misfit MPa  n alike\n");
+        "n  misfit MPa  n fits equally\n");
     for (int i = 0; i < r->n_specimens; i++) {
         const struct wb_tensile_specimen *const s = &r->specimens[i];
         printf("%6d %8.3f %10.5g", s->sample, s->slack / WB_PERCENT, s->slope / WB_MPA);
@@ -171,15 +172,78 @@ static void print_text(const struct options *o, const struct wb_tensile_result *
     print_specimens(r);
     for (int i = 0; i < r->n_specimens; i++) {
         if (!r->specimens[i].start_is_straight)
-            printf("\nsample %d: the start is not straight but bends over: no proof stress, no "
-                   "plastic strain, no law\n",
+            printf("\nsample %d: the curve has no straight start: no proof stress, no plastic "
+                   "strain, no law\n",
                    r->specimens[i].sample);
     }
     if (r->constituent != WB_CONDUCTOR)
-        printf("\nloading alone does not tell plastic strain from elastic strain that bends over, "
-               "as rubber's\n");
+        printf("\nloading alone cannot separate plastic strain from nonlinear elastic strain, as "
+               "rubber has it\n");
     if (o->common.output)
         printf("\nwritten to %s\n", o->common.output);
+}
+
+static void append_number(struct wb_text *text, const char *name,
+                          const struct wb_tensile_number *number)
+{
+    wb_text_append(text, "%s %.4g MPa", name, number->mean / WB_MPA);
+    if (isfinite(number->low))
+        wb_text_append(text, " (%.4g to %.4g)", number->low / WB_MPA, number->high / WB_MPA);
+}
+
+static void append_trust(struct wb_text *text, const struct wb_tensile_result *r)
+{
+    if (r->direct_exponent.n == 0)
+        wb_text_append(text, "for the stresses only: no law could be fitted");
+    else if (!r->follows)
+        wb_text_append(text, "for the stresses only: Ludwik's law fits %d of %d curves (--alike)",
+                       r->n_followed, r->n_specimens);
+    else if (!r->identifiable)
+        wb_text_append(text,
+                       "yes, but sigma_Y, K and n only together: n from %.3g to %.3g fits "
+                       "equally well",
+                       r->n_low, r->n_high);
+    else
+        wb_text_append(text, "yes: Ludwik's law fits all curves, for loading");
+    if (!r->own_elongation)
+        wb_text_append(text, "; no E: the elongation is the crosshead's travel");
+    if (r->n_specimens == 1)
+        wb_text_append(text, "; one specimen cannot show how specimens differ");
+}
+
+static void print_finding(const struct options *o, const struct wb_tensile_result *r)
+{
+    struct wb_finding finding = {.figure = NULL};
+    wb_text_append(&finding.found,
+                   "%s of %s (%s, %d specimen%s): ", wb_test_piece_constituent_name(r->constituent),
+                   r->wire, wb_finding_source(&o->datasets.items[0].info), r->n_specimens,
+                   r->n_specimens == 1 ? "" : "s");
+    if (r->own_elongation) {
+        append_number(&finding.found, "E", &r->youngs_modulus);
+        wb_text_append(&finding.found, "; ");
+    }
+    if (r->proof_stress.n > 0) {
+        append_number(&finding.found, "proof stress", &r->proof_stress);
+        wb_text_append(&finding.found, "; ");
+    }
+    append_number(&finding.found, "strength", &r->strength);
+    append_trust(&finding.trust, r);
+    if (r->direct_exponent.n == 0)
+        wb_text_append(&finding.next, "use the stresses above; a material file needs a law");
+    else if (!o->common.output)
+        wb_text_append(
+            &finding.next, "run the same command with -o MATERIAL.yaml%s%s to keep the law",
+            r->own_elongation || o->material.youngs_modulus > 0.0 ? "" : " --youngs-modulus-mpa E",
+            o->material.density > 0.0 ? "" : " --density-g-cm3 R");
+    else if (r->constituent == WB_CONDUCTOR || r->constituent == WB_JACKET) {
+        wb_text_append(&finding.next, "wirebench calibrate --constituents --%s ",
+                       r->constituent == WB_CONDUCTOR ? "conductor" : "jacket");
+        wb_text_append_quoted(&finding.next, o->common.output);
+        wb_text_append(&finding.next, " ..., for the wire's rigidity and moments");
+    } else {
+        wb_text_append(&finding.next, "name the material in a bundle file as its tape");
+    }
+    wb_finding_print(&finding);
 }
 
 /* --- JSON --- */
@@ -276,7 +340,7 @@ static enum wb_status run(struct options *o, struct wb_tensile_result *result)
     if (!o->common.output)
         return WB_OK;
     if (!o->common.force && wb_file_exists(o->common.output))
-        return wb_fail(WB_ERR_EXISTS, "'%s' exists: --force replaces it", o->common.output);
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
     return wb_tensile_material_write(result, o->name, &o->material, o->common.output, NULL);
 }
 
@@ -302,10 +366,12 @@ int wb_calibrate_tensile(int argc, char **argv)
     wb_settings_parse(&command, argc, argv, &options);
     int code = wb_command_exit(run(&options, &result));
     if (code == WB_EXIT_OK) {
-        if (options.common.json)
+        if (options.common.json) {
             code = print_json(&options, &result);
-        else
+        } else {
             print_text(&options, &result);
+            print_finding(&options, &result);
+        }
     }
     if (code == WB_EXIT_OK && !result.follows)
         code = WB_EXIT_INCOMPLETE;

@@ -9,6 +9,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/units.h"
+#include "cli/finding.h"
 #include "cli/print.h"
 
 #define WB_LOG_DOMAIN "calibrate"
@@ -38,10 +39,9 @@ static void print_member(const struct wb_three_point_member *m)
     if (m->fit.bow_error > 0.0)
         printf("    natural bow %+.3f +- %.2g mm, %s; correlation with the first contact %+.2f\n",
                m->fit.bow / WB_MM, 2.0 * m->fit.bow_error / WB_MM,
-               fabs(m->fit.bow_off) > 2.0
-                   ? "far off its prior: it takes up what the law cannot follow"
-               : m->fit.is_bow_identifiable ? "determined by the curve"
-                                            : "not determined by the curve: its prior",
+               fabs(m->fit.bow_off) > 2.0 ? "far off its prior: it compensates a misfit of the law"
+               : m->fit.is_bow_identifiable       ? "determined by the curve"
+                                          : "not determined by the curve: given by its prior",
                m->fit.bow_contact_correlation);
     else if (m->fit.bow != 0.0)
         printf("    natural bow %+.3f mm, given\n", m->fit.bow / WB_MM);
@@ -69,11 +69,10 @@ static void print_text(const struct wb_three_point_calibration *c,
             printf("EI x %.4f, M at the largest curvature x %.4f, misfit %.2g (%.2g)\n",
                    v->rigidity, v->moment[WB_THREE_POINT_MOMENTS - 1], v->misfit, c->misfit);
         else
-            printf("no test of this kind comes so far\n");
+            printf("not possible: the model does not reach the measured travel\n");
     }
     if (c->n_series > 1)
-        printf("%d series; their means differ by a standard deviation of %.2g %%, which is the "
-               "interval's\n",
+        printf("%d series; the standard deviation of their means, %.2g %%, gives the interval\n",
                c->n_series, 100.0 * c->series_deviation);
     for (int i = 0; i < c->n_members; i++)
         print_member(&c->members[i]);
@@ -136,6 +135,73 @@ static int print_json(const struct wb_three_point_calibration *c,
     return wb_command_print_json(root);
 }
 
+static int count_not_converged(const struct wb_three_point_calibration *c)
+{
+    int n = 0;
+    for (int i = 0; i < c->n_members; i++)
+        n += c->members[i].is_fitted && !c->members[i].fit.is_converged;
+    return n;
+}
+
+/* Bands of the machine file that the calibration had to vary: friction, nose radius. */
+static bool has_open_bands(const struct wb_three_point_calibration *c)
+{
+    for (int i = 0; i < WB_THREE_POINT_VARIANTS; i++) {
+        if (c->variants[i].value != (i < 2 ? c->bench.friction : c->bench.nose_radius))
+            return true;
+    }
+    return false;
+}
+
+static void append_trust(struct wb_text *text, const struct wb_three_point_calibration *c)
+{
+    const int n_lost = count_not_converged(c);
+    bool has_unloading = true;
+    for (int i = 0; i < c->n_members; i++)
+        has_unloading =
+            has_unloading && (!c->members[i].is_fitted || c->members[i].data.has_unloading);
+    if (n_lost > 0)
+        wb_text_append(text, "no: the fit of %d test%s did not converge", n_lost,
+                       n_lost == 1 ? "" : "s");
+    else if (c->n_fitted < c->n_members)
+        wb_text_append(text, "in part: %d of %d tests could not be fitted",
+                       c->n_members - c->n_fitted, c->n_members);
+    else if (!has_unloading)
+        wb_text_append(text, "for loading only: unloading was not recorded in every test");
+    else
+        wb_text_append(text, "%s", c->n_fitted > 1 ? "yes" : "for this specimen");
+    wb_text_append(text, "; misfit %.2g %% of the largest force", c->misfit / WB_PERCENT);
+    if (!c->is_compliance_known)
+        wb_text_append(text, "; the machine's compliance is not known and taken as zero");
+    if (has_open_bands(c))
+        wb_text_append(text, "; friction or nose radius is known only as a range");
+    if (c->n_fitted == 1)
+        wb_text_append(text, "; one specimen cannot show how specimens differ");
+}
+
+static void print_finding(const struct wb_three_point_calibration *c,
+                          const struct wb_properties *properties, const char *output)
+{
+    struct wb_finding finding = {.figure = NULL};
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    wb_text_append(&finding.found,
+                   "%s (%s, three-point bending, %d of %d tests fitted): ", info->wire,
+                   wb_finding_source(info), c->n_fitted, c->n_members);
+    wb_finding_append_quantity(&finding.found, properties, WB_QUANTITY_MOMENT,
+                               WB_THREE_POINT_MOMENTS - 1);
+    if (c->is_rigidity_identifiable) {
+        wb_text_append(&finding.found, "; ");
+        wb_finding_append_quantity(&finding.found, properties, WB_QUANTITY_RIGIDITY, 0);
+    }
+    append_trust(&finding.trust, c);
+    if (count_not_converged(c) > 0)
+        wb_text_append(&finding.next,
+                       "run the same command again with a larger --curve-iterations");
+    else
+        wb_finding_append_validate(&finding.next, output, info->wire, "span");
+    wb_finding_print(&finding);
+}
+
 static int deliver(const struct wb_three_point_calibration *c,
                    const struct wb_command_common *common)
 {
@@ -154,6 +220,7 @@ static int deliver(const struct wb_three_point_calibration *c,
             return code;
     } else {
         print_text(c, &properties);
+        print_finding(c, &properties, common->output);
     }
     if (!complete)
         wb_warn("%d of %d tests could not be fitted", c->n_members - c->n_fitted, c->n_members);
@@ -161,7 +228,7 @@ static int deliver(const struct wb_three_point_calibration *c,
         const struct wb_three_point_member *const m = &c->members[i];
         if (!m->is_fitted || m->fit.is_converged)
             continue;
-        wb_warn("sample %d: the iterations ran out (--curve-iterations)", m->data.info.sample);
+        wb_warn("sample %d: the fit did not converge (--curve-iterations)", m->data.info.sample);
         complete = false;
     }
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;

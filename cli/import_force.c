@@ -9,8 +9,9 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/complete.h"
+#include "cli/file_kind.h"
+#include "cli/finding.h"
 #include "cli/import.h"
-#include "daq/take/take_reader.h"
 
 #define WB_LOG_DOMAIN "import"
 
@@ -29,17 +30,18 @@ struct options {
 };
 
 static const struct argp_option argp_options[] = {
-    {"specimen", KEY_SPECIMEN, "SPECIMEN.yaml", 0, "What was tested", 0},
-    {"machine", KEY_MACHINE, "MACHINE.yaml", 0, "How it was tested: kind, span, radii, ...", 0},
+    {"specimen", KEY_SPECIMEN, "SPECIMEN.yaml", 0, "The specimen", 0},
+    {"machine", KEY_MACHINE, "MACHINE.yaml", 0,
+     "The machine and the kind of test: span, radii, ...", 0},
     {"output", 'o', "DATASET", 0, "Folder to write", 0},
     {"columns", KEY_COLUMNS, "LIST", 0,
-     "Which columns are what, and their units where the header has none: "
-     "time=1,force=2:mN,travel=3 (by the header)",
+     "The columns, and their units where the header has none: time=1,force=2:mN,travel=3 (from the "
+     "header)",
      0},
     {"delimiter", KEY_DELIMITER, "NAME", 0,
-     "Between the columns: tab, semicolon, comma, bar or blanks (found)", 0},
-    {"decimal", KEY_DECIMAL, "NAME", 0, "Decimal sign: point or comma (found)", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+     "Between the columns: tab, semicolon, comma, bar or blanks (detected)", 0},
+    {"decimal", KEY_DECIMAL, "NAME", 0, "Decimal sign: point or comma (detected)", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -88,7 +90,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (!o->specimen || !o->machine)
-            argp_error(state, "say what was tested and how: --specimen SPECIMEN.yaml --machine "
+            argp_error(state, "specimen or machine missing: --specimen SPECIMEN.yaml --machine "
                               "MACHINE.yaml");
         break;
     default:
@@ -101,15 +103,16 @@ static const struct argp argp = {
     .options = argp_options,
     .parser = parse,
     .args_doc = "FILE",
-    .doc = "Makes a dataset of the curve that a testing machine wrote as text: three-point "
+    .doc = "Converts the curve that a testing machine exported as text into a dataset: three-point "
            "bending, a tensile test, or a cantilever pressed at its tip. Encoding, delimiter, "
-           "decimal sign, header, units and columns are found, or named where there is doubt.\v"
-           "Rows that lack force or travel are left out and counted. The original's bytes are kept "
-           "in the dataset (original.zst). Exit code 3: the file is cut off in the middle of a "
-           "row, or times are missing.",
+           "decimal sign, header, units and columns are detected; name them where they are "
+           "ambiguous.\v"
+           "Rows without force or travel are left out and counted. The original file is kept in "
+           "the dataset (original.zst). Exit code 3: the file ends in the middle of a row, or "
+           "times are missing.",
 };
 
-/* --- what is printed --- */
+/* --- output --- */
 
 static void print_range(const struct wb_dataset *dataset)
 {
@@ -146,16 +149,65 @@ static void print_text(const struct wb_dataset *dataset,
     if (report->gaps > 0)
         printf("%d gaps in time, the longest of %.3g s\n", report->gaps, report->longest_gap);
     if (report->cut)
-        printf("the file is cut off: its last row is not whole\n");
+        printf("the file is truncated: its last row is incomplete\n");
     if (!isfinite(dataset->rows[0].t))
         printf("no time in the file\n");
     const bool own_elongation =
         info->machine.kind == WB_TEST_TENSILE && info->machine.own_elongation;
     if (info->machine.kind == WB_TEST_TENSILE && !own_elongation)
-        printf("elongation from the crosshead's travel: good for yield and hardening, no E\n");
+        printf("elongation from the crosshead's travel: valid for yield and hardening, no E\n");
     if (!info->machine.compliance.known && !own_elongation)
-        printf("compliance of the machine not given: the travel holds it\n");
+        printf("machine compliance not given: the travel includes it\n");
     printf("written to %s\n", folder);
+}
+
+static void append_trust(struct wb_text *text, const struct wb_dataset *dataset,
+                         const struct wb_machine_import_report *report)
+{
+    const struct wb_machine *const machine = &dataset->info.machine;
+    const bool is_complete = wb_dataset_is_complete(dataset);
+    if (report->cut)
+        wb_text_append(text, "in part: the file is truncated");
+    else if (!is_complete)
+        wb_text_append(text, "in part: the dataset is incomplete, see above");
+    else
+        wb_text_append(text, "yes: the whole file was read");
+    if (report->partial > 0)
+        wb_text_append(text, "; %zu incomplete row%s left out", report->partial,
+                       report->partial == 1 ? "" : "s");
+    if (!machine->compliance.known &&
+        !(machine->kind == WB_TEST_TENSILE && machine->own_elongation))
+        wb_text_append(text, "; the travel includes the machine's compliance, which is not known");
+    wb_text_append(text, "; units and zeros were not checked against the wire");
+}
+
+static void append_next(struct wb_text *text, const struct wb_dataset *dataset, const char *folder)
+{
+    const bool is_tensile = dataset->info.kind == WB_TEST_TENSILE;
+    char file[WB_PATH];
+    wb_text_append(text, "wirebench calibrate %s", is_tensile ? "--tensile " : "");
+    wb_text_append_quoted(text, folder);
+    if (is_tensile)
+        return; /* a material file needs a density, too */
+    snprintf(file, sizeof file, "%s.yaml", dataset->info.wire);
+    wb_text_append(text, " -o ");
+    wb_text_append_quoted(text, file);
+}
+
+static void print_finding(const struct wb_dataset *dataset,
+                          const struct wb_machine_import_report *report, const char *folder)
+{
+    const struct wb_test_info *const info = &dataset->info;
+    struct wb_finding finding = {.figure = NULL};
+    double force = -HUGE_VAL;
+    for (size_t i = 0; i < dataset->n_rows; i++)
+        force = fmax(force, dataset->rows[i].force);
+    wb_text_append(&finding.found, "%s, sample %d (%s, %s): %zu rows, force up to %.4g N",
+                   info->wire, info->sample, wb_machine_kind_name(info->kind),
+                   wb_finding_source(info), report->rows, force);
+    append_trust(&finding.trust, dataset, report);
+    append_next(&finding.next, dataset, folder);
+    wb_finding_print(&finding);
 }
 
 static int print_json(const struct wb_dataset *dataset, const char *folder)
@@ -179,17 +231,16 @@ static enum wb_status run(const struct options *o, struct wb_dataset *dataset,
     struct wb_test_piece piece;
     char found[WB_PATH], *bytes;
     size_t size;
-    WB_TRY(wb_machine_read(wb_command_find(o->machine, found), &machine, NULL));
-    WB_TRY(wb_test_piece_read(wb_command_find(o->specimen, found), machine.kind, &piece, NULL));
+    const char *const path = wb_command_find(o->machine, found);
+    WB_TRY(wb_file_kind_check(path, WB_FILE_BIT(WB_FILE_MACHINE)));
+    WB_TRY(wb_machine_read(path, &machine, NULL));
+    const char *const piece_path = wb_command_find(o->specimen, found);
+    WB_TRY(wb_file_kind_check(piece_path, WB_FILE_BIT(WB_FILE_TEST_PIECE)));
+    WB_TRY(wb_test_piece_read(piece_path, machine.kind, &piece, NULL));
+    WB_TRY(wb_file_kind_check(o->common.input, WB_FILE_BIT(WB_FILE_TABLE)));
     WB_TRY(wb_file_read(o->common.input, &bytes, &size));
     const struct wb_machine_import from = {o->common.input, o->columns, &o->form, &machine, &piece};
-    const struct wb_take_reader *const take = wb_take_reader_detect((uint8_t *)bytes, size);
-    enum wb_status status =
-        take ? wb_fail(WB_ERR_FORMAT,
-                       "%s: a take of motion capture (%s), no curve of a testing machine: take "
-                       "'wirebench import mocap'",
-                       o->common.input, take->name)
-             : wb_machine_import(dataset, bytes, size, &from, report, NULL);
+    enum wb_status status = wb_machine_import(dataset, bytes, size, &from, report, NULL);
     if (status == WB_OK)
         status = wb_machine_import_write(dataset, bytes, size, o->common.output, o->common.force);
     free(bytes);
@@ -212,6 +263,8 @@ int wb_import_force(int argc, char **argv)
         code = print_json(&dataset, options.common.output);
     else if (code == WB_EXIT_OK)
         print_text(&dataset, &report, options.common.output);
+    if (code == WB_EXIT_OK && !options.common.json)
+        print_finding(&dataset, &report, options.common.output);
     if (code == WB_EXIT_OK && !wb_dataset_is_complete(&dataset))
         code = WB_EXIT_INCOMPLETE;
     wb_dataset_release(&dataset);

@@ -6,6 +6,8 @@
 #include "analysis/import/mocap_import.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
+#include "cli/finding.h"
 #include "cli/import.h"
 #include "cli/settings.h"
 
@@ -29,15 +31,15 @@ struct options {
 static const struct argp_option other_options[] = {
     {"output", 'o', "REC.wbr", 0, "Recording to write", 0},
     {"specimen", KEY_SPECIMEN, "S.yaml", 0, "The specimen", 0},
-    {"rig", KEY_RIG, "R.yaml", 0, "The bench: load cell, cameras' vertical, strand", 0},
+    {"rig", KEY_RIG, "R.yaml", 0, "The bench: load cell, vertical axis of the cameras, strand", 0},
     {"force", KEY_FORCE, "FILE", 0, "Table of time and force", 0},
     {"columns", KEY_COLUMNS, "LIST", 0,
-     "Its columns and their units: time=1:ms,force=2:mN (default: found by the header)", 0},
+     "Columns of that table and their units: time=1:ms,force=2:mN (from the header)", 0},
     {"channel", KEY_CHANNEL, "NAME[:UNIT]", 0,
-     "Analogue channel of a C3D that is the force (default: the only one in a unit of force)", 0},
+     "Analogue channel of a C3D with the force (the only one in a unit of force)", 0},
     {"sync", KEY_SYNC, "EVENT", 0,
-     "What brings the two clocks together: tap or reversal (default: the better of both)", 0},
-    {"notes", KEY_NOTES, "TEXT", 0, "Notes to keep", 0},
+     "Event that synchronises the two clocks: tap or reversal (the better of both)", 0},
+    {"notes", KEY_NOTES, "TEXT", 0, "Notes, stored in the recording", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -55,15 +57,15 @@ static void check(struct argp_state *state, const struct options *options)
 {
     const struct wb_mocap_import_request *const request = &options->request;
     if (!options->common.input)
-        argp_error(state, "name a take: a CSV export of Motive, a C3D or a TRC");
+        argp_error(state, "take missing: a CSV export of Motive, a C3D or a TRC");
     if (!request->specimen_path)
-        argp_error(state, "say of which specimen: --specimen S.yaml");
+        argp_error(state, "specimen missing: --specimen S.yaml");
     if (!request->rig_path)
-        argp_error(state, "say on which bench: --rig R.yaml");
+        argp_error(state, "rig missing: --rig R.yaml");
     if (request->columns && !request->force_path)
-        argp_error(state, "--columns are those of a --force FILE");
+        argp_error(state, "--columns needs --force FILE");
     if (request->channel && request->force_path)
-        argp_error(state, "the force is in a file or in a channel, not in both");
+        argp_error(state, "--force and --channel cannot be combined");
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -105,29 +107,29 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "FILE --specimen S.yaml --rig R.yaml -o REC.wbr",
     .doc =
-        "Makes a recording of a take of motion capture: a CSV export of Motive, a C3D or a TRC, "
-        "found by its content. Force comes from a table with a clock of its own, or from an "
-        "analogue channel of the C3D.\v"
-        "The recording keeps the files as they are; 'wirebench align' makes a dataset of it. Two "
-        "clocks are brought together by what both files show: a tap on the bench, or that the "
-        "motion was reversed; the lag is printed with its uncertainty. Exit code 3: frames or rows "
-        "are missing or were left out, and are counted.",
+        "Converts a take of motion capture into a recording: a CSV export of Motive, a C3D or a "
+        "TRC, detected by its content. The force comes from a table with a clock of its own, or "
+        "from an analogue channel of the C3D.\v"
+        "The recording contains the files unchanged; 'wirebench align' makes a dataset of it. Two "
+        "clocks are synchronised by an event that both files show: a tap on the bench, or a "
+        "reversal of the motion; the lag is printed with its uncertainty. Exit code 3: frames or "
+        "rows are missing or were left out, and are counted.",
 };
 
-/* --- what was found --- */
+/* --- output --- */
 
 static void print_clocks(const struct wb_mocap_import *r)
 {
     switch (r->sync.method) {
     case WB_SYNC_SAME:
-        printf("  clocks      one: force and markers are of the same file\n");
+        printf("  clocks      one: force and markers are in the same file\n");
         return;
     case WB_SYNC_GIVEN:
-        printf("  clocks      the force's clock + %.4f s, as given\n", r->sync.lag);
+        printf("  clocks      clock of the force + %.4f s, as given\n", r->sync.lag);
         return;
     default:
-        printf("  clocks      by %s: lag %.4f s +- %.1f ms (%d event%s, the first at %.2f s), of "
-               "it %.0f ms the load cell's filter\n",
+        printf("  clocks      by %s: lag %.4f s +- %.1f ms (%d event%s, the first at %.2f s), "
+               "including %.0f ms of the load cell's filter\n",
                wb_sync_name(r->sync.method), r->sync.lag, r->sync.uncertainty * 1e3,
                r->sync.n_events, r->sync.n_events == 1 ? "" : "s", r->sync.first_event,
                -r->filter_delay * 1e3);
@@ -137,7 +139,7 @@ static void print_clocks(const struct wb_mocap_import *r)
 static void print_force(const struct wb_mocap_import *r)
 {
     if (!r->has_force) {
-        printf("  force       none: 'align' needs one; give --force FILE\n");
+        printf("  force       none: 'align' needs it; add --force FILE\n");
         return;
     }
     if (r->channel[0])
@@ -156,12 +158,12 @@ static void print_force(const struct wb_mocap_import *r)
 static void print_missing(const struct wb_mocap_import *r)
 {
     if (r->missing_frames > 0)
-        printf("  missing     %zu frames that the file announces\n", r->missing_frames);
+        printf("  missing     %zu of the frames that the file's header announces\n",
+               r->missing_frames);
     if (r->jumps > 0)
-        printf("  missing     %zu frames, in %zu gaps between those that are there\n", r->jumped,
-               r->jumps);
+        printf("  missing     %zu frames, in %zu gaps\n", r->jumped, r->jumps);
     if (r->skipped_rows > 0)
-        printf("  left out    %zu rows, the first is line %zu\n", r->skipped_rows,
+        printf("  left out    %zu rows, the first in line %zu\n", r->skipped_rows,
                r->first_skipped);
     if (r->force_skipped > 0)
         printf("  left out    %zu rows of the force\n", r->force_skipped);
@@ -172,11 +174,44 @@ static int print_text(const struct wb_mocap_import *r, const char *output)
     printf("%s: recording\n", output);
     printf("  take        %s, %zu frames, %.2f s at %g/s\n", r->format, r->n_frames, r->duration,
            r->rate);
-    printf("  markers     %d, stitched from %zu of %zu columns, %.2f %% of their places missing\n",
-           r->n_markers, r->n_stitched, r->n_points, 100.0 * r->missing);
+    printf(
+        "  markers     %d, stitched from %zu of %zu columns, %.2f %% of their positions missing\n",
+        r->n_markers, r->n_stitched, r->n_points, 100.0 * r->missing);
     print_force(r);
     print_missing(r);
     return WB_EXIT_OK;
+}
+
+static void print_finding(const struct wb_mocap_import *r, const char *output)
+{
+    struct wb_finding finding = {.figure = NULL};
+    char dataset[WB_PATH];
+    wb_text_append(&finding.found, "%d markers in %zu frames over %.1f s", r->n_markers,
+                   r->n_frames, r->duration);
+    if (r->has_force)
+        wb_text_append(&finding.found, ", %zu readings of the force", r->n_readings);
+    else
+        wb_text_append(&finding.found, ", no force");
+    if (r->complete)
+        wb_text_append(&finding.trust, "yes: no frame or row is missing or was left out");
+    else
+        wb_text_append(&finding.trust, "in part: frames or rows are missing, see above");
+    if (r->has_force && r->sync.method == WB_SYNC_GIVEN)
+        wb_text_append(&finding.trust, "; the clocks were synchronised with the given lag");
+    else if (r->has_force && r->sync.method != WB_SYNC_SAME)
+        wb_text_append(&finding.trust, "; the clocks are synchronised within %.1f ms",
+                       r->sync.uncertainty * 1e3);
+    if (r->has_force) {
+        snprintf(dataset, sizeof dataset, "%.*s",
+                 (int)strlen(output) - (wb_command_ends_in(output, ".wbr") ? 4 : 0), output);
+        wb_text_append(&finding.next, "wirebench align ");
+        wb_text_append_quoted(&finding.next, output);
+        wb_text_append(&finding.next, " -o ");
+        wb_text_append_quoted(&finding.next, dataset);
+    } else {
+        wb_text_append(&finding.next, "import the take again with --force FILE");
+    }
+    wb_finding_print(&finding);
 }
 
 static int print_json(const struct wb_mocap_import *r, const char *output)
@@ -219,6 +254,14 @@ static int print_json(const struct wb_mocap_import *r, const char *output)
     return wb_command_print_json(root);
 }
 
+static enum wb_status check_files(const struct wb_mocap_import_request *request)
+{
+    WB_TRY(wb_file_kind_check(request->take_path, WB_FILE_BIT(WB_FILE_TAKE)));
+    WB_TRY(wb_file_kind_check(request->specimen_path,
+                              WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE)));
+    return wb_file_kind_check(request->rig_path, WB_FILE_BIT(WB_FILE_RIG));
+}
+
 int wb_import_mocap(int argc, char **argv)
 {
     struct options options = {
@@ -233,11 +276,13 @@ int wb_import_mocap(int argc, char **argv)
     request->output = options.common.output;
     request->specimen_path = wb_command_find(request->specimen_path, specimen);
     request->rig_path = wb_command_find(request->rig_path, rig);
-    if (wb_mocap_import_run(&result, request) != WB_OK)
+    if (check_files(request) != WB_OK || wb_mocap_import_run(&result, request) != WB_OK)
         return WB_EXIT_FAILED;
     const int code = options.common.json ? print_json(&result, request->output)
                                          : print_text(&result, request->output);
     if (code != WB_EXIT_OK)
         return code;
+    if (!options.common.json)
+        print_finding(&result, request->output);
     return result.complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

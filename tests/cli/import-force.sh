@@ -42,7 +42,7 @@ says '"partial_rows": 1'
 head -n 30 german.csv >cut.csv
 printf '29;4' >>cut.csv
 ends 3 "$tool" import force cut.csv $bend -o cut
-says "cut off"
+says "truncated"
 
 # Refused with the place, nothing written.
 sed '5s/.*/3;kaputt;0,06/' german.csv >odd.csv
@@ -59,7 +59,7 @@ printf '%s\n' 'wire: w' 'outer_diameter_mm: 0.8' 'mass_per_length_kg_m: 0.001' \
     'youngs_modulus_MPa: 1000' 'yield_stress_MPa: 10' 'strength_coefficient_MPa: 50' \
     'hardening_exponent: 0.5' 'poissons_ratio: 0.4' >w.yaml
 ends 2 "$tool" validate w.yaml bent --elements 30
-says "--elements is for tests of cantilevers"
+says "--elements applies only to tests of cantilevers"
 
 # Other commands say what they expect.
 ends 1 "$tool" validate "$fixtures/wires/type1.yaml" bent
