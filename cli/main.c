@@ -1,4 +1,4 @@
-/* wirebench: one tool, one table of commands. */
+/* wirebench: the table of commands, and what stands before a command. */
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -14,46 +14,56 @@ struct command {
     const char *name;
     int (*run)(int argc, char **argv);
     const char *summary;
+    const char *stage; /* of the workflow: of the first command of it */
 };
 
+/* In the order of a bench's work. */
 static const struct command commands[] = {
-    {"align", wb_cmd_align, "recordings to datasets"},
-    {"calibrate", wb_cmd_calibrate, "datasets to properties: E, sigma_Y, K, n"},
-    {"clock", wb_cmd_clock, "clocks of a recording, lag between force and markers"},
-    {"compare", wb_cmd_compare, "two batches: equivalent, different, or how many more to test"},
-    {"doctor", wb_cmd_doctor, "is the bench ready for a test?"},
-    {"export", wb_cmd_export,
-     "tables of recordings and datasets; with --to, a wire's law as a card"},
-    {"import", wb_cmd_import, "tests that others made: from files to recordings and datasets"},
-    {"info", wb_cmd_info, "what a recording holds"},
-    {"quicklook", wb_cmd_quicklook, "one recording's curve as figure and CSV"},
-    {"record", wb_cmd_record, "run a bending test on the bench and record it"},
-    {"recover", wb_cmd_recover, "what is left of a damaged recording"},
+    {"doctor", wb_cmd_doctor, "check whether the bench is ready for a test", "set up the bench"},
     {"stage", wb_cmd_stage, "home, jog, unlock, free a specimen, check the load cell"},
-    {"replay", wb_cmd_replay, "the bench from a recording"},
-    {"report", wb_cmd_report, "the calibration report of a campaign"},
-    {"rig", wb_cmd_rig, "the virtual rig: a bench on pseudo-terminals and loopback"},
-    {"solve", wb_cmd_solve, "compute a bending test with a finite element model"},
-    {"validate", wb_cmd_validate, "error curves of properties on other datasets"},
+    {"rig", wb_cmd_rig, "run a virtual rig on pseudo-terminals and loopback"},
+    {"record", wb_cmd_record, "run a bending test, or a series of tests, and record it", "record"},
+    {"quicklook", wb_cmd_quicklook, "curve and shapes of a recording as figures and CSV"},
+    {"import", wb_cmd_import, "files of other programs to recordings and datasets",
+     "bring in and align"},
+    {"align", wb_cmd_align, "recordings to datasets"},
+    {"clock", wb_cmd_clock, "clocks of a recording, lag between force and markers"},
+    {"calibrate", wb_cmd_calibrate, "datasets to properties: law, EI, moments, residual curvature",
+     "calibrate and validate"},
+    {"validate", wb_cmd_validate, "compare predictions of properties with other datasets"},
+    {"compare", wb_cmd_compare, "compare the properties of two batches"},
+    {"solve", wb_cmd_solve, "compute a bending test with a finite element model", "simulate"},
+    {"report", wb_cmd_report, "make, sign or check the report of a campaign",
+     "report and hand over"},
+    {"export", wb_cmd_export, "recordings and datasets as tables, the law of a wire as a card"},
+    {"info", wb_cmd_info, "kind and contents of a file, and the next command for it",
+     "housekeeping"},
     {"verify", wb_cmd_verify, "check recordings for damage, gaps and drops"},
+    {"recover", wb_cmd_recover, "salvage the data of a damaged recording"},
+    {"replay", wb_cmd_replay, "play a recording through the decoders"},
     {0},
 };
 
 static void print_usage(FILE *file)
 {
-    fprintf(file, "Usage: wirebench COMMAND [options]\n"
-                  "Records cantilever bending tests of wires, replays and aligns them, calibrates\n"
-                  "a beam model against them and prints the calibration report.\n\n");
-    for (const struct command *command = commands; command->name; command++)
+    fprintf(file,
+            "Usage: wirebench COMMAND [options]\n"
+            "Records cantilever bending tests of electrical wires, aligns them, calibrates and\n"
+            "validates elastoplastic bending laws, simulates tests and writes reports.\n");
+    for (const struct command *command = commands; command->name; command++) {
+        if (command->stage)
+            fprintf(file, "\n%s:\n", command->stage);
         fprintf(file, "  %-10s %s\n", command->name, command->summary);
-    fprintf(file, "\n  -h, --help     this help; `wirebench COMMAND --help` for one command\n"
+    }
+    fprintf(file, "\n  -h, --help     this help; `wirebench COMMAND --help` for one command,\n"
+                  "                 `man wirebench-COMMAND` with examples\n"
                   "  -V, --version  version and revision\n");
 }
 
 static int run(const struct command *command, int argc, char **argv)
 {
     int code = command->run(argc, argv);
-    /* A full disk behind a pipe or redirection shows only when stdout is flushed. */
+    /* A full disk behind a redirection is noticed only when stdout is flushed. */
     if ((fflush(stdout) != 0 || ferror(stdout)) && code == WB_EXIT_OK) {
         wb_error("cannot write to standard output: %s", strerror(errno));
         code = WB_EXIT_FAILED;
@@ -61,7 +71,7 @@ static int run(const struct command *command, int argc, char **argv)
     return code;
 }
 
-/* Letters to change, insert, leave out or swap to make one word of the other (both short). */
+/* Damerau-Levenshtein distance of two short words. */
 static int distance(const char *a, const char *b)
 {
     enum {
@@ -89,11 +99,11 @@ static int distance(const char *a, const char *b)
     return d[n][m];
 }
 
-/* The command that was probably meant; NULL when none is near. */
+/* The most similar command, or NULL. */
 static const char *nearest(const char *name)
 {
     const char *found = NULL;
-    int best = 3; /* more than two slips are another word */
+    int best = 3; /* more than two edits are another word */
     for (const struct command *command = commands; command->name; command++) {
         const int d = distance(name, command->name);
         if (d < best && d < (int)strlen(name)) {
@@ -112,7 +122,7 @@ static const struct command *find(const char *name)
     return NULL;
 }
 
-/* What may stand in place of the last word. */
+/* Prints the candidates for the last word. */
 static int complete(int n, char **words)
 {
     const struct command *const command = n > 1 ? find(words[0]) : NULL;
@@ -121,8 +131,8 @@ static int complete(int n, char **words)
     wb_complete_begin(words[n - 1], n > 1 ? words[n - 2] : "");
     words[n - 1] = NULL;
     if (command) {
-        /* It ends the process where it would parse; one of several kinds may only have offered
-         * their names, and says on stderr that it misses one. */
+        /* The command ends the process where it would parse its options; `import` and `solve`
+         * without a kind return after printing the names of the kinds. */
         (void)command->run(n - 1, words);
         wb_complete_finish(NULL);
         return WB_EXIT_OK;
@@ -136,7 +146,7 @@ static int complete(int n, char **words)
 
 int main(int argc, char **argv)
 {
-    /* A file that may grow no further is an error code of write(), not the end of the process. */
+    /* At the file size limit write() fails instead of ending the process. */
     signal(SIGXFSZ, SIG_IGN);
     const char *const name = argc > 1 ? argv[1] : "";
     if (strcmp(name, "-h") == 0 || strcmp(name, "--help") == 0 || strcmp(name, "help") == 0) {
@@ -154,11 +164,11 @@ int main(int argc, char **argv)
         return run(command, argc - 1, argv + 1);
     const char *const meant = nearest(name);
     if (meant) {
-        wb_error("no command '%s': did you mean `wirebench %s`?", name, meant);
+        wb_error("unknown command '%s': did you mean `wirebench %s`?", name, meant);
         return WB_EXIT_USAGE;
     }
     if (argc > 1)
-        wb_error("no command '%s'", name);
+        wb_error("unknown command '%s'", name);
     print_usage(stderr);
     return WB_EXIT_USAGE;
 }

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Writes a manual page: of one command from its section of the command reference, or, without a
-# command, wirebench(1), which lists them. What a command does in one line comes from the table of
-# the tool itself. Usage: manual-page.sh LOWDOWN REFERENCE.md COMMANDS OUTPUT [COMMAND]
-# where COMMANDS holds what `wirebench --complete ''` prints.
+# Writes a manual page: of one command from its sections of the command reference, or, without a
+# command, wirebench(1), which lists the commands. The one-line summaries come from the table of the
+# tool. Usage: manual-page.sh LOWDOWN REFERENCE.md COMMANDS OUTPUT [COMMAND]
+# where COMMANDS is the output of `wirebench --complete ''`.
 set -eu
 lowdown=$1 reference=$2 commands=$3 output=$4 command=${5:-}
 page=wirebench${command:+-$command}
@@ -43,6 +43,11 @@ awk -v command="$command" -v page="$page" '
         defines = 0
         print line
     }
+    # "### Exit status" and "### Examples" of all sections of a command stand at the end of its page.
+    function end_of_page(name, text) {
+        if (text != "")
+            print "# " name "\n" text
+    }
     function list() {
         print "# COMMANDS"
         for (i = 1; i <= n; i++)
@@ -51,6 +56,7 @@ awk -v command="$command" -v page="$page" '
     }
     # The section of a command, and those of its kinds ("## calibrate --tensile").
     command && /^## / {
+        part_name = ""
         inside = $2 == command && (NF == 2 || $3 ~ /^--/)
         if (inside && NF == 2) {
             found = 1
@@ -62,11 +68,27 @@ awk -v command="$command" -v page="$page" '
         next
     }
     /^# / {
-        inside = !command && $0 !~ /^# COMMANDS (AT|ON)/ || command && /^# EXIT STATUS/
+        part_name = ""
+        inside = !command && $0 !~ /^# COMMANDS (AT|ON)/
         if (!command && /^# EXIT STATUS/)
             list()
     }
     /^## / { inside = 0 }
+    inside && /^### / {
+        part_name = toupper(substr($0, 5))
+        next
+    }
+    inside && part_name {
+        if (part_name == "EXIT STATUS" && /^\| [0-9]/) {
+            split($0, cell, / *\| */)
+            codes = codes "\n" cell[2] "\n\n:   " cell[3] "\n"
+        } else if (part_name == "EXIT STATUS" && $0 !~ /^\|/) {
+            codes = codes "\n" $0
+        } else if (part_name == "EXAMPLES") {
+            examples = examples "\n" $0
+        }
+        next
+    }
     inside {
         if (synopsis && NF && $0 !~ /^`wirebench /) {
             print "# DESCRIPTION\n"
@@ -79,6 +101,12 @@ awk -v command="$command" -v page="$page" '
             print "no section or summary of the command " command >"/dev/stderr"
             exit 1
         }
+        if (command && (codes == "" || examples == "")) {
+            print "no exit status or examples of the command " command >"/dev/stderr"
+            exit 1
+        }
+        end_of_page("EXIT STATUS", codes)
+        end_of_page("EXAMPLES", examples)
         if (command)
             print "# SEE ALSO\n\n`wirebench`(1)"
     }' "$commands" "$reference" >"$output.md"
