@@ -1,4 +1,5 @@
-/* Options of the commands that work with the bench, its recordings or its stand-in, as rows. */
+/* Options of the commands for the bench, its recordings and the virtual rig, as rows of settings.
+ */
 #ifndef WB_CLI_BENCH_OPTIONS_H
 #define WB_CLI_BENCH_OPTIONS_H
 
@@ -13,7 +14,7 @@ struct wb_stage_options {
     struct wb_command_common common;
     const char *rig_path, *action, *value;
     struct wb_stage_job_request job;
-    double seconds;     /* of a check */
+    double seconds;     /* averaging time of a check */
     double tolerance;   /* fraction; 0: the rig's */
     const char *masses; /* of a check's series, in g between commas; NULL: the rig's */
 };
@@ -22,7 +23,7 @@ struct wb_virtual_version {
     int major, minor; /* of the motion capture's protocol */
 };
 
-/* Options of a virtual bench, of all commands that start one. */
+/* Options of a virtual bench, shared by `rig` and `record --virtual`. */
 struct wb_virtual_options {
     struct wb_bench_settings bench;
     int seed;
@@ -38,14 +39,14 @@ struct wb_rig_options {
 
 struct wb_replay_options {
     struct wb_command_common common;
-    double rate; /* 0: as fast as it can */
+    double rate; /* 0: as fast as possible */
 };
 
 /* `rig` has the rows of struct wb_rig_options beside those of `virtual`. */
 extern const struct wb_setting_table wb_bench_options_stage, wb_bench_options_rig,
     wb_bench_options_virtual, wb_bench_options_replay;
 
-/* Fills in the defaults; and, after the options were read, the bench's settings from them. */
+/* Fills in the defaults; after parsing, sets the bench's settings from the options. */
 void wb_bench_options_default(struct wb_virtual_options *options);
 void wb_bench_options_complete(struct wb_virtual_options *options);
 

@@ -1,4 +1,4 @@
-/* `wirebench calibrate --compliance`: how much a machine gives way, from a stiff bar. */
+/* `wirebench calibrate --compliance`: compliance of a machine, from tests of a stiff bar. */
 #ifndef WB_CLI_CALIBRATE_COMPLIANCE_H
 #define WB_CLI_CALIBRATE_COMPLIANCE_H
 

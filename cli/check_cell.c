@@ -17,12 +17,12 @@
 
 #define WB_LOG_DOMAIN "stage"
 
-/* What is asked for, and what came of it. */
+/* A check: request and result. */
 struct check {
     const struct wb_stage_options *options;
     const struct wb_rig *rig;
     double tolerance;
-    char utc[32]; /* when it was measured */
+    char utc[32]; /* end of the measurement */
     bool is_series;
     int n;
     double masses[WB_RIG_MASSES]; /* kg */
@@ -32,7 +32,7 @@ struct check {
     bool passed;
 };
 
-/* --- what is asked for --- */
+/* --- the request --- */
 
 static bool take_single(struct check *check, double known)
 {
@@ -79,8 +79,8 @@ static bool fits_the_cell(const struct check *check)
     const struct wb_rig *const rig = check->rig;
     for (int i = 0; i < check->n; i++) {
         if (check->masses[i] * rig->gravity > rig->load_cell.overload) {
-            wb_error("check: %g g is more than the load cell reads (%g g)", check->masses[i] / WB_G,
-                     rig->load_cell.overload / rig->gravity / WB_G);
+            wb_error("check: %g g exceeds the overload limit of the load cell (%g g)",
+                     check->masses[i] / WB_G, rig->load_cell.overload / rig->gravity / WB_G);
             return false;
         }
     }
@@ -94,8 +94,8 @@ static bool fits_the_cell(const struct check *check)
 
 /* --- measuring --- */
 
-/* True once a whole line, empty or not, was read from stdin; *ended when there is no more. Reads
- * byte by byte: what follows the line is not ours. */
+/* True once a whole line, which may be empty, was read from stdin; sets *ended at its end. Reads
+ * byte by byte, so that the bytes behind the line remain for the next question. */
 static bool line_came(bool *ended)
 {
     struct pollfd polled = {.fd = STDIN_FILENO, .events = POLLIN};
@@ -137,7 +137,7 @@ static bool run_program(struct check *check, struct wb_mass_check *program)
         if (phase == WB_MASS_CHECK_WAITING && line_came(&ended))
             wb_mass_check_confirm(program);
         if (ended) {
-            wb_error("nobody pressed Enter: standard input has ended");
+            wb_error("standard input ended before Enter was pressed");
             return false;
         }
     }
@@ -172,7 +172,7 @@ static void judge(struct check *check)
     check->passed = fabs(check->single.relative) <= check->tolerance;
 }
 
-/* --- telling --- */
+/* --- output --- */
 
 static const char *or_not_given(const char *text)
 {
@@ -258,7 +258,7 @@ static void print_series(const struct check *check)
         const struct wb_cell_result *const result = &check->series.results[i];
         const char *const name = wb_cell_calibration_name((enum wb_cell_quantity)i);
         if (!result->known)
-            printf("%-14s not shown by these masses\n", name);
+            printf("%-14s cannot be determined with these masses\n", name);
         else
             printf("%-14s %+.3f %% +- %.3f %%%s\n", name, result->value / WB_PERCENT,
                    result->uncertainty / WB_PERCENT, result->passed ? "" : ", EXCEEDED");
@@ -283,9 +283,9 @@ static int print(const struct check *check)
     return WB_EXIT_OK;
 }
 
-/* Adds the outcome to the log beside the rig file; a log that cannot be written is told, and does
- * not change the outcome. A series stands in it as its largest mass, read by the slope of the
- * line. */
+/* Adds the result to the log beside the rig file; if the log cannot be written, that is reported
+ * and does not change the result. A series is logged by its largest mass, as read by the slope of
+ * the line. */
 static void add_to_log(const struct check *check)
 {
     struct wb_check_log_entry entry = {.tolerance = check->tolerance, .passed = check->passed};
@@ -329,9 +329,9 @@ int wb_check_cell_run(const struct wb_stage_options *options, const struct wb_ri
     };
     if (!take_masses(&check) || !fits_the_cell(&check))
         return WB_EXIT_USAGE;
-    /* Before somebody hangs nine masses. */
+    /* Checked before the operator hangs nine masses. */
     if (output && !options->common.force && wb_file_exists(output)) {
-        wb_error("'%s' exists: choose another name, or --force", output);
+        wb_error("'%s' exists; --force overwrites it", output);
         return WB_EXIT_FAILED;
     }
     if (!measure(&check))

@@ -111,7 +111,7 @@ static void note_option(void *input, const struct wb_setting *row)
         const struct wb_setting_table *const table = &wb_three_point_calibrate_tables[t];
         is_three_point = is_three_point || (row >= table->rows && row < table->rows + table->n);
     }
-    /* --threads serves all but the paper's, which has one. */
+    /* --threads applies to all methods; the paper's uses one. */
     if (strcmp(row->option, "threads") == 0)
         return;
     const enum wb_method method = is_three_point ? WB_METHOD_THREE_POINT

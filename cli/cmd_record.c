@@ -301,6 +301,12 @@ static void append_next(struct wb_text *text, const struct wb_bend_test_result *
         wb_text_append(text, "follow the warning above before you touch the specimen");
         return;
     }
+    if (result->end == WB_SEQUENCE_LIMIT || result->end == WB_SEQUENCE_FAILED) {
+        wb_text_append(text,
+                       "remove the cause that the message above names, then record again into "
+                       "another file");
+        return;
+    }
     wb_text_append(text, test->is_usable ? "wirebench align " : "wirebench verify ");
     wb_text_append_quoted(text, output);
     if (!test->is_usable)

@@ -61,7 +61,7 @@ static void parse_options(int argc, char **argv, struct wb_rig_options *options)
     wb_bench_options_complete(&options->virtual);
 }
 
-/* A folder serves one rig: a second one would replace the first one's rig file and later remove it.
+/* One rig a folder: a second one would replace the rig file of the first and later remove it.
  */
 static enum wb_status lock_folder(struct wb_file_lock *lock, const char *folder)
 {

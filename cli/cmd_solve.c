@@ -357,8 +357,7 @@ static enum wb_status print_finding(const struct options *o, bool is_complete)
         finding.figure ? wb_quicklook_draw(&dataset, finding.figure) : WB_OK;
     if (status == WB_OK && !o->common.json) {
         append_found(&finding.found, &dataset);
-        wb_text_append(&finding.trust,
-                       "%s; a computed test, which no measurement was compared with",
+        wb_text_append(&finding.trust, "%s; computed, not compared with a measurement",
                        is_complete ? "complete" : "in part: the curve ends early, see the warning");
         append_next(&finding.next, o);
         wb_finding_print(&finding);

@@ -141,7 +141,8 @@ static int print_job_json(const struct wb_rig *rig, const struct wb_stage_job_re
     return wb_command_print_json(root);
 }
 
-static void tell_job(const struct wb_rig *rig, const struct wb_stage_job_result *result, bool quiet)
+static void report_job(const struct wb_rig *rig, const struct wb_stage_job_result *result,
+                       bool quiet)
 {
     const char *const virtual_rig = rig->is_virtual ? "virtual rig: " : "";
     if (result->end != WB_SEQUENCE_DONE)
@@ -173,7 +174,7 @@ static int run_job(const struct wb_stage_options *options, const struct wb_rig *
     }
     wb_stage_job_close(job, &result);
     wb_live_line_close();
-    tell_job(rig, &result, options->common.json);
+    report_job(rig, &result, options->common.json);
     if (options->common.json && print_job_json(rig, &result) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     if (result.end == WB_SEQUENCE_DONE)

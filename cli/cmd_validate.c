@@ -221,7 +221,7 @@ static enum wb_status draw(const struct options *o, const struct group *g, char 
     return status;
 }
 
-/* One of each group; `path` receives the first one's, "" where there is none. */
+/* Draws a figure of each group; `path` receives that of the first, or "". */
 static enum wb_status draw_groups(const struct options *o, const struct groups *groups,
                                   char path[WB_PATH])
 {

@@ -25,7 +25,7 @@ static error_t parse_help(int key, char *argument, struct argp_state *state)
         argp_state_help(state, stdout, ARGP_HELP_USAGE | ARGP_HELP_EXIT_OK);
         return 0;
     case ARGP_KEY_INIT:
-        /* The one child is the command's own parser. */
+        /* The only child is the command's own parser. */
         state->child_inputs[0] = state->input;
         return 0;
     default:
@@ -39,12 +39,12 @@ void wb_command_parse(const struct argp *argp, int argc, char **argv, void *inpu
     snprintf(name, sizeof name, "wirebench %s", argv[0]);
     argv[0] = name;
     argp_err_exit_status = WB_EXIT_USAGE;
-    /* Every long option shows its argument; the note about short ones would only be noise. */
+    /* Suppresses the note about arguments of short options. */
     setenv("ARGP_HELP_FMT", "no-dup-args-note", 0);
     const struct argp_child children[] = {{.argp = argp}, {0}};
     const struct argp with_help = {
         .options = wb_command_help_options,
-        .parser = parse_help, /* arguments and text are the child's */
+        .parser = parse_help, /* the child has arguments and text */
         .children = children,
     };
     if (wb_complete_is_on()) {
@@ -69,7 +69,7 @@ static void take_argument(struct argp_state *state, const char *argument,
                           struct wb_command_common *common)
 {
     if (common->least == 0 && common->input)
-        argp_error(state, "one %s at a time, not also '%s'", common->noun, argument);
+        argp_error(state, "one %s at a time: unexpected argument '%s'", common->noun, argument);
     if (!common->input)
         common->input = argument;
     if (common->least == 0)

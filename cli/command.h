@@ -1,9 +1,9 @@
-/* What every command of the tool shares: the table's entry, exit codes, option parsing.
+/* Shared by all commands: exit codes, option parsing, declarations for the table.
  *
- * How to add one: write cli/cmd_NAME.c with its argp options and `int wb_cmd_NAME(int, char **)`
- * (usage, option table, parse, call the library, print; no numerics), declare it below, and add it
- * to the table in main.c and to cli/meson.build, and its section to docs/commands.md, of which its
- * manual page is made.
+ * To add a command, write cli/cmd_NAME.c with its argp options and `int wb_cmd_NAME(int, char **)`
+ * (usage, option table, parse, call the library, print; no numerics), declare it below, add it to
+ * the table in main.c and to cli/meson.build, and write its section in docs/commands.md, from which
+ * its manual page is made.
  */
 #ifndef WB_CLI_COMMAND_H
 #define WB_CLI_COMMAND_H
@@ -19,38 +19,37 @@ enum {
     WB_EXIT_OK = 0,
     WB_EXIT_FAILED = 1,
     WB_EXIT_USAGE = 2,
-    WB_EXIT_INCOMPLETE = 3, /* usable but incomplete: data lost, stopped by a limit or Ctrl-C,
-                               cut short by non-convergence */
-    WB_EXIT_LIMIT = 4       /* all written, but a limit of the campaign was exceeded; the bench was
-                               looked at, and is not ready */
+    WB_EXIT_INCOMPLETE = 3, /* usable but incomplete: data lost, stopped by a limit or Ctrl-C, no
+                               convergence */
+    WB_EXIT_LIMIT = 4       /* complete, with a negative result: a limit of the campaign is
+                               exceeded, the bench is not ready, batches differ */
 };
 
-/* -h, --help and --usage, which every command has. */
+/* -h, --help and --usage of every command. */
 extern const struct argp_option wb_command_help_options[];
 
-/* Parses a command's options. argv[0] is the command's name; -h, --help and --usage are added.
- * Exits with WB_EXIT_USAGE on wrong usage, as argp does. */
+/* Parses the options of a command. argv[0] is its name; -h, --help and --usage are added. Exits
+ * with WB_EXIT_USAGE on wrong usage, as argp does. */
 void wb_command_parse(const struct argp *argp, int argc, char **argv, void *input);
 
-/* For use inside an argp parser: reads the argument of an option as a whole number within
- * [minimum, maximum], or stops with a usage error that names the option. */
+/* For an argp parser: reads the argument of an option as a whole number within [minimum, maximum],
+ * or exits with a usage error that names the option. */
 int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
                        int maximum);
 
-/* What most commands take: an argument or several, an output, --force and --json. */
+/* Options of most commands: one argument or several, an output, --force and --json. */
 struct wb_command_common {
-    const char *noun;        /* of the argument, for messages: "recording"; of several all that is
-                                named: "at least one dataset"; NULL: the command looks at its
-                                arguments itself */
-    const char *destination; /* what goes where by -o, for messages: "figures go: -o DIR"; NULL: -o
-                                is not needed, or there is none */
-    int least;               /* of several arguments; 0: one alone is taken */
+    const char *noun;        /* of the argument, for messages: "recording"; of several arguments
+                                "at least one dataset"; NULL: the command parses them itself */
+    const char *destination; /* of -o, for messages: "figures go: -o DIR"; NULL: -o is optional, or
+                                not an option of the command */
+    int least;               /* smallest number of several arguments; 0: exactly one */
     const char *input;       /* the argument, or the first */
     const char **inputs;     /* (n) of several; texts are borrowed, see wb_command_release() */
     int n;
     const char *output;
     bool force, json;
-    bool no_figure; /* of a command that draws a figure beside its output */
+    bool no_figure; /* for a command that draws a figure beside its output */
 };
 
 enum {
@@ -60,26 +59,26 @@ enum {
     WB_KEY_OWN /* the first key for options of a command's own */
 };
 
-/* The rest of a command's argp parser: takes 'o', WB_KEY_FORCE, WB_KEY_JSON, WB_KEY_NO_FIGURE and
- * the argument, and sees at the end that argument and output were given. */
+/* The default branch of a command's argp parser: handles 'o', WB_KEY_FORCE, WB_KEY_JSON,
+ * WB_KEY_NO_FIGURE and the arguments, and checks at the end that argument and output were given. */
 error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
                                 struct wb_command_common *common);
 
-/* The parser of a command that has no other options but rows of settings; its input begins with a
- * struct wb_command_common. */
+/* The parser of a command without other options besides settings; its input begins with a struct
+ * wb_command_common. */
 error_t wb_command_parse_only_common(int key, char *argument, struct argp_state *state);
 
 void wb_command_release(struct wb_command_common *common); /* the list of arguments */
 
-/* The file of that name, or where there is none the shipped one ("fixtures/rigs/paper.yaml" works
- * from any folder once installed). `path` holds the answer where it is needed; returns it or
- * `name`, which may then not exist. */
+/* Finds a file by its name: in the current folder, else among the shipped files, so that
+ * "fixtures/rigs/paper.yaml" works from any folder. Returns `path` or, if neither exists, `name`.
+ */
 const char *wb_command_find(const char *name, char path[WB_PATH]);
 
-/* Whether a file's name has this ending, and something before it. */
+/* Whether a file's name is longer than this ending and ends in it. */
 bool wb_command_ends_in(const char *name, const char *ending);
 
-/* The exit code of a failed library call: WB_EXIT_FAILED (its message was logged). */
+/* WB_EXIT_OK or, for a failed library call whose message was logged, WB_EXIT_FAILED. */
 int wb_command_exit(enum wb_status status);
 
 /* Prints the document on stdout and destroys it; returns an exit code. */

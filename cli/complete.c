@@ -33,7 +33,7 @@ static bool is_joined(const char *name)
            line.word[2 + n] == '=';
 }
 
-/* Whether the word is being typed behind "--NAME". */
+/* Whether the word before is "--NAME". */
 static bool is_behind(const char *name)
 {
     return strncmp(line.before, "--", 2) == 0 && strcmp(line.before + 2, name) == 0;
@@ -121,7 +121,7 @@ static void print_options(const struct argp *argp)
 
 void wb_complete_finish(const struct argp *argp)
 {
-    /* Its values, where they are known, are printed already. */
+    /* Known values are printed already. */
     if (argp && takes_value(argp))
         return;
     if (argp && line.word[0] == '-')

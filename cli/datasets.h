@@ -1,5 +1,5 @@
-/* Datasets of the command line: folders that it names, read together, and what is said of a dataset
- * that was written. */
+/* Datasets of the command line: reads the folders that it names, and prints a dataset that was
+ * written. */
 #ifndef WB_CLI_DATASETS_H
 #define WB_CLI_DATASETS_H
 
@@ -9,11 +9,11 @@
 struct wb_datasets {
     int n;
     struct wb_dataset *items;           /* (n), owned */
-    const struct wb_dataset **pointers; /* (n) to the items, as the library wants them; owned */
+    const struct wb_dataset **pointers; /* (n) to the items, for library calls; owned */
 };
 
-/* Reads those of the names (n); `kinds` of test as of wb_dataset_read_kinds(), others are refused,
- * and so are those of a test that was excluded, with who and why. */
+/* Reads the datasets of these names (n). Rejects tests of other `kinds` (see
+ * wb_dataset_read_kinds()) and excluded tests, with name and reason. */
 WB_MUST_CHECK enum wb_status wb_datasets_read(struct wb_datasets *datasets,
                                               const char *const *names, int n, unsigned kinds);
 

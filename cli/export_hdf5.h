@@ -6,10 +6,10 @@
 
 #include "cli/command.h"
 
-/* Whether a file of that name is written as HDF5: .h5 or .hdf5. */
+/* Whether the file name ends in .h5 or .hdf5. */
 bool wb_export_hdf5_is(const char *output);
 
-/* Exports options->input to options->output and says so; returns an exit code. */
+/* Exports options->input to options->output and prints a summary; returns an exit code. */
 int wb_export_hdf5(const struct wb_command_common *options);
 
 #endif

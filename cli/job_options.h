@@ -1,4 +1,4 @@
-/* The options of a command that has datasets computed: --solve, --slurm, --workers and the others.
+/* Options for computing missing datasets: --solve, --slurm, --workers and others.
  *
  *     static const struct argp_child children[] = {{&wb_job_options_argp, 0, NULL, 0}, {0}};
  *     ... in its parser: case ARGP_KEY_INIT: state->child_inputs[0] = &o->jobs; return 0;

@@ -16,12 +16,12 @@
 #include "cli/talk.h"
 
 #define REDRAW_NS (200 * WB_NS_PER_MS)
-/* How long the last messages may wait for a terminal that hangs. */
+/* Longest wait for a terminal that hangs, at the end. */
 #define PATIENCE_MS 300
 
 #define ERASE "\r\033[K"
 
-/* The log's sink is called by any thread; the lock is never held while waiting. */
+/* Any thread calls the log's sink; the lock is never held while waiting. */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 static struct {
@@ -56,7 +56,7 @@ void wb_live_line_say(const char *text)
     if (live.drawn)
         (void)wb_talk_say(ERASE);
     live.drawn = false;
-    /* Line by line: a text that is longer than what may wait would be dropped whole. */
+    /* Line by line, because a text longer than the buffer would be dropped as a whole. */
     while (*text) {
         char line[3072];
         const size_t n = strcspn(text, "\n") + (strchr(text, '\n') != NULL);
@@ -74,8 +74,8 @@ static bool in_foreground(void)
     return tcgetpgrp(STDIN_FILENO) == getpgrp();
 }
 
-/* Single keys without Enter. A process in the background leaves the terminal to others; once it is
- * brought to the front it takes the keys then. */
+/* Switches to single keys without Enter. A process in the background must not change the terminal;
+ * it does so once it is in the foreground. */
 static void take_keys(void)
 {
     if (live.has_keys || !live.may_have_keys || !in_foreground() ||
@@ -102,8 +102,8 @@ int wb_live_line_key(void)
 
 void wb_live_line_restore(const struct termios *modes, const char *sequence)
 {
-    /* What still waits for a terminal that is slow or hangs belongs to the screen that is left, and
-     * would take the room of what follows. */
+    /* Output that a slow terminal has not accepted yet belongs to the screen that was left, and
+     * would delay the following messages. */
     (void)tcflush(STDERR_FILENO, TCOFLUSH);
     wb_live_line_say(sequence);
     live.has_keys = false;
@@ -154,7 +154,7 @@ void wb_live_line_show(const char *format, ...)
     if (strlen(live.text) > columns)
         live.text[columns] = '\0';
     snprintf(text, sizeof text, "\r%s\033[K", live.text);
-    /* A line queued behind a waiting message would be out of date. */
+    /* A line queued behind a waiting message would be outdated. */
     if (wb_talk_flush()) {
         (void)wb_talk_say(text);
         live.drawn = true;

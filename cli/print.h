@@ -1,4 +1,4 @@
-/* Numbers as the terminal shows them. */
+/* Numbers for the terminal. */
 #ifndef WB_CLI_PRINT_H
 #define WB_CLI_PRINT_H
 
@@ -8,7 +8,7 @@ enum {
     WB_PRINT_NUMBER = 32 /* bytes of a number as text */
 };
 
-/* How many decimals show so many significant digits of a value without an exponent. */
+/* Number of decimals that show `digits` significant digits of a value without an exponent. */
 int wb_print_decimals(double value, int digits);
 
 /* Four significant digits, or "-" for a number that is not finite. Returns `text`. */

@@ -252,7 +252,7 @@ static bool take_exclusion(const struct run *run, const char *answer,
 }
 
 /* Asks the operator whether the test counts; false where the series is over before. */
-static bool judge(struct run *run, struct wb_index_entry *entry, bool is_whole)
+static bool decide(struct run *run, struct wb_index_entry *entry, bool is_whole)
 {
     char answer[ANSWER], now_utc[32];
     /* Keys that were meant for the test are not an answer. */
@@ -297,7 +297,7 @@ static enum wb_status settle(struct run *run, int number, const char *path)
         wb_warn("no curve can be made of '%s': %s", test->name, test->problem);
     show_curves(&run->results);
     print_table(stderr, &run->results);
-    if (!judge(run, &entry, progress.is_whole && test->is_usable)) {
+    if (!decide(run, &entry, progress.is_whole && test->is_usable)) {
         wb_info("'%s' is not in the index yet: you will be asked again when the series continues",
                 test->name);
         return WB_OK;

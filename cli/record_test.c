@@ -7,6 +7,7 @@
 
 #include "base/config.h"
 #include "base/interrupt.h"
+#include "base/text.h"
 #include "base/timing.h"
 #include "base/units.h"
 #include "cli/command.h"
@@ -62,7 +63,7 @@ static void fill_fields(const struct wb_bend_test_status *status, struct fields 
              stream[WB_ROLE_MOCAP].rate, stream[WB_ROLE_STAGE].rate);
 }
 
-/* The longest form that the terminal has room for: in words, short, and short without rates. */
+/* Uses the longest form that fits the terminal: in words, short, or short without rates. */
 static void show(const struct wb_bend_test *test)
 {
     struct wb_bend_test_status status;
@@ -85,7 +86,7 @@ static void show(const struct wb_bend_test *test)
     wb_live_line_show("%s", line);
 }
 
-static void obey(struct wb_bend_test *test, int key)
+static void handle_key(struct wb_bend_test *test, int key)
 {
     switch (key) {
     case 'm':
@@ -94,13 +95,13 @@ static void obey(struct wb_bend_test *test, int key)
         break;
     case 'h':
         if (!wb_bend_test_hold(test))
-            wb_info("there is nothing to hold: the stage is not on its way, or is held already");
+            wb_info("cannot hold: the stage is not moving, or is held already");
         break;
     case 'r':
         if (wb_bend_test_resume(test))
             wb_info("resumed");
         else
-            wb_info("there is nothing to resume: the test is not held, or the stage still moves");
+            wb_info("cannot resume: the test is not held, or the stage is still moving");
         break;
     case 'q':
         wb_bend_test_stop(test);
@@ -113,17 +114,18 @@ static void obey(struct wb_bend_test *test, int key)
 static void run(struct wb_bend_test *test, struct wb_record_views *views)
 {
     while (wb_bend_test_step(test, 20 * WB_NS_PER_MS) == WB_SEQUENCE_RUNNING) {
-        if (wb_record_views_tell(views, false) && wb_live_line_due())
+        if (wb_record_views_update(views, false) && wb_live_line_due())
             show(test);
-        obey(test, wb_record_views_key(views));
+        handle_key(test, wb_record_views_key(views));
     }
-    (void)wb_record_views_tell(views, true);
+    (void)wb_record_views_update(views, true);
 }
 
-/* What a stop leaves behind, and how to go on. */
-static void tell_stop(const struct wb_bend_test_result *result, const char *rig_path,
-                      bool bench_stays)
+/* Reports why the test stopped, and how to free the specimen. */
+static void report_stop(const struct wb_bend_test_result *result, const char *rig_path,
+                        bool bench_stays)
 {
+    struct wb_text rig = {0};
     if (result->end == WB_SEQUENCE_LIMIT)
         wb_warn("stopped by a limit: %s", result->text);
     else if (result->end == WB_SEQUENCE_INTERRUPTED)
@@ -131,43 +133,49 @@ static void tell_stop(const struct wb_bend_test_result *result, const char *rig_
     else
         wb_error("%s", result->text);
     if (!result->standing)
-        wb_error("the stage did not confirm that it stands: switch off its power before you touch "
+        wb_error("the stage did not confirm that it stopped: switch off its power before you touch "
                  "the bench");
-    else if (!bench_stays)
+    if (!result->standing || !bench_stays)
         return;
-    else if (result->displaced && isfinite(result->travel))
-        wb_warn("the stage stands at %.2f mm and the specimen stays as it is; free it with "
-                "'wirebench stage %s release %.0f --zero-mn=%.2f', which goes up by no more than "
-                "that many mm and knows a slack strand by that reading",
-                result->travel / WB_MM, rig_path, ceil(fabs(result->travel) / WB_MM) + 1.0,
-                result->unloaded / WB_MN);
+    wb_text_append_quoted(&rig, rig_path);
+    if (result->displaced && isfinite(result->travel))
+        wb_warn(
+            "the stage stopped at %.2f mm and the specimen stays loaded; free it with: wirebench "
+            "stage %s release %.0f --zero-mn=%.2f (it moves up by at most that distance in mm; "
+            "a slack strand gives that reading)",
+            result->travel / WB_MM, wb_text_string(&rig), ceil(fabs(result->travel) / WB_MM) + 1.0,
+            result->unloaded / WB_MN);
     else if (result->displaced)
-        wb_warn("the specimen stays as it is; free it with 'wirebench stage %s release "
-                "--zero-mn=%.2f', which knows a slack strand by that reading",
-                rig_path, result->unloaded / WB_MN);
+        wb_warn(
+            "the specimen stays loaded; free it with: wirebench stage %s release --zero-mn=%.2f "
+            "(a slack strand gives that reading)",
+            wb_text_string(&rig), result->unloaded / WB_MN);
+    wb_text_release(&rig);
 }
 
-static void tell_losses(const struct wb_bend_test_result *result)
+static void report_losses(const struct wb_bend_test_result *result)
 {
     if (result->drops > 0)
         wb_warn("%" PRIu64 " reads are missing from the recording", result->drops);
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
         if (result->is_losing[role])
-            wb_warn("%.2g %% of what the %s sent never came: %" PRIu64 " in %" PRIu64
-                    " places, the longest of %.3g s: look at its cable or network, and at what "
-                    "else this computer does",
-                    wb_loss_share(&result->loss[role]) / WB_PERCENT,
-                    wb_role_name((enum wb_role)role), result->loss[role].missing,
-                    result->loss[role].gaps, result->loss[role].longest_gap);
+            wb_warn(
+                "%.2g %% of the data from the %s never came: %" PRIu64 " in %" PRIu64
+                " gaps, the longest of %.3g s: check its cable or network, and the load of this "
+                "computer",
+                wb_loss_share(&result->loss[role]) / WB_PERCENT, wb_role_name((enum wb_role)role),
+                result->loss[role].missing, result->loss[role].gaps,
+                result->loss[role].longest_gap);
     }
 }
 
-static void tell_holds(const struct wb_bend_test_result *result)
+static void report_holds(const struct wb_bend_test_result *result)
 {
     if (result->holds > 0)
-        wb_warn("the test was held %d time%s, for %.0f s in all: the wire relaxed meanwhile, and "
-                "what follows is the curve of a wire with another history",
-                result->holds, result->holds == 1 ? "" : "s", result->held);
+        wb_warn(
+            "the test was held %d time%s, for %.0f s in all: the wire relaxed meanwhile, so that "
+            "the rest of the curve has another loading history",
+            result->holds, result->holds == 1 ? "" : "s", result->held);
 }
 
 static int exit_code(const struct wb_bend_test_result *result, enum wb_status status)
@@ -190,7 +198,7 @@ void wb_record_test_print(FILE *out, const struct wb_bend_test_result *result, c
             result->samples[WB_ROLE_MOCAP], result->peak_tension / WB_MN, result->drops);
 }
 
-/* The specimen's wire, and what its file says of the first force. */
+/* Reads the specimen's wire and sets the bounds of the first force in the request. */
 static enum wb_status find_wire(struct wb_bend_test_request *request, struct wb_wire *wire)
 {
     struct wb_first_force_bounds *const bounds = &request->stiffness;
@@ -227,20 +235,21 @@ static enum wb_status run_test(struct wb_bend_test_request *request,
     wb_record_views_begin(&views, test);
     run(test, &views);
     const enum wb_status status = wb_bend_test_close(test, result);
-    /* While the views are open: from there on a terminal that hangs would be waited for. */
+    /* While the views are open, because afterwards messages would wait for a terminal that hangs.
+     */
     if (result->end != WB_SEQUENCE_DONE)
-        tell_stop(result, request->rig_path, bench_stays);
-    tell_losses(result);
-    tell_holds(result);
+        report_stop(result, request->rig_path, bench_stays);
+    report_losses(result);
+    report_holds(result);
     if (!result->recorded)
-        wb_info("nothing was recorded: '%s' was not kept", request->output_path);
+        wb_info("nothing was recorded: '%s' was removed", request->output_path);
     wb_record_views_close(&views);
     *code = exit_code(result, status);
     return WB_OK;
 }
 
-/* The specimen's file is read once: what is checked, shown and recorded is one text, whoever
- * changes the file meanwhile. */
+/* Reads the specimen's file once, so that checks, views and recording use the same text even if the
+ * file changes meanwhile. */
 enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
                                   struct wb_record_views_options *options,
                                   struct wb_virtual_test *virtual,

@@ -1,4 +1,4 @@
-/* One test of `wirebench record`, from the views' start to what is said at its end. */
+/* One test of `wirebench record`, with its live views and its messages at the end. */
 #ifndef WB_CLI_RECORD_TEST_H
 #define WB_CLI_RECORD_TEST_H
 
@@ -9,11 +9,10 @@
 #include "cli/virtual_test.h"
 #include "daq/test/bend_test.h"
 
-/* Runs the test with its views, on the terminal as well, or, where `virtual` is not NULL, on that
- * virtual bench in virtual time; sees that Ctrl-C stops the stage first.
- * The request receives what is known of the wire and what the views need. Says how the test
- * ended, and what was lost; *code receives the command's exit code for it. An error before the test
- * began was logged, and `result` is not set then. */
+/* Runs the test with its views or, if `virtual` is not NULL, on that virtual bench in virtual time.
+ * Ctrl-C stops the stage before anything else. Sets the wire's stiffness and the sink of the views
+ * in the request. Reports how the test ended and which data were lost; *code receives the exit
+ * code. An error before the start of the test is logged, and `result` is not set. */
 WB_MUST_CHECK enum wb_status wb_record_test_run(struct wb_bend_test_request *request,
                                                 struct wb_record_views_options *options,
                                                 struct wb_virtual_test *virtual,

@@ -11,29 +11,29 @@
 
 #define WB_LOG_DOMAIN "live"
 
-#define TELL_NS (50 * WB_NS_PER_MS)
-/* How long views may take to end by themselves. */
+#define UPDATE_NS (50 * WB_NS_PER_MS)
+/* Time for views to end by themselves. */
 #define PATIENCE_MS 1000
-/* Messages that are kept for the end while a view has the terminal. */
-#define MOST_UNSAID 65536
+/* Bytes of messages that are deferred while a view has the terminal. */
+#define MOST_DEFERRED 65536
 
 /* --- messages --- */
 
-/* Sinks are called under the log's lock, by any thread. */
-static void tell_and_keep(void *context, enum wb_log_level level, const char *domain,
-                          const char *message)
+/* Sinks are called by any thread, under the log's lock. */
+static void feed_and_defer(void *context, enum wb_log_level level, const char *domain,
+                           const char *message)
 {
     struct wb_record_views *const views = context;
     wb_live_feed_add_message(&views->feed, level, message);
-    if (views->unsaid.length >= MOST_UNSAID)
+    if (views->deferred.length >= MOST_DEFERRED)
         views->n_lost++;
     else
-        wb_text_append(&views->unsaid, "wirebench: %s%s\n", wb_live_line_level(level), message);
+        wb_text_append(&views->deferred, "wirebench: %s%s\n", wb_live_line_level(level), message);
     (void)domain;
 }
 
-static void tell_and_say(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
+static void feed_and_print(void *context, enum wb_log_level level, const char *domain,
+                           const char *message)
 {
     struct wb_record_views *const views = context;
     wb_live_feed_add_message(&views->feed, level, message);
@@ -44,7 +44,7 @@ static void open_line(struct wb_record_views *views)
 {
     wb_live_line_open();
     if (views->feed.n_views > 0)
-        wb_log_set_sink(tell_and_say, views);
+        wb_log_set_sink(feed_and_print, views);
 }
 
 /* --- opening --- */
@@ -59,7 +59,7 @@ static enum wb_status make_plan(struct wb_record_views *views,
     WB_TRY(wb_bend_test_rig(request, &rig));
     WB_TRY(wb_bend_test_specimen(request, &specimen));
     if (wb_live_plan_make(&views->plan, &rig, &specimen, wire, request->travel) != WB_OK)
-        wb_warn("the views show no predicted curve: the message before says why");
+        wb_warn("the views show no predicted curve: see the message before");
     snprintf(views->title, sizeof views->title, "%s, %g mm, sample %d on %s", wire->name,
              specimen.length / WB_MM, specimen.sample, rig.name);
     views->plan.title = views->title;
@@ -77,12 +77,12 @@ static enum wb_status open_terminal(struct wb_record_views *views)
         return WB_OK;
     }
     WB_TRY(wb_live_feed_start(&views->feed, wb_live_terminal_run, &views->plan, &views->terminal));
-    /* From here on what is said to the terminal would be lost with the view's screen. */
-    wb_log_set_sink(tell_and_keep, views);
+    /* From here on, messages on the terminal would disappear with the screen of the view. */
+    wb_log_set_sink(feed_and_defer, views);
     return WB_OK;
 }
 
-/* Before the view on the terminal: its address is a message for people. */
+/* Before the view on the terminal, so that the message with the address can be read. */
 static enum wb_status open_page(struct wb_record_views *views, int *port)
 {
     int taken, index;
@@ -91,7 +91,7 @@ static enum wb_status open_page(struct wb_record_views *views, int *port)
     const enum wb_status status =
         wb_live_feed_start(&views->feed, wb_live_page_run, &views->page, &index);
     close(views->page.listener);
-    *port = taken; /* the next test of a series is found at the same address */
+    *port = taken; /* the next test of a series uses the same address */
     if (status == WB_OK)
         snprintf(views->address, sizeof views->address,
                  "the test can be watched at http://127.0.0.1:%d/", taken);
@@ -128,21 +128,21 @@ void wb_record_views_begin(struct wb_record_views *views, const struct wb_bend_t
         wb_info("%s", views->address);
 }
 
-/* Gives the terminal back to the live line: the view's process may have left it in any state. */
+/* Restores the terminal for the live line: the view's process may have left it in any state. */
 static void take_terminal_back(struct wb_record_views *views)
 {
     const bool is_sane = views->feed.view[views->terminal].ended_well;
     views->terminal = -1;
-    open_line(views); /* first: from here on nothing waits for the terminal */
+    open_line(views); /* first, because from here on nothing waits for the terminal */
     if (!is_sane)
         wb_live_line_restore(&views->modes, WB_LIVE_TERMINAL_RESTORE);
-    wb_live_line_say(wb_text_string(&views->unsaid));
+    wb_live_line_say(wb_text_string(&views->deferred));
     if (views->n_lost > 0)
-        wb_warn("%d more messages came meanwhile and were not kept", views->n_lost);
-    wb_text_release(&views->unsaid);
+        wb_warn("%d more messages were dropped while the view was shown", views->n_lost);
+    wb_text_release(&views->deferred);
 }
 
-bool wb_record_views_tell(struct wb_record_views *views, bool now)
+bool wb_record_views_update(struct wb_record_views *views, bool now)
 {
     struct wb_live_frame frame;
     const int64_t now_ns = wb_time_now_ns();
@@ -151,8 +151,8 @@ bool wb_record_views_tell(struct wb_record_views *views, bool now)
         take_terminal_back(views);
         wb_warn("the live view has ended; the recording continues");
     }
-    if (views->feed.n_views > 0 && (now || now_ns - views->told_ns >= TELL_NS)) {
-        views->told_ns = now_ns;
+    if (views->feed.n_views > 0 && (now || now_ns - views->sent_ns >= UPDATE_NS)) {
+        views->sent_ns = now_ns;
         wb_live_source_fill(&views->source, &frame);
         wb_live_feed_push(&views->feed, &frame);
     }
@@ -167,7 +167,7 @@ int wb_record_views_key(struct wb_record_views *views)
 
 void wb_record_views_close(struct wb_record_views *views)
 {
-    wb_log_set_sink(NULL, NULL); /* no thread tells a feed that is being closed */
+    wb_log_set_sink(NULL, NULL); /* no thread may use a feed that is being closed */
     wb_live_feed_stop(&views->feed, PATIENCE_MS);
     if (views->terminal >= 0)
         take_terminal_back(views);

@@ -20,7 +20,7 @@ struct entry {
     unsigned applies; /* bits of places; 0: all */
 };
 
-/* A command line while it is parsed. */
+/* State of the parser. */
 struct line {
     const struct wb_settings_command *command;
     void *input;
@@ -37,14 +37,14 @@ static bool is_taken(const struct line *line, const struct entry *entry)
     return place == 0 || entry->applies == 0 || (entry->applies & place) != 0;
 }
 
-/* Number of a source's part of --help. */
+/* Group of a source in --help. */
 static int group_of(const struct line *line, const struct wb_settings_source *source)
 {
     return source->title ? 1 + (int)(source - line->command->sources) : 0;
 }
 
-/* The entry of that option; a new one where there is none. Kinds that share an option have rows of
- * their own: the row of the place that is taken stands for all. */
+/* Index of the entry of that option, or of a new one. Kinds that share an option have rows of their
+ * own: the row of the current place is used for all. */
 static size_t find_entry(const struct line *line, const char *option)
 {
     size_t i = 0;
@@ -119,7 +119,7 @@ static void begin(struct line *line, const struct wb_settings_command *command, 
                 if (source->tables[t].rows[i].option)
                     add_entry(line, source, &source->tables[t], &source->tables[t].rows[i]);
     }
-    /* An option without a part of its own joins that of the option before it. */
+    /* argp puts an option without a group into that of the option before it. */
     memmove(&line->options[n_own], line->options, line->n * sizeof *line->options);
     memcpy(line->options, own, n_own * sizeof *own);
     struct argp_option *title = &line->options[line->n + n_own];
@@ -151,12 +151,12 @@ static void name_places(const struct line *line, unsigned applies, char *text, s
     }
 }
 
-static void refuse(const struct line *line, struct argp_state *state, const struct entry *entry)
+static void reject(const struct line *line, struct argp_state *state, const struct entry *entry)
 {
     char own[64], others[128];
     name_places(line, line->command->place, own, sizeof own);
     name_places(line, entry->applies, others, sizeof others);
-    argp_error(state, "--%s is for %s, not for %s", entry->row->option, others, own);
+    argp_error(state, "--%s applies to %s, not to %s", entry->row->option, others, own);
 }
 
 static void take(struct line *line, struct argp_state *state, const struct entry *entry,
@@ -164,7 +164,7 @@ static void take(struct line *line, struct argp_state *state, const struct entry
 {
     char problem[WB_SETTING_PROBLEM];
     if (!is_taken(line, entry)) {
-        refuse(line, state, entry);
+        reject(line, state, entry);
         return;
     }
     if (!wb_setting_parse(entry->row, argument, (char *)line->input + entry->offset, problem))

@@ -1,8 +1,8 @@
 /* Options of the command line made from rows of settings (base/setting.h).
  *
- * A command names its tables and, as usual, an argp with its other options, its parser and its
- * texts; the rows' options come first and are read here. Where one command has several kinds,
- * `--help` shows the options of one kind, and an option of another is refused by the kinds' names.
+ * A command names its tables and an argp with its other options, its parser and its texts; options
+ * of rows are parsed here. Where a command has several kinds, `--help` shows the options of one
+ * kind, and an option of another kind is rejected with a message that names its kinds.
  */
 #ifndef WB_CLI_SETTINGS_H
 #define WB_CLI_SETTINGS_H
@@ -15,21 +15,21 @@
 struct wb_settings_source {
     const struct wb_setting_table *tables;
     size_t n_tables;
-    size_t offset;     /* in the input, of what the tables' offsets count from */
+    size_t offset;     /* in the input; the tables' offsets count from it */
     unsigned applies;  /* bits of the places of rows that name none; 0: all */
-    const char *title; /* of their own part of --help; NULL: they stand among all others */
+    const char *title; /* of their own part of --help; NULL: they are listed with the others */
 };
 
 struct wb_settings_command {
-    const struct argp *argp; /* its parser gets the input, and all keys that are not of settings */
+    const struct argp *argp; /* its parser receives the input and all keys other than settings */
     const struct wb_settings_source *sources;
     size_t n_sources;
     unsigned
-        place; /* one bit: only its options are taken and shown; 0: all are taken, none shown */
-    /* Names of the places by bit, NULL-terminated: options of another one are refused by their
-     * names. NULL: they are unknown. */
+        place; /* one bit: only its options are accepted and shown; 0: all accepted, none shown */
+    /* Names of the places by bit, NULL-terminated, for the messages about options of other places.
+     * NULL: options of other places are unknown options. */
     const char *const *places;
-    /* Is told of each option of a row that was given; NULL: nobody is. */
+    /* Called for each option of a row that was given; may be NULL. */
     void (*note)(void *input, const struct wb_setting *row);
 };
 
@@ -37,13 +37,12 @@ struct wb_settings_command {
 void wb_settings_parse(const struct wb_settings_command *command, int argc, char **argv,
                        void *input);
 
-/* The same of a command with one table and one place, 1 where the rows name none; `settings` are
- * the table's, within the input. */
+/* The same for a command with one table and one place, 1 if the rows name none; `settings` is the
+ * struct of the table, within the input. */
 void wb_settings_parse_table(const struct argp *argp, const struct wb_setting_table *table,
                              void *settings, unsigned place, int argc, char **argv, void *input);
 
-/* The first argument that is neither an option nor an option's value, whatever place the options
- * are of; NULL when there is none. */
+/* The first argument that is neither an option nor the value of an option of any place, or NULL. */
 const char *wb_settings_first_argument(const struct wb_settings_command *command, int argc,
                                        char **argv);
 

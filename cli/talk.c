@@ -15,9 +15,9 @@
 #include "base/units.h"
 
 enum way {
-    WAY_WRITE, /* a file, which never makes wait for long, or our own non-blocking descriptor */
+    WAY_WRITE, /* a file, which does not block for long, or our own non-blocking descriptor */
     WAY_SEND,  /* a socket */
-    WAY_BYTE   /* a blocking terminal: one byte fits where poll() says that it is writable */
+    WAY_BYTE   /* a blocking terminal: poll() guarantees room for one byte only */
 };
 
 static struct {
@@ -25,7 +25,7 @@ static struct {
     bool is_own; /* to be closed */
     bool gone;   /* the reader has gone */
     enum way way;
-    uint64_t lost, told; /* texts; of them said to be lost */
+    uint64_t lost, reported; /* dropped texts; those already reported */
     size_t n;
     char waiting[16384];
 } talk = {.descriptor = STDERR_FILENO};
@@ -42,8 +42,8 @@ void wb_talk_open(int shared)
         talk.way = WAY_SEND;
     if (!S_ISCHR(status.st_mode) && !S_ISFIFO(status.st_mode))
         return;
-    /* Opened anew, because O_NONBLOCK on the descriptor itself would hold for all who share it, the
-     * shell included. */
+    /* Opened again, because O_NONBLOCK on the descriptor itself would apply to all processes that
+     * share it, including the shell. */
     snprintf(path, sizeof path, "/proc/self/fd/%d", shared);
     const int descriptor = open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_APPEND | O_CLOEXEC);
     talk.is_own = descriptor >= 0;
@@ -93,23 +93,25 @@ static bool append(const char *text)
     return true;
 }
 
-/* When there is room for the text that follows as well: else every loss would be told singly. */
-static void tell_lost(size_t n_following)
+/* Reports losses once there is room for the following text as well, else each would be reported
+ * alone. */
+static void report_losses(size_t n_following)
 {
-    char text[96];
-    if (talk.lost == talk.told || sizeof talk.waiting - talk.n < sizeof text + n_following)
+    char text[128];
+    if (talk.lost == talk.reported || sizeof talk.waiting - talk.n < sizeof text + n_following)
         return;
     snprintf(text, sizeof text,
-             "wirebench: %" PRIu64 " messages were dropped: nobody took them in time\n",
-             talk.lost - talk.told);
+             "wirebench: %" PRIu64 " messages were dropped: the terminal did not accept them in "
+             "time\n",
+             talk.lost - talk.reported);
     if (append(text))
-        talk.told = talk.lost;
+        talk.reported = talk.lost;
 }
 
 bool wb_talk_say(const char *text)
 {
     (void)wb_talk_flush();
-    tell_lost(strlen(text));
+    report_losses(strlen(text));
     const bool said = append(text);
     talk.lost += !said;
     (void)wb_talk_flush();
@@ -125,7 +127,7 @@ void wb_talk_close(int patience_ms)
 {
     const int64_t deadline_ns = wb_time_now_ns() + patience_ms * WB_NS_PER_MS;
     (void)wb_talk_flush();
-    tell_lost(0);
+    report_losses(0);
     while (!wb_talk_flush() && !talk.gone) {
         struct pollfd polled = {.fd = talk.descriptor, .events = POLLOUT};
         if (wb_time_wait(&polled, 1, deadline_ns) == 0)

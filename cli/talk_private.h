@@ -1,4 +1,4 @@
-/* What only tests ask of cli/talk.h. */
+/* Functions of cli/talk.h for tests. */
 #ifndef WB_CLI_TALK_PRIVATE_H
 #define WB_CLI_TALK_PRIVATE_H
 

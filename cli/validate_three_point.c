@@ -20,14 +20,13 @@ static void print_bench(const struct wb_validate_three_point *r)
 static void print_unloading(const struct wb_validate_three_point *r)
 {
     if (r->n_unloading == 0) {
-        printf(
-            "  unloading      not scored: no unloading was measured, or the beam does not follow "
-            "it\n");
+        printf("  unloading      not scored: no unloading was measured, or the beam did not "
+               "converge\n");
         return;
     }
-    printf("  unloading      RMS %.3g, largest error %.3g, of each test by itself %.3g%s\n",
+    printf("  unloading      RMS %.3g, largest error %.3g, RMS of single tests %.3g%s\n",
            r->unloading.rms, r->unloading.largest_error, r->unloading_rms_of_tests,
-           r->is_rule_untested ? "; the rule of these properties is untested" : "");
+           r->is_rule_untested ? "; the hardening rule of these properties is not tested" : "");
     const double left = r->residual_measured, predicted = r->residual_computed;
     if (isfinite(left))
         printf("  residual deflection %.3f mm measured, %.3f mm predicted (%+.3f mm)\n",
@@ -40,13 +39,13 @@ static void print_scatter(const struct wb_validate_three_point *r)
     if (r->n_used > 1)
         printf("  scatter        between tests %.3g\n", r->scatter_rms);
     if (isfinite(e->rms_95))
-        printf("  perfect model  with %s that differ by %.1f %% in stiffness: RMS about %.2g on "
-               "loading, above %.2g in one of twenty validations\n"
+        printf("  expected       from the scatter of %s (%.1f %% in stiffness): RMS of the loading "
+               "about %.2g, at most %.2g (95 %%)\n"
                "                 found %.2g: %s\n",
                r->is_by_series ? "series" : "specimens", 100.0 * e->deviation, e->rms, e->rms_95,
                r->loading.rms,
                r->loading.rms > e->rms_95 ? "more than the scatter explains"
-                                          : "no more than the scatter explains");
+                                          : "within the scatter");
 }
 
 static void print_test(const struct wb_validate_three_point_test *test)
@@ -76,8 +75,7 @@ void wb_validate_three_point_print(const struct wb_validate_three_point *r)
         "%.3g mm beyond the first contact\n",
         r->loading.rms, r->loading.largest_error, r->max_force, r->loading.deflection[0] / WB_MM,
         r->loading.deflection[r->loading.n - 1] / WB_MM);
-    printf("                 RMS %.3g with the first contacts as the readings show them\n",
-           r->rms_as_read);
+    printf("                 RMS %.3g with the first contacts of the readings\n", r->rms_as_read);
     if (isfinite(r->elastic_rms))
         printf("    if elastic   RMS %.3g\n", r->elastic_rms);
     print_unloading(r);
@@ -87,7 +85,7 @@ void wb_validate_three_point_print(const struct wb_validate_three_point *r)
         print_test(&r->tests[i]);
     }
     if (r->is_beyond)
-        printf("  beyond         the middle is bent to %.3g /m, further than these properties are "
-               "known\n",
+        printf("  beyond         curvature in the middle %.3g /m: above the range of these "
+               "properties\n",
                r->largest_curvature);
 }

@@ -1,4 +1,4 @@
-/* What `wirebench validate` prints of three-point bending tests. */
+/* Output of `wirebench validate` for three-point bending tests. */
 #ifndef WB_CLI_VALIDATE_THREE_POINT_H
 #define WB_CLI_VALIDATE_THREE_POINT_H
 

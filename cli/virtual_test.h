@@ -18,11 +18,11 @@ struct wb_virtual_test {
     struct wb_text rig; /* the virtual bench's rig file */
 };
 
-/* Begins virtual time, puts the request's specimen on a bench like that of its rig file, and has
- * the request use that bench. The request is valid until the end. */
+/* Starts virtual time, puts the request's specimen on a virtual bench like that of its rig file,
+ * and makes the request use that bench. The request must remain valid until the end. */
 WB_MUST_CHECK enum wb_status wb_virtual_test_begin(struct wb_virtual_test *test,
                                                    struct wb_bend_test_request *request);
-/* Removes the bench and goes back to the host's time. */
+/* Removes the bench and returns to the time of the host. */
 void wb_virtual_test_end(struct wb_virtual_test *test, struct wb_bend_test_request *request);
 
 #endif

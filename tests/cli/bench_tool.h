@@ -155,9 +155,12 @@ static inline void run(const char *arguments)
 /* The command that a message advises, with `wirebench` left out. */
 static inline void advised(char command[256])
 {
-    const char *const at = strstr(o.err, "'wirebench ");
+    static const char before[] = "free it with: wirebench ";
+    const char *const at = strstr(o.err, before);
     assert_non_null(at);
-    snprintf(command, 256, "%.*s", (int)strcspn(at + 11, "'"), at + 11);
+    const char *const words = at + strlen(before), *const end = strstr(words, " (");
+    assert_non_null(end);
+    snprintf(command, 256, "%.*s", (int)(end - words), words);
 }
 
 /* --- the bench --- */

@@ -64,6 +64,9 @@ solve --length-mm 85 --cycles 1 -o cycle
 
     expect 1 'type3.yaml' "$wirebench" calibrate L85 $quick -o type3.yaml
     expect 0 'wire type3' "$wirebench" calibrate L85 $quick -o type3.yaml --force
+    expect 0 'trust   for loading only: fits it within' "$wirebench" calibrate L85 $quick -o 'a type3.yaml'
+    expect 0 "next    wirebench validate 'a type3.yaml' DATASET..., with tests of another length" \
+        "$wirebench" calibrate L85 $quick -o 'a type3.yaml' --force
 
     "$wirebench" calibrate L85 $quick --youngs-modulus-mpa 4528 --yield-stress-mpa 4.52 --json \
         >exact.json || fail 'calibrate --json'
@@ -270,7 +273,11 @@ for sample in 1 2; do
         --roller-radius-mm 2 --nose-radius-mm 2 --roller-friction 0.2 -o bent-$sample >/dev/null ||
         fail 'solve bending3p'
 done
-expect 0 'with unloading' "$wirebench" calibrate bent-1 -o bent.yaml
+"$wirebench" calibrate bent-1 -o bent.yaml >said 2>&1 || fail 'calibrate bent-1'
+for line in 'with unloading' '^found   parts (simulation, three-point bending, 1 of 1 tests fitted): M at ' \
+    '^trust   for this specimen; misfit ' '^next    wirebench validate bent.yaml DATASET..., with tests of another span$'; do
+    grep -q "$line" said || fail "no line '$line': $(cat said)"
+done
 "$wirebench" calibrate bent-1 --json >bent.json || fail 'calibrate --json of three-point bending'
 python3 - bent.json <<'PYTHON' || fail 'the JSON object of three-point bending has other keys'
 import json, sys
@@ -303,6 +310,9 @@ bench='--span-mm 40 --points 40 --roller-radius-mm 2 --nose-radius-mm 2 --compli
 "$wirebench" solve bending3p ./bar.yaml $bench --deflection-mm 0.1 -o bar >/dev/null || fail 'solve bar'
 expect 0 'compliance_mm_N: 0.002' \
     "$wirebench" calibrate --compliance bar --rigidity-n-mm2 12723450
+expect 0 'trust   if the bar did not yield' "$wirebench" calibrate --compliance bar --rigidity-n-mm2 12723450
+expect 3 'trust   no: cannot be determined from these tests' \
+    "$wirebench" calibrate --compliance bar --rigidity-n-mm2 600000 --rigidity-error 1 --from-force 0.5
 expect 3 'the bar is too compliant' \
     "$wirebench" calibrate --compliance bar --rigidity-n-mm2 600000 --rigidity-error 1 \
     --from-force 0.5

@@ -30,6 +30,9 @@ bend="--specimen wire.yaml --machine $fixtures/machines/two-rollers.yaml"
 
 ends 0 "$tool" import force german.csv $bend -o bent
 says "50 rows taken of 53 lines; left out: 1 empty, 1 partial (1 without force"
+says "found   w, sample 1 (three-point, measured): 50 rows, force up to 0.49 N"
+says "trust   yes: the whole file was read; 1 incomplete row left out"
+says "next    wirebench calibrate bent -o w.yaml"
 zstd -dcq bent/original.zst | cmp - german.csv || fail "the original is not kept"
 grep -q '"sha256": "'"$(sha256sum german.csv | cut -d' ' -f1)"'"' bent/dataset.json ||
     fail "its checksum is not written"
@@ -78,6 +81,9 @@ says "no E"
 ends 1 "$tool" calibrate pulled
 says "a cantilever or three-point test is expected here"
 ends 0 "$tool" calibrate --tensile pulled
+says "found   conductor of w (measured, 1 specimen): "
+says "; no E: the elongation is the crosshead's travel; one specimen cannot show how specimens differ"
+says "next    run the same command with -o MATERIAL.yaml --youngs-modulus-mpa E --density-g-cm3 R"
 says "crosshead travel: no E"
 says "not identifiable"
 ends 1 "$tool" calibrate --tensile pulled -o copper.yaml
@@ -104,4 +110,7 @@ says "sample 1: elongation by extensometer"
 
 ends 0 "$tool" calibrate --constituents --conductor ./copper.yaml --conductor-diameter-mm 1 --json
 says '"fill": 1'
+ends 0 "$tool" calibrate --constituents --conductor ./copper.yaml --conductor-diameter-mm 1
+says "found   computed from the materials: EI "
+says "trust   as an estimate: no test of the wire was used"
 ends 2 "$tool" calibrate --constituents --conductor ./copper.yaml

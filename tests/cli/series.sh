@@ -51,6 +51,7 @@ holds() { # FILE WORDS
 stopped_and_gone_on_with() {
     series a 'first note\n\n\n\n\nx the wire slipped\n' --figure "$folder/a.svg"
     expect a 3 '2 of 3 specimens done; run the same command again to continue'
+    holds a.out '^next    run the same command again to continue$'
     holds a.err 'standard input is not a terminal: answers are read from it'
     holds a.out 'excluded: the wire slipped'
     grep -Eq '^tests +1 +1 +1 +1$' "$folder/a.out" || fail "a: not one test counts: $(cat "$folder/a.out")"
@@ -78,6 +79,9 @@ stopped_and_gone_on_with() {
     cp "$folder/a/index.yaml" "$folder/index.before"
     series a ''
     expect a 0 '3 of 3 specimens done'
+    holds a.out '^found   series s: 3 of 3 specimens done, 4 tests (2 excluded) of type1, L = 85 mm (virtual rig)$'
+    holds a.out '^trust   yes: 2 tests aligned without warnings$'
+    holds a.out "^next    wirebench align $folder/a/s-001-type1-L85-1.wbr $folder/a/s-004-type1-L85-3.wbr -o $folder/a/datasets$"
     cmp -s "$folder/a/index.yaml" "$folder/index.before" || fail 'a: a series that is done was changed'
 }
 

@@ -14,7 +14,7 @@ static const struct fault {
 } faults[] = {
     {.list = "loss=20,duplicates=5,reorder=5",
      .travel = 8,
-     .record = {3, {"19 % of what the mocap sent never came: 541 in 474 places"}},
+     .record = {3, {"19 % of the data from the mocap never came: 541 in 474 gaps"}},
      .verify = {3, {"19 % of its frames never came: 541 in 474 places"}},
      .align = {0, {"19 % of the frames never came: 541 in 474 places", "largest deflection"}}},
     /* What arrives late, twice or in another order costs nothing that was measured. */

@@ -27,6 +27,10 @@ static void whole_test_is_recorded(void **state)
     assert_code(0);
     assert_said("whole.wbr: virtual rig, 2 cycles, ");
     assert_said(", 0 drops\n");
+    assert_said(" test  sample");
+    assert_said("\nfound   type1, L = 85 mm, sample 1 (virtual rig): 2 cycles, peak force ");
+    assert_said("\ntrust   yes: complete");
+    assert_said("\nnext    wirebench align whole.wbr -o whole\n");
     assert_string_equal(o.err, "");
     assert_recorded("whole", "cycle_end");
     assert_non_null(strstr(content_of("exported/events.csv"), "first_force"));
@@ -113,7 +117,7 @@ static void wrong_first_force_stops_the_test(void **state)
         run("record rig.yaml " SPECIMEN "-o force.wbr");
         assert_code(3);
         assert_said(cases[i].said);
-        assert_said("the stage stands at ");
+        assert_said("the stage stopped at ");
         assert_recorded("force", cases[i].said);
         close_bench(NULL);
     }

@@ -274,7 +274,7 @@ static void options_of_other_kinds_are_refused(void **unused)
                 continue;
             snprintf(arguments, sizeof arguments, "solve %s none --%s%s", kinds[k].name,
                      row->option, row->type == WB_SETTING_BOOLEAN ? "" : "=1");
-            snprintf(expected, sizeof expected, ", not for %s", kinds[k].name);
+            snprintf(expected, sizeof expected, ", not to %s", kinds[k].name);
             if (run(arguments) != 2 || !strstr(o.err, expected) || !strstr(o.err, row->option))
                 fail_msg("'%s': message '%s'", arguments, o.err);
         }

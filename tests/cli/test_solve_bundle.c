@@ -436,7 +436,7 @@ static void what_the_piece_cannot_have_is_said_in_options(void **unused)
     assert_non_null(strstr(o.err, "applies to a tape"));
     tool("solve wire3d none --cycles 2");
     assert_int_equal(o.code, 2);
-    assert_non_null(strstr(o.err, "--cycles is for cantilever and bundle and bending3p"));
+    assert_non_null(strstr(o.err, "--cycles applies to cantilever and bundle and bending3p"));
 }
 
 /* The last one: it changes the model. */
