@@ -41,19 +41,26 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
      WB_ROW_OPTION("deflection-mm", "D", "Largest deflection of the tip")},
     {WB_ROW_INTEGER(wb_bundle_run, rows, "rows", 1, 10000, 53),
      WB_ROW_OPTION("points", "N", "Equal steps to the largest deflection")},
-    {WB_ROW_INTEGER(wb_bundle_run, cycles, "cycles", 0, 1000, 0)},
-    {WB_ROW_NUMBER(wb_bundle_run, kinetic_limit, "kinetic_energy_limit", 1e-6, 1.0, 0.05)},
-    {WB_ROW_CHOICE(wb_bundle_run, double_precision, "precision", precisions, 0)},
+    {WB_ROW_INTEGER(wb_bundle_run, cycles, "cycles", 0, 1000, 0),
+     .help = "Times up and back; 0: up only"},
+    {WB_ROW_NUMBER(wb_bundle_run, kinetic_limit, "kinetic_energy_limit", 1e-6, 1.0, 0.05),
+     .help = "Largest kinetic over internal energy"},
+    {WB_ROW_CHOICE(wb_bundle_run, double_precision, "precision", precisions, 0),
+     .help = "Precision of forces and of stored states of the material; positions and velocities "
+             "are in double"},
 };
 
 static const struct wb_setting_table run_table = {.rows = wb_bundle_model_run_settings,
                                                   .n = WB_BUNDLE_MODEL_RUN_SETTINGS};
 
 static const struct wb_setting friction_rows[] = {
-    {WB_ROW_NUMBER(wb_friction, mu_static, "static", 0.0, 10.0, 0.0), .required = true},
-    {WB_ROW_NUMBER(wb_friction, mu_kinetic, "kinetic", 0.0, 10.0, 0.0), .required = true},
+    {WB_ROW_NUMBER(wb_friction, mu_static, "static", 0.0, 10.0, 0.0), .required = true,
+     .help = "Static friction coefficient"},
+    {WB_ROW_NUMBER(wb_friction, mu_kinetic, "kinetic", 0.0, 10.0, 0.0), .required = true,
+     .help = "Kinetic friction coefficient"},
     {WB_ROW_QUANTITY(wb_friction, decay, "decay_s_mm", "s/mm", WB_S_PER_MM, 1e-9, 1e9, 0.0),
-     .required = true},
+     .required = true,
+     .help = "Decay from static to kinetic friction with the slip rate (eq. 20); 0: constant"},
 };
 
 static const struct wb_setting_table friction_table = {WB_SETTING_ROWS(friction_rows)};
