@@ -13,20 +13,29 @@
     .curvature = AT(field.curvature), .resolved = AT(field.resolved)
 
 const struct wb_quantity wb_quantity_rows[WB_QUANTITIES] = {
-    [WB_QUANTITY_MOMENT] = {"moment_curvature", "moment_N_mm", "M at", "N mm", WB_NMM, 1e9,
+    [WB_QUANTITY_MOMENT] = {"moment_curvature", "moment_N_mm", "M at", "N mm",
+                            "moment of a first loading at several curvatures", WB_NMM, 1e9,
                             .estimate = AT(moment), .most = WB_PROPERTIES_MOST_MOMENTS,
                             .n = AT(n_moments), .curvature = AT(curvature)},
     [WB_QUANTITY_UNLOADING_STIFFNESS] = {"unloading_stiffness_N_mm2", "value",
-                                         "unloading stiffness over", "N mm2", WB_NMM2, 1e15,
-                                         STIFFNESS(unloading)},
+                                         "unloading stiffness over", "N mm2",
+                                         "change of the moment over the change of the curvature, "
+                                         "unloading from the largest curvature",
+                                         WB_NMM2, 1e15, STIFFNESS(unloading)},
     [WB_QUANTITY_RESIDUAL_CURVATURE_RATIO] = {"residual_curvature_ratio", "value",
-                                              "residual curvature ratio", "", 1.0, 1.0,
-                                              .estimate = AT(residual_curvature_ratio)},
-    [WB_QUANTITY_LOOP_ENERGY] = {"loop_energy_mJ_per_m", "value", "loop energy", "mJ/m", WB_MJ,
-                                 1e15, .estimate = AT(loop_energy)},
+                                              "residual curvature ratio", "",
+                                              "residual curvature at zero moment over the largest "
+                                              "curvature",
+                                              1.0, 1.0, .estimate = AT(residual_curvature_ratio)},
+    [WB_QUANTITY_LOOP_ENERGY] = {"loop_energy_mJ_per_m", "value", "loop energy", "mJ/m",
+                                 "energy loss per length of a cycle from straight to the largest "
+                                 "curvature and back",
+                                 WB_MJ, 1e15, .estimate = AT(loop_energy)},
     [WB_QUANTITY_SECANT_STIFFNESS] = {"secant_stiffness_N_mm2", "value", "secant EI to", "N mm2",
-                                      WB_NMM2, 1e15, STIFFNESS(secant)},
+                                      "moment over curvature, loading from straight", WB_NMM2, 1e15,
+                                      STIFFNESS(secant)},
     [WB_QUANTITY_RIGIDITY] = {"flexural_rigidity_N_mm2", "value", "EI at zero curvature", "N mm2",
+                              "flexural rigidity EI, the slope of the moment at zero curvature",
                               WB_NMM2, 1e15, .estimate = AT(rigidity)},
 };
 

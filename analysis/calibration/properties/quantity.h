@@ -31,6 +31,7 @@ struct wb_quantity {
     const char *value_key; /* of its value in files, next to "low", "high" and so on */
     const char *name;      /* in text; followed by the curvature if the quantity has one */
     const char *unit;      /* in text; "" for a ratio */
+    const char *meaning;   /* for the documentation of files, without a full stop */
     double scale;          /* SI value of one unit */
     double largest;        /* largest value accepted in a file, in the unit */
     /* Offsets in struct wb_properties. */
