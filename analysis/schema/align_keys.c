@@ -1,0 +1,361 @@
+/* Keys of dataset.json that alignment writes; reports copy corrections, checks and warnings. */
+#include "analysis/schema/row.h"
+
+/* --- checks --- */
+
+static const struct wb_schema_row camera_clock_rows[] = {
+    {"method", TEXT, "", "how the clock was mapped to the host's",
+     .choices = "echo probes|lower envelope"},
+    {"frames", INTEGER, "", "frames of the segment"},
+    {"points", INTEGER, "", "points that a line could be fitted to: probes or arrivals"},
+    {"points_used", INTEGER, "", "points that the line was fitted to"},
+    {"offset_s", NUMBER, "s", "host's clock less the server's at the first point"},
+    {"span_s", NUMBER, "s", "length of the segment by the server's clock"},
+    {"skew_ppm", NUMBER, "ppm", "relative difference of the rates of both clocks"},
+    {"skew_uncertainty_ppm", NUMBER | UNKNOWN, "ppm", "standard uncertainty of the skew"},
+    {"scatter_ms", NUMBER | UNKNOWN, "ms", "scatter of the points about the line"},
+    {"uncertainty_ms", NUMBER | UNKNOWN, "ms", "standard uncertainty of mapped times"},
+    {"note", TEXT | OPTIONAL, "", "what the uncertainty does not include"},
+};
+static const struct wb_schema_object camera_clock = {
+    "camera_clock", "A segment of the cameras' clock, from one restart to the next.",
+    ROWS(camera_clock_rows)};
+
+static const struct wb_schema_row load_stream_rows[] = {
+    {"method", TEXT, "", "source of the readings' times",
+     .choices = "times of the file|arrival of each reading|lower envelope"},
+    {"readings", INTEGER, "", "number of readings"},
+    {"invalid_readings", INTEGER, "", "readings without a value"},
+    {"segments", INTEGER, "", "stretches between interruptions of the stream"},
+    {"rate_per_s", NUMBER | OPTIONAL, "1/s", "readings per second"},
+    {"arrival_scatter_ms", NUMBER | UNKNOWN, "ms",
+     "scatter of the arrivals about the line over the readings' number"},
+};
+static const struct wb_schema_object load_stream = {
+    "load_cell_stream", "The stream of the load cell.", ROWS(load_stream_rows)};
+
+static const struct wb_schema_row markers_rows[] = {
+    {"frames", INTEGER, "", "number of frames"},
+    {"seen_percent", NUMBER, "%", "share of the markers' places that were seen"},
+    {"stray_points", INTEGER, "", "points that belong to no marker"},
+    {"occluded_left_out", INTEGER, "",
+     "points left out because the server marked them as occluded"},
+    {"model_filled_left_out", INTEGER, "",
+     "points left out because the server computed them from a model"},
+    {"chain_searches", INTEGER, "", "searches for the chain of markers from scratch"},
+};
+static const struct wb_schema_object markers = {"markers", "The identification of the markers.",
+                                                ROWS(markers_rows)};
+
+static const struct wb_schema_row plane_rows[] = {
+    {"planarity_rms_mm", NUMBER, "mm", "RMS distance of the markers from the bending plane"},
+    {"plane_tilt_deg", NUMBER, "degree", "angle of the fitted plane's normal to the horizontal"},
+    {"clamp_motion_mm", NUMBER, "mm", "travel of the clamp's marker"},
+    {"clamp_path_rms_mm", NUMBER, "mm", "RMS distance of the clamp's path from a straight line"},
+    {"vertical_tilt_deg", NUMBER, "degree",
+     "angle between the clamp's motion and the cameras' up axis"},
+    {"vertical_uncertainty_mrad", NUMBER | UNKNOWN, "mrad",
+     "standard uncertainty of the vertical's direction"},
+    {"vertical", TEXT, "", "source of the vertical's direction"},
+};
+static const struct wb_schema_object plane = {"bending_plane", "The plane in which the wire bends.",
+                                              ROWS(plane_rows)};
+
+static const struct wb_schema_row stage_rows[] = {
+    {"reports", INTEGER | OPTIONAL, "", "position reports of the stage that were compared"},
+    {"slope", NUMBER | OPTIONAL, "", "measured over commanded travel"},
+    {"slope_uncertainty", NUMBER | UNKNOWN | OPTIONAL, "", "standard uncertainty of the slope"},
+    {"offset_mm", NUMBER | OPTIONAL, "mm", "measured travel at a commanded travel of zero"},
+    {"report_lag_ms", NUMBER | OPTIONAL, "ms", "delay of the stage's reports"},
+    {"residual_rms_mm", NUMBER | OPTIONAL, "mm", "RMS deviation of the travel from the line"},
+    {"largest_residual_mm", NUMBER | OPTIONAL, "mm", "largest deviation from the line"},
+    {"not_returned_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "measured less commanded travel after the test, less the same before it"},
+    {"lost_steps", FLAG, "", "the stage seems to have lost steps"},
+};
+static const struct wb_schema_object stage = {
+    "stage_check",
+    "Measured over commanded travel of the stage; only `lost_steps` where the clamp did not follow "
+    "the stage.",
+    ROWS(stage_rows)};
+
+static const struct wb_schema_row loss_rows[] = {
+    {"received", INTEGER, "", "number received"},
+    {"missing", INTEGER, "", "number that never arrived"},
+    {"gaps", INTEGER, "", "places where some are missing"},
+    {"repeated", INTEGER, "", "number received twice"},
+    {"overtaken", INTEGER, "", "number received after a later one"},
+    {"longest_gap_s", NUMBER, "s", "longest gap"},
+};
+static const struct wb_schema_object loss = {"loss", "Samples of one stream that were lost.",
+                                             ROWS(loss_rows)};
+
+static const struct wb_schema_row losses_rows[] = {
+    {"frames", OBJECT, "", "frames of the cameras", &loss},
+    {"readings", OBJECT, "", "readings of the load cell", &loss},
+};
+static const struct wb_schema_object losses = {"losses", "Samples that were lost.",
+                                               ROWS(losses_rows)};
+
+static const struct wb_schema_row zero_rows[] = {
+    {"t_s", NUMBER, "s", "time of the stretch"},
+    {"reading_mN", NUMBER, "mN", "mean reading, less the tare"},
+    {"uncertainty_mN", NUMBER | UNKNOWN, "mN", "standard uncertainty of the mean"},
+};
+static const struct wb_schema_object zero = {"zero_load", "A stretch without load.",
+                                             ROWS(zero_rows)};
+
+static const struct wb_schema_row timing_rows[] = {
+    {"camera_clock", TEXT, "", "method by which the cameras' clock was mapped"},
+    {"camera_clock_uncertainty_ms", NUMBER | UNKNOWN, "ms",
+     "standard uncertainty of the cameras' times"},
+    {"filter_delay_uncertainty_ms", NUMBER, "ms",
+     "standard uncertainty of the load cell's filter delay"},
+    {"lag_uncertainty_ms", NUMBER | UNKNOWN, "ms",
+     "uncertainty of the lag between force and deflection"},
+    {"speed_mm_s", NUMBER, "mm/s", "speed of the tip"},
+    {"deflection_error_mm", NUMBER | UNKNOWN, "mm", "error of the deflection by such a lag"},
+    {"force_error_mN", NUMBER | UNKNOWN, "mN", "error of the force by such a lag"},
+    {"loop_width_error_mm", NUMBER | UNKNOWN, "mm", "width of the loop that such a lag opens"},
+    {"loop_area_mJ", NUMBER | UNKNOWN, "mJ", "area of the first cycle's loop"},
+    {"loop_area_per_delay_mJ_per_s", NUMBER | UNKNOWN, "mJ/s",
+     "change of that area with the filter delay that is subtracted"},
+    {"loop_area_error_mJ", NUMBER | UNKNOWN, "mJ", "error of that area by such a lag"},
+    {"note", TEXT, "", "explanation of these numbers"},
+};
+static const struct wb_schema_object timing = {
+    "timing", "The effect of a lag between force and deflection.", ROWS(timing_rows)};
+
+static const struct wb_schema_row natural_rows[] = {
+    {"bow_mm", NUMBER, "mm", "natural offset of the tip"},
+    {"bow_uncertainty_mm", NUMBER | UNKNOWN, "mm", "standard uncertainty of the bow"},
+    {"bow_from_markers_mm", NUMBER | UNKNOWN, "mm", "bow by the markers alone"},
+    {"bow_from_markers_uncertainty_mm", NUMBER | UNKNOWN, "mm", "its standard uncertainty"},
+    {"bow_from_force_mm", NUMBER | UNKNOWN, "mm", "bow by the force alone"},
+    {"bow_from_force_uncertainty_mm", NUMBER | UNKNOWN, "mm", "its standard uncertainty"},
+    {"per_percent_of_counterweight_mm", NUMBER, "mm",
+     "change of the bow by the force when the counterweight changes by 1 %"},
+    {"terms_uncertainty_rad", NUMBER | LIST | UNKNOWN, "rad",
+     "standard uncertainties of the terms of `natural_shape_rad`"},
+};
+static const struct wb_schema_object natural = {
+    "natural_shape", "The natural shape of the wire, from force and markers.", ROWS(natural_rows)};
+
+static const struct wb_schema_row hold_rows[] = {
+    {"cycle", INTEGER, "", "cycle, from 1"},
+    {"phase", TEXT, "", "phase in which the test was held", .choices = "down|up|rest"},
+    {"travel_mm", NUMBER | UNKNOWN, "mm", "travel of the stage at the hold"},
+    {"start_s", NUMBER, "s", "time at which the hold began"},
+    {"lasted_s", NUMBER | UNKNOWN, "s", "duration; null: to the end of the test"},
+    {"tension_before_mN", NUMBER | UNKNOWN, "mN", "tension when the hold began"},
+    {"tension_after_mN", NUMBER | UNKNOWN, "mN", "tension when the hold ended"},
+};
+static const struct wb_schema_object hold = {"hold", "A hold of the test by the operator.",
+                                             ROWS(hold_rows)};
+
+static const struct wb_schema_row check_rows_rows[] = {
+    {"rows", INTEGER, "", "rows of force_deflection.csv"},
+    {"shape_rows", INTEGER, "", "rows of shape.csv"},
+    {"left_out", INTEGER, "", "time bins that have frames and give no row"},
+    {"held", INTEGER | OPTIONAL, "", "rows left out because the operator held the test"},
+    {"gaps", INTEGER, "", "gaps between rows longer than `longest_gap_s` of the settings"},
+    {"longest_gap_s", NUMBER, "s", "longest gap between rows"},
+    {"deflection_level_uncertainty_mm", NUMBER | UNKNOWN, "mm",
+     "standard uncertainty of the level of zero deflection"},
+    {"note", TEXT, "", "what a row is"},
+};
+static const struct wb_schema_object check_rows = {"rows_check", "The rows of the tables.",
+                                                   ROWS(check_rows_rows)};
+
+static const struct wb_schema_row import_rows[] = {
+    {"take", TEXT, "", "name of the cameras' file"},
+    {"take_sha256", TEXT, "", "SHA-256 of that file"},
+    {"format", TEXT, "", "format of that file"},
+    {"frames", INTEGER, "", "frames of the file"},
+    {"missing_frames", INTEGER, "", "frames that the file lacks"},
+    {"jumps", INTEGER, "", "places where frames are missing between two others"},
+    {"frames_jumped", INTEGER, "", "frames missing at these places"},
+    {"skipped_rows", INTEGER, "",
+     "rows left out: cut off, out of order or with another number of cells"},
+    {"first_skipped_line", INTEGER, "", "line of the first such row; 0: none"},
+    {"empty_rows", INTEGER, "", "rows without a marker"},
+    {"marker_columns", INTEGER, "", "columns of markers in the file"},
+    {"markers", INTEGER, "", "markers of the wire"},
+    {"columns_stitched", INTEGER, "", "columns joined to others because they show the same marker"},
+    {"missing_percent", NUMBER, "%", "share of the markers' places that the file lacks"},
+    {"force", TEXT | OPTIONAL, "", "name of the force file"},
+    {"force_sha256", TEXT | OPTIONAL, "", "SHA-256 of that file"},
+    {"readings", INTEGER | OPTIONAL, "", "readings of force"},
+    {"force_skipped_rows", INTEGER | OPTIONAL, "", "rows of force that could not be read"},
+    {"clocks", TEXT | OPTIONAL, "", "method by which the two clocks were brought together"},
+    {"lag_s", NUMBER | UNKNOWN | OPTIONAL, "s", "lag found between the two clocks"},
+    {"lag_uncertainty_s", NUMBER | UNKNOWN | OPTIONAL, "s", "standard uncertainty of the lag"},
+    {"events_paired", INTEGER | OPTIONAL, "", "events found in both files"},
+    {"offset_s", NUMBER | UNKNOWN | OPTIONAL, "s",
+     "time of the recording less time of the force file"},
+};
+static const struct wb_schema_object import = {
+    "mocap_import", "The import of files of cameras and load cell.", ROWS(import_rows)};
+
+static const struct wb_schema_row checks_rows[] = {
+    {"import", OBJECT | OPTIONAL, "", "of an imported recording: what the import found", &import},
+    {"losses", OBJECT | OPTIONAL, "", "frames and readings that were lost", &losses},
+    {"camera_clock", OBJECT | LIST | OPTIONAL, "", "segments of the cameras' clock", &camera_clock},
+    {"disordered_frames", INTEGER | OPTIONAL, "",
+     "frames left out: without a stamp, repeated or out of order"},
+    {"load_cell_stream", OBJECT | OPTIONAL, "", "the stream of the load cell", &load_stream},
+    {"markers", OBJECT | OPTIONAL, "", "identification of the markers", &markers},
+    {"bending_plane", OBJECT | OPTIONAL, "", "plane in which the wire bends", &plane},
+    {"stage", OBJECT | OPTIONAL, "", "measured over commanded travel", &stage},
+    {"zero_load", OBJECT | LIST | OPTIONAL, "", "stretches without load", &zero},
+    {"timing", OBJECT | OPTIONAL, "", "effect of a lag between force and deflection", &timing},
+    {"natural_shape", OBJECT | OPTIONAL, "", "natural shape from force and markers", &natural},
+    {"rows", OBJECT | OPTIONAL, "", "rows of the tables", &check_rows},
+    {"holds", OBJECT | LIST | OPTIONAL, "", "holds of the test by the operator", &hold},
+};
+const struct wb_schema_object wb_schema_checks = {"checks", "Findings of the alignment.",
+                                                  ROWS(checks_rows)};
+
+/* --- corrections --- */
+
+static const struct wb_schema_row correction_rows[] = {
+    {"name", TEXT, "", "the correction",
+     .choices = "filter delay|marker offset|tare|zero drift|strand lean|force at zero "
+                "deflection|natural shape"},
+    {"value_mN", NUMBER | UNKNOWN | OPTIONAL, "mN", "size of a correction of the force"},
+    {"uncertainty_mN", NUMBER | UNKNOWN | OPTIONAL, "mN", "its standard uncertainty"},
+    {"value_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "size of a correction of a length"},
+    {"uncertainty_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "its standard uncertainty"},
+    {"value_ms", NUMBER | UNKNOWN | OPTIONAL, "ms", "size of a correction of time"},
+    {"uncertainty_ms", NUMBER | UNKNOWN | OPTIONAL, "ms", "its standard uncertainty"},
+    {"note", TEXT, "", "what was done, and how the size was found"},
+};
+const struct wb_schema_object wb_schema_correction = {
+    "correction", "A correction of the data; its size stands in the key of its unit.",
+    ROWS(correction_rows)};
+
+/* --- where the data come from --- */
+
+static const struct wb_schema_row difference_rows[] = {
+    {"key", TEXT, "", "key of the file, as `load_cell.unit`"},
+    {"recorded", TEXT, "", "value that was recorded"},
+    {"given", TEXT, "", "value that holds in its place"},
+};
+static const struct wb_schema_object difference = {"difference", "A key in which two files differ.",
+                                                   ROWS(difference_rows)};
+
+static const struct wb_schema_row correction_file_rows[] = {
+    {"file", TEXT, "", "name of the file"},
+    {"sha256", TEXT, "", "SHA-256 of the file"},
+    {"differences", OBJECT | LIST, "", "keys in which it differs from the recorded file",
+     &difference},
+};
+static const struct wb_schema_object correction_file = {
+    "corrected_file", "A file that holds in place of the recorded one.",
+    ROWS(correction_file_rows)};
+
+static const struct wb_schema_row corrected_rows[] = {
+    {"rig", OBJECT | OPTIONAL, "", "rig file in place of the recorded one", &correction_file},
+    {"specimen", OBJECT | OPTIONAL, "", "specimen file in place of the recorded one",
+     &correction_file},
+};
+static const struct wb_schema_object corrected = {
+    "corrected", "Files that hold in place of recorded ones.", ROWS(corrected_rows)};
+
+static const struct wb_schema_row recording_rows[] = {
+    {"name", TEXT, "", "file name of the recording"},
+    {"sha256", TEXT, "", "SHA-256 of the uncompressed recording"},
+    {"start_utc", TEXT | OPTIONAL, "", "start of the test"},
+    {"operator", TEXT | OPTIONAL, "", "operator"},
+    {"notes", TEXT | OPTIONAL, "", "notes of the operator"},
+    {"recorded_with_version", TEXT | OPTIONAL, "", "version of the program that recorded"},
+    {"recorded_with_revision", TEXT | OPTIONAL, "", "revision of the program that recorded"},
+    {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_schema_excluded},
+    {"corrected", OBJECT | OPTIONAL, "", "files that hold in place of recorded ones", &corrected},
+};
+static const struct wb_schema_object recording = {"recording", "The recording of a dataset.",
+                                                  ROWS(recording_rows)};
+
+static const struct wb_schema_row settings_rows[] = {
+    {"longest_gap_s", NUMBER, "s", "no row is made where force or shape is missing for longer"},
+    {"row_rate_per_s", NUMBER, "1/s", "rows per second of bench time"},
+    {"shape_step_mm", NUMBER, "mm", "deflection between stored shapes"},
+    {"lost_steps_mm", NUMBER, "mm",
+     "difference of commanded and measured travel from which the stage is flagged"},
+};
+static const struct wb_schema_object settings = {"align_settings", "Settings of the alignment.",
+                                                 ROWS(settings_rows)};
+
+static const struct wb_schema_row specimen_rows[] = {
+    {"wire", TEXT, "", "name of the product"},
+    {"sample", INTEGER, "", "number of the piece"},
+    {"length_mm", NUMBER, "mm", "free length"},
+    {"markers_mm", NUMBER | LIST, "mm", "arc lengths of the markers"},
+    {"marker_offset_mm", NUMBER, "mm", "distance of the markers' centres from the axis"},
+    {"marker_offset_uncertainty_mm", NUMBER, "mm", "standard uncertainty of that offset"},
+    {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
+    {"density_g_cm3", NUMBER, "g/cm3", "mean density over the outer diameter"},
+};
+static const struct wb_schema_object specimen = {"specimen", "The specimen, as its files say.",
+                                                 ROWS(specimen_rows)};
+
+static const struct wb_schema_row cell_rows[] = {
+    {"protocol", TEXT, "", "protocol of the load cell"},
+    {"capacity_g", NUMBER, "g", "nominal load"},
+    {"serial_number", TEXT, "", "serial number; empty: not stated"},
+    {"calibration_date", TEXT, "", "date of its calibration; empty: not stated"},
+    {"filter_delay_ms", NUMBER, "ms", "delay of the reading behind the force"},
+    {"filter_delay_uncertainty_ms", NUMBER, "ms", "standard uncertainty of that delay"},
+};
+static const struct wb_schema_object cell = {"rig_load_cell", "The load cell of the rig.",
+                                             ROWS(cell_rows)};
+
+static const struct wb_schema_row mocap_rows[] = {
+    {"protocol", TEXT, "", "protocol of the cameras"},
+};
+static const struct wb_schema_object mocap = {"rig_mocap", "The cameras of the rig.",
+                                              ROWS(mocap_rows)};
+
+static const struct wb_schema_row rig_stage_rows[] = {
+    {"protocol", TEXT, "", "protocol of the stage"},
+    {"speed_mm_s", NUMBER, "mm/s", "speed during the test"},
+};
+static const struct wb_schema_object rig_stage = {"rig_stage", "The stage of the rig.",
+                                                  ROWS(rig_stage_rows)};
+
+static const struct wb_schema_row strand_rows[] = {
+    {"length_mm", NUMBER, "mm", "length of the strand; 0: none"},
+    {"counterweight_g", NUMBER, "g", "mass at the tip"},
+};
+static const struct wb_schema_object strand = {"rig_strand", "The strand of the rig.",
+                                               ROWS(strand_rows)};
+
+static const struct wb_schema_row rig_rows[] = {
+    {"name", TEXT, "", "name of the rig"},
+    {"virtual_rig", FLAG, "", "the data come from a virtual rig"},
+    {"time_scale", NUMBER, "", "factor by which the clocks of a virtual rig run faster"},
+    {"gravity_m_s2", NUMBER, "m/s2", "local gravity"},
+    {"load_cell", OBJECT, "", "load cell", &cell},
+    {"mocap", OBJECT, "", "cameras", &mocap},
+    {"stage", OBJECT, "", "stage", &rig_stage},
+    {"strand", OBJECT, "", "strand", &strand},
+};
+static const struct wb_schema_object rig = {"rig", "The rig, as its file says.", ROWS(rig_rows)};
+
+static const struct wb_schema_row aligned_rows[] = {
+    {"source", TEXT, "", "test on the bench, or on a virtual rig"},
+    {"tool", OBJECT, "", "program that aligned the recording", &wb_schema_tool},
+    {"settings", OBJECT, "", "settings of the alignment", &settings},
+    {"specimen", OBJECT, "", "the specimen", &specimen},
+    {"rig", OBJECT, "", "the rig", &rig},
+    {"corrections", OBJECT | LIST, "", "corrections in the order in which they were made",
+     &wb_schema_correction},
+    {"checks", OBJECT, "", "findings of the alignment", &wb_schema_checks},
+    {"warnings", TEXT | LIST, "", "warnings"},
+    {"recordings", OBJECT | LIST, "", "the recording", &recording},
+    {"cycles", INTEGER, "", "number of cycles"},
+    {"largest_deflection_mm", NUMBER, "mm", "largest deflection"},
+    {"complete", FLAG, "", "false: there are gaps, or the test was cut short"},
+};
+const struct wb_schema_object wb_schema_aligned = {
+    "aligned_keys", "Keys of the dataset of a recording.", ROWS(aligned_rows)};

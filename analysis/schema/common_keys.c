@@ -1,0 +1,112 @@
+/* Keys that several files have. */
+#include "analysis/schema/row.h"
+
+static const struct wb_schema_row tool_rows[] = {
+    {"name", TEXT, "", "program and command"},
+    {"version", TEXT, "", "version of the program"},
+    {"revision", TEXT, "", "revision of the sources that the program was built from"},
+    {"confirmed_by_revision", TEXT | OPTIONAL, "",
+     "of a stored simulation: a later revision, whose results are the same within the tolerances"},
+};
+const struct wb_schema_object wb_schema_tool = {"tool", "The program that wrote the file.",
+                                                ROWS(tool_rows)};
+
+static const struct wb_schema_row campaign_rows[] = {
+    {"file", TEXT, "", "name of the campaign file"},
+    {"sha256", TEXT, "", "SHA-256 of the campaign file"},
+};
+const struct wb_schema_object wb_schema_campaign = {"campaign", "The campaign file.",
+                                                    ROWS(campaign_rows)};
+
+static const struct wb_schema_row excluded_rows[] = {
+    {"by", TEXT, "", "who excluded the test"},
+    {"reason", TEXT, "", "why the test was excluded"},
+    {"date_utc", TEXT | UNKNOWN, "", "when the test was excluded"},
+};
+const struct wb_schema_object wb_schema_excluded = {
+    "excluded", "The exclusion of a test, from the index of recordings.", ROWS(excluded_rows)};
+
+static const struct wb_schema_row sum_rows[] = {
+    {"file", TEXT, "", "name of the file"},
+    {"sha256", TEXT, "", "SHA-256 of the file"},
+};
+const struct wb_schema_object wb_schema_sum = {"sum", "A file and its checksum.", ROWS(sum_rows)};
+
+static const struct wb_schema_row machine_rows[] = {
+    {"name", TEXT, "", "name of the machine"},
+    {"kind", TEXT, "", "kind of test", .choices = "cantilever|three-point|tensile"},
+    {"span_mm", NUMBER | OPTIONAL, "mm", "distance between the axes of the rollers"},
+    {"roller_radius_mm", NUMBER | OPTIONAL, "mm", "radius of the rollers"},
+    {"nose_radius_mm", BAND | OPTIONAL, "mm", "radius of the nose; a list: least and largest"},
+    {"friction", BAND | OPTIONAL, "",
+     "friction coefficient between the wire and rollers and nose; a list: least and largest"},
+    {"gauge_length_mm", NUMBER | OPTIONAL, "mm", "length over which the elongation is measured"},
+    {"elongation", TEXT | OPTIONAL, "", "how the elongation is measured",
+     .choices = "crosshead|extensometer"},
+    {"bends", TEXT | OPTIONAL, "", "direction in which the tip of a cantilever moves",
+     .choices = "up|sideways|down"},
+    {"compliance_mm_N", BAND | OPTIONAL, "mm/N",
+     "compliance of machine, load cell and fixture; a list: least and largest"},
+    {"speed_mm_s", BAND | OPTIONAL, "mm/s", "speed of the travel; a list: least and largest"},
+};
+const struct wb_schema_object wb_schema_machine = {
+    "machine", "The testing machine, as its machine file describes it.", ROWS(machine_rows)};
+
+static const struct wb_schema_row interval_rows[] = {
+    {"median", NUMBER | UNKNOWN, "", "median of the runs"},
+    {"low", NUMBER | UNKNOWN, "", "lower end of the band of 90 %, with the model's error"},
+    {"high", NUMBER | UNKNOWN, "", "upper end of that band"},
+    {"runs_low", NUMBER | UNKNOWN, "", "5 % quantile of the runs alone"},
+    {"runs_high", NUMBER | UNKNOWN, "", "95 % quantile of the runs alone"},
+};
+static const struct wb_schema_object interval = {
+    "band", "A band of a predicted number, in the unit of its key.", ROWS(interval_rows)};
+
+static const struct wb_schema_row group_rows[] = {
+    {"group", TEXT, "", "group of inputs"},
+    {"share", NUMBER, "", "share of the ranks' variance that this group explains"},
+    {"share_low", NUMBER, "", "lower end of its interval of 90 %"},
+    {"share_high", NUMBER, "", "upper end of its interval of 90 %"},
+};
+static const struct wb_schema_object group = {
+    "ranking_group", "The influence of a group of inputs.", ROWS(group_rows)};
+
+static const struct wb_schema_row ranking_rows[] = {
+    {"of", TEXT, "", "result that the ranking is of", .choices = "force|deflection_springback"},
+    {"deflection_mm", NUMBER | UNKNOWN, "mm", "deflection at which the result is taken"},
+    {"R2", NUMBER | UNKNOWN, "", "share of the variance that ranks explain"},
+    {"R2_low", NUMBER | UNKNOWN, "", "lower end of its interval"},
+    {"R2_high", NUMBER | UNKNOWN, "", "upper end of its interval"},
+    {"groups", OBJECT | LIST | OPTIONAL, "", "the groups of inputs; only from R2 = 0.9 on", &group},
+};
+static const struct wb_schema_object ranking = {
+    "ranking", "Which inputs the width of a band depends on.", ROWS(ranking_rows)};
+
+static const struct wb_schema_row case_rows[] = {
+    {"case", TEXT, "", "`file`, or the name of a scenario or of a combination of the sweep"},
+    {"wires", INTEGER, "", "number of wires"},
+    {"packing", TEXT, "", "packing of the wires"},
+    {"tape_layers", NUMBER, "", "layers of tape, with overlap; 0: no tape"},
+    {"tape_outline", TEXT, "", "how the tape lies round the wires", .choices = "none|circle|hull"},
+    {"runs_not_converged", INTEGER, "", "runs that were not computed to the end"},
+    {"draws_limited", INTEGER, "", "runs with a drawn law that had to be limited"},
+    {"deflection_mm", NUMBER | OPTIONAL, "mm", "largest deflection that the band covers"},
+    {"force_N", OBJECT | OPTIONAL, "N", "force at that deflection", &interval},
+    {"deflection_springback", OBJECT, "",
+     "springback of the deflection: 1 less the residual over the largest deflection", &interval},
+    {"ranking", OBJECT | LIST, "", "which inputs the bands depend on", &ranking},
+};
+static const struct wb_schema_object of_case = {"prediction_case", "A case that was predicted.",
+                                                ROWS(case_rows)};
+
+static const struct wb_schema_row uncertainty_rows[] = {
+    {"confidence", NUMBER, "", "probability of the bands"},
+    {"model_error", NUMBER, "", "standard deviation of the model's error, of the largest value"},
+    {"runs", INTEGER, "", "runs of each case"},
+    {"seed", INTEGER, "", "seed of the draws"},
+    {"stopped", FLAG, "", "interrupted: the last case is missing"},
+    {"laws_of_wires", TEXT | LIST, "", "source of the law of each kind of wire"},
+    {"cases", OBJECT | LIST, "", "the cases", &of_case},
+};
+const struct wb_schema_object wb_schema_uncertainty = {
+    "uncertainty", "Bands of a bundle's prediction.", ROWS(uncertainty_rows)};

@@ -1,0 +1,146 @@
+/* Keys of dataset.json, but those of alignment (align_keys.c) and of simulations
+ * (simulation_keys.c). */
+#include "analysis/schema/row.h"
+
+static const struct wb_schema_row test_rows[] = {
+    {"wire", TEXT, "", "name of the product"},
+    {"sample", INTEGER, "", "number of the piece; 0: none"},
+    {"length_mm", NUMBER, "mm",
+     "free length; of a three-point test the span, of a tensile test the gauge length"},
+    {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
+    {"mass_per_length_kg_m", NUMBER, "kg/m", "mass per length; 0: not known, of a testing machine"},
+    {"poissons_ratio", NUMBER, "", "Poisson's ratio"},
+    {"loading", TEXT | OPTIONAL, "",
+     "`tip`: a strand or a vertical force raises the tip; `follower`: the force stays normal to "
+     "the "
+     "wire at its tip; `general`: other simulated loads, without a force-deflection curve for a "
+     "calibration; absent: `tip`",
+     .choices = "tip|follower|general"},
+    {"strand_length_mm", NUMBER, "mm",
+     "length of the strand; 0: there is none, and the force is vertical or a follower force"},
+    {"counterweight_g", NUMBER, "g", "mass at the tip"},
+    {"gravity_m_s2", NUMBER, "m/s2", "gravity; 0: the data do not contain weight"},
+    {"rest_level_mm", NUMBER | UNKNOWN, "mm", "y of the rest below the tip; null: there was none"},
+    {"natural_shape_rad", NUMBER | LIST, "rad",
+     "b_0, b_1, ... of the stress-free angle, the sum of b_i (s/L)^(i+1)"},
+    {"natural_bow_mm", NUMBER, "mm", "natural offset of the tip that follows from them"},
+    {"u_gain_percent", NUMBER | OPTIONAL, "%", "standard uncertainty of the load cell's gain"},
+    {"u_length_mm", NUMBER | OPTIONAL, "mm", "standard uncertainty of the free length"},
+    {"u_counterweight_g", NUMBER | OPTIONAL, "g", "standard uncertainty of the counterweight"},
+    {"u_outer_diameter_mm", NUMBER | OPTIONAL, "mm", "standard uncertainty of the outer diameter"},
+    {"u_density_percent", NUMBER | OPTIONAL, "%", "standard uncertainty of the density"},
+    {"u_marker_offset_mm", NUMBER | OPTIONAL, "mm",
+     "standard uncertainty of the markers' distance from the axis"},
+    {"virtual_rig", FLAG, "", "the data come from a virtual rig"},
+    {"simulation", FLAG, "", "the data come from `solve`"},
+    {"kind", TEXT | OPTIONAL, "", "kind of test; absent: cantilever",
+     .choices = "three-point|tensile"},
+};
+static const struct wb_schema_object test = {
+    "test", "What other commands need of the test; an absent uncertainty is not stated.",
+    ROWS(test_rows)};
+
+static const struct wb_schema_row piece_rows[] = {
+    {"series", TEXT | OPTIONAL, "", "series that the test belongs to"},
+    {"outer_diameter_mm", NUMBER | OPTIONAL, "mm", "outer diameter"},
+    {"length_mm", NUMBER | OPTIONAL, "mm", "length of the piece"},
+    {"mass_per_length_g_m", NUMBER | OPTIONAL, "g/m", "mass per length"},
+    {"usable_travel_mm", NUMBER | LIST | OPTIONAL, "mm",
+     "travel up to which the test is used, least and largest"},
+    {"natural_bow_mm", NUMBER | LIST | OPTIONAL, "mm", "natural bow, least and largest"},
+    {"constituent", TEXT | OPTIONAL, "", "of a tensile test: part of the wire that was pulled",
+     .choices = "conductor|jacket|tape"},
+    {"area_mm2", NUMBER | OPTIONAL, "mm2", "of a tensile test: area of its section"},
+};
+static const struct wb_schema_object piece = {
+    "test_piece", "What is known of the specimen of a testing machine besides `test`.",
+    ROWS(piece_rows)};
+
+static const struct wb_schema_row column_rows[] = {
+    {"column", INTEGER, "", "number of the column, from 1"},
+    {"header", TEXT, "", "name of the column in the file"},
+    {"unit", TEXT, "", "unit of the column"},
+};
+static const struct wb_schema_object column = {"import_column", "A column of the imported file.",
+                                               ROWS(column_rows)};
+
+static const struct wb_schema_row columns_rows[] = {
+    {"time", OBJECT | OPTIONAL, "", "column of time", &column},
+    {"force", OBJECT | OPTIONAL, "", "column of force", &column},
+    {"travel", OBJECT | OPTIONAL, "", "column of travel or elongation", &column},
+    {"strain", OBJECT | OPTIONAL, "", "column of strain", &column},
+};
+static const struct wb_schema_object columns = {
+    "import_columns", "The columns of the imported file that are used.", ROWS(columns_rows)};
+
+static const struct wb_schema_row import_rows[] = {
+    {"file", TEXT, "", "name of the original file"},
+    {"bytes", INTEGER, "", "size of the original file"},
+    {"sha256", TEXT, "", "SHA-256 of the original file"},
+    {"encoding", TEXT, "", "character encoding"},
+    {"byte_order_mark", FLAG, "", "the file begins with a byte order mark"},
+    {"delimiter", TEXT, "", "character between fields, `tab` or `blanks`"},
+    {"decimal_sign", TEXT, "", "decimal sign"},
+    {"header_line", INTEGER, "", "line with the names of the columns; 0: none"},
+    {"columns", OBJECT, "", "columns that are used", &columns},
+    {"lines", INTEGER, "", "lines of the file"},
+    {"rows", INTEGER, "", "rows of the dataset"},
+    {"empty_rows", INTEGER, "", "lines without force and travel"},
+    {"partial_rows", INTEGER, "", "rows left out because a value is missing"},
+    {"rows_without_force", INTEGER, "", "of these, rows without a force"},
+    {"rows_without_travel", INTEGER, "", "of these, rows without a travel"},
+    {"rows_without_time", INTEGER, "", "of these, rows without a time"},
+    {"largest_force_N", NUMBER | UNKNOWN, "N", "largest force of all rows, as in the file"},
+    {"largest_travel_mm", NUMBER | UNKNOWN, "mm", "largest travel of all rows, as in the file"},
+    {"gaps", INTEGER, "", "steps of time longer than five usual ones"},
+    {"longest_gap_s", NUMBER | UNKNOWN, "s", "longest step of time"},
+    {"cut", FLAG, "", "the file ends within a row or a character"},
+    {"last_line_has_no_end", FLAG, "", "the last line has no end of line and may be cut"},
+    {"force_turned", FLAG, "", "the machine counts force downwards; the sign was changed"},
+    {"travel_turned", FLAG, "", "the machine counts travel downwards; the sign was changed"},
+};
+static const struct wb_schema_object import = {"force_import", "The file of a testing machine.",
+                                               ROWS(import_rows)};
+
+static const struct wb_schema_row common_rows[] = {
+    {"schema", INTEGER, "", "layout of the file, 1"},
+    {"name", TEXT, "", "name of the dataset"},
+    {"test", OBJECT, "", "what other commands need of the test", &test},
+};
+static const struct wb_schema_object common = {"dataset_keys", "", ROWS(common_rows)};
+
+static const struct wb_schema_row aligned_rows[] = {
+    {.of = &common},
+    {.of = &wb_schema_aligned},
+};
+static const struct wb_schema_object aligned = {
+    "dataset_of_recording", "The dataset of a recording, by `align`.", ROWS(aligned_rows)};
+
+static const struct wb_schema_row imported_rows[] = {
+    {.of = &common},
+    {"tool", OBJECT, "", "program that imported the file", &wb_schema_tool},
+    {"import", OBJECT, "", "the file", &import},
+    {"complete", FLAG, "", "false: the file is cut, or there are gaps in time"},
+    {"machine", OBJECT, "", "testing machine", &wb_schema_machine},
+    {"test_piece", OBJECT, "", "what else is known of the specimen", &piece},
+};
+static const struct wb_schema_object imported = {
+    "dataset_of_machine", "The dataset of a testing machine, by `import force`.",
+    ROWS(imported_rows)};
+
+static const struct wb_schema_row simulated_rows[] = {
+    {.of = &common},
+    {"complete", FLAG | OPTIONAL, "",
+     "whether the whole loading was computed; of `cantilever` and `bending3p` see `converged`"},
+    {"simulation", OBJECT, "", "the computation", &wb_schema_simulation},
+    {"tool", OBJECT, "", "program that computed the dataset", &wb_schema_tool},
+    {"machine", OBJECT | OPTIONAL, "", "of `bending3p`: the testing machine", &wb_schema_machine},
+    {"test_piece", OBJECT | OPTIONAL, "", "of `bending3p`: the specimen", &piece},
+};
+static const struct wb_schema_object simulated = {
+    "dataset_of_simulation", "The dataset of a simulation, by `solve`.", ROWS(simulated_rows)};
+
+static const struct wb_schema_object *const kinds[] = {&aligned, &imported, &simulated, NULL};
+const struct wb_schema_object wb_schema_dataset = {
+    "dataset", "A dataset comes from a recording, a testing machine or a simulation.",
+    .alternatives = kinds};

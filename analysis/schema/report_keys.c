@@ -1,0 +1,444 @@
+/* Keys of report.json that all kinds of report have, and of reports of recordings. The other kinds
+ * are in report_kinds_keys.c. */
+#include "analysis/schema/report_keys.h"
+#include "analysis/calibration/paper/calibrate.h"
+
+/* --- all kinds --- */
+
+static const struct wb_schema_row amends_rows[] = {
+    {"report", TEXT, "", "number of the report that this one replaces"},
+    {"issued", TEXT, "", "date of that report"},
+    {"why", TEXT, "", "what changed"},
+};
+static const struct wb_schema_object amends = {"amends", "The report that this one replaces.",
+                                               ROWS(amends_rows)};
+
+static const struct wb_schema_row laboratory_rows[] = {
+    {"report", TEXT | OPTIONAL, "", "number of the report"},
+    {"name", TEXT | OPTIONAL, "", "name of the laboratory"},
+    {"address", TEXT | OPTIONAL, "", "address of the laboratory"},
+    {"place", TEXT | OPTIONAL, "", "place of the tests"},
+    {"customer", TEXT | OPTIONAL, "", "customer, with contact"},
+    {"item", TEXT | OPTIONAL, "", "items that were tested"},
+    {"item_state", TEXT | OPTIONAL, "", "condition of the items"},
+    {"received", TEXT | OPTIONAL, "", "date on which the items were received"},
+    {"tested_from", TEXT | OPTIONAL, "", "first day of the tests"},
+    {"tested_until", TEXT | OPTIONAL, "", "last day of the tests"},
+    {"issued", TEXT | OPTIONAL, "", "date of the report"},
+    {"method", TEXT | OPTIONAL, "", "method"},
+    {"deviations", TEXT | OPTIONAL, "", "deviations from the method"},
+    {"sampling", TEXT | OPTIONAL, "", "how the items were sampled"},
+    {"external", TEXT | OPTIONAL, "", "results from external providers"},
+    {"environment", TEXT | OPTIONAL, "", "environmental conditions"},
+    {"authorised_by", TEXT | OPTIONAL, "", "who authorises the report"},
+    {"decision_rule", TEXT, "", "rule by which limits are judged", .choices = "simple|guarded"},
+    {"amends", OBJECT | OPTIONAL, "", "report that this one replaces", &amends},
+    {"missing", TEXT | LIST, "", "required fields that the campaign file lacks"},
+};
+static const struct wb_schema_object laboratory = {
+    "laboratory", "The fields of a laboratory, as the campaign file has them.",
+    ROWS(laboratory_rows)};
+
+static const struct wb_schema_row end_rows[] = {
+    {"laboratory", OBJECT | OPTIONAL, "", "fields of a laboratory", &laboratory},
+    {"files", TEXT | LIST, "", "files of the report, relative to its folder"},
+};
+const struct wb_schema_object wb_schema_report_end = {"report_end", "", ROWS(end_rows)};
+
+static const struct wb_schema_row head_rows[] = {
+    {"title", TEXT, "", "title of the campaign"},
+    {"data", TEXT, "", "origin of the data",
+     .choices = "measured|measured (virtual rig)|simulation"},
+    {"schema", INTEGER, "", "layout of the file, 1"},
+    {"tool", OBJECT, "", "program that wrote the report", &wb_schema_tool},
+    {"campaign", OBJECT, "", "campaign file", &wb_schema_campaign},
+    {"complete", FLAG, "", "false: data are missing (exit code 3)"},
+    {"limit_exceeded", FLAG, "", "true: a limit of the campaign is exceeded (exit code 4)"},
+    {.of = &wb_schema_report_end},
+};
+const struct wb_schema_object wb_schema_report_head = {"report_head", "", ROWS(head_rows)};
+
+static const struct wb_schema_row simulation_rows[] = {
+    {"dataset", TEXT, "", "name of the dataset"},
+    {"state", TEXT, "", "whether the dataset is used",
+     .choices = "not wanted|missing|outdated|refused|used"},
+    {"command", TEXT, "", "command that computes it"},
+    {"problem", TEXT | OPTIONAL, "", "why it is not used"},
+};
+const struct wb_schema_object wb_schema_simulation_state = {"simulation_state", "",
+                                                            ROWS(simulation_rows)};
+
+/* --- recordings --- */
+
+static const struct wb_schema_row settings_rows[] = {
+    {.settings = &wb_calibrate_table, .applies = WB_CALIBRATE_REPORT},
+};
+static const struct wb_schema_object settings = {"report_settings", "Settings of the calibration.",
+                                                 ROWS(settings_rows)};
+
+static const struct wb_schema_row limits_rows[] = {
+    {"calibration_rms_max", NUMBER | OPTIONAL, "", "limit of the RMS of calibrations over F_max"},
+    {"validation_rms_max", NUMBER | OPTIONAL, "", "limit of the RMS of validations over F_max"},
+};
+static const struct wb_schema_object limits = {"report_limits", "Limits of the campaign.",
+                                               ROWS(limits_rows)};
+
+static const struct wb_schema_row recording_rows[] = {
+    {"name", TEXT, "", "name of the recording"},
+    {"wire", TEXT, "", "name of the product"},
+    {"purpose", TEXT, "", "use of the recording", .choices = "calibration|validation"},
+    {"used", FLAG, "", "the recording is used"},
+    {"seed", INTEGER | OPTIONAL, "", "seed of the virtual rig"},
+    {"sha256", TEXT | OPTIONAL, "", "SHA-256 of the uncompressed recording"},
+    {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_schema_excluded},
+    {"problem", TEXT | OPTIONAL, "", "why the recording is not used"},
+    {"sample", INTEGER | OPTIONAL, "", "number of the piece"},
+    {"length_mm", NUMBER | OPTIONAL, "mm", "free length"},
+    {"virtual_rig", FLAG | OPTIONAL, "", "the data come from a virtual rig"},
+    {"start_utc", TEXT | OPTIONAL, "", "start of the test"},
+    {"tool_revision", TEXT | OPTIONAL, "", "revision of the program that recorded"},
+    {"operator", TEXT | OPTIONAL, "", "operator"},
+    {"bow_mm", NUMBER | OPTIONAL, "mm", "natural offset of the tip"},
+    {"corrections", OBJECT | LIST | OPTIONAL, "", "as in dataset.json", &wb_schema_correction},
+    {"checks", OBJECT | OPTIONAL, "", "as in dataset.json", &wb_schema_checks},
+    {"warnings", TEXT | LIST | OPTIONAL, "", "as in dataset.json"},
+};
+static const struct wb_schema_object recording = {
+    "report_recording", "A recording; the keys from `sample` on are of a used one.",
+    ROWS(recording_rows)};
+
+static const struct wb_schema_row published_rows[] = {
+    {.of = &wb_schema_ludwik},
+    {"source", TEXT, "", "source of the values"},
+};
+static const struct wb_schema_object published = {"published", "Published properties of a wire.",
+                                                  ROWS(published_rows)};
+
+static const struct wb_schema_row measured_rows[] = {
+    {"deflection_mm", NUMBER | LIST, "mm", "deflections of the curves"},
+    {"force_mN", NUMBER | LIST | UNKNOWN, "mN", "mean force of the samples"},
+    {"lowest_mN", NUMBER | LIST | UNKNOWN, "mN", "lowest force of the samples"},
+    {"highest_mN", NUMBER | LIST | UNKNOWN, "mN", "highest force of the samples"},
+    {"standard_deviation_mN", NUMBER | LIST | UNKNOWN, "mN",
+     "standard deviation of the force between samples"},
+};
+static const struct wb_schema_object measured = {"measured_curve", "The mean curve of the samples.",
+                                                 ROWS(measured_rows)};
+
+static const struct wb_schema_row computed_rows[] = {
+    {"rms_over_F_max", NUMBER | UNKNOWN, "", "RMS error over F_max"},
+    {"rms_from_5mm_over_F_max", NUMBER | UNKNOWN, "", "the same of deflections from 5 mm on"},
+    {"largest_error_over_F_max", NUMBER | UNKNOWN, "", "largest error over F_max"},
+    {"points_reached", INTEGER, "", "deflections that the computation reached"},
+    {"force_mN", NUMBER | LIST | UNKNOWN, "mN", "computed force"},
+    {"error_over_F_max", NUMBER | LIST | UNKNOWN, "", "error of the force over F_max"},
+};
+static const struct wb_schema_object computed = {"computed_curve", "A computed curve.",
+                                                 ROWS(computed_rows)};
+
+static const struct wb_schema_row comparison_rows[] = {
+    {"samples", INTEGER | OPTIONAL, "", "number of samples"},
+    {"length_mm", NUMBER | OPTIONAL, "mm", "free length"},
+    {"F_max_mN", NUMBER | OPTIONAL, "mN", "F_max, the largest force of the mean curve"},
+    {"max_deflection_mm", NUMBER | OPTIONAL, "mm", "largest deflection of the mean curve"},
+    {"scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+     "scatter between samples over F_max; null with one sample"},
+    {"residual_scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+     "part of the scatter that remains with the natural shape of each sample"},
+    {"shape_rms_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "RMS distance of the markers from the computed wire"},
+    {"shape_largest_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "largest such distance"},
+    {"shape_points", INTEGER | OPTIONAL, "", "number of markers' places compared"},
+    {"mean_bow_mm", NUMBER | OPTIONAL, "mm", "mean natural offset of the tip"},
+    {"measured", OBJECT | OPTIONAL, "", "mean curve of the samples", &measured},
+    {"elastoplastic", OBJECT | OPTIONAL, "", "curve of the elastoplastic wire", &computed},
+    {"linear_elastic", OBJECT | OPTIONAL, "", "curve of the linear elastic wire", &computed},
+    {"rms_uncertainty_95_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+     "in reports of a laboratory: expanded uncertainty (95 %) of the RMS"},
+    {"limit_kept", FLAG | OPTIONAL, "", "in reports of a laboratory: the limit is kept"},
+};
+static const struct wb_schema_object comparison = {"comparison_keys", "", ROWS(comparison_rows)};
+
+static const struct wb_schema_row state_rows[] = {
+    {"state", TEXT, "", "whether there is a result", .choices = "not wanted|missing|failed|done"},
+    {"problem", TEXT | OPTIONAL, "", "why it is missing or failed"},
+};
+static const struct wb_schema_object state = {"state_keys", "", ROWS(state_rows)};
+
+static const struct wb_schema_row uncertainties_rows[] = {
+    {"youngs_modulus_MPa", NUMBER | UNKNOWN, "MPa", "of E"},
+    {"yield_stress_MPa", NUMBER | UNKNOWN, "MPa", "of sigma_Y"},
+    {"strength_coefficient_factor", NUMBER | UNKNOWN, "",
+     "K lies between K divided by this factor and K times this factor"},
+    {"hardening_exponent", NUMBER | UNKNOWN, "", "of n"},
+};
+static const struct wb_schema_object uncertainties = {
+    "standard_uncertainties", "Standard uncertainties from the scatter between samples.",
+    ROWS(uncertainties_rows)};
+
+static const struct wb_schema_row search_rows[] = {
+    {"first_strength_coefficient_MPa", NUMBER, "MPa", "initial guess of K"},
+    {"first_hardening_exponent", NUMBER, "", "initial guess of n"},
+    {"stopped_because", TEXT, "", "why the search ended"},
+    {"restarted", FLAG, "", "the search was started again from the optimum"},
+    {"restart_moved", NUMBER | UNKNOWN, "", "largest relative change of K or n by the restart"},
+    {"beam_runs", INTEGER, "", "computations of the beam"},
+    {"beam_runs_not_converged", INTEGER, "", "computations that did not converge"},
+    {"strength_coefficient_MPa", NUMBER | LIST, "MPa", "K of each iteration"},
+    {"hardening_exponent", NUMBER | LIST, "", "n of each iteration"},
+    {"error_over_F_max", NUMBER | LIST | UNKNOWN, "", "error of each iteration"},
+    {"simplex_size", NUMBER | LIST | UNKNOWN, "", "size of the simplex in each iteration"},
+};
+static const struct wb_schema_object search = {"search", "The search for K and n.",
+                                               ROWS(search_rows)};
+
+static const struct wb_schema_row calibration_rows[] = {
+    {.of = &state},
+    {"properties", OBJECT | OPTIONAL, "", "E, sigma_Y, K and n", &wb_schema_ludwik},
+    {"standard_uncertainties", OBJECT | OPTIONAL, "", "their standard uncertainties",
+     &uncertainties},
+    {"bow_corrected", FLAG | OPTIONAL, "", "E and sigma_Y were corrected for the samples' bows"},
+    {"remarks", TEXT | LIST | OPTIONAL, "", "remarks on the properties"},
+    {"rms_over_F_max", NUMBER | OPTIONAL, "", "RMS error of the fit over F_max"},
+    {"largest_error_over_F_max", NUMBER | OPTIONAL, "", "largest error of the fit over F_max"},
+    {.of = &comparison},
+    {"search", OBJECT | OPTIONAL, "", "search for K and n", &search},
+};
+static const struct wb_schema_object calibration = {
+    "report_calibration", "The calibration of a wire; all keys are present where it is done.",
+    ROWS(calibration_rows)};
+
+static const struct wb_schema_row bound_rows[] = {
+    {"found", NUMBER | UNKNOWN, "", "value, in the unit of the key above"},
+    {"bound", NUMBER | UNKNOWN, "", "bound of the value; null: not known"},
+    {"exceeded", FLAG, "", "the value exceeds its bound"},
+};
+static const struct wb_schema_object bound = {"bound", "A value of a validation and its bound.",
+                                              ROWS(bound_rows)};
+
+static const struct wb_schema_row bounds_rows[] = {
+    {"loading", OBJECT, "", "RMS error on loading over F_max", &bound},
+    {"unloading", OBJECT, "", "RMS error on unloading over F_max", &bound},
+    {"residual_deflection_mm", OBJECT, "mm", "error of the residual deflection", &bound},
+    {"shapes_mm", OBJECT, "mm", "RMS distance of the markers", &bound},
+};
+static const struct wb_schema_object bounds = {"bounds", "Bounds of a validation.",
+                                               ROWS(bounds_rows)};
+
+static const struct wb_schema_row unloading_rows[] = {
+    {"samples", INTEGER, "", "number of samples with unloading"},
+    {"rms", NUMBER | UNKNOWN, "", "RMS error of the mean over F_max"},
+    {"max_error", NUMBER | UNKNOWN, "", "largest error of the mean over F_max"},
+    {"rms_of_samples", NUMBER | UNKNOWN, "", "RMS error of the single samples over F_max"},
+    {"rule_untested", FLAG, "", "the calibration had no unloading to test the hardening rule"},
+};
+static const struct wb_schema_object unloading = {"unloading", "The prediction of the unloading.",
+                                                  ROWS(unloading_rows)};
+
+static const struct wb_schema_row residual_rows[] = {
+    {"measured", NUMBER | UNKNOWN, "mm", "measured residual deflection"},
+    {"predicted", NUMBER | UNKNOWN, "mm", "predicted residual deflection"},
+};
+static const struct wb_schema_object residual = {
+    "residual_deflection", "Deflection where the force has returned to that at zero deflection.",
+    ROWS(residual_rows)};
+
+static const struct wb_schema_row loop_rows[] = {
+    {"cycle", INTEGER, "", "cycle, from 1"},
+    {"samples", INTEGER, "", "number of samples"},
+    {"measured", NUMBER | UNKNOWN, "mJ", "measured energy loss of the cycle"},
+    {"predicted", NUMBER | UNKNOWN, "mJ", "predicted energy loss of the cycle"},
+};
+static const struct wb_schema_object loop = {"loop_energy", "The energy loss of a later cycle.",
+                                             ROWS(loop_rows)};
+
+static const struct wb_schema_row validation_rows[] = {
+    {.of = &state},
+    {.of = &comparison},
+    {"rms_of_perfect_model_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+     "RMS error expected from specimen scatter alone"},
+    {"rms_of_perfect_model_95_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+     "RMS error that specimen scatter alone exceeds in one of twenty validations"},
+    {"share_explained_by_scatter", NUMBER | UNKNOWN | OPTIONAL, "",
+     "square of the expected RMS over that of the RMS found, at most 1"},
+    {"clamp_curvature_1_m", NUMBER | UNKNOWN | OPTIONAL, "1/m", "computed curvature at the clamp"},
+    {"beyond_known_curvature", FLAG | OPTIONAL, "",
+     "that curvature exceeds the one up to which the law was measured"},
+    {"bounds", OBJECT | OPTIONAL, "", "errors and their bounds", &bounds},
+    {"unloading", OBJECT | UNKNOWN | OPTIONAL, "",
+     "prediction of the unloading; null: no unloading was measured", &unloading},
+    {"residual_deflection_mm", OBJECT | OPTIONAL, "mm", "residual deflection", &residual},
+    {"loop_energy_mJ", OBJECT | LIST | OPTIONAL, "mJ", "energy loss of the later cycles", &loop},
+};
+static const struct wb_schema_object validation = {
+    "report_validation", "The validation of a wire; keys from `samples` on are present if done.",
+    ROWS(validation_rows)};
+
+static const struct wb_schema_row point_rows[] = {
+    {"curvature_1_m", NUMBER, "1/m", "curvature by the markers"},
+    {"curvature_deviation_1_m", NUMBER, "1/m", "standard uncertainty of the curvature"},
+    {"moment_N_mm", NUMBER, "N mm", "moment by the strand's tension"},
+    {"branch", TEXT, "", "branch of the cycle", .choices = "loading|unloading"},
+    {"s_mm", NUMBER, "mm", "arc length of the place"},
+    {"band", FLAG, "", "the wire is bent too little there: the point shows scatter only"},
+};
+static const struct wb_schema_object point = {
+    "moment_point", "A point of M over curvature, without a law.", ROWS(point_rows)};
+
+static const struct wb_schema_row cloud_rows[] = {
+    {"sample", INTEGER, "", "number of the piece"},
+    {"points", OBJECT | LIST, "", "points", &point},
+};
+static const struct wb_schema_object cloud = {"moment_points", "The points of a sample.",
+                                              ROWS(cloud_rows)};
+
+static const struct wb_schema_row later_rows[] = {
+    {"sample", INTEGER, "", "number of the piece"},
+    {"cycles", INTEGER, "", "number of cycles"},
+    {"rms_over_F_max", NUMBER | UNKNOWN, "", "RMS error of the later cycles over F_max"},
+    {"measured_energy_mJ", NUMBER | UNKNOWN, "mJ", "measured energy loss of the last cycle"},
+    {"computed_energy_mJ", NUMBER | UNKNOWN, "mJ", "computed energy loss of the last cycle"},
+};
+static const struct wb_schema_object later = {
+    "later_cycles", "Later cycles, which the law was not fitted to.", ROWS(later_rows)};
+
+static const struct wb_schema_row valley_rows[] = {
+    {"strength_coefficient_MPa", NUMBER | UNKNOWN, "MPa", "K of the best fit"},
+    {"hardening_exponent", NUMBER | UNKNOWN, "", "n of the best fit"},
+    {"misfit", NUMBER | UNKNOWN, "", "misfit of the best fit"},
+    {"limit", NUMBER | UNKNOWN, "", "misfit up to which an F-test (95 %) sees no difference"},
+    {"strength_coefficient_low_MPa", NUMBER | UNKNOWN, "MPa", "least K within that limit"},
+    {"strength_coefficient_high_MPa", NUMBER | UNKNOWN, "MPa", "largest K within that limit"},
+    {"hardening_exponent_low", NUMBER | UNKNOWN, "", "least n within that limit"},
+    {"hardening_exponent_high", NUMBER | UNKNOWN, "", "largest n within that limit"},
+};
+static const struct wb_schema_object valley = {
+    "ludwik_on_loading", "K and n of the first loading of the first sample.", ROWS(valley_rows)};
+
+static const struct wb_schema_row pooled_rows[] = {
+    {"low", NUMBER | UNKNOWN, "N mm2", "lower end of the 95 % confidence interval"},
+    {"high", NUMBER | UNKNOWN, "N mm2", "upper end of that interval"},
+    {"deviation_of_logarithm", NUMBER | UNKNOWN, "", "pooled standard deviation of ln EI"},
+    {"degrees_of_freedom", INTEGER, "", "its degrees of freedom"},
+};
+static const struct wb_schema_object pooled = {
+    "pooled_interval", "The interval of EI with the scatter of all wires' samples.",
+    ROWS(pooled_rows)};
+
+static const struct wb_schema_row remark_rows[] = {
+    {"severity", TEXT, "", "severity", .choices = "note|doubt"},
+    {"sample", NUMBER | UNKNOWN, "", "number of the piece; null: all"},
+    {"text", TEXT, "", "the remark"},
+};
+static const struct wb_schema_object remark = {"cycle_remark", "A remark on the calibration.",
+                                               ROWS(remark_rows)};
+
+/* Of a cycle that is done, or not. */
+static const struct wb_schema_row prediction_rows[] = {
+    {"prediction", OBJECT | OPTIONAL, "", "validation of this law", &validation},
+};
+static const struct wb_schema_object prediction = {"prediction_key", "", ROWS(prediction_rows)};
+
+static const struct wb_schema_row cycle_done_rows[] = {
+    {"state", TEXT, "", "the calibration is done", .choices = "done"},
+    {.of = &wb_schema_cycle},
+    {"moment_curvature_measured", OBJECT | LIST, "", "M over curvature without a law", &cloud},
+    {"later_cycles", OBJECT | OPTIONAL, "", "later cycles", &later},
+    {"remarks", OBJECT | LIST, "", "remarks on the calibration", &remark},
+    {"ludwik_on_loading_alone", OBJECT | OPTIONAL, "", "K and n of a first loading alone", &valley},
+    {"flexural_rigidity_N_mm2_pooled_over_wires", OBJECT | OPTIONAL, "N mm2",
+     "EI with the scatter of all wires' samples", &pooled},
+    {.of = &prediction},
+};
+static const struct wb_schema_object cycle_done = {
+    "report_cycle", "The calibration on whole cycles.", ROWS(cycle_done_rows)};
+
+static const struct wb_schema_row cycle_failed_rows[] = {
+    {"state", TEXT, "", "why there is no calibration", .choices = "missing|failed"},
+    {"problem", TEXT, "", "why it is missing or failed"},
+    {.of = &prediction},
+};
+static const struct wb_schema_object cycle_failed = {
+    "report_cycle_missing", "A calibration on whole cycles that is not there.",
+    ROWS(cycle_failed_rows)};
+
+static const struct wb_schema_object *const cycles[] = {&cycle_done, &cycle_failed, NULL};
+static const struct wb_schema_object cycle = {
+    "cycle", "The calibration on whole cycles, or why not.", .alternatives = cycles};
+
+static const struct wb_schema_row wire_rows[] = {
+    {"wire", TEXT, "", "name of the product"},
+    {"label", TEXT, "", "name in the report"},
+    {"conductor_diameter_mm", NUMBER, "mm", "diameter of the conductor; 0: no single one"},
+    {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
+    {"density_g_cm3", NUMBER, "g/cm3", "mean density over the outer diameter"},
+    {"published", OBJECT | OPTIONAL, "", "published properties", &published},
+    {"calibration", OBJECT, "", "calibration by the paper's route", &calibration},
+    {"validation", OBJECT, "", "validation of that calibration", &validation},
+    {"cycle", OBJECT | OPTIONAL, "", "calibration on whole cycles", &cycle},
+};
+static const struct wb_schema_object wire = {"report_wire", "A wire of a campaign of recordings.",
+                                             ROWS(wire_rows)};
+
+static const struct wb_schema_row recordings_rows[] = {
+    {.of = &wb_schema_report_head},
+    {"virtual_rig", FLAG, "", "a recording that is used comes from a virtual rig"},
+    {"settings", OBJECT, "", "settings of the calibration", &settings},
+    {"limits", OBJECT, "", "limits of the campaign", &limits},
+    {"recordings", OBJECT | LIST, "", "recordings of the campaign", &recording},
+    {"wires", OBJECT | LIST, "", "wires of the campaign", &wire},
+};
+static const struct wb_schema_object recordings = {
+    "report_of_recordings", "The report of a campaign of recordings.", ROWS(recordings_rows)};
+
+static const struct wb_schema_object *const kinds[] = {&recordings,
+                                                       &wb_schema_report_comparison,
+                                                       &wb_schema_report_bundles,
+                                                       &wb_schema_report_prediction,
+                                                       &wb_schema_report_machine,
+                                                       NULL};
+const struct wb_schema_object wb_schema_report = {
+    "report", "A report; its keys depend on the kind of the campaign.", .alternatives = kinds};
+
+/* --- manifest.json --- */
+
+static const struct wb_schema_row manifest_input_rows[] = {
+    {"what", TEXT, "", "kind of input", .choices = "recording|file"},
+    {"name", TEXT, "",
+     "name: of a recording; of a file relative to the campaign's folder or to the shipped data, "
+     "or its folder and name"},
+    {"sha256", TEXT, "", "SHA-256; of a recording of the uncompressed one"},
+};
+static const struct wb_schema_object manifest_input = {
+    "manifest_input", "A recording or a file that was read.", ROWS(manifest_input_rows)};
+
+static const struct wb_schema_row manifest_file_rows[] = {
+    {"name", TEXT, "", "name, relative to the report's folder"},
+    {"sha256", TEXT, "", "SHA-256"},
+};
+static const struct wb_schema_object manifest_file = {"manifest_file", "A file of the report.",
+                                                      ROWS(manifest_file_rows)};
+
+static const struct wb_schema_row build_rows[] = {
+    {"version", TEXT, "", "version of the program"},
+    {"revision", TEXT, "", "revision of the sources"},
+    {"compiler", TEXT, "", "compiler"},
+    {"options", TEXT, "", "options of the compiler that choose machine code"},
+    {"processor", TEXT, "", "vector instructions, and the processor that OpenBLAS assumes"},
+    {"libraries", OBJECT | LIST, "", "libraries of the process", &wb_schema_sum},
+    {"fonts", OBJECT | LIST, "", "fonts of the report", &wb_schema_sum},
+};
+static const struct wb_schema_object build = {"build", "The program that made the report.",
+                                              ROWS(build_rows)};
+
+static const struct wb_schema_row manifest_rows[] = {
+    {"report", TEXT, "", "number of the report; empty without a laboratory"},
+    {"title", TEXT, "", "title of the report"},
+    {"amends", TEXT | OPTIONAL, "", "number of the report that this one replaces"},
+    {"campaign", OBJECT, "", "campaign file", &wb_schema_campaign},
+    {"inputs", OBJECT | LIST, "", "inputs of the report, sorted", &manifest_input},
+    {"files", OBJECT | LIST, "", "files of the report", &manifest_file},
+    {"build", OBJECT, "", "program that made the report", &build},
+};
+const struct wb_schema_object wb_schema_manifest = {
+    "manifest", "The inputs and files of a signed report.", ROWS(manifest_rows)};

@@ -1,0 +1,16 @@
+/* Between the tables of report.json: what all kinds share, and the kinds. Of this room only. */
+#ifndef WB_ANALYSIS_SCHEMA_REPORT_KEYS_H
+#define WB_ANALYSIS_SCHEMA_REPORT_KEYS_H
+
+#include "analysis/schema/row.h"
+
+extern const struct wb_schema_object wb_schema_report_head; /* keys of all kinds but `machine` */
+extern const struct wb_schema_object wb_schema_report_end;  /* keys of all kinds */
+extern const struct wb_schema_object wb_schema_simulation_state;
+
+extern const struct wb_schema_object wb_schema_report_comparison;
+extern const struct wb_schema_object wb_schema_report_bundles;
+extern const struct wb_schema_object wb_schema_report_prediction;
+extern const struct wb_schema_object wb_schema_report_machine;
+
+#endif

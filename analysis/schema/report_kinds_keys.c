@@ -1,0 +1,440 @@
+/* Keys of report.json of comparison, bundles, prediction and machine campaigns. */
+#include "analysis/schema/report_keys.h"
+#include "fe/model/bundle_model.h"
+
+/* --- comparison --- */
+
+static const struct wb_schema_row peak_rows[] = {
+    {"von_mises_MPa", NUMBER, "MPa", "largest von Mises stress"},
+    {"at_mm", NUMBER | LIST, "mm", "its place in the straight wire: x, y, z"},
+};
+static const struct wb_schema_object peak = {"stress_peak", "The largest stress of a part.",
+                                             ROWS(peak_rows)};
+
+static const struct wb_schema_row section_rows[] = {
+    {"state", TEXT, "", "name of the model's step"},
+    {"section", TEXT, "", "kind of section", .choices = "longitudinal|cross"},
+    {"from_clamp_mm", NUMBER | UNKNOWN, "mm", "place of a cross section; null: longitudinal"},
+    {"core", OBJECT | OPTIONAL, "", "largest stress of the core", &peak},
+    {"jacket", OBJECT | OPTIONAL, "", "largest stress of the jacket", &peak},
+};
+static const struct wb_schema_object section = {"section", "A section with stress fields.",
+                                                ROWS(section_rows)};
+
+static const struct wb_schema_row run_rows[] = {
+    {.of = &wb_schema_simulation_state},
+    {"elements", NUMBER | UNKNOWN, "", "number of elements"},
+    {"degrees_of_freedom", NUMBER | UNKNOWN, "", "number of unknowns"},
+    {"iterations", NUMBER | UNKNOWN, "", "iterations of the equilibrium"},
+    {"cpu_s", NUMBER | UNKNOWN, "s", "CPU time"},
+    {"peak_memory_MB", NUMBER | UNKNOWN, "MB", "largest memory of the process"},
+    {"slip_mm", NUMBER | OPTIONAL, "mm", "with friction: largest slip"},
+    {"slip_limit_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "with friction: limit of the assumption of small sliding"},
+    {"opening_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "with friction: largest opening"},
+    {"sha256", TEXT | OPTIONAL, "", "SHA-256 of force_deflection.csv"},
+    {"follower_force_N", NUMBER | UNKNOWN | OPTIONAL, "N", "follower force"},
+    {"tip_mm", NUMBER | LIST | UNKNOWN | OPTIONAL, "mm", "place of the tip: x, y, z"},
+    {"tip_angle_degrees", NUMBER | UNKNOWN | OPTIONAL, "degree", "slope angle at the tip"},
+    {"largest_distance_from_solid_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "largest distance of the axes of rod and solid"},
+    {"sections", OBJECT | LIST | OPTIONAL, "", "sections with stress fields", &section},
+    {"tip_moved_at_most_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "with residual stress: largest distance of the tip from that of the model without"},
+};
+static const struct wb_schema_object run = {
+    "comparison_run", "A dataset of a case; the keys from `sha256` on are of a used one.",
+    ROWS(run_rows)};
+
+static const struct wb_schema_row case_rows[] = {
+    {"label", TEXT, "", "name of the case in the report"},
+    {"model", TEXT, "", "name of the model"},
+    {"inputs_sha256", TEXT, "", "SHA-256 of the solid's inputs"},
+    {"wire3d", OBJECT | OPTIONAL, "", "dataset of the solid", &run},
+    {"wire1d", OBJECT | OPTIONAL, "", "dataset of the rod", &run},
+    {"cpu_of_rod_over_solid", NUMBER | UNKNOWN | OPTIONAL, "",
+     "CPU time of the rod over that of the solid"},
+};
+static const struct wb_schema_object of_case = {"comparison_case", "A case of the comparison.",
+                                                ROWS(case_rows)};
+
+static const struct wb_schema_row stress_rows[] = {
+    {"from_clamp_mm", NUMBER, "mm", "place of the cross section"},
+    {"core", OBJECT | OPTIONAL, "", "largest stress of the core", &peak},
+    {"jacket", OBJECT | OPTIONAL, "", "largest stress of the jacket", &peak},
+    {"curvature_per_mm", NUMBER | UNKNOWN, "1/mm", "curvature of the exact rod there"},
+    {"E_kappa_r_MPa", NUMBER | UNKNOWN, "MPa", "stress E kappa r of beam theory"},
+};
+static const struct wb_schema_object stress = {
+    "elastic_stress", "Stresses of a cross section of the elastic solid.", ROWS(stress_rows)};
+
+static const struct wb_schema_row rod_rows[] = {
+    {"reached", FLAG, "", "the rod reached the force"},
+    {"tip_x_mm", NUMBER | UNKNOWN, "mm", "x of the tip"},
+    {"tip_y_mm", NUMBER | UNKNOWN, "mm", "y of the tip"},
+    {"tip_angle_degrees", NUMBER | UNKNOWN, "degree", "slope angle at the tip"},
+    {"largest_distance_from_solid_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "largest distance of the axes of rod and solid"},
+    {"x_mm", NUMBER | LIST | UNKNOWN, "mm", "x of the axis"},
+    {"y_mm", NUMBER | LIST | UNKNOWN, "mm", "y of the axis"},
+    {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "forces of the curve"},
+    {"deflection_mm", NUMBER | LIST | UNKNOWN | OPTIONAL, "mm", "deflections of the curve"},
+    {"angle_degrees", NUMBER | LIST | UNKNOWN | OPTIONAL, "degree", "slope angles of the curve"},
+};
+static const struct wb_schema_object rod = {"rod", "A rod under the same force.", ROWS(rod_rows)};
+
+static const struct wb_schema_row fit_rows[] = {
+    {"printed", OBJECT | OPTIONAL, "", "published properties", &wb_schema_ludwik},
+    {"problem", TEXT | OPTIONAL, "", "why there is no fit"},
+    {"properties", OBJECT | OPTIONAL, "", "fitted properties", &wb_schema_ludwik},
+    {"rms_over_largest_deflection", NUMBER | UNKNOWN | OPTIONAL, "",
+     "RMS error over the largest deflection"},
+    {"F_max_N", NUMBER | OPTIONAL, "N", "largest force"},
+    {"max_deflection_mm", NUMBER | OPTIONAL, "mm", "largest deflection"},
+    {"stopped_because", TEXT | OPTIONAL, "", "why the search ended"},
+    {"beam_runs", INTEGER | OPTIONAL, "", "computations of the beam"},
+    {"rod", OBJECT | OPTIONAL, "", "rod with the fitted properties", &rod},
+};
+static const struct wb_schema_object fit = {
+    "comparison_fit", "The homogenised law fitted to the solid.", ROWS(fit_rows)};
+
+static const struct wb_schema_row comparison_rows[] = {
+    {.of = &wb_schema_report_head},
+    {"jacket_modulus_per_percent_of_core_MPa", NUMBER, "MPa",
+     "change of the jacket's E by eq. 8 when the core's E changes by 1 %"},
+    {"cases", OBJECT | LIST, "", "cases", &of_case},
+    {"elastic_stresses", OBJECT | LIST, "", "stresses of the elastic solid", &stress},
+    {"exact_elastic_rod", OBJECT | OPTIONAL, "", "elastica", &rod},
+    {"fit", OBJECT, "", "homogenised law fitted to the solid", &fit},
+    {"printed_rod", OBJECT | OPTIONAL, "", "rod with the published properties", &rod},
+    {"printed_collapse_force_N", NUMBER | UNKNOWN | OPTIONAL, "N",
+     "force at which that rod would collapse without hardening"},
+};
+const struct wb_schema_object wb_schema_report_comparison = {
+    "report_of_comparison", "The report of a comparison campaign.", ROWS(comparison_rows)};
+
+/* --- bundles --- */
+
+static const struct wb_schema_row verdict_rows[] = {
+    {"limit", TEXT, "", "key of the limit"},  {"of", TEXT, "", "bundle or run"},
+    {"value", NUMBER | UNKNOWN, "", "value"}, {"largest", NUMBER, "", "limit of the value"},
+    {"kept", FLAG, "", "the limit is kept"},
+};
+static const struct wb_schema_object verdict = {"verdict", "A limit and whether it is kept.",
+                                                ROWS(verdict_rows)};
+
+static const struct wb_schema_row beam_rows[] = {
+    {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
+    {.of = &wb_schema_ludwik},
+    {"EI_N_mm2", NUMBER, "N mm2", "flexural rigidity"},
+};
+static const struct wb_schema_object beam = {"beam", "A homogenised beam.", ROWS(beam_rows)};
+
+static const struct wb_schema_row result_rows[] = {
+    {.of = &wb_schema_simulation_state},
+    {"sha256", TEXT | OPTIONAL, "", "SHA-256 of force_deflection.csv"},
+    {"tool_revision", TEXT | OPTIONAL, "", "revision of the program that computed it"},
+    {"cpu_s", NUMBER | UNKNOWN | OPTIONAL, "s", "CPU time"},
+};
+static const struct wb_schema_object result = {"bundle_dataset", "A dataset.", ROWS(result_rows)};
+
+static const struct wb_schema_row bundle_rows[] = {
+    {"label", TEXT, "", "name in the report"},
+    {"group", TEXT, "", "group of the bundle"},
+    {"decaying_friction", TEXT, "", "name of the run with decaying friction"},
+    {"constant_friction", TEXT | OPTIONAL, "", "name of the run with constant friction"},
+    {"packed_diameter_mm", NUMBER, "mm", "diameter of wires and tape"},
+    {"EI_sliding_N_mm2", NUMBER, "N mm2", "elastic flexural rigidity of sliding wires"},
+    {"EI_bonded_N_mm2", NUMBER, "N mm2", "elastic flexural rigidity of bonded wires"},
+    {"published", OBJECT | OPTIONAL, "", "published beam", &beam},
+    {"fit_problem", TEXT | OPTIONAL, "", "why no beam was fitted"},
+    {"fitted", OBJECT | OPTIONAL, "", "beam fitted to the run with decaying friction", &beam},
+    {"fit_rms", NUMBER | UNKNOWN | OPTIONAL, "", "RMS error of the fit over F_max"},
+    {"fit_largest_error", NUMBER | UNKNOWN | OPTIONAL, "", "largest error of the fit over F_max"},
+    {"fit_stopped_because", TEXT | OPTIONAL, "", "why the search ended"},
+    {"fit_beam_runs", INTEGER | OPTIONAL, "", "computations of the beam"},
+    {"fitted_force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N",
+     "force of the fitted beam at the run's deflections"},
+    {"rod", OBJECT | OPTIONAL, "", "dataset of the published beam", &result},
+    {"cpu_of_rod_over_bundle", NUMBER | UNKNOWN | OPTIONAL, "",
+     "CPU time of the beam over that of the bundle"},
+};
+static const struct wb_schema_object bundle = {"report_bundle", "A bundle.", ROWS(bundle_rows)};
+
+static const struct wb_schema_row elastic_rows[] = {
+    {"length_mm", NUMBER, "mm", "length"},
+    {"EI_N_mm2", NUMBER | UNKNOWN, "N mm2", "flexural rigidity at that length"},
+    {"newmark_alpha_L", NUMBER | UNKNOWN, "", "alpha L of Newmark's theory"},
+};
+static const struct wb_schema_object elastic = {
+    "section_rigidity", "The elastic rigidity at one length.", ROWS(elastic_rows)};
+
+static const struct wb_schema_row section_model_rows[] = {
+    {"problem", TEXT | OPTIONAL, "", "why the section model was not computed"},
+    {"friction_used", NUMBER | OPTIONAL, "", "friction coefficient"},
+    {"friction_is_mean_of_decay", FLAG | OPTIONAL, "",
+     "it is the geometric mean of a static and a kinetic coefficient"},
+    {"rms", NUMBER | UNKNOWN | OPTIONAL, "", "RMS difference from the run's curve over its F_max"},
+    {"largest_error", NUMBER | UNKNOWN | OPTIONAL, "", "largest difference over F_max"},
+    {"tape_loosens_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "deflection from which the section model is too stiff, as the tape loosens; null: nowhere"},
+    {"elastic", OBJECT | LIST | OPTIONAL, "", "elastic rigidity", &elastic},
+    {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "force at the run's deflections"},
+};
+static const struct wb_schema_object section_model = {
+    "section_model", "The section model of the same bundle.", ROWS(section_model_rows)};
+
+static const struct wb_setting_table friction_setting = {wb_bundle_model_friction_setting, 1};
+static const struct wb_setting_table cohesion_setting = {wb_bundle_model_cohesion_setting, 1};
+
+static const struct wb_schema_row bundle_run_rows[] = {
+    {"name", TEXT, "", "name of the run"},
+    {"bundle", TEXT, "", "name of the bundle's file"},
+    {"inputs_sha256", TEXT, "", "SHA-256 of the inputs"},
+    {"mesh", TEXT, "", "name of the mesh"},
+    {.settings = &friction_setting},
+    {.settings = &cohesion_setting},
+    {"strand_mm", NUMBER, "mm", "length of the strand; 0: a vertical force"},
+    {"weight", FLAG, "", "weight acts"},
+    {"mass_scaling", NUMBER, "", "mass scaling f_m of eq. 29"},
+    {"selective_mass_scaling", NUMBER, "", "selective mass scaling beta; 1: none"},
+    {.of = &result},
+    {"section_model", OBJECT | OPTIONAL, "", "section model", &section_model},
+    {"elements", NUMBER | UNKNOWN | OPTIONAL, "", "number of hexahedra"},
+    {"shells", NUMBER | UNKNOWN | OPTIONAL, "", "number of shells"},
+    {"steps", NUMBER | UNKNOWN | OPTIONAL, "", "time steps of the last attempt"},
+    {"time_step_s", NUMBER | UNKNOWN | OPTIONAL, "s", "time step"},
+    {"duration_s", NUMBER | UNKNOWN | OPTIONAL, "s", "duration of a loading"},
+    {"ns_per_element_step", NUMBER | UNKNOWN | OPTIONAL, "ns", "CPU time over hexahedra and steps"},
+    {"kinetic_over_internal", NUMBER | UNKNOWN | OPTIONAL, "",
+     "largest kinetic over internal energy"},
+    {"artificial_over_internal", NUMBER | UNKNOWN | OPTIONAL, "",
+     "largest artificial over internal energy"},
+    {"imbalance_over_external", NUMBER | UNKNOWN | OPTIONAL, "",
+     "largest imbalance over external work"},
+    {"largest_strain", NUMBER | UNKNOWN | OPTIONAL, "", "largest logarithmic strain"},
+    {"beyond_strain_limit", FLAG | OPTIONAL, "",
+     "a strain exceeds 5 % in wires or 10 % in the tape"},
+    {"largest_penetration_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "largest penetration of wires"},
+    {"deflection_mm", NUMBER | LIST | OPTIONAL, "mm", "deflections of the curves"},
+    {"F_max_N", NUMBER | OPTIONAL, "N", "largest force of the run"},
+    {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "force of the run"},
+    {"published_force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "force of the published beam"},
+    {"error", NUMBER | LIST | UNKNOWN | OPTIONAL, "", "difference over `published_F_max_N`"},
+    {"published_F_max_N", NUMBER | UNKNOWN | OPTIONAL, "N", "largest force of the published beam"},
+    {"rms", NUMBER | UNKNOWN | OPTIONAL, "", "RMS of `error`"},
+    {"largest_error", NUMBER | UNKNOWN | OPTIONAL, "", "largest of `error`"},
+};
+static const struct wb_schema_object bundle_run = {
+    "report_run", "A run; the keys from `elements` on are of a used dataset.",
+    ROWS(bundle_run_rows)};
+
+static const struct wb_schema_row bundles_rows[] = {
+    {.of = &wb_schema_report_head},
+    {"limits", OBJECT | LIST, "", "limits of the campaign", &verdict},
+    {"bundles", OBJECT | LIST, "", "bundles", &bundle},
+    {"runs", OBJECT | LIST, "", "runs", &bundle_run},
+};
+const struct wb_schema_object wb_schema_report_bundles = {
+    "report_of_bundles", "The report of a campaign of bundles.", ROWS(bundles_rows)};
+
+/* --- prediction --- */
+
+static const struct wb_schema_row place_rows[] = {
+    {"of", TEXT, "", "the number", .choices = "force_N|deflection_springback"},
+    {"deflection_mm", NUMBER | OPTIONAL, "mm", "of a force: deflection"},
+    {"test", NUMBER | UNKNOWN, "", "value of the test, in N or as a ratio"},
+    {"median", NUMBER | UNKNOWN, "", "median of the band"},
+    {"low", NUMBER | UNKNOWN, "", "lower end of the band"},
+    {"high", NUMBER | UNKNOWN, "", "upper end of the band"},
+    {"it_lies", TEXT, "", "place of the test's value", .choices = "below|within|above|not reached"},
+};
+static const struct wb_schema_object place = {"predicted_number",
+                                              "A number of a test and its band.", ROWS(place_rows)};
+
+static const struct wb_schema_row test_rows[] = {
+    {"label", TEXT, "", "name in the report"},
+    {"dataset", TEXT, "", "folder of the dataset, as given"},
+    {"problem", TEXT | OPTIONAL, "", "why the test is not compared"},
+    {"sha256", TEXT | OPTIONAL, "", "SHA-256 of force_deflection.csv"},
+    {"origin", TEXT | OPTIONAL, "", "origin of the test",
+     .choices = "measured|measured on a virtual rig|a simulation, no test"},
+    {"case", TEXT | OPTIONAL, "", "case that the test is compared with"},
+    {"verdict", TEXT | OPTIONAL, "", "verdict on all numbers"},
+    {"places", OBJECT | LIST | OPTIONAL, "", "the numbers", &place},
+};
+static const struct wb_schema_object test = {"predicted_test", "A test beside the bands.",
+                                             ROWS(test_rows)};
+
+static const struct wb_schema_row predicted_rows[] = {
+    {"label", TEXT, "", "name in the report"},
+    {"bundle", TEXT, "", "name of the bundle's file"},
+    {"inputs_sha256", TEXT, "", "SHA-256 of the inputs of the section model"},
+    {"uncertainty", OBJECT | OPTIONAL, "", "bands", &wb_schema_uncertainty},
+    {"problem", TEXT | OPTIONAL, "", "why there are no bands"},
+    {"tests", OBJECT | LIST, "", "tests", &test},
+};
+static const struct wb_schema_object predicted = {"predicted_bundle", "A bundle.",
+                                                  ROWS(predicted_rows)};
+
+static const struct wb_schema_row prediction_rows[] = {
+    {.of = &wb_schema_report_head},
+    {"bundles", OBJECT | LIST, "", "bundles", &predicted},
+};
+const struct wb_schema_object wb_schema_report_prediction = {
+    "report_of_prediction", "The report of a campaign of predictions.", ROWS(prediction_rows)};
+
+/* --- machine --- */
+
+static const struct wb_schema_row machine_test_rows[] = {
+    {"file", TEXT, "", "file of the test"},
+    {"state", TEXT, "", "whether the test is used", .choices = "used|missing|refused"},
+    {"sha256", TEXT | OPTIONAL, "", "SHA-256 of the file"},
+    {"problem", TEXT | OPTIONAL, "", "why the test is not used"},
+    {"rows", INTEGER | OPTIONAL, "", "rows of the test"},
+    {"empty_rows", INTEGER | OPTIONAL, "", "lines without force and travel"},
+    {"partial_rows", INTEGER | OPTIONAL, "", "rows left out because a value is missing"},
+    {"largest_force_N", NUMBER | UNKNOWN | OPTIONAL, "N", "largest force"},
+    {"contact_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "travel at the first contact"},
+    {"early_rigidity_Nmm2", NUMBER | UNKNOWN | OPTIONAL, "N mm2",
+     "F L^3 / 48 d at d = 0.02 of the span from the first contact"},
+};
+static const struct wb_schema_object machine_test = {"machine_test", "A test of a group.",
+                                                     ROWS(machine_test_rows)};
+
+static const struct wb_schema_row group_rows[] = {
+    {"name", TEXT, "", "name of the group"},
+    {"label", TEXT, "", "name in the report"},
+    {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
+    {"zero_force_mN", NUMBER, "mN", "force that marks the first contact"},
+    {"machine", OBJECT, "", "testing machine", &wb_schema_machine},
+    {"early_rigidity_Nmm2", NUMBER | UNKNOWN, "N mm2", "mean of the tests' early rigidity"},
+    {"early_rigidity_deviation_Nmm2", NUMBER | UNKNOWN, "N mm2", "its standard deviation"},
+    {"reach_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "deflection that all tests reach"},
+    {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N",
+     "mean force at even deflections from 0 to `reach_mm`"},
+    {"force_deviation_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "its standard deviation"},
+    {"tests", OBJECT | LIST, "", "tests", &machine_test},
+};
+static const struct wb_schema_object group = {"machine_group", "A group of tests.",
+                                              ROWS(group_rows)};
+
+static const struct wb_schema_row interval_rows[] = {
+    {"value", NUMBER | UNKNOWN, "", "value"},
+    {"low_95", NUMBER | UNKNOWN, "", "lower end of its 95 % confidence interval"},
+    {"high_95", NUMBER | UNKNOWN, "", "upper end of that interval"},
+};
+static const struct wb_schema_object interval = {"interval", "A value and its interval.",
+                                                 ROWS(interval_rows)};
+
+static const struct wb_schema_row layer_place_rows[] = {
+    {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature"},
+    {"seating", FLAG, "", "the deflection is so small that the seating of the wire decides"},
+    {"measured_Nmm", NUMBER | UNKNOWN, "N mm", "measured moment"},
+    {"free_Nmm", NUMBER | UNKNOWN, "N mm", "moment of wires that slide freely"},
+    {"bonded_Nmm", NUMBER | UNKNOWN, "N mm", "moment of bonded wires"},
+    {"over_first_layer", NUMBER | UNKNOWN, "", "measured moment over that of the first layer"},
+    {"measured_over_free", OBJECT, "", "measured moment over that of free wires", &interval},
+    {"chi", OBJECT, "", "place between free (0) and bonded (1) wires", &interval},
+    {"chi_of_each_series", NUMBER | LIST | UNKNOWN, "", "chi with the wires of each series alone"},
+    {"chi_of_half_and_twice_the_zero", NUMBER | LIST | UNKNOWN, "",
+     "chi with half and twice the force that marks the first contact"},
+};
+static const struct wb_schema_object layer_place = {"layer_place", "A layer at one curvature.",
+                                                    ROWS(layer_place_rows)};
+
+static const struct wb_schema_row layer_rows[] = {
+    {"group", TEXT, "", "group of the layer"},
+    {"tests", INTEGER, "", "number of tests"},
+    {"places", OBJECT | LIST, "", "curvatures", &layer_place},
+};
+static const struct wb_schema_object layer = {"cable_layer", "A layer of the cable.",
+                                              ROWS(layer_rows)};
+
+static const struct wb_schema_row cable_rows[] = {
+    {"wire_count", INTEGER, "", "wires round the core"},
+    {"wire_circle_radius_mm", NUMBER, "mm", "radius of the circle of their centres"},
+    {"conductor_area_mm2", NUMBER, "mm2", "area of the metal in one wire"},
+    {"conductor", OBJECT, "", "law of the conductor", &wb_schema_ludwik},
+    {"layers", OBJECT | LIST, "", "layers", &layer},
+};
+static const struct wb_schema_object cable = {"cable", "A layered cable.", ROWS(cable_rows)};
+
+static const struct wb_schema_row estimate_rows[] = {
+    {"value", NUMBER | UNKNOWN, "", "value, in the unit of the key above"},
+    {"low_95", NUMBER | UNKNOWN, "", "lower end of its 95 % confidence interval"},
+    {"high_95", NUMBER | UNKNOWN, "", "upper end of that interval"},
+    {"low_of_bench", NUMBER | UNKNOWN, "", "least value over friction and nose radius"},
+    {"high_of_bench", NUMBER | UNKNOWN, "", "largest value over friction and nose radius"},
+};
+static const struct wb_schema_object estimate = {"bench_estimate", "A value and its intervals.",
+                                                 ROWS(estimate_rows)};
+
+static const struct wb_schema_row moment_rows[] = {
+    {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature"},
+    {"moment_Nmm", OBJECT, "N mm", "moment of a first loading", &estimate},
+};
+static const struct wb_schema_object moment = {"fit_moment", "The moment at one curvature.",
+                                               ROWS(moment_rows)};
+
+static const struct wb_schema_row fit_test_rows[] = {
+    {"series", TEXT, "", "series that the test belongs to"},
+    {"sample", INTEGER, "", "number of the piece"},
+    {"problem", TEXT | OPTIONAL, "", "why no law was fitted"},
+    {"EI_Nmm2", NUMBER | UNKNOWN | OPTIONAL, "N mm2", "EI at zero curvature"},
+    {"largest_moment_Nmm", NUMBER | UNKNOWN | OPTIONAL, "N mm", "moment at the last curvature"},
+    {"misfit", NUMBER | UNKNOWN | OPTIONAL, "", "RMS of the force residuals over F_max"},
+    {"converged", FLAG | OPTIONAL, "", "the fit converged"},
+    {"first_contact_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "travel at the first contact"},
+    {"usable_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "travel up to which the test is used"},
+    {"limit", TEXT | OPTIONAL, "", "reason of that limit"},
+};
+static const struct wb_schema_object fit_test = {"fit_test", "The fit of a test.",
+                                                 ROWS(fit_test_rows)};
+
+static const struct wb_schema_row left_out_rows[] = {
+    {"scatter_N", NUMBER | UNKNOWN, "N", "standard deviation of the tests, RMS over deflections"},
+    {"scatter_alone_N", NUMBER | UNKNOWN, "N",
+     "RMS error expected from specimen scatter alone: sqrt(n / (n - 1)) times that"},
+    {"model_N", NUMBER | UNKNOWN, "N", "RMS of the model less the test that was left out"},
+    {"bias_N", NUMBER | UNKNOWN, "N", "RMS over deflections of `bias_at_N`"},
+    {"bias_over_scatter", NUMBER | UNKNOWN, "", "`bias_N` over `scatter_N`"},
+    {"deflection_mm", NUMBER | LIST | UNKNOWN, "mm", "deflections that all tests reach"},
+    {"bias_at_N", NUMBER | LIST | UNKNOWN, "N", "model less the mean of the other tests"},
+};
+static const struct wb_schema_object left_out = {
+    "left_out", "A validation by leaving each test out.", ROWS(left_out_rows)};
+
+static const struct wb_schema_row fitted_wire_rows[] = {
+    {"wire", TEXT, "", "name of the wire"},
+    {"test_count", INTEGER, "", "number of tests"},
+    {"problem", TEXT | OPTIONAL, "", "why there is no fit or no validation"},
+    {"tests_fitted", INTEGER | OPTIONAL, "", "tests that a law was fitted to"},
+    {"series", INTEGER | OPTIONAL, "", "number of series"},
+    {"misfit", NUMBER | UNKNOWN | OPTIONAL, "", "RMS of the force residuals over F_max"},
+    {"s_of_ln_EI_between_series", NUMBER | UNKNOWN | OPTIONAL, "",
+     "standard deviation of ln EI between series"},
+    {"EI_identifiable", FLAG | OPTIONAL, "", "the data determine EI at zero curvature"},
+    {"EI_Nmm2", OBJECT | OPTIONAL, "N mm2", "EI at zero curvature", &estimate},
+    {"moments", OBJECT | LIST | OPTIONAL, "", "moments of a first loading", &moment},
+    {"tests", OBJECT | LIST | OPTIONAL, "", "fits of the tests", &fit_test},
+    {"left_out", OBJECT | OPTIONAL, "", "validation by leaving each test out", &left_out},
+};
+static const struct wb_schema_object fitted_wire = {
+    "fitted_wire", "The calibration of a wire on three-point bending tests.",
+    ROWS(fitted_wire_rows)};
+
+static const struct wb_schema_row machine_rows[] = {
+    {"title", TEXT, "", "title of the campaign"},
+    {"campaign", TEXT, "", "name of the campaign file"},
+    {"campaign_sha256", TEXT, "", "SHA-256 of the campaign file"},
+    {"tests_wanted", INTEGER, "", "tests of the campaign"},
+    {"tests_used", INTEGER, "", "tests that are used"},
+    {"tests_missing", INTEGER, "", "tests whose files are missing"},
+    {"groups", OBJECT | LIST, "", "groups of tests", &group},
+    {"cable", OBJECT | OPTIONAL, "", "layered cable", &cable},
+    {"wires", OBJECT | LIST | OPTIONAL, "", "calibrated wires", &fitted_wire},
+    {.of = &wb_schema_report_end},
+};
+const struct wb_schema_object wb_schema_report_machine = {
+    "report_of_machine", "The report of a campaign of testing machines.", ROWS(machine_rows)};
