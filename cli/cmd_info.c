@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/complete.h"
 #include "cli/info.h"
 #include "daq/protocol/specimen.h"
 #include "daq/recording/index.h"
@@ -21,13 +22,16 @@
 
 enum {
     KEY_FIGURE = WB_KEY_OWN,
-    KEY_MESH
+    KEY_MESH,
+    KEY_SCHEMA
 };
 
 static const struct argp_option option_table[] = {
     {"figure", KEY_FIGURE, "FILE", 0, "Draw the section of a bundle: .svg, .png or .pdf", 0},
     {"mesh", KEY_MESH, "NAME", 0, "Draw the lines of this mesh (that of the run)", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the figure", 0},
+    {"schema", KEY_SCHEMA, "KIND", 0,
+     "Print the JSON Schema of a kind of file: dataset, report, manifest or properties", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -62,7 +66,19 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "--mesh: expected NAME, not ''");
         options->mesh = argument;
         return 0;
+    case KEY_SCHEMA:
+        options->schema = wb_schema_find(argument);
+        if (!options->schema)
+            argp_error(state,
+                       "--schema: expected dataset, report, manifest or properties, not '%s'",
+                       argument);
+        return 0;
     case ARGP_KEY_END:
+        if (options->schema && options->common.input)
+            argp_error(state, "--schema applies to no file, and '%s' is given",
+                       options->common.input);
+        if (options->schema)
+            return 0;
         if (options->mesh && !options->figure)
             argp_error(state, "--mesh needs --figure");
         if (options->figure && options->common.input && !is_bundle(options->common.input))
@@ -78,7 +94,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .args_doc = "FILE",
+    .args_doc = "FILE\n--schema KIND",
     .doc =
         "Prints the kind of a file or folder and the next command for it. Of a recording (.wbr or "
         ".wbr.zst): specimen, rig, operator, streams with their rates, events. Of a bundle "
@@ -362,7 +378,11 @@ int wb_cmd_info(int argc, char **argv)
 {
     struct wb_info_options all = {.common = {.noun = "file"}};
     char found[WB_PATH];
+    for (size_t i = 0; i < WB_SCHEMA_DOCUMENTS; i++)
+        wb_complete_value("schema", wb_schema_documents[i].name);
     wb_command_parse(&argp, argc, argv, &all);
+    if (all.schema)
+        return wb_command_print_json(wb_schema_build(all.schema));
     all.common.input = wb_command_find(all.common.input, found);
     const struct wb_command_common options = all.common;
     const enum wb_file_kind kind = wb_file_kind_find(options.input);
