@@ -126,3 +126,4 @@ wait $process && { echo "ranks were not stopped"; exit 1; }
     { cat log; exit 1; }
 grep -q ': continues at [0-9.]* mm, step' log || { echo "ranks did not go on:"; cat log; exit 1; }
 same threads resumed
+${WIREBENCH_CHECK_FILES:-true} .

@@ -318,5 +318,7 @@ expect 3 'the bar is too compliant' \
     --from-force 0.5
 expect 1 'rigidity is missing' "$wirebench" calibrate --compliance bar
 
+# One dataset has a negative uncertainty on purpose, but of the right type.
+${WIREBENCH_CHECK_FILES:-true} "$folder" || fail 'a file does not follow its schema'
 [ $failures -eq 0 ] && echo 'all as expected'
 exit $((failures > 0))

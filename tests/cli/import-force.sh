@@ -114,3 +114,4 @@ ends 0 "$tool" calibrate --constituents --conductor ./copper.yaml --conductor-di
 says "found   computed from the materials: EI "
 says "trust   as an estimate: no test of the wire was used"
 ends 2 "$tool" calibrate --constituents --conductor ./copper.yaml
+${WIREBENCH_CHECK_FILES:-true} . || fail 'a file does not follow its schema'

@@ -22,7 +22,8 @@ run() { # EXPECTED ARGUMENTS...: output in $folder/out and $folder/err
     }
 }
 
-finish() { # WHAT
+finish() { # WHAT; all files in $folder are checked against their schemas
+    ${WIREBENCH_CHECK_FILES:-true} -n 0 "$folder" || fail 'a file does not follow its schema'
     [ $failures -eq 0 ] && echo "$1: all good"
     exit $((failures > 0))
 }

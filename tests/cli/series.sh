@@ -156,4 +156,5 @@ for case in stopped_and_gone_on_with reported killed_before_the_judgement wrong_
     $case
     [ $failures = $before ] && echo "ok: $case" || echo "not ok: $case"
 done
+${WIREBENCH_CHECK_FILES:-true} "$folder" || fail 'a file does not follow its schema'
 [ $failures = 0 ]

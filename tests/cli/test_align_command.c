@@ -8,7 +8,7 @@
 #include "base/json.h"
 #include "daq/recording/recording_private.h"
 #include "tests/analysis/synthetic.h"
-#include "tests/own_folder.h"
+#include "tests/schemas.h"
 
 struct outcome {
     int code;
@@ -221,5 +221,5 @@ int main(void)
         cmocka_unit_test(quicklook_draws_one_recording),
         cmocka_unit_test(what_is_wrong_is_said_once_and_clearly),
     };
-    return cmocka_run_group_tests(tests, start, remove_folder);
+    return cmocka_run_group_tests(tests, start, check_and_remove_folder);
 }

@@ -317,5 +317,5 @@ int main(void)
         cmocka_unit_test(curve_cut_short_exits_with_3),
         cmocka_unit_test(bad_input_gives_one_message_and_its_exit_code),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_folder, check_and_remove_folder);
 }

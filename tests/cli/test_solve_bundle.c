@@ -548,5 +548,5 @@ int main(void)
         cmocka_unit_test(what_the_piece_cannot_have_is_said_in_options),
         cmocka_unit_test(cycles_have_rows_up_and_down),
     };
-    return cmocka_run_group_tests(tests, set_up, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, check_and_remove_folder);
 }

@@ -328,5 +328,5 @@ int main(void)
         cmocka_unit_test(interrupt_keeps_the_completed_rows),
         cmocka_unit_test(bad_input_gives_one_message_and_its_exit_code),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_folder, check_and_remove_folder);
 }

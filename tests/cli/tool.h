@@ -6,7 +6,7 @@
 #include <sys/wait.h>
 
 #include "base/json.h"
-#include "tests/own_folder.h"
+#include "tests/schemas.h"
 
 /* Of the last run. */
 static struct {

@@ -9,7 +9,7 @@
 #include "base/file.h"
 #include "tests/check.h"
 #include "tests/messages.h"
-#include "tests/own_folder.h"
+#include "tests/schemas.h"
 
 /* The path of a file of the folder; the last four stay. */
 static inline const char *in_folder(const char *name)
@@ -95,9 +95,10 @@ static inline void assert_says_all(const char *name, const char *const *parts, s
     }
 }
 
-/* No experiment, no path of this machine, and no number that is none. */
+/* No experiment, no path of this machine, no number that is none, and no key without a row. */
 static inline void assert_clean_report(void)
 {
+    assert_true(files_follow_schemas(in_folder("report")));
     assert_false(says("report/report.html", "xperiment"));
     assert_false(says("report/report.html", folder));
     assert_false(says("report/report.json", folder));
