@@ -1,17 +1,17 @@
-/* Whether numbers of specimens are of two batches: the split into a lower and an upper group, of at
- * least two each, that tells most, against what the same search finds in one normal population.
+/* Test for two batches among numbers of specimens: the split into a lower and an upper group of at
+ * least two each that separates them best, compared with the best split of samples from one normal
+ * population.
  *
  * Engelman and Hartigan (1969), Percentage points of a test for clusters, JASA 64:1647: the largest
- * ratio of the square between groups to that within. Its limit is found by drawing normal samples,
- * always the same ones.
- */
+ * ratio of the sum of squares between groups to that within. Its limit is found by simulation with
+ * a fixed seed. */
 #ifndef WB_ANALYSIS_DATASET_BATCHES_H
 #define WB_ANALYSIS_DATASET_BATCHES_H
 
 #include <stdbool.h>
 
 enum {
-    WB_BATCHES_LEAST = 5 /* numbers: fewer tell nothing */
+    WB_BATCHES_LEAST = 5 /* least number of values for the test */
 };
 
 struct wb_batches {
@@ -21,8 +21,8 @@ struct wb_batches {
     double ratio, limit;
 };
 
-/* Of n numbers; `level`, above 0, is how often one population is called two. Fewer than
- * WB_BATCHES_LEAST are one batch. */
+/* Tests n numbers; `level`, above 0, is the probability of finding two batches in one population.
+ * Fewer than WB_BATCHES_LEAST numbers count as one batch. */
 struct wb_batches wb_batches_find(const double *numbers, int n, double level);
 
 #endif

@@ -12,7 +12,7 @@
 
 #define WB_LOG_DOMAIN "table"
 
-/* Longest field that is taken for a number, which needs far less. */
+/* Length limit of a field that is parsed as a number; numbers need far fewer characters. */
 #define FIELD 64
 
 /* --- numbers --- */

@@ -13,23 +13,23 @@
 
 /* Lengths of one kind agree within this, m. */
 #define SAME_LENGTH (0.1 * WB_MM)
-/* Most steps of a follower's force, unless set otherwise. */
+/* Largest number of force steps of a follower test, unless set otherwise. */
 #define MOST_FORCE_STEPS 100
-/* Fewer points than this are no curve. */
+/* Least number of points of a curve. */
 #define FEWEST_POINTS 10
-/* A bin without rows is interpolated between rows this many steps apart at most: a marker hidden
- * for 1.5 s leaves 1.5 mm and a row at either end. */
+/* A bin without rows is interpolated between rows at most this many steps apart: a marker that is
+ * hidden for 1.5 s leaves a gap of 1.5 mm, plus a row at either end. */
 #define LONGEST_GAP 4.0
 
 /* --- the first loading of a sample --- */
 
-/* `at` is what the grid steps through, `value` what the curve holds. */
+/* `at`: abscissa, on the grid; `value`: ordinate of the curve. */
 struct loading_point {
     double at, value;
 };
 
-/* The first loading of one sample, as points of what a curve's grid steps through and what it
- * holds: deflection and force, or force and deflection of a follower test. */
+/* The first loading of one sample as points of its curve: force over deflection, or deflection over
+ * force of a follower test. */
 struct loading {
     size_t n;
     struct loading_point *points; /* (n) by ascending `at`; owned */
@@ -81,8 +81,9 @@ static enum wb_status check_sense(const struct wb_dataset *dataset, double lowes
                       dataset->info.wire, dataset->info.sample, lowest / WB_MM);
 }
 
-/* Takes the rows of the first loading up to the grid's largest deflection, of a follower test up to
- * its largest force. WB_ERR_DATA when they are no curve; release it then, too. */
+/* Collects the rows of the first loading up to the grid's largest deflection, or of a follower test
+ * up to its largest force. WB_ERR_DATA when they form no curve; the sample must be released in that
+ * case, too. */
 static enum wb_status extract_loading(struct loading *loading, const struct wb_dataset *dataset,
                                       const struct wb_curve_grid *grid, struct wb_reason *why)
 {
@@ -103,7 +104,8 @@ static enum wb_status extract_loading(struct loading *loading, const struct wb_d
                               wire, sample, i + 1);
         highest = fmax(highest, row->deflection);
         lowest = fmin(lowest, row->deflection);
-        /* Below zero the tip may still lie on its rest, where the force says nothing. */
+        /* Below zero the tip may still lie on its rest, and the force contains no information about
+         * the wire. */
         if (follows ? row->force < 0.0 : row->deflection < -0.25 * grid->step)
             continue;
         loading->points[loading->n++] = follows
@@ -134,8 +136,8 @@ static size_t first_at_or_above(const struct loading *loading, double at)
     return wb_fit_first_at(&loading->points->at, sizeof *loading->points, loading->n, at);
 }
 
-/* Straight line through the points around `centre` with triangular weights, taken at `centre`.
- * False when they do not settle a value there: too few, or all on one side and far off. */
+/* Straight line through the points around `centre` with triangular weights, evaluated at `centre`.
+ * False when the points do not determine it: too few, or all on one side and too far away. */
 static bool fit_locally(const struct loading *loading, double centre, double half, double *value)
 {
     double weight_sum = 0.0, x_sum = 0.0, y_sum = 0.0, xx_sum = 0.0, xy_sum = 0.0;
@@ -178,7 +180,8 @@ static bool fit_locally(const struct loading *loading, double centre, double hal
     return true;
 }
 
-/* Straight line between the rows before and after; a row right there is taken as it is. */
+/* Interpolates linearly between the rows before and after; a row exactly at the place is returned
+ * as it is. */
 static bool interpolate_rows(const struct loading *loading, double at, double longest,
                              double *value)
 {
@@ -199,11 +202,11 @@ static bool interpolate_rows(const struct loading *loading, double at, double lo
     return true;
 }
 
-/* Value at grid point i: of a straight line fitted to the points around it, or between the nearest.
- * False where there are none near enough. */
+/* Value at grid point i by a straight line fitted to the points around it, or by interpolation
+ * between the nearest. False where no points are near enough. */
 static bool loading_value(const struct loading *loading, int i, double step, double *value)
 {
-    /* At zero only one side has rows: a wider window holds the noise down there as well. */
+    /* At zero only one side has rows: a wider window keeps the noise low there. */
     const double half = i == 0 ? 1.5 * step : step;
     return fit_locally(loading, i * step, half, value) ||
            interpolate_rows(loading, i * step, LONGEST_GAP * step, value);
@@ -211,7 +214,7 @@ static bool loading_value(const struct loading *loading, int i, double step, dou
 
 /* --- the average --- */
 
-/* What the grid steps through, for messages. */
+/* Unit of the abscissa, for messages. */
 struct axis {
     const char *unit;
     double size; /* of the unit */
@@ -321,7 +324,7 @@ static int common_points(const struct loading *loadings, int n, double step)
     for (int i = 0; i < n; i++)
         largest = fmin(largest, loadings[i].points[loadings[i].n - 1].at);
     int points = largest > 0.0 ? (int)fmin(floor(largest / step + 1e-6), 1e6) + 1 : 0;
-    /* The last bins may hold nothing but a stray row beyond the turn. */
+    /* The last bins may contain only a stray row beyond the turn. */
     for (int dropped = 0; dropped < 2 && points > 0; dropped++) {
         bool all = true;
         for (int i = 0; i < n; i++)
@@ -333,7 +336,7 @@ static int common_points(const struct loading *loadings, int n, double step)
     return points;
 }
 
-/* Says why a grid point has no value. */
+/* Fails with the reason why a grid point has no value. */
 static enum wb_status fail_at(const struct loading *loading, const struct wb_test_info *info,
                               double at, double step, struct wb_reason *why)
 {
@@ -398,7 +401,7 @@ static enum wb_status average(struct wb_curve *curve, const struct loading *load
     return WB_OK;
 }
 
-/* Steps of force: a row each, where the rows lie equally and are not too many. */
+/* One step of force per row where the rows are equally spaced and not too many. */
 static double default_force_step(const struct loading *loadings, int n)
 {
     double largest = HUGE_VAL;
@@ -452,7 +455,7 @@ enum wb_status wb_curve_average_on(struct wb_curve *curve, const struct wb_datas
     return status;
 }
 
-/* Points up to the largest deflection, those that rise above all before them. */
+/* Points up to the largest deflection that rise above all points before them. */
 static int rising_points(const struct wb_curve *curve, struct loading_point *points)
 {
     int n = 0;
@@ -463,7 +466,7 @@ static int rising_points(const struct wb_curve *curve, struct loading_point *poi
     return n;
 }
 
-/* Force at a deflection on the line through two of the points; *from is where to look from on. */
+/* Force at a deflection by linear interpolation; *from is the point to start searching from. */
 static double force_between(const struct loading_point *points, int n, double deflection, int *from)
 {
     while (*from < n - 2 && points[*from + 1].at < deflection)

@@ -19,7 +19,7 @@
 
 /* Version of dataset.json's layout. */
 #define SCHEMA 1
-/* Of a table. */
+/* Limit of the columns of a table. */
 #define MAX_COLUMNS 64
 
 enum loading {
@@ -118,8 +118,8 @@ void wb_dataset_add_shape_row(struct wb_dataset *dataset, const struct wb_shape_
 
 /* --- dataset.json: the typed part --- */
 
-/* A length of 0.085 m reads 85 in the file, not 85.000000000000014: 15 digits are what people and
- * the settings files write. */
+/* Rounds to 15 digits, as in settings files: a length of 0.085 m is written as 85, not as
+ * 85.000000000000014. */
 static void set_scaled(struct wb_json *object, const char *key, double value, double unit)
 {
     char text[40];
@@ -140,7 +140,7 @@ static const struct stated {
     {"u_marker_offset_mm", offsetof(struct wb_test_uncertainty, marker_offset), WB_MM},
 };
 
-/* Those that are stated. */
+/* Sets the uncertainties that are stated. */
 static void set_uncertainty(struct wb_json *test, const struct wb_test_uncertainty *uncertainty)
 {
     for (size_t i = 0; i < WB_COUNT(stated); i++) {
@@ -233,7 +233,7 @@ static enum wb_status get_shape(const struct wb_json *test, const char *path,
     return WB_OK;
 }
 
-/* Files older than the key have none: their force is the strand's, or vertical. */
+/* Older files lack the key: their force is the strand's, or vertical. */
 static enum wb_status get_loading(const struct wb_json *test, const char *path,
                                   struct wb_test_info *info, struct wb_reason *why)
 {
@@ -257,7 +257,7 @@ static enum wb_status get_loading(const struct wb_json *test, const char *path,
     return WB_OK;
 }
 
-/* Datasets without the key are of cantilevers. */
+/* Datasets without the key are cantilever tests. */
 static enum wb_status get_kind(const struct wb_json *document, const struct wb_json *test,
                                const char *path, struct wb_test_info *info, struct wb_reason *why)
 {
@@ -321,9 +321,9 @@ static enum wb_status get_info(const struct wb_json *document, const char *path,
 /* --- the tables --- */
 
 enum kind {
-    KIND_NUMBER,   /* must be there */
+    KIND_NUMBER,   /* required */
     KIND_OPTIONAL, /* empty means not known; the whole column may be missing */
-    KIND_EXTRA,    /* the same, and not written where every row has none or zero */
+    KIND_EXTRA,    /* the same, and not written where it is unknown or zero in every row */
     KIND_INTEGER,
     KIND_PHASE
 };
@@ -348,7 +348,7 @@ static const struct column row_columns[] = {
     {0},
 };
 
-/* A testing machine's file may have no time; all else of a row is the same. */
+/* Files of testing machines may have no time; the other columns are the same. */
 static void columns_of(const struct wb_test_info *info,
                        struct column columns[sizeof row_columns / sizeof row_columns[0]])
 {
@@ -368,7 +368,7 @@ static const struct column shape_columns[] = {
     {0},
 };
 
-/* The members are doubles, ints or a phase: memcpy() serves all three without aliasing. */
+/* The members are doubles, ints or a phase: memcpy() works for all three without aliasing. */
 static enum wb_status append_field(struct wb_text *text, const struct column *column,
                                    const void *row, size_t index)
 {
@@ -448,13 +448,13 @@ static enum wb_status format_tables(const struct wb_dataset *dataset, struct wb_
 
 /* --- reading tables --- */
 
-/* A table while it is read: the lines, and which of our columns each field is. */
+/* A table that is being read: its lines, and the column of each field. */
 struct reader {
     const char *path;
     char *next, *end;
     int line;
     int n_fields;
-    const struct column *fields[MAX_COLUMNS]; /* NULL: a column we do not know */
+    const struct column *fields[MAX_COLUMNS]; /* NULL: unknown column, skipped */
     struct wb_reason *why;                    /* NULL: failures are logged */
 };
 
@@ -504,7 +504,7 @@ static enum wb_status check_columns(const struct reader *reader, const struct co
             return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: no column '%s'", reader->path,
                               reader->line, column->name);
         if (count > 1)
-            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: column '%s' stands there twice",
+            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: column '%s' appears twice",
                               reader->path, reader->line, column->name);
     }
     return WB_OK;
@@ -636,7 +636,7 @@ enum wb_status wb_dataset_parse_shapes(struct wb_dataset *dataset, const char *p
 
 /* --- the folder --- */
 
-/* The caller's document stays as it is: the typed part is set into a copy. */
+/* Sets the typed data into a copy; the caller's document does not change. */
 static enum wb_status format_document(const struct wb_dataset *dataset, char **text)
 {
     struct wb_json *copy;
@@ -653,7 +653,7 @@ static enum wb_status format_document(const struct wb_dataset *dataset, char **t
 
 enum wb_status wb_dataset_begin(const char *folder, bool force)
 {
-    /* The first says that the others are there. */
+    /* dataset.json first: its presence marks a complete folder. */
     static const char *const names[] = {"dataset.json", "fields.csv", "energies.csv",
                                         "surface.csv"};
 
@@ -705,7 +705,7 @@ enum wb_status wb_dataset_finish(const struct wb_dataset *dataset, const char *f
     return status;
 }
 
-/* What cannot be written leaves what is there alone. */
+/* Formats before the folder changes, so that a failure leaves an existing dataset intact. */
 enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *folder, bool force)
 {
     struct texts texts;
@@ -735,7 +735,7 @@ static enum wb_status read_table(struct wb_dataset *dataset, const char *folder,
     return status;
 }
 
-/* The message says what came and what is wanted. */
+/* Rejects a dataset of another kind. */
 static enum wb_status check_kind(const struct wb_test_info *info, const char *folder,
                                  unsigned kinds, struct wb_reason *why)
 {

@@ -1,11 +1,10 @@
 /* Errors between a measured and a computed loading curve: eqs. 17 to 19 of the paper, on an equally
  * spaced deflection grid, integrated by the trapezoid rule.
  *
- * F_max is the largest force of the measured (averaged) curve, wherever an error is printed: the
- * paper divides by F_max without saying which, and its eq. 17 is not normalised. Of follower tests,
- * whose curves are deflections over forces, it is the largest deflection. Pure functions; `n` is at
- * least 2 and `step` positive. A NaN in a curve makes the result NaN.
- */
+ * F_max is the largest force of the measured (averaged) curve in all errors: the paper divides by
+ * F_max without defining it, and its eq. 17 is not normalised. For follower tests, whose curves are
+ * deflections over forces, it is the largest deflection. Pure functions; `n` is at least 2 and
+ * `step` positive. A NaN in a curve makes the result NaN. */
 #ifndef WB_ANALYSIS_DATASET_ERRORS_H
 #define WB_ANALYSIS_DATASET_ERRORS_H
 

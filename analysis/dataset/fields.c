@@ -26,7 +26,7 @@ static const char *const column_names[COLUMNS] = {
     "state", "section", "at_mm", "face", "part",          "node",      "X_mm",           "Y_mm",
     "Z_mm",  "x_mm",    "y_mm",  "z_mm", "von_mises_MPa", "axial_MPa", "plastic_strain",
 };
-/* Places nearer to zero than this are round-off, m. */
+/* Smaller coordinates are round-off, m. */
 static const double smallest_place = 1e-12;
 
 /* Decimal places from SI to the file's unit. */
@@ -159,7 +159,7 @@ struct reader {
     int due;      /* node of a face that comes next */
 };
 
-/* A row as it stands in the file. */
+/* A row of the file. */
 struct row {
     const char *state;
     double x;
@@ -210,8 +210,8 @@ static bool has_field(const struct wb_fields *fields, const struct row *row)
     return found && (isnan(row->x) || found->x == row->x);
 }
 
-/* Rows of a field follow each other, face by face and node by node. `expected` is the node that is
- * due, 0 where a face or a field may begin. */
+/* The rows of a field are consecutive, face by face and node by node. `expected` is the next node,
+ * 0 where a face or a field may begin. */
 static enum wb_status take_row(struct reader *reader, const struct row *row, int expected)
 {
     struct wb_fields *const fields = reader->fields;
@@ -226,7 +226,7 @@ static enum wb_status take_row(struct reader *reader, const struct row *row, int
     if (expected == 0 && !same) {
         if (has_field(fields, row))
             return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                              "%s:%d: section: this field of state %s stood before",
+                              "%s:%d: section: this field of state %s appears twice",
                               reader->table.path, reader->table.line, row->state);
         WB_TRY(wb_fields_add(fields, row->state, row->x, 1, &field, reader->table.why));
         reader->capacity = 1;

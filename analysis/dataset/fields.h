@@ -39,8 +39,8 @@ struct wb_fields {
     struct wb_field *items; /* (n), owned */
 };
 
-/* Appends a field with room for n_faces (at least 1), all zero; *field stays valid until the next
- * call. `why` receives why it failed. NULL: that is logged. */
+/* Appends a field with n_faces (at least 1) zeroed faces; *field stays valid until the next call.
+ * `why` receives the reason of a failure; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double x,
                                            int n_faces, struct wb_field **field,
                                            struct wb_reason *why);
@@ -49,10 +49,10 @@ void wb_fields_release(struct wb_fields *fields); /* accepts a zeroed one */
 /* The field of a state, longitudinal (x NaN) or of the cross section nearest to x; NULL: none. */
 const struct wb_field *wb_fields_find(const struct wb_fields *fields, const char *state, double x);
 
-/* fields.csv in a dataset's folder, written whole or not at all; without any field the file is
- * removed. Writing refuses what is not finite. Reading errors name file, line and column; a folder
- * without fields.csv reads as no fields. `why` receives why reading failed; NULL: that is logged.
- */
+/* Writes or reads fields.csv of a dataset's folder. The file is replaced atomically, or removed
+ * where there is no field; values that are not finite are rejected. Reading errors name file, line
+ * and column; a missing file gives no fields. `why` receives the reason of a failure; NULL: it is
+ * logged. */
 WB_MUST_CHECK enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folder);
 WB_MUST_CHECK enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder,
                                             struct wb_reason *why);

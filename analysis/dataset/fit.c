@@ -83,7 +83,8 @@ size_t wb_fit_first_at(const double *values, size_t stride, size_t n, double at)
     return low;
 }
 
-/* By halves: gsl_cdf_fdist_Qinv() (GSL 2.7.1) is NaN for some degrees, as 11 and 1602. */
+/* By bisection, because gsl_cdf_fdist_Qinv() (GSL 2.7.1) is NaN for some degrees of freedom, such
+ * as 11 and 1602. */
 double wb_fit_fisher_limit(double level, double numerator, double denominator)
 {
     double low = -700.0, high = 700.0; /* of ln F */

@@ -1,4 +1,4 @@
-/* Straight lines and parabolas through measured points, medians, places in sorted ones, and the
+/* Straight lines and parabolas through measured points, medians, search in sorted values, and the
  * limit of an F-test. GSL's error handler, which aborts, must be off. */
 #ifndef WB_ANALYSIS_DATASET_FIT_H
 #define WB_ANALYSIS_DATASET_FIT_H
@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Ordinary straight line through n points: value at x = 0, slope, standard errors, standard
- * deviation of the points from the line. */
+/* Least-squares line through n points: value at x = 0, slope, standard errors, standard deviation
+ * of the points from the line. */
 struct wb_fit_line {
     double value, slope, value_deviation, slope_deviation, residual;
 };
@@ -25,12 +25,12 @@ void wb_fit_sort(double *values, size_t n);
 /* Sorts the values; NaN when n is 0. */
 double wb_fit_median(double *values, size_t n);
 
-/* Standard deviation of what these are the sizes of, by their median, so that a few far off do not
- * count (of a normal distribution). Sorts the sizes; NaN when n is 0. */
+/* Robust standard deviation from absolute deviations, by their median (scaled for a normal
+ * distribution), so that outliers have little effect. Sorts the deviations; NaN when n is 0. */
 double wb_fit_usual_size(double *sizes, size_t n);
 
-/* What Fisher's F with these degrees of freedom (1 or more) exceeds with the probability `level`,
- * within (0, 1). */
+/* Value that Fisher's F with these degrees of freedom (1 or more) exceeds with the probability
+ * `level`, within (0, 1). */
 double wb_fit_fisher_limit(double level, double numerator, double denominator);
 
 /* Index of the first of n ascending values that is not below `at`; n when all are. Each lies

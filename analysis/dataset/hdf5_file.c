@@ -24,7 +24,7 @@ static hid_t make_text_type(void)
     return type;
 }
 
-/* One value beside an object. */
+/* A scalar attribute of an object. */
 static bool put_attribute(hid_t object, const char *name, hid_t type, const void *value)
 {
     const hid_t space = H5Screate(H5S_SCALAR);
@@ -43,7 +43,7 @@ static bool put_text_attribute(hid_t object, const char *name, const char *text)
     return good;
 }
 
-/* How an array is stored. An empty one cannot be in chunks. */
+/* Storage of an array. An empty array cannot be chunked. */
 static hid_t make_storage(hsize_t rows)
 {
     const hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
@@ -96,8 +96,8 @@ static bool put_table(hid_t file, const struct wb_columns *table)
     return good;
 }
 
-/* An open file in memory; negative where there was none. After a failed write to a disk HDF5 1.10
- * tries again as the process ends, and crashes: so it never sees a disk. */
+/* Opens a file in memory; negative where this failed. After a failed write to a disk, HDF5 1.10
+ * tries again at the end of the process and crashes; therefore it does not write to disks. */
 static hid_t make_file(void)
 {
     const hid_t storage = H5Pcreate(H5P_FILE_CREATE), access = H5Pcreate(H5P_FILE_ACCESS);
@@ -138,7 +138,7 @@ static void *take_image(hid_t file, size_t *size)
 enum wb_status wb_hdf5_file_write(const char *path, const struct wb_columns *tables, int n,
                                   const char *source, bool is_virtual)
 {
-    /* The library would print its own account of a failure. */
+    /* Stops the library from printing error messages of its own. */
     H5E_auto2_t print;
     void *context;
     H5Eget_auto2(H5E_DEFAULT, &print, &context);

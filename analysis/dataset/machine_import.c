@@ -16,9 +16,9 @@
 
 #define WB_LOG_DOMAIN "import"
 
-/* A turn of the travel is a return of this part of its range. */
+/* Part of the travel's range by which the travel returns at a turn. */
 #define TURN 0.02
-/* Fewer rows are no curve. */
+/* Least number of rows of a curve. */
 #define LEAST_ROWS 5
 
 struct import {
@@ -27,7 +27,7 @@ struct import {
     struct wb_text_table table;
     struct wb_table_columns columns;
     struct wb_machine_import_report report;
-    enum wb_measured travel; /* the column that becomes the deflection: travel or strain */
+    enum wb_measured travel; /* column of the deflection: travel or strain */
     double travel_factor;    /* a strain times the gauge length */
     int force_sign, travel_sign;
     size_t bytes;
@@ -88,7 +88,7 @@ static enum wb_status take_row(struct import *import, size_t index)
     const bool has_force = isfinite(row.force), has_travel = isfinite(row.deflection);
     const bool has_time = isfinite(row.t) || columns->column[WB_MEASURED_TIME] < 0;
     if (!has_force && !has_travel) {
-        report->empty++; /* a time alone says nothing */
+        report->empty++; /* a line with a time alone counts as empty */
         return WB_OK;
     }
     report->without_force += !has_force;
@@ -113,7 +113,7 @@ static enum wb_status take_row(struct import *import, size_t index)
 
 /* --- signs, times, phases --- */
 
-/* The sign under which values rise from the first to the one that is farthest from it. */
+/* Sign with which the values rise from the first to the one farthest from it. */
 static int rising_sign(const struct wb_dataset *dataset, size_t offset, double *largest)
 {
     double first, farthest = 0.0;
@@ -140,7 +140,7 @@ static enum wb_status turn_signs(struct import *import)
                           import->from->path, range > 0.0 ? "force" : "travel", dataset->n_rows);
     for (size_t i = 0; i < dataset->n_rows; i++) {
         struct wb_row *const row = &dataset->rows[i];
-        /* Plus nought: the sign of a nought is not turned. */
+        /* + 0.0 avoids -0. */
         row->deflection = import->travel_sign * row->deflection + 0.0;
         row->force = import->force_sign * row->force + 0.0;
         row->tension = row->force;
@@ -148,7 +148,7 @@ static enum wb_status turn_signs(struct import *import)
     return WB_OK;
 }
 
-/* Where the file has no time and the machine's speed is known, its way tells the time. */
+/* Derives the time from the travel where the file has no time and the machine's speed is known. */
 static enum wb_status take_times(struct import *import)
 {
     const struct wb_machine *const machine = import->from->machine;
@@ -179,7 +179,8 @@ static void mark(struct wb_dataset *dataset, size_t from, size_t to, bool load, 
     }
 }
 
-/* Cuts at the turns: where the travel has come back from its farthest by TURN of its range. */
+/* Separates phases at the turns: where the travel has returned from its farthest point by TURN of
+ * its range. */
 static void cut_phases(struct wb_dataset *dataset)
 {
     double least = dataset->rows[0].deflection, most = least;
@@ -213,7 +214,7 @@ static int by_size(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* A pause of the machine looks the same as rows that are lost; both are told. */
+/* A pause of the machine cannot be distinguished from lost rows; both are reported. */
 static void count_gaps(struct import *import)
 {
     const struct wb_dataset *const dataset = import->dataset;
@@ -306,11 +307,11 @@ static void set_info(const struct import *import)
     info->length = machine->kind == WB_TEST_THREE_POINT ? machine->span
                    : machine->kind == WB_TEST_TENSILE   ? machine->gauge_length
                                                         : piece->length;
-    /* Of a tensile specimen without a diameter, that of a circle of its area. */
+    /* Diameter of a tensile specimen without one: that of a circle with its area. */
     info->outer_diameter =
         isfinite(piece->outer_diameter) ? piece->outer_diameter : sqrt(4.0 * piece->area / M_PI);
     info->mass_per_length = piece->mass_per_length;
-    /* Where nobody says it, as `align` has it. */
+    /* Without a Poisson's ratio, the default of `align`. */
     info->poissons_ratio = piece->poissons_ratio > 0.0 ? piece->poissons_ratio : 0.3;
     if (machine->kind == WB_TEST_CANTILEVER && piece->mass_per_length > 0.0)
         info->gravity = machine->bends == WB_BENDS_UP     ? WB_STANDARD_GRAVITY
@@ -318,7 +319,7 @@ static void set_info(const struct import *import)
                                                           : 0.0;
 }
 
-/* The force of a cantilever is compared with a model's, which is nought at no deflection. */
+/* The force of a cantilever is compared with a model's, which is zero at zero deflection. */
 static void zero_force(struct wb_dataset *dataset)
 {
     const double zero = dataset->rows[0].force, start = dataset->rows[0].deflection;

@@ -81,7 +81,7 @@ static void add_rows(struct wb_dataset *dataset, const struct wb_loading_steps *
     }
 }
 
-/* The numbers of the law that was computed with: Ludwik's four, or the parts. */
+/* Parameters of the law used in the computation. */
 static void describe_law(struct wb_json *simulation, const struct wb_law *law)
 {
     const struct wb_material *const material = &law->material;

@@ -14,7 +14,7 @@
 #include "fe/trial/wire3d.h"
 #include "fe/trial/wire_run.h"
 
-/* All that decides the numbers of a cantilever's test. */
+/* Everything that decides the numbers of a cantilever test. */
 struct wb_simulated_cantilever {
     const struct wb_law *law;
     double outer_diameter, length, deflection; /* m */
@@ -23,13 +23,13 @@ struct wb_simulated_cantilever {
     int points, cycles;
 };
 
-/* How the simulation was made, for dataset.json. */
+/* Origin of the simulation, for dataset.json. */
 struct wb_simulated_origin {
     const char *model;        /* "cantilever" */
     const char *source;       /* where the properties come from */
     const struct wb_law *law; /* an elastic one: Ludwik's form of an elastic material */
     double wall, cpu;         /* s */
-    const struct wb_simulated_cantilever *cantilever; /* NULL: it is none */
+    const struct wb_simulated_cantilever *cantilever; /* NULL: another solver */
 };
 
 /* The rows of a three-point bending test. */
@@ -48,8 +48,8 @@ void wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *in
                        const struct wb_loading_steps *loading, const double *shape_s,
                        const struct wb_simulated_origin *origin);
 
-/* The same of three-point bending: `info` is of that kind, with its machine. Rows are those of a
- * testing machine, deflection the travel. */
+/* The same for three-point bending: `info` is of that kind, with its machine; `deflection` of a row
+ * is the travel. */
 void wb_simulated_fill_three_point(struct wb_dataset *dataset, const struct wb_test_info *info,
                                    const struct wb_simulated_bending *bending,
                                    const struct wb_simulated_origin *origin);
@@ -61,17 +61,17 @@ struct wb_simulated_shape {
     double (*place)[3];
 };
 
-/* Appends a row of a free tip at that place (m), and its shape as that of n markers. Bench time
- * goes on from the row before by the tip's way from `before` (NULL: of the first row), at least 1
- * ms. The caller leaves time and tip_x to it. */
+/* Appends a row of a free tip at a place (m), and its shape as that of n markers. The bench time of
+ * the row is that of the row before plus the tip's path from `before` (NULL: first row) at 1 mm/s,
+ * at least 1 ms. Sets time and tip_x of the row. */
 void wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row, const double *before,
                           const double *tip, const struct wb_simulated_shape *shape);
 
 /* dataset.json's `tool`: this program. */
 void wb_simulated_describe_tool(struct wb_json *document);
 
-/* Set in an object what makes the `inputs` of dataset.json: all that decides the dataset's numbers,
- * with the solver and its version. */
+/* Set the `inputs` of dataset.json: everything that decides the dataset's numbers, with the solver
+ * and its version. */
 void wb_simulated_cantilever_inputs(struct wb_json *object,
                                     const struct wb_simulated_cantilever *cantilever);
 void wb_simulated_wire_inputs(struct wb_json *object, const struct wb_wire_model *model,
@@ -87,9 +87,9 @@ struct wb_simulated_wire {
     double peak_memory;                      /* bytes; 0: not known */
 };
 
-/* Fills an initialised dataset with a computed wire. Bench time grows with the tip's way, by at
- * least 1 ms a row. dataset.json's `simulation` says how the wire was computed and with which
- * materials; its `steps` name the row with which each step of the model ended. */
+/* Fills an initialised dataset with a computed wire. The bench time grows with the tip's path, by
+ * at least 1 ms a row. `simulation` of dataset.json describes the computation and the materials;
+ * its `steps` name the last row of each step of the model. */
 void wb_simulated_fill_wire(struct wb_dataset *dataset, const struct wb_simulated_wire *wire);
 
 #endif

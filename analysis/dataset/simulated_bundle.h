@@ -18,8 +18,8 @@
 #include "fe/model/bundle_model.h"
 #include "fe/model/bundle_override.h"
 
-/* Sets in an object all that decides the numbers of a dataset, with the solver and its version: the
- * `inputs` of dataset.json. Without a mesh (NULL) of the section model. */
+/* Sets the `inputs` of dataset.json: everything that decides the numbers of a dataset, with the
+ * solver and its version. Mesh NULL: the section model. */
 void wb_simulated_bundle_inputs(struct wb_json *object, const struct wb_bundle_model *model,
                                 const struct wb_bundle_mesh *mesh);
 
@@ -28,30 +28,30 @@ void wb_simulated_bundle_sum(const struct wb_bundle_model *model, const struct w
                              char sha256[WB_SHA256_TEXT]);
 
 struct wb_simulated_bundle {
-    const struct wb_bundle_model *model; /* as it was run: with what was overridden */
+    const struct wb_bundle_model *model; /* as computed, with overridden settings */
     const struct wb_bundle_mesh *mesh;
     const struct wb_bundle_result *result;
-    const struct wb_bundle_override *override; /* what was overridden; NULL: nothing */
+    const struct wb_bundle_override *override; /* overridden settings; NULL: none */
     double surface_deflection;                 /* m, of surface.csv; 0: there is none */
     double wall, cpu;                          /* s */
 };
 
-/* What a dataset says of a bundle whichever model computed it. */
+/* Description of a bundle in dataset.json that does not depend on the solver. */
 struct wb_simulated_bundle_head {
     const char *name;                          /* after the bundle's: "simulated bundle" */
-    const struct wb_bundle_model *model;       /* as it was run */
+    const struct wb_bundle_model *model;       /* as computed */
     const struct wb_bundle_mesh *mesh;         /* NULL: the section model */
     const struct wb_bundle_override *override; /* NULL: nothing */
     bool is_complete;
 };
 
-/* Sets what was tested, and begins dataset.json; returns its `simulation`, to go on with. */
+/* Sets `info` and begins dataset.json; returns its `simulation` for further members. */
 struct wb_json *wb_simulated_bundle_begin(struct wb_dataset *dataset,
                                           const struct wb_simulated_bundle_head *head);
 
-/* Fills an initialised dataset. It is the homogenised beam's test: the outer diameter is the
- * published one where the model has it, otherwise its own, and Poisson's ratio 0.3. Bench time goes
- * on with the tip's way at 1 mm/s, at least 1 ms a row. */
+/* Fills an initialised dataset with the test of the homogenised beam: the outer diameter is the
+ * published one where the model has it, otherwise that of wires and tape; Poisson's ratio is 0.3.
+ * The bench time assumes a tip speed of 1 mm/s, at least 1 ms a row. */
 void wb_simulated_bundle_fill(struct wb_dataset *dataset, const struct wb_simulated_bundle *bundle);
 
 /* Writes energies.csv into the folder of the dataset that was filled from the same bundle. */
@@ -59,7 +59,7 @@ WB_MUST_CHECK enum wb_status
 wb_simulated_bundle_write_energies(const struct wb_dataset *dataset,
                                    const struct wb_simulated_bundle *bundle, const char *folder);
 
-/* Numbers of a run for JSON, of `simulation` and of the command alike: mesh, elements, steps,
+/* Numbers of a run for `simulation` and for --json of the command: mesh, elements, steps,
  * durations, energies at the end, largest ratios, times. */
 void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simulated_bundle *bundle);
 

@@ -63,8 +63,8 @@ static void describe_energies(struct wb_json *object, const struct wb_section_be
         wb_json_set_number(object, energy_names[i], list[i]);
 }
 
-/* E I and M over kappa are no properties of the section alone: their name says so, and three
- * lengths show it. */
+/* EI and M over kappa depend on length and ends, not on the section alone: the key states this, and
+ * three lengths show it. */
 static void describe_beam(struct wb_json *object, const struct wb_section_run *run)
 {
     struct wb_json *const beam =

@@ -16,13 +16,13 @@
 #include "fe/section/section_run.h"
 
 struct wb_simulated_section {
-    const struct wb_bundle_model *model; /* as it was run: with what was overridden */
+    const struct wb_bundle_model *model; /* as computed, with overridden settings */
     const struct wb_section_run *run;
     const struct wb_bundle_override *override; /* NULL: nothing */
     double wall, cpu;                          /* s */
 };
 
-/* Fills an initialised dataset, of the homogenised beam's test as that of an explicit bundle. */
+/* Fills an initialised dataset with the test of the homogenised beam, as for an explicit bundle. */
 void wb_simulated_section_fill(struct wb_dataset *dataset,
                                const struct wb_simulated_section *section);
 
@@ -31,7 +31,7 @@ WB_MUST_CHECK enum wb_status
 wb_simulated_section_write_energies(const struct wb_dataset *dataset,
                                     const struct wb_simulated_section *section, const char *folder);
 
-/* Numbers of a run for JSON, of `simulation` and of the command alike. */
+/* Numbers of a run for `simulation` and for --json of the command. */
 void wb_simulated_section_describe(struct wb_json *object,
                                    const struct wb_simulated_section *section);
 

@@ -117,7 +117,7 @@ static void describe_model(struct wb_json *simulation, const struct wb_wire_mode
         wb_json_append_number(gravity, model->gravity[i]);
 }
 
-/* What only the solid has. */
+/* Members that only the solid has. */
 static void describe_solid(struct wb_json *simulation, const struct wb_wire_model *model,
                            const struct wb_wire3d_balance *balance)
 {

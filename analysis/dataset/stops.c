@@ -7,15 +7,15 @@
 #include "base/memory.h"
 #include "base/units.h"
 
-/* Nothing moves where it stays within this, m, for this time, s, beyond what the cycle's own speed
- * takes to come in and to leave. */
+/* A stop: the position stays within this range, m, for this time, s, longer than the cycle's own
+ * speed needs to pass through the range. */
 static const double stop_reach = 0.15 * WB_MM, stop_time = 0.8;
 
 enum {
     MOST_STOPS = 64 /* of a cycle */
 };
 
-/* The rows of a cycle, and what moves. */
+/* The rows of a cycle, and the position that is examined. */
 struct motion {
     const struct wb_row *rows;
     size_t begin, end; /* of the cycle's rows */
@@ -28,7 +28,7 @@ static double place_of(const struct motion *m, size_t i)
     return m->has_stage ? m->rows[i].stage : m->rows[i].deflection;
 }
 
-/* The median of the speed over stretches in which it moves, long beside the noise of a place. */
+/* Median of the speed over stretches in motion that are long compared with the noise of a place. */
 static double find_speed(const struct motion *m)
 {
     double *const speeds = wb_memory_new(m->end - m->begin, sizeof *speeds);
@@ -52,7 +52,7 @@ static double find_speed(const struct motion *m)
 static bool find_stop(const struct motion *m, double least_tension, size_t from,
                       struct wb_stop *stop)
 {
-    const double passing = 2.0 * stop_reach / m->speed; /* s, within reach without a stop */
+    const double passing = 2.0 * stop_reach / m->speed; /* s: time in the range without a stop */
     for (size_t i = from; i < m->end; i++) {
         if (!(m->rows[i].tension > least_tension) || !isfinite(place_of(m, i)))
             continue;

@@ -1,4 +1,4 @@
-/* Stops of a bending test: rows between which nothing moves, as in the dwell at a turn. */
+/* Stops of a bending test: rows without motion, as in the dwell at a turn. */
 #ifndef WB_ANALYSIS_DATASET_STOPS_H
 #define WB_ANALYSIS_DATASET_STOPS_H
 
@@ -6,15 +6,16 @@
 
 #include "analysis/dataset/dataset.h"
 
-/* Rows `first` to `end` - 1 of a dataset, without those in which it may come in and leave. */
+/* Rows `first` to `end` - 1 of a dataset, without those in which the motion may still decelerate or
+ * already start. */
 struct wb_stop {
     size_t first, end;
     double arrival, departure; /* s */
 };
 
-/* The first `most` stops of a cycle (0: of all cycles) in which the strand carries more than a
- * tension, N, in their order: by the stage's travel where all rows know it, else by the deflection.
- * Returns how many there are. A simulation has none. */
+/* Finds the first `most` stops of a cycle (0: of all cycles) in which the tension exceeds a value,
+ * N, in order: by the stage's travel where all rows have it, otherwise by the deflection. Returns
+ * their number. A simulation has no stops. */
 int wb_stops_find(const struct wb_dataset *dataset, int cycle, double least_tension,
                   struct wb_stop *stops, int most);
 

@@ -23,7 +23,7 @@ static const char file_name[] = "surface.csv";
 static const char *const column_names[COLUMNS] = {"body", "kind", "station", "node",
                                                   "x_mm", "y_mm", "z_mm",    "von_mises_MPa"};
 static const int value_shifts[VALUES] = {3, 3, 3, -6};
-/* Larger ones are no bundle's: m, Pa. */
+/* Limits of plausible values: m, Pa. */
 static const double most_values[VALUES] = {100.0, 100.0, 100.0, 1e15};
 static const char *const expected_values[VALUES] = {
     "a number from -1e5 to 1e5", "a number from -1e5 to 1e5", "a number from -1e5 to 1e5",
@@ -148,7 +148,7 @@ struct reader {
     size_t capacity;
 };
 
-/* A row as it stands in the file. */
+/* A row of the file. */
 struct row {
     int body, station, node;
     bool is_tape, closed;
@@ -189,8 +189,8 @@ static bool has_extent(const struct wb_surface_body *body, int station)
     return largest >= least_extent;
 }
 
-/* Whether the last body is whole: at least two stations of three nodes, a strip two, and ends that
- * can be drawn. */
+/* Checks that the last body is complete: at least two stations of three nodes (strip: two), and
+ * ends that can be drawn. */
 static enum wb_status check_last(const struct reader *reader)
 {
     if (reader->surface->n == 0)
@@ -235,7 +235,7 @@ static void append_to_body(struct reader *reader, struct wb_surface_body *body,
     body->nodes[reader->n_nodes++] = *node;
 }
 
-/* Rows follow each other; the first station's give the number of nodes around. */
+/* Rows are consecutive; those of the first station give the number of nodes around. */
 static enum wb_status take_row(struct reader *reader, const struct row *row)
 {
     struct wb_surface *surface = reader->surface;

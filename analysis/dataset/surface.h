@@ -41,16 +41,16 @@ struct wb_surface {
     struct wb_surface_body *bodies; /* (n), owned */
 };
 
-/* The surface of a bundle's fields, with fewer stations and nodes where there are more than above.
- */
+/* Extracts the surface of a bundle's fields, thinned where there are more stations and nodes than
+ * the limits above. */
 void wb_surface_take(struct wb_surface *surface, const struct wb_bundle_fields *fields);
 void wb_surface_release(struct wb_surface *surface); /* accepts a zeroed one */
 
-/* surface.csv in a dataset's folder, written whole or not at all; without a body the file is
- * removed. Writing refuses what is not finite. Reading refuses places farther than 100 m, stresses
- * beyond 1e15 Pa, and bodies whose first or last station lies at one place; errors name file, line
- * and column. A folder without surface.csv reads as no bodies. `why` receives why reading
- * failed; NULL: that is logged. */
+/* Writes or reads surface.csv of a dataset's folder. The file is replaced atomically, or removed
+ * where there is no body; values that are not finite are rejected. Reading rejects places farther
+ * than 100 m, stresses beyond 1e15 Pa, and bodies whose first or last station has no extent; errors
+ * name file, line and column. A missing file gives no bodies. `why` receives the reason of a
+ * failure; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder);
 WB_MUST_CHECK enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder,
                                              struct wb_reason *why);

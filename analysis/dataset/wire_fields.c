@@ -124,7 +124,7 @@ static enum wb_status add_solid_section(struct wb_fields *fields, const struct s
     struct wb_solid_face *faces;
     int n;
     WB_TRY(wb_solid_mesh_section(solid->mesh, x, &faces, &n));
-    /* Where the mesh has a section. */
+    /* The nearest section of the mesh. */
     const double at = n > 0 ? solid->mesh->node[faces[0].node[0]][0] : x;
     enum wb_status status = WB_OK;
     if (!is_kept(fields, state, at))
@@ -213,8 +213,8 @@ static enum wb_status add_rod_section(struct wb_fields *fields, const char *stat
     return status;
 }
 
-/* Whether no fibre of the same ring and side of the axis is nearer to the plane z = 0, or as near
- * from above. */
+/* Whether the fibre is the nearest of its ring and side to the plane z = 0; of two at the same
+ * distance the upper one. */
 static bool is_next_to_plane(const struct wb_wire1d_fibre *fibres, int n, int f)
 {
     const double same = 1e-9 * fibres[f].outer_radius;
@@ -231,7 +231,7 @@ static bool is_next_to_plane(const struct wb_wire1d_fibre *fibres, int n, int f)
     return true;
 }
 
-/* The fibres next to the plane z = 0 of a slice, as rectangles; every slice has as many. */
+/* The fibres next to the plane z = 0 of a slice, as rectangles; every slice has the same number. */
 struct slice {
     double begin, end; /* m */
     int n_faces;

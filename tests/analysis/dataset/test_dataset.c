@@ -350,7 +350,7 @@ static void bad_tables_are_refused_with_line_and_column(void **state)
     } cases[] = {
         {"", "f.csv:1: empty file"},
         {"t_s,cycle,phase,deflection_mm\n", "f.csv:1: no column 'force_N'"},
-        {"t_s,t_s,cycle,phase,deflection_mm,force_N\n", "f.csv:1: column 't_s' stands there twice"},
+        {"t_s,t_s,cycle,phase,deflection_mm,force_N\n", "f.csv:1: column 't_s' appears twice"},
         {HEADER "0,1,load,0,0\n", "f.csv:2: 5 fields, expected 6"},
         {HEADER "0,1,load,0,0,0,\n", "f.csv:2: more than 6 fields"},
         {HEADER "0,1,load,0,0,0\n0,1,load,1 mm,0,0\n", "f.csv:3: deflection_mm: expected a number"},

@@ -276,7 +276,7 @@ static void fields_cut_short_or_given_twice_are_refused(void **state)
     wb_fields_release(&fields);
     append_face(text, sizeof text, "a,cross,5", 0, 0);
     assert_int_equal(read_bytes(text, strlen(text), &fields), WB_ERR_FORMAT);
-    assert_message(":26: section: this field of state a stood before");
+    assert_message(":26: section: this field of state a appears twice");
 }
 
 static void broken_files_are_read_or_refused(void **state)
