@@ -6,7 +6,7 @@ static const struct wb_schema_row part_rows[] = {
     {"yield_strain", NUMBER | UNKNOWN, "",
      "strain at which the part yields; null: it stays elastic"},
 };
-const struct wb_schema_object wb_schema_law_parts = {
+static const struct wb_schema_object part = {
     "law_part", "One of the elastic-plastic parts in parallel.", ROWS(part_rows)};
 
 static const struct wb_schema_row back_rows[] = {
@@ -38,8 +38,7 @@ static const struct wb_schema_row number_rows[] = {
     {"strength_coefficient_MPa", NUMBER | OPTIONAL, "MPa",
      "K of Ludwik's law: the stress is sigma_Y + K ep^n beyond yield"},
     {"hardening_exponent", NUMBER | OPTIONAL, "", "n of Ludwik's law"},
-    {"parts", OBJECT | LIST | OPTIONAL, "", "elastic-plastic parts in parallel",
-     &wb_schema_law_parts},
+    {"parts", OBJECT | LIST | OPTIONAL, "", "elastic-plastic parts in parallel", &part},
     {"saturation_MPa", NUMBER | OPTIONAL, "MPa",
      "Q of Chaboche's law, the growth of the yield stress at saturation"},
     {"rate", NUMBER | OPTIONAL, "", "b of Chaboche's law, the rate of that growth"},

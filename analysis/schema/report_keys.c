@@ -1,72 +1,7 @@
-/* Keys of report.json that all kinds of report have, and of reports of recordings. The other kinds
- * are in report_kinds_keys.c. */
+/* Keys of report.json of recordings, and of manifest.json. The other kinds of report are in
+ * report_kinds_keys.c, the keys that all kinds share in common_keys.c. */
 #include "analysis/schema/report_keys.h"
 #include "analysis/calibration/paper/calibrate.h"
-
-/* --- all kinds --- */
-
-static const struct wb_schema_row amends_rows[] = {
-    {"report", TEXT, "", "number of the report that this one replaces"},
-    {"issued", TEXT, "", "date of that report"},
-    {"why", TEXT, "", "what changed"},
-};
-static const struct wb_schema_object amends = {"amends", "The report that this one replaces.",
-                                               ROWS(amends_rows)};
-
-static const struct wb_schema_row laboratory_rows[] = {
-    {"report", TEXT | OPTIONAL, "", "number of the report"},
-    {"name", TEXT | OPTIONAL, "", "name of the laboratory"},
-    {"address", TEXT | OPTIONAL, "", "address of the laboratory"},
-    {"place", TEXT | OPTIONAL, "", "place of the tests"},
-    {"customer", TEXT | OPTIONAL, "", "customer, with contact"},
-    {"item", TEXT | OPTIONAL, "", "items that were tested"},
-    {"item_state", TEXT | OPTIONAL, "", "condition of the items"},
-    {"received", TEXT | OPTIONAL, "", "date on which the items were received"},
-    {"tested_from", TEXT | OPTIONAL, "", "first day of the tests"},
-    {"tested_until", TEXT | OPTIONAL, "", "last day of the tests"},
-    {"issued", TEXT | OPTIONAL, "", "date of the report"},
-    {"method", TEXT | OPTIONAL, "", "method"},
-    {"deviations", TEXT | OPTIONAL, "", "deviations from the method"},
-    {"sampling", TEXT | OPTIONAL, "", "how the items were sampled"},
-    {"external", TEXT | OPTIONAL, "", "results from external providers"},
-    {"environment", TEXT | OPTIONAL, "", "environmental conditions"},
-    {"authorised_by", TEXT | OPTIONAL, "", "who authorises the report"},
-    {"decision_rule", TEXT, "", "rule by which limits are judged", .choices = "simple|guarded"},
-    {"amends", OBJECT | OPTIONAL, "", "report that this one replaces", &amends},
-    {"missing", TEXT | LIST, "", "required fields that the campaign file lacks"},
-};
-static const struct wb_schema_object laboratory = {
-    "laboratory", "The fields of a laboratory, as the campaign file has them.",
-    ROWS(laboratory_rows)};
-
-static const struct wb_schema_row end_rows[] = {
-    {"laboratory", OBJECT | OPTIONAL, "", "fields of a laboratory", &laboratory},
-    {"files", TEXT | LIST, "", "files of the report, relative to its folder"},
-};
-const struct wb_schema_object wb_schema_report_end = {"report_end", "", ROWS(end_rows)};
-
-static const struct wb_schema_row head_rows[] = {
-    {"title", TEXT, "", "title of the campaign"},
-    {"data", TEXT, "", "origin of the data",
-     .choices = "measured|measured (virtual rig)|simulation"},
-    {"schema", INTEGER, "", "layout of the file, 1"},
-    {"tool", OBJECT, "", "program that wrote the report", &wb_schema_tool},
-    {"campaign", OBJECT, "", "campaign file", &wb_schema_campaign},
-    {"complete", FLAG, "", "false: data are missing (exit code 3)"},
-    {"limit_exceeded", FLAG, "", "true: a limit of the campaign is exceeded (exit code 4)"},
-    {.of = &wb_schema_report_end},
-};
-const struct wb_schema_object wb_schema_report_head = {"report_head", "", ROWS(head_rows)};
-
-static const struct wb_schema_row simulation_rows[] = {
-    {"dataset", TEXT, "", "name of the dataset"},
-    {"state", TEXT, "", "whether the dataset is used",
-     .choices = "not wanted|missing|outdated|refused|used"},
-    {"command", TEXT, "", "command that computes it"},
-    {"problem", TEXT | OPTIONAL, "", "why it is not used"},
-};
-const struct wb_schema_object wb_schema_simulation_state = {"simulation_state", "",
-                                                            ROWS(simulation_rows)};
 
 /* --- recordings --- */
 

@@ -23,7 +23,6 @@ enum {
 
 /* Laws (law_keys.c). */
 extern const struct wb_schema_object wb_schema_law_numbers; /* of a form, with _MPa */
-extern const struct wb_schema_object wb_schema_law_parts;
 extern const struct wb_schema_object wb_schema_law_of_file;
 extern const struct wb_schema_object wb_schema_law_of_json;
 extern const struct wb_schema_object wb_schema_ludwik; /* E, sigma_Y, K, n */
