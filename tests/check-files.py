@@ -88,17 +88,18 @@ def main(arguments):
     if paths[0] == "-n":
         least, paths = int(paths[1]), paths[2:]
     schemas = {}
-    for kind in [*NAMES.values(), "properties"]:
-        with open(os.path.join(folder, kind + ".schema.json"), encoding="utf-8") as file:
-            schemas[kind] = json.load(file)
-        jsonschema.Draft202012Validator.check_schema(schemas[kind])
     count, bad = 0, 0
     for path in files_of(paths):
         found = read(path)
         if not found:
             continue
         count += 1
-        schema = schemas[found[0]]
+        kind = found[0]
+        if kind not in schemas:
+            with open(os.path.join(folder, kind + ".schema.json"), encoding="utf-8") as file:
+                schemas[kind] = json.load(file)
+            jsonschema.Draft202012Validator.check_schema(schemas[kind])
+        schema = schemas[kind]
         for error in errors(schema, {"$ref": schema["$ref"]}, found[1]):
             for line in explain(schema, error):
                 print(f"{path}: {line}")

@@ -199,7 +199,7 @@ expect 1 'hold the same readings' "$wirebench" calibrate cycle cycle
 expect 0 'not identifiable with these data; deflect to 30 mm or more' "$wirebench" calibrate short
 
 # What a rig or specimen file states comes into the interval; a number that is not known well enough is an error.
-sed 's/"length_mm": 85,/"length_mm": 85, "u_length_mm": 0.85, "u_gain_percent": 0.5,/' cycle/dataset.json >table &&
+sed '/"test"/,$s/"length_mm": 85,/"length_mm": 85, "u_length_mm": 0.85, "u_gain_percent": 0.5,/' cycle/dataset.json >table &&
     cp -r cycle stated && cp table stated/dataset.json
 "$wirebench" calibrate stated >said || fail 'calibrate stated'
 grep -qE '^  free length, 1 %  *[123]\.' said || fail "no length in the budget: $(cat said)"
@@ -318,7 +318,8 @@ expect 3 'the bar is too compliant' \
     --from-force 0.5
 expect 1 'rigidity is missing' "$wirebench" calibrate --compliance bar
 
-# One dataset has a negative uncertainty on purpose, but of the right type.
+# These two are invalid on purpose.
+rm unit.yaml unknown.yaml
 ${WIREBENCH_CHECK_FILES:-true} "$folder" || fail 'a file does not follow its schema'
 [ $failures -eq 0 ] && echo 'all as expected'
 exit $((failures > 0))
