@@ -6,7 +6,7 @@
 #include "daq/recording/survey.h"
 #include "tests/analysis/synthetic.h"
 #include "tests/messages.h"
-#include "tests/own_folder.h"
+#include "tests/schemas.h"
 #include "tests/trials.h"
 
 static int n_recordings;
@@ -881,5 +881,5 @@ int main(void)
         TEST(corrupt_bytes_never_crash_the_alignment),
         TEST(the_same_recording_gives_the_same_bytes),
     };
-    return cmocka_run_group_tests(tests, start, remove_folder);
+    return cmocka_run_group_tests(tests, start, check_and_remove_folder);
 }

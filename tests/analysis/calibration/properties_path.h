@@ -7,7 +7,7 @@
 
 #include "base/file.h"
 #include "tests/messages.h"
-#include "tests/own_folder.h"
+#include "tests/schemas.h"
 
 static char path[WB_PATH];
 

@@ -112,6 +112,7 @@ static enum wb_status write_made(const struct made *made, bool force)
 static void read_back(const struct made *made, struct wb_properties *read)
 {
     assert_int_equal(write_made(made, true), WB_OK);
+    assert_true(files_follow_schemas(path));
     assert_int_equal(wb_properties_read(path, read), WB_OK);
 }
 

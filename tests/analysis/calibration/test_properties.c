@@ -35,6 +35,7 @@ static void write_some(const struct wb_calibrate_result *result)
     wb_calibrate_default_settings(&settings);
     settings.yield_point = 0.04;
     assert_int_equal(wb_properties_write(path, result, &settings, names, 2, true), WB_OK);
+    assert_true(files_follow_schemas(path));
 }
 
 static void written_properties_are_read_back(void **state)

@@ -92,6 +92,7 @@ static void unloading_determines_the_hardening_rule(void **unused)
     assert_true(c.law.isotropic_share > 0.8); /* the wire's is isotropic */
     struct wb_properties read;
     assert_int_equal(wb_properties_write_three_point(path, &c, NULL, 0, true), WB_OK);
+    assert_true(files_follow_schemas(path));
     assert_int_equal(wb_properties_read(path, &read), WB_OK);
     assert_true(read.is_rule_tested && read.is_rule_supported);
     assert_close_relative(read.rigidity.value, c.rigidity.value, 1e-9);
@@ -292,6 +293,7 @@ static void the_scatter_of_series_does_not_average_out(void **unused)
     /* The properties contain the scatter of series, not that of tests. */
     struct wb_properties read;
     assert_int_equal(wb_properties_write_three_point(path, &c, NULL, 0, true), WB_OK);
+    assert_true(files_follow_schemas(path));
     assert_int_equal(wb_properties_read(path, &read), WB_OK);
     assert_int_equal(read.n_series, 2);
     assert_int_equal(read.n_samples, 4);

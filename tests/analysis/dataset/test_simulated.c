@@ -1,5 +1,5 @@
 /* Computed wires as datasets. */
-#include "tests/own_folder.h"
+#include "tests/schemas.h"
 
 #include <stdlib.h>
 
@@ -221,5 +221,5 @@ int main(void)
         cmocka_unit_test(history_in_space_keeps_its_z_and_its_steps),
         cmocka_unit_test(raised_test_is_zeroed_and_weighs_upwards),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_folder, check_and_remove_folder);
 }
