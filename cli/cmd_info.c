@@ -75,8 +75,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (options->schema && options->common.input)
-            argp_error(state, "--schema applies to no file, and '%s' is given",
-                       options->common.input);
+            argp_error(state, "--schema takes no file: '%s' is given", options->common.input);
         if (options->schema)
             return 0;
         if (options->mesh && !options->figure)
