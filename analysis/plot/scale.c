@@ -86,15 +86,10 @@ static void add_power(struct wb_scale *scale, int factor, int exponent)
                  factor, exponent < 0 ? "\xe2\x88\x92" : "", exponent < 0 ? -exponent : exponent);
 }
 
-/* Powers of ten, thinned to `most`; with fewer than three of them also twice and five times. */
-static void place_powers(struct wb_scale *scale, int most)
+/* Powers of ten, thinned to `most`; with `finer` also twice and five times each. */
+static void place_powers_of(struct wb_scale *scale, int first, int last, int stride, bool finer)
 {
-    const int first = (int)floor(log10(scale->low) + 1e-9);
-    const int last = (int)floor(log10(scale->high) + 1e-9);
-    int stride = 1;
-    while ((last - first) / stride + 1 > most)
-        stride++;
-    const bool finer = last - first < 3 && 3 * (last - first + 1) <= most + 3;
+    scale->n_ticks = 0;
     for (int i = first; i <= last; i += stride) {
         add_power(scale, 1, i);
         if (finer) {
@@ -104,12 +99,27 @@ static void place_powers(struct wb_scale *scale, int most)
     }
 }
 
+/* Finer where fewer than three powers leave room, or where an axis would have one label. */
+static void place_powers(struct wb_scale *scale, int most)
+{
+    const int first = (int)floor(log10(scale->low) + 1e-9);
+    const int last = (int)floor(log10(scale->high) + 1e-9);
+    int stride = 1;
+    while ((last - first) / stride + 1 > most)
+        stride++;
+    place_powers_of(scale, first, last, stride,
+                    last - first < 3 && 3 * (last - first + 1) <= most + 3);
+    if (scale->n_ticks < 2)
+        place_powers_of(scale, first, last, stride, true);
+}
+
 static void place_steps(struct wb_scale *scale, int most)
 {
     const double span = scale->high - scale->low;
     int decimals = 0;
     const double step = nice_step(span / most, &decimals);
     const double slack = 1e-9 * span;
+    scale->n_ticks = 0;
     for (double k = ceil((scale->low - slack) / step);
          k * step <= scale->high + slack && scale->n_ticks < WB_SCALE_TICKS; k += 1.0) {
         const double value = k == 0.0 ? 0.0 : k * step;
@@ -131,11 +141,14 @@ void wb_scale_place_ticks(struct wb_scale *scale, int most)
         most = 2;
     if (most > WB_SCALE_TICKS - 2)
         most = WB_SCALE_TICKS - 2;
-    scale->n_ticks = 0;
-    if (scale->logarithmic)
+    if (scale->logarithmic) {
         place_powers(scale, most);
-    else
+    } else {
         place_steps(scale, most);
+    }
+    /* One label alone does not show the scale of an axis. */
+    for (int more = most + 1; scale->n_ticks < 2 && more <= WB_SCALE_TICKS - 2; more++)
+        place_steps(scale, more);
 }
 
 double wb_scale_position(const struct wb_scale *scale, double value)

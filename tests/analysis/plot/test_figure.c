@@ -27,7 +27,7 @@ static void ticks_are_round_within_the_range_and_not_too_many(void **state)
             struct wb_scale scale;
             wb_scale_fit(&scale, ranges[i][0], ranges[i][1], false);
             wb_scale_place_ticks(&scale, most);
-            assert_true(scale.n_ticks >= 1 && scale.n_ticks <= most + 1);
+            assert_true(scale.n_ticks >= 2 && scale.n_ticks <= most + 1);
             for (int k = 0; k < scale.n_ticks; k++) {
                 const double span = scale.high - scale.low;
                 assert_true(scale.ticks[k] >= scale.low - 1e-9 * span);
@@ -36,12 +36,26 @@ static void ticks_are_round_within_the_range_and_not_too_many(void **state)
             for (int k = 2; k < scale.n_ticks; k++)
                 assert_close_relative(scale.ticks[k] - scale.ticks[k - 1],
                                       scale.ticks[1] - scale.ticks[0], 1e-6);
-            if (scale.n_ticks > 1) {
-                const double step = scale.ticks[1] - scale.ticks[0];
-                const double digits = step / pow(10.0, floor(log10(step) + 1e-9));
-                assert_true(fabs(digits - 1.0) < 1e-6 || fabs(digits - 2.0) < 1e-6 ||
-                            fabs(digits - 2.5) < 1e-6 || fabs(digits - 5.0) < 1e-6);
-            }
+            const double step = scale.ticks[1] - scale.ticks[0];
+            const double digits = step / pow(10.0, floor(log10(step) + 1e-9));
+            assert_true(fabs(digits - 1.0) < 1e-6 || fabs(digits - 2.0) < 1e-6 ||
+                        fabs(digits - 2.5) < 1e-6 || fabs(digits - 5.0) < 1e-6);
+        }
+    }
+}
+
+static void logarithmic_axes_have_two_labels(void **state)
+{
+    (void)state;
+    static const double ranges[][2] = {
+        {0.9, 1.1}, {0.03, 0.2}, {2.0, 3.0}, {1e-6, 1e3}, {4.0, 60.0}};
+    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
+        for (int most = 2; most < 12; most++) {
+            struct wb_scale scale;
+            wb_scale_fit(&scale, ranges[i][0], ranges[i][1], true);
+            wb_scale_place_ticks(&scale, most);
+            if (scale.n_ticks < 2)
+                fail_msg("%d labels from %g to %g", scale.n_ticks, ranges[i][0], ranges[i][1]);
         }
     }
 }
@@ -442,6 +456,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ticks_are_round_within_the_range_and_not_too_many),
+        cmocka_unit_test(logarithmic_axes_have_two_labels),
         cmocka_unit_test(tick_labels_tell_the_tick),
         cmocka_unit_test(zero_near_the_data_is_taken_in_and_noise_around_it_does_not_move_it),
         cmocka_unit_test(a_scale_without_data_or_extent_is_still_a_scale),
