@@ -30,7 +30,7 @@ enum wb_document_kind {
     WB_BLOCK_CODE,   /* plain text, not markup */
     WB_BLOCK_TABLE,
     WB_BLOCK_FIGURES, /* one, or two side by side */
-    WB_BLOCK_NEW_PAGE /* where there are pages */
+    WB_BLOCK_NEW_PAGE /* where there are pages, and this one is at least half full */
 };
 
 struct wb_document_column {

@@ -16,6 +16,9 @@
 static const double page_width = 595.276, page_height = 841.89;
 static const double margin_left = 54.0, margin_top = 62.0, margin_bottom = 58.0;
 
+/* Size of the smallest text: tables, captions, heads and feet of pages, pt. */
+static const double smallest = 8.0;
+
 /* The pen walks through the document twice: dry to count the pages, then drawing. */
 struct pen {
     const struct wb_document *document;
@@ -89,7 +92,7 @@ static void rule(struct pen *pen, double x0, double x1, double y, double width,
 
 static void draw_frame(struct pen *pen)
 {
-    const struct wb_typeset_style small = {.size = 7.2, .colour = wb_palette_grey()};
+    const struct wb_typeset_style small = {.size = smallest, .colour = wb_palette_grey()};
     struct wb_typeset_style right = small;
     right.align = WB_ALIGN_RIGHT;
     const double right_edge = margin_left + WB_PDF_WIDTH;
@@ -135,6 +138,13 @@ static void new_page(struct pen *pen)
         return;
     end_page(pen);
     begin_page(pen);
+}
+
+/* A chapter begins on a new page, unless that would leave more than half of this one empty. */
+static void new_chapter(struct pen *pen)
+{
+    if (room(pen) < 0.5 * (page_height - margin_top - margin_bottom))
+        new_page(pen);
 }
 
 /* Starts a new page unless the height fits on this one. */
@@ -257,8 +267,10 @@ static void put_notice(struct pen *pen, const struct wb_document_block *block)
 
 static void put_code(struct pen *pen, const struct wb_document_block *block)
 {
-    const struct wb_typeset_style style = {
-        .size = 8.0, .monospace = true, .colour = wb_palette_ink(), .width = WB_PDF_WIDTH - 24.0};
+    const struct wb_typeset_style style = {.size = smallest,
+                                           .monospace = true,
+                                           .colour = wb_palette_ink(),
+                                           .width = WB_PDF_WIDTH - 24.0};
     const double height = plain_height(pen, block->text, &style) + 11.0;
     need(pen, height);
     put_box(pen, height, wb_palette_grey(), 0.08);
@@ -270,62 +282,91 @@ static void put_code(struct pen *pen, const struct wb_document_block *block)
 /* --- tables --- */
 
 /* Tables up to this part of a page are not split. */
-#define LARGEST_WHOLE_TABLE 0.6
+#define LARGEST_WHOLE_TABLE 0.4
 
 static const double cell_gap = 10.0, cell_above = 2.6;
 
 static struct wb_typeset_style cell_style(const struct wb_document_column *column, bool heading)
 {
-    return (struct wb_typeset_style){.size = column->monospace && !heading ? 6.1 : 8.0,
+    return (struct wb_typeset_style){.size = smallest,
                                      .bold = heading,
                                      .monospace = column->monospace && !heading,
                                      .colour = heading ? wb_palette_grey() : wb_palette_ink(),
                                      .align = column->right ? WB_ALIGN_RIGHT : WB_ALIGN_LEFT};
 }
 
-/* Width of the widest word: below it a heading would break within a word. Tags hold no spaces. */
+/* The next word of markup without its tags, of which some could end in other words; returns where
+ * the one after it begins. Lines break at spaces and after hyphens. */
+static const char *next_word(const char *markup, char word[80])
+{
+    size_t n = 0;
+    bool in_tag = false, ends = false;
+    for (; *markup && !ends; markup++) {
+        const bool is_tag = in_tag || *markup == '<';
+        in_tag = is_tag && *markup != '>';
+        ends = !is_tag && (*markup == ' ' || *markup == '-');
+        if (!is_tag && *markup != ' ' && n + 1 < 80)
+            word[n++] = *markup;
+    }
+    word[n] = '\0';
+    return markup;
+}
+
+/* Width of the widest word: below it a text would break within a word. */
 static double widest_word(struct pen *pen, const char *markup, const struct wb_typeset_style *style)
 {
     double widest = 0.0;
     while (*markup) {
         char word[80];
-        const size_t length = strcspn(markup, " ");
-        snprintf(word, sizeof word, "%.*s", (int)length, markup);
-        if (length < sizeof word)
-            widest = fmax(widest, wb_typeset_measure(pen->cairo, word, style).width);
-        markup += length + strspn(markup + length, " ");
+        markup = next_word(markup, word);
+        widest = fmax(widest, wb_typeset_measure(pen->cairo, word, style).width);
     }
     return widest;
 }
 
+/* Widths of a column: of its widest text, and the least at which no word is broken. */
+static void measure_column(struct pen *pen, const struct wb_document_table *table, int column,
+                           double *natural, double *least)
+{
+    const struct wb_document_column *const of = &table->columns[column];
+    const struct wb_typeset_style heading = cell_style(of, true), style = cell_style(of, false);
+    const double whole = wb_typeset_measure(pen->cairo, of->heading, &heading).width;
+    /* A heading that wraps takes two lines where there is room. */
+    *least = of->wraps ? widest_word(pen, of->heading, &heading) : whole;
+    *natural = of->wraps ? fmax(*least, 0.6 * whole) : whole;
+    for (int row = 0; row < table->n_rows; row++) {
+        const char *const text = table->cells[row * table->n_columns + column].text;
+        const double width = wb_typeset_measure(pen->cairo, text, &style).width;
+        *natural = fmax(*natural, width);
+        *least = fmax(*least, of->wraps ? widest_word(pen, text, &style) : width);
+    }
+    /* Room for rounding, or Pango would break what just fits. */
+    *natural += 1.0;
+    *least += 1.0;
+}
+
+/* Columns take what their texts need. Where that is too much, those that wrap give of what they
+ * have beyond their longest word; where even that is too little, of their words. */
 static void find_widths(struct pen *pen, const struct wb_document_table *table, double *widths)
 {
-    double total = (table->n_columns - 1) * cell_gap, giving = 0.0;
+    double least[WB_DOCUMENT_COLUMNS], sum = 0.0, sum_of_least = 0.0, wrapped = 0.0;
+    const double width = WB_PDF_WIDTH - (table->n_columns - 1) * cell_gap;
     for (int i = 0; i < table->n_columns; i++) {
-        const struct wb_document_column *const column = &table->columns[i];
-        const struct wb_typeset_style heading = cell_style(column, true);
-        const struct wb_typeset_style style = cell_style(column, false);
-        widths[i] = column->wraps ? fmax(30.0, widest_word(pen, column->heading, &heading))
-                                  : wb_typeset_measure(pen->cairo, column->heading, &heading).width;
-        for (int row = 0; row < table->n_rows; row++)
-            widths[i] = fmax(
-                widths[i], wb_typeset_measure(pen->cairo,
-                                              table->cells[row * table->n_columns + i].text, &style)
-                               .width);
-        /* Room for rounding, or Pango would break what just fits. */
-        widths[i] += 1.0;
-        total += widths[i];
-        giving += column->wraps ? widths[i] : 0.0;
+        measure_column(pen, table, i, &widths[i], &least[i]);
+        sum += widths[i];
+        sum_of_least += least[i];
+        wrapped += table->columns[i].wraps ? least[i] : 0.0;
     }
-    const double spare = WB_PDF_WIDTH - total;
     for (int i = 0; i < table->n_columns; i++) {
-        if (spare < 0.0 && giving > 0.0 && table->columns[i].wraps)
-            widths[i] = fmax(24.0, widths[i] + spare * widths[i] / giving);
-        else if (spare < 0.0 && !(giving > 0.0))
-            widths[i] *= (WB_PDF_WIDTH - (table->n_columns - 1) * cell_gap) /
-                         (total - (table->n_columns - 1) * cell_gap);
-        else if (spare > 0.0)
-            widths[i] += spare / table->n_columns;
+        if (sum <= width)
+            widths[i] += (width - sum) / table->n_columns;
+        else if (sum_of_least <= width)
+            widths[i] =
+                least[i] + (widths[i] - least[i]) * (width - sum_of_least) / (sum - sum_of_least);
+        else if (!(wrapped > 0.0))
+            widths[i] = least[i] * width / sum_of_least;
+        else if (table->columns[i].wraps)
+            widths[i] = fmax(24.0, least[i] * (1.0 - (sum_of_least - width) / wrapped));
     }
 }
 
@@ -360,8 +401,6 @@ static void put_row(struct pen *pen, const struct wb_document_table *table, int 
             text = cell->text;
             if (cell->tone != WB_TONE_PLAIN)
                 style.colour = tone_colour(cell->tone);
-            if (table->columns[i].monospace)
-                y += 1.4; /* smaller, so that the lines stand level */
         } else {
             /* Headings stand on the rule below them. */
             y = pen->y + height - cell_above - text_height(pen, text, &style);
@@ -394,7 +433,7 @@ static void put_table_head(struct pen *pen, const struct wb_document_table *tabl
 
 static double caption_height(struct pen *pen, const struct wb_document_table *table)
 {
-    const struct wb_typeset_style caption = {.size = 8.0, .width = WB_PDF_WIDTH};
+    const struct wb_typeset_style caption = {.size = smallest, .width = WB_PDF_WIDTH};
     return table->caption ? text_height(pen, table->caption, &caption) + 2.0 : 0.0;
 }
 
@@ -413,17 +452,31 @@ static double needed_height(struct pen *pen, const struct wb_document_table *tab
     return head + 2.0 * row_height(pen, table, 0, widths);
 }
 
+/* The height of a row, and where it begins a group that should not be split, of the whole group. */
+static double height_from(struct pen *pen, const struct wb_document_table *table, int row,
+                          const double *widths)
+{
+    const double one = row_height(pen, table, row, widths);
+    double group = one;
+    for (int k = row + 1; k < table->n_rows && !table->begins_group[k]; k++)
+        group += row_height(pen, table, k, widths);
+    return table->begins_group[row] &&
+                   group <= LARGEST_WHOLE_TABLE * (page_height - margin_top - margin_bottom)
+               ? group
+               : one;
+}
+
 static void put_table(struct pen *pen, const struct wb_document_table *table)
 {
     double widths[WB_DOCUMENT_COLUMNS];
     find_widths(pen, table, widths);
     const struct wb_typeset_style caption = {
-        .size = 8.0, .colour = wb_palette_grey(), .width = WB_PDF_WIDTH};
+        .size = smallest, .colour = wb_palette_grey(), .width = WB_PDF_WIDTH};
     const double above = caption_height(pen, table);
     need(pen, needed_height(pen, table, widths));
     put_table_head(pen, table, widths);
     for (int row = 0; row < table->n_rows; row++) {
-        if (row_height(pen, table, row, widths) > room(pen)) {
+        if (height_from(pen, table, row, widths) > room(pen)) {
             new_page(pen);
             put_table_head(pen, table, widths);
         } else if (row > 0 && table->begins_group[row] && !pen->dry) {
@@ -448,8 +501,9 @@ static double figures_height(struct pen *pen, const struct wb_document_block *bl
 {
     double height = 0.0;
     for (int i = 0; i < 2 && block->figures[i]; i++) {
-        const struct wb_typeset_style style = {
-            .size = 7.8, .colour = wb_palette_grey(), .width = wb_figure_width(block->figures[i])};
+        const struct wb_typeset_style style = {.size = smallest,
+                                               .colour = wb_palette_grey(),
+                                               .width = wb_figure_width(block->figures[i])};
         height = fmax(height, wb_figure_height(block->figures[i]) + 3.0 +
                                   text_height(pen, block->captions[i], &style));
     }
@@ -464,7 +518,7 @@ static void put_figures(struct pen *pen, const struct wb_document_block *block)
     for (int i = 0; i < 2 && block->figures[i] && !pen->dry && pen->status == WB_OK; i++) {
         const double width = wb_figure_width(block->figures[i]);
         const struct wb_typeset_style style = {
-            .size = 7.8, .colour = wb_palette_grey(), .width = width};
+            .size = smallest, .colour = wb_palette_grey(), .width = width};
         const double x = margin_left + (i == 1 ? WB_PDF_WIDTH - width : 0.0);
         pen->status = wb_canvas_draw_figure(pen->cairo, block->figures[i], x, top);
         pen->y = top + wb_figure_height(block->figures[i]) + 3.0;
@@ -501,6 +555,8 @@ static void walk(struct pen *pen)
     put_title(pen);
     for (int i = 0; i < pen->document->n && pen->status == WB_OK; i++) {
         const struct wb_document_block *const block = &pen->document->blocks[i];
+        if (i > 0 && block[-1].kind == WB_BLOCK_ITEM && block->kind != WB_BLOCK_ITEM)
+            pen->y += 4.0; /* below a list */
         switch (block->kind) {
         case WB_BLOCK_HEADING:
             put_heading(pen, block, height_of_next(pen, i));
@@ -524,7 +580,7 @@ static void walk(struct pen *pen)
             put_figures(pen, block);
             break;
         case WB_BLOCK_NEW_PAGE:
-            new_page(pen);
+            new_chapter(pen);
             break;
         }
     }
