@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "analysis/report/files.h"
+#include "analysis/report/glossary.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -35,6 +36,7 @@ enum wb_status wb_kind_write(const struct wb_kind *kind, const void *results, co
     enum wb_status status = kind->cards ? kind->cards(&cards, results) : WB_OK;
     kind->pages(&document, results, &figures);
     wb_cards_put_pages(&document, &cards);
+    wb_glossary_put(&document);
     wb_laboratory_put_pages(&document, laboratory);
     struct wb_json *const numbers = kind->json(results);
     wb_laboratory_put_numbers(numbers, laboratory);
