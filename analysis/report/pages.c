@@ -1,10 +1,13 @@
 #include "analysis/report/pages.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/config.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "base/version.h"
@@ -38,6 +41,78 @@ const char *wb_pages_paper_figure(char text[48], const char *number)
     if (number[0])
         snprintf(text, 48, " (the paper's Fig. %s)", number);
     return text;
+}
+
+/* Symbols of plain text and how they are typeset; an index of digits may follow. */
+static const char *const symbols[][2] = {
+    {"sigma_Y", "<i>\xcf\x83</i><sub>Y</sub>"},
+    {"E_eff", "<i>E</i><sub>eff</sub>"},
+    {"gamma", "<i>\xce\xb3</i>"},
+    {"EI", "<i>EI</i>"},
+    {"E", "<i>E</i>"},
+    {"K", "<i>K</i>"},
+    {"M", "<i>M</i>"},
+    {"Q", "<i>Q</i>"},
+    {"C", "<i>C</i>"},
+    {"b", "<i>b</i>"},
+    {"n", "<i>n</i>"},
+    {"+-", "\xc2\xb1"},
+    {"mm2", "mm\xc2\xb2"},
+};
+
+/* A symbol that is a whole word; returns its length in the plain text, 0: there is none. */
+static size_t append_symbol(struct wb_text *text, const char *plain)
+{
+    for (size_t i = 0; i < WB_COUNT(symbols); i++) {
+        const size_t n = strlen(symbols[i][0]);
+        if (strncmp(plain, symbols[i][0], n) != 0)
+            continue;
+        const size_t index = strspn(plain + n, "0123456789");
+        const char next = plain[n + index];
+        if (isalnum((unsigned char)next) || next == '_' || next == '-' || next == '\'' ||
+            (next == '.' && isalnum((unsigned char)plain[n + index + 1])))
+            continue; /* part of a longer word, or of a file's name */
+        wb_text_append(text, "%s", symbols[i][1]);
+        if (index > 0)
+            wb_text_append(text, "<sub>%.*s</sub>", (int)index, plain + n);
+        return n + index;
+    }
+    return 0;
+}
+
+/* "1.13e-04" as a product with a power of ten; returns its length, 0: there is none. */
+static size_t append_power(struct wb_text *text, const char *plain)
+{
+    const size_t digits = strspn(plain, "0123456789.");
+    char *end;
+    if (digits == 0 || plain[digits] != 'e' || !strchr("+-", plain[digits + 1]))
+        return 0;
+    const long exponent = strtol(plain + digits + 1, &end, 10);
+    if (end == plain + digits + 1)
+        return 0;
+    wb_text_append(text, "%.*s\xc2\xb7", (int)digits, plain);
+    wb_text_append(text, "10<sup>%s%ld</sup>", exponent < 0 ? "\xe2\x88\x92" : "", labs(exponent));
+    return (size_t)(end - plain);
+}
+
+void wb_pages_append_symbols(struct wb_text *text, const char *plain)
+{
+    bool in_word = false;
+    while (*plain) {
+        size_t n = in_word ? 0 : append_symbol(text, plain);
+        if (n == 0 && !in_word)
+            n = append_power(text, plain);
+        if (n == 0) {
+            const char one[2] = {*plain, '\0'};
+            if ((unsigned char)*plain < 0x80)
+                wb_text_append_escaped(text, one);
+            else
+                wb_text_append_bytes(text, plain, 1);
+            n = 1;
+        }
+        plain += n;
+        in_word = isalnum((unsigned char)plain[-1]) || plain[-1] == '_' || plain[-1] == '.';
+    }
 }
 
 char *wb_pages_escape(char *buffer, size_t size, const char *raw)
@@ -84,6 +159,11 @@ void wb_pages_cell_plain(struct wb_document_table *table, enum wb_document_tone 
     wb_document_cell(table, tone, wb_pages_escape(escaped, sizeof escaped, text));
 }
 
+void wb_pages_cell_checksum(struct wb_document_table *table, const char *sha256)
+{
+    wb_pages_cell(table, WB_TONE_PLAIN, "%.16s", sha256);
+}
+
 int wb_pages_decimals(double value)
 {
     if (!(value > 0.0) || !isfinite(value))
@@ -95,6 +175,11 @@ int wb_pages_decimals(double value)
 static const char *minus(double value, int decimals)
 {
     return value < 0.0 && -value * pow(10.0, decimals) >= 0.5 ? "\xe2\x88\x92" : "";
+}
+
+void wb_pages_append_number(struct wb_text *text, double value, int decimals)
+{
+    wb_text_append(text, "%s%.*f", minus(value, decimals), decimals, fabs(value));
 }
 
 static void put_number(struct wb_document_table *table, enum wb_document_tone tone, double value,
@@ -183,51 +268,72 @@ static void put_missing_dataset(struct wb_document *document,
     char text[1700], name[600], problem[900];
     if (!entry->wanted->wanted || entry->result->state == WB_SIMULATION_USABLE)
         return;
-    snprintf(text, sizeof text,
-             "<b>%s</b>: %s. To make it:", wb_pages_escape(name, sizeof name, entry->wanted->name),
+    snprintf(text, sizeof text, "<b>%s</b>: %s. To compute it:",
+             wb_pages_escape(name, sizeof name, entry->wanted->name),
              wb_pages_escape(problem, sizeof problem, wb_text_string(&entry->result->problem)));
     wb_document_item(document, WB_TONE_WARNING, text);
     wb_document_code(document, wb_text_string(&entry->wanted->command));
+}
+
+void wb_pages_add_missing(struct wb_found *found, const struct wb_kind_outcome *outcome)
+{
+    const int n = outcome->n_wanted - outcome->n_usable;
+    if (outcome->is_complete)
+        return;
+    if (n == 0) {
+        wb_found_say(found, WB_FOUND_INCOMPLETE,
+                     "<b>Incomplete.</b> All datasets are there, but not every step could be "
+                     "done.");
+        return;
+    }
+    wb_found_say(found, WB_FOUND_INCOMPLETE,
+                 "<b>Incomplete.</b> %d of %d datasets %s missing or cannot be used. The report "
+                 "shows the results of the others.",
+                 n, outcome->n_wanted, wb_pages_plural(n, "is", "are"));
+    wb_found_say(found, WB_FOUND_NEXT,
+                 "<b>Missing</b>: run <tt>wirebench report --solve</tt> with this campaign, which "
+                 "computes the missing datasets and writes the report again.");
 }
 
 void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,
                           wb_simulation_list *list, const void *results)
 {
     struct wb_simulation_entry entry;
-    char text[400];
-    const int n = outcome->n_wanted - outcome->n_usable;
-    if (outcome->is_complete)
+    if (outcome->n_wanted == outcome->n_usable)
         return;
-    if (n > 0)
-        snprintf(text, sizeof text,
-                 "<b>Incomplete.</b> %d of %d datasets %s missing or cannot be used. The report "
-                 "shows what the others give. <tt>wirebench report --solve</tt> makes them.",
-                 n, outcome->n_wanted, wb_pages_plural(n, "is", "are"));
-    else
-        snprintf(text, sizeof text,
-                 "<b>Incomplete.</b> All datasets are there, but not every step could be done.");
-    wb_document_notice(document, WB_TONE_WARNING, text);
+    wb_document_heading(document, 2, "missing", "What is missing");
     for (int i = 0; list(results, i, &entry); i++)
         put_missing_dataset(document, &entry);
 }
 
-void wb_pages_put_verdicts(struct wb_document *document, const struct wb_campaign *campaign,
-                           const struct wb_verdict *verdicts, int n)
+void wb_pages_put_decisions(struct wb_document *document, const struct wb_campaign *campaign,
+                            const struct wb_verdict *verdicts, int n)
 {
+    static const struct wb_document_column columns[] = {
+        {.heading = "Value", .wraps = true},
+        {.heading = "of"},
+        {.heading = "Found (%)", .right = true},
+        {.heading = "Limit (%)", .right = true},
+        {.heading = "Decision"},
+    };
+    if (!campaign->laboratory.is_given || n == 0)
+        return;
+    wb_document_heading(document, 2, "decisions", "Decisions on the limits");
+    struct wb_document_table *const table =
+        wb_document_table(document,
+                          "By simple acceptance. The uncertainty <i>U</i> of a computed number is "
+                          "not evaluated.",
+                          WB_COUNT(columns), columns);
     for (int i = 0; i < n; i++) {
         const struct wb_verdict *const v = &verdicts[i];
-        char text[600], label[300] = "", value[40] = "not known";
-        if (v->label)
-            wb_pages_escape(label, sizeof label, v->label);
-        if (isfinite(v->value))
-            snprintf(value, sizeof value, "%.3g %%", v->value / WB_PERCENT);
-        snprintf(text, sizeof text, "<b>%s</b> %s%s%s: %s, limit %.3g %%.%s",
-                 v->kept ? "Limit kept." : "Limit exceeded.", v->what, v->label ? ", " : "", label,
-                 value, v->limit / WB_PERCENT,
-                 campaign->laboratory.is_given
-                     ? " <i>U</i> not evaluated (a computed number); by simple acceptance."
-                     : "");
-        wb_document_item(document, v->kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
+        const double found = v->value / WB_PERCENT, limit = v->limit / WB_PERCENT;
+        wb_document_row(table, false);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%s", v->what);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, v->label ? v->label : "");
+        wb_pages_cell_number(table, found, wb_pages_decimals(found));
+        wb_pages_cell_number(table, limit, wb_pages_decimals(limit));
+        wb_pages_cell(table, v->kept ? WB_TONE_PLAIN : WB_TONE_WARNING,
+                      v->kept ? "kept" : "exceeded");
     }
 }
 
@@ -237,12 +343,15 @@ void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *lis
     static const struct wb_document_column columns[] = {
         {.heading = "Dataset", .wraps = true},
         {"Revision"},
-        {.heading = "SHA-256 of force_deflection.csv", .monospace = true},
+        {.heading = "SHA-256 of force_deflection.csv, first 16 digits", .monospace = true},
     };
     struct wb_simulation_entry entry;
     wb_document_heading(document, 2, "datasets", "Datasets");
     struct wb_document_table *const table =
-        wb_document_table(document, "Revision: of the program that made it.", 3, columns);
+        wb_document_table(document,
+                          "Revision: of the program that computed the dataset. All 64 digits of a "
+                          "checksum are in report.json.",
+                          3, columns);
     for (int i = 0; list(results, i, &entry); i++) {
         if (!entry.wanted->wanted)
             continue;
@@ -252,7 +361,7 @@ void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *lis
             wb_pages_cell_plain(table, WB_TONE_PLAIN, entry.result->revision);
         else
             wb_pages_cell(table, WB_TONE_WARNING, "not used");
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, entry.result->sha256);
+        wb_pages_cell_checksum(table, entry.result->sha256);
     }
 }
 

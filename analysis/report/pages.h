@@ -6,6 +6,7 @@
 
 #include "analysis/report/campaign.h"
 #include "analysis/report/document.h"
+#include "analysis/report/found.h"
 #include "analysis/report/kind.h"
 #include "analysis/report/simulation.h"
 #include "analysis/report/verdict.h"
@@ -17,6 +18,8 @@ void wb_pages_cell(struct wb_document_table *table, enum wb_document_tone tone, 
                    ...) __attribute__((format(printf, 3, 4)));
 void wb_pages_cell_plain(struct wb_document_table *table, enum wb_document_tone tone,
                          const char *text);
+/* The first 16 of a checksum's 64 digits, which report.json has. */
+void wb_pages_cell_checksum(struct wb_document_table *table, const char *sha256);
 /* Decimals, at most six, that give a positive number three digits that mean something; 0 of any
  * other. */
 int wb_pages_decimals(double value);
@@ -30,6 +33,13 @@ void wb_pages_cell_judged(struct wb_document_table *table, double value, int dec
                           bool is_limited, bool is_kept);
 /* Escapes into a buffer, cut where it ends (never within an entity). Returns the buffer. */
 char *wb_pages_escape(char *buffer, size_t size, const char *raw);
+
+/* Appends a number with a real minus sign, where there is one. */
+void wb_pages_append_number(struct wb_text *text, double value, int decimals);
+
+/* Appends plain text as markup, with symbols and powers of ten typeset: "sigma_Y 3.5 MPa",
+ * "C1", "gamma2", "1.2e-03", "+-". */
+void wb_pages_append_symbols(struct wb_text *text, const char *plain);
 
 /* Adds a text of markup as a block of that kind and releases it. */
 void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
@@ -47,14 +57,15 @@ struct wb_document_table *wb_pages_start_table(struct wb_document *document,
 void wb_pages_start_simulations(struct wb_document *document, const char *title,
                                 const struct wb_kind_outcome *outcome);
 
-/* A notice that something is missing, then which datasets cannot be used, why, and how to make
- * them; nothing where all is complete. */
+/* Says on the first page that datasets are missing, and how to compute them. */
+void wb_pages_add_missing(struct wb_found *found, const struct wb_kind_outcome *outcome);
+/* Which datasets cannot be used, why, and how to compute each; nothing where all are used. */
 void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,
                           wb_simulation_list *list, const void *results);
 
-/* An item for each limit, kept or exceeded; of a laboratory's report with uncertainty and rule. */
-void wb_pages_put_verdicts(struct wb_document *document, const struct wb_campaign *campaign,
-                           const struct wb_verdict *verdicts, int n);
+/* The verdicts of a laboratory's report with the decision rule; nothing in other reports. */
+void wb_pages_put_decisions(struct wb_document *document, const struct wb_campaign *campaign,
+                            const struct wb_verdict *verdicts, int n);
 
 /* A table of all datasets with their checksums, under a heading. */
 void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *list,

@@ -51,7 +51,7 @@ WB_MUST_CHECK enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle 
                                                      int n, struct wb_reason *why);
 void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle);
 
-/* Whether no law follows loading and unloading. */
+/* Whether no law fits loading and unloading. */
 bool wb_recordings_cycle_is_refuted(const struct wb_recordings_cycle *cycle);
 
 /* All numbers into an object of report.json. */

@@ -270,7 +270,7 @@ struct tree {
     struct wb_figure_style dot, line;
 };
 
-/* From the bottom up: the range over laws, the mean unless no law follows the data, then the
+/* From the bottom up: the range over laws, the mean unless no law fits the data, then the
  * samples from the last on. */
 static int plant(const struct wb_recordings_cycle *cycle, struct wb_colour colour,
                  struct tree trees[MOST_ROWS])

@@ -39,19 +39,23 @@ static double best_misfit(const struct wb_cycle_calibration *c)
     return c->ranked[0].misfit;
 }
 
-/* --- the first page --- */
+/* --- sentences that the first page has, too --- */
 
-static void append_estimate(struct wb_text *text, const char *name, const struct wb_estimate *e,
-                            double unit, const char *unit_name)
+void wb_recordings_cycle_pages_append(struct wb_text *text, const char *name,
+                                      enum wb_quantity_id id, const struct wb_estimate *e)
 {
-    const int decimals = wb_pages_decimals(e->value / unit);
-    wb_text_append(text, "%s = %.*f%s", name, decimals, e->value / unit, unit_name);
+    const struct wb_quantity *const row = &wb_quantity_rows[id];
+    const int decimals = wb_pages_decimals(e->value / row->scale);
+    wb_text_append(text, "%s = %.*f%s", name, decimals, e->value / row->scale,
+                   row->unit[0] ? " " : "");
+    wb_pages_append_symbols(text, row->unit);
     if (isfinite(e->low))
-        wb_text_append(text, " (%.*f to %.*f)", decimals, e->low / unit, decimals, e->high / unit);
+        wb_text_append(text, " (%.*f to %.*f)", decimals, e->low / row->scale, decimals,
+                       e->high / row->scale);
 }
 
-/* Stiffness and residual curvature ratio between their ends over the laws. */
-static void append_ranges(struct wb_text *text, const struct wb_cycle_calibration *c)
+void wb_recordings_cycle_pages_append_ranges(struct wb_text *text,
+                                             const struct wb_cycle_calibration *c)
 {
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const struct wb_estimate *const ratio = &c->residual_curvature_ratio;
@@ -64,184 +68,14 @@ static void append_ranges(struct wb_text *text, const struct wb_cycle_calibratio
         stiffness->candidates_high / WB_NMM2, ratio->candidates_low, ratio->candidates_high);
 }
 
-/* "unloading stiffness = ..., residual curvature ratio = ..., bent to ...". */
-static void append_properties(struct wb_text *text, const struct wb_cycle_calibration *c)
-{
-    const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
-    const struct wb_estimate *const ratio = &c->residual_curvature_ratio;
-    if (c->has_unloading && !c->is_followed) {
-        wb_text_append(text,
-                       "no law fits loading and unloading (%.1f %% of <i>F</i><sub>max</sub>); ",
-                       100.0 * best_misfit(c));
-        append_ranges(text, c);
-        return;
-    }
-    append_estimate(text, c->has_unloading ? "unloading stiffness" : "secant stiffness", stiffness,
-                    WB_NMM2, " N mm\xc2\xb2");
-    if (c->has_unloading)
-        append_estimate(text, ", residual curvature ratio", ratio, 1.0, "");
-    else
-        wb_text_append(text, "; unloading was not recorded");
-    wb_text_append(text, ", bent to %.0f /m.", c->largest_curvature);
-}
-
-/* Whether specimens of the other length are predicted, with the numbers of the bound that is
- * exceeded most, else those of the loading. */
-static void append_prediction(struct wb_text *text, const struct wb_validate_result *p)
-{
-    static const char *const words[] = {
-        [WB_VALIDATE_PREDICTED] = "yes",       [WB_VALIDATE_NOT_PREDICTED] = "no",
-        [WB_VALIDATE_UNDECIDED] = "undecided", [WB_VALIDATE_BEYOND] = "with care",
-        [WB_VALIDATE_NOT_CONVERGED] = "no",
-    };
-    const enum wb_validate_verdict verdict = wb_validate_bounds_verdict(p);
-    enum wb_validate_part part = WB_VALIDATE_LOADING;
-    double most = 1.0;
-    for (enum wb_validate_part k = 0; k < WB_VALIDATE_PARTS; k++) {
-        const struct wb_validate_bound *const bound = &p->bounds[k];
-        if (bound->is_exceeded && bound->found / bound->bound > most) {
-            most = bound->found / bound->bound;
-            part = k;
-        }
-    }
-    const bool is_length = part == WB_VALIDATE_RESIDUAL || part == WB_VALIDATE_SHAPES;
-    const double unit = is_length ? WB_MM : WB_PERCENT;
-    const struct wb_validate_bound *const bound = &p->bounds[part];
-    wb_text_append(text, " Specimens of %g mm are predicted: <b>%s</b>; ", p->info.length / WB_MM,
-                   words[verdict]);
-    if (verdict == WB_VALIDATE_NOT_CONVERGED)
-        wb_text_append(text, "the beam did not converge up to the largest deflection.");
-    else if (!isfinite(bound->bound))
-        wb_text_append(text,
-                       "loading within %.2g %% of <i>F</i><sub>max</sub>; the scatter of specimens "
-                       "is not known.",
-                       p->elastoplastic.rms / WB_PERCENT);
-    else
-        wb_text_append(text, "%s%s %.2g %s, where the scatter of specimens explains %.2g.%s",
-                       wb_validate_part_name(part), bound->is_exceeded ? " off by" : " within",
-                       bound->found / unit, is_length ? "mm" : "% of <i>F</i><sub>max</sub>",
-                       bound->bound / unit,
-                       verdict == WB_VALIDATE_BEYOND
-                           ? " They are bent further than the law was measured."
-                           : "");
-}
-
-static void put_wire_found(struct wb_document *document,
-                           const struct wb_recordings_results_wire *wire)
-{
-    const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
-    const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
-    struct wb_text text = {0};
-    wb_text_append(&text, "<b>");
-    wb_text_append_escaped(&text, wire->wanted->label);
-    wb_text_append(&text, "</b>: ");
-    if (cycle && cycle->calibration.is_stopped)
-        wb_text_append(&text, "undecided: stopped before all laws were fitted.");
-    else if (cycle)
-        append_properties(&text, &cycle->calibration);
-    else
-        wb_text_append(&text, "not calibrated; the reason stands below.");
-    if (p)
-        append_prediction(&text, p);
-    const bool is_good =
-        cycle && cycle->calibration.is_followed && !(p && wb_validate_bounds_exceeded(p));
-    wb_pages_put_text(document, WB_BLOCK_ITEM, is_good ? WB_TONE_PLAIN : WB_TONE_WARNING, &text);
-}
-
-/* Smallest and largest RMS of the unloading, of one route or the other. */
-struct span {
-    double low, high; /* 1 */
-    int n;
-};
-
-static void add_to_span(struct span *span, double rms)
-{
-    span->low = span->n > 0 ? fmin(span->low, rms) : rms;
-    span->high = span->n > 0 ? fmax(span->high, rms) : rms;
-    span->n++;
-}
-
-static bool has_unloading(const struct wb_validate_result *p)
-{
-    return p && p->cycles.n_samples > 0 && isfinite(p->cycles.rms);
-}
-
-/* Which of the two methods predicts the unloading, and how many specimens are missing. */
-static void put_advice(struct wb_document *document, const struct wb_recordings_results *results)
-{
-    struct span cycle = {0.0, 0.0, 0}, paper = {0.0, 0.0, 0};
-    struct wb_text text = {0};
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        const struct wb_validate_result *const by_cycle = wb_recordings_results_prediction(wire);
-        const struct wb_validate_result *const by_paper =
-            wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
-        if (!has_unloading(by_cycle) || !has_unloading(by_paper))
-            continue;
-        add_to_span(&cycle, by_cycle->cycles.rms);
-        add_to_span(&paper, by_paper->cycles.rms);
-    }
-    if (cycle.n > 0) {
-        wb_text_append(
-            &text,
-            "<b>Method</b>: %s. The law of loading and unloading predicts the unloading "
-            "with an RMS error of %.1f to %.1f %% of <i>F</i><sub>max</sub>, the paper's "
-            "route, which is fitted to the loading alone, of %.1f to %.1f %%.",
-            cycle.high <= paper.high ? "use the law of loading and unloading"
-                                     : "neither law predicts the unloading better for all wires",
-            cycle.low / WB_PERCENT, cycle.high / WB_PERCENT, paper.low / WB_PERCENT,
-            paper.high / WB_PERCENT);
-        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
-    }
-    bool any = false;
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_cycle *const of =
-            wb_recordings_results_cycle(&results->wires[i]);
-        if (!of || of->calibration.specimens_for_5_percent <= of->calibration.n_members)
-            continue;
-        wb_text_append(&text, any ? ", "
-                                  : "<b>Test next</b>: for EI within \xc2\xb1"
-                                    "5 %%, ");
-        wb_text_append(&text, "%d specimens of ", of->calibration.specimens_for_5_percent);
-        wb_text_append_escaped(&text, results->wires[i].wanted->label);
-        wb_text_append(&text, " (%d tested)", of->calibration.n_members);
-        any = true;
-    }
-    if (any) {
-        wb_text_append(&text, ".");
-        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
-    }
-    wb_text_release(&text);
-}
-
-bool wb_recordings_cycle_pages_found(struct wb_document *document,
-                                     const struct wb_recordings_results *results,
-                                     const struct wb_figures *figures)
-{
-    bool is_predicted = true;
-    if (!results->campaign->whole_cycle)
-        return is_predicted;
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_validate_result *const p =
-            wb_recordings_results_prediction(&results->wires[i]);
-        put_wire_found(document, &results->wires[i]);
-        is_predicted = is_predicted && !(p && wb_validate_bounds_exceeded(p));
-    }
-    put_advice(document, results);
-    wb_document_paragraph(document,
-                          "In brackets: intervals of 95 %. Unloading stiffness: change of "
-                          "the moment over the change of the curvature, over the first "
-                          "1 /m from the largest curvature.");
-    wb_figures_put(figures, document, "bending", 0);
-    return is_predicted;
-}
+/* --- tables of all wires --- */
 
 static void put_verdict(struct wb_document_table *table, const struct wb_cycle_calibration *c)
 {
     if (!c->has_unloading)
         wb_pages_cell(table, WB_TONE_WARNING, "rule untested: no unloading");
     else if (!c->is_followed)
-        wb_pages_cell(table, WB_TONE_WARNING, "no law follows the data");
+        wb_pages_cell(table, WB_TONE_WARNING, "no law fits the data");
     else
         wb_pages_cell(table, WB_TONE_GOOD, "%s", wb_candidate_name(c->chosen));
 }
@@ -259,7 +93,7 @@ static void put_wire(struct wb_document_table *table, const struct wb_recordings
     const struct wb_estimate *const back = &c->residual_curvature_ratio;
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const double none = (double)NAN;
-    /* Where no law follows the data, the range over laws is all that is known. */
+    /* Where no law fits the data, the range over laws is all that is known. */
     const bool is_known = c->is_followed || !c->has_unloading;
     put_number(table, is_known ? stiffness->value / WB_NMM2 : none);
     put_range(table, is_known ? stiffness->low / WB_NMM2 : none, stiffness->high / WB_NMM2);
@@ -626,7 +460,7 @@ static void put_failures(struct wb_document *document, const struct wb_recording
                           wb_text_string(&wire->cycle_problems[WB_RECORDINGS_CALIBRATION]));
         else if (wb_recordings_cycle_is_refuted(cycle))
             wb_pages_item(document, WB_TONE_WARNING, "<b>", wire->wanted->label,
-                          ": no law follows the data</b>: ",
+                          ": no law fits the data</b>: ",
                           "only ranges over the laws are given. The residual deflections on the "
                           "wire's page are measured.");
     }
@@ -668,21 +502,25 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
                        "<b>No law fits the data.</b> The best misses loading and unloading by "
                        "%.2f %% of <i>F</i><sub>max</sub>: ",
                        100.0 * best_misfit(c));
-        append_ranges(&text, c);
+        wb_recordings_cycle_pages_append_ranges(&text, c);
         wb_text_append(&text, " ");
     } else {
         const char *const name = wb_candidate_name(c->chosen);
         wb_text_append(&text, "<b>%c%s.</b> ", toupper((unsigned char)name[0]), name + 1);
     }
     if (c->is_followed || !c->has_unloading) {
-        append_estimate(&text, "Moment at the largest curvature", &c->moment[WB_CYCLE_MOMENTS - 1],
-                        WB_NMM, " N mm");
-        append_estimate(&text, "; stiffness", wb_recordings_cycle_stiffness(c), WB_NMM2,
-                        " N mm\xc2\xb2");
+        wb_recordings_cycle_pages_append(&text, "Moment at the largest curvature",
+                                         WB_QUANTITY_MOMENT, &c->moment[WB_CYCLE_MOMENTS - 1]);
+        wb_recordings_cycle_pages_append(
+            &text, c->has_unloading ? "; unloading stiffness" : "; secant stiffness",
+            WB_QUANTITY_UNLOADING_STIFFNESS, wb_recordings_cycle_stiffness(c));
     }
     if (c->is_followed) {
-        append_estimate(&text, "; residual curvature ratio", &c->residual_curvature_ratio, 1.0, "");
-        append_estimate(&text, "; loop energy", &c->loop_energy, WB_MJ, " mJ/m");
+        wb_recordings_cycle_pages_append(&text, "; residual curvature ratio",
+                                         WB_QUANTITY_RESIDUAL_CURVATURE_RATIO,
+                                         &c->residual_curvature_ratio);
+        wb_recordings_cycle_pages_append(&text, "; loop energy", WB_QUANTITY_LOOP_ENERGY,
+                                         &c->loop_energy);
         wb_text_append(&text, ", bent to %.1f /m and back.", c->largest_curvature);
     }
     if (c->specimens_for_5_percent > 0)
@@ -736,21 +574,49 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
 static void put_ranked_numbers(struct wb_document *document, const struct wb_cycle_calibration *c)
 {
     static const struct wb_document_column columns[] = {{"Law"},
-                                                        {.heading = "Numbers", .wraps = true}};
+                                                        {.heading = "Parameters", .wraps = true}};
     struct wb_text caption = {0};
     wb_text_append(
         &caption,
-        "Numbers of the laws in range: means over the samples, of Ludwik's of logarithms.");
+        "Parameters of the laws in range: means over the samples, of Ludwik's law of logarithms.");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 2, columns);
     for (int i = 0; i < c->n_ranked; i++) {
-        struct wb_text numbers = {0};
+        struct wb_text numbers = {0}, typeset = {0};
         if (!c->ranked[i].counts)
             continue;
         wb_law_append_numbers(&numbers, &c->ranked[i].law);
+        wb_pages_append_symbols(&typeset, wb_text_string(&numbers));
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_candidate_name(c->ranked[i].candidate));
-        wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_text_string(&numbers));
+        wb_document_cell(table, WB_TONE_PLAIN, wb_text_string(&typeset));
         wb_text_release(&numbers);
+        wb_text_release(&typeset);
+    }
+}
+
+/* The natural shape of each sample, as it was fitted. */
+static void put_bows(struct wb_document *document, const struct wb_cycle_calibration *c)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "Sample", .right = true},
+        {.heading = "Bow (mm)", .right = true},
+        {.heading = "Uneven bow (mm)", .right = true},
+        {.heading = "Error of zero deflection (mm)", .right = true},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Natural shape, fitted with the law. Bow: offset of the tip. Uneven bow: offset of the "
+        "middle from a shape of even curvature.",
+        WB_COUNT(columns), columns);
+    for (int i = 0; i < c->n_members; i++) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        const struct wb_cycle_fit *const fit = &member->answers[c->chosen].fit;
+        const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, member->data.info.length);
+        wb_document_row(table, false);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
+        put_signed(table, bow.tip / WB_MM, bow.deviation / WB_MM);
+        wb_pages_cell_number(table, bow.uneven / WB_MM, 2);
+        wb_pages_cell_number(table, fit->level / WB_MM, 2);
     }
 }
 
@@ -758,47 +624,39 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
 {
     static const struct wb_document_column columns[] = {
         {.heading = "Sample", .right = true},
-        {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true, .wraps = true},
-        {.heading = "Residual curva- ture ratio", .right = true, .wraps = true},
-        {.heading = "Residual deflec- tion (mm)", .right = true, .wraps = true},
-        {.heading = "Bow (mm)", .right = true},
-        {.heading = "Un- even (mm)", .right = true, .wraps = true},
-        {.heading = "Level (mm)", .right = true, .wraps = true},
-        {.heading = "Misfit up (%)", .right = true, .wraps = true},
-        {.heading = "Misfit back (%)", .right = true, .wraps = true},
-        {.heading = "Mark- ers (mm)", .right = true, .wraps = true},
-        {.heading = "Out- liers", .right = true, .wraps = true},
+        {.heading = "<i>EI</i> (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
+        {.heading = "Residual curvature ratio", .right = true, .wraps = true},
+        {.heading = "Residual deflection (mm)", .right = true, .wraps = true},
+        {.heading = "Misfit, loading (%)", .right = true, .wraps = true},
+        {.heading = "Misfit, unloading (%)", .right = true, .wraps = true},
+        {.heading = "Markers (mm)", .right = true, .wraps = true},
+        {.heading = "Outliers", .right = true, .wraps = true},
     };
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     wb_document_heading(document, 2, "", "Samples");
     struct wb_document_table *const table = wb_document_table(
         document,
         "Each sample fitted by itself with the chosen law. Residual deflection: as measured, where "
-        "the force has come down to that at zero deflection. Bow, uneven and level: natural "
-        "offset of the tip, of the middle from an even curvature's, and error of zero deflection, "
-        "fitted. Misfit up and back: RMS of the force residuals of loading and of unloading over "
-        "<i>F</i><sub>max</sub>. Markers: RMS distance to the computed wire. Outliers: readings "
-        "that were left out or weighted down.",
-        11, columns);
+        "the force has come down to that at zero deflection. Misfit: RMS of the force residuals "
+        "over <i>F</i><sub>max</sub>. Markers: RMS distance to the computed wire. Outliers: "
+        "readings that were left out or weighted down.",
+        WB_COUNT(columns), columns);
     for (int i = 0; i < c->n_members; i++) {
         const struct wb_cycle_member *const member = &c->members[i];
         const struct wb_cycle_answer *const answer = &member->answers[c->chosen];
         const struct wb_cycle_fit *const fit = &answer->fit;
-        const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, member->data.info.length);
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
         put_number(table, answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2);
         put_number(table,
                    c->has_unloading ? answer->value[WB_CYCLE_RESIDUAL_CURVATURE] : (double)NAN);
         wb_pages_cell_number(table, member->data.residual_deflection / WB_MM, 1);
-        put_signed(table, bow.tip / WB_MM, bow.deviation / WB_MM);
-        wb_pages_cell_number(table, bow.uneven / WB_MM, 2);
-        wb_pages_cell_number(table, fit->level / WB_MM, 2);
         wb_pages_cell_number(table, 100.0 * fit->loading_misfit, 3);
         wb_pages_cell_number(table, 100.0 * fit->unloading_misfit, 3);
         wb_pages_cell_number(table, fit->place_rms / WB_MM, 3);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", fit->n_outliers + member->data.n_outliers);
     }
+    put_bows(document, c);
 }
 
 static void put_budget(struct wb_document *document, const struct wb_cycle_calibration *c)
@@ -932,7 +790,7 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
     const struct wb_material *const m = &c->ludwik;
     wb_document_heading(document, 2, "", "The law's numbers");
     if (wb_recordings_cycle_is_refuted(cycle))
-        wb_text_append(&text, "No law follows the data; these are the numbers of the chosen one, "
+        wb_text_append(&text, "No law fits the data; these are the numbers of the chosen one, "
                               "not of the wire. ");
     if (c->law.form != WB_LAW_LUDWIK) {
         if (c->law.form == WB_LAW_PARALLEL)
@@ -963,21 +821,28 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
                                : "More samples, or an unloading, would mend it.");
     }
     if (c->law.n_maxwell > 0) {
+        struct wb_text relaxation = {0};
+        wb_law_append_relaxation(&relaxation, &c->law);
         wb_text_append(&text, " Beside it ");
-        wb_law_append_relaxation(&text, &c->law);
+        wb_pages_append_symbols(&text, wb_text_string(&relaxation));
         wb_text_append(&text, "; the law itself is the relaxed wire's.");
+        wb_text_release(&relaxation);
     }
     char a[24], b[24];
     int one, other;
     const struct wb_cycle_fit *const fit = &c->members[0].answers[c->chosen].fit;
-    if (wb_cycle_fit_strongest(fit, &one, &other))
+    if (wb_cycle_fit_strongest(fit, &one, &other)) {
         wb_text_append(
             &text,
             " The law's parameters are strongly correlated: in the fit of sample %d the strongest "
-            "correlation is %s%.2f, of %s and %s.",
+            "correlation is %s%.2f, of ",
             c->members[0].sample, minus(fit->correlation[one][other]),
-            fabs(fit->correlation[one][other]), wb_cycle_fit_number(fit, one, a),
-            wb_cycle_fit_number(fit, other, b));
+            fabs(fit->correlation[one][other]));
+        wb_pages_append_symbols(&text, wb_cycle_fit_number(fit, one, a));
+        wb_text_append(&text, " and ");
+        wb_pages_append_symbols(&text, wb_cycle_fit_number(fit, other, b));
+        wb_text_append(&text, ".");
+    }
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 

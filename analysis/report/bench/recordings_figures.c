@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/report/bench/recordings_cycle_figures.h"
 #include "analysis/report/bench/recordings_draw.h"
@@ -614,6 +615,19 @@ static void add_overview(struct wb_panel *panel, const struct wb_recordings_resu
     wb_figures_add_curve(panel, label, curve, result->elastoplastic.force, WB_MN, &line);
 }
 
+/* Whether the first page shows the curves of that purpose: by the paper's route alone, those of the
+ * validation where there is any. */
+static bool is_on_first_page(const struct wb_recordings_results *results,
+                             enum wb_recordings_purpose purpose)
+{
+    bool any_validation = false;
+    for (int i = 0; i < results->n_wires; i++)
+        any_validation |=
+            wb_recordings_results_of(&results->wires[i], WB_RECORDINGS_VALIDATION) != NULL;
+    return !results->campaign->whole_cycle &&
+           (purpose == WB_RECORDINGS_VALIDATION) == any_validation;
+}
+
 static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_purpose purpose)
 {
     const struct wb_recordings_results *const results = item->results;
@@ -624,8 +638,9 @@ static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_
         if (!result)
             continue;
         if (!panel) {
+            const double height = strcmp(item->row->place, "found") == 0 ? 165.0 : 205.0;
             WB_TRY(wb_recordings_draw_start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH,
-                                            205.0));
+                                            height));
             panel = wb_figure_add_panel(item->figure);
             set_force_axes(panel, 0.0);
         }
@@ -637,6 +652,9 @@ static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_
 static enum wb_status draw_calibrations(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
+    if (strcmp(item->row->place, "found") != 0 &&
+        is_on_first_page(results, WB_RECORDINGS_CALIBRATION))
+        return WB_OK;
     wb_text_append(&item->caption,
                    "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
                    "against them%s. Bands: range of the samples.",
@@ -649,12 +667,25 @@ static enum wb_status draw_validations(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
     const double *const length = results->campaign->length;
+    if (strcmp(item->row->place, "found") != 0 &&
+        is_on_first_page(results, WB_RECORDINGS_VALIDATION))
+        return WB_OK;
     wb_text_append(&item->caption,
-                   "The same wires at %g mm, %s, and the prediction of the beams calibrated at %g "
-                   "mm%s.",
+                   "Mean force over deflection of the samples of %g mm, %s, and the prediction of "
+                   "the beams calibrated at %g mm%s. Bands: range of the samples.",
                    length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(results),
                    length[WB_RECORDINGS_CALIBRATION] / WB_MM, route_of(results));
     return draw_all(item, WB_RECORDINGS_VALIDATION);
+}
+
+/* Moments of all wires, or where the campaign has the paper's route alone, forces of all. */
+static enum wb_status draw_found(struct wb_figures_item *item)
+{
+    const struct wb_recordings_results *const results = item->results;
+    if (results->campaign->whole_cycle)
+        return wb_recordings_cycle_figures_all_moments(item);
+    return is_on_first_page(results, WB_RECORDINGS_VALIDATION) ? draw_validations(item)
+                                                               : draw_calibrations(item);
 }
 
 static enum wb_status draw_errors(struct wb_figures_item *item)
@@ -693,7 +724,7 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
 /* --- the table --- */
 
 const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES] = {
-    {"bending", NULL, wb_recordings_cycle_figures_all_moments, false},
+    {"found", NULL, draw_found, false},
     {"bench", NULL, draw_bench, false},
     {"overview", NULL, draw_calibrations, false},
     {"overview", NULL, draw_validations, false},

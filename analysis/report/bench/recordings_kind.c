@@ -45,7 +45,7 @@ static void print_cycle(FILE *out, const struct wb_recordings_cycle *cycle)
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     if (c->has_unloading && !c->is_followed)
-        fprintf(out, "  stiffness %.0f to %.0f N mm2, no law follows the data",
+        fprintf(out, "  stiffness %.0f to %.0f N mm2, no law fits the data",
                 stiffness->candidates_low / WB_NMM2, stiffness->candidates_high / WB_NMM2);
     else
         fprintf(out, "  stiffness %.0f N mm2%s", stiffness->value / WB_NMM2,

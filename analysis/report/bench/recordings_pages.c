@@ -10,6 +10,7 @@
 #include "analysis/report/bench/recordings_cycle_pages.h"
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/bench/recordings_figures.h"
+#include "analysis/report/bench/recordings_found.h"
 #include "analysis/report/pages.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -54,114 +55,9 @@ static int count_exclusions(const struct wb_recordings_results *results)
     return n;
 }
 
-/* --- summary: origin, limits, what is missing, properties, figures of merit, warnings --- */
+/* --- summary: first page, what is missing, properties, figures of merit, warnings --- */
 
 #define MOST_WARNINGS 4
-
-static void put_origin(struct wb_document *document, const struct wb_recordings_results *results)
-{
-    if (!results->any_virtual)
-        return;
-    wb_document_notice(
-        document, WB_TONE_ORIGIN,
-        results->all_virtual
-            ? "<b>Virtual rig.</b> All recordings of this report come from the virtual rig, a "
-              "simulated bench with a simulated wire. No physical wire was tested. The wire in it "
-              "only resembles the published one, whose values stand beside for orientation."
-            : "<b>Virtual rig.</b> Some recordings of this report come from the virtual rig, a "
-              "simulated bench with a simulated wire; the list of recordings says which.");
-}
-
-/* What the scatter between samples may have to do with a validation's error. */
-static void append_share(struct wb_text *text, const struct wb_validate_result *validation)
-{
-    if (isfinite(validation->scatter_share))
-        wb_text_append(text,
-                       " RMS of a perfect model with specimens that differ like these: about "
-                       "%.4f, above %.4f in one of twenty validations; found: %.4f, which is %s.",
-                       validation->expected_rms, validation->expected_rms_95,
-                       validation->elastoplastic.rms,
-                       validation->elastoplastic.rms > validation->expected_rms_95
-                           ? "more than the scatter of specimens explains"
-                           : "no more than the scatter of specimens explains");
-    else
-        wb_text_append(text, " What the scatter between samples explains is not known: there are "
-                             "fewer than two samples.");
-}
-
-static void put_miss(struct wb_document *document, const struct wb_recordings_results_wire *wire,
-                     enum wb_recordings_purpose purpose, double limit)
-{
-    struct wb_text text = {0};
-    wb_text_append(&text, "<b>Limit exceeded.</b> ");
-    wb_text_append_escaped(&text, wire->wanted->label);
-    wb_text_append(&text, ", %s: RMS %.4f of <i>F</i><sub>max</sub>, limit %.4g.",
-                   wb_recordings_purposes[purpose], wb_recordings_results_rms(wire, purpose),
-                   limit);
-    if (purpose == WB_RECORDINGS_VALIDATION)
-        append_share(&text, &wire->steps[purpose].result);
-    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
-}
-
-/* A verdict as a laboratory's report has it: with uncertainty and decision rule. */
-static void put_verdict(struct wb_document *document, const struct wb_recordings *campaign,
-                        const struct wb_recordings_results_wire *wire,
-                        enum wb_recordings_purpose purpose)
-{
-    const bool is_kept = wb_recordings_results_keeps(campaign, wire, purpose);
-    const double uncertainty = wb_recordings_results_uncertainty(wire, purpose);
-    struct wb_text text = {0};
-    wb_text_append_escaped(&text, wire->wanted->label);
-    wb_text_append(&text, ", %s: RMS %.4f of <i>F</i><sub>max</sub>, ",
-                   wb_recordings_purposes[purpose], wb_recordings_results_rms(wire, purpose));
-    if (isfinite(uncertainty))
-        wb_text_append(&text, "<i>U</i> = %.4f (95 %%, scatter between specimens)", uncertainty);
-    else
-        wb_text_append(&text, "<i>U</i> not known (one specimen)");
-    wb_text_append(&text, ", limit %.4g: <b>%s</b> by %s acceptance.", campaign->limit[purpose],
-                   is_kept ? "kept" : "exceeded", wb_verdict_rules[campaign->head.laboratory.rule]);
-    wb_pages_put_text(document, WB_BLOCK_ITEM, is_kept ? WB_TONE_GOOD : WB_TONE_WARNING, &text);
-}
-
-/* Limits judge the paper's route: no green box where a prediction of the other one fails. */
-static void put_limits(struct wb_document *document, const struct wb_recordings_results *results,
-                       bool is_predicted)
-{
-    const double *const limit = results->campaign->limit;
-    int judged = 0;
-    for (int i = 0; i < WB_RECORDINGS_PURPOSES * results->n_wires; i++) {
-        const enum wb_recordings_purpose purpose =
-            (enum wb_recordings_purpose)(i % WB_RECORDINGS_PURPOSES);
-        const struct wb_recordings_results_wire *const wire =
-            &results->wires[i / WB_RECORDINGS_PURPOSES];
-        if (!wb_recordings_results_of(wire, purpose) || !(limit[purpose] > 0.0))
-            continue;
-        judged++;
-        if (!wb_recordings_results_keeps(results->campaign, wire, purpose))
-            put_miss(document, wire, purpose, limit[purpose]);
-        if (results->campaign->head.laboratory.is_given)
-            put_verdict(document, results->campaign, wire, purpose);
-    }
-    if (judged == 0 || results->outcome.exceeds_limit)
-        return;
-    struct wb_text text = {0};
-    wb_text_append(&text, results->outcome.is_complete
-                              ? "<b>All limits of the campaign are kept:</b>"
-                              : "<b>What could be computed keeps the campaign's limits:</b>");
-    if (results->campaign->whole_cycle)
-        wb_text_append(&text, " by the paper's route,");
-    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
-        if (limit[k] > 0.0)
-            wb_text_append(&text, "%s of each %s at most %.4g",
-                           k > 0 && limit[0] > 0.0 ? "," : " RMS", wb_recordings_purposes[k],
-                           limit[k]);
-    }
-    wb_text_append(&text, " of <i>F</i><sub>max</sub>.");
-    if (!is_predicted)
-        wb_text_append(&text, " They do not judge the predictions above.");
-    wb_pages_put_text(document, WB_BLOCK_NOTICE, is_predicted ? WB_TONE_GOOD : WB_TONE_QUIET,
-                      &text);
-}
 
 /* Why a step of a wire could not be done; NULL: it was, or there is none. */
 static const char *problem_of(const struct wb_recordings_results_step *step)
@@ -175,18 +71,7 @@ static void put_missing(struct wb_document *document, const struct wb_recordings
 {
     if (results->outcome.is_complete)
         return;
-    char text[300];
-    const int n = results->outcome.n_wanted - results->outcome.n_usable;
-    if (n > 0)
-        snprintf(text, sizeof text,
-                 "<b>Incomplete.</b> %d of %d recordings %s missing or could not be used. The "
-                 "report shows what the others give.",
-                 n, results->outcome.n_wanted, wb_pages_plural(n, "is", "are"));
-    else
-        snprintf(text, sizeof text,
-                 "<b>Incomplete.</b> All recordings are there, but not every "
-                 "step could be done.");
-    wb_document_notice(document, WB_TONE_WARNING, text);
+    wb_document_heading(document, 2, "missing", "What is missing");
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
         put_missing_tests(document, results, wire);
@@ -468,10 +353,7 @@ static void put_excluded(struct wb_document *document, const struct wb_recording
 static void put_summary(struct wb_document *document, const struct wb_recordings_results *results,
                         const struct wb_figures *figures)
 {
-    wb_document_heading(document, 1, "summary", "What was found");
-    put_origin(document, results);
-    const bool is_predicted = wb_recordings_cycle_pages_found(document, results, figures);
-    put_limits(document, results, is_predicted);
+    wb_recordings_found_put(document, results, figures);
     put_missing(document, results);
     wb_recordings_cycle_pages_summary(document, results);
     put_properties(document, results);
@@ -875,12 +757,21 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         put_merit(table, &merits[i]);
 }
 
+static void put_note(struct wb_document *document, const char *remark)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text, "Note: ");
+    wb_pages_append_symbols(&text, remark);
+    wb_text_append(&text, ".");
+    wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
+}
+
 static void put_remarks(struct wb_document *document, const struct wb_calibrate_result *result)
 {
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
     const int n = wb_calibrate_remarks(result, remarks);
     for (int i = 0; i < n; i++)
-        wb_pages_item(document, WB_TONE_PLAIN, "Note: ", remarks[i], ".", "");
+        put_note(document, remarks[i]);
 }
 
 static void put_search(struct wb_document *document, const struct wb_recordings_results *results,
@@ -982,8 +873,7 @@ static void put_test(struct wb_document_table *table, const struct wb_recordings
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", test->wanted->seed);
     else
         wb_pages_cell_number(table, (double)NAN, 0);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN,
-                        test->sha256[0] ? test->sha256 : test->wanted->sha256);
+    wb_pages_cell_checksum(table, test->sha256[0] ? test->sha256 : test->wanted->sha256);
 }
 
 /* The revisions that recorded, each once, in the order of the list. */
@@ -1010,12 +900,14 @@ static void put_recordings(struct wb_document *document,
         {.heading = "Recording", .wraps = true},
         {.heading = "Start (UTC)"},
         {.heading = "Seed", .right = true},
-        {.heading = "SHA-256", .monospace = true},
+        {.heading = "SHA-256, first 16 digits", .monospace = true},
     };
     wb_document_heading(document, 2, "recordings", "Recordings");
     struct wb_text caption = {0};
-    wb_text_append(&caption, "All checksums are those of the uncompressed recordings.%s",
-                   results->any_virtual ? " Seed: of the virtual rig." : "");
+    wb_text_append(
+        &caption,
+        "Checksums are of the uncompressed recordings; all 64 digits are in report.json.%s",
+        results->any_virtual ? " Seed: of the virtual rig." : "");
     append_revisions(&caption, results);
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 4, columns);
     const struct wb_recordings_results_test *test;

@@ -474,7 +474,7 @@ static enum wb_status draw_fit(struct wb_figures_item *item)
     }
     if (!(largest > 0.0))
         return WB_OK;
-    WB_TRY(start(&item->figure, "fit", -1, 300.0));
+    WB_TRY(start(&item->figure, "fit", -1, 195.0));
     wb_text_append(&item->caption,
                    "Simulated force over deflection in 3D (broad) and of the fitted 1D "
                    "beam (dashed)%s.",
@@ -530,5 +530,5 @@ const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS] = {
     {"energies", count_groups, draw_energies, false},
     {"shapes", count_bundles, draw_shape, false},
     {"section-model", count_groups, wb_bundles_section_draw, false},
-    {"fit", NULL, draw_fit, false},
+    {"found", NULL, draw_fit, false},
 };

@@ -15,11 +15,14 @@ enum {
 };
 
 /* After the paper's Figs. 17 to 26. Places: of each group "sections", "curves" and "energies", of
- * each pair of studies "studies", of each bundle "shapes", and "fit"; and of each group
- * "section-model". */
+ * each pair of studies "studies", of each bundle "shapes", of each group "section-model",
+ * and "found" on the first page. */
 extern const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS];
 wb_kind_pages wb_bundles_pages_build;
 wb_kind_json wb_bundles_json_build;
+
+/* The first page, without its figure. */
+void wb_bundles_found_put(struct wb_document *document, const struct wb_bundles_results *results);
 
 /* The chapter on the section model beside the explicit one, and its figures, one a group. */
 void wb_bundles_section_put(struct wb_document *document, const struct wb_bundles_results *results,

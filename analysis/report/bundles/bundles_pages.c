@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "base/units.h"
 
-/* --- what is missing, what is exceeded --- */
+/* --- what is missing --- */
 
 static void put_unfitted(struct wb_document *document, const struct wb_bundles_results *results)
 {
@@ -22,14 +22,7 @@ static void put_unfitted(struct wb_document *document, const struct wb_bundles_r
     }
 }
 
-static void put_limits(struct wb_document *document, const struct wb_bundles_results *results)
-{
-    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
-    wb_pages_put_verdicts(document, results->outcome.campaign, verdicts,
-                          wb_bundles_results_judge(results, verdicts));
-}
-
-/* --- what came out --- */
+/* --- forces, errors and cost of all bundles --- */
 
 static void put_fact(struct wb_document_table *table, const struct wb_bundles_results *results,
                      int index)
@@ -71,23 +64,22 @@ static void put_facts(struct wb_document *document, const struct wb_bundles_resu
     if (campaign->printed_rms[1] > 0.0)
         wb_text_append(&caption, " The paper's own 3D curves lie %g to %g from its tests.",
                        campaign->printed_rms[0], campaign->printed_rms[1]);
-    wb_document_heading(document, 2, "facts", "What came out");
+    wb_document_heading(document, 2, "facts", "Forces, errors and cost");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 7, columns);
     for (int i = 0; i < campaign->n_bundles; i++)
         put_fact(table, results, i);
 }
 
-static void put_summary(struct wb_document *document, const struct wb_bundles_results *results)
+static void put_summary(struct wb_document *document, const struct wb_bundles_results *results,
+                        const struct wb_figures *figures)
 {
-    wb_document_heading(document, 1, "summary", "Summary");
-    wb_document_notice(
-        document, WB_TONE_ORIGIN,
-        "<b>Simulations.</b> Everything in this report is computed: bundles of wires "
-        "with contact, friction and tape in explicit 3D, and 1D beams. No bundle was "
-        "tested.");
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
+    const int n = wb_bundles_results_judge(results, verdicts);
+    wb_bundles_found_put(document, results);
+    wb_figures_put(figures, document, "found", 0);
+    wb_pages_put_decisions(document, results->outcome.campaign, verdicts, n);
     wb_pages_put_missing(document, &results->outcome, wb_bundles_results_list, results);
     put_unfitted(document, results);
-    put_limits(document, results);
     put_facts(document, results);
 }
 
@@ -144,7 +136,7 @@ static void put_runs(struct wb_document *document, const struct wb_bundles_resul
     static const struct wb_document_column columns[] = {
         {"Run"},
         {.heading = "Friction", .right = true},
-        {.heading = "<i>K</i><sub>cc</sub> (N/mm<sup>3</sup>)", .right = true, .wraps = true},
+        {.heading = "<i>K</i><sub>cc</sub> (N/mm\xc2\xb3)", .right = true, .wraps = true},
         {"Loading"},
         {.heading = "Time (s)", .right = true, .wraps = true},
         {.heading = "<i>F</i><sub>max</sub> (N)", .right = true, .wraps = true},
@@ -194,8 +186,8 @@ static void put_sections(struct wb_document *document, const struct wb_bundles_r
         {.heading = "<i>d</i><sub>o</sub>, printed (mm)", .right = true, .wraps = true},
         {.heading = "Density (g/cm<sup>3</sup>)", .right = true, .wraps = true},
         {.heading = "Density, printed", .right = true, .wraps = true},
-        {.heading = "<i>EI</i>, sliding (N mm<sup>2</sup>)", .right = true, .wraps = true},
-        {.heading = "<i>EI</i>, bonded (N mm<sup>2</sup>)", .right = true, .wraps = true},
+        {.heading = "<i>EI</i>, sliding (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
+        {.heading = "<i>EI</i>, bonded (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
     };
     const struct wb_bundles *const campaign = results->campaign;
     wb_document_heading(document, 1, "bundles", "Bundles");
@@ -304,7 +296,7 @@ static void put_table(struct wb_document *document, const struct wb_bundles_resu
         columns[3 + k] = (struct wb_document_column){.heading = headings[k], .right = true};
     }
     columns[7] =
-        (struct wb_document_column){.heading = "<i>EI</i> (N mm<sup>2</sup>)", .right = true};
+        (struct wb_document_column){.heading = "<i>EI</i> (N\xc2\xa0mm\xc2\xb2)", .right = true};
     wb_document_heading(document, 2, "properties", "Properties of the 1D beam");
     struct wb_document_table *const table = wb_document_table(
         document,
@@ -357,20 +349,20 @@ static void put_remarks(struct wb_document *document, const struct wb_bundles_re
         const char *remarks[WB_CALIBRATE_MOST_REMARKS];
         const int n = fit ? wb_calibrate_remarks(&fit->result, remarks) : 0;
         for (int k = 0; k < n; k++) {
-            char text[800], label[300], remark[400];
-            snprintf(text, sizeof text, "<b>%s</b>: %s.",
-                     wb_pages_escape(label, sizeof label, results->campaign->bundles[i].label),
-                     wb_pages_escape(remark, sizeof remark, remarks[k]));
-            wb_document_item(document, WB_TONE_PLAIN, text);
+            struct wb_text text = {0};
+            wb_text_append(&text, "<b>");
+            wb_text_append_escaped(&text, results->campaign->bundles[i].label);
+            wb_text_append(&text, "</b>: ");
+            wb_pages_append_symbols(&text, remarks[k]);
+            wb_text_append(&text, ".");
+            wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
         }
     }
 }
 
-static void put_fit(struct wb_document *document, const struct wb_bundles_results *results,
-                    const struct wb_figures *figures)
+static void put_fit(struct wb_document *document, const struct wb_bundles_results *results)
 {
     wb_document_heading(document, 1, "one-dimensional", "Effective 1D properties");
-    wb_figures_put(figures, document, "fit", 0);
     put_table(document, results);
     put_quality(document, results);
     put_remarks(document, results);
@@ -457,7 +449,7 @@ static void put_models(struct wb_document *document, const struct wb_bundles *ca
     static const struct wb_document_column columns[] = {
         {"Bundle"},
         {.heading = "Mesh"},
-        {.heading = "SHA-256 of all inputs", .monospace = true},
+        {.heading = "SHA-256 of all inputs, first 16 digits", .monospace = true},
     };
     wb_document_heading(document, 2, "models", "Bundles");
     struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
@@ -466,7 +458,7 @@ static void put_models(struct wb_document *document, const struct wb_bundles *ca
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, run->model_name);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, run->mesh->name);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, run->dataset.inputs_sha256);
+        wb_pages_cell_checksum(table, run->dataset.inputs_sha256);
     }
 }
 
@@ -485,12 +477,12 @@ void wb_bundles_pages_build(struct wb_document *document, const void *context,
 {
     const struct wb_bundles_results *const results = context;
     wb_pages_start_simulations(document, results->campaign->head.title, &results->outcome);
-    put_summary(document, results);
+    put_summary(document, results, figures);
     put_sections(document, results, figures);
     put_studies(document, results, figures);
     put_groups(document, results, figures);
     wb_bundles_section_put(document, results, figures);
-    put_fit(document, results, figures);
+    put_fit(document, results);
     put_cost(document, results);
     put_all_runs(document, results);
     put_provenance(document, results);

@@ -86,13 +86,13 @@ static void judge_energy(const struct wb_bundles_results *results, struct wb_ver
 {
     const struct wb_bundles_limits *const limits = &results->campaign->limits;
     const struct wb_verdict cases[] = {
-        [KINETIC] = {.what = "Kinetic over internal energy",
+        [KINETIC] = {.what = "Largest kinetic over internal energy of a run",
                      .key = "kinetic_max",
                      .limit = limits->kinetic},
-        [ARTIFICIAL] = {.what = "Artificial over internal energy",
+        [ARTIFICIAL] = {.what = "Largest artificial over internal energy of a run",
                         .key = "artificial_max",
                         .limit = limits->artificial},
-        [IMBALANCE] = {.what = "Imbalance of energy over the external work",
+        [IMBALANCE] = {.what = "Largest imbalance of energy over the external work of a run",
                        .key = "imbalance_max",
                        .limit = limits->imbalance},
     };

@@ -108,9 +108,9 @@ void wb_bundles_section_put(struct wb_document *document, const struct wb_bundle
         {.heading = "<i>F</i><sub>max</sub>, explicit (N)", .right = true, .wraps = true},
         {.heading = "<i>F</i><sub>max</sub>, section (N)", .right = true, .wraps = true},
         {.heading = "RMS", .right = true},
-        {.heading = "<i>EI</i> at <i>L</i>/2 (N mm<sup>2</sup>)", .right = true, .wraps = true},
-        {.heading = "<i>EI</i> at <i>L</i> (N mm<sup>2</sup>)", .right = true, .wraps = true},
-        {.heading = "<i>EI</i> at 2 <i>L</i> (N mm<sup>2</sup>)", .right = true, .wraps = true},
+        {.heading = "<i>EI</i> at <i>L</i>/2 (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
+        {.heading = "<i>EI</i> at <i>L</i> (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
+        {.heading = "<i>EI</i> at 2 <i>L</i> (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
         {.heading = "Tape lets go from", .right = true, .wraps = true},
     };
     const struct wb_bundles *const campaign = results->campaign;

@@ -96,8 +96,10 @@ enum wb_status wb_machines_cable_draw(struct wb_figures_item *item)
     wb_text_append_escaped(&item->caption, group_of(results, layer)->name);
     wb_text_append(&item->caption, ", ");
     wb_text_append_escaped(&item->caption, group_of(results, layer)->label);
-    wb_text_append(&item->caption,
-                   ": mean of %d tests between the bounds, and its place between them.", layer->n);
+    wb_text_append(
+        &item->caption,
+        ": mean of %d tests with both bounds, and its place <i>\xcf\x87</i> between them.",
+        layer->n);
     return WB_OK;
 }
 
@@ -137,16 +139,20 @@ static void begin_row(struct wb_document_table *table, const struct wb_machines_
 static void put_moments(struct wb_document *document, const struct wb_machines_results *results)
 {
     static const struct wb_document_column columns[] = {
-        {"Group", .right = false},   {"\xce\xba (1/m)", .right = true},
-        {"M (N mm)", .right = true}, {"sliding", .right = true},
-        {"bonded", .right = true},   {"M / sliding", .right = true},
-        {"95 %", .right = true},     {"M / first", .right = true},
+        {"Group", .right = false},
+        {"<i>\xce\xba</i> (1/m)", .right = true},
+        {"<i>M</i> (N mm)", .right = true},
+        {"Sliding", .right = true},
+        {"Bonded", .right = true},
+        {"<i>M</i> over sliding", .right = true, .wraps = true},
+        {"95 %", .right = true},
+        {"<i>M</i> over first group", .right = true, .wraps = true},
     };
     struct wb_document_table *const table = wb_document_table(
         document,
         "Groups at equal curvature: moment, bounds, and the moment over that of sliding wires and "
         "over that of the first group. Curvatures in grey: the wires are bent by less than 0.01 of "
-        "their span, where their seating decides.",
+        "their span, where their seating governs the force.",
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->cable.n_layers; i++) {
         const struct wb_machines_layer *const layer = &results->cable.layers[i];
@@ -166,15 +172,17 @@ static void put_moments(struct wb_document *document, const struct wb_machines_r
 static void put_places(struct wb_document *document, const struct wb_machines_results *results)
 {
     static const struct wb_document_column columns[] = {
-        {"Group", .right = false},           {"\xce\xba (1/m)", .right = true},
-        {"\xcf\x87", .right = true},         {"95 %", .right = true},
-        {"one series alone", .right = true}, {"zero halved, doubled", .right = true},
+        {"Group", .right = false},           {"<i>\xce\xba</i> (1/m)", .right = true},
+        {"<i>\xcf\x87</i>", .right = true},  {"95 %", .right = true},
+        {"One series alone", .right = true}, {"Zero halved, doubled", .right = true},
     };
     struct wb_document_table *const table = wb_document_table(
         document,
-        "\xcf\x87 = (M - M<sub>sliding</sub>) / (M<sub>bonded</sub> - M<sub>sliding</sub>), with "
-        "its interval over tests and series; with the wires of one series alone; with half and "
-        "twice the force that is the zero.",
+        "<i>\xcf\x87</i> = (<i>M</i> \xe2\x88\x92 <i>M</i><sub>sliding</sub>) / "
+        "(<i>M</i><sub>bonded</sub> \xe2\x88\x92 <i>M</i><sub>sliding</sub>): 0 where the wires "
+        "slide "
+        "freely, 1 where they are bonded; with its interval over tests and series, with the wires "
+        "of one series alone, and with half and twice the force at which a test begins.",
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->cable.n_layers; i++) {
         const struct wb_machines_layer *const layer = &results->cable.layers[i];
@@ -193,19 +201,22 @@ static void put_method(struct wb_document *document, const struct wb_machines_ca
 {
     struct wb_text text = {0};
     wb_text_append(&text,
-                   "Tests at other spans are compared at equal curvature 12 d / L<sup>2</sup>. "
-                   "<i>Sliding freely</i> is F(d) = (L<sub>1</sub>/L)(%d F<sub>1</sub> + "
-                   "F<sub>c</sub>) at the deflection d L<sub>1</sub><sup>2</sup>/L<sup>2</sup> of "
-                   "wires and core. <i>Bonded</i> adds what the conductors bear along their axes "
-                   "when the section stays plane, %.4g mm<sup>2</sup> of <tt>",
+                   "Tests at other spans are compared at equal curvature 12 <i>d</i> / "
+                   "<i>L</i><sup>2</sup>. <b>Sliding freely</b>: <i>F</i>(<i>d</i>) = "
+                   "(<i>L</i><sub>1</sub>/<i>L</i>)(%d <i>F</i><sub>1</sub> + "
+                   "<i>F</i><sub>c</sub>) at the deflection <i>d</i> "
+                   "<i>L</i><sub>1</sub><sup>2</sup>/<i>L</i><sup>2</sup> of wires and core. "
+                   "<b>Bonded</b>: in addition, the axial forces of the conductors in a plane "
+                   "section, %.4g mm<sup>2</sup> of <tt>",
                    cable->ring.n_wires, cable->ring.area / (WB_MM * WB_MM));
     wb_text_append_escaped(&text, cable->conductor);
-    wb_text_append(&text,
-                   "</tt> each on a circle of %.3g mm radius; insulations, lay and what is wound "
-                   "round the wires are left out of both bounds. So \xcf\x87 of a group that has "
-                   "more layers than the wires counts what those bear themselves as friction, and "
-                   "may exceed 1.",
-                   cable->ring.radius / WB_MM);
+    wb_text_append(
+        &text,
+        "</tt> each on a circle of %.3g mm radius; insulations, lay and what is wound "
+        "round the wires are left out of both bounds. <i>\xcf\x87</i> of a group with more "
+        "layers than the wires therefore includes the moment of those layers, and may "
+        "exceed 1.",
+        cable->ring.radius / WB_MM);
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 

@@ -18,6 +18,11 @@ static const char *wire_of(const struct wb_machines_results *results,
     return results->campaign->groups[fit->first].piece.wire;
 }
 
+bool wb_machines_fits_is_biased(const struct wb_machines_fit *fit)
+{
+    return fit->is_validated && !(fit->left_out.bias <= most_bias * fit->left_out.scatter);
+}
+
 /* --- figures --- */
 
 int wb_machines_fits_count(const void *context)
@@ -48,7 +53,7 @@ enum wb_status wb_machines_fits_draw(struct wb_figures_item *item)
     const double *const edges[2] = {y[1], y[2]};
     snprintf(name, sizeof name, "fit-%d", item->index + 1);
     WB_TRY(wb_figure_create(&item->figure, name, WB_PDF_WIDTH, 190.0));
-    wb_figure_set_footer(item->figure, "measured, and a model of it");
+    wb_figure_set_footer(item->figure, "measured, with a model");
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "Deflection from the first contact (mm)", "Force (mN)");
     wb_figure_set_y_range(panel, 0.0, (double)NAN);
@@ -59,8 +64,8 @@ enum wb_status wb_machines_fits_draw(struct wb_figures_item *item)
     wb_text_append(&item->caption, "Wire ");
     wb_text_append_escaped(&item->caption, wire_of(results, fit));
     wb_text_append(&item->caption,
-                   ": the mean of %d tests, and what the laws of the others are off it, mean over "
-                   "the tests left out.",
+                   ": mean of %d tests, and the law of the other tests, mean over the tests left "
+                   "out.",
                    r->n);
     return WB_OK;
 }
@@ -119,10 +124,14 @@ static void put_calibrations(struct wb_document *document,
                              const struct wb_machines_results *results)
 {
     static const struct wb_document_column columns[] = {
-        {"Wire", .right = false},          {"Fitted", .right = true},
-        {"Converged", .right = true},      {"Misfit (%)", .right = true},
-        {"\xce\xba (1/m)", .right = true}, {"M (N mm)", .right = true},
-        {"95 %", .right = true},           {"\xce\xbc and nose", .right = true},
+        {"Wire", .right = false},
+        {"Fitted", .right = true},
+        {"Converged", .right = true},
+        {"Misfit (%)", .right = true},
+        {"<i>\xce\xba</i> (1/m)", .right = true},
+        {"<i>M</i> (N mm)", .right = true},
+        {"95 %", .right = true},
+        {"friction and nose", .right = true},
     };
     static const int at[] = {2, 3, 4};
     struct wb_document_table *const table = wb_document_table(
@@ -162,15 +171,15 @@ static void put_rigidities(struct wb_document *document, const struct wb_machine
     static const struct wb_document_column columns[] = {
         {"Wire", .right = false},
         {"Series", .right = true},
-        {"s of ln EI between series", .right = true},
-        {"EI (N mm<sup>2</sup>)", .right = true},
+        {"<i>s</i> of ln <i>EI</i> between series", .right = true},
+        {"<i>EI</i> (N mm\xc2\xb2)", .right = true},
         {"95 %", .right = true},
-        {"\xce\xbc and nose", .right = true},
+        {"friction and nose", .right = true},
     };
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Flexural rigidity at the start. In grey where it is not identifiable: tests without a way "
-        "back leave it to the law's form below the first point.",
+        "Flexural rigidity at zero curvature. In grey where it cannot be determined: without an "
+        "unloading it depends on the form of the law below the first point.",
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->fits.n; i++) {
         const struct wb_machines_fit *const fit = &results->fits.fits[i];
@@ -191,18 +200,20 @@ static void put_left_out(struct wb_document *document, const struct wb_machines_
         {"Wire", .right = false},
         {"Tests", .right = true},
         {"to (mm)", .right = true},
-        {"s (mN)", .right = true},
-        {"Scatter alone (mN)", .right = true},
+        {"<i>s</i> (mN)", .right = true},
+        {"Scatter alone (mN)", .right = true, .wraps = true},
         {"Model (mN)", .right = true},
         {"Bias (mN)", .right = true},
-        {"Bias / s", .right = true},
-        {"Bias / F<sub>max</sub> (%)", .right = true},
+        {"Bias / <i>s</i>", .right = true},
+        {"Bias / <i>F</i><sub>max</sub> (%)", .right = true, .wraps = true},
     };
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Each test left out: what the law of the others is off it, pooled, beside sqrt(n/(n-1)) s, "
-        "which the others' own mean curve is off it by the scatter alone. Bias: the model against "
-        "the mean of the others; marked above 0.7 s.",
+        "Each test is left out in turn. Model: RMS difference of the law of the other tests from "
+        "it, pooled. Scatter alone: (<i>n</i>/(<i>n</i> \xe2\x88\x92 1))<sup>1/2</sup> <i>s</i>, "
+        "the "
+        "difference of the others' mean curve from it. Bias: RMS difference of the law from the "
+        "mean of the others; red above 0.7 <i>s</i>.",
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->fits.n; i++) {
         const struct wb_machines_fit *const fit = &results->fits.fits[i];
@@ -218,7 +229,7 @@ static void put_left_out(struct wb_document *document, const struct wb_machines_
         wb_pages_cell_number(table, r->rms / WB_MN, 1);
         wb_pages_cell_number(table, r->bias / WB_MN, 1);
         wb_pages_cell_judged(table, r->bias / r->scatter, 2, true,
-                             r->bias <= most_bias * r->scatter);
+                             !wb_machines_fits_is_biased(fit));
         wb_pages_cell_number(table, r->bias / r->of_max_force / WB_PERCENT, 1);
     }
 }

@@ -11,6 +11,9 @@
 int wb_machines_fits_count(const void *results);
 enum wb_status wb_machines_fits_draw(struct wb_figures_item *item);
 
+/* Whether the law of a wire is off the tests left out by more than their scatter hides. */
+bool wb_machines_fits_is_biased(const struct wb_machines_fit *fit);
+
 /* Nothing where the campaign does not calibrate. */
 void wb_machines_fits_put(struct wb_document *document, const struct wb_machines_results *results,
                           const struct wb_figures *drawn);

@@ -7,11 +7,13 @@
 
 #include "analysis/report/machines/machines_cable_view.h"
 #include "analysis/report/machines/machines_fits_view.h"
+#include "analysis/report/machines/machines_found.h"
 #include "analysis/report/numbers.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
 #include "base/memory.h"
 #include "base/units.h"
+#include "base/version.h"
 
 /* --- figures --- */
 
@@ -94,7 +96,51 @@ static enum wb_status draw_group(struct wb_figures_item *item)
     return WB_OK;
 }
 
+/* Nominal moments of all groups over the nominal curvature, which spans and diameters do not move
+ * apart. */
+static enum wb_status draw_found(struct wb_figures_item *item)
+{
+    const struct wb_machines_results *const results = item->results;
+    struct wb_panel *panel = NULL;
+    for (int g = 0; g < results->campaign->n_groups; g++) {
+        const struct wb_machines_group *const group = &results->campaign->groups[g];
+        const struct wb_machines_group_results *const of = &results->groups[g];
+        const double span = group->machine.span;
+        double x[WB_MACHINES_GRID], y[WB_MACHINES_GRID];
+        char name[240], label[300];
+        int n = 0;
+        /* The first contact is left out: there is no logarithm of no force. */
+        for (int k = 5; k < WB_MACHINES_GRID && of->n_usable > 0; k++) {
+            const double d = of->reach * k / (WB_MACHINES_GRID - 1);
+            if (!(of->force[k] > 0.0))
+                continue;
+            x[n] = 12.0 * d / (span * span);
+            y[n++] = 0.25 * of->force[k] * span / WB_NMM;
+        }
+        if (n == 0)
+            continue;
+        if (!panel) {
+            WB_TRY(wb_figure_create(&item->figure, "moments", WB_PDF_WIDTH, 210.0));
+            wb_figure_set_footer(item->figure, "measured");
+            panel = wb_figure_add_panel(item->figure);
+            wb_figure_set_axes(panel, "Nominal curvature 12 d / L<sup>2</sup> (1/m)",
+                               "Moment F L / 4 (N mm)");
+            wb_figure_set_logarithmic_y(panel);
+            wb_text_append(&item->caption, "Mean moment under the nose over the nominal curvature, "
+                                           "of the tests of each group.");
+        }
+        full_name(name, sizeof name, group);
+        const struct wb_figure_style style = {.colour = wb_palette_wire(g),
+                                              .width = 1.3,
+                                              .dash = g % 2 ? WB_DASH_DASHED : WB_DASH_SOLID};
+        wb_figure_add_line(panel, wb_pages_escape(label, sizeof label, name), (size_t)n, x, y,
+                           &style);
+    }
+    return WB_OK;
+}
+
 static const struct wb_figures_row figures[] = {
+    {.place = "found", .draw = draw_found},
     {.place = "group", .count = count_groups, .draw = draw_group},
     {.place = "fit", .count = wb_machines_fits_count, .draw = wb_machines_fits_draw},
     {.place = "layer", .count = wb_machines_cable_count, .draw = wb_machines_cable_draw},
@@ -102,39 +148,25 @@ static const struct wb_figures_row figures[] = {
 
 /* --- pages --- */
 
-static void put_missing(struct wb_document *document, const struct wb_machines_results *results)
-{
-    const struct wb_kind_outcome *const outcome = &results->outcome;
-    char text[400];
-    if (outcome->n_missing == 0)
-        return;
-    if (results->has_folder)
-        snprintf(text, sizeof text, "%d of %d files are not there.", outcome->n_missing,
-                 outcome->n_wanted);
-    else
-        snprintf(text, sizeof text,
-                 "The data are not there: <tt>%s</tt>, which names their folder, is not set.",
-                 results->campaign->environment);
-    wb_document_notice(document, WB_TONE_WARNING, text);
-}
-
 static void put_overview(struct wb_document *document, const struct wb_machines_results *results)
 {
     static const struct wb_document_column columns[] = {
         {"Group", .wraps = true},
-        {"d (mm)", .right = true},
+        {"<i>d</i> (mm)", .right = true},
         {"Span (mm)", .right = true},
         {"Tests", .right = true},
-        {"F L<sup>3</sup>/48 d (N mm<sup>2</sup>)", .right = true},
-        {"s (%)", .right = true},
-        {"Usable to (mm)", .right = true},
-        {"F there (mN)", .right = true},
+        {"<i>F</i> <i>L</i><sup>3</sup>/48 <i>d</i> (N\xc2\xa0mm\xc2\xb2)", .right = true,
+         .wraps = true},
+        {"<i>s</i> (%)", .right = true},
+        {"Usable to (mm)", .right = true, .wraps = true},
+        {"<i>F</i> there (mN)", .right = true, .wraps = true},
     };
-    struct wb_document_table *const table =
-        wb_document_table(document,
-                          "Groups. F L<sup>3</sup>/48 d is taken at 0.02 of the span from the "
-                          "first contact, s is its standard deviation between tests.",
-                          (int)WB_COUNT(columns), columns);
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "<i>F</i> <i>L</i><sup>3</sup>/48 <i>d</i>: flexural rigidity of an elastic wire, "
+        "at a deflection <i>d</i> of 0.02 of the span <i>L</i> from the first "
+        "contact; <i>s</i>: its standard deviation between tests.",
+        (int)WB_COUNT(columns), columns);
     for (int g = 0; g < results->campaign->n_groups; g++) {
         const struct wb_machines_group *const group = &results->campaign->groups[g];
         const struct wb_machines_group_results *const of = &results->groups[g];
@@ -161,9 +193,10 @@ static void put_tests(struct wb_document *document, const struct wb_machines_gro
         {"Rows", .right = true},
         {"Empty", .right = true},
         {"Partial", .right = true},
-        {"F<sub>max</sub> (mN)", .right = true},
+        {"<i>F</i><sub>max</sub> (mN)", .right = true},
         {"Contact (mm)", .right = true},
-        {"F L<sup>3</sup>/48 d (N mm<sup>2</sup>)", .right = true},
+        {"<i>F</i> <i>L</i><sup>3</sup>/48 <i>d</i> (N\xc2\xa0mm\xc2\xb2)", .right = true,
+         .wraps = true},
     };
     struct wb_document_table *const table =
         wb_document_table(document, NULL, (int)WB_COUNT(columns), columns);
@@ -192,10 +225,13 @@ static void build_pages(struct wb_document *document, const void *context,
     char subtitle[200], footer[300], anchor[32], name[240];
     snprintf(subtitle, sizeof subtitle, "%d of %d tests used", results->outcome.n_usable,
              results->outcome.n_wanted);
-    snprintf(footer, sizeof footer, "%.200s", campaign->head.title);
+    snprintf(footer, sizeof footer, "wirebench %s, revision %s", wb_version(),
+             wb_version_revision());
     wb_document_init(document, "Tests of testing machines", campaign->head.title, subtitle, footer,
                      "");
-    put_missing(document, results);
+    wb_machines_found_put(document, results);
+    wb_figures_put(drawn, document, "found", 0);
+    wb_document_heading(document, 2, "groups", "Groups");
     put_overview(document, results);
     wb_machines_cable_put(document, results, drawn);
     wb_machines_fits_put(document, results, drawn);

@@ -4,13 +4,16 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/predict/bands_output.h"
 #include "analysis/report/draw/figures_bundle.h"
+#include "analysis/report/found.h"
 #include "analysis/report/numbers.h"
 #include "analysis/report/pages.h"
 #include "base/memory.h"
 #include "base/units.h"
+#include "base/version.h"
 
 static const char *const side_names[] = {"below", "within", "above", "not reached"};
 
@@ -102,11 +105,163 @@ static enum wb_status draw_bands(struct wb_figures_item *item)
 }
 
 static const struct wb_figures_row figures[] = {
-    {.place = "bundle", .count = count_bundles, .draw = draw_section},
-    {.place = "bundle", .count = count_bundles, .draw = draw_bands},
+    {.place = "bands", .count = count_bundles, .draw = draw_bands},
+    {.place = "section", .count = count_bundles, .draw = draw_section},
 };
 
 /* --- pages --- */
+
+/* One case: force at the largest deflection and springback, with their bands. */
+static void add_case(struct wb_found *found, const char *label, const struct wb_bands *bands,
+                     const struct wb_bands_case *c)
+{
+    const struct wb_bands_place *const last = c->n_force > 0 ? &c->force[c->n_force - 1] : NULL;
+    struct wb_text text = {0};
+    wb_text_append(&text, "<b>");
+    wb_text_append_escaped(&text, label);
+    if (bands->n_cases > 1) {
+        wb_text_append(&text, ", case ");
+        wb_text_append_escaped(&text, c->variant.name);
+    }
+    wb_text_append(&text, "</b>: ");
+    if (!last) {
+        wb_text_append(&text, "no band: fewer than 95 %% of the runs reached a deflection.");
+        wb_found_add(found, WB_FOUND_DOUBTFUL, &text);
+        return;
+    }
+    wb_text_append(&text, "%.3g N (%.3g to %.3g) at a deflection of %.3g mm", last->band.median,
+                   last->band.wide_low, last->band.wide_high, last->at / WB_MM);
+    if (isfinite(c->springback.median))
+        wb_text_append(&text, ", springback of the deflection %.2f (%.2f to %.2f)",
+                       c->springback.median, c->springback.wide_low, c->springback.wide_high);
+    wb_text_append(&text, ".");
+    wb_found_add(found, WB_FOUND_RESULT, &text);
+}
+
+/* Whether a number of a test lies outside its band. */
+static bool is_outside(const struct wb_predictions_verdict *verdict)
+{
+    bool outside = false;
+    for (int k = 0; k < WB_PREDICTIONS_PLACES; k++)
+        outside |= verdict->places[k].side == WB_PREDICTIONS_BELOW ||
+                   verdict->places[k].side == WB_PREDICTIONS_ABOVE;
+    return outside;
+}
+
+/* Tests of a bundle beside the bands; returns how many there are. */
+static int add_tests_of(struct wb_found *found, const struct wb_predictions_bundle *bundle,
+                        const struct wb_predictions_prediction *of)
+{
+    int n = 0;
+    for (int i = 0; i < bundle->n_tests; i++) {
+        const struct wb_predictions_verdict *const verdict = &of->tests[i];
+        struct wb_text text = {0};
+        if (!verdict->against)
+            continue;
+        n++;
+        wb_text_append(&text, "Test ");
+        wb_text_append_escaped(&text, bundle->tests[i].label);
+        wb_text_append(&text, " (%s) beside the band of 90 %%: ", origin_of(&verdict->dataset));
+        wb_text_append_escaped(&text, verdict->words);
+        wb_text_append(&text, ".");
+        wb_found_add(found, is_outside(verdict) ? WB_FOUND_FAILED : WB_FOUND_PASSED, &text);
+    }
+    return n;
+}
+
+/* Whether the bands of a bundle can be trusted. */
+static void add_trust(struct wb_found *found, const struct wb_predictions_bundle *bundle,
+                      const struct wb_predictions_prediction *of)
+{
+    char label[400];
+    int n_lost = 0;
+    bool is_ranked = true;
+    wb_pages_escape(label, sizeof label, bundle->label);
+    for (int i = 0; i < of->bands->n_cases; i++)
+        n_lost += of->bands->cases[i].n_lost;
+    for (int i = 0; i < of->bands->cases[0].n_rankings; i++)
+        is_ranked &= of->bands->cases[0].ranking[i].ranking.is_valid;
+    if (n_lost > 0)
+        wb_found_say(found, WB_FOUND_FAILED, "%d of %d runs of %s were not computed to the end.",
+                     n_lost, of->bands->runs * of->bands->n_cases, label);
+    else
+        wb_found_say(found, WB_FOUND_PASSED, "All %d runs of %s were computed to the end.",
+                     of->bands->runs * of->bands->n_cases, label);
+    if (!is_ranked)
+        wb_found_say(found, WB_FOUND_FAILED,
+                     "The inputs of %s are not all ranked: ranks explain less than 0.9 of the "
+                     "variance.",
+                     label);
+    if (add_tests_of(found, bundle, of) == 0)
+        wb_found_say(found, WB_FOUND_UNCHECKED, "%s: no test of it is in the campaign.", label);
+}
+
+/* The input that makes the first case's force uncertain most; then the cases. */
+static void add_next_of(struct wb_found *found, const struct wb_bands *bands)
+{
+    for (int i = bands->cases[0].n_rankings - 1; i >= 0; i--) {
+        const struct wb_bands_ranking *const of = &bands->cases[0].ranking[i];
+        struct wb_text text = {0};
+        if (strcmp(of->of, "force") != 0 || !of->ranking.is_valid || of->ranking.n_groups == 0)
+            continue;
+        const struct wb_ranking_share *const share = &of->ranking.group[0];
+        wb_text_append(&text, "<b>Narrow the band</b>: determine ");
+        wb_text_append_escaped(&text, bands->inputs.group_name[share->group]);
+        wb_text_append(&text,
+                       " more accurately; it has the largest part, %.0f %%, in the variance of the "
+                       "force at %.3g mm.",
+                       share->share / WB_PERCENT, of->at / WB_MM);
+        wb_found_add(found, WB_FOUND_NEXT, &text);
+        break;
+    }
+    if (bands->n_cases > 1)
+        wb_found_say(found, WB_FOUND_NEXT,
+                     "<b>Decide</b> between the cases by a photograph of a cut: they are choices "
+                     "of packing and tape, and no probability is given for them.");
+}
+
+static void put_found(struct wb_document *document, const struct wb_predictions_results *results)
+{
+    const struct wb_predictions *const campaign = results->campaign;
+    struct wb_found found = {0};
+    bool any_test = false;
+    wb_found_say(&found, WB_FOUND_ORIGIN, "%s",
+                 "<b>Simulations.</b> The bands are computed by the section model from what the "
+                 "files of the bundles state. Where a test is compared with a band, its origin is "
+                 "given.");
+    if (results->outcome.n_usable < results->outcome.n_wanted)
+        wb_found_say(
+            &found, WB_FOUND_INCOMPLETE,
+            "<b>Incomplete.</b> %d of %d datasets of tests %s missing or cannot be used.",
+            results->outcome.n_wanted - results->outcome.n_usable, results->outcome.n_wanted,
+            wb_pages_plural(results->outcome.n_wanted - results->outcome.n_usable, "is", "are"));
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        const struct wb_predictions_prediction *const of = &results->bundles[i];
+        any_test |= campaign->bundles[i].n_tests > 0;
+        for (int k = 0; of->bands && k < of->bands->n_cases; k++)
+            add_case(&found, campaign->bundles[i].label, of->bands, &of->bands->cases[k]);
+        if (of->bands) {
+            add_trust(&found, &campaign->bundles[i], of);
+            add_next_of(&found, of->bands);
+            continue;
+        }
+        struct wb_text text = {0};
+        wb_text_append(&text, "<b>");
+        wb_text_append_escaped(&text, campaign->bundles[i].label);
+        wb_text_append(&text, "</b>: no bands; the reason is given below.");
+        wb_found_add(&found, WB_FOUND_DOUBTFUL, &text);
+    }
+    wb_found_say(&found, WB_FOUND_NOTE,
+                 "In brackets: bands of 90 %%, in which one further bundle lies with that "
+                 "probability if the files state all that is uncertain. They include %g %% for the "
+                 "error of the section model.",
+                 wb_bands_model_error() / WB_PERCENT);
+    if (!any_test)
+        wb_found_say(&found, WB_FOUND_NEXT,
+                     "<b>Test</b>: bend one such bundle and name its dataset under <tt>tests</tt> "
+                     "in the campaign.");
+    wb_found_put(&found, document);
+}
 
 static void put_interval(struct wb_document_table *table, const struct wb_bands_interval *band,
                          int decimals)
@@ -134,9 +289,9 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
     struct wb_text caption = {0};
     wb_text_append(
         &caption,
-        "Median and band of 90 %% of %d runs a case, widened by the model's own error "
-        "of %g %%. Cases are choices, not chances: the photograph of a cut says which "
-        "one holds. Springback of the deflection: 1 less the residual deflection at zero "
+        "Median and band of 90 %% of %d runs of each case, widened by the model's own error "
+        "of %g %%. Cases are choices, not probabilities: a photograph of a cut shows which "
+        "one applies. Springback of the deflection: 1 less the residual deflection at zero "
         "force over the largest deflection.",
         bands->runs, wb_bands_model_error() / WB_PERCENT);
     struct wb_document_table *const table =
@@ -162,26 +317,32 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
     }
 }
 
+/* For readers; files have the key. */
+static const char *name_of(const struct wb_bands_ranking *of)
+{
+    return strcmp(of->of, "force") == 0 ? "Force" : "Springback of the deflection";
+}
+
 static void put_ranking(struct wb_document *document, const struct wb_bands *bands)
 {
     static const struct wb_document_column columns[] = {
-        {"Of"},
+        {"Value"},
         {.heading = "at (mm)", .right = true},
-        {"depends on"},
+        {"Depends on"},
         {.heading = "Share (%)", .right = true},
-        {.heading = "90 % (%)", .right = true},
+        {.heading = "Interval of 90 % (%)", .right = true},
     };
     struct wb_document_table *const table = wb_document_table(
         document,
-        "What makes the band wide, the largest share first: the part of the ranks' variance that "
-        "goes with a group of inputs. No shares where ranks do not explain the result "
+        "Causes of the width of the band, the largest share first: part of the variance of the "
+        "ranks that a group of inputs causes. No shares where ranks do not explain the result "
         "(R<sup>2</sup> below 0.9).",
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < bands->cases[0].n_rankings; i++) {
         const struct wb_bands_ranking *const of = &bands->cases[0].ranking[i];
         if (!of->ranking.is_valid) {
-            wb_document_row(table, false);
-            wb_pages_cell_plain(table, WB_TONE_PLAIN, of->of);
+            wb_document_row(table, true);
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, name_of(of));
             wb_pages_cell_number(table, of->at / WB_MM, 1);
             wb_pages_cell(table, WB_TONE_WARNING, "no ranking, R<sup>2</sup> %.2f", of->ranking.r2);
             wb_pages_cell_number(table, (double)NAN, 0);
@@ -189,8 +350,8 @@ static void put_ranking(struct wb_document *document, const struct wb_bands *ban
         }
         for (int g = 0; of->ranking.is_valid && g < of->ranking.n_groups; g++) {
             const struct wb_ranking_share *const share = &of->ranking.group[g];
-            wb_document_row(table, g > 0);
-            wb_pages_cell_plain(table, WB_TONE_PLAIN, g == 0 ? of->of : "");
+            wb_document_row(table, g == 0);
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, g == 0 ? name_of(of) : "");
             if (g == 0)
                 wb_pages_cell_number(table, of->at / WB_MM, 1);
             else
@@ -208,7 +369,7 @@ static void put_place(struct wb_document_table *table, const struct wb_predictio
 {
     const bool is_outside =
         place->side == WB_PREDICTIONS_BELOW || place->side == WB_PREDICTIONS_ABOVE;
-    wb_document_row(table, !is_first);
+    wb_document_row(table, is_first);
     wb_pages_cell_plain(table, WB_TONE_PLAIN, is_first ? test->label : "");
     wb_pages_cell_plain(table, WB_TONE_PLAIN, is_first ? test->case_name : "");
     if (isfinite(place->at))
@@ -230,10 +391,10 @@ static void put_tests(struct wb_document *document, const struct wb_predictions_
     static const struct wb_document_column columns[] = {
         {"Test"},
         {"Case"},
-        {"Number"},
+        {"Quantity"},
         {.heading = "Test", .right = true},
         {.heading = "Predicted (90 %)", .right = true},
-        {"It lies"},
+        {"Side"},
     };
     struct wb_document_table *table = NULL;
     for (int i = 0; i < bundle->n_tests; i++) {
@@ -243,8 +404,8 @@ static void put_tests(struct wb_document *document, const struct wb_predictions_
         if (!table)
             table = wb_document_table(
                 document,
-                "Tests beside the band. It is for one further bundle of the same wires: of ten "
-                "such numbers one is expected outside.",
+                "Tests beside the band, which is that of one further bundle of the same wires: one "
+                "of ten such values is expected outside.",
                 (int)WB_COUNT(columns), columns);
         for (int k = 0; k < WB_PREDICTIONS_PLACES; k++)
             put_place(table, &bundle->tests[i], &verdict->places[k], k == 0);
@@ -276,8 +437,10 @@ static void put_bundle(struct wb_document *document, const struct wb_predictions
         return;
     }
     put_cases(document, of->bands);
-    wb_figures_put(drawn, document, "bundle", index);
+    if (index > 0) /* the first page has that of the first bundle */
+        wb_figures_put(drawn, document, "bands", index);
     put_tests(document, bundle, of);
+    wb_figures_put(drawn, document, "section", index);
     put_ranking(document, of->bands);
     for (int i = 0; i < of->bands->inputs.n_types; i++)
         wb_pages_item(document, WB_TONE_PLAIN, "", "Law of the wires: ", "",
@@ -288,7 +451,7 @@ static void put_models(struct wb_document *document, const struct wb_predictions
 {
     static const struct wb_document_column columns[] = {
         {"What", .wraps = true},
-        {.heading = "SHA-256", .monospace = true},
+        {.heading = "SHA-256, first 16 digits", .monospace = true},
     };
     struct wb_document_table *const table =
         wb_document_table(document,
@@ -301,13 +464,13 @@ static void put_models(struct wb_document *document, const struct wb_predictions
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->model_name);
         wb_simulated_bundle_sum(bundle->model, NULL, sha256);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, sha256);
+        wb_pages_cell_checksum(table, sha256);
         for (int i = 0; i < bundle->n_tests; i++) {
             if (results->bundles[b].tests[i].state != WB_SIMULATION_USABLE)
                 continue;
             wb_document_row(table, false);
             wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->tests[i].given);
-            wb_pages_cell_plain(table, WB_TONE_PLAIN, results->bundles[b].tests[i].sha256);
+            wb_pages_cell_checksum(table, results->bundles[b].tests[i].sha256);
         }
     }
 }
@@ -320,11 +483,11 @@ static void build_pages(struct wb_document *document, const void *context,
     char subtitle[200], footer[300];
     snprintf(subtitle, sizeof subtitle, "%d %s with bands", campaign->n_bundles,
              wb_pages_plural(campaign->n_bundles, "bundle", "bundles"));
-    snprintf(footer, sizeof footer, "%.200s", campaign->head.title);
+    snprintf(footer, sizeof footer, "wirebench %s, revision %s", wb_version(),
+             wb_version_revision());
     wb_document_init(document, "Prediction", campaign->head.title, subtitle, footer, "");
-    wb_document_notice(document, WB_TONE_ORIGIN,
-                       "<b>Simulations.</b> The bands are computed by the section model from what "
-                       "the bundles' files state. Tests are named where there are any.");
+    put_found(document, results);
+    wb_figures_put(drawn, document, "bands", 0);
     for (int i = 0; i < campaign->n_bundles; i++)
         put_bundle(document, results, i, drawn);
     wb_pages_put_origin(document, &campaign->head, "files");

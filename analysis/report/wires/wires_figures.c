@@ -700,7 +700,7 @@ const struct wb_figures_row wb_wires_figures[WB_WIRES_FIGURES] = {
     {"elastic-shapes", NULL, draw_elastic_shapes, false},
     {"elastoplastic", NULL, draw_elastoplastic, false},
     {"elastoplastic", NULL, draw_shapes, false},
-    {"loading", NULL, draw_loading, false},
+    {"found", NULL, draw_loading, false},
     {"residual", count_residual, draw_residual, false},
     {"residual-effect", NULL, draw_residual_stress, false},
     {"residual-effect", NULL, draw_residual_shapes, false},

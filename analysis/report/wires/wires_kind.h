@@ -15,9 +15,12 @@ enum {
 };
 
 /* After the paper's Figs. 3, 4 and 5. Places: "elastic", "elastic-shapes", "elastoplastic",
- * "loading", "residual" of each case with residual stress, "residual-effect". */
+ * "found" on the first page, "residual" of each case with residual stress, "residual-effect". */
 extern const struct wb_figures_row wb_wires_figures[WB_WIRES_FIGURES];
 wb_kind_pages wb_wires_pages_build;
 wb_kind_json wb_wires_json_build;
+
+/* The first page, without its figure. */
+void wb_wires_found_put(struct wb_document *document, const struct wb_wires_results *results);
 
 #endif

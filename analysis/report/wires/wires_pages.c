@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "base/units.h"
 
-/* --- what is missing, what is exceeded --- */
+/* --- what is missing --- */
 
 static void put_unfitted(struct wb_document *document, const struct wb_wires_results *results)
 {
@@ -19,14 +19,7 @@ static void put_unfitted(struct wb_document *document, const struct wb_wires_res
                       "<b>No fitted rod</b>: ", wb_text_string(&results->fit_problem), "", "");
 }
 
-static void put_limits(struct wb_document *document, const struct wb_wires_results *results)
-{
-    struct wb_verdict verdicts[WB_WIRES_VERDICTS];
-    wb_pages_put_verdicts(document, results->outcome.campaign, verdicts,
-                          wb_wires_results_judge(results, verdicts));
-}
-
-/* --- what came out --- */
+/* --- results beside those that the paper prints --- */
 
 struct fact {
     const char *what, *unit;
@@ -107,7 +100,7 @@ static void put_facts(struct wb_document *document, const struct wb_wires_result
         {"Cost of the elastic rod over the solid's", "%",
          wb_wires_cost(results, WB_WIRES_ELASTIC) / WB_PERCENT, 2, cost},
     };
-    wb_document_heading(document, 2, "facts", "What came out");
+    wb_document_heading(document, 2, "facts", "Results beside the paper");
     struct wb_document_table *const table = wb_document_table(
         document,
         comparison->printed_source[0]
@@ -118,21 +111,16 @@ static void put_facts(struct wb_document *document, const struct wb_wires_result
         put_fact(table, &facts[i]);
 }
 
-static void put_summary(struct wb_document *document, const struct wb_wires_results *results)
+static void put_summary(struct wb_document *document, const struct wb_wires_results *results,
+                        const struct wb_figures *figures)
 {
-    wb_document_heading(document, 1, "summary", "Summary");
-    wb_document_notice(
-        document, WB_TONE_ORIGIN,
-        wb_wires_has_substitutes(results->comparison)
-            ? "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid and "
-              "as a 1D rod. No wire was tested. The materials of the solid stand in for the "
-              "paper's Table 1, which is lost, so its numbers cannot be had again; what can be "
-              "shown is how solid and rod compare."
-            : "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid and "
-              "as a 1D rod. No wire was tested.");
+    struct wb_verdict verdicts[WB_WIRES_VERDICTS];
+    const int n = wb_wires_results_judge(results, verdicts);
+    wb_wires_found_put(document, results);
+    wb_figures_put(figures, document, "found", 0);
+    wb_pages_put_decisions(document, results->outcome.campaign, verdicts, n);
     wb_pages_put_missing(document, &results->outcome, wb_wires_results_list, results);
     put_unfitted(document, results);
-    put_limits(document, results);
     put_facts(document, results);
 }
 
@@ -430,8 +418,11 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
                        wb_calibrate_end_text(results->fit.end));
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
     const int n = wb_calibrate_remarks(&results->fit, remarks);
-    for (int i = 0; i < n; i++)
-        wb_text_append(&text, " Remark: %s.", remarks[i]);
+    for (int i = 0; i < n; i++) {
+        wb_text_append(&text, " Remark: ");
+        wb_pages_append_symbols(&text, remarks[i]);
+        wb_text_append(&text, ".");
+    }
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
@@ -472,7 +463,6 @@ static void put_elastoplastic(struct wb_document *document, const struct wb_wire
         put_rod(table, "1D fitted", &results->fitted, solid);
     put_rod(table, "1D as printed", &results->printed, solid);
     put_fit(document, results, solid);
-    wb_figures_put(figures, document, "loading", 0);
     put_split(document, results);
 }
 
@@ -745,15 +735,21 @@ static void put_materials(struct wb_document *document, const struct wb_wires *c
         9, columns);
     for (int i = 0; i < model->n_parts; i++)
         put_material(table, &model->part[i]);
-    for (int i = 0; i < model->n_parts; i++)
-        wb_pages_item(document, WB_TONE_PLAIN, "<b>", model->part[i].material_name,
-                      "</b>: ", model->part[i].source);
+    for (int i = 0; i < model->n_parts; i++) {
+        struct wb_text text = {0};
+        wb_text_append(&text, "<b>");
+        wb_text_append_escaped(&text, model->part[i].material_name);
+        wb_text_append(&text, "</b>: ");
+        wb_pages_append_symbols(&text, model->part[i].source);
+        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
+    }
 }
 
 static void put_models(struct wb_document *document, const struct wb_wires *comparison)
 {
     static const struct wb_document_column columns[] = {
-        {"Model"}, {.heading = "SHA-256 of all inputs of the solid", .monospace = true}};
+        {"Model"},
+        {.heading = "SHA-256 of all inputs of the solid, first 16 digits", .monospace = true}};
     wb_document_heading(document, 2, "models", "Models");
     struct wb_document_table *const table = wb_document_table(document, NULL, 2, columns);
     for (int i = 0; i < comparison->n_cases; i++) {
@@ -762,7 +758,7 @@ static void put_models(struct wb_document *document, const struct wb_wires *comp
             continue;
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, item->model_name);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, item->datasets[WB_WIRES_SOLID].inputs_sha256);
+        wb_pages_cell_checksum(table, item->datasets[WB_WIRES_SOLID].inputs_sha256);
     }
 }
 
@@ -782,7 +778,7 @@ void wb_wires_pages_build(struct wb_document *document, const void *context,
 {
     const struct wb_wires_results *const results = context;
     wb_pages_start_simulations(document, results->comparison->head.title, &results->outcome);
-    put_summary(document, results);
+    put_summary(document, results, figures);
     put_elastic(document, results, figures);
     put_elastoplastic(document, results, figures);
     put_residual(document, results, figures);

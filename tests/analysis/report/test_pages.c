@@ -64,11 +64,50 @@ static void three_digits_mean_something(void **state)
     assert_int_equal(wb_pages_decimals((double)NAN), 0);
 }
 
+static void symbols_and_powers_of_ten_are_typeset(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *plain, *markup;
+    } cases[] = {
+        {"sigma_Y 3.5 MPa", "<i>\xcf\x83</i><sub>Y</sub> 3.5 MPa"},
+        {"strains 1.13e-04, 2e+05", "strains 1.13\xc2\xb7"
+                                    "10<sup>" MINUS "4</sup>, 2\xc2\xb7"
+                                    "10<sup>5</sup>"},
+        {"C1 7, gamma2 0.1", "<i>C</i><sub>1</sub> 7, <i>\xce\xb3</i><sub>2</sub> 0.1"},
+        {"E: eq. 8 with E_eff & K", "<i>E</i>: eq. 8 with <i>E</i><sub>eff</sub> &amp; <i>K</i>"},
+        {"+- of N mm2", "\xc2\xb1 of N mm\xc2\xb2"},
+        /* What is no symbol stays: words, units, files, versions. */
+        {"bend n-type EPDM b.csv 1e3 v1.5e", "bend n-type EPDM b.csv 1e3 v1.5e"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct wb_text text = {0};
+        wb_pages_append_symbols(&text, cases[i].plain);
+        assert_string_equal(wb_text_string(&text), cases[i].markup);
+        wb_text_release(&text);
+    }
+}
+
+static void a_checksum_is_shown_by_its_first_16_digits(void **state)
+{
+    (void)state;
+    struct wb_document document;
+    struct wb_document_table *table;
+    start(&document, &table);
+    wb_document_row(table, false);
+    wb_pages_cell_checksum(table,
+                           "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef");
+    assert_string_equal(last_cell(table), "0123456789abcdef");
+    wb_document_release(&document);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_rounds_to_zero_has_no_sign),
         cmocka_unit_test(three_digits_mean_something),
+        cmocka_unit_test(symbols_and_powers_of_ten_are_typeset),
+        cmocka_unit_test(a_checksum_is_shown_by_its_first_16_digits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -88,7 +88,7 @@ static void the_law_predicts_both_ways_at_the_other_length(void **state)
     assert_true(wb_file_exists(in_folder("good/figures/all-moments.svg")));
     assert_true(says("good/report.html", "Prediction at 100 mm"));
     assert_true(says("good/report.html", "Law and hardening rule"));
-    assert_false(says("good/report.html", "no law follows the data"));
+    assert_false(says("good/report.html", "no law fits the data"));
     assert_false(says("good/report.html", "Broken line"));
 }
 
@@ -103,8 +103,8 @@ static void a_rule_that_the_data_do_not_support_has_ranges_only(void **state)
     c->ranked[0].misfit = 0.02;
     assert_int_equal(
         wb_kind_write(&wb_recordings_kind, &bench->results, in_folder("bad"), false, 0), WB_OK);
-    assert_true(says("bad/report.html", "no law follows the data"));
-    assert_true(says("bad/report.html", "No law follows the data"));
+    assert_true(says("bad/report.html", "no law fits the data"));
+    assert_true(says("bad/report.html", "No law fits the data"));
     assert_true(says("bad/report.html", "Broken line"));
     assert_true(says("bad/report.html", "over laws"));
     snprintf(value, sizeof value, "<i>EI</i> = %.0f", 1e6 * c->rigidity.value);
