@@ -1,4 +1,4 @@
-/* What campaign files of all kinds have in common: kind, title, notes, name and checksum, the place
+/* Common parts of campaign files of all kinds: kind, title, notes, name and checksum, the place
  * of their simulations, the settings of a fit, and files that they name.
  */
 #ifndef WB_ANALYSIS_REPORT_CAMPAIGN_H
@@ -43,7 +43,7 @@ WB_MUST_CHECK enum wb_status wb_campaign_read_kind(int *kind, const char *path,
 WB_MUST_CHECK enum wb_status wb_campaign_read_settings(const struct wb_config_node *node,
                                                        struct wb_calibrate_settings *settings);
 
-/* The path of what a key of `node` names: `name` below fixtures/FOLDER, or a path from the campaign
+/* The path that a key of `node` names: `name` below fixtures/FOLDER, or a path from the campaign
  * file. `shown` (NULL: not wanted) is the path as a command in the file's folder has it. */
 WB_MUST_CHECK enum wb_status wb_campaign_find(const struct wb_campaign *campaign,
                                               const struct wb_config_node *node, const char *key,

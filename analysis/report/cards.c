@@ -142,16 +142,16 @@ void wb_cards_put_pages(struct wb_document *document, const struct wb_cards *car
         {.heading = "cards/"},
         {.heading = "Files", .wraps = true},
         {.heading = "Curvature up to (1/m)", .right = true},
-        {.heading = "Ways"},
+        {.heading = "Valid for"},
     };
     if (cards->n_laws == 0)
         return;
     wb_document_heading(document, 1, "cards", "Cards for other programs");
     struct wb_document_table *const table =
         wb_document_table(document,
-                          "Beside this report; <tt>wirebench export</tt> makes them of the .yaml. "
-                          "Beyond the curvature the law is extrapolated. Ways: those that the data "
-                          "support.",
+                          "Files in the folder <tt>cards</tt> of this report; <tt>wirebench "
+                          "export</tt> makes them from the .yaml file. Beyond the curvature the "
+                          "law is extrapolated. Valid for: as far as the data support.",
                           WB_COUNT(columns), columns);
     for (int i = 0; i < cards->n_laws; i++) {
         const struct wb_cards_law *const law = &cards->laws[i];

@@ -33,8 +33,8 @@ struct wb_cards {
 
 /* Adds the files of a law by the text of its properties, which becomes the list's; they are named
  * by `wire`, whose other characters than letters, digits, '.', '_' and '-' become '-', and of whose
- * equals the second is NAME-2. What cannot be expressed is left out, with a message: a kind that
- * has no place for the law, or all where the numbers make no properties file. */
+ * equals the second is NAME-2. A law that a program cannot express is left out, with a message: a
+ * kind that has no place for the law, or all where the numbers make no properties file. */
 WB_MUST_CHECK enum wb_status wb_cards_add(struct wb_cards *cards, const char *wire,
                                           struct wb_text *properties);
 /* The same of a law that was fitted to one dataset of a name and checksum. */

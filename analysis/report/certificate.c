@@ -42,7 +42,7 @@ static void add_way(struct wb_panel *panel, const struct wb_certificate *certifi
         wb_figure_add_line(panel, down ? "on the way down" : "on the way up", n, x, y, &style);
 }
 
-/* The line through all points, less what the rig file says. */
+/* The line through all points, less the rig file's. */
 static void add_fit(struct wb_panel *panel, const struct wb_certificate *certificate)
 {
     const struct wb_cell_calibration *const c = certificate->calibration;
@@ -182,7 +182,7 @@ static void put_results(struct wb_document *document, const struct wb_certificat
         wb_pages_cell_number(table, result->known ? result->at / WB_G : none, 3);
         wb_pages_cell_number(table, certificate->tolerance / WB_PERCENT, 3);
         if (!result->known)
-            wb_pages_cell(table, WB_TONE_QUIET, "not shown by these masses");
+            wb_pages_cell(table, WB_TONE_QUIET, "cannot be determined with these masses");
         else if (result->passed)
             wb_pages_cell(table, WB_TONE_GOOD, "within");
         else
@@ -195,20 +195,20 @@ static void fill(struct wb_document *document, const struct wb_certificate *cert
 {
     const bool passed = certificate->calibration->passed;
     if (certificate->rig->is_virtual)
-        wb_document_notice(
-            document, WB_TONE_ORIGIN,
-            "Measured on a <b>virtual rig</b>: it says nothing of a real load cell.");
+        wb_document_notice(document, WB_TONE_ORIGIN,
+                           "Measured on a <b>virtual rig</b>: not valid for a physical load cell.");
     put_item(document, certificate);
     wb_document_heading(document, 1, "result", "Result");
     wb_document_notice(
         document, passed ? WB_TONE_GOOD : WB_TONE_WARNING,
-        passed ? "<b>Passed</b>: all quantities that the masses show are within the tolerance."
+        passed ? "<b>Passed</b>: all quantities that can be determined with these masses are "
+                 "within the tolerance."
                : "<b>Not passed</b>: a quantity exceeds the tolerance.");
     put_results(document, certificate);
     wb_document_heading(document, 1, "readings", "Readings");
     put_points(document, certificate);
     wb_document_figures(document, figure,
-                        "Deviation of the reading from the mass that hung, both less zero.", NULL,
+                        "Deviation of the reading from the applied mass, both less zero.", NULL,
                         NULL);
     wb_document_heading(document, 1, "terms", "Terms");
     wb_document_paragraph(

@@ -1,4 +1,4 @@
-/* The certificate of a load cell's calibration: a PDF of the cell, the masses, what it read, the
+/* The certificate of a load cell's calibration: a PDF of the cell, the masses, the readings, the
  * quantities of daq/protocol/cell_calibration.h with their uncertainties and the verdict, and a
  * figure of the deviations on the way up and down. */
 #ifndef WB_ANALYSIS_REPORT_CERTIFICATE_H

@@ -17,7 +17,7 @@
  * leads it, so that what is fitted, and follows from it, is held to the second. */
 static const double tolerance = 1e-9, fitted_tolerance = 1e-5;
 
-/* The members of report.json that hold what is fitted, and none but the program that made it. */
+/* The members of report.json with fitted numbers, and the one with the program that made it. */
 static const char *const program[] = {"tool", NULL};
 static const char *const program_and_fitted[] = {"tool", "wires", "fit", "bundles", NULL};
 
@@ -172,7 +172,7 @@ static enum wb_status check_inputs(const struct pair *pair)
     return WB_OK;
 }
 
-/* What of the builds differs first, in words. */
+/* The first difference of the builds, in words. */
 static void describe_build(const struct wb_json_place *at, char text[600])
 {
     static const char *const lists[] = {"libraries", "fonts"};
@@ -196,7 +196,7 @@ static enum wb_status refuse(const struct wb_json_difference *found, double limi
                    found->most.a, found->most.b, by);
 }
 
-/* The numbers of both, and what is to be said of them. */
+/* The numbers of both, and the result of their comparison. */
 static enum wb_status compare_documents(const struct wb_json *was, const struct wb_json *is,
                                         const char *build, FILE *out)
 {

@@ -11,7 +11,7 @@ struct wb_check_order {
     const char *folder;   /* of the report */
     const char *campaign; /* NULL: the file that the manifest names, here or among the shipped */
     int n_threads;        /* as for a report */
-    FILE *out;            /* what was found, a line each */
+    FILE *out;            /* findings, a line each */
 };
 
 enum wb_check_end {

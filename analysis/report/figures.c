@@ -105,7 +105,7 @@ void wb_figures_put(const struct wb_figures *figures, struct wb_document *docume
     }
 }
 
-/* --- what functions that draw share --- */
+/* --- common parts of functions that draw --- */
 
 enum wb_status wb_figures_start_simulation(struct wb_figure **figure, const char *name,
                                            double height)

@@ -63,9 +63,9 @@ bool wb_figures_has(const struct wb_figures *figures, const char *place, int ind
 void wb_figures_put(const struct wb_figures *figures, struct wb_document *document,
                     const char *place, int index);
 
-/* --- what functions that draw share --- */
+/* --- common parts of functions that draw --- */
 
-/* What others are held against in a figure: a broad pale line on which they lie. */
+/* The reference that others are compared with in a figure: a broad pale line below them. */
 extern const struct wb_figure_style wb_figures_reference_style;
 
 /* Starts a figure of the text's width that says that it shows simulations. */

@@ -82,8 +82,7 @@ void wb_found_add_verdicts(struct wb_found *found, const struct wb_verdict *verd
         add_verdicts_on(found, verdicts, n, &verdicts[i], true);
     }
     if (n == 0)
-        wb_found_say(found, WB_FOUND_UNCHECKED,
-                     "The campaign states no limits for what could be computed.");
+        wb_found_say(found, WB_FOUND_UNCHECKED, "The campaign states no limits for these results.");
 }
 
 /* --- the page --- */

@@ -1,7 +1,7 @@
-/* A kind of report: what report.h needs to make it. To add a kind, write its functions and a row in
+/* A kind of report: its functions for report.h. To add a kind, write its functions and a row in
  * analysis/report/kinds/kinds.c.
  *
- * `campaign` is what a file of this kind says, `results` what comes of it; both are of the kind's
+ * `campaign` is the content of a file of this kind, `results` its results; both are of the kind's
  * own types, zeroed before the first function sees them. A campaign begins with a struct
  * wb_campaign, results with a struct wb_kind_outcome.
  */
@@ -23,7 +23,7 @@
 /* How a report came out; the first three are known once the data were looked at. */
 struct wb_kind_outcome {
     int n_wanted;                       /* recordings or datasets */
-    int n_missing;                      /* of recordings: what is not there */
+    int n_missing;                      /* recordings or files that are not there */
     int n_steps;                        /* of the computation, for its progress */
     int n_usable;                       /* of those that are wanted */
     bool is_complete;                   /* nothing is missing, refused or failed */
@@ -32,8 +32,8 @@ struct wb_kind_outcome {
     const struct wb_campaign *campaign; /* borrowed; `load` sets it */
 };
 
-/* Called after each finished step, by one thread at a time: how many are done, and what was. May be
- * NULL. */
+/* Called after each finished step, by one thread at a time: how many are done, and the name of the
+ * last. May be NULL. */
 typedef void wb_kind_progress(void *context, int done, const char *what);
 
 /* --- the functions of a kind --- */
@@ -66,8 +66,8 @@ typedef bool wb_kind_recordings(const void *results, int index,
 
 struct wb_kind {
     const char *name;       /* `kind:` of the campaign file */
-    const char *data;       /* what it is made from, for messages: "recordings" */
-    bool has_uncertainties; /* of what its limits bound */
+    const char *data;       /* its inputs, for messages: "recordings" */
+    bool has_uncertainties; /* of the values that its limits bound */
     size_t campaign_size, results_size;
 
     wb_kind_keys *keys;

@@ -204,8 +204,8 @@ void wb_laboratory_put_pages(struct wb_document *document, const struct wb_labor
     const int n = document->n;
     if (!laboratory->is_given) {
         wb_document_paragraph(document,
-                              "This is no report as ISO/IEC 17025 describes it: the campaign file "
-                              "has no <tt>laboratory</tt>.");
+                              "This is not a test report in the sense of ISO/IEC 17025: the "
+                              "campaign file has no <tt>laboratory</tt>.");
         return;
     }
     wb_document_set_number(document, laboratory->report);

@@ -1,5 +1,5 @@
-/* What ISO/IEC 17025:2017, clause 7.8.2, wants on a report beside its results: who tested what, for
- * whom, where, when and how. A campaign file says it under `laboratory`:
+/* Fields that ISO/IEC 17025:2017, clause 7.8.2, requires on a report beside its results: who tested
+ * what, for whom, where, when and how. A campaign file says it under `laboratory`:
  *
  *     laboratory:
  *       report: WB-2026-014             # number of the report, on each of its pages
@@ -25,7 +25,7 @@
  *         issued: 2026-11-10
  *         why: the diameter of the wire was wrong
  *
- * Nothing of it is required but `report`: what is missing is listed on the report.
+ * Only `report` is required: missing fields are listed on the report.
  */
 #ifndef WB_ANALYSIS_REPORT_LABORATORY_H
 #define WB_ANALYSIS_REPORT_LABORATORY_H
@@ -62,8 +62,8 @@ WB_MUST_CHECK enum wb_status wb_laboratory_read(const struct wb_config_node *nod
 /* How many required fields are missing. */
 int wb_laboratory_missing(const struct wb_laboratory *laboratory);
 
-/* Puts number, amendment, fields and what is missing before everything else in a document, and what
- * a report must say at its end behind it; where nothing is given one line that it is none. */
+/* Puts number, amendment, fields and missing fields before everything else in a document, and the
+ * end of the report behind it; without fields, one line that it is not a test report. */
 void wb_laboratory_put_pages(struct wb_document *document, const struct wb_laboratory *laboratory);
 
 /* Adds `laboratory` to the numbers: the fields that are given, `missing`; nothing where none is. */

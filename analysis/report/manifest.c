@@ -25,7 +25,7 @@ static void put_sum(struct wb_json *list, const char *role, const char *name, co
     wb_json_set_text(entry, "sha256", sha256);
 }
 
-/* What a report was made from: a recording, or a file that was read. */
+/* An input of a report: a recording, or a file that was read. */
 struct input {
     const char *what;
     char name[WB_PATH], sha256[WB_SHA256_TEXT];
@@ -48,7 +48,7 @@ static const char *below(const char *path, const char *folder)
     return is_below ? path + n + 1 : NULL;
 }
 
-/* The part of an absolute path by which shipped data are found; NULL: it is none of them. */
+/* The part of an absolute path by which shipped data are found; NULL: it is not shipped. */
 static const char *among_shipped(const char *path)
 {
     for (const char *part = strchr(path, '/'); part; part = strchr(part, '/')) {

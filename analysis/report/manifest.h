@@ -1,5 +1,5 @@
-/* The manifest of a report, manifest.json in its folder: SHA-256 sums of its files and of what it
- * was made from, and what it was built with. A signature of the manifest is one of all of these.
+/* The manifest of a report, manifest.json in its folder: SHA-256 sums of its files and of its
+ * inputs, and the build of the program. A signature of the manifest is one of all of these.
  */
 #ifndef WB_ANALYSIS_REPORT_MANIFEST_H
 #define WB_ANALYSIS_REPORT_MANIFEST_H

@@ -12,7 +12,7 @@
 
 #define WB_LOG_DOMAIN "report"
 
-/* A job's settings, and what they point to. */
+/* A job's settings, and the data that they point to. */
 struct one {
     struct wb_solve_settings settings;
     char checkpoint[WB_PATH];

@@ -1,6 +1,6 @@
 #include "analysis/report/numbers.h"
 
-#include "base/units.h"
+#include "analysis/report/pages.h"
 #include "base/version.h"
 
 void wb_numbers_put_title(struct wb_json *root, const char *title, const char *data)
@@ -52,8 +52,7 @@ void wb_numbers_put_list(struct wb_json *object, const char *key, const double *
 
 void wb_numbers_put_properties(struct wb_json *object, const struct wb_material *material)
 {
-    wb_json_set_number(object, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
-    wb_json_set_number(object, "yield_stress_MPa", material->yield_stress / WB_MPA);
-    wb_json_set_number(object, "strength_coefficient_MPa", material->strength_coefficient / WB_MPA);
-    wb_json_set_number(object, "hardening_exponent", material->hardening_exponent);
+    for (int i = 0; i < 4; i++)
+        wb_json_set_number(object, wb_pages_properties[i].key,
+                           wb_pages_value(material, i) / wb_pages_properties[i].factor);
 }

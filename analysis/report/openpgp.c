@@ -18,7 +18,7 @@ static enum wb_status run_gpg(struct wb_program_answer *answer, const char *cons
                : status;
 }
 
-/* The last line of what gpg said, which tells why. */
+/* The last line of gpg's output, which gives the reason. */
 static const char *reason_of(const struct wb_program_answer *answer, char text[300])
 {
     const char *all = wb_text_string(&answer->err), *line = all;
@@ -61,7 +61,7 @@ enum wb_status wb_openpgp_sign(const char *path, const char *signature, const ch
     return status;
 }
 
-/* What follows a keyword of gpg's status lines ("[GNUPG:] GOODSIG ..."); NULL: no such line. */
+/* The rest of gpg's status line after a keyword ("[GNUPG:] GOODSIG ..."); NULL: no such line. */
 static const char *find_status(const struct wb_program_answer *answer, const char *keyword)
 {
     static const char head[] = "[GNUPG:] ";

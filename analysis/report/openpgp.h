@@ -18,7 +18,7 @@ WB_MUST_CHECK enum wb_status wb_openpgp_sign(const char *path, const char *signa
 
 struct wb_openpgp_signer {
     char name[200], fingerprint[80];
-    bool is_trusted; /* gpg knows that the key is that person's */
+    bool is_trusted; /* gpg holds the key for that person's */
 };
 
 /* Who signed a file. WB_ERR_DATA: the signature is not of this file, or no signature, or of a key

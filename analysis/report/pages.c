@@ -60,7 +60,7 @@ static const char *const symbols[][2] = {
     {"mm2", "mm\xc2\xb2"},
 };
 
-/* A symbol that is a whole word; returns its length in the plain text, 0: there is none. */
+/* Appends a symbol that is a whole word; returns its length in the plain text, 0: no symbol. */
 static size_t append_symbol(struct wb_text *text, const char *plain)
 {
     for (size_t i = 0; i < WB_COUNT(symbols); i++) {
@@ -80,7 +80,7 @@ static size_t append_symbol(struct wb_text *text, const char *plain)
     return 0;
 }
 
-/* "1.13e-04" as a product with a power of ten; returns its length, 0: there is none. */
+/* Appends "1.13e-04" as a product with a power of ten; returns its length, 0: no such number. */
 static size_t append_power(struct wb_text *text, const char *plain)
 {
     const size_t digits = strspn(plain, "0123456789.");
@@ -171,7 +171,7 @@ int wb_pages_decimals(double value)
     return (int)fmin(fmax(2.0 - floor(log10(value)), 0.0), 6.0);
 }
 
-/* A real minus sign, where there is one: what rounds to zero has none. */
+/* A real minus sign; a number that rounds to zero has no sign. */
 static const char *minus(double value, int decimals)
 {
     return value < 0.0 && -value * pow(10.0, decimals) >= 0.5 ? "\xe2\x88\x92" : "";

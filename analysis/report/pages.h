@@ -1,5 +1,5 @@
-/* What pages of all reports share: cells of tables, escaped text, properties of a wire, the chapter
- * on where everything comes from.
+/* Common parts of the pages of all reports: cells of tables, escaped text, properties of a wire,
+ * the chapter on provenance.
  */
 #ifndef WB_ANALYSIS_REPORT_PAGES_H
 #define WB_ANALYSIS_REPORT_PAGES_H
@@ -12,7 +12,7 @@
 #include "analysis/report/verdict.h"
 #include "fe/material/material.h"
 
-/* Adds a cell of markup to the row that was begun; `wb_pages_cell_plain` escapes what comes from
+/* Adds a cell of markup to the row that was begun; `wb_pages_cell_plain` escapes text from
  * files. */
 void wb_pages_cell(struct wb_document_table *table, enum wb_document_tone tone, const char *format,
                    ...) __attribute__((format(printf, 3, 4)));
@@ -72,7 +72,7 @@ void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *lis
                            const void *results);
 
 /* The heading of a report's last chapter: campaign, checksum, program, the command that makes it
- * again, notes. `same` is what it was made from, "recordings". */
+ * again, notes. `same` names its inputs: "recordings". */
 void wb_pages_put_origin(struct wb_document *document, const struct wb_campaign *campaign,
                          const char *same);
 

@@ -196,7 +196,7 @@ static void bookmark(struct pen *pen, const struct wb_document_block *block)
         block->level == 1 ? CAIRO_PDF_OUTLINE_FLAG_OPEN : (cairo_pdf_outline_flags_t)0);
 }
 
-/* A heading stays with what follows, of which `next` pt must fit too. */
+/* A heading stays with the next block, of which `next` pt must fit as well. */
 static void put_heading(struct pen *pen, const struct wb_document_block *block, double next)
 {
     const bool is_section = block->level == 1;
@@ -340,13 +340,13 @@ static void measure_column(struct pen *pen, const struct wb_document_table *tabl
         *natural = fmax(*natural, width);
         *least = fmax(*least, of->wraps ? widest_word(pen, text, &style) : width);
     }
-    /* Room for rounding, or Pango would break what just fits. */
+    /* Room for rounding, or Pango breaks a text that just fits. */
     *natural += 1.0;
     *least += 1.0;
 }
 
-/* Columns take what their texts need. Where that is too much, those that wrap give of what they
- * have beyond their longest word; where even that is too little, of their words. */
+/* Columns get the width of their texts. Where the sum is too wide, columns that wrap shrink down to
+ * their longest word, and below it only where that is not enough. */
 static void find_widths(struct pen *pen, const struct wb_document_table *table, double *widths)
 {
     double least[WB_DOCUMENT_COLUMNS], sum = 0.0, sum_of_least = 0.0, wrapped = 0.0;
@@ -437,8 +437,8 @@ static double caption_height(struct pen *pen, const struct wb_document_table *ta
     return table->caption ? text_height(pen, table->caption, &caption) + 2.0 : 0.0;
 }
 
-/* What must fit on the page for a table to begin on it: all of it, or the head and two rows of one
- * that would take more than half a page or so. */
+/* The height that must fit on the page for a table to begin on it: all of it, or the head and two
+ * rows of one that would take more than half a page or so. */
 static double needed_height(struct pen *pen, const struct wb_document_table *table,
                             const double *widths)
 {

@@ -6,8 +6,7 @@
 #include "base/status.h"
 #include "base/text.h"
 
-/* Width of the text, pt: what a figure over the whole width should have, and one of two beside
- * each other. */
+/* Width of the text, pt: of a figure over the whole width, and of one of two side by side. */
 #define WB_PDF_WIDTH 487.0
 #define WB_PDF_HALF_WIDTH 237.0
 

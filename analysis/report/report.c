@@ -41,7 +41,7 @@ static enum wb_status make_missing(struct making *making, bool *ends)
         WB_TRY(
             wb_missing_make(&outcome, kind->datasets, making->results, order->folder, order->jobs));
     else if (known->n_missing > 0)
-        wb_warn("%s cannot be computed: nothing is made of what is missing", kind->data);
+        wb_warn("%s cannot be computed: missing ones are left out", kind->data);
     *ends = order->jobs->dry_run || outcome.interrupted;
     if (outcome.interrupted)
         return refuse_interrupted(making);
@@ -76,7 +76,7 @@ static enum wb_status compute(struct making *making)
     return status;
 }
 
-/* What keeps a report from being signed, before it costs the time of the computations. */
+/* Checks that the report can be signed, before the computations take their time. */
 static enum wb_status check_signing(const struct making *making)
 {
     const struct wb_report_order *const order = making->order;

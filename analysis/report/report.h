@@ -1,8 +1,8 @@
 /* Makes a report of any kind: report.pdf, report.html, report.json and figures/.
  *
  * The same data and the same revision give the same bytes: nothing in them depends on the time of
- * the run, on how long it took, on the folder or on this machine's paths. What a simulation cost is
- * read from its dataset.
+ * the run, on how long it took, on the folder or on this machine's paths. The cost of a simulation
+ * is read from its dataset.
  */
 #ifndef WB_ANALYSIS_REPORT_REPORT_H
 #define WB_ANALYSIS_REPORT_REPORT_H
@@ -13,16 +13,16 @@
 #include "analysis/report/kind.h"
 #include "base/status.h"
 
-/* What is asked for; all borrowed. */
+/* The report to make; all borrowed. */
 struct wb_report_order {
-    const char *campaign;               /* path of its file */
-    const char *folder;                 /* to write; NULL: nothing, only what cannot be used of the
-                                           datasets is listed, and why */
-    bool force;                         /* replaces the report that it holds */
-    bool has_manifest;                  /* also writes manifest.json */
-    const char *key;                    /* to sign the manifest with, by gpg; NULL: none */
-    bool quiet;                         /* prints no summary; a list is JSON */
-    int n_threads;                      /* 0: as many as cores, 4 at most */
+    const char *campaign; /* path of its file */
+    const char *folder;   /* to write; NULL: nothing, only datasets that cannot be used are
+                             listed, with the reason */
+    bool force;           /* replaces the report that it holds */
+    bool has_manifest;    /* also writes manifest.json */
+    const char *key;      /* to sign the manifest with, by gpg; NULL: none */
+    bool quiet;           /* prints no summary; a list is JSON */
+    int n_threads;        /* 0: as many as cores, 4 at most */
     const struct wb_jobs_options *jobs; /* for datasets that are missing */
 };
 

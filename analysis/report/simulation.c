@@ -12,7 +12,7 @@
 
 static const char shipped[] = "simulations";
 
-/* --- what a campaign wants --- */
+/* --- wanted datasets --- */
 
 enum wb_status wb_simulation_find(struct wb_simulation *simulation,
                                   const struct wb_campaign *campaign, const char *given)
@@ -83,7 +83,7 @@ void wb_simulation_release(struct wb_simulation *simulation)
     wb_text_release(&simulation->command);
 }
 
-/* --- what is there --- */
+/* --- datasets that exist --- */
 
 double wb_simulation_number(const struct wb_json *object, const char *key)
 {
@@ -137,7 +137,7 @@ static enum wb_status check(const struct wb_simulation_result *result,
     *stale = true;
     if (!inputs)
         return wb_fail_to(why, WB_ERR_DATA,
-                          "it does not say what it was computed of, as older versions did not");
+                          "it does not name its inputs, as datasets of older versions");
     if (wb_json_differs(inputs, wanted->inputs, 1e-9, NULL, &found))
         return wb_fail_to(why, WB_ERR_DATA, "%s is %s in it, and %s is wanted", found.first.place,
                           found.first.a, found.first.b);

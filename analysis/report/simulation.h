@@ -1,5 +1,5 @@
 /* A dataset of a simulation that a campaign wants: where it lies, how this program makes it, and
- * whether what is there can be used.
+ * whether they can be used.
  *
  * A dataset that is not there is no error: reports say so, and how to make it.
  */
@@ -19,7 +19,7 @@
 #include "base/status.h"
 #include "base/text.h"
 
-/* What a campaign wants. */
+/* A dataset that a campaign wants. */
 struct wb_simulation {
     bool wanted;
     char name[256];     /* for readers: no path of this machine */
@@ -46,7 +46,7 @@ WB_MUST_CHECK enum wb_status wb_simulation_set(struct wb_simulation *simulation,
 
 void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroed one */
 
-/* --- what is there --- */
+/* --- datasets that exist --- */
 
 enum wb_simulation_state {
     WB_SIMULATION_NOT_WANTED,
@@ -67,17 +67,17 @@ struct wb_simulation_result {
 
 /* How a kind of report looks at a dataset that was read. */
 struct wb_simulation_reader {
-    /* Takes what it needs of a dataset that fits and is whole; NULL: nothing. */
+    /* Takes its data from a dataset that fits and is complete; NULL: nothing. */
     enum wb_status (*take)(void *context, struct wb_reason *why);
     void *context;
 };
 
-/* Reads what is wanted into a zeroed result. Nothing fails: the result says what is wrong. */
+/* Reads the wanted dataset into a zeroed result. An error is kept in the result. */
 void wb_simulation_load(struct wb_simulation_result *result, const struct wb_simulation *wanted,
                         const struct wb_simulation_reader *reader);
 void wb_simulation_result_release(struct wb_simulation_result *result);
 
-/* Sets its name, state, command, and what is wrong with it. */
+/* Sets its name, state, command, and problem. */
 void wb_simulation_describe(struct wb_json *object, const struct wb_simulation *wanted,
                             const struct wb_simulation_result *result);
 

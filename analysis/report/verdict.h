@@ -1,10 +1,10 @@
-/* What a limit of a campaign says of results: whether the value that it bounds keeps it. */
+/* Verdict of a campaign's limit: whether the value that it bounds keeps it. */
 #ifndef WB_ANALYSIS_REPORT_VERDICT_H
 #define WB_ANALYSIS_REPORT_VERDICT_H
 
 #include <stdbool.h>
 
-/* How a value with an uncertainty is held against a limit, as ILAC-G8:09/2019 has it. */
+/* How a value with an uncertainty is compared with a limit, after ILAC-G8:09/2019. */
 enum wb_verdict_rule {
     WB_RULE_SIMPLE, /* kept: the value is at most the limit; the uncertainty is only stated */
     WB_RULE_GUARDED /* kept: the value and its uncertainty U are at most the limit */
@@ -20,7 +20,7 @@ bool wb_verdict_keeps(enum wb_verdict_rule rule, double value, double expanded, 
 struct wb_verdict {
     const char *what;    /* that is bounded; markup */
     const char *key;     /* of the limit in the campaign file: "rms_max" */
-    const char *label;   /* of what the value belongs to, plain text; NULL: there is only one */
+    const char *label;   /* of the thing that has the value, plain text; NULL: there is only one */
     double value, limit; /* 1; a value that is NaN is not known */
     bool kept;
 };

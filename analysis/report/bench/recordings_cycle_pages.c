@@ -93,7 +93,7 @@ static void put_wire(struct wb_document_table *table, const struct wb_recordings
     const struct wb_estimate *const back = &c->residual_curvature_ratio;
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const double none = (double)NAN;
-    /* Where no law fits the data, the range over laws is all that is known. */
+    /* Where no law fits the data, only the range over laws is known. */
     const bool is_known = c->is_followed || !c->has_unloading;
     put_number(table, is_known ? stiffness->value / WB_NMM2 : none);
     put_range(table, is_known ? stiffness->low / WB_NMM2 : none, stiffness->high / WB_NMM2);
@@ -123,9 +123,10 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
         "that of the curvature, of the first 1 /m during unloading from the largest curvature; "
         "where there is no unloading, from straight to 1 /m. Residual curvature ratio: curvature "
         "that remains at zero moment, over the curvature that the wire was bent to. 95 %%: "
-        "combined of all that the budgets below state. Over laws: range over all laws whose "
-        "misfit is at most twice the best. Misfit: RMS over both ways of the best law, "
-        "over <i>F</i><sub>max</sub>; above 3 %% only ranges are given.");
+        "interval from all contributions that the uncertainty budgets state. Over laws: range over "
+        "all laws whose misfit is at most twice the best. Misfit: RMS of the best law over loading "
+        "and "
+        "unloading, over <i>F</i><sub>max</sub>; above 3 %% only ranges are given.");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
     for (int i = 0; i < results->n_wires; i++)
         put_wire(table, &results->wires[i]);
@@ -139,7 +140,7 @@ static void start_moments_row(struct wb_document_table *table, bool begins_group
     wb_pages_cell(table, tone, "%s", name);
 }
 
-/* Of a law that does not follow the data, only the range over laws. */
+/* Where no law fits the data, only the range over laws. */
 static void put_moments_of(struct wb_document_table *table,
                            const struct wb_recordings_results_wire *wire)
 {
@@ -230,10 +231,10 @@ static void put_stiffnesses(struct wb_document *document,
     struct wb_text caption = {0};
     wb_text_append(
         &caption,
-        "Stiffness (N mm\xc2\xb2) with the interval of the mean of the samples: change of "
-        "the moment over a change of the curvature, from the largest curvature back and "
-        "from straight up. From: the smallest curvature that the data of all samples "
-        "resolve; below it, in grey, and at zero the law speaks alone.");
+        "Stiffness (N mm\xc2\xb2) with the interval of the mean of the samples: change of the "
+        "moment over the change of the curvature; unloading from the largest curvature, secant "
+        "from straight. From: the smallest curvature that the data of all samples resolve; values "
+        "below it, in grey, and at zero depend on the law alone.");
     if (results->pool.degrees > 0)
         wb_text_append(&caption,
                        " The interval of <i>EI</i> is from the scatter of all wires' samples "
@@ -258,7 +259,7 @@ static void put_moments(struct wb_document *document, const struct wb_recordings
         document,
         "Bending moment <i>M</i> of a first loading at parts of the largest curvature "
         "<i>\xce\xba</i><sub>max</sub> that all samples of the wire reached at the clamp, with the "
-        "interval of the mean of the samples. Beyond it the law is not backed by data.",
+        "interval of the mean of the samples. Beyond it the law is extrapolated.",
         2 + WB_CYCLE_MOMENTS, columns);
     for (int i = 0; i < results->n_wires; i++)
         put_moments_of(table, &results->wires[i]);
@@ -302,8 +303,8 @@ static void put_predictions(struct wb_document *document,
     const double *const length = results->campaign->length;
     struct wb_text caption = {0};
     wb_text_append(&caption,
-                   "Mean of the samples of %g mm against what the laws of the %g mm samples "
-                   "predict; RMS over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in "
+                   "Mean of the samples of %g mm beside the prediction by the laws of the %g mm "
+                   "samples; RMS over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in "
                    "another part in one of twenty validations of a right law, because specimens "
                    "differ. Residual deflection: where the force during "
                    "unloading has come down to that at zero deflection.",
@@ -315,7 +316,7 @@ static void put_predictions(struct wb_document *document,
         put_prediction_of(table, &results->wires[i]);
 }
 
-/* A score of both routes; NaN: there is none. */
+/* A score of both routes; NaN: none. */
 struct score {
     const char *name, *unit;
     double cycle, paper; /* in the unit */
@@ -351,18 +352,18 @@ static void put_bounds(struct wb_document *document, const struct wb_validate_re
     if (!wb_validate_bounds_known(p))
         return;
     if (wb_validate_bounds_exceeded(p)) {
-        wb_text_append(&text, "<b>Beyond the bound:</b> ");
+        wb_text_append(&text, "<b>Bound exceeded:</b> ");
         wb_validate_bounds_append(&text, p);
         wb_text_append(&text,
                        ". A right law exceeds one of the bounds in one of twenty validations, "
-                       "because specimens differ; else the law is wrong, or the specimens are "
-                       "of another wire.");
+                       "because specimens differ; otherwise the law is wrong, or the specimens "
+                       "are of another wire.");
         wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
         return;
     }
     wb_text_append(&text,
-                   "Nothing is beyond the bounds, of which a right law exceeds one in one of "
-                   "twenty validations: the scatter of specimens explains what was found.");
+                   "No bound is exceeded: the scatter of specimens explains the differences. A "
+                   "right law exceeds one of the bounds in one of twenty validations.");
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
@@ -416,8 +417,8 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
     };
     struct wb_document_table *const table = wb_document_table(
         document,
-        "The same samples by the law of this chapter and by that of the paper's route, each part "
-        "of the test apart.",
+        "The same samples by the law of this chapter and by that of the paper's route, for each "
+        "part of the test.",
         4, columns);
     for (size_t i = 0; i < sizeof scores / sizeof scores[0]; i++)
         put_score(table, &scores[i]);
@@ -426,7 +427,7 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
     put_bounds(document, p);
     if (p->is_beyond)
         wb_document_notice(document, WB_TONE_WARNING,
-                           "<b>Beyond the data.</b> These tests bend the wire further at the clamp "
+                           "<b>Extrapolation.</b> These tests bend the wire further at the clamp "
                            "than those that the law was fitted to.");
 }
 
@@ -536,7 +537,7 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
     static const struct wb_document_column columns[] = {
         {"Law"},
         {.heading = "Misfit (%)", .right = true},
-        {.heading = "Numbers", .right = true},
+        {.heading = "Parameters", .right = true},
         {.heading = "Weight", .right = true},
         {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true},
         {.heading = "Residual ratio", .right = true},
@@ -545,11 +546,11 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
     struct wb_text caption = {0};
     wb_text_append(
         &caption,
-        "Laws by misfit: RMS over both ways over <i>F</i><sub>max</sub>; repeat noise of "
-        "the readings %.3f %%. Weight: by the misfit and the free numbers of a law "
-        "(Schwarz's criterion); of a specimen's residuals %.0f count, as neighbours miss "
-        "alike. The law of the largest weight is chosen. In range: misfit at most twice "
-        "the best.",
+        "Misfit: RMS over loading and unloading, over <i>F</i><sub>max</sub>; repeat noise of the "
+        "readings %.3f %%. Weight: from the misfit and the number of free parameters (Schwarz's "
+        "criterion), with %.0f independent residuals of a specimen, because neighbouring "
+        "residuals are correlated. The law of the largest weight is chosen. In range: misfit at "
+        "most twice the best.",
         100.0 * c->repeat_noise, c->n_independent);
     wb_document_heading(document, 2, "", "Laws and hardening rules");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 7, columns);
@@ -671,11 +672,10 @@ static void put_budget(struct wb_document *document, const struct wb_cycle_calib
     wb_document_heading(document, 2, "", "Uncertainty budget");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Standard uncertainties (%) of moments, stiffnesses and the residual curvature ratio, what "
-        "they are made of, "
-        "and the factor that makes an interval of 95 % of the combined one. In brackets: what no "
-        "file states, and what is therefore in no interval; the change by 1 % of it, of the "
-        "marker offset by 0.1 mm. It goes into the rig, specimen and wire files (u_...).",
+        "Standard uncertainties (%) of moments, stiffnesses and the residual curvature ratio by "
+        "contribution, and the coverage factor for an interval of 95 %. In brackets: "
+        "contributions that no file states, which are in no interval; effect of 1 %, of the "
+        "marker offset of 0.1 mm. State them in the rig, specimen and wire files (u_...).",
         1 + n, columns);
     for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
         if (!wb_cycle_budget_has(c, i))
@@ -708,7 +708,7 @@ static void put_budget(struct wb_document *document, const struct wb_cycle_calib
     }
 }
 
-/* A number of a Ludwik law that is only shown where the data know it. */
+/* A parameter of a Ludwik law, shown only where the data determine it. */
 static void append_known(struct wb_text *text, const char *name, double value, int decimals,
                          const char *unit, bool is_known)
 {
@@ -760,8 +760,8 @@ static void put_chaboche(struct wb_document *document, const struct wb_law *law)
     char caption[400];
     snprintf(caption, sizeof caption,
              "Chaboche's law: <i>E</i> = %.0f MPa; yields at %.3f MPa on either side of the sum of "
-             "the back stresses, and this yield stress grows. Modulus: slope over plastic strain "
-             "at first; rate: <i>\xce\xb3</i> of a back stress, <i>b</i> of the yield stress. "
+             "the back stresses, and this yield stress grows. Modulus: initial slope over plastic "
+             "strain; rate: <i>\xce\xb3</i> of a back stress, <i>b</i> of the yield stress. "
              "Means over the samples.",
              law->material.youngs_modulus / WB_MPA, law->material.yield_stress / WB_MPA);
     struct wb_document_table *const table =
@@ -788,17 +788,17 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
     struct wb_text text = {0};
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_material *const m = &c->ludwik;
-    wb_document_heading(document, 2, "", "The law's numbers");
+    wb_document_heading(document, 2, "", "Parameters of the law");
     if (wb_recordings_cycle_is_refuted(cycle))
-        wb_text_append(&text, "No law fits the data; these are the numbers of the chosen one, "
-                              "not of the wire. ");
+        wb_text_append(&text, "No law fits the data; these are parameters of the chosen law, not "
+                              "properties of the wire. ");
     if (c->law.form != WB_LAW_LUDWIK) {
         if (c->law.form == WB_LAW_PARALLEL)
             put_parts(document, &c->law);
         else
             put_chaboche(document, &c->law);
         wb_text_append(&text,
-                       "Ludwik's law that bends alike on a first loading (RMS %.1f %% of <i>M</i>)"
+                       "Equivalent Ludwik law of a first loading (RMS %.1f %% of <i>M</i>)"
                        ": <i>E</i> = %.0f MPa, <i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = "
                        "%.0f MPa, <i>n</i> = %.3f. It says nothing about unloading.",
                        100.0 * c->ludwik_misfit, m->youngs_modulus / WB_MPA,
@@ -817,13 +817,13 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
         if (!(c->is_strength_identifiable && c->is_exponent_identifiable))
             wb_text_append(&text, " %s",
                            c->travel_share < 0.35
-                               ? "A travel of at least 0.35 of the length would mend it."
-                               : "More samples, or an unloading, would mend it.");
+                               ? "A travel of at least 0.35 of the length would determine it."
+                               : "More samples, or an unloading, would determine it.");
     }
     if (c->law.n_maxwell > 0) {
         struct wb_text relaxation = {0};
         wb_law_append_relaxation(&relaxation, &c->law);
-        wb_text_append(&text, " Beside it ");
+        wb_text_append(&text, " In parallel: ");
         wb_pages_append_symbols(&text, wb_text_string(&relaxation));
         wb_text_append(&text, "; the law itself is the relaxed wire's.");
         wb_text_release(&relaxation);
@@ -835,7 +835,7 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
         wb_text_append(
             &text,
             " The law's parameters are strongly correlated: in the fit of sample %d the strongest "
-            "correlation is %s%.2f, of ",
+            "correlation is %s%.2f, between ",
             c->members[0].sample, minus(fit->correlation[one][other]),
             fabs(fit->correlation[one][other]));
         wb_pages_append_symbols(&text, wb_cycle_fit_number(fit, one, a));
@@ -846,7 +846,7 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
-/* Where the law and what shapes and tension say without it part. */
+/* Where the law differs from the moments that shapes and strand tension give without it. */
 static void put_apart(struct wb_document *document, const struct wb_recordings_cycle *cycle)
 {
     const struct wb_moment_comparison *const c = &cycle->comparison;
@@ -855,14 +855,14 @@ static void put_apart(struct wb_document *document, const struct wb_recordings_c
         return;
     wb_text_append(
         &text,
-        "<b>Law and measured moments part.</b> Between %.1f and %.1f /m the law's moment "
-        "is %.1f %% %s what shapes and tension say, %.1f standard deviations.",
+        "<b>Law and measured moments differ.</b> Between %.1f and %.1f /m the law's moment "
+        "is %.1f %% %s the moment from shapes and strand tension, %.1f standard deviations.",
         c->first, c->last, 100.0 * fabs(c->difference), c->difference > 0.0 ? "above" : "below",
         c->in_deviations);
     wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
 }
 
-/* What the checks of the data found: doubts as warnings, notes as notes. */
+/* Findings of the checks of the data: doubts as warnings, notes as notes. */
 static void put_remarks(struct wb_document *document, const struct wb_cycle_remarks *remarks)
 {
     for (int i = 0; i < remarks->n; i++) {

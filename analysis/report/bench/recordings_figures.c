@@ -638,7 +638,7 @@ static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_
         if (!result)
             continue;
         if (!panel) {
-            const double height = strcmp(item->row->place, "found") == 0 ? 165.0 : 205.0;
+            const double height = strcmp(item->row->place, "found") == 0 ? 160.0 : 205.0;
             WB_TRY(wb_recordings_draw_start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH,
                                             height));
             panel = wb_figure_add_panel(item->figure);

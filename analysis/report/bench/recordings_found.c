@@ -522,9 +522,9 @@ static void add_next(struct wb_found *found, const struct wb_recordings_results 
                      "wire, then test more of them, before using a law that did not predict the "
                      "other length.");
     if (results->all_virtual)
-        wb_found_say(found, WB_FOUND_NEXT,
-                     "<b>Physical wire</b>: record specimens of your wire with <tt>wirebench "
-                     "record</tt>; these numbers are of a simulated wire.");
+        wb_found_say(
+            found, WB_FOUND_NEXT,
+            "<b>Physical wire</b>: record specimens of your wire with <tt>wirebench record</tt>.");
 }
 
 /* --- decisions of a laboratory --- */

@@ -16,7 +16,7 @@
 #include "base/units.h"
 #include "base/version.h"
 
-/* Tells why recordings of a wire are missing or were refused, one item each. */
+/* An item for each recording of a wire that is missing or was rejected, with the reason. */
 static void put_missing_tests(struct wb_document *document,
                               const struct wb_recordings_results *results,
                               const struct wb_recordings_results_wire *of)
@@ -185,8 +185,9 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
     };
     char caption[900], source[300];
     int length = snprintf(caption, sizeof caption,
-                          "Errors are parts of <i>F</i><sub>max</sub>, the largest force of the "
-                          "mean measured curve (eqs. 18 and 19); that of the validation is given. "
+                          "Errors are fractions of <i>F</i><sub>max</sub>, the largest force of "
+                          "the mean measured curve (eqs. 18 and 19); the table has that of the "
+                          "validation. "
                           "Scatter explains, about: the part of the validation's RMS<sup>2</sup> "
                           "that a perfect model would show too, on average, because means of a few "
                           "specimens of unlike stiffness differ by chance.");
@@ -286,7 +287,7 @@ static int put_alignment_warnings(struct wb_document *document,
     return n;
 }
 
-/* What a reader must know of a search before trusting K and n. */
+/* Doubts about the search for K and n. */
 static int put_search_warnings(struct wb_document *document,
                                const struct wb_recordings_results_wire *wire)
 {
@@ -304,8 +305,8 @@ static int put_search_warnings(struct wb_document *document,
     }
     if (c->restarted && !(c->restart_moved <= 1e-3)) {
         snprintf(item, sizeof item,
-                 "%s: a restart of the search moved K and n by up to %.2g %%: other pairs fit as "
-                 "well.",
+                 "%s: a restart of the search moved K and n by up to %.2g %%: other pairs fit "
+                 "equally well.",
                  label, 100.0 * c->restart_moved);
         wb_document_item(document, WB_TONE_PLAIN, item);
         n++;
@@ -342,9 +343,9 @@ static void put_excluded(struct wb_document *document, const struct wb_recording
     const int n = count_exclusions(results);
     if (n == 0)
         return;
-    snprintf(
-        text, sizeof text, "%d further %s left out by people and %s in no number of this report.",
-        n, wb_pages_plural(n, "recording was", "recordings were"), wb_pages_plural(n, "is", "are"));
+    snprintf(text, sizeof text, "%d further %s excluded and %s used in no number of this report.",
+             n, wb_pages_plural(n, "recording was", "recordings were"),
+             wb_pages_plural(n, "is", "are"));
     wb_document_heading(document, 2, "excluded", "Excluded");
     wb_document_paragraph(document, text);
     put_exclusions(document, results, NULL);
@@ -615,7 +616,8 @@ static void put_corrections(struct wb_document *document,
     wb_document_heading(document, 2, "corrections", "Corrections made by the alignment");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Over all recordings. The natural shape is not taken off the data but given to the model. "
+        "Over all recordings. The natural shape is not subtracted from the data; the model starts "
+        "from it. "
         "Each correction of each recording, with its reason, is in report.json.",
         5, columns);
     for (size_t i = 0; i < wb_json_length(list); i++) {
@@ -792,7 +794,7 @@ static void put_search(struct wb_document *document, const struct wb_recordings_
         wb_text_append(&text, " A restart from the optimum moved K and n by at most %.2g %%.",
                        100.0 * c->restart_moved);
     if (c->failed_evaluations > 0)
-        wb_text_append(&text, " %d of the runs did not converge and were given a large error.",
+        wb_text_append(&text, " %d of the runs did not converge and counted with a large error.",
                        c->failed_evaluations);
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
     put_remarks(document, c);

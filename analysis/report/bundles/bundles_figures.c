@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/calibration/properties/properties.h"
 #include "analysis/report/draw/figures_surface.h"
@@ -460,6 +461,21 @@ static void add_fit(struct wb_panel *panel, const struct wb_bundles_results *res
     wb_text_release(&label);
 }
 
+/* The RMS of a bundle's run from its published curve; NaN: there is none of either. */
+static double rms_of(const struct wb_bundles_results *results, int run)
+{
+    const struct wb_bundles_result *const result = wb_bundles_results_usable(results, run);
+    return result && result->published ? result->rms : (double)NAN;
+}
+
+static bool any_published(const struct wb_bundles_results *results)
+{
+    bool any = false;
+    for (int i = 0; i < results->campaign->n_bundles; i++)
+        any |= isfinite(rms_of(results, results->campaign->bundles[i].dynamic));
+    return any;
+}
+
 static enum wb_status draw_fit(struct wb_figures_item *item)
 {
     const struct wb_bundles_results *const results = item->results;
@@ -472,9 +488,11 @@ static enum wb_status draw_fit(struct wb_figures_item *item)
         largest = fmax(largest, run ? run->curve.max_force : 0.0);
         some_rod = some_rod || campaign->bundles[i].has_rod;
     }
-    if (!(largest > 0.0))
+    /* Without published curves the first page has this figure. */
+    const bool is_first = strcmp(item->row->place, "found") == 0;
+    if (!(largest > 0.0) || is_first == any_published(results))
         return WB_OK;
-    WB_TRY(start(&item->figure, "fit", -1, 195.0));
+    WB_TRY(start(&item->figure, "fit", -1, 300.0));
     wb_text_append(&item->caption,
                    "Simulated force over deflection in 3D (broad) and of the fitted 1D "
                    "beam (dashed)%s.",
@@ -501,6 +519,55 @@ static enum wb_status draw_fit(struct wb_figures_item *item)
         wb_bundles_results_fit(results, campaign->inset), &solid, &beam);
 }
 
+/* The RMS of every bundle from its published curve beside the limit. */
+static enum wb_status draw_found(struct wb_figures_item *item)
+{
+    const struct wb_bundles_results *const results = item->results;
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_figure_style styles[] = {
+        {.colour = wb_palette_wire(0), .marker = WB_MARKER_CIRCLE, .marker_size = 5.0},
+        {.colour = wb_palette_wire(1), .marker = WB_MARKER_RING, .marker_size = 5.0}};
+    const struct wb_figure_style limit = {
+        .colour = wb_palette_warning(), .width = 1.0, .dash = WB_DASH_DASHED};
+    static const char *const labels[] = {"decaying friction", "constant friction"};
+    double x[2][WB_BUNDLES_BUNDLES], y[2][WB_BUNDLES_BUNDLES];
+    char escaped[WB_BUNDLES_BUNDLES][6 * sizeof campaign->bundles[0].label];
+    const char *names[WB_BUNDLES_BUNDLES];
+    size_t n[2] = {0, 0};
+    const int n_bundles = campaign->n_bundles;
+    if (!any_published(results))
+        return draw_fit(item);
+    /* From the bottom up, as tables are read from the top down. */
+    for (int i = 0; i < n_bundles; i++) {
+        const struct wb_bundles_bundle *const bundle = &campaign->bundles[n_bundles - 1 - i];
+        const double rms[2] = {rms_of(results, bundle->dynamic), rms_of(results, bundle->constant)};
+        names[i] = wb_pages_escape(escaped[i], sizeof escaped[i], bundle->label);
+        for (int k = 0; k < 2; k++) {
+            if (!isfinite(rms[k]))
+                continue;
+            x[k][n[k]] = rms[k] / WB_PERCENT;
+            y[k][n[k]++] = i;
+        }
+    }
+    WB_TRY(start(&item->figure, "found", -1, 46.0 + 10.0 * n_bundles));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
+    wb_figure_set_axes(panel, "RMS from the published curve (% of its largest force)", "");
+    for (int k = 0; k < 2; k++) {
+        if (n[k] > 0)
+            wb_figure_add_line(panel, labels[k], n[k], x[k], y[k], &styles[k]);
+    }
+    if (campaign->limits.rms > 0.0) {
+        const double at = campaign->limits.rms / WB_PERCENT;
+        const double xs[2] = {at, at}, ys[2] = {-0.6, n_bundles - 0.4};
+        wb_figure_add_line(panel, "limit", 2, xs, ys, &limit);
+    }
+    wb_figure_set_y_names(panel, n_bundles, names);
+    wb_figure_set_y_range(panel, -0.6, n_bundles - 0.4);
+    wb_text_append(&item->caption,
+                   "RMS difference of each bundle's simulated force from the published curve.");
+    return WB_OK;
+}
+
 /* --- the table --- */
 
 static int count_groups(const void *context)
@@ -523,6 +590,7 @@ static int count_studies(const void *context)
 }
 
 const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS] = {
+    {"found", NULL, draw_found, false},
     {"sections", count_groups, draw_sections, false},
     {"studies", count_studies, draw_studies, false},
     {"curves", count_groups, draw_forces, false},
@@ -530,5 +598,5 @@ const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS] = {
     {"energies", count_groups, draw_energies, false},
     {"shapes", count_bundles, draw_shape, false},
     {"section-model", count_groups, wb_bundles_section_draw, false},
-    {"found", NULL, draw_fit, false},
+    {"fit", NULL, draw_fit, false},
 };

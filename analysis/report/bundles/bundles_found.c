@@ -95,7 +95,7 @@ static void add_beams(struct wb_found *found, const struct wb_bundles_results *r
     wb_found_add(found, WB_FOUND_RESULT, &text);
 }
 
-/* The section model beside the explicit runs; apart those where its tape comes loose. */
+/* The section model beside the explicit runs, separately where its tape comes off. */
 static void add_sections(struct wb_found *found, const struct wb_bundles_results *results)
 {
     struct span holds = {.n = 0}, loose = {.n = 0};
@@ -125,7 +125,7 @@ static void add_sections(struct wb_found *found, const struct wb_bundles_results
     wb_found_add(found, WB_FOUND_RESULT, &text);
 }
 
-/* Runs whose strains are beyond what the elements are made for. */
+/* Runs whose strains are beyond the range of the elements' logarithm. */
 static void add_strains(struct wb_found *found, const struct wb_bundles_results *results)
 {
     struct span strains = {.n = 0};
@@ -172,7 +172,7 @@ static void add_unjudged(struct wb_found *found, const struct wb_bundles_results
     wb_found_add(found, WB_FOUND_UNCHECKED, &text);
 }
 
-/* Bundles whose force is beyond the limit; for what to do next. */
+/* Next steps: bundles whose force exceeds the limit, and a test. */
 static void add_next(struct wb_found *found, const struct wb_verdict *verdicts, int n)
 {
     struct wb_text text = {0};

@@ -11,12 +11,12 @@ extern const struct wb_kind wb_bundles_kind;
 /* --- its parts --- */
 
 enum {
-    WB_BUNDLES_FIGURE_ROWS = 8
+    WB_BUNDLES_FIGURE_ROWS = 9
 };
 
 /* After the paper's Figs. 17 to 26. Places: of each group "sections", "curves" and "energies", of
  * each pair of studies "studies", of each bundle "shapes", of each group "section-model",
- * and "found" on the first page. */
+ * "fit", and "found" on the first page. */
 extern const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS];
 wb_kind_pages wb_bundles_pages_build;
 wb_kind_json wb_bundles_json_build;

@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "base/units.h"
 
-/* --- what is missing --- */
+/* --- fits that failed --- */
 
 static void put_unfitted(struct wb_document *document, const struct wb_bundles_results *results)
 {
@@ -193,9 +193,10 @@ static void put_sections(struct wb_document *document, const struct wb_bundles_r
     wb_document_heading(document, 1, "bundles", "Bundles");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Packed: round wires and tape as they are packed here. Printed: Table 4 of the paper. "
-        "Density: eq. 30, over the printed diameter. <i>EI</i>: elastic bounds of wires that slide "
-        "freely and of wires that do not slide at all, with the tape.",
+        "Packed: round wires and tape in the packing of this report. Printed: Table 4 of the "
+        "paper. "
+        "Density: eq. 30, over the printed diameter. <i>EI</i>: elastic bounds with the tape, of "
+        "wires that slide freely and of wires that are bonded.",
         9, columns);
     for (int i = 0; i < campaign->n_bundles; i++)
         put_section(table, &campaign->bundles[i], &campaign->runs[campaign->bundles[i].dynamic]);
@@ -233,7 +234,7 @@ static void put_group(struct wb_document *document, const struct wb_bundles_resu
     snprintf(anchor, sizeof anchor, "group-%d", index + 1);
     wb_document_heading(document, 1, anchor, group->label);
     if (!wb_bundles_results_any(results, group))
-        wb_document_paragraph(document, "None of their datasets is there.");
+        wb_document_paragraph(document, "None of the datasets of this group could be used.");
     wb_figures_put(figures, document, "curves", index);
     for (int i = group->first; i < group->first + group->n; i++)
         wb_figures_put(figures, document, "shapes", i);
@@ -360,9 +361,11 @@ static void put_remarks(struct wb_document *document, const struct wb_bundles_re
     }
 }
 
-static void put_fit(struct wb_document *document, const struct wb_bundles_results *results)
+static void put_fit(struct wb_document *document, const struct wb_bundles_results *results,
+                    const struct wb_figures *figures)
 {
     wb_document_heading(document, 1, "one-dimensional", "Effective 1D properties");
+    wb_figures_put(figures, document, "fit", 0);
     put_table(document, results);
     put_quality(document, results);
     put_remarks(document, results);
@@ -434,7 +437,8 @@ static void put_all_runs(struct wb_document *document, const struct wb_bundles_r
     put_runs(document, results, n, all, true);
     if (n_beyond > 0) {
         struct wb_text note = {0};
-        wb_text_append(&note, "Strains went beyond what the elements' logarithm is made for in ");
+        wb_text_append(&note, "The largest strain is beyond the range in which the elements' "
+                              "logarithm is accurate in ");
         wb_text_append_escaped(&note, wb_text_string(&text));
         wb_text_append(&note, ".");
         wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &note);
@@ -482,7 +486,7 @@ void wb_bundles_pages_build(struct wb_document *document, const void *context,
     put_studies(document, results, figures);
     put_groups(document, results, figures);
     wb_bundles_section_put(document, results, figures);
-    put_fit(document, results);
+    put_fit(document, results, figures);
     put_cost(document, results);
     put_all_runs(document, results);
     put_provenance(document, results);

@@ -49,7 +49,7 @@ static size_t add_rows(struct wb_bundle_override *o, struct wb_config_key *keys,
     return n;
 }
 
-/* What is not given stays. The first n_own of `keys` are the caller's. */
+/* A missing key leaves its value unchanged. The first n_own of `keys` are the caller's. */
 static enum wb_status read_settings(struct settings *s, const struct wb_config_node *node,
                                     struct wb_config_key keys[MOST_KEYS], size_t n_own)
 {

@@ -34,7 +34,7 @@ struct wb_bundles_results {
 };
 
 /* Reads and checks the datasets; then compares and fits the usable ones, with progress after each
- * bundle. Nothing fails: the results say what is wrong. */
+ * bundle. Errors are kept in the results. */
 wb_kind_load wb_bundles_results_load;
 wb_kind_compute wb_bundles_results_compute;
 wb_kind_release wb_bundles_results_release;
@@ -68,7 +68,7 @@ enum {
     WB_BUNDLES_VERDICTS = 2 * WB_BUNDLES_BUNDLES + 3
 };
 
-/* What the limits of the campaign say of what is usable. Returns how many there are: of every
+/* Verdicts of the campaign's limits on the usable results. Returns their number: of every
  * bundle its RMS and its cost, and of the energies the worst of all runs. */
 int wb_bundles_results_judge(const struct wb_bundles_results *results,
                              struct wb_verdict verdicts[WB_BUNDLES_VERDICTS]);

@@ -1,5 +1,5 @@
 /* A dataset of a campaign of bundles: read, checked against its bundle and the run's settings, with
- * what it says of its computation; and the published curve beside it.
+ * the data of its computation; and the published curve for comparison.
  */
 #ifndef WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_RUN_H
 #define WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_RUN_H
@@ -19,7 +19,7 @@ struct wb_bundles_energy {
     double external, kinetic, internal, artificial, friction, plastic;
 };
 
-/* What a dataset says of its computation; NaN where it does not. */
+/* Data of a dataset on its computation; NaN where it has none. */
 struct wb_bundles_numbers {
     double elements, shells, steps, time_step, duration, wall_s, ns; /* s, ns */
     double kinetic, artificial, imbalance, strain; /* largest ratios, see fe/bundle/bundle_run.h */
@@ -29,7 +29,7 @@ struct wb_bundles_numbers {
 struct wb_bundles_result {
     struct wb_simulation_result simulation;
     struct wb_bundles_numbers numbers;
-    bool beyond;         /* strains beyond what the elements' logarithm is made for */
+    bool beyond;         /* a strain beyond the range of the elements' logarithm */
     bool kinetic_choice; /* the duration was chosen by the limit of kinetic energy */
     /* Of a usable one: */
     int n_energies;
@@ -39,12 +39,12 @@ struct wb_bundles_result {
     /* The published beam under the run's own loading, where there is one; (curve.n), owned. */
     double *published; /* N; NaN from n_published on */
     int n_published;
-    double published_max; /* N, its largest force: what errors are divided by */
+    double published_max; /* N, its largest force: divisor of errors */
     double *error;        /* of the run from it, over published_max */
     double rms, max_error;
 };
 
-/* Reads what a run wants into a zeroed result. Nothing fails: the result says what is wrong. */
+/* Reads the dataset of a run into a zeroed result. An error is kept in the result. */
 void wb_bundles_run_load(struct wb_bundles_result *result, const struct wb_bundles_run *run);
 /* The same of the 1D dataset of a bundle. */
 void wb_bundles_run_load_rod(struct wb_bundles_result *result,
@@ -58,8 +58,8 @@ WB_MUST_CHECK enum wb_status wb_bundles_run_compare(struct wb_bundles_result *re
                                                     const struct wb_calibrate_settings *fit,
                                                     struct wb_reason *why);
 
-/* What a run costs, beside others: its elements, and twice as much where the duration is to be
- * found first. */
+/* Cost of a run relative to others: its elements, twice as many where the duration must be found
+ * first. */
 double wb_bundles_run_cost(const struct wb_bundles_run *run);
 
 #endif

@@ -26,8 +26,7 @@ struct wb_bundles_section {
 };
 
 /* Computes the section model of `run` into a zeroed result, and how far it is from `explicit`
- * (NULL: there is none), on a grid of that step in m. Nothing fails: the result says what is
- * wrong. */
+ * (NULL: there is none), on a grid of that step in m. An error is kept in the result. */
 void wb_bundles_section_compute(struct wb_bundles_section *section,
                                 const struct wb_bundles_run *run, const struct wb_curve *explicit,
                                 double step);

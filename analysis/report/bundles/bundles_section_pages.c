@@ -88,7 +88,7 @@ static void put_row(struct wb_document_table *table, const struct wb_bundles_res
     if (section && isfinite(section->loosens))
         wb_pages_cell(table, WB_TONE_WARNING, "%.3g mm", section->loosens / WB_MM);
     else
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, section ? "holds" : "");
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, section ? "stays on" : "");
 }
 
 static void put_refused(struct wb_document *document, const struct wb_bundles_results *results,
@@ -111,24 +111,25 @@ void wb_bundles_section_put(struct wb_document *document, const struct wb_bundle
         {.heading = "<i>EI</i> at <i>L</i>/2 (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
         {.heading = "<i>EI</i> at <i>L</i> (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
         {.heading = "<i>EI</i> at 2 <i>L</i> (N\xc2\xa0mm\xc2\xb2)", .right = true, .wraps = true},
-        {.heading = "Tape lets go from", .right = true, .wraps = true},
+        {.heading = "Tape comes off at", .right = true, .wraps = true},
     };
     const struct wb_bundles *const campaign = results->campaign;
     wb_document_heading(document, 1, "section-model", "Section model beside the explicit one");
     wb_document_paragraph(
         document,
-        "The section model takes a tenth of a second: wires share the rotation of their section "
-        "and slip along their axis, and the tape carries shear between them. It is computed for "
-        "this report. It holds while the tape holds the section together.");
+        "The section model takes a tenth of a second. Its wires have the rotation of the section "
+        "in common and slip along their axes; the tape transfers shear between them. It is "
+        "computed for this report. It is valid as long as the tape stays on the wires.");
     for (int i = 0; i < campaign->n_groups; i++)
         wb_figures_put(figures, document, "section-model", i);
     struct wb_document_table *const table = wb_document_table(
         document,
-        "RMS: from the explicit curve, over its largest force. Friction: a static model has no "
-        "rate; of a friction that decays it takes the geometric mean. <i>EI</i>: of the elastic "
+        "RMS: difference from the explicit curve, over its largest force. Friction: the static "
+        "model has no rate and uses the geometric mean of a friction that decays. <i>EI</i>: of "
+        "the elastic "
         "bundle as a beam of this length <i>L</i> and these ends, <i>F L</i><sup>3</sup>/3<i>\xce"
-        "\xb4</i>; a short one shears. Where a tape on a circle lets go of the wires, the section "
-        "model is too stiff.",
+        "\xb4</i>; a short one also deforms in shear. Where a tape on a circle comes off the "
+        "wires, the section model is too stiff.",
         9, columns);
     for (int i = 0; i < campaign->n_bundles; i++) {
         put_row(table, results, campaign->bundles[i].dynamic);

@@ -22,7 +22,7 @@ enum {
     MOST_POINTS = 1 << 15 /* of a series */
 };
 
-/* What all panels of a figure share: types by name have the same colour in all of them. */
+/* Settings of all panels of a figure: a type of wire has the same colour in all of them. */
 struct drawing {
     const char *mesh;
     double reach; /* mm, from the axis of the largest cylinder to its outside */

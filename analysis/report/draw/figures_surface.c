@@ -19,14 +19,14 @@ static const double bar = 46.0, close_part = 0.21; /* pt; of the width: each end
 static const double glass_opacity = 0.22;
 static const struct wb_colour glass = {0.62, 0.68, 0.76, 1.0};
 static const struct wb_colour cut = {0.84, 0.84, 0.82, 1.0}; /* of the wires' ends */
-/* Of the window: room around what is seen. */
+/* Part of the window: margin around the picture. */
 static const double margin = 0.03;
 
 static const struct wb_view_camera from_side = {{0.22, 0.24, 1.0}, {0.0, 1.0, 0.0}};
 static const struct wb_view_camera from_tip = {{0.75, 0.42, 1.0}, {0.0, 1.0, 0.0}};
 static const struct wb_view_camera from_clamp = {{-0.7, 0.7, 1.0}, {0.0, 1.0, 0.0}};
 
-/* What both pictures of a figure share; places in mm. */
+/* Settings of both pictures of a figure; places in mm. */
 struct drawing {
     const struct wb_surface *surface;
     struct wb_view_sheet *sheets;

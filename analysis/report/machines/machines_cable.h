@@ -22,7 +22,7 @@ struct wb_machines_layer {
     bool is_seating[WB_MACHINES_PLACES];
     struct wb_cable_place place[WB_MACHINES_PLACES];
     double over_first[WB_MACHINES_PLACES]; /* M over that of the first layered group; NaN */
-    /* What chi would be with the wires of one series alone, and with other zeros of the force. */
+    /* chi with the wires of one series alone, and with other zeros of the force. */
     double chi_of_series[WB_MACHINES_WIRES][WB_MACHINES_PLACES];
     double chi_of_zero[WB_MACHINES_ZEROS][WB_MACHINES_PLACES];
 };

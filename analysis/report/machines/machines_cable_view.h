@@ -1,4 +1,4 @@
-/* What a report says of a cable and its layers: figures, a chapter, numbers. */
+/* A cable and its layers in a report: figures, a chapter, numbers. */
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_CABLE_VIEW_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_CABLE_VIEW_H
 

@@ -82,8 +82,8 @@ void wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_mac
         struct wb_machines_fit *const fit = &fits->fits[fits->n++];
         fit->first = g;
         compute_wire(fit, campaign, groups, order->n_threads);
-        if (order->told)
-            order->told(order->context, fits->n, campaign->groups[g].piece.wire);
+        if (order->report)
+            order->report(order->context, fits->n, campaign->groups[g].piece.wire);
     }
 }
 

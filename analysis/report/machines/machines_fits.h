@@ -27,7 +27,7 @@ int wb_machines_fits_count_wires(const struct wb_machines *campaign);
 
 struct wb_machines_fits_order {
     int n_threads; /* 0: as many as there are processors */
-    void (*told)(void *context, int n_done, const char *wire); /* after each wire; NULL: none */
+    void (*report)(void *context, int n_done, const char *wire); /* after each wire; NULL: none */
     void *context;
 };
 

@@ -9,7 +9,7 @@
 
 #define WB_LOG_DOMAIN "report"
 
-/* A model whose bias is below this part of s is hard to tell from the tests. */
+/* A bias below this part of s is hidden by the scatter of the tests. */
 static const double most_bias = 0.7;
 
 static const char *wire_of(const struct wb_machines_results *results,

@@ -1,4 +1,4 @@
-/* What a report says of calibrated wires and of tests left out: figures, a chapter, numbers. */
+/* Calibrated wires and tests left out in a report: figures, a chapter, numbers. */
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_VIEW_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_VIEW_H
 
@@ -11,7 +11,8 @@
 int wb_machines_fits_count(const void *results);
 enum wb_status wb_machines_fits_draw(struct wb_figures_item *item);
 
-/* Whether the law of a wire is off the tests left out by more than their scatter hides. */
+/* Whether the law of a wire differs from the tests left out by more than 0.7 of their standard
+ * deviation. */
 bool wb_machines_fits_is_biased(const struct wb_machines_fit *fit);
 
 /* Nothing where the campaign does not calibrate. */

@@ -200,7 +200,7 @@ static void add_unchecked(struct wb_found *found, const struct wb_machines_resul
     if (results->fits.n > 0)
         wb_found_say(found, WB_FOUND_UNCHECKED,
                      "Friction at the posts and the radius of the nose: the tables give the range "
-                     "of each moment over what the machine file leaves open.");
+                     "of each moment over the values that the machine file leaves open.");
     if (!has_compliance)
         wb_found_say(found, WB_FOUND_UNCHECKED,
                      "Compliance of the machine: it is not given, so the travel includes it.");

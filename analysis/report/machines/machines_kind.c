@@ -96,8 +96,8 @@ static enum wb_status draw_group(struct wb_figures_item *item)
     return WB_OK;
 }
 
-/* Nominal moments of all groups over the nominal curvature, which spans and diameters do not move
- * apart. */
+/* Nominal moments of all groups over the nominal curvature, which makes tests at different spans
+ * comparable. */
 static enum wb_status draw_found(struct wb_figures_item *item)
 {
     const struct wb_machines_results *const results = item->results;

@@ -139,7 +139,7 @@ static void compute_group(const struct wb_machines_group *group,
     finish(&rigidity, &results->rigidity, &results->rigidity_deviation);
     for (int k = 0; k < WB_MACHINES_GRID; k++) {
         struct sums force = {0, 0.0, 0.0};
-        /* A hair before the end, which the shortest test has no row behind. */
+        /* Slightly before the end: the shortest test has no row beyond it. */
         const double d = results->reach * (1.0 - 1e-9) * k / (WB_MACHINES_GRID - 1);
         for (int i = 0; i < group->n_tests && results->n_usable > 0; i++) {
             if (results->tests[i].is_usable)
@@ -150,18 +150,18 @@ static void compute_group(const struct wb_machines_group *group,
     }
 }
 
-struct telling {
+struct reporting {
     int n_before;
     wb_kind_progress *progress;
     void *context;
 };
 
-static void tell_wire(void *context, int n_done, const char *wire)
+static void report_wire(void *context, int n_done, const char *wire)
 {
-    const struct telling *const telling = context;
+    const struct reporting *const reporting = context;
     char what[100];
     snprintf(what, sizeof what, "calibrated %.64s", wire);
-    telling->progress(telling->context, telling->n_before + n_done, what);
+    reporting->progress(reporting->context, reporting->n_before + n_done, what);
 }
 
 enum wb_status wb_machines_results_compute(void *context, int n_threads, wb_kind_progress *progress,
@@ -169,8 +169,9 @@ enum wb_status wb_machines_results_compute(void *context, int n_threads, wb_kind
 {
     struct wb_machines_results *const results = context;
     const struct wb_machines *const campaign = results->campaign;
-    struct telling telling = {campaign->n_groups, progress, progress_context};
-    const struct wb_machines_fits_order order = {n_threads, progress ? tell_wire : NULL, &telling};
+    struct reporting reporting = {campaign->n_groups, progress, progress_context};
+    const struct wb_machines_fits_order order = {n_threads, progress ? report_wire : NULL,
+                                                 &reporting};
     results->outcome.n_usable = 0;
     for (int g = 0; g < campaign->n_groups; g++) {
         if (wb_interrupted()) {

@@ -1,4 +1,4 @@
-/* What comes of a campaign of testing machines: each file imported, each test's curve from where it
+/* Results of a campaign of testing machines: each file imported, each test's curve from where it
  * touches, and each group's mean and scatter. */
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_RESULTS_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_RESULTS_H

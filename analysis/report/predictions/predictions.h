@@ -1,5 +1,5 @@
-/* A campaign of predictions: bundles with their bands (analysis/predict/bands.h), and tests of them
- * held against these. Its YAML file:
+/* A campaign of predictions: bundles with their bands (analysis/predict/bands.h), and tests that
+ * are compared with them. Its YAML file:
  *
  *     kind: prediction
  *     title: The harness before it is bent
@@ -36,7 +36,7 @@ enum {
     WB_PREDICTIONS_PLACES = 4  /* force at a third, two thirds and all of the way; springback */
 };
 
-/* --- what the file says --- */
+/* --- the file --- */
 
 struct wb_predictions_test {
     char label[64], case_name[64];
@@ -60,7 +60,7 @@ struct wb_predictions {
 wb_kind_keys wb_predictions_keys;
 wb_kind_release wb_predictions_release;
 
-/* --- what comes of it --- */
+/* --- results --- */
 
 enum wb_predictions_side {
     WB_PREDICTIONS_BELOW = -1,
@@ -84,7 +84,7 @@ struct wb_predictions_verdict {
     struct wb_dataset dataset;   /* of a usable one, as all that follows */
     const struct wb_bands_case *against;
     struct wb_predictions_place places[WB_PREDICTIONS_PLACES];
-    const char *words; /* what the places say together */
+    const char *words; /* judgement from all places */
 };
 
 struct wb_predictions_prediction {

@@ -4,7 +4,7 @@
 
 #include "analysis/report/predictions/predictions.h"
 
-/* What a test's places say together, as docs/manual.md has it ('Judging a test of the bundle'). A
+/* Judgement of a test from all places, as in docs/manual.md ('Judging a test of the bundle'). A
  * text that is static. */
 const char *wb_predictions_judge(const struct wb_predictions_place places[WB_PREDICTIONS_PLACES]);
 

@@ -166,7 +166,7 @@ static void compare(struct wb_predictions_verdict *verdict, const struct wb_band
 {
     struct wb_predictions_place *const places = verdict->places;
     const double predicted = against->n_force > 0 ? against->force[against->n_force - 1].at : 0.0;
-    /* A hair before the end, which no row lies behind. */
+    /* Slightly before the end: there is no row beyond it. */
     const double most = fmin(largest_deflection(&verdict->dataset), predicted) * (1.0 - 1e-9);
     verdict->against = against;
     for (int i = 0; i < THIRDS; i++) {
@@ -201,7 +201,7 @@ const char *wb_predictions_judge(const struct wb_predictions_place places[WB_PRE
     if (known == 0)
         return "nothing of it can be judged: it does not reach where the prediction is";
     if (n[0] + n[1] == 0)
-        return "within: model, calibration and measured section agree within what is known";
+        return "within: model, calibration and measured section agree within their uncertainties";
     if (below || above)
         return above ? "stiffer than predicted at every deflection: look at diameter and length "
                        "first, then at layers and bond"
@@ -251,7 +251,7 @@ static void predict(struct wb_predictions_results *results, int index, int n_thr
     }
 }
 
-/* One of four outside is no wonder: of ten one is expected there. */
+/* One of four outside is no failure: one of ten is expected outside. */
 static bool is_outside(const struct wb_predictions_verdict *test)
 {
     int n = 0;

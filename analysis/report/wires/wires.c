@@ -61,7 +61,7 @@ static enum wb_status read_case(const struct wb_wires *comparison,
         snprintf(solid, sizeof solid, "%.240s-3d", item->model->name);
     WB_TRY(want(comparison, solid, WB_WIRES_SOLID, path, item));
     if (!has_rod && rod[0])
-        return wb_config_refuse(node, "rod", "a rod knows no contact");
+        return wb_config_refuse(node, "rod", "a rod has no contact");
     if (!rod[0])
         snprintf(rod, sizeof rod, "%.240s-1d", item->model->name);
     return has_rod ? want(comparison, rod, WB_WIRES_ROD, path, item) : WB_OK;

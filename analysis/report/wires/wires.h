@@ -48,7 +48,7 @@
 
 #define WB_WIRES_RESIDUALS 4
 
-/* What computes a model. */
+/* Solver of a model. */
 enum wb_wires_solver {
     WB_WIRES_SOLID, /* solve wire3d */
     WB_WIRES_ROD,   /* solve wire1d */

@@ -374,7 +374,7 @@ static void halve_cell(const struct wb_contour_face *cell, struct rings *rings,
     }
 }
 
-/* What is drawn of a field, and how. */
+/* Quantity that is drawn of a field, with its style. */
 struct drawing {
     enum view view;
     enum quantity quantity;

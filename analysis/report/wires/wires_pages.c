@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "base/units.h"
 
-/* --- what is missing --- */
+/* --- the fit, where it failed --- */
 
 static void put_unfitted(struct wb_document *document, const struct wb_wires_results *results)
 {
@@ -104,7 +104,7 @@ static void put_facts(struct wb_document *document, const struct wb_wires_result
     struct wb_document_table *const table = wb_document_table(
         document,
         comparison->printed_source[0]
-            ? "Paper: what it prints. It has no numbers for the rest, and its figures are lost."
+            ? "Paper: printed values. It prints no others, and its figures are lost."
             : NULL,
         4, columns);
     for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
@@ -310,13 +310,13 @@ static void append_misprint(struct wb_text *text, const struct wb_wires_results 
                        results->tenfold.tip_angle / WB_DEGREE);
     wb_text_append(text, ".");
     if (solid_curls)
-        wb_text_append(text, " That the solid of copper as soft as the literature has it curls up "
-                             "too says that the paper's figures need a harder copper than this, or "
-                             "show a curl that its text does not mention; without its Table 1 "
-                             "neither can be determined.");
+        wb_text_append(text, " The solid with the soft copper of the literature curls up, too: "
+                             "either the paper's copper is harder, or its figures show a curl "
+                             "that the text does not mention. Without its Table 1 this cannot be "
+                             "determined.");
 }
 
-/* What the reader must know before comparing with the paper. */
+/* Limits of a comparison with the paper. */
 static void put_curl(struct wb_document *document, const struct wb_wires_results *results,
                      const struct wb_wires_run *solid)
 {
@@ -437,9 +437,9 @@ static void put_split(struct wb_document *document, const struct wb_wires_result
     wb_text_append(
         &text,
         "<b>The split between core and jacket is ill-conditioned.</b> Eq. 8 with "
-        "<i>E</i><sub>eff</sub> = %.2f GPa leaves %.0f MPa for the jacket when the core "
-        "has %.1f GPa; 1 %% of the core's modulus moves the jacket's by <b>%.0f MPa</b>, "
-        "and above %.2f GPa of the core nothing is left for it.",
+        "<i>E</i><sub>eff</sub> = %.2f GPa leaves %.0f MPa for the jacket if the core has %.1f "
+        "GPa; 1 %% of the core's modulus moves the jacket's by <b>%.0f MPa</b>, "
+        "and a core modulus above %.2f GPa leaves none for the jacket.",
         wb_wire_model_youngs_modulus(model) / (1e3 * WB_MPA),
         jacket->material.youngs_modulus / WB_MPA, core->material.youngs_modulus / (1e3 * WB_MPA),
         wb_wires_split(model, 0.01) / WB_MPA, most / (1e3 * WB_MPA));
@@ -466,7 +466,7 @@ static void put_elastoplastic(struct wb_document *document, const struct wb_wire
     put_split(document, results);
 }
 
-/* --- residual stresses: pre-loads, what they leave, what that does under the force --- */
+/* --- residual stresses: pre-loads, residual stress, and its effect under the force --- */
 
 static bool is_zero(const double vector[3])
 {
@@ -480,7 +480,7 @@ static void append_vector(struct wb_text *text, const char *what, const double v
         wb_text_append(text, "%s (%g, %g, %g) %s", what, vector[0], vector[1], vector[2], unit);
 }
 
-/* A step as what acts at its end. */
+/* A step by the loads at its end. */
 static void append_step(struct wb_text *text, const struct wb_tip_loads *loads)
 {
     append_vector(text, " force", loads->force, "N");
@@ -488,7 +488,7 @@ static void append_step(struct wb_text *text, const struct wb_tip_loads *loads)
     if (loads->follower[1] != 0.0)
         wb_text_append(text, " follower force %g N", loads->follower[1]);
     else if (is_zero(loads->force) && is_zero(loads->moment))
-        wb_text_append(text, " nothing");
+        wb_text_append(text, " no load");
 }
 
 static void put_preloads(struct wb_document *document, const struct wb_wires *comparison)
@@ -561,9 +561,9 @@ static void put_residual_stresses(struct wb_document *document,
     const struct wb_wires *const comparison = results->comparison;
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Stresses of the core on the section that is drawn, without load. Moved: distance from the "
-        "same model without residual stress, of the tip at any force on the way and of the axis at "
-        "the full one.",
+        "Stresses of the core on the section that is drawn, without load. Moved: distance from "
+        "the same model without residual stress, of the tip at any force and of the axis at the "
+        "full force.",
         8, columns);
     for (int i = 0; i < comparison->n_residual; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)
@@ -609,9 +609,9 @@ static void put_residual(struct wb_document *document, const struct wb_wires_res
         return;
     wb_document_heading(document, 1, "residual", "Residual stresses");
     wb_document_paragraph(document,
-                          "Loads at the tip bend and twist the wire out of the plane, and are "
-                          "taken off. What stays is the residual stress; with it the follower "
-                          "force is applied. All of it is simulated.");
+                          "Loads at the tip bend and twist the wire out of the plane and are then "
+                          "removed. The follower force is applied to the wire with the residual "
+                          "stress that remains. All results are simulated.");
     put_preloads(document, comparison);
     wb_document_heading(document, 2, "residual-stresses", "Residual stress and its effect");
     for (int i = 0; i < comparison->n_residual; i++)

@@ -53,7 +53,7 @@ struct wb_wires_results {
 /* Every case's solid, then its rod; of struct wb_wires_results. */
 wb_simulation_list wb_wires_results_list;
 
-/* Reads and checks the datasets; then computes what stands beside them. */
+/* Reads and checks the datasets; then computes the rods for comparison. */
 wb_kind_load wb_wires_results_load;
 wb_kind_compute wb_wires_results_compute;
 wb_kind_release wb_wires_results_release;
@@ -68,7 +68,7 @@ enum {
     WB_WIRES_VERDICTS = 4
 };
 
-/* What the limits of the campaign say of what is usable. Returns how many there are: of the tips of
+/* Verdicts of the campaign's limits on the usable results. Returns their number: of the tips of
  * the elastic solid and rod, of the elastic stress that differs most, and of the elastic rod's
  * cost.
  */

@@ -97,7 +97,7 @@ static void take_loading(struct wb_wires_run *run, const struct wb_wire_model *m
 }
 
 /* Stored fields are continued from inside the elements and overshoot where the plastic zone begins:
- * no von Mises stress is told that the node's own plastic strain does not allow. */
+ * no von Mises stress is reported that the node's own plastic strain does not allow. */
 static void keep_to_law(struct wb_fields *fields, const struct wb_wire_model *model)
 {
     for (int i = 0; i < fields->n; i++)

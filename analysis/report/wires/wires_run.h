@@ -1,4 +1,4 @@
-/* A dataset of a comparison: read, checked against its model, with what it holds of the end of its
+/* A dataset of a comparison: read, checked against its model, with its data at the end of the
  * history; and distances between the axes of two of them.
  */
 #ifndef WB_ANALYSIS_REPORT_WIRES_WIRES_RUN_H
@@ -12,7 +12,7 @@
 #include "analysis/report/wires/wires_rod.h"
 #include "base/text.h"
 
-/* A dataset, and what it says of its simulation; numbers are NaN where it does not. */
+/* A dataset, and its data on the simulation; numbers are NaN where it has none. */
 struct wb_wires_run {
     struct wb_simulation_result simulation;
     double elements, unknowns, iterations, memory_MB;
@@ -28,7 +28,7 @@ struct wb_wires_run {
     double (*loaded)[3]; /* (n_loading) m, the tip under it, owned */
 };
 
-/* Reads what a case wants of a solver into a zeroed run. Nothing fails: the run says what is wrong.
+/* Reads the dataset of a case and solver into a zeroed run. An error is kept in the run.
  */
 void wb_wires_run_load(struct wb_wires_run *run, const struct wb_wires_case *item,
                        enum wb_wires_solver solver);

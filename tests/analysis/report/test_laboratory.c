@@ -135,7 +135,8 @@ static void without_the_section_one_line_says_that_it_is_no_such_report(void **s
     const struct wb_laboratory none = {0};
     assert_int_equal(wb_laboratory_missing(&none), 0);
     char *const page = make_page(&none);
-    assert_true(place_of(page, "no report as ISO/IEC 17025") > place_of(page, "and more"));
+    assert_true(place_of(page, "not a test report in the sense of ISO/IEC 17025") >
+                place_of(page, "and more"));
     assert_null(strstr(page, "End of report"));
     assert_null(strstr(page, "clause"));
     free(page);

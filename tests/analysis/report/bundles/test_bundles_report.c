@@ -139,8 +139,8 @@ static void write_report(void)
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
 {
     (void)state;
-    static const char *const figures[] = {"forces-1", "errors-1",        "energies-1",
-                                          "study-1",  "section-model-1", "fit"};
+    static const char *const figures[] = {"forces-1",        "errors-1", "energies-1", "study-1",
+                                          "section-model-1", "fit",      "found"};
     write_report();
     assert_simulated_figures(figures, sizeof figures / sizeof figures[0]);
     assert_true(wb_file_exists(in_folder("report/figures/sections-1.svg")));
@@ -186,7 +186,7 @@ static void report_json_has_what_the_pages_tell(void **state)
     assert_true(wb_json_get_number(wb_json_get(run, "section_model"), "rms", &value));
     assert_close(value, wb_bundles_results_section(whole_report(), 4)->rms, 1e-15);
     assert_int_equal((int)wb_json_length(wb_json_get(root, "limits")), 7);
-    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 33);
+    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 35);
     wb_json_destroy(root);
 }
 
