@@ -6,10 +6,6 @@
 
 #include "analysis/report/campaign.h"
 #include "analysis/report/document.h"
-#include "analysis/report/found.h"
-#include "analysis/report/kind.h"
-#include "analysis/report/simulation.h"
-#include "analysis/report/verdict.h"
 #include "fe/material/material.h"
 
 /* Adds a cell of markup to the row that was begun; `wb_pages_cell_plain` escapes text from
@@ -53,23 +49,11 @@ struct wb_document_table *wb_pages_start_table(struct wb_document *document,
                                                struct wb_text *caption, int n_columns,
                                                const struct wb_document_column *columns);
 
-/* Starts the document of a report of simulations. */
-void wb_pages_start_simulations(struct wb_document *document, const char *title,
-                                const struct wb_kind_outcome *outcome);
-
-/* Says on the first page that datasets are missing, and how to compute them. */
-void wb_pages_add_missing(struct wb_found *found, const struct wb_kind_outcome *outcome);
-/* Which datasets cannot be used, why, and how to compute each; nothing where all are used. */
-void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,
-                          wb_simulation_list *list, const void *results);
-
-/* The verdicts of a laboratory's report with the decision rule; nothing in other reports. */
-void wb_pages_put_decisions(struct wb_document *document, const struct wb_campaign *campaign,
-                            const struct wb_verdict *verdicts, int n);
-
-/* A table of all datasets with their checksums, under a heading. */
-void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *list,
-                           const void *results);
+/* Starts the document of a report. The program's version stands on every page, with the origin of
+ * the data: "virtual rig" (NULL: measured). `date_utc` as of wb_document_init(). */
+void wb_pages_start(struct wb_document *document, const char *kind,
+                    const struct wb_campaign *campaign, const char *subtitle, const char *origin,
+                    const char *date_utc);
 
 /* The heading of a report's last chapter: campaign, checksum, program, the command that makes it
  * again, notes. `same` names its inputs: "recordings". */

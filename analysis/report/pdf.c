@@ -338,7 +338,9 @@ static void measure_column(struct pen *pen, const struct wb_document_table *tabl
         const char *const text = table->cells[row * table->n_columns + column].text;
         const double width = wb_typeset_measure(pen->cairo, text, &style).width;
         *natural = fmax(*natural, width);
-        *least = fmax(*least, of->wraps ? widest_word(pen, text, &style) : width);
+        /* Numbers stay in one line, with their brackets. */
+        const bool breaks = of->wraps && !of->right;
+        *least = fmax(*least, breaks ? widest_word(pen, text, &style) : width);
     }
     /* Room for rounding, or Pango breaks a text that just fits. */
     *natural += 1.0;

@@ -977,9 +977,7 @@ void wb_recordings_pages_build(struct wb_document *document, const void *context
                                const struct wb_figures *figures)
 {
     const struct wb_recordings_results *const results = context;
-    char subtitle[300], footer[300];
-    snprintf(footer, sizeof footer, "wirebench %s, revision %s%s", wb_version(),
-             wb_version_revision(), results->any_virtual ? " \xc2\xb7 virtual rig" : "");
+    char subtitle[300];
     snprintf(subtitle, sizeof subtitle,
              "%d of %d recordings, the latest of %.10s \xc2\xb7 wirebench %s, revision %s",
              results->outcome.n_usable, results->outcome.n_wanted,
@@ -990,8 +988,8 @@ void wb_recordings_pages_build(struct wb_document *document, const void *context
                  "none of %d recordings \xc2\xb7 wirebench %s, revision "
                  "%s",
                  results->outcome.n_wanted, wb_version(), wb_version_revision());
-    wb_document_init(document, "Calibration report", results->campaign->head.title, subtitle,
-                     footer, results->latest_utc);
+    wb_pages_start(document, "Calibration report", &results->campaign->head, subtitle,
+                   results->any_virtual ? "virtual rig" : NULL, results->latest_utc);
     put_summary(document, results, figures);
     put_bench(document, results, figures);
     put_overview(document, figures);

@@ -5,6 +5,7 @@
 #include "analysis/report/bundles/bundles_kind.h"
 #include "analysis/report/found.h"
 #include "analysis/report/pages.h"
+#include "analysis/report/simulation_pages.h"
 #include "base/units.h"
 
 /* Smallest and largest of some values. */
@@ -61,7 +62,8 @@ static void add_forces(struct wb_found *found, const struct wb_bundles_results *
         const double change = has_published ? run->curve.max_force / run->published_max - 1.0 : 0.0;
         struct wb_text *const names = !has_published ? &alone : change < 0.0 ? &below : &above;
         append_name(names, bundle->label);
-        wb_text_append(names, " %.3g N", run->curve.max_force);
+        wb_text_append(names, " %.*f N", wb_pages_decimals(run->curve.max_force),
+                       run->curve.max_force);
         if (has_published)
             wb_text_append(names, " (%.0f %%)", fabs(change) / WB_PERCENT);
     }
@@ -203,7 +205,7 @@ void wb_bundles_found_put(struct wb_document *document, const struct wb_bundles_
                  "contact, friction and tape in explicit 3D, 1D beams fitted to them, and the "
                  "published curves, which are 1D beams with the published properties. No bundle "
                  "was tested, and no value has an interval.");
-    wb_pages_add_missing(&found, &results->outcome);
+    wb_simulation_pages_add_missing(&found, &results->outcome);
     add_forces(&found, results);
     add_beams(&found, results);
     add_sections(&found, results);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "analysis/report/pages.h"
+#include "analysis/report/simulation_pages.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -77,8 +78,8 @@ static void put_summary(struct wb_document *document, const struct wb_bundles_re
     const int n = wb_bundles_results_judge(results, verdicts);
     wb_bundles_found_put(document, results);
     wb_figures_put(figures, document, "found", 0);
-    wb_pages_put_decisions(document, results->outcome.campaign, verdicts, n);
-    wb_pages_put_missing(document, &results->outcome, wb_bundles_results_list, results);
+    wb_simulation_pages_put_decisions(document, results->outcome.campaign, verdicts, n);
+    wb_simulation_pages_put_missing(document, &results->outcome, wb_bundles_results_list, results);
     put_unfitted(document, results);
     put_facts(document, results);
 }
@@ -471,7 +472,7 @@ static void put_provenance(struct wb_document *document, const struct wb_bundles
     const struct wb_bundles *const campaign = results->campaign;
     wb_pages_put_origin(document, &campaign->head, "datasets");
     put_models(document, campaign);
-    wb_pages_put_datasets(document, wb_bundles_results_list, results);
+    wb_simulation_pages_put_datasets(document, wb_bundles_results_list, results);
 }
 
 /* --- all of it --- */
@@ -480,7 +481,7 @@ void wb_bundles_pages_build(struct wb_document *document, const void *context,
                             const struct wb_figures *figures)
 {
     const struct wb_bundles_results *const results = context;
-    wb_pages_start_simulations(document, results->campaign->head.title, &results->outcome);
+    wb_simulation_pages_start(document, &results->outcome);
     put_summary(document, results, figures);
     put_sections(document, results, figures);
     put_studies(document, results, figures);

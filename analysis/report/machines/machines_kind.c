@@ -13,7 +13,6 @@
 #include "analysis/report/pdf.h"
 #include "base/memory.h"
 #include "base/units.h"
-#include "base/version.h"
 
 /* --- figures --- */
 
@@ -222,13 +221,10 @@ static void build_pages(struct wb_document *document, const void *context,
 {
     const struct wb_machines_results *const results = context;
     const struct wb_machines *const campaign = results->campaign;
-    char subtitle[200], footer[300], anchor[32], name[240];
+    char subtitle[200], anchor[32], name[240];
     snprintf(subtitle, sizeof subtitle, "%d of %d tests used", results->outcome.n_usable,
              results->outcome.n_wanted);
-    snprintf(footer, sizeof footer, "wirebench %s, revision %s", wb_version(),
-             wb_version_revision());
-    wb_document_init(document, "Tests of testing machines", campaign->head.title, subtitle, footer,
-                     "");
+    wb_pages_start(document, "Tests of testing machines", &campaign->head, subtitle, NULL, "");
     wb_machines_found_put(document, results);
     wb_figures_put(drawn, document, "found", 0);
     wb_document_heading(document, 2, "groups", "Groups");

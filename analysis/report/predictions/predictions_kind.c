@@ -13,7 +13,6 @@
 #include "analysis/report/pages.h"
 #include "base/memory.h"
 #include "base/units.h"
-#include "base/version.h"
 
 static const char *const side_names[] = {"below", "within", "above", "not reached"};
 
@@ -480,12 +479,10 @@ static void build_pages(struct wb_document *document, const void *context,
 {
     const struct wb_predictions_results *const results = context;
     const struct wb_predictions *const campaign = results->campaign;
-    char subtitle[200], footer[300];
+    char subtitle[200];
     snprintf(subtitle, sizeof subtitle, "%d %s with bands", campaign->n_bundles,
              wb_pages_plural(campaign->n_bundles, "bundle", "bundles"));
-    snprintf(footer, sizeof footer, "wirebench %s, revision %s", wb_version(),
-             wb_version_revision());
-    wb_document_init(document, "Prediction", campaign->head.title, subtitle, footer, "");
+    wb_pages_start(document, "Prediction", &campaign->head, subtitle, "bands are simulations", "");
     put_found(document, results);
     wb_figures_put(drawn, document, "bands", 0);
     for (int i = 0; i < campaign->n_bundles; i++)

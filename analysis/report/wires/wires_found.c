@@ -4,6 +4,7 @@
 
 #include "analysis/report/found.h"
 #include "analysis/report/pages.h"
+#include "analysis/report/simulation_pages.h"
 #include "analysis/report/wires/wires_kind.h"
 #include "base/units.h"
 
@@ -129,7 +130,7 @@ void wb_wires_found_put(struct wb_document *document, const struct wb_wires_resu
     wb_found_say(&found, WB_FOUND_ORIGIN, "%s",
                  "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid "
                  "and as a 1D rod. No wire was tested.");
-    wb_pages_add_missing(&found, &results->outcome);
+    wb_simulation_pages_add_missing(&found, &results->outcome);
     add_elastic(&found, results);
     add_elastoplastic(&found, results);
     add_residual(&found, results);

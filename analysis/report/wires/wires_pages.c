@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "analysis/report/pages.h"
+#include "analysis/report/simulation_pages.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -118,8 +119,8 @@ static void put_summary(struct wb_document *document, const struct wb_wires_resu
     const int n = wb_wires_results_judge(results, verdicts);
     wb_wires_found_put(document, results);
     wb_figures_put(figures, document, "found", 0);
-    wb_pages_put_decisions(document, results->outcome.campaign, verdicts, n);
-    wb_pages_put_missing(document, &results->outcome, wb_wires_results_list, results);
+    wb_simulation_pages_put_decisions(document, results->outcome.campaign, verdicts, n);
+    wb_simulation_pages_put_missing(document, &results->outcome, wb_wires_results_list, results);
     put_unfitted(document, results);
     put_facts(document, results);
 }
@@ -768,7 +769,7 @@ static void put_provenance(struct wb_document *document, const struct wb_wires_r
     wb_pages_put_origin(document, &comparison->head, "datasets");
     put_materials(document, comparison);
     put_models(document, comparison);
-    wb_pages_put_datasets(document, wb_wires_results_list, results);
+    wb_simulation_pages_put_datasets(document, wb_wires_results_list, results);
 }
 
 /* --- all of it --- */
@@ -777,7 +778,7 @@ void wb_wires_pages_build(struct wb_document *document, const void *context,
                           const struct wb_figures *figures)
 {
     const struct wb_wires_results *const results = context;
-    wb_pages_start_simulations(document, results->comparison->head.title, &results->outcome);
+    wb_simulation_pages_start(document, &results->outcome);
     put_summary(document, results, figures);
     put_elastic(document, results, figures);
     put_elastoplastic(document, results, figures);
