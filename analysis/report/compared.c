@@ -11,7 +11,7 @@
 
 #define WB_LOG_DOMAIN "compare"
 
-#define ROW_HEIGHT 16.5 /* points of a row of the figure */
+#define ROW_HEIGHT 12.5 /* points of a row of the figure */
 
 static bool is_virtual(const struct wb_compared *compared)
 {
@@ -115,10 +115,10 @@ static void put_batches(struct wb_document *document, const struct wb_compared *
         {.heading = "Wire", .wraps = true},
         {.heading = "<i>d</i> (mm)", .right = true},
         {.heading = "<i>n</i>", .right = true},
-        {.heading = "SHA-256 of the file", .monospace = true},
     };
-    struct wb_document_table *const table = wb_document_table(
-        document, "<i>n</i>: specimens, or series where there are several.", 6, columns);
+    struct wb_document_table *const table =
+        wb_document_table(document, "<i>n</i>: specimens, or series where there are several.",
+                          WB_COUNT(columns), columns);
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         const struct wb_properties *const p = compared->properties[i];
         wb_document_row(table, false);
@@ -127,7 +127,12 @@ static void put_batches(struct wb_document *document, const struct wb_compared *
         wb_pages_cell_plain(table, WB_TONE_PLAIN, p->wire);
         wb_pages_cell_number(table, p->outer_diameter / WB_MM, 2);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", wb_properties_units(p));
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, compared->sha256[i]);
+    }
+    for (int i = 0; i < WB_COMPARE_SIDES; i++) {
+        char text[160];
+        snprintf(text, sizeof text, "<b>%c</b>: SHA-256 of the file <tt>%s</tt>", 'A' + i,
+                 compared->sha256[i]);
+        wb_document_item(document, WB_TONE_PLAIN, text);
     }
 }
 
@@ -145,7 +150,15 @@ static void put_verdict_cell(struct wb_document_table *table, const struct wb_co
 static void put_quantity(struct wb_document_table *table, const struct wb_compare_quantity *q)
 {
     wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, q->row->unit[0] ? "%s (%s)" : "%s", q->name, q->row->unit);
+    struct wb_text name = {0};
+    wb_text_append_escaped(&name, q->name);
+    if (q->row->unit[0]) {
+        wb_text_append(&name, " (");
+        wb_pages_append_symbols(&name, q->row->unit);
+        wb_text_append(&name, ")");
+    }
+    wb_document_cell(table, WB_TONE_PLAIN, wb_text_string(&name));
+    wb_text_release(&name);
     if (q->reason) {
         wb_pages_cell(table, WB_TONE_QUIET, "%s", q->reason);
         return;
@@ -219,7 +232,7 @@ static void fill(struct wb_document *document, const struct wb_compared *compare
     wb_text_append(&text, ", within \xc2\xb1%.4g of the logarithm of B over A.", c->within);
     wb_pages_put_text(document, WB_BLOCK_NOTICE, tones[c->verdict], &text);
     put_batches(document, compared);
-    wb_document_heading(document, 1, "quantities", "Quantities");
+    wb_document_heading(document, 2, "quantities", "Quantities");
     put_quantities(document, c);
     wb_document_figures(document, figure,
                         "Ratio of each quantity with its interval of 90 %. Dashed: the limits.",

@@ -173,7 +173,6 @@ void wb_glossary_put(struct wb_document *document)
         if (!is_used(document, n, &entries[i]))
             continue;
         if (!table) {
-            wb_document_new_page(document);
             wb_document_heading(document, 1, "glossary", "Terms");
             table = wb_document_table(document, NULL, WB_COUNT(columns), columns);
         }

@@ -206,10 +206,11 @@ static void add_next_of(struct wb_found *found, const struct wb_bands *bands)
         const struct wb_ranking_share *const share = &of->ranking.group[0];
         wb_text_append(&text, "<b>Narrow the band</b>: determine ");
         wb_text_append_escaped(&text, bands->inputs.group_name[share->group]);
-        wb_text_append(&text,
-                       " more accurately; it has the largest part, %.0f %%, in the variance of the "
-                       "force at %.3g mm.",
-                       share->share / WB_PERCENT, of->at / WB_MM);
+        wb_text_append(
+            &text,
+            " more accurately; it causes the largest part, %.0f %%, of the variance of the "
+            "ranks of the force at %.3g mm.",
+            share->share / WB_PERCENT, of->at / WB_MM);
         wb_found_add(found, WB_FOUND_NEXT, &text);
         break;
     }
