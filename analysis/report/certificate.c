@@ -182,7 +182,7 @@ static void put_results(struct wb_document *document, const struct wb_certificat
         wb_pages_cell_number(table, result->known ? result->at / WB_G : none, 3);
         wb_pages_cell_number(table, certificate->tolerance / WB_PERCENT, 3);
         if (!result->known)
-            wb_pages_cell(table, WB_TONE_QUIET, "cannot be determined with these masses");
+            wb_pages_cell(table, WB_TONE_QUIET, "cannot be determined");
         else if (result->passed)
             wb_pages_cell(table, WB_TONE_GOOD, "within");
         else
