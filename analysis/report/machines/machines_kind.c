@@ -119,7 +119,7 @@ static enum wb_status draw_found(struct wb_figures_item *item)
         if (n == 0)
             continue;
         if (!panel) {
-            WB_TRY(wb_figure_create(&item->figure, "moments", WB_PDF_WIDTH, 210.0));
+            WB_TRY(wb_figure_create(&item->figure, "moments", WB_PDF_WIDTH, 185.0));
             wb_figure_set_footer(item->figure, "measured");
             panel = wb_figure_add_panel(item->figure);
             wb_figure_set_axes(panel, "Nominal curvature 12 d / L<sup>2</sup> (1/m)",
