@@ -88,9 +88,9 @@ static void append_paper(struct wb_text *text, const struct wb_calibrate_result 
                            c->deviation[i] / property->factor);
         wb_text_append(text, "%s", i < 3 ? " MPa" : "");
         if (isfinite(c->deviation[i]) && has_factor)
-            wb_text_append(text, " (\xc3\x97/\xc3\xb7 %.2g)", exp(c->deviation[i]));
+            wb_text_append(text, " (\xc3\x97/\xc3\xb7 %.3g)", exp(c->deviation[i]));
     }
-    wb_text_append(text, "; RMS of the fit %.2g %% of <i>F</i><sub>max</sub>.",
+    wb_text_append(text, "; RMS of the fit %.3g %% of <i>F</i><sub>max</sub>.",
                    c->rms / WB_PERCENT);
 }
 
@@ -117,7 +117,7 @@ static void append_bound(struct wb_text *text, const struct wb_validate_result *
     const struct wb_validate_bound *const bound = &p->bounds[part];
     const bool is_length = part == WB_VALIDATE_RESIDUAL || part == WB_VALIDATE_SHAPES;
     const double unit = is_length ? WB_MM : WB_PERCENT;
-    wb_text_append(text, "%s%s %.2g %s, where the scatter of specimens explains %.2g",
+    wb_text_append(text, "%s%s %.3g %s, where the scatter of specimens explains %.3g",
                    wb_validate_part_name(part), bound->is_exceeded ? " off by" : " within",
                    bound->found / unit, is_length ? "mm" : "% of <i>F</i><sub>max</sub>",
                    bound->bound / unit);
@@ -142,7 +142,7 @@ static void append_prediction(struct wb_text *text, const struct wb_validate_res
         wb_text_append(text, "the beam did not converge up to the largest deflection.");
     } else if (!isfinite(loading->bound)) {
         wb_text_append(text,
-                       "loading within %.2g %% of <i>F</i><sub>max</sub>; the scatter of specimens "
+                       "loading within %.3g %% of <i>F</i><sub>max</sub>; the scatter of specimens "
                        "is not known.",
                        p->elastoplastic.rms / WB_PERCENT);
     } else {

@@ -26,9 +26,9 @@ static void take(struct span *span, double value)
 /* "0.66 to 2.3", or "0.66" of one value. */
 static void append_span(struct wb_text *text, const struct span *span)
 {
-    wb_text_append(text, "%.2g", span->low);
+    wb_text_append(text, "%.3g", span->low);
     if (span->high > span->low)
-        wb_text_append(text, " to %.2g", span->high);
+        wb_text_append(text, " to %.3g", span->high);
 }
 
 static void append_name(struct wb_text *names, const char *name)
@@ -167,7 +167,7 @@ static void add_unjudged(struct wb_found *found, const struct wb_bundles_results
                                        : "Energies of runs that the campaign excludes "
                                          "from the limits (<tt>judged: false</tt>): ");
         wb_text_append_escaped(&text, wanted->name);
-        wb_text_append(&text, " (kinetic energy %.2g %%)", run->numbers.kinetic / WB_PERCENT);
+        wb_text_append(&text, " (kinetic energy %.3g %%)", run->numbers.kinetic / WB_PERCENT);
     }
     if (text.length > 0)
         wb_text_append(&text, ".");

@@ -92,13 +92,14 @@ static void add_group(struct wb_found *found, const struct wb_machines_group *gr
         wb_found_add(found, WB_FOUND_DOUBTFUL, &text);
         return;
     }
-    wb_text_append(&text, "%.3g mN at a deflection of %.3g mm",
-                   of->force[WB_MACHINES_GRID - 1] / WB_MN, of->reach / WB_MM);
-    if (isfinite(of->rigidity))
+    const double force = of->force[WB_MACHINES_GRID - 1] / WB_MN, EI = of->rigidity / WB_NMM2;
+    wb_text_append(&text, "%.*f mN at a deflection of %.3g mm", wb_pages_decimals(force), force,
+                   of->reach / WB_MM);
+    if (isfinite(EI))
         wb_text_append(&text,
-                       ", flexural rigidity of an elastic wire at 0.02 of the span %.3g N "
+                       ", flexural rigidity of an elastic wire at 0.02 of the span %.*f N "
                        "mm\xc2\xb2",
-                       of->rigidity / WB_NMM2);
+                       wb_pages_decimals(EI), EI);
     if (isfinite(of->rigidity_deviation))
         wb_text_append(&text, " with a standard deviation of %.2g %% between tests",
                        of->rigidity_deviation / of->rigidity / WB_PERCENT);
@@ -116,10 +117,10 @@ static void add_layer(struct wb_found *found, const struct wb_machines_results *
         return;
     wb_text_append(&text, "<b>");
     wb_text_append_escaped(&text, results->campaign->groups[layer->group].label);
-    wb_text_append(&text, "</b>: moment %.2g times that of freely sliding wires",
+    wb_text_append(&text, "</b>: moment %.3g times that of freely sliding wires",
                    place->ratio.value);
     if (isfinite(place->ratio.low))
-        wb_text_append(&text, " (%.2g to %.2g)", place->ratio.low, place->ratio.high);
+        wb_text_append(&text, " (%.3g to %.3g)", place->ratio.low, place->ratio.high);
     wb_text_append(&text,
                    " at %.3g /m; <i>\xcf\x87</i> = ", layer->curvature[WB_MACHINES_PLACES - 1]);
     wb_pages_append_number(&text, place->chi.value, 2);

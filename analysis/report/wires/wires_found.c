@@ -21,10 +21,10 @@ static void add_elastic(struct wb_found *found, const struct wb_wires_results *r
     const double cost = wb_wires_cost(results, WB_WIRES_ELASTIC) / WB_PERCENT;
     wb_text_append(&text,
                    "<b>Linear elastic</b>: at %g N the axes of the 1D rod and the 3D solid are at "
-                   "most %.2g mm apart",
+                   "most %.3g mm apart",
                    solid->force, wb_wires_distance(solid, rod) / WB_MM);
     if (isfinite(cost))
-        wb_text_append(&text, ", and the rod takes %.2g %% of the solid's CPU time", cost);
+        wb_text_append(&text, ", and the rod takes %.3g %% of the solid's CPU time", cost);
     wb_text_append(&text, ".");
     const struct wb_field *const field =
         wb_fields_find(&solid->fields, comparison->loaded_state, (double)NAN);
@@ -53,10 +53,10 @@ static void add_elastoplastic(struct wb_found *found, const struct wb_wires_resu
     if (rod)
         wb_text_append(&text,
                        "; the axis of the 1D rod, whose fibres have the materials' own laws, is at "
-                       "most %.2g mm away",
+                       "most %.3g mm away",
                        wb_wires_distance(solid, rod) / WB_MM);
     if (is_fitted && results->fitted.reached)
-        wb_text_append(&text, "; that of one homogeneous rod fitted to the solid, %.2g mm",
+        wb_text_append(&text, "; that of one homogeneous rod fitted to the solid, %.3g mm",
                        wb_wires_rod_distance(solid, &results->fitted) / WB_MM);
     wb_text_append(&text, ".");
     wb_found_add(found, WB_FOUND_RESULT, &text);
@@ -87,7 +87,7 @@ static void add_residual(struct wb_found *found, const struct wb_wires_results *
     if (isfinite(moved) && isfinite(stress))
         wb_found_say(found, WB_FOUND_RESULT,
                      "<b>Residual stress</b>: the pre-loads leave at most %.0f MPa in the core, "
-                     "which moves the tip by at most %.2g mm while the force grows.",
+                     "which moves the tip by at most %.3g mm while the force grows.",
                      stress / WB_MPA, moved / WB_MM);
 }
 
