@@ -147,7 +147,8 @@ static int deliver(const struct options *o, const struct wb_machine_compliance *
             "the bar yields or slips: residual travel %.2g of %.3g mm, slope %.3g mm/N during "
             "loading and %.3g mm/N during unloading; use less force, or a thicker bar of harder "
             "steel",
-            c->residual / WB_MM, c->most_travel / WB_MM, c->value / WB_MM, c->value_unloading / WB_MM);
+            c->residual / WB_MM, c->most_travel / WB_MM, c->value / WB_MM,
+            c->value_unloading / WB_MM);
     else if (!c->is_straight && c->low > 0.0)
         wb_warn("the readings are not on a straight line: the bar yields or slips, or the machine "
                 "has play; use less force, or a thicker bar");

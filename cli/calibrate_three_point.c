@@ -40,8 +40,8 @@ static void print_member(const struct wb_three_point_member *m)
         printf("    natural bow %+.3f +- %.2g mm, %s; correlation with the first contact %+.2f\n",
                m->fit.bow / WB_MM, 2.0 * m->fit.bow_error / WB_MM,
                fabs(m->fit.bow_off) > 2.0 ? "far off its prior: it compensates a misfit of the law"
-               : m->fit.is_bow_identifiable       ? "determined by the curve"
-                                          : "not determined by the curve: given by its prior",
+               : m->fit.is_bow_identifiable ? "determined by the curve"
+                                            : "not determined by the curve: given by its prior",
                m->fit.bow_contact_correlation);
     else if (m->fit.bow != 0.0)
         printf("    natural bow %+.3f mm, given\n", m->fit.bow / WB_MM);

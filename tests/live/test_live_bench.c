@@ -311,7 +311,8 @@ static void draw_on_the_way(struct show *show)
     assert_shows(show, "VIRTUAL RIG  type1, 85 mm, sample 1");
     assert_shows(show, "test in progress");
     assert_shows(show, "down, cycle 1 of 1");
-    assert_shows(show, "tension (mN) over deflection (mm)");
+    assert_shows(show, "tension, mN over mm");
+    assert_shows(show, "(above)");
     assert_shows(show, "the wire, from the clamp");
     assert_shows(show, "●●●●●●●");
     assert_shows(show, "120 Hz, no gaps");
@@ -327,7 +328,7 @@ static void draw_on_the_way(struct show *show)
     assert_shows(show, "*******");
     draw(show, 15, 60, true);
     assert_shows(show, "enlarge the window to see the curve");
-    assert_false(shows(show, "deflection (mm)"));
+    assert_false(shows(show, "mN over mm"));
     draw(show, 16, 60, true);
     assert_shows(show, "mN over mm");
     draw(show, 90, 300, true);
