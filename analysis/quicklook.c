@@ -66,8 +66,9 @@ static void append_range(const struct wb_dataset *dataset, struct wb_text *text)
     wb_text_append(text, "rows                %zu over %.1f s, %zu of them slack\n",
                    dataset->n_rows, range.duration, range.n_slack);
     wb_text_append(text, "largest deflection  %.2f mm\n", range.deflection / WB_MM);
-    wb_text_append(text, "largest force       %.2f mN (tension %.2f mN)\n", range.force / WB_MN,
-                   range.tension / WB_MN);
+    wb_text_append(
+        text, "largest force       %.2f mN above its value at zero deflection (tension %.2f mN)\n",
+        range.force / WB_MN, range.tension / WB_MN);
 }
 
 static bool find_bow(const struct wb_json *document, double *bow_mm, double *uncertainty_mm)
@@ -258,8 +259,9 @@ static void set_title(struct wb_panel *panel, const struct wb_dataset *dataset)
 {
     struct wb_text title = {0};
     wb_text_append_escaped(&title, dataset->info.wire);
-    wb_text_append(&title, ", <i>L</i> = %g mm, sample %d", dataset->info.length / WB_MM,
-                   dataset->info.sample);
+    wb_text_append(&title, ", <i>L</i> = %g mm", dataset->info.length / WB_MM);
+    if (dataset->info.sample > 0)
+        wb_text_append(&title, ", sample %d", dataset->info.sample);
     wb_figure_set_title(panel, wb_text_string(&title));
     wb_text_release(&title);
 }
@@ -273,7 +275,8 @@ static enum wb_status draw_curve(struct wb_figure **out, const struct wb_dataset
     const enum wb_status status = wb_figure_create(out, "force-deflection", WIDTH, HEIGHT);
     if (status == WB_OK) {
         struct wb_panel *const panel = wb_figure_add_panel(*out);
-        wb_figure_set_axes(panel, "Deflection (mm)", "Force (mN)");
+        wb_figure_set_axes(panel, "Deflection (mm)",
+                           "Force above its value at zero deflection (mN)");
         set_title(panel, dataset);
         for (int cycle = 1; cycle <= n_cycles; cycle++) {
             add_curve(panel, dataset, cycle, n_cycles, WB_PHASE_LOAD, &line);

@@ -296,7 +296,8 @@ enum wb_status wb_series_results_draw(const struct wb_series_results *results, c
     enum wb_status status = wb_figure_create(&figure, "series", WIDTH, HEIGHT);
     if (status == WB_OK) {
         struct wb_panel *const panel = wb_figure_add_panel(figure);
-        wb_figure_set_axes(panel, "Deflection (mm)", "Force (mN)");
+        wb_figure_set_axes(panel, "Deflection (mm)",
+                           "Force above its value at zero deflection (mN)");
         describe_figure(figure, panel, results, series);
         for (int i = 0; i < results->n; i++) {
             if (results->tests[i].is_usable)

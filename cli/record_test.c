@@ -191,7 +191,7 @@ static int exit_code(const struct wb_bend_test_result *result, enum wb_status st
 void wb_record_test_print(FILE *out, const struct wb_bend_test_result *result, const char *output)
 {
     fprintf(out,
-            "%s: %s%d cycle%s, %.0f s, %" PRIu64 " readings, %" PRIu64 " frames, largest force "
+            "%s: %s%d cycle%s, %.0f s, %" PRIu64 " readings, %" PRIu64 " frames, largest tension "
             "%.2f mN, %" PRIu64 " drops\n",
             output, result->is_virtual ? "virtual rig, " : "", result->cycles_done,
             result->cycles_done == 1 ? "" : "s", result->duration, result->samples[WB_ROLE_LOAD],

@@ -1,6 +1,7 @@
 /* Holds: the operator stopped the stage for some time, and the bent wire relaxed. No rows are made
  * from holds. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "analysis/align/align_private.h"
@@ -40,13 +41,17 @@ void wb_align_describe_holds(struct wb_align *align)
         wb_align_set(object, "lasted_s", isfinite(lasted) ? lasted : (double)NAN);
         wb_align_set(object, "tension_before_mN", hold->before / WB_MN);
         wb_align_set(object, "tension_after_mN", hold->after / WB_MN);
-        if (strcmp(hold->phase, "rest") != 0)
-            wb_align_warn(
-                align,
-                "held at %.2f mm of travel on the way %s of cycle %d for %.1f s, while the tension "
-                "went from %.2f to %.2f mN: a bent wire relaxes, so the curve after the hold is "
-                "that of a wire with another history; the rows of the hold are left out",
-                hold->travel / WB_MM, hold->phase, hold->cycle, lasted, hold->before / WB_MN,
-                hold->after / WB_MN);
+        if (strcmp(hold->phase, "rest") == 0)
+            continue;
+        char duration[32] = "until the end";
+        if (isfinite(lasted))
+            snprintf(duration, sizeof duration, "for %.1f s", lasted);
+        wb_align_warn(
+            align,
+            "held at %.2f mm of travel on the way %s of cycle %d %s, while the tension went from "
+            "%.2f to %.2f mN: a bent wire relaxes, so the curve after the hold is that of a wire "
+            "with another history; the rows of the hold are left out",
+            hold->travel / WB_MM, hold->phase, hold->cycle, duration, hold->before / WB_MN,
+            hold->after / WB_MN);
     }
 }

@@ -113,7 +113,8 @@ struct wb_align {
     bool is_cut_short;     /* aborted, or parts are damaged */
     char stop_reason[384]; /* text of the event `stop` */
     unsigned n_lost, n_drops;
-    int n_holds; /* by the operator */
+    int n_holds;     /* by the operator */
+    bool skips_hold; /* its start was beyond the capacity */
     struct wb_bend_hold_recorded holds[WB_ALIGN_MAX_HOLDS];
 
     /* Times. */

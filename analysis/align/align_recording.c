@@ -185,14 +185,16 @@ static void take_hold(struct wb_align *align, const struct wb_event *event)
 {
     const bool begins = strcmp(event->kind, WB_BEND_HOLD_START) == 0;
     struct wb_bend_hold_recorded hold;
-    if (begins && align->n_holds == WB_ALIGN_MAX_HOLDS) {
+    const bool skipped = align->skips_hold;
+    align->skips_hold = begins && align->n_holds == WB_ALIGN_MAX_HOLDS;
+    if (align->skips_hold) {
         wb_align_warn(
             align,
             "the test was held more than %d times: the rows of later holds are treated as motion",
             WB_ALIGN_MAX_HOLDS);
         return;
     }
-    if (!begins && align->n_holds == 0)
+    if (!begins && (align->n_holds == 0 || skipped))
         return;
     if (!begins)
         hold = align->holds[align->n_holds - 1];

@@ -136,7 +136,7 @@ static enum wb_status turn_signs(struct import *import)
     import->force_sign = rising_sign(dataset, offsetof(struct wb_row, force), &force);
     if (!(range > 0.0) || !(force > 0.0))
         return wb_fail_to(import->why, WB_ERR_DATA,
-                          "%s: the %s is the same in all %zu rows: this is no test",
+                          "%s: the %s is constant in all %zu rows: not a test record",
                           import->from->path, range > 0.0 ? "force" : "travel", dataset->n_rows);
     for (size_t i = 0; i < dataset->n_rows; i++) {
         struct wb_row *const row = &dataset->rows[i];

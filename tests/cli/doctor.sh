@@ -55,7 +55,7 @@ well() {
     said well '^the virtual rig is ready$'
     said well '^markers +ready +all 7'
     said well '^\| +1 +2 +3 +4 +5 +6 +7$'
-    "$wirebench" doctor --json --seconds 0.5 --folder "$folder" "$folder/well/rig.yaml" \
+    "$wirebench" doctor --json --seconds 3 --folder "$folder" "$folder/well/rig.yaml" \
         >"$folder/well.json" 2>/dev/null || fail "well: JSON: exit code $?"
     grep -q '"name": "clock"' "$folder/well.json" || fail "no JSON: $(cat "$folder/well.json")"
     grep -q '^ *"verdict": "not known"' "$folder/well.json" ||

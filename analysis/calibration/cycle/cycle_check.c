@@ -438,7 +438,7 @@ static void check_travel(struct wb_cycle_remarks *remarks, const struct specimen
     say(remarks, share < short_travel ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
         "wire '%s', sample %d: the travel ends at %.1f mm, %.2f of the length: EI may be used "
         "(to some 15 %%), K and n are not identifiable, and beyond a curvature of %.1f /m the law "
-        "is not known; expected %.2f of the length: a travel of %.0f mm would mend it",
+        "is not known; expected %.2f of the length: a travel of %.0f mm is enough",
         s->wire, s->sample, s->data->top / WB_MM, share, s->fit->clamp_curvature, full_travel,
         ceil(full_travel * length / WB_MM));
 }
@@ -798,9 +798,10 @@ static void check_others(struct wb_cycle_remarks *remarks,
     if (n == 1) {
         if (!isfinite(calibration->rigidity.deviation))
             say(remarks, WB_CHECK_NOTE, 0,
-                "wire '%s': one sample (%d) says nothing of how specimens differ: the intervals "
-                "are those of this specimen, not of the product; test at least three",
-                wire, calibration->members[0].sample);
+                "wire '%s': one sample cannot show how specimens differ: the intervals are those "
+                "of "
+                "this specimen, not of the product; test at least three",
+                wire);
         return;
     }
     if (n == 2) {
@@ -808,7 +809,7 @@ static void check_others(struct wb_cycle_remarks *remarks,
         if (fabs(apart) > rigidity_limit * M_SQRT2 * least_deviation)
             say(remarks, WB_CHECK_DOUBT, 0,
                 "wire '%s': EI of samples %d and %d differ by %.0f %%, expected at most %.0f %%: "
-                "is one of another wire, or its length wrong? A third will tell which",
+                "is one of another wire, or its length wrong? Test a third",
                 wire, calibration->members[0].sample, calibration->members[1].sample,
                 100.0 * expm1(fabs(apart)),
                 100.0 * expm1(rigidity_limit * M_SQRT2 * least_deviation));

@@ -473,7 +473,7 @@ static void a_specimen_unlike_the_others_is_told(void **state)
 static void one_sample_is_noted(void **state)
 {
     (void)state;
-    assert_told(good, WB_CHECK_NOTE, 0, "one sample (1)");
+    assert_told(good, WB_CHECK_NOTE, 0, "one sample");
     assert_no_doubt(good);
 }
 
