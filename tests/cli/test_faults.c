@@ -38,7 +38,7 @@ static const struct fault {
                  "Another program may send to this port, or the network damages datagrams: check "
                  "host, port and group in mocap.address",
                  "check baud rate and parity in load_cell.address; 100 so far",
-                 "17 % of what the load sent never came: 326 in 214 places"}},
+                 "17 % of the data from the load never came: 326 in 214 gaps"}},
      .verify = {3, {"lines that could not be decoded"}},
      .align = {0, {"largest deflection"}}},
     {.list = "wrong-up",

@@ -263,7 +263,7 @@ static void a_short_travel_gives_a_stiffness_alone(void **state)
         struct bench *const bench = calloc(1, sizeof *bench);
         add(bench, 2, 85.0 * WB_MM, travel[i], 1);
         check(bench);
-        assert_told(bench, WB_CHECK_DOUBT, 1, "a travel of 30 mm would mend it");
+        assert_told(bench, WB_CHECK_DOUBT, 1, "a travel of 30 mm is enough");
         assert_int_equal(count(bench, WB_CHECK_DOUBT), 1);
         assert_false(bench->calibration.is_strength_identifiable);
         release(bench);
