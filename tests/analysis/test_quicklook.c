@@ -101,7 +101,9 @@ static void all_files_are_written_and_say_virtual_rig(void **state)
     assert_says(path, "summary.txt", "type <2>, sample 2, 85 mm");
     assert_says(path, "summary.txt", "cycles              2");
     assert_says(path, "summary.txt", "largest deflection  40.00 mm");
-    assert_says(path, "summary.txt", "largest force       60.00 mN above its value at zero deflection (tension 70.00 mN)");
+    assert_says(
+        path, "summary.txt",
+        "largest force       60.00 mN above its value at zero deflection (tension 70.00 mN)");
     assert_says(path, "summary.txt", "-1.25 +- 0.007 mN");
     assert_says(path, "summary.txt", "- the cat walked by");
     static const char *const figures[] = {"force_deflection.png", "shapes.png"};
