@@ -31,11 +31,11 @@ void wb_numbers_put_outcome(struct wb_json *root, const struct wb_kind_outcome *
     wb_json_set_boolean(root, "limit_exceeded", outcome->exceeds_limit);
 }
 
-struct wb_json *wb_numbers_create(const struct wb_campaign *campaign,
+struct wb_json *wb_numbers_create(const struct wb_campaign *campaign, const char *data,
                                   const struct wb_kind_outcome *outcome)
 {
     struct wb_json *const root = wb_json_create();
-    wb_numbers_put_title(root, campaign->title, "simulation");
+    wb_numbers_put_title(root, campaign->title, data);
     wb_numbers_put_program(root);
     wb_numbers_put_campaign(root, campaign);
     wb_numbers_put_outcome(root, outcome);

@@ -8,8 +8,8 @@
 #include "base/json.h"
 #include "fe/material/material.h"
 
-/* Starts report.json of a report of simulations; the caller destroys it. */
-struct wb_json *wb_numbers_create(const struct wb_campaign *campaign,
+/* Starts report.json; `data` is "simulation" or "measured". The caller destroys it. */
+struct wb_json *wb_numbers_create(const struct wb_campaign *campaign, const char *data,
                                   const struct wb_kind_outcome *outcome);
 
 /* Its parts: title and `data` ("simulation", "measured"), the program, the campaign, how it came

@@ -425,16 +425,13 @@ static const struct wb_schema_object fitted_wire = {
     ROWS(fitted_wire_rows)};
 
 static const struct wb_schema_row machine_rows[] = {
-    {"title", TEXT, "", "title of the campaign"},
-    {"campaign", TEXT, "", "name of the campaign file"},
-    {"campaign_sha256", TEXT, "", "SHA-256 of the campaign file"},
+    {.of = &wb_schema_report_head},
     {"tests_wanted", INTEGER, "", "tests of the campaign"},
     {"tests_used", INTEGER, "", "tests that are used"},
     {"tests_missing", INTEGER, "", "tests whose files are missing"},
     {"groups", OBJECT | LIST, "", "groups of tests", &group},
     {"cable", OBJECT | OPTIONAL, "", "layered cable", &cable},
     {"wires", OBJECT | LIST | OPTIONAL, "", "calibrated wires", &fitted_wire},
-    {.of = &wb_schema_report_end},
 };
 const struct wb_schema_object wb_schema_report_machine = {
     "report_of_machine", "The report of a campaign of testing machines.", ROWS(machine_rows)};

@@ -179,7 +179,8 @@ struct wb_json *wb_bundles_json_build(const void *context)
 {
     const struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = results->campaign;
-    struct wb_json *const root = wb_numbers_create(&campaign->head, &results->outcome);
+    struct wb_json *const root =
+        wb_numbers_create(&campaign->head, "simulation", &results->outcome);
     put_verdicts(root, results);
     struct wb_json *const bundles = wb_json_set_array(root, "bundles");
     for (int i = 0; i < campaign->n_bundles; i++)

@@ -269,10 +269,7 @@ static struct wb_json *build_json(const void *context)
 {
     const struct wb_machines_results *const results = context;
     const struct wb_machines *const campaign = results->campaign;
-    struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "title", campaign->head.title);
-    wb_json_set_text(root, "campaign", campaign->head.name);
-    wb_json_set_text(root, "campaign_sha256", campaign->head.sha256);
+    struct wb_json *const root = wb_numbers_create(&campaign->head, "measured", &results->outcome);
     wb_json_set_integer(root, "tests_wanted", results->outcome.n_wanted);
     wb_json_set_integer(root, "tests_used", results->outcome.n_usable);
     wb_json_set_integer(root, "tests_missing", results->outcome.n_missing);

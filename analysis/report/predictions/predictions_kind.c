@@ -528,7 +528,8 @@ static struct wb_json *build_json(const void *context)
 {
     const struct wb_predictions_results *const results = context;
     const struct wb_predictions *const campaign = results->campaign;
-    struct wb_json *const root = wb_numbers_create(&campaign->head, &results->outcome);
+    struct wb_json *const root =
+        wb_numbers_create(&campaign->head, "simulation", &results->outcome);
     struct wb_json *const list = wb_json_set_array(root, "bundles");
     for (int b = 0; b < campaign->n_bundles; b++) {
         const struct wb_predictions_bundle *const bundle = &campaign->bundles[b];

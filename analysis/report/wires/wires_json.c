@@ -171,7 +171,8 @@ struct wb_json *wb_wires_json_build(const void *context)
     const struct wb_wires *const comparison = results->comparison;
     const struct wb_wires_run *const elastic = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
     const struct wb_wires_run *const plastic = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
-    struct wb_json *const root = wb_numbers_create(&comparison->head, &results->outcome);
+    struct wb_json *const root =
+        wb_numbers_create(&comparison->head, "simulation", &results->outcome);
     wb_json_set_number(root, "jacket_modulus_per_percent_of_core_MPa",
                        wb_wires_split(comparison->cases[WB_WIRES_ELASTOPLASTIC].model, 0.01) /
                            WB_MPA);
