@@ -102,7 +102,7 @@ static void the_lag_is_found_with_a_dwell_at_the_turn(void **state)
 
 /* With hardly any noise the measured lag is the truth's to a quarter of a frame, and what differs
  * from the rig file is told. */
-static void a_delay_that_the_rig_file_does_not_have_is_told(void **state)
+static void a_delay_missing_in_the_rig_file_is_reported(void **state)
 {
     (void)state;
     struct wb_text text = {0};
@@ -192,7 +192,7 @@ int main(int argc, char **argv)
         TEST(the_interval_covers_the_lag),
         TEST(more_reversals_make_the_lag_certain),
         TEST(the_lag_is_found_with_a_dwell_at_the_turn),
-        TEST(a_delay_that_the_rig_file_does_not_have_is_told),
+        TEST(a_delay_missing_in_the_rig_file_is_reported),
         TEST(the_area_changes_with_the_lag_as_stated),
         TEST(the_drift_of_the_cameras_is_found),
         TEST(without_a_reversal_the_lag_is_not_identifiable),

@@ -188,7 +188,7 @@ static void a_dataset_without_shapes_or_rows_has_a_summary(void **state)
 
 /* The force of the unloading falls faster than that of the way up has grown: it is gone at 13.07
  * mm, where the tension is that of zero deflection. */
-static void summary_says_what_deflection_is_left(void **state)
+static void the_summary_has_the_residual_deflection(void **state)
 {
     (void)state;
     struct wb_dataset dataset;
@@ -220,7 +220,7 @@ int main(void)
         cmocka_unit_test(the_curve_alone_is_written_as_its_name_ends),
         cmocka_unit_test(the_same_dataset_gives_the_same_bytes),
         cmocka_unit_test(a_dataset_without_shapes_or_rows_has_a_summary),
-        cmocka_unit_test(summary_says_what_deflection_is_left),
+        cmocka_unit_test(the_summary_has_the_residual_deflection),
     };
     return cmocka_run_group_tests(tests, start, remove_folder);
 }

@@ -130,7 +130,7 @@ static double left_at(size_t from, size_t to, const double deflection[], const d
     return (double)NAN;
 }
 
-static void ways_back_agree_within_one_and_a_half_percent(void **unused)
+static void unloadings_agree_within_one_and_a_half_percent(void **unused)
 {
     (void)unused;
     enum {
@@ -208,7 +208,7 @@ int main(void)
         cmocka_unit_test(curves_with_constant_friction_agree_within_two_percent),
         cmocka_unit_test(curves_with_decaying_friction_agree_with_its_mean_within_two_percent),
         cmocka_unit_test(the_curve_on_a_strand_with_weight_agrees_within_two_percent),
-        cmocka_unit_test(ways_back_agree_within_one_and_a_half_percent),
+        cmocka_unit_test(unloadings_agree_within_one_and_a_half_percent),
         cmocka_unit_test(
             on_a_circle_of_more_wires_the_tape_s_plastic_strain_tells_that_it_is_wrong),
     };

@@ -141,7 +141,7 @@ static void numbers_are_those_of_the_curve(void **state)
     wb_series_results_release(&results);
 }
 
-static void what_cannot_be_aligned_is_kept_with_its_problem(void **state)
+static void recordings_that_cannot_be_aligned_keep_their_problem(void **state)
 {
     (void)state;
     char path[WB_PATH];
@@ -163,7 +163,7 @@ int main(void)
         cmocka_unit_test(mean_and_spread_are_of_the_tests_that_count),
         cmocka_unit_test(one_test_has_no_spread),
         cmocka_unit_test(numbers_are_those_of_the_curve),
-        cmocka_unit_test(what_cannot_be_aligned_is_kept_with_its_problem),
+        cmocka_unit_test(recordings_that_cannot_be_aligned_keep_their_problem),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

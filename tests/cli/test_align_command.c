@@ -194,7 +194,7 @@ static void quicklook_draws_one_recording(void **state)
     expect("quicklook $DIR/gap.wbr -o $DIR/look --force", 3, "in the rows", "");
 }
 
-static void what_is_wrong_is_said_once_and_clearly(void **state)
+static void an_error_is_reported_once(void **state)
 {
     (void)state;
     expect("align $DIR/no-tare.wbr -o $DIR/none", 1, "", "no tare");
@@ -219,7 +219,7 @@ int main(void)
         cmocka_unit_test(damaged_or_cut_recordings_are_not_complete),
         cmocka_unit_test(settings_reach_the_rows),
         cmocka_unit_test(quicklook_draws_one_recording),
-        cmocka_unit_test(what_is_wrong_is_said_once_and_clearly),
+        cmocka_unit_test(an_error_is_reported_once),
     };
     return cmocka_run_group_tests(tests, start, check_and_remove_folder);
 }

@@ -256,7 +256,7 @@ static void the_same_gives_the_same_bytes_later(void **state)
     assert_int_equal(run("cmp %s/one.h5 %s/other.h5", folder, folder), 0);
 }
 
-static void refusals_say_what_is_wrong_and_leave_nothing(void **state)
+static void rejections_name_the_error_and_leave_no_files(void **state)
 {
     (void)state;
     assert_int_equal(run("touch %s/mine.h5; $WIREBENCH_BINARY export '%s' -o %s/mine.h5 2>&1 | "
@@ -295,7 +295,7 @@ int main(int argc, char **argv)
         FACT(a_recording_is_its_csv),
         FACT(a_dataset_is_its_csv_bit_for_bit),
         FACT(the_same_gives_the_same_bytes_later),
-        FACT(refusals_say_what_is_wrong_and_leave_nothing),
+        FACT(rejections_name_the_error_and_leave_no_files),
     };
     if (argc != 2)
         return 2;

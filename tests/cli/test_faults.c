@@ -136,7 +136,7 @@ static void recording_with_a_wrong_axis_is_aligned_by_a_corrected_rig_file(void 
 }
 
 /* A clamp that jams leaves a bent wire and a level reading: a release says nothing of free. */
-static void specimen_in_a_jammed_clamp_is_not_said_to_be_free(void **state)
+static void a_specimen_in_a_jammed_clamp_is_not_reported_as_free(void **state)
 {
     char release[256];
     (void)state;
@@ -186,7 +186,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         FACT(every_fault_gives_the_messages_of_the_manual),
         FACT(recording_with_a_wrong_axis_is_aligned_by_a_corrected_rig_file),
-        FACT(specimen_in_a_jammed_clamp_is_not_said_to_be_free),
+        FACT(a_specimen_in_a_jammed_clamp_is_not_reported_as_free),
         FACT(manual_has_every_fault),
     };
     return cmocka_run_group_tests(tests, make_work_folder, remove_work_folder);

@@ -137,7 +137,7 @@ static void a_section_is_drawn(void **state)
     free(second);
 }
 
-static void wrong_usage_and_files_are_refused(void **state)
+static void wrong_usage_and_files_are_rejected(void **state)
 {
     (void)state;
     expect("info fixtures/bundles/12-type3.yaml --figure a.gif", 2, "--figure");
@@ -160,7 +160,7 @@ int main(void)
         cmocka_unit_test(json_has_the_numbers),
         cmocka_unit_test(a_circle_is_bonded_to_what_is_within_reach),
         cmocka_unit_test(a_section_is_drawn),
-        cmocka_unit_test(wrong_usage_and_files_are_refused),
+        cmocka_unit_test(wrong_usage_and_files_are_rejected),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -87,7 +87,7 @@ static void assert_never_waits(int theirs, int ours)
     assert_non_null(strstr(heard, "warning: at last"));
 }
 
-static void a_terminal_that_hangs_loses_messages_and_counts_them(void **state)
+static void a_blocked_terminal_loses_messages_and_counts_them(void **state)
 {
     (void)state;
     int theirs, ours;
@@ -99,7 +99,7 @@ static void a_terminal_that_hangs_loses_messages_and_counts_them(void **state)
 }
 
 /* The last line of a recording that is whole already. */
-static void the_result_does_not_wait_for_a_terminal_that_hangs(void **state)
+static void the_result_does_not_wait_for_a_blocked_terminal(void **state)
 {
     (void)state;
     int theirs, ours;
@@ -224,9 +224,9 @@ static void keys_are_taken_in_the_foreground_only_and_ctrl_s_is_off(void **state
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_terminal_that_hangs_loses_messages_and_counts_them),
+        cmocka_unit_test(a_blocked_terminal_loses_messages_and_counts_them),
         cmocka_unit_test(a_pipe_nobody_reads_loses_messages_and_counts_them),
-        cmocka_unit_test(the_result_does_not_wait_for_a_terminal_that_hangs),
+        cmocka_unit_test(the_result_does_not_wait_for_a_blocked_terminal),
         cmocka_unit_test(the_result_reaches_who_reads),
         cmocka_unit_test(a_pipe_without_reader_is_survived),
         cmocka_unit_test(keys_are_taken_in_the_foreground_only_and_ctrl_s_is_off),

@@ -260,7 +260,7 @@ static void give_up(void)
 }
 
 /* No file grows beyond 1 MiB: the disk is full before the test's end, which goes on in memory. */
-static void full_disk_keeps_what_was_written_before(void **state)
+static void a_full_disk_keeps_the_data_written_before(void **state)
 {
     struct rlimit before, full;
     (void)state;
@@ -289,7 +289,7 @@ static size_t count_lines(const char *text)
 }
 
 /* One by one, on a bench that is otherwise well. */
-static void bad_ports_and_files_are_refused_with_one_message(void **state)
+static void bad_ports_and_files_are_rejected_with_one_message(void **state)
 {
     static const struct {
         const char *edits[3], *said;
@@ -566,8 +566,8 @@ int main(void)
         FACT(tic_records_a_whole_test),
         FACT(newest_natnet_streams_an_older_version_and_records_a_take),
         FACT(ctrl_z_is_ignored_and_ctrl_backslash_stops),
-        FACT(full_disk_keeps_what_was_written_before),
-        FACT(bad_ports_and_files_are_refused_with_one_message),
+        FACT(a_full_disk_keeps_the_data_written_before),
+        FACT(bad_ports_and_files_are_rejected_with_one_message),
         FACT(failed_check_of_the_cell_is_recorded),
         FACT(series_of_masses_is_due_before_a_test_and_gives_a_certificate),
         FACT(series_asks_again_for_a_specimen_whose_test_did_not_begin),

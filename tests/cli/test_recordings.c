@@ -69,7 +69,7 @@ static int64_t integer(const struct wb_json *object, const char *key)
     return value;
 }
 
-static void info_tells_what_it_is_and_that_the_rig_is_virtual(void **state)
+static void info_names_the_kind_and_the_virtual_rig(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, true);
@@ -240,7 +240,7 @@ static void interrupted_replay_exits_3_with_the_counts_so_far(void **state)
         fail_msg("expected code 3: %s", o.err);
 }
 
-static void truncated_recording_gives_one_warning_and_what_is_left(void **state)
+static void a_truncated_recording_gives_one_warning_and_the_remaining_data(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, true);
@@ -316,14 +316,14 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
-        FACT(info_tells_what_it_is_and_that_the_rig_is_virtual),
+        FACT(info_names_the_kind_and_the_virtual_rig),
         FACT(verify_exits_3_when_something_is_missing_or_damaged),
         FACT(recover_exits_3_when_something_is_missing),
         FACT(compressed_recordings_are_taken_everywhere),
         FACT(export_writes_tables_and_overwrites_only_with_force),
         FACT(replay_counts_at_max_and_keeps_pace_otherwise),
         FACT(interrupted_replay_exits_3_with_the_counts_so_far),
-        FACT(truncated_recording_gives_one_warning_and_what_is_left),
+        FACT(a_truncated_recording_gives_one_warning_and_the_remaining_data),
         FACT(bad_input_is_one_message_and_the_proper_exit_code),
         FACT(full_output_disk_fails_with_a_message),
     };

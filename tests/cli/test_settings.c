@@ -254,7 +254,7 @@ static bool is_of_bundles(const char *option)
 }
 
 /* What one kind of model has is refused by the others. */
-static void options_of_other_kinds_are_refused(void **unused)
+static void options_of_other_kinds_are_rejected(void **unused)
 {
     (void)unused;
     static const struct {
@@ -426,7 +426,7 @@ static void look_at_help(const struct command *command, const struct wb_setting_
     wb_text_release(&text);
 }
 
-static void help_says_range_and_default(void **unused)
+static void help_has_range_and_default(void **unused)
 {
     (void)unused;
     for_each_option(look_at_help);
@@ -555,7 +555,7 @@ static void look_at_manual(const struct command *command, const struct wb_settin
                  range, in_brackets);
 }
 
-static void the_manual_says_range_and_default(void **unused)
+static void the_manual_has_range_and_default(void **unused)
 {
     (void)unused;
     manual = read_document("commands.md");
@@ -603,14 +603,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(command_lines_have_the_rows_ranges),
-        cmocka_unit_test(options_of_other_kinds_are_refused),
+        cmocka_unit_test(options_of_other_kinds_are_rejected),
         cmocka_unit_test(campaigns_have_the_rows_ranges),
         cmocka_unit_test(bundles_have_the_rows_ranges),
         cmocka_unit_test(bundles_without_a_run_have_the_rows_defaults),
         cmocka_unit_test(rows_have_their_own_fields_and_the_scales_of_their_units),
-        cmocka_unit_test(help_says_range_and_default),
+        cmocka_unit_test(help_has_range_and_default),
         cmocka_unit_test(help_has_no_line_of_blanks),
-        cmocka_unit_test(the_manual_says_range_and_default),
+        cmocka_unit_test(the_manual_has_range_and_default),
         cmocka_unit_test(the_formats_say_range_and_default),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -157,7 +157,7 @@ static void solve_wire(const char *name, const char *law, struct wb_dataset *dat
     assert_int_equal(wb_dataset_read(dataset, path, NULL), WB_OK);
 }
 
-static void hardening_rule_of_the_wire_decides_the_way_back(void **unused)
+static void the_hardening_rule_of_the_wire_determines_unloading(void **unused)
 {
     (void)unused;
     struct wb_dataset plain, kinematic, parallel;
@@ -313,7 +313,7 @@ int main(void)
         cmocka_unit_test(json_holds_the_reference_curve),
         cmocka_unit_test(law_and_cycles_are_obeyed),
         cmocka_unit_test(dataset_is_one_like_any_other),
-        cmocka_unit_test(hardening_rule_of_the_wire_decides_the_way_back),
+        cmocka_unit_test(the_hardening_rule_of_the_wire_determines_unloading),
         cmocka_unit_test(curve_cut_short_exits_with_3),
         cmocka_unit_test(bad_input_gives_one_message_and_its_exit_code),
     };

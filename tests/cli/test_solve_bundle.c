@@ -35,7 +35,7 @@ static int solve(const char *arguments)
 }
 
 /* 3 E I d / L^3 of the wire, which hardly yields. */
-static void json_has_the_curve_and_what_it_took(void **unused)
+static void json_has_the_curve_and_its_cost(void **unused)
 {
     (void)unused;
     struct wb_json *root = NULL;
@@ -74,7 +74,7 @@ static void json_has_the_curve_and_what_it_took(void **unused)
 }
 
 /* On a terminal, that of script(1). */
-static void a_line_tells_how_far_it_is(void **unused)
+static void a_line_shows_the_progress(void **unused)
 {
     (void)unused;
     char command[1024];
@@ -198,7 +198,7 @@ static void vtk_files_are_written_for_every_row_or_some(void **unused)
     assert_non_null(strstr(o.err, "--vtk-every needs --vtk"));
 }
 
-static void what_was_overridden_is_told(void **unused)
+static void overridden_values_are_reported(void **unused)
 {
     (void)unused;
     struct wb_json *root = NULL;
@@ -233,7 +233,7 @@ static void what_was_overridden_is_told(void **unused)
     wb_json_destroy(root);
 }
 
-static void options_of_others_are_refused(void **unused)
+static void options_of_other_commands_are_rejected(void **unused)
 {
     (void)unused;
     assert_int_equal(solve("--span-mm 5"), 2);
@@ -316,7 +316,7 @@ static void the_section_model_names_itself_in_a_dataset_of_the_same_shape(void *
     wb_json_destroy(root);
 }
 
-static void the_section_model_says_which_friction_it_takes_for_one_that_decays(void **unused)
+static void the_section_model_names_the_friction_used_for_a_decaying_one(void **unused)
 {
     (void)unused;
     tool("solve bundle 7-type3 --model section --json");
@@ -324,7 +324,7 @@ static void the_section_model_says_which_friction_it_takes_for_one_that_decays(v
     assert_non_null(strstr(o.err, "mu = 0.2, the geometric mean"));
 }
 
-static void the_section_model_refuses_what_it_cannot_do_and_names_the_explicit_one(void **unused)
+static void unsupported_inputs_of_the_section_model_name_the_explicit_one(void **unused)
 {
     (void)unused;
     static const char *const explicit_options[] = {
@@ -347,7 +347,7 @@ static void the_section_model_refuses_what_it_cannot_do_and_names_the_explicit_o
     assert_false(is_there("helix"));
 }
 
-static void the_section_model_tells_from_where_a_circle_lets_go(void **unused)
+static void the_section_model_reports_where_the_tape_detaches(void **unused)
 {
     (void)unused;
     tool("solve bundle 12-type3-circle --model section --friction 0.2 --json");
@@ -360,7 +360,7 @@ static void the_section_model_tells_from_where_a_circle_lets_go(void **unused)
     assert_string_equal(o.err, "");
 }
 
-static void the_section_model_tells_where_its_answers_end(void **unused)
+static void the_section_model_reports_the_end_of_its_range(void **unused)
 {
     (void)unused;
     static const char strand[] = "strand_mm: ";
@@ -422,7 +422,7 @@ static void test_and_piece_are_options_as_of_the_cantilever(void **unused)
     wb_json_destroy(root);
 }
 
-static void what_the_piece_cannot_have_is_said_in_options(void **unused)
+static void impossible_geometry_is_reported_with_its_options(void **unused)
 {
     (void)unused;
     assert_int_equal(solve("--length-mm 10"), 2);
@@ -504,7 +504,7 @@ static void bands_are_written_beside_the_curve_and_summarised(void **unused)
     }
 }
 
-static void bands_of_what_nobody_stated_are_refused(void **unused)
+static void bands_without_stated_uncertainties_are_rejected(void **unused)
 {
     (void)unused;
     tool("solve bundle 7-type3 --uncertain");
@@ -530,22 +530,22 @@ static void bands_of_what_nobody_stated_are_refused(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(json_has_the_curve_and_what_it_took),
-        cmocka_unit_test(a_line_tells_how_far_it_is),
+        cmocka_unit_test(json_has_the_curve_and_its_cost),
+        cmocka_unit_test(a_line_shows_the_progress),
         cmocka_unit_test(datasets_are_those_of_the_homogenised_beam),
         cmocka_unit_test(datasets_have_the_bent_surface),
         cmocka_unit_test(vtk_files_are_written_for_every_row_or_some),
-        cmocka_unit_test(what_was_overridden_is_told),
-        cmocka_unit_test(options_of_others_are_refused),
+        cmocka_unit_test(overridden_values_are_reported),
+        cmocka_unit_test(options_of_other_commands_are_rejected),
         cmocka_unit_test(the_section_model_names_itself_in_a_dataset_of_the_same_shape),
-        cmocka_unit_test(the_section_model_says_which_friction_it_takes_for_one_that_decays),
-        cmocka_unit_test(the_section_model_refuses_what_it_cannot_do_and_names_the_explicit_one),
-        cmocka_unit_test(the_section_model_tells_from_where_a_circle_lets_go),
-        cmocka_unit_test(the_section_model_tells_where_its_answers_end),
+        cmocka_unit_test(the_section_model_names_the_friction_used_for_a_decaying_one),
+        cmocka_unit_test(unsupported_inputs_of_the_section_model_name_the_explicit_one),
+        cmocka_unit_test(the_section_model_reports_where_the_tape_detaches),
+        cmocka_unit_test(the_section_model_reports_the_end_of_its_range),
         cmocka_unit_test(bands_are_written_beside_the_curve_and_summarised),
-        cmocka_unit_test(bands_of_what_nobody_stated_are_refused),
+        cmocka_unit_test(bands_without_stated_uncertainties_are_rejected),
         cmocka_unit_test(test_and_piece_are_options_as_of_the_cantilever),
-        cmocka_unit_test(what_the_piece_cannot_have_is_said_in_options),
+        cmocka_unit_test(impossible_geometry_is_reported_with_its_options),
         cmocka_unit_test(cycles_have_rows_up_and_down),
     };
     return cmocka_run_group_tests(tests, set_up, check_and_remove_folder);

@@ -186,7 +186,7 @@ static void dataset_holds_rows_shapes_and_fields(void **unused)
     assert_false(wb_file_exists(path_of("kept-1d/fields.csv")));
 }
 
-static void follower_test_says_so(void **unused)
+static void a_follower_test_is_named(void **unused)
 {
     (void)unused;
     struct wb_dataset dataset;
@@ -224,7 +224,7 @@ static void paraview_gets_a_file_a_row(void **unused)
     assert_non_null(strstr(o.err, "--force"));
 }
 
-static void what_was_computed_is_kept_where_it_does_not_converge(void **unused)
+static void results_before_a_convergence_failure_are_kept(void **unused)
 {
     (void)unused;
     /* One element bends only so far. */
@@ -322,9 +322,9 @@ int main(void)
         cmocka_unit_test(both_models_are_as_stiff_as_the_beam),
         cmocka_unit_test(table_has_the_columns_of_the_cantilever),
         cmocka_unit_test(dataset_holds_rows_shapes_and_fields),
-        cmocka_unit_test(follower_test_says_so),
+        cmocka_unit_test(a_follower_test_is_named),
         cmocka_unit_test(paraview_gets_a_file_a_row),
-        cmocka_unit_test(what_was_computed_is_kept_where_it_does_not_converge),
+        cmocka_unit_test(results_before_a_convergence_failure_are_kept),
         cmocka_unit_test(interrupt_keeps_the_completed_rows),
         cmocka_unit_test(bad_input_gives_one_message_and_its_exit_code),
     };

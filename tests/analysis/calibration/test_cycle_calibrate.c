@@ -51,7 +51,7 @@ static int finish(void **unused)
     return 0;
 }
 
-static void the_same_data_twice_are_refused(void **unused)
+static void duplicate_data_are_rejected(void **unused)
 {
     (void)unused;
     struct wb_cycle_calibration c;
@@ -63,7 +63,7 @@ static void the_same_data_twice_are_refused(void **unused)
     list[2] = &datasets[2];
 }
 
-static void another_wire_is_refused(void **unused)
+static void another_wire_is_rejected(void **unused)
 {
     (void)unused;
     struct wb_cycle_calibration c;
@@ -247,7 +247,7 @@ static void the_range_holds_the_candidates_that_count(void **unused)
 
 /* The stated curvatures and the smallest that the data resolve, in order; what they say of a wire
  * of the rig is near its truth. */
-static void stiffness_is_told_where_it_is_stated(void **unused)
+static void stiffness_is_given_at_the_stated_curvatures(void **unused)
 {
     (void)unused;
     const struct wb_cycle_stiffness *const both[] = {&all.secant, &all.unloading};
@@ -311,7 +311,7 @@ static void a_stiffness_beyond_the_data_is_less_known(void **unused)
 
 /* Where no law of parallel parts is tried, the best starts its unloading elastically and too soft,
  * though its misfit is small: the stated uncertainty says so. */
-static void a_law_that_misses_the_turn_knows_less_of_unloading(void **unused)
+static void a_misfit_at_the_turn_widens_the_unloading_stiffness(void **unused)
 {
     (void)unused;
     struct wb_cycle_calibrate_settings settings;
@@ -332,7 +332,7 @@ static void a_law_that_misses_the_turn_knows_less_of_unloading(void **unused)
 }
 
 /* Without the unloading there is no rule to tell. */
-static void a_wire_without_a_way_back_is_ludwiks_and_its_rule_untested(void **unused)
+static void without_unloading_only_isotropic_ludwik_is_fitted(void **unused)
 {
     (void)unused;
     struct wb_cycle_calibration c;
@@ -369,7 +369,7 @@ static void calibrate_until(struct wb_cycle_calibration *c, int n, int fits)
     assert_int_equal(wb_cycle_calibrate_run(c, list, n, &settings, NULL), WB_OK);
 }
 
-static void what_is_stopped_gives_the_specimens_that_were_fitted(void **unused)
+static void a_stopped_run_keeps_the_fitted_specimens(void **unused)
 {
     (void)unused;
     struct wb_cycle_calibration c;
@@ -386,7 +386,7 @@ static void what_is_stopped_gives_the_specimens_that_were_fitted(void **unused)
     wb_cycle_calibrate_release(&c);
 }
 
-static void what_is_stopped_later_has_the_laws_that_all_specimens_have(void **unused)
+static void a_run_stopped_later_keeps_the_laws_of_all_specimens(void **unused)
 {
     (void)unused;
     struct wb_cycle_calibration c;
@@ -422,7 +422,7 @@ static void an_unfinished_fit_is_not_ranked(void **unused)
 }
 
 /* The last of all fits is not cut short. */
-static void a_stop_at_the_end_is_none(void **unused)
+static void a_stop_after_the_last_fit_has_no_effect(void **unused)
 {
     (void)unused;
     struct wb_cycle_calibration c;
@@ -463,7 +463,7 @@ static void noise_does_not_refute_a_law(void **unused)
 }
 
 /* A natural curvature that is larger at one end looks to the forces like another law. */
-static void an_unevenly_bent_wire_does_not_change_the_law(void **unused)
+static void an_uneven_natural_shape_does_not_change_the_law(void **unused)
 {
     (void)unused;
     struct wb_cycle_calibrate_settings settings;
@@ -497,7 +497,7 @@ static void an_unevenly_bent_wire_does_not_change_the_law(void **unused)
     }
 }
 
-static void what_is_said_is_near_the_truth(void **unused)
+static void results_are_near_the_truth(void **unused)
 {
     (void)unused;
     struct fast_rig fast;
@@ -566,25 +566,25 @@ static void the_law_carries_the_mean_of_its_specimens(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_same_data_twice_are_refused),
-        cmocka_unit_test(another_wire_is_refused),
+        cmocka_unit_test(duplicate_data_are_rejected),
+        cmocka_unit_test(another_wire_is_rejected),
         cmocka_unit_test(the_interval_is_students_of_the_logarithms),
         cmocka_unit_test(a_pooled_deviation_takes_the_place_of_the_own),
         cmocka_unit_test(one_specimen_has_an_interval_without_scatter),
         cmocka_unit_test(the_ranking_is_by_misfit_and_the_choice_by_the_weight),
         cmocka_unit_test(a_law_fits_no_worse_than_one_that_it_contains),
         cmocka_unit_test(the_range_holds_the_candidates_that_count),
-        cmocka_unit_test(stiffness_is_told_where_it_is_stated),
+        cmocka_unit_test(stiffness_is_given_at_the_stated_curvatures),
         cmocka_unit_test(a_stiffness_beyond_the_data_is_less_known),
-        cmocka_unit_test(a_law_that_misses_the_turn_knows_less_of_unloading),
-        cmocka_unit_test(a_wire_without_a_way_back_is_ludwiks_and_its_rule_untested),
-        cmocka_unit_test(what_is_stopped_gives_the_specimens_that_were_fitted),
-        cmocka_unit_test(what_is_stopped_later_has_the_laws_that_all_specimens_have),
+        cmocka_unit_test(a_misfit_at_the_turn_widens_the_unloading_stiffness),
+        cmocka_unit_test(without_unloading_only_isotropic_ludwik_is_fitted),
+        cmocka_unit_test(a_stopped_run_keeps_the_fitted_specimens),
+        cmocka_unit_test(a_run_stopped_later_keeps_the_laws_of_all_specimens),
         cmocka_unit_test(an_unfinished_fit_is_not_ranked),
-        cmocka_unit_test(a_stop_at_the_end_is_none),
+        cmocka_unit_test(a_stop_after_the_last_fit_has_no_effect),
         cmocka_unit_test(noise_does_not_refute_a_law),
-        cmocka_unit_test(an_unevenly_bent_wire_does_not_change_the_law),
-        cmocka_unit_test(what_is_said_is_near_the_truth),
+        cmocka_unit_test(an_uneven_natural_shape_does_not_change_the_law),
+        cmocka_unit_test(results_are_near_the_truth),
         cmocka_unit_test(the_law_carries_the_mean_of_its_specimens),
     };
     wb_log_set_sink(discard_message, NULL);

@@ -199,7 +199,7 @@ static void forget_places(struct wb_dataset *dataset)
 
 /* --- units --- */
 
-static void forces_in_other_units_are_refused(void **state)
+static void forces_in_other_units_are_rejected(void **state)
 {
     static const struct {
         double factor;
@@ -221,7 +221,7 @@ static void forces_in_other_units_are_refused(void **state)
     }
 }
 
-static void deflections_in_other_units_are_refused(void **state)
+static void deflections_in_other_units_are_rejected(void **state)
 {
     (void)state;
     struct bench *bench = one(1);
@@ -275,7 +275,7 @@ static void a_short_travel_gives_a_stiffness_alone(void **state)
 
 /* --- zeros --- */
 
-static void a_zero_of_force_off_is_told(void **state)
+static void a_wrong_zero_of_force_is_reported(void **state)
 {
     static const double offsets[] = {5.0 * WB_MN, -5.0 * WB_MN};
     (void)state;
@@ -289,7 +289,7 @@ static void a_zero_of_force_off_is_told(void **state)
     }
 }
 
-static void a_wrong_counterweight_is_told(void **state)
+static void a_wrong_counterweight_is_reported(void **state)
 {
     (void)state;
     struct bench *const bench = one(1);
@@ -335,7 +335,7 @@ static void a_common_counterweight_is_doubted_unless_it_is_stated(void **state)
 }
 
 /* A stated uncertainty of 0.02 g of the counterweight does not explain a zero that is 1 mm off. */
-static void a_zero_of_deflection_off_is_told(void **state)
+static void a_wrong_zero_of_deflection_is_reported(void **state)
 {
     static const struct {
         double offset, counterweight;
@@ -442,7 +442,7 @@ static void many_outliers_are_doubted(void **state)
 
 /* --- misfit and other specimens --- */
 
-static void a_misfit_is_told(void **state)
+static void a_misfit_is_reported(void **state)
 {
     (void)state;
     struct bench *const bench = one(1);
@@ -457,7 +457,7 @@ static void a_misfit_is_told(void **state)
     release(bench);
 }
 
-static void a_specimen_unlike_the_others_is_told(void **state)
+static void an_outlying_specimen_is_reported(void **state)
 {
     (void)state;
     struct bench *const bench = one(1);
@@ -524,7 +524,7 @@ static void stop_at(struct wb_dataset *dataset, double deflection, size_t n, dou
         dataset->rows[i].stage = (double)NAN;
 }
 
-static void a_force_that_falls_while_nothing_moves_is_told(void **state)
+static void relaxation_at_rest_is_reported(void **state)
 {
     (void)state;
     static const double turn = (double)NAN, amidst = 30.0 * WB_MM;
@@ -598,25 +598,25 @@ static void no_good_specimen_is_doubted(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forces_in_other_units_are_refused),
-        cmocka_unit_test(deflections_in_other_units_are_refused),
+        cmocka_unit_test(forces_in_other_units_are_rejected),
+        cmocka_unit_test(deflections_in_other_units_are_rejected),
         cmocka_unit_test(another_length_is_seen_by_the_markers),
         cmocka_unit_test(another_length_is_found_without_markers),
         cmocka_unit_test(a_short_travel_gives_a_stiffness_alone),
-        cmocka_unit_test(a_zero_of_force_off_is_told),
-        cmocka_unit_test(a_wrong_counterweight_is_told),
+        cmocka_unit_test(a_wrong_zero_of_force_is_reported),
+        cmocka_unit_test(a_wrong_counterweight_is_reported),
         cmocka_unit_test(a_common_counterweight_is_doubted_unless_it_is_stated),
-        cmocka_unit_test(a_zero_of_deflection_off_is_told),
+        cmocka_unit_test(a_wrong_zero_of_deflection_is_reported),
         cmocka_unit_test(a_common_zero_of_deflection_is_doubted),
         cmocka_unit_test(a_small_common_counterweight_is_found_beside_another_doubt),
         cmocka_unit_test(a_lost_natural_shape_is_found_by_the_fit),
         cmocka_unit_test(outliers_are_survived_and_counted),
         cmocka_unit_test(many_outliers_are_doubted),
-        cmocka_unit_test(a_misfit_is_told),
-        cmocka_unit_test(a_specimen_unlike_the_others_is_told),
+        cmocka_unit_test(a_misfit_is_reported),
+        cmocka_unit_test(an_outlying_specimen_is_reported),
         cmocka_unit_test(one_sample_is_noted),
         cmocka_unit_test(good_specimens_are_not_doubted),
-        cmocka_unit_test(a_force_that_falls_while_nothing_moves_is_told),
+        cmocka_unit_test(relaxation_at_rest_is_reported),
         cmocka_unit_test(a_held_test_is_doubted_but_not_one_held_at_rest),
     };
     const struct CMUnitTest many[] = {

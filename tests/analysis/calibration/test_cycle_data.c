@@ -167,7 +167,7 @@ static void outliers_are_left_out_and_counted(void **unused)
     wb_cycle_data_release(&data);
 }
 
-static void a_test_without_a_way_back_has_loading_points_alone(void **unused)
+static void a_test_without_unloading_has_loading_points_only(void **unused)
 {
     (void)unused;
     struct wb_cycle_data data = take(&(struct made_up){.reach = top, .one_way = true});
@@ -187,7 +187,7 @@ static void refused(struct wb_dataset *dataset, const char *word)
     wb_dataset_release(dataset);
 }
 
-static void a_follower_test_is_refused(void **unused)
+static void a_follower_test_is_rejected(void **unused)
 {
     (void)unused;
     struct wb_dataset dataset = make_test(&(struct made_up){.reach = top});
@@ -195,14 +195,14 @@ static void a_follower_test_is_refused(void **unused)
     refused(&dataset, "vertical");
 }
 
-static void a_test_of_few_points_is_refused(void **unused)
+static void a_test_with_few_points_is_rejected(void **unused)
 {
     (void)unused;
     struct wb_dataset dataset = make_test(&(struct made_up){.reach = 3.0 * WB_MM});
     refused(&dataset, "points");
 }
 
-static void a_force_that_falls_is_refused(void **unused)
+static void a_falling_force_is_rejected(void **unused)
 {
     (void)unused;
     struct wb_dataset dataset = make_test(&(struct made_up){.reach = top});
@@ -220,10 +220,10 @@ int main(void)
         cmocka_unit_test(noise_of_the_deflection_makes_no_bias),
         cmocka_unit_test(a_points_deviation_is_that_of_its_mean),
         cmocka_unit_test(outliers_are_left_out_and_counted),
-        cmocka_unit_test(a_test_without_a_way_back_has_loading_points_alone),
-        cmocka_unit_test(a_follower_test_is_refused),
-        cmocka_unit_test(a_test_of_few_points_is_refused),
-        cmocka_unit_test(a_force_that_falls_is_refused),
+        cmocka_unit_test(a_test_without_unloading_has_loading_points_only),
+        cmocka_unit_test(a_follower_test_is_rejected),
+        cmocka_unit_test(a_test_with_few_points_is_rejected),
+        cmocka_unit_test(a_falling_force_is_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -379,7 +379,7 @@ static void a_share_at_its_end_is_known_at_once(void **unused)
 }
 
 /* What the rule is worth: the other one misses the unloading by far. */
-static void the_wrong_rule_shows_in_the_misfit(void **unused)
+static void a_wrong_hardening_rule_increases_the_misfit(void **unused)
 {
     (void)unused;
     struct wb_cycle_fit_settings settings;
@@ -658,7 +658,7 @@ static void errors_are_those_of_the_sampled_posterior(void **unused)
 }
 
 /* What all specimens share: the step to first order, and a search with the altered data. */
-static void the_law_moves_with_what_is_shared_as_a_search_does(void **unused)
+static void sensitivities_to_shared_quantities_agree_with_a_new_search(void **unused)
 {
     (void)unused;
     enum {
@@ -779,10 +779,10 @@ int main(void)
         cmocka_unit_test(the_level_of_zero_deflection_is_found),
         cmocka_unit_test(neighbours_of_a_run_are_runs_of_their_own),
         cmocka_unit_test(a_share_at_its_end_is_known_at_once),
-        cmocka_unit_test(the_wrong_rule_shows_in_the_misfit),
+        cmocka_unit_test(a_wrong_hardening_rule_increases_the_misfit),
         cmocka_unit_test(correlations_and_errors_are_those_of_repeated_tests),
         cmocka_unit_test(errors_are_those_of_the_sampled_posterior),
-        cmocka_unit_test(the_law_moves_with_what_is_shared_as_a_search_does),
+        cmocka_unit_test(sensitivities_to_shared_quantities_agree_with_a_new_search),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -207,7 +207,7 @@ static void an_existing_file_is_kept_without_force(void **state)
     assert_message("--force");
 }
 
-static void what_could_not_be_read_again_is_not_written(void **state)
+static void unreadable_properties_are_not_written(void **state)
 {
     (void)state;
     struct made made;
@@ -253,7 +253,7 @@ static struct wb_json *put(const struct made *made)
 }
 
 /* The laws that were not tried may follow better. */
-static void what_was_stopped_says_so_and_leaves_the_rule_untested(void **state)
+static void a_stopped_calibration_leaves_the_rule_untested(void **state)
 {
     (void)state;
     struct made made;
@@ -344,7 +344,7 @@ static void assert_refused(const char *whole, const char *from, const char *to,
     assert_message(line);
 }
 
-static void what_is_wrong_is_refused_by_line_and_key(void **state)
+static void errors_are_reported_with_line_and_key(void **state)
 {
     (void)state;
     static const struct {
@@ -375,7 +375,7 @@ static void what_is_wrong_is_refused_by_line_and_key(void **state)
 }
 
 /* Every cut of the file and every line left out is either read or refused with one message. */
-static void damaged_files_are_read_or_refused(void **state)
+static void damaged_files_are_read_or_rejected(void **state)
 {
     (void)state;
     struct made made;
@@ -442,7 +442,7 @@ static void json_has_the_same_numbers(void **state)
     wb_json_destroy(root);
 }
 
-static void json_gives_only_what_is_known(void **state)
+static void json_omits_unknown_results(void **state)
 {
     (void)state;
     struct made made;
@@ -470,16 +470,16 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_has_what_the_calibration_had),
         cmocka_unit_test(an_existing_file_is_kept_without_force),
-        cmocka_unit_test(what_could_not_be_read_again_is_not_written),
+        cmocka_unit_test(unreadable_properties_are_not_written),
         cmocka_unit_test(a_refuted_rule_leaves_only_ranges),
-        cmocka_unit_test(what_was_stopped_says_so_and_leaves_the_rule_untested),
+        cmocka_unit_test(a_stopped_calibration_leaves_the_rule_untested),
         cmocka_unit_test(without_unloading_the_residual_curvature_ratio_is_absent),
         cmocka_unit_test(kinematic_ludwik_keeps_its_four_numbers),
         cmocka_unit_test(different_lengths_have_no_length_in_common),
-        cmocka_unit_test(what_is_wrong_is_refused_by_line_and_key),
-        cmocka_unit_test(damaged_files_are_read_or_refused),
+        cmocka_unit_test(errors_are_reported_with_line_and_key),
+        cmocka_unit_test(damaged_files_are_read_or_rejected),
         cmocka_unit_test(json_has_the_same_numbers),
-        cmocka_unit_test(json_gives_only_what_is_known),
+        cmocka_unit_test(json_omits_unknown_results),
     };
     return cmocka_run_group_tests(tests, make_path, remove_folder);
 }

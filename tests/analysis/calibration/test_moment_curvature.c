@@ -206,7 +206,7 @@ static double curvature_of_the_turn(const struct wb_dataset *dataset, const stru
 }
 
 /* The clamp's during unloading: the law bent to the largest curvature and let go. */
-static void way_back_is_that_of_the_hardening_rule(void **state)
+static void unloading_is_that_of_the_hardening_rule(void **state)
 {
     (void)state;
     const struct wb_law law = soft_law();
@@ -408,7 +408,7 @@ static void fitted_law_does_not_warn_and_a_wrong_one_does(void **state)
     assert_int_equal(n_found, 6 * EACH);
 }
 
-static void nothing_is_said_without_clouds(void **state)
+static void without_points_there_is_no_comparison(void **state)
 {
     (void)state;
     const struct wb_law law = soft_law();
@@ -471,10 +471,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exact_shapes_give_the_moments_of_the_law),
         cmocka_unit_test(weight_counterweight_strand_and_bow_count),
-        cmocka_unit_test(way_back_is_that_of_the_hardening_rule),
+        cmocka_unit_test(unloading_is_that_of_the_hardening_rule),
         cmocka_unit_test(rig_shows_its_wires),
         cmocka_unit_test(fitted_law_does_not_warn_and_a_wrong_one_does),
-        cmocka_unit_test(nothing_is_said_without_clouds),
+        cmocka_unit_test(without_points_there_is_no_comparison),
         cmocka_unit_test(shapes_are_wanted),
         cmocka_unit_test(points_are_written_as_json),
     };

@@ -107,7 +107,7 @@ static void moments_of_a_relaxing_wire_are_within_two_percent(void **unused)
 }
 
 /* A dwell of two seconds determines the rate of relaxation, but not its time constant as well. */
-static void a_short_dwell_shows_relaxation_too(void **unused)
+static void a_short_dwell_shows_relaxation(void **unused)
 {
     (void)unused;
     struct found found = {.fall = 0.0};
@@ -160,7 +160,7 @@ int main(void)
     gsl_set_error_handler_off();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(moments_of_a_relaxing_wire_are_within_two_percent),
-        cmocka_unit_test(a_short_dwell_shows_relaxation_too),
+        cmocka_unit_test(a_short_dwell_shows_relaxation),
         cmocka_unit_test(intervals_of_a_test_without_a_dwell_allow_for_relaxation),
         cmocka_unit_test(a_wire_that_does_not_relax_gets_no_element),
     };
