@@ -152,15 +152,15 @@ static void a_cantilever_needs_time_or_speed(void **state)
     assert_int_equal(dataset.info.kind, WB_TEST_CANTILEVER);
 }
 
-static void what_is_no_test_is_refused(void **state)
+static void unusable_tables_are_rejected(void **state)
 {
     (void)state;
     static const struct {
         const char *text, *expected;
     } cases[] = {
         {"Load (N)\tTravel (mm)\n1\t1\n2\t2\n3\t3\n4\t4\n", "4 whole rows in 5 lines"},
-        {"Load (N)\tTravel (mm)\n1\t1\n1\t2\n1\t3\n1\t4\n1\t5\n", "the force is the same"},
-        {"Load (N)\tTravel (mm)\n1\t1\n2\t1\n3\t1\n4\t1\n5\t1\n", "the travel is the same"},
+        {"Load (N)\tTravel (mm)\n1\t1\n1\t2\n1\t3\n1\t4\n1\t5\n", "the force is constant"},
+        {"Load (N)\tTravel (mm)\n1\t1\n2\t1\n3\t1\n4\t1\n5\t1\n", "the travel is constant"},
         {"Load (N)\tTravel (mm)\tt (s)\n1\t1\t1\n2\t2\t2\n3\t3\t1.5\n4\t4\t3\n5\t5\t4\n",
          "t.txt:4: column 3: time goes back from 2 s to 1.5 s"},
         {"Load (N)\tTime (s)\n1\t1\n2\t2\n3\t3\n4\t4\n5\t5\n", "no column of the travel"},
@@ -170,7 +170,7 @@ static void what_is_no_test_is_refused(void **state)
     set_up_rollers();
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         if (import(cases[i].text, NULL) == WB_OK)
-            fail_msg("case %zu is not refused", i);
+            fail_msg("case %zu is not rejected", i);
         assert_why(cases[i].expected);
     }
 }
@@ -433,7 +433,7 @@ int main(void)
         cmocka_unit_test(cycles_and_phases_are_cut_at_the_turns),
         cmocka_unit_test(strain_of_an_extensometer_times_the_gauge_length_is_the_elongation),
         cmocka_unit_test(a_cantilever_needs_time_or_speed),
-        cmocka_unit_test(what_is_no_test_is_refused),
+        cmocka_unit_test(unusable_tables_are_rejected),
         cmocka_unit_test(pauses_and_cut_ends_make_it_incomplete),
         cmocka_unit_test(a_written_dataset_reads_back_with_its_original),
         cmocka_unit_test(mutations_end_in_a_refusal_or_in_rows_that_are_sound_and_counted),
