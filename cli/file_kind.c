@@ -62,12 +62,16 @@ static const struct {
                        "-o DATASET"},
     [WB_FILE_PART_OF_DATASET] = {"dataset_file", "a file of a dataset",
                                  "name the folder of the dataset instead"},
-    [WB_FILE_DATASETS] = {"datasets", "a folder of datasets",
-                          "wirebench calibrate %s/* -o PROPERTIES.yaml"},
+    [WB_FILE_DATASETS] =
+        {"datasets", "a folder of datasets",
+         "wirebench calibrate %s/DATASET... -o PROPERTIES.yaml, with the datasets of one wire"},
     [WB_FILE_RECORDINGS] = {"recordings", "a folder of recordings",
                             "wirebench align %s/*.wbr* -o DATASETS"},
     [WB_FILE_REPORT] = {"report", "the folder of a report",
                         "open %s/report.html; wirebench report --check %s, if it is signed"},
+    [WB_FILE_REPORT_NUMBERS] = {"report_json", "the numbers of a report",
+                                "open report.html beside it; wirebench info --schema report "
+                                "describes its keys"},
     [WB_FILE_CARD] = {"card", "a card, the input of another program",
                       "read it with that program; wirebench does not read cards"},
     [WB_FILE_CHECKPOINT] = {"checkpoint", "a checkpoint of wirebench solve",
@@ -163,6 +167,7 @@ static enum wb_file_kind find_map(const struct wb_config_node *root)
     } patterns[] = {
         {WB_FILE_RIG, {"load_cell"}},
         {WB_FILE_RIG, {"mocap"}},
+        {WB_FILE_REPORT_NUMBERS, {"tool", "limit_exceeded", "files"}},
         {WB_FILE_SERIES, {"series", "specimens"}},
         {WB_FILE_INDEX, {"recordings"}},
         {WB_FILE_INDEX, {"simulations"}},

@@ -31,6 +31,7 @@ enum wb_file_kind {
     WB_FILE_DATASETS,        /* a folder of datasets */
     WB_FILE_RECORDINGS,      /* a folder of recordings */
     WB_FILE_REPORT,          /* the folder of a report */
+    WB_FILE_REPORT_NUMBERS,  /* report.json */
     WB_FILE_CARD,
     WB_FILE_CHECKPOINT,
     WB_FILE_HDF5,

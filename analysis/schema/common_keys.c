@@ -151,7 +151,7 @@ static const struct wb_schema_row end_rows[] = {
     {"laboratory", OBJECT | OPTIONAL, "", "fields of a laboratory", &laboratory},
     {"files", TEXT | LIST, "", "files of the report, relative to its folder"},
 };
-const struct wb_schema_object wb_schema_report_end = {"report_end", "", ROWS(end_rows)};
+static const struct wb_schema_object report_end = {"report_end", "", ROWS(end_rows)};
 
 static const struct wb_schema_row head_rows[] = {
     {"title", TEXT, "", "title of the campaign"},
@@ -162,7 +162,7 @@ static const struct wb_schema_row head_rows[] = {
     {"campaign", OBJECT, "", "campaign file", &wb_schema_campaign},
     {"complete", FLAG, "", "false: data are missing (exit code 3)"},
     {"limit_exceeded", FLAG, "", "true: a limit of the campaign is exceeded (exit code 4)"},
-    {.of = &wb_schema_report_end},
+    {.of = &report_end},
 };
 const struct wb_schema_object wb_schema_report_head = {"report_head", "", ROWS(head_rows)};
 

@@ -5,7 +5,6 @@
 #include "analysis/schema/row.h"
 
 extern const struct wb_schema_object wb_schema_report_head; /* keys of all kinds but `machine` */
-extern const struct wb_schema_object wb_schema_report_end;  /* keys of all kinds */
 extern const struct wb_schema_object wb_schema_simulation_state;
 
 extern const struct wb_schema_object wb_schema_report_comparison;

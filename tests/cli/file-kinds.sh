@@ -49,6 +49,8 @@ kind dataset_file "$root"/simulations/7-type3/*
 kind datasets "$root/simulations"
 kind recordings "$root/recordings"
 kind index "$root/recordings/index.yaml" "$root/simulations/index.yaml"
+printf '{"tool": {"name": "wirebench report"}, "limit_exceeded": false, "files": []}\n' >report.json
+kind report_json report.json
 kind recording "$root/recordings/type1-L85-1.wbr.zst"
 kind card "$root"/docs/cards/type1.{abaqus.inp,calculix.inp,csv,json,mujoco.xml}
 kind figure "$root"/docs/images/*.png
