@@ -14,13 +14,14 @@
 #define MS 1e-3
 /* Two-sided 95 % of a normal distribution, in standard deviations. */
 #define COVERAGE 1.96
-/* s: a lag that is known worse is not given. */
+/* s: a lag with a larger standard uncertainty is not identifiable. */
 #define MOST_UNCERTAINTY 0.1
 
 /* --- making --- */
 
-/* The next turn of the dataset from row *at on: from the last row of a cycle's loading to its
- * unloading, or the stop between them. Returns the number of its reversals; 0: no other turn. */
+/* Finds the next turn of the dataset, starting at row *at: the change from a cycle's loading to its
+ * unloading, with the stop between them if there is one. Sets *at to the row after that unloading.
+ * Returns the number of reversals of this turn, 0 if no turn follows. */
 static int next_turn(const struct wb_dataset *dataset, size_t *at, struct wb_reversal reversals[2])
 {
     const struct wb_row *const rows = dataset->rows;
@@ -43,23 +44,27 @@ static int next_turn(const struct wb_dataset *dataset, size_t *at, struct wb_rev
     return 0;
 }
 
-static void refuse_lag(struct wb_clock_report *report, int n_reversals, int n, double uncertainty)
+static void set_not_identifiable(struct wb_clock_report *report, int n_reversals, int n,
+                                 double uncertainty)
 {
     const double nan = (double)NAN;
     if (n_reversals == 0)
-        snprintf(report->reason, sizeof report->reason, "no reversal of the motion in it");
+        snprintf(report->reason, sizeof report->reason,
+                 "no reversal of the motion in the recording");
     else if (n == 0)
         snprintf(report->reason, sizeof report->reason,
-                 "no reversal has a force that stands out of its noise on both sides");
+                 "too few samples or too small a force at each of %d reversal%s", n_reversals,
+                 n_reversals == 1 ? "" : "s");
     else
         snprintf(report->reason, sizeof report->reason,
-                 "the lag of %d reversal%s has an uncertainty of %.0f ms", n, n == 1 ? "" : "s",
-                 uncertainty / MS);
+                 "the lag from %d reversal%s has a standard uncertainty of %.0f ms, expected less "
+                 "than %.0f ms",
+                 n, n == 1 ? "" : "s", uncertainty / MS, MOST_UNCERTAINTY / MS);
     report->lag = report->uncertainty = report->interval[0] = report->interval[1] = nan;
 }
 
-/* The delay of the rig file is taken off the force's times: what is left of a lag is by how much
- * that delay is too small. */
+/* The filter delay of the rig file is already subtracted from the times of the force: a remaining
+ * lag is the amount by which this delay is too small. */
 static void find_lag(struct wb_clock_report *report, const struct wb_align_signals *signals)
 {
     const struct wb_signal motion = {signals->motion_t, signals->motion, signals->n_motion};
@@ -67,7 +72,7 @@ static void find_lag(struct wb_clock_report *report, const struct wb_align_signa
     struct wb_reversal_mean lags = {0};
     struct wb_reversal reversals[2];
     struct wb_reversal_lag one;
-    double left, uncertainty;
+    double remaining, uncertainty;
     int n_reversals = 0, n;
     for (size_t at = 0; (n = next_turn(&report->dataset, &at, reversals)) > 0;) {
         for (int i = 0; i < n; i++, n_reversals++) {
@@ -78,17 +83,17 @@ static void find_lag(struct wb_clock_report *report, const struct wb_align_signa
     report->expected = signals->filter_delay;
     report->expected_uncertainty = signals->filter_delay_uncertainty;
     report->n_reversals = lags.n;
-    wb_reversal_mean_find(&lags, &left, &uncertainty);
+    wb_reversal_mean_find(&lags, &remaining, &uncertainty);
     report->identifiable = lags.n > 0 && uncertainty < MOST_UNCERTAINTY;
     if (!report->identifiable) {
-        refuse_lag(report, n_reversals, lags.n, uncertainty);
+        set_not_identifiable(report, n_reversals, lags.n, uncertainty);
         return;
     }
-    report->lag = signals->filter_delay + left;
+    report->lag = signals->filter_delay + remaining;
     report->uncertainty = uncertainty;
     for (int i = 0; i < 2; i++)
         report->interval[i] = report->lag + (i ? COVERAGE : -COVERAGE) * uncertainty;
-    report->agrees = fabs(left) < COVERAGE * hypot(uncertainty, report->expected_uncertainty);
+    report->agrees = fabs(remaining) < COVERAGE * hypot(uncertainty, report->expected_uncertainty);
 }
 
 static const struct wb_json *checks_of(const struct wb_clock_report *report, const char *key)
@@ -96,7 +101,7 @@ static const struct wb_json *checks_of(const struct wb_clock_report *report, con
     return wb_json_get(wb_json_get(report->dataset.document, "checks"), key);
 }
 
-/* A number of an object; NaN where it is null or missing. */
+/* A number of an object; NaN if it is null or missing. */
 static double number_of(const struct wb_json *object, const char *key)
 {
     double value;
@@ -132,7 +137,7 @@ void wb_clock_report_release(struct wb_clock_report *report)
     wb_dataset_release(&report->dataset);
 }
 
-/* --- telling --- */
+/* --- text and JSON --- */
 
 static const char *text_of(const struct wb_json *object, const char *key)
 {
@@ -140,27 +145,27 @@ static const char *text_of(const struct wb_json *object, const char *key)
     return wb_json_get_text(object, key, &text) ? text : "unknown";
 }
 
-/* "0.42 ms", or "not known". */
+/* Appends "0.42 ms", or "unknown" if the value is not finite. */
 static void append_value(struct wb_text *text, double value, const char *unit)
 {
     if (isfinite(value))
         wb_text_append(text, "%.4g %s", value, unit);
     else
-        wb_text_append(text, "not known");
+        wb_text_append(text, "unknown");
 }
 
 static void append_cameras(const struct wb_clock_report *report, struct wb_text *text)
 {
     const struct wb_json *const list = checks_of(report, "camera_clock");
     if (wb_json_length(list) == 0)
-        wb_text_append(text, "cameras             no clock of their own is used: %s\n",
+        wb_text_append(text, "cameras             camera clock not used (method: %s)\n",
                        text_of(checks_of(report, "timing"), "camera_clock"));
     for (size_t i = 0; i < wb_json_length(list); i++) {
         const struct wb_json *const entry = wb_json_item(list, i);
         const double skew = number_of(entry, "skew_ppm"), span = number_of(entry, "span_s");
         wb_text_append(text, "cameras             %s, over %.0f s\n", text_of(entry, "method"),
                        span);
-        wb_text_append(text, "  offset            %.6f s, the host's clock less the server's\n",
+        wb_text_append(text, "  offset            %.6f s, host clock minus server clock\n",
                        number_of(entry, "offset_s"));
         wb_text_append(text, "  drift             %.4g +- ", skew);
         append_value(text, number_of(entry, "skew_uncertainty_ppm"), "ppm");
@@ -185,10 +190,11 @@ static void append_load(const struct wb_clock_report *report, struct wb_text *te
 
 static void append_lag(const struct wb_clock_report *report, struct wb_text *text)
 {
-    wb_text_append(text,
-                   "force behind markers\n  expected          %.4g +- %.2g ms (the rig file's "
-                   "filter delay)\n",
-                   report->expected / MS, report->expected_uncertainty / MS);
+    wb_text_append(
+        text,
+        "lag of the force behind the markers\n  expected          %.4g +- %.2g ms (the rig file's "
+        "filter delay)\n",
+        report->expected / MS, report->expected_uncertainty / MS);
     if (!report->identifiable) {
         wb_text_append(text, "  measured          not identifiable: %s\n", report->reason);
         return;
@@ -199,18 +205,18 @@ static void append_lag(const struct wb_clock_report *report, struct wb_text *tex
         report->n_reversals == 1 ? "" : "s", report->interval[0] / MS, report->interval[1] / MS);
     if (!report->agrees)
         wb_text_append(text, "  NOT AS EXPECTED: measure the cell's filter and set "
-                             "load_cell.filter_delay_ms, or look at what else delays a stream\n");
+                             "load_cell.filter_delay_ms, or look for another delay of a stream\n");
 }
 
 static void append_area(const struct wb_clock_report *report, struct wb_text *text)
 {
     if (!isfinite(report->area))
         return;
-    wb_text_append(text,
-                   "loop of cycle 1     %.4g mJ, %+.3g mJ for each ms of delay that is taken off\n",
-                   report->area / WB_MJ, report->area_per_delay / WB_MJ * MS);
+    wb_text_append(
+        text, "loop of cycle 1     %.4g mJ, %+.3g mJ per ms of delay subtracted from the force\n",
+        report->area / WB_MJ, report->area_per_delay / WB_MJ * MS);
     if (report->identifiable)
-        wb_text_append(text, "  at the lag's ends %.4g and %.4g mJ\n",
+        wb_text_append(text, "  at 95 %% limits    %.4g and %.4g mJ\n",
                        report->area_interval[0] / WB_MJ, report->area_interval[1] / WB_MJ);
 }
 
@@ -221,7 +227,7 @@ enum wb_status wb_clock_report_format(const struct wb_clock_report *report, stru
     append_lag(report, text);
     append_area(report, text);
     if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a report of clocks");
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the clock report");
     return WB_OK;
 }
 

@@ -29,7 +29,7 @@ static enum wb_status do_job(void *context)
     return step->workers->job(step->workers->context, step->index);
 }
 
-static enum wb_status tell_done(void *context)
+static enum wb_status report_done(void *context)
 {
     const struct step *const step = context;
     const struct wb_workers *const w = step->workers;
@@ -58,7 +58,7 @@ static void *work(void *context)
         step.status = run(queue, do_job, &step);
         pthread_mutex_lock(&queue->lock);
         queue->done++;
-        if (run(queue, tell_done, &step) != WB_OK)
+        if (run(queue, report_done, &step) != WB_OK)
             queue->stopped = true;
         pthread_mutex_unlock(&queue->lock);
     }

@@ -1,4 +1,4 @@
-/* Independent jobs in parallel on threads. */
+/* Runs independent jobs in parallel on threads. */
 #ifndef WB_BASE_WORKERS_H
 #define WB_BASE_WORKERS_H
 
@@ -8,7 +8,7 @@
 
 struct wb_workers {
     int n;         /* jobs */
-    int n_threads; /* maximum number, including the calling thread; 0: one per processor */
+    int n_threads; /* maximum, including the calling thread; 0: one per processor */
     enum wb_status (*job)(void *context, int index);
     /* Called after each job with its status, by one thread at a time; return false to start no
      * further jobs. May be NULL. */
@@ -17,10 +17,10 @@ struct wb_workers {
 };
 
 /* Starts the jobs in the order of their index as threads become free, and returns when all started
- * jobs have ended. A thread that cannot be started is not an error: others do its jobs. If the
- * caller is below wb_memory_try(), so are job and done: a job that runs out of memory returns
- * WB_ERR_MEMORY, and if `done` runs out of memory, no further job starts. Returns the number of
- * completed jobs. */
+ * jobs have ended. If a thread cannot be started, the other threads run its jobs. If the caller
+ * runs inside wb_memory_try(), each call of `job` and `done` does, too: a job that runs out of
+ * memory ends with WB_ERR_MEMORY; if `done` runs out of memory, no further job is started. Returns
+ * the number of jobs that ended, with whatever status. */
 int wb_workers_run(const struct wb_workers *workers);
 
 #endif

@@ -28,7 +28,8 @@ static const double most_values[VALUES] = {100.0, 100.0, 100.0, 1e15};
 static const char *const expected_values[VALUES] = {
     "a number from -1e5 to 1e5", "a number from -1e5 to 1e5", "a number from -1e5 to 1e5",
     "a number from -1e9 to 1e9"};
-static const double least_extent = 1e-9; /* m, of a station */
+/* m: a station whose nodes are closer together is degenerate. */
+static const double least_extent = 1e-9;
 
 static const char *kind_of(const struct wb_surface_body *body)
 {
@@ -49,8 +50,8 @@ void wb_surface_release(struct wb_surface *surface)
 
 /* --- from fields --- */
 
-/* The k-th of `kept` among n, the first and the last included; of a closed ring, the last is not
- * the first again. */
+/* Index of the k-th of `kept` evenly spaced items out of n. With `ends` the last item is included;
+ * a closed ring needs no such item, because its first item follows its last. */
 static int pick(int k, int kept, int n, bool ends)
 {
     if (kept == n)
@@ -144,11 +145,10 @@ enum wb_status wb_surface_write(const struct wb_surface *surface, const char *fo
 struct reader {
     struct wb_csv_table table;
     struct wb_surface *surface;
-    int n_nodes; /* of the last body */
+    int n_nodes; /* read so far of the last body */
     size_t capacity;
 };
 
-/* A row of the file. */
 struct row {
     int body, station, node;
     bool is_tape, closed;
@@ -189,8 +189,8 @@ static bool has_extent(const struct wb_surface_body *body, int station)
     return largest >= least_extent;
 }
 
-/* Checks that the last body is complete: at least two stations of three nodes (strip: two), and
- * ends that can be drawn. */
+/* Checks that the last body is complete: at least two stations of at least three nodes (strip:
+ * two), and no degenerate end, which could not be drawn. */
 static enum wb_status check_last(const struct reader *reader)
 {
     if (reader->surface->n == 0)
@@ -202,14 +202,13 @@ static enum wb_status check_last(const struct reader *reader)
         if (has_extent(body, 0) && has_extent(body, body->n_along - 1))
             return WB_OK;
         return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: body %d: the nodes of its first or its last station lie at one "
-                          "place",
+                          "%s:%d: body %d: all nodes of its first or last station coincide",
                           reader->table.path, reader->table.line, reader->surface->n - 1);
     }
     return wb_fail_to(
         reader->table.why, WB_ERR_FORMAT,
-        "%s:%d: body %d ends with %d nodes: expected at least 2 stations of at least %d "
-        "nodes each, as many in every station",
+        "%s:%d: body %d has %d nodes: expected at least 2 stations with the same number of nodes, "
+        "at least %d",
         reader->table.path, reader->table.line, reader->surface->n - 1, reader->n_nodes, least);
 }
 
@@ -235,7 +234,8 @@ static void append_to_body(struct reader *reader, struct wb_surface_body *body,
     body->nodes[reader->n_nodes++] = *node;
 }
 
-/* Rows are consecutive; those of the first station give the number of nodes around. */
+/* Rows are sorted by body, station and node, without gaps. The number of nodes of the first
+ * station applies to all stations of a body. */
 static enum wb_status take_row(struct reader *reader, const struct row *row)
 {
     struct wb_surface *surface = reader->surface;
@@ -248,7 +248,7 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
     struct wb_surface_body *body = &surface->bodies[row->body];
     if (row->is_tape != body->is_tape || row->closed != body->closed)
         return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: kind: expected that of the body's first row", reader->table.path,
+                          "%s:%d: kind: differs from the first row of the body", reader->table.path,
                           reader->table.line);
     if (row->station == 0) {
         body->n_around = row->node + 1;
@@ -259,8 +259,8 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
     const long long place = (long long)row->station * body->n_around + row->node;
     if (row->node >= body->n_around || reader->n_nodes != place)
         return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: node: station %d, node %d is not the next one",
-                          reader->table.path, reader->table.line, row->station, row->node);
+                          "%s:%d: node: station %d, node %d is out of order", reader->table.path,
+                          reader->table.line, row->station, row->node);
     append_to_body(reader, body, &row->at);
     return WB_OK;
 }

@@ -3,8 +3,8 @@
  *     body,kind,station,node,x_mm,y_mm,z_mm,von_mises_MPa
  *
  * (one row for each node: body by body, station by station). `kind` is `wire`, `tape` (its ring is
- * closed) or `strip` (a tape with two free edges). A wire's nodes go round its section, the tape's
- * round its ring. Places are kept to 1 um, stresses to 4 digits.
+ * closed) or `strip` (a tape with two free edges). The nodes of a station run around the wire's
+ * section or along the tape's ring. Positions are rounded to 1 um, stresses to 4 digits.
  *
  * x runs from the clamp along the straight bundle, y up, z across.
  */
@@ -18,7 +18,7 @@
 #include "fe/output/bundle_fields.h"
 
 enum {
-    WB_SURFACE_ALONG = 41,        /* stations and nodes at most that wb_surface_take() keeps */
+    WB_SURFACE_ALONG = 41, /* largest numbers of stations and nodes that wb_surface_take() keeps */
     WB_SURFACE_ALONG_STRIP = 241, /* more, because a strip winds around the bundle */
     WB_SURFACE_AROUND_WIRE = 24,
     WB_SURFACE_AROUND_TAPE = 48
@@ -31,7 +31,7 @@ struct wb_surface_node {
 
 struct wb_surface_body {
     bool is_tape;
-    bool closed; /* the nodes go all round; false of a strip */
+    bool closed; /* the last node of a station is next to the first; false for a strip */
     int n_around, n_along;
     struct wb_surface_node *nodes; /* (n_along x n_around), station by station; owned */
 };
@@ -46,9 +46,9 @@ struct wb_surface {
 void wb_surface_take(struct wb_surface *surface, const struct wb_bundle_fields *fields);
 void wb_surface_release(struct wb_surface *surface); /* accepts a zeroed one */
 
-/* Writes or reads surface.csv of a dataset's folder. The file is replaced atomically, or removed
- * where there is no body; values that are not finite are rejected. Reading rejects places farther
- * than 100 m, stresses beyond 1e15 Pa, and bodies whose first or last station has no extent; errors
+/* Writes or reads surface.csv of a dataset's folder. The file is replaced atomically, or removed if
+ * there is no body; values that are not finite are rejected. Reading rejects coordinates beyond
+ * 100 m, stresses beyond 1e15 Pa, and bodies whose first or last station has no extent; errors
  * name file, line and column. A missing file gives no bodies. `why` receives the reason of a
  * failure; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder);

@@ -9,7 +9,7 @@ static const struct wb_schema_row camera_clock_rows[] = {
     {"frames", INTEGER, "", "frames of the segment"},
     {"points", INTEGER, "", "points that a line could be fitted to: probes or arrivals"},
     {"points_used", INTEGER, "", "points that the line was fitted to"},
-    {"offset_s", NUMBER, "s", "host's clock less the server's at the first point"},
+    {"offset_s", NUMBER, "s", "host clock minus server clock at the first point"},
     {"span_s", NUMBER, "s", "length of the segment by the server's clock"},
     {"skew_ppm", NUMBER, "ppm", "relative difference of the rates of both clocks"},
     {"skew_uncertainty_ppm", NUMBER | UNKNOWN, "ppm", "standard uncertainty of the skew"},

@@ -4,8 +4,8 @@
 
 #include "daq/take/take.h"
 
-/* Fraction of the positions of measured markers that are missing, over all frames and markers;
- * bodies are counted if there are no markers. */
+/* Fraction of the marker positions that are missing, over all frames and measured markers. For a
+ * take without markers, the same of its rigid bodies. */
 double wb_take_missing(const struct wb_take *take);
 
 #endif

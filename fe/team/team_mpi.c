@@ -8,16 +8,17 @@
 #define WB_LOG_DOMAIN "team"
 
 enum {
-    SLOTS = 2 /* packets in transit per side */
+    SLOTS = 2 /* packets in transit to one neighbour */
 };
 
-/* Static because MPI's state is per process, too. */
+/* Static variables, because the state of MPI is also per process. */
 static bool joined, threaded;
 static int own_rank, n_ranks = 1;
-static MPI_Request under_way[2][SLOTS];
+static MPI_Request pending[2][SLOTS];
 
-/* Called when an allocation fails: aborts all ranks, since the others would wait for this one. */
-static void abort_others(void)
+/* Runs at exit. If the program ends before wb_team_end(), for example after a failed allocation, it
+ * aborts all ranks, because the others would wait for this one forever. */
+static void abort_unless_ended(void)
 {
     if (joined)
         MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
@@ -34,10 +35,10 @@ enum wb_status wb_team_start(void)
     MPI_Comm_rank(MPI_COMM_WORLD, &own_rank);
     MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
     for (int i = 0; i < 2 * SLOTS; i++)
-        under_way[i / SLOTS][i % SLOTS] = MPI_REQUEST_NULL;
+        pending[i / SLOTS][i % SLOTS] = MPI_REQUEST_NULL;
     threaded = provided >= MPI_THREAD_MULTIPLE;
     joined = true;
-    atexit(abort_others);
+    atexit(abort_unless_ended);
     return WB_OK;
 }
 
@@ -100,14 +101,14 @@ void wb_team_share(void *bytes, size_t size, int from)
 enum wb_status wb_team_agree(enum wb_status status)
 {
     enum {
-        FINE = 1 << 30
+        NO_FAILURE = 1 << 30
     };
-    int first = status == WB_OK ? FINE : own_rank, code = status;
+    int first = status == WB_OK ? NO_FAILURE : own_rank, code = status;
 
     if (n_ranks == 1)
         return status;
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-    if (first == FINE)
+    if (first == NO_FAILURE)
         return WB_OK;
     MPI_Bcast(&code, 1, MPI_INT, first, MPI_COMM_WORLD);
     return (enum wb_status)code;
@@ -121,9 +122,10 @@ bool wb_team_can_thread(void)
 void wb_team_send(int rank, enum wb_team_side side, unsigned long round, const double *packet,
                   size_t size)
 {
-    MPI_Request *request = &under_way[side][round % SLOTS];
+    MPI_Request *request = &pending[side][round % SLOTS];
 
-    /* Reuse of this slot: its previous packet was received before this rank arrived here. */
+    /* The neighbour received the previous packet of this slot before it sent the packet that this
+     * rank awaited last. So this wait does not block; it completes the request. */
     MPI_Wait(request, MPI_STATUS_IGNORE);
     MPI_Isend(packet, (int)size, MPI_DOUBLE, rank, (int)side, MPI_COMM_WORLD, request);
 }
@@ -136,5 +138,5 @@ void wb_team_receive(int rank, enum wb_team_side side, double *packet, size_t si
 void wb_team_flush(void)
 {
     if (joined)
-        MPI_Waitall(2 * SLOTS, &under_way[0][0], MPI_STATUSES_IGNORE);
+        MPI_Waitall(2 * SLOTS, &pending[0][0], MPI_STATUSES_IGNORE);
 }

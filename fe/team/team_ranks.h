@@ -18,7 +18,7 @@ int wb_team_started(void);
  * below. WB_ERR_UNSUPPORTED if mpirun started several processes and the program was built without
  * MPI. */
 WB_MUST_CHECK enum wb_status wb_team_start(void);
-/* Leaves the ranks; waits until all ranks do. */
+/* Ends the team of ranks. All ranks must call it; it may wait for the others. */
 void wb_team_end(void);
 
 int wb_team_rank(void);  /* from 0 */
@@ -44,13 +44,13 @@ enum wb_team_side {
 /* True if several threads of a rank may send and receive. */
 bool wb_team_can_thread(void);
 
-/* Sends a packet to a rank. The packet must stay unchanged until the next but one is sent to the
- * same side. `round` counts the packets. */
+/* Sends a packet to a rank. The packet must stay unchanged until the second packet after it is sent
+ * to the same side. `round` counts the packets. */
 void wb_team_send(int rank, enum wb_team_side side, unsigned long round, const double *packet,
                   size_t size);
 /* Waits for the packet that a rank sent to this one; `side` is the sender's. */
 void wb_team_receive(int rank, enum wb_team_side side, double *packet, size_t size);
-/* Waits until all sent packets have left. */
+/* Waits until all sends are complete. */
 void wb_team_flush(void);
 
 #endif

@@ -24,7 +24,7 @@ static void print_bundle(FILE *out, const struct wb_bundles_results *results, in
                 fit->result.material.strength_coefficient / WB_MPA,
                 fit->result.material.hardening_exponent, fit->result.rms);
     else
-        fprintf(out, "  no fitted beam: %s", wb_text_string(&results->fits[index].problem));
+        fprintf(out, "  no beam fitted: %s", wb_text_string(&results->fits[index].problem));
     fprintf(out, "\n");
 }
 
@@ -46,7 +46,7 @@ static void print(FILE *out, const void *context)
     }
 }
 
-/* The beams fitted to the bundles' datasets. */
+/* Adds the material cards of the beams fitted to the bundles. */
 static enum wb_status add_cards(struct wb_cards *cards, const void *context)
 {
     const struct wb_bundles_results *const results = context;

@@ -231,7 +231,7 @@ static void bad_files_are_refused(void **unused)
     assert_int_equal(wb_file_write(path_of_file(), wb_text_string(&text), text.length), WB_OK);
     keep_messages();
     assert_int_equal(wb_surface_read(&surface, folder, NULL), WB_ERR_FORMAT);
-    assert_message(":100002: node: station 42950, node 67296 is not the next one");
+    assert_message(":100002: node: station 42950, node 67296 ");
     wb_text_release(&text);
 
     static const char good[] = HEAD RING("0") RING("1");
