@@ -1,15 +1,15 @@
-/* What recording costs at ten times a bench's rates, and how soon the hold byte leaves, on real
- * ports in real time.
+/* CPU cost of recording at ten times the data rates of a bench, and latency of the hold byte, on
+ * real ports in real time.
  *
- * Cost: the virtual rig in a process of its own runs ten times faster (800 readings, 1200 frames of
- * its markers a second, and a stage that is asked). CPU time of the whole recorder (loop, decoders,
- * writer) and how its memory grows; the baseline in the same run waits for the same bytes with
- * poll(), reads them and writes them to a file with fdatasync() every 100 ms. `bench_acquisition
- * SECONDS` records for so long, default 20.
+ * Cost: a separate process runs the virtual rig ten times as fast (800 readings and 1200 marker
+ * frames per second, and a stage that is polled). Measured are the CPU time of the whole recorder
+ * (loop, decoders, writer) and the growth of its memory. The baseline in the same run waits for the
+ * same bytes with poll(), reads them and writes them to a file with fdatasync() every 100 ms.
+ * `bench_acquisition SECONDS` sets the duration, default 20.
  *
- * Latency: a load cell and a GRBL stage on pseudo-terminals in a process of its own; from the
- * moment an overloaded reading is sent to the moment the hold byte arrives. The baseline waits with
- * poll(), reads and writes that byte itself. */
+ * Latency: a separate process simulates a load cell and a GRBL stage on pseudo-terminals and
+ * measures the time from sending an overload reading to receiving the hold byte. The baseline waits
+ * with poll(), reads, and writes that byte itself. */
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-/* What taped bundles cost in explicit dynamics.
+/* CPU cost of taped bundles in explicit dynamics.
  *
  * - A step of seven wires that bend and yield: ns per hexahedron, the shares of wires, contact,
  * tape and cohesion, from runs without them; the baseline is the same wires without anything

@@ -1,10 +1,12 @@
-/* What threads and ranks gain: wall time of a step of seven taped wires, on one part and on two
- * (this process's threads, or the ranks that mpirun started), with the same bundle (strong scaling)
- * and with one twice as long (weak); and a model of more parts, strong and weak: CPU time of
- * a step of the largest part alone, and the time of a swap of packets, each measured by itself.
+/* Speedup by threads and ranks: wall time of a step of seven taped wires, on one part and on two
+ * (threads of this process, or the ranks started by mpirun), with the same bundle (strong scaling)
+ * and with a bundle of twice the length (weak scaling). A model extrapolates to more parts: it adds
+ * the CPU time of a step of the largest part and the time of an exchange of packets, each measured
+ * separately.
  *
- * The best of several blocks of steps, taken in turn: other work on the machine only adds. On a
- * machine that is busy the wall times tell of that; the model does not. */
+ * Each time is the minimum of several blocks of steps, measured alternately, because other load on
+ * the machine only adds time. Wall times are too long on a busy machine, the model's CPU times
+ * are not. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -167,7 +169,7 @@ static int measure(const char *mesh, int threads, int longer, double *one, doubl
 
 /* A bundle that is longer by a length for each part: all but the two at its ends have a neighbour
  * on both sides, so that it does not matter how many there are. */
-static void tell_weak_model(const char *mesh, double one, double swapped)
+static void print_weak_model(const char *mesh, double one, double swapped)
 {
     enum {
         PARTS = 3
@@ -189,7 +191,7 @@ static void tell_weak_model(const char *mesh, double one, double swapped)
     model = shorter;
 }
 
-static void tell_model(const char *mesh, double latency, double swapped)
+static void print_model(const char *mesh, double latency, double swapped)
 {
     const struct wb_bundle_settings settings = {.duration = 1.0};
     struct wb_bundle *whole;
@@ -208,7 +210,7 @@ static void tell_model(const char *mesh, double latency, double swapped)
                one / sum / parts);
     }
     wb_bundle_destroy(whole);
-    tell_weak_model(mesh, one, swapped);
+    print_weak_model(mesh, one, swapped);
 }
 
 int main(void)
@@ -216,7 +218,7 @@ int main(void)
     static const char *const meshes[] = {"engineering", "paper"};
     int failed = wb_team_start() != WB_OK;
     const int ranks = wb_team_ranks(), threads = ranks > 1 ? 1 : 2;
-    const bool tells = wb_team_rank() == 0;
+    const bool prints = wb_team_rank() == 0;
 
     for (int m = 0; m < 2 && !failed; m++) {
         double one, two, longer_one, longer_two;
@@ -227,7 +229,7 @@ int main(void)
         const double latency = swap_time(threads, 0);
         const double swapped = swap_time(threads, bytes / sizeof(double));
         failed = measure(meshes[m], threads, 2, &longer_one, &longer_two, &bytes);
-        if (!tells || failed)
+        if (!prints || failed)
             continue;
         printf("%s mesh, %d stations, %zu kB to a neighbour and step:\n", meshes[m],
                wb_bundle_parts_largest(&model, meshes[m], 1), bytes / 1000);
@@ -237,7 +239,7 @@ int main(void)
             printf("  weak: 1 part %.2f us, twice the length on 2 threads %.2f us: efficiency "
                    "%.2f\n",
                    1e6 * longer_one, 1e6 * longer_two, longer_one / longer_two);
-            tell_model(meshes[m], latency, swapped);
+            print_model(meshes[m], latency, swapped);
         } else {
             printf("  %d ranks: %.2f us a step; twice the length %.2f us; a swap %.2f us (%.2f us "
                    "without data)\n",

@@ -1,5 +1,5 @@
-/* How fast instruments' bytes are decoded, against a named baseline on the same bytes: for NatNet a
- * walk that copies and sums them, for load-cell lines sscanf("%lf %15s"). */
+/* Speed of decoding the instruments' bytes, compared with a baseline on the same bytes: for NatNet
+ * copying and summing them, for load-cell lines sscanf("%lf %15s"). */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

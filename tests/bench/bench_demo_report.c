@@ -1,4 +1,4 @@
-/* How long the report of the shipped campaign takes, with all cores and with one: alignment of all
+/* Time to make the report of the shipped campaign, on all cores and on one: alignment of all
  * recordings, calibrations, validations, and drawing. The baseline is one thread in the same run.
  * Usage: bench_demo_report CAMPAIGN.yaml */
 #include <stdio.h>

@@ -1,7 +1,7 @@
-/* How long the linear systems of 3D wires take: assembly, factorisation and solution, on one
- * thread, against LAPACK's band solvers on the same matrix in the same run. The matrices have the
- * layout of swept meshes, 60 elements along unless it says otherwise, and random elements,
- * symmetric or not. */
+/* Time of the linear systems of 3D wires: assembly, factorisation and solution, on one thread,
+ * compared with LAPACK's band solvers on the same matrix in the same run. The matrices have the
+ * sparsity pattern of swept meshes, with 60 elements along the wire unless stated otherwise, and
+ * random entries, symmetric or not. */
 #include <cblas.h>
 #include <lapacke.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
-/* How fast chunks are recorded without a drop, against a named baseline in the same run: the same
- * bytes with a 24-byte head each through write(2), with fdatasync() every 100 ms. Then how fast the
- * recording is walked with every CRC checked, against read(2) and crc32() of the baseline's file.
- * Last, how long a push holds up the poll loop at a hundred times the bench's rate. */
+/* Rate at which chunks are recorded without a drop. Baseline in the same run: write(2) of the same
+ * bytes with a 24-byte header each, and fdatasync() every 100 ms. Then the speed of reading the
+ * recording with every CRC checked, compared with read(2) and crc32() of the baseline's file. Last,
+ * the time for which a push blocks the poll loop at a hundred times the data rate of a bench. */
 #include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>

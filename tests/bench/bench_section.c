@@ -1,11 +1,11 @@
-/* What taped bundles cost in the section model (fe/section/section_run.h): 53 mm of loading in 53
- * rows, in CPU time on one core, the least of some rounds.
+/* Cost of taped bundles in the section model (fe/section/section_solver.h): CPU time on one core
+ * for loading to 53 mm in 53 rows, the minimum of several rounds.
  *
- * - Symmetric to the plane of bending. Goals: 30 ms of 7 wires, 300 ms of 27.
- * - The same without use of symmetry. Goals: 80 and 900 ms.
- * - A cycle, and twice the length with twice the elements, over the loading.
- * - The explicit run of seven wires, and how many times the section model goes into it; `quick`
- *   leaves it out. */
+ * - With symmetry about the plane of bending. Goals: 30 ms for 7 wires, 300 ms for 27 wires.
+ * - Without use of the symmetry. Goals: 80 ms and 900 ms.
+ * - A cycle of loading and unloading, and a bundle of twice the length with twice the elements;
+ *   both relative to the loading.
+ * - The explicit run of seven wires, relative to the section model; `quick` skips it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,8 +33,8 @@ static int read_model(const char *name)
     return 0;
 }
 
-/* Seconds of a run of so many ways; negative when it fails. */
-static double run_once(const struct wb_section_solver_settings *settings, int ways)
+/* CPU seconds of loading (1 branch), or of loading and unloading (2); negative on failure. */
+static double run_once(const struct wb_section_solver_settings *settings, int branches)
 {
     const double start = cpu_seconds();
     const int rows = model.run.rows;
@@ -43,7 +43,7 @@ static double run_once(const struct wb_section_solver_settings *settings, int wa
 
     if (wb_section_solver_create(&solver, &model, settings) != WB_OK)
         return -1.0;
-    for (int i = 0; i <= ways * rows && point.end == WB_SECTION_SOLVER_CONVERGED; i++) {
+    for (int i = 0; i <= branches * rows && point.end == WB_SECTION_SOLVER_CONVERGED; i++) {
         const int step = i <= rows ? i : 2 * rows - i;
         wb_section_solver_move(solver, model.run.deflection * step / rows, &point);
     }
@@ -51,15 +51,15 @@ static double run_once(const struct wb_section_solver_settings *settings, int wa
     return point.end == WB_SECTION_SOLVER_CONVERGED ? cpu_seconds() - start : -1.0;
 }
 
-static double cost(const struct wb_section_solver_settings *settings, int ways)
+static double cost(const struct wb_section_solver_settings *settings, int branches)
 {
     double least = (double)INFINITY;
     for (int i = 0; i < ROUNDS; i++)
-        least = fmin(least, run_once(settings, ways));
+        least = fmin(least, run_once(settings, branches));
     return least;
 }
 
-static double tell(const char *name, double goal_ms, double goal_whole_ms)
+static double measure(const char *name, double goal_ms, double goal_whole_ms)
 {
     const struct wb_section_solver_settings half = {.friction = 0.4};
     const struct wb_section_solver_settings whole = {.friction = 0.4, .beam.is_whole = true};
@@ -71,8 +71,8 @@ static double tell(const char *name, double goal_ms, double goal_whole_ms)
     model.length *= 2.0;
     model.run.deflection *= 2.0;
     const double twice = cost(&longer, 1);
-    printf("%-10s %6.1f ms (goal %g), without symmetry %6.1f ms (goal %g); a cycle %.2f, twice the "
-           "length and elements %.2f times the loading\n",
+    printf("%-10s %6.1f ms (goal %g), without symmetry %6.1f ms (goal %g); relative to the "
+           "loading: a cycle %.2f, twice the length and elements %.2f\n",
            name, 1e3 * loading, goal_ms, 1e3 * without, goal_whole_ms, cycle / loading,
            twice / loading);
     return loading;
@@ -81,8 +81,8 @@ static double tell(const char *name, double goal_ms, double goal_whole_ms)
 int main(int argc, char **argv)
 {
     struct wb_bundle_result result;
-    const double seven = tell("7-type3", 30.0, 80.0);
-    const double most = tell("27-type3", 300.0, 900.0);
+    const double seven = measure("7-type3", 30.0, 80.0);
+    const double most = measure("27-type3", 300.0, 900.0);
 
     if (!(seven > 0.0 && most > 0.0))
         return 1;

@@ -1,7 +1,7 @@
-/* What the views and a series cost: one test of the virtual rig at its own speed, recorded by
- * `wirebench record` with nothing to look at, and then as the first test of a series with the view
- * on a terminal and the web page, which a client follows. CPU time of the recorder and of its views
- * together, from its start to the end of the recording; then what the series does with the test.
+/* CPU cost of the live views and of a series: one test of the virtual rig in real time, recorded by
+ * `wirebench record` without views, and then as the first test of a series with the terminal view
+ * and the web page, which a client reads. Measured is the CPU time of the recorder and its views
+ * until the end of the recording, and separately that of the evaluation by the series.
  *
  *     bench_series WIREBENCH SOURCE_ROOT [TRAVEL_MM]
  *
@@ -32,7 +32,7 @@ static char folder[32], rig_yaml[64], specimen[4096], output[1 << 20];
 static size_t n_output;
 static const char *tool;
 
-/* CPU time of a process and of its children that have ended, s. */
+/* CPU time of a process and of its ended children, s. */
 static double cpu_of(pid_t process)
 {
     char path[64], text[1024] = "";
@@ -41,8 +41,8 @@ static double cpu_of(pid_t process)
     const int file = open(path, O_RDONLY);
     assert_true(file >= 0 && read(file, text, sizeof text - 1) > 0);
     close(file);
-    /* Behind the name, which may hold anything: state, ten numbers, utime, stime, cutime, cstime.
-     */
+    /* After the process name, which may contain any character: state, ten numbers, utime, stime,
+     * cutime, cstime. */
     assert_int_equal(sscanf(strrchr(text, ')') + 1,
                             " %*c %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %lu %lu %lu %lu",
                             &ticks[0], &ticks[1], &ticks[2], &ticks[3]),
@@ -50,7 +50,7 @@ static double cpu_of(pid_t process)
     return (double)(ticks[0] + ticks[1] + ticks[2] + ticks[3]) / (double)sysconf(_SC_CLK_TCK);
 }
 
-/* A child whose terminal is *terminal. */
+/* Starts the tool on a new pseudo-terminal, *terminal. */
 static pid_t start(const char *const *arguments, int *terminal)
 {
     const struct winsize window = {.ws_row = 42, .ws_col = 120};
@@ -65,8 +65,8 @@ static pid_t start(const char *const *arguments, int *terminal)
     return process;
 }
 
-/* Reads what the terminal shows, and what the page's client gets (-1: none), until the words have
- * come. False at the end of either the program or the patience. */
+/* Reads the output of the terminal and of the page's client (-1: no client) until the words appear.
+ * False if the program ends or the time limit is reached before. */
 static bool read_until(int terminal, int client, const char *words)
 {
     const int64_t end_ns = wb_time_now_ns() + wb_ns_from_seconds(PATIENCE_S);
@@ -93,7 +93,7 @@ static bool read_until(int terminal, int client, const char *words)
 static void expect(int terminal, int client, const char *words)
 {
     if (!read_until(terminal, client, words))
-        fail_msg("'%s' did not come, but: %.2000s", words, output);
+        fail_msg("'%s' not in the output: %.2000s", words, output);
 }
 
 static void answer(int terminal)
@@ -103,7 +103,7 @@ static void answer(int terminal)
     assert_int_equal(write(terminal, "\n", 1), 1);
 }
 
-/* The whole program, which may go on writing. */
+/* Waits for the end of the program, reading what it still prints. */
 static void wait_for(pid_t process, int terminal)
 {
     int status = 0;
@@ -124,7 +124,7 @@ static int free_port(void)
     return ntohs(address.sin_port);
 }
 
-/* A browser, but for the drawing. The page is there before the test begins. */
+/* Requests the page's events as a browser does. The server is up before the test begins. */
 static int follow_page(int port)
 {
     static const char request[] = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
@@ -169,7 +169,7 @@ static void record_alone(const char *travel, struct cost *cost)
                                      "-o", path,     "--travel-mm", travel,       NULL};
     const int64_t begun_ns = wb_time_now_ns();
     const pid_t process = start(arguments, &terminal);
-    /* Its last line; a zombie still has its times. */
+    /* The last line of output. The CPU time can be read until the process is reaped. */
     expect(terminal, -1, " drops\r\n");
     take_end(process, begun_ns, cost);
     wait_for(process, terminal);

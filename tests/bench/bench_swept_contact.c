@@ -1,6 +1,6 @@
-/* What contact between the wires of a bundle takes on one core: ns for each point of contact (a
- * station of a pair of neighbours) and step, by pass, of straight and of bent bundles whose wires
- * have slipped, for each instruction set. */
+/* CPU time of contact between the wires of a bundle on one core: ns per contact point (a station of
+ * a pair of neighbours) and step, for each pass and instruction set, of straight bundles and of
+ * bent bundles whose wires have slipped. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

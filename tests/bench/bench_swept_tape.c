@@ -1,6 +1,6 @@
-/* What a shell of the tape costs on one core: a closed sleeve of 32 x 80 elements, all points
- * elastic or all yielding, with and without what integrates it; and what its nodes cost that are
- * bonded to a wire, or touch one. */
+/* CPU time per shell element of the tape on one core: a closed sleeve of 32 x 80 elements, all
+ * points elastic or all yielding, with and without time integration; and CPU time per node that is
+ * bonded to a wire or in contact with one. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

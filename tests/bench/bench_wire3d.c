@@ -1,7 +1,8 @@
-/* What the 3D wire costs: the solid cylinder of type 3 (720 hexahedra, 53 mm up and back to zero
- * force), one core. The baseline is CalculiX on the same mesh and history when `ccx` is installed
- * (Debian: calculix-ccx; it takes some minutes), else its CPU seconds measured before. Then time
- * and memory against the number of elements along the wire: both should grow as it does. */
+/* Cost of the 3D wire on one core: the solid cylinder of type 3 (720 hexahedra, loading to 53 mm,
+ * unloading to zero force). The baseline is CalculiX on the same mesh and history if `ccx` is
+ * installed (Debian: calculix-ccx; a run takes some minutes), otherwise its stored CPU time. A
+ * second part shows time and memory over the number of elements along the wire: both should grow
+ * linearly. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -125,7 +126,8 @@ static double children_cpu(void)
            (double)usage.ru_stime.tv_sec + 1e-6 * (double)usage.ru_stime.tv_usec;
 }
 
-/* CPU seconds of ccx in a folder of its own; 0 where it is not installed or failed. */
+/* CPU seconds of ccx, run in a temporary folder; 0 if it is not installed or fails. The folder of a
+ * failed run is kept. */
 static double time_ccx(const struct wb_wire_model *model)
 {
     char folder[] = "/tmp/wirebench-ccx-XXXXXX", name[WB_PATH], command[2 * WB_PATH];
@@ -156,7 +158,7 @@ static double time_ccx(const struct wb_wire_model *model)
     if (spent > 0.0) {
         snprintf(command, sizeof command, "rm -r %s", folder);
         if (system(command) != 0)
-            fprintf(stderr, "%s was left behind\n", folder);
+            fprintf(stderr, "%s cannot be deleted\n", folder);
     }
     return spent;
 }
@@ -169,18 +171,18 @@ static bool compare_with_ccx(void)
 
     if (good) {
         const double ccx = time_ccx(model);
-        printf("solid cylinder, 53 mm and back, one core\n\n"
-               "wirebench: %d elements, %d unknowns, %d iterations, %.6f N at 53 mm, %.3f mm "
-               "left\n",
+        printf("solid cylinder, loading to 53 mm and unloading, one core\n\n"
+               "wirebench: %d elements, %d unknowns, %d iterations, %.6f N at 53 mm, residual "
+               "deflection %.3f mm\n",
                cost.elements, cost.unknowns, cost.iterations, cost.tension, cost.residual / WB_MM);
         printf("                                   CPU s\nwirebench                       %8.2f\n",
                cost.cpu);
         if (ccx > 0.0)
-            printf("CalculiX, this run (base)       %8.2f\nratio to CalculiX               %8.4f\n",
+            printf("CalculiX, measured now          %8.2f\nratio to CalculiX               %8.4f\n",
                    ccx, cost.cpu / ccx);
         else
-            printf("CalculiX, stored (base)         %8.2f\nratio to the stored time        %8.4f "
-                   "(install calculix-ccx to run it beside)\n",
+            printf("CalculiX, stored                %8.2f\nratio to the stored time        %8.4f "
+                   "(install calculix-ccx to measure it on this machine)\n",
                    stored_ccx, cost.cpu / stored_ccx);
         printf("goal: at most 15 s; reference 0.155210 N and 33.474 mm\n\n");
     }
@@ -188,11 +190,11 @@ static bool compare_with_ccx(void)
     return good;
 }
 
-/* --- growth with length --- */
+/* --- growth with the number of elements --- */
 
-/* A short history on a wire of `slices` elements along; its memory by what the solver takes. The
- * deflection goes with the square of the length: so the strains, and with them the iterations, are
- * those of every other length. */
+/* Measures a short loading of a wire with `slices` elements along its length; *memory is the peak
+ * of this process in MB. The deflection is proportional to the square of the length, so that
+ * strains and iterations are similar for all lengths. */
 static bool time_length(struct wb_wire_model *model, int slices, struct cost *cost, double *memory)
 {
     const double longer = slices / 60.0;
@@ -243,13 +245,14 @@ static bool show_growth(void)
 
 int main(void)
 {
-    /* Memory is the peak of this process: growing wires first, each larger than all before. */
+    /* The peak memory of a process never decreases: this part comes first and goes from the
+     * shortest wire to the longest. */
     if (!show_growth()) {
         fprintf(stderr, "the benchmark did not converge\n");
         return EXIT_FAILURE;
     }
-    puts("growth: time and memory for each element slice, over those of the shortest wire; 1 is "
-         "linear\n");
+    puts("growth: time and memory per element along the wire, relative to the shortest wire; 1 is "
+         "linear growth\n");
     if (!compare_with_ccx()) {
         fprintf(stderr, "the benchmark did not converge\n");
         return EXIT_FAILURE;

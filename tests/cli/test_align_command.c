@@ -1,5 +1,5 @@
 /* `wirebench align` and `wirebench quicklook` on made-up recordings: outputs, messages, exit codes.
- * WIREBENCH_BINARY names the tool. */
+ * WIREBENCH_BINARY is the path of the tool. */
 #include <sqlite3.h>
 #include <sys/stat.h>
 #include <sys/wait.h>

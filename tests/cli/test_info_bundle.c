@@ -1,4 +1,4 @@
-/* The tool itself: `wirebench info` of bundles. WIREBENCH_BINARY names it. */
+/* `wirebench info` for bundle files. WIREBENCH_BINARY is the path of the tool. */
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@ static void a_bundle_is_described(void **state)
         "tape, sleeve\n",    "114 mm (inferred)\n",  "outer diameter",       "engineering",
         "612864 hexahedra",  "E I, wires bonded",
     };
-    /* A shipped file from any folder. */
+    /* The tool runs in another folder, where this path does not exist. */
     expect("info fixtures/bundles/19-mixed.yaml", 0, "");
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         if (!strstr(o.out, lines[i]))
@@ -24,9 +24,9 @@ static void a_bundle_is_described(void **state)
     assert_string_equal(o.err, "");
 }
 
-/* By name, with a folder of that name here, too, and by path: each command that takes such a file
- * finds it in the same places. */
-static void shipped_files_go_by_name_or_path(void **state)
+/* Every command finds a shipped file by its name, even if the current folder has a subfolder of
+ * that name, and a file by its path. */
+static void shipped_files_are_found_by_name_or_path(void **state)
 {
     (void)state;
     static const char *const lines[] = {
@@ -61,7 +61,7 @@ static void shipped_files_go_by_name_or_path(void **state)
         expect(wrong[i], 1, "no 'no-such' among the shipped ");
 }
 
-static void json_has_the_numbers(void **state)
+static void json_has_the_geometry_and_rigidities(void **state)
 {
     (void)state;
     struct wb_json *root;
@@ -85,9 +85,9 @@ static void json_has_the_numbers(void **state)
     wb_json_destroy(root);
 }
 
-/* The circle lies on no wire but along lines, and is bonded to the outer ones within reach: seen
- * from a wire's middle, by the law of cosines. */
-static void a_circle_is_bonded_to_what_is_within_reach(void **state)
+/* A circular tape touches the outer wires only along lines; it is bonded where the gap is within
+ * reach. The angle of this range, seen from a wire's centre, follows from the law of cosines. */
+static void circular_tape_is_bonded_to_wires_within_reach(void **state)
 {
     (void)state;
     struct wb_json *root;
@@ -125,7 +125,7 @@ static void a_section_is_drawn(void **state)
         read_all(names[i], text, sizeof text);
         assert_memory_equal(text, beginnings[i], 4);
     }
-    /* Only with --force again; another mesh is another drawing. */
+    /* An existing figure is replaced only with --force; a finer mesh gives a larger file. */
     char *first, *second;
     size_t n_first, n_second;
     assert_int_equal(wb_file_read(path_of("a.svg"), &first, &n_first), WB_OK);
@@ -156,9 +156,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bundle_is_described),
-        cmocka_unit_test(shipped_files_go_by_name_or_path),
-        cmocka_unit_test(json_has_the_numbers),
-        cmocka_unit_test(a_circle_is_bonded_to_what_is_within_reach),
+        cmocka_unit_test(shipped_files_are_found_by_name_or_path),
+        cmocka_unit_test(json_has_the_geometry_and_rigidities),
+        cmocka_unit_test(circular_tape_is_bonded_to_wires_within_reach),
         cmocka_unit_test(a_section_is_drawn),
         cmocka_unit_test(wrong_usage_and_files_are_rejected),
     };

@@ -1,5 +1,5 @@
-/* The tool itself on recordings: info, verify, export, replay; their outputs, messages and exit
- * codes. WIREBENCH_BINARY names it. */
+/* `wirebench info`, `verify`, `export` and `replay` on recordings: outputs, messages, exit codes.
+ * WIREBENCH_BINARY is the path of the tool. */
 #include <signal.h>
 #include <sqlite3.h>
 #include <sys/wait.h>

@@ -1,5 +1,5 @@
-/* The tool itself: `wirebench solve cantilever`, its numbers, outputs, messages and exit codes.
- * WIREBENCH_BINARY names it. */
+/* `wirebench solve cantilever`: numbers, outputs, messages, exit codes. WIREBENCH_BINARY is the
+ * path of the tool. */
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
-/* The tool itself: `wirebench solve bundle`, of one bare wire on a coarse mesh so that it is fast.
- * WIREBENCH_BINARY names it. */
+/* `wirebench solve bundle` for one bare wire on a coarse mesh, to keep the test fast.
+ * WIREBENCH_BINARY is the path of the tool. */
 #include <stdlib.h>
 #include <sys/wait.h>
 

@@ -1,5 +1,5 @@
-/* The tool itself: `wirebench solve wire3d` and `wire1d`, on meshes that are coarse so that it is
- * fast. WIREBENCH_BINARY names it. */
+/* `wirebench solve wire3d` and `wire1d` on coarse meshes, to keep the test fast. WIREBENCH_BINARY
+ * is the path of the tool. */
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>

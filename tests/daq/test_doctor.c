@@ -1,5 +1,5 @@
-/* `doctor` with one fault of the bench after another: the fault is named, and the other items are
- * still reported. */
+/* `doctor` on a bench with one fault at a time: it reports the fault and still checks the other
+ * items. */
 #include "daq/doctor/doctor.h"
 
 #include "base/interrupt_private.h"
@@ -15,7 +15,7 @@ struct fixture {
     struct wb_doctor_report report;
 };
 
-static void drop(void *context, enum wb_log_level level, const char *domain, const char *message)
+static void discard(void *context, enum wb_log_level level, const char *domain, const char *message)
 {
     (void)context;
     (void)level;
@@ -40,7 +40,7 @@ static int set_up(void **state)
     fixture->request.folder = fixture->folder;
     fixture->request.seconds = 0.6;
     wb_interrupt_set(false);
-    wb_log_set_sink(drop, NULL);
+    wb_log_set_sink(discard, NULL);
     *state = fixture;
     return 0;
 }
@@ -56,7 +56,7 @@ static int tear_down(void **state)
     return code;
 }
 
-static void look(struct fixture *fixture)
+static void run_doctor(struct fixture *fixture)
 {
     struct wb_doctor *doctor;
     assert_int_equal(wb_doctor_open(&doctor, &fixture->request), WB_OK);
@@ -65,7 +65,7 @@ static void look(struct fixture *fixture)
     wb_doctor_close(doctor, &fixture->report);
 }
 
-/* Whether an item with this name and verdict contains these words. */
+/* Whether the text of an item with this name and verdict contains these words. */
 static bool has(const struct fixture *fixture, const char *name, enum wb_doctor_verdict verdict,
                 const char *words)
 {
@@ -86,7 +86,8 @@ static void expect(const struct fixture *fixture, const char *name, enum wb_doct
         print_message("%s: %s: %s\n", fixture->report.items[i].name,
                       wb_doctor_verdict_name(fixture->report.items[i].verdict),
                       fixture->report.items[i].text);
-    fail_msg("no '%s' is %s and says '%s'", name, wb_doctor_verdict_name(verdict), words);
+    fail_msg("no item '%s' with verdict %s contains '%s'", name, wb_doctor_verdict_name(verdict),
+             words);
 }
 
 static void expect_ready(const struct fixture *fixture)
@@ -99,10 +100,10 @@ static void expect_ready(const struct fixture *fixture)
     assert_true(wb_doctor_is_ready(&fixture->report));
 }
 
-static void bench_that_is_well_is_ready_and_stays_where_it_is(void **state)
+static void healthy_bench_is_ready_and_not_moved(void **state)
 {
     struct fixture *const fixture = *state;
-    look(fixture);
+    run_doctor(fixture);
     expect_ready(fixture);
     expect(fixture, "zero", WB_DOCTOR_READY, "mN, noise");
     expect(fixture, "markers", WB_DOCTOR_READY, "all 7");
@@ -118,12 +119,12 @@ static void bench_that_is_well_is_ready_and_stays_where_it_is(void **state)
     assert_int_equal(fixture->bench->holds, 0);
 }
 
-static void silent_instruments_are_named_and_the_others_are_still_checked(void **state)
+static void silent_instruments_are_reported_and_the_others_still_checked(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->load_silent = true;
     fixture->bench->mocap_dead = true;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "no data within");
     expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "no NatNet reply");
     expect(fixture, "stage", WB_DOCTOR_READY, "idle");
@@ -131,35 +132,35 @@ static void silent_instruments_are_named_and_the_others_are_still_checked(void *
     assert_string_equal(fixture->report.picture, "");
 }
 
-static void answers_without_frames_are_reported_from_no_answers(void **state)
+static void reply_without_data_is_distinguished_from_no_reply(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->mocap_silent = true;
     fixture->bench->stage_silent = true;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "replies but sent no frame");
     expect(fixture, "stage", WB_DOCTOR_NOT_READY, "sent no status");
     expect(fixture, "zero", WB_DOCTOR_READY, "mN");
 }
 
-static void load_cell_out_of_range_or_not_understood_is_not_ready(void **state)
+static void load_cell_out_of_range_or_undecodable_is_not_ready(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->force_mg = 5000;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "zero", WB_DOCTOR_NOT_READY, "unloaded load cell reads");
     fixture->bench->force_mg = 150;
     fixture->bench->garbage = true;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "no reading that can be decoded");
     expect(fixture, "load cell", WB_DOCTOR_NOTE, "####");
 }
 
-static void load_cell_of_another_baud_rate_is_found_at_it(void **state)
+static void actual_baud_rate_of_the_load_cell_is_found(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->load_baud = 38400;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "not text");
     expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "with 38400,8n1");
     assert_true(has(fixture, "load cell", WB_DOCTOR_NOT_READY, "sim:fake_cell,38400,8n1"));
@@ -169,27 +170,27 @@ static void stage_in_alarm_or_too_slow_is_not_ready(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->fastest_mm_min = 30;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "travel", WB_DOCTOR_NOT_READY, "$110");
     fixture->bench->raise_alarm = true;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "stage", WB_DOCTOR_NOT_READY, "in alarm");
     assert_false(has(fixture, "travel", WB_DOCTOR_READY, ""));
 }
 
-static void travel_that_the_rig_file_forbids_is_not_ready(void **state)
+static void travel_beyond_the_limits_of_the_rig_is_not_ready(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->request.test.travel = 59.0 * WB_MM;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "travel", WB_DOCTOR_NOT_READY, "--travel-mm");
 }
 
-static void missing_marker_is_named_and_drawn_in_the_picture(void **state)
+static void missing_marker_is_counted_and_drawn_in_the_picture(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->bench->markers = FAKE_MARKERS - 1;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "markers", WB_DOCTOR_NOT_READY, "6 of 7 markers seen");
     expect(fixture, "up axis", WB_DOCTOR_UNKNOWN, "");
     assert_non_null(strstr(fixture->report.picture, "?\n"));
@@ -203,16 +204,16 @@ static void server_is_not_asked_to_record(void **state)
     snprintf(command, sizeof command, "sed -i 's/^  up: y/  up: y\\n  record_take: true/' '%s'",
              fixture->rig_path);
     assert_int_equal(system(command), 0);
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "cameras", WB_DOCTOR_READY, "fake");
     assert_int_equal(fixture->bench->takes, 0);
 }
 
-static void without_a_specimen_markers_are_counted_and_the_bench_may_be_ready(void **state)
+static void bench_without_a_specimen_file_is_ready_and_counts_markers(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->request.test.specimen_path = NULL;
-    look(fixture);
+    run_doctor(fixture);
     expect_ready(fixture);
     expect(fixture, "markers", WB_DOCTOR_UNKNOWN, "7 are seen");
     assert_non_null(strstr(fixture->report.picture, "*"));
@@ -228,22 +229,22 @@ static void log_check(const struct fixture *fixture, const char *utc, const char
     assert_int_equal(wb_check_log_append(fixture->rig_path, &entry), WB_OK);
 }
 
-static void last_check_of_the_load_cell_counts(void **state)
+static void verdict_depends_on_the_last_check_of_this_load_cell(void **state)
 {
     struct fixture *const fixture = *state;
     char now[WB_TIME_TEXT];
     wb_time_format(wb_time_utc(), now);
     log_check(fixture, "2020-01-01T00:00:00Z", "T-1", true);
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "last check", WB_DOCTOR_NOTE, "days ago");
     log_check(fixture, now, "T-2", true);
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "last check", WB_DOCTOR_NOTE, "load_cell.serial_number is T-1");
     log_check(fixture, now, "T-1", true);
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "last check", WB_DOCTOR_READY, "passed");
     log_check(fixture, now, "T-1", false);
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "last check", WB_DOCTOR_NOT_READY, "NOT PASSED");
 }
 
@@ -252,24 +253,24 @@ static void ports_that_are_missing_or_in_use_are_reported(void **state)
     struct fixture *const fixture = *state;
     struct wb_doctor *holder;
     assert_int_equal(wb_doctor_open(&holder, &fixture->request), WB_OK);
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "'sim:fake_cell' is in use");
     expect(fixture, "stage", WB_DOCTOR_NOT_READY, "'sim:fake_stage' is in use");
     wb_doctor_close(holder, NULL);
     fake_unplug(fixture->bench);
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "does not exist");
     expect(fixture, "stage", WB_DOCTOR_NOT_READY, "does not exist");
     expect(fixture, "cameras", WB_DOCTOR_NOT_READY, "no NatNet reply");
     expect(fixture, "disk", WB_DOCTOR_READY, "a flush takes");
 }
 
-static void folder_that_is_not_there_cannot_take_a_recording(void **state)
+static void missing_folder_for_recordings_is_not_ready(void **state)
 {
     struct fixture *const fixture = *state;
     fixture->request.folder = "/nonexistent";
     fixture->request.seconds = 0.1;
-    look(fixture);
+    run_doctor(fixture);
     expect(fixture, "disk", WB_DOCTOR_NOT_READY, "--folder");
 }
 
@@ -277,19 +278,19 @@ int main(void)
 {
 #define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest facts[] = {
-        FACT(bench_that_is_well_is_ready_and_stays_where_it_is),
-        FACT(silent_instruments_are_named_and_the_others_are_still_checked),
-        FACT(answers_without_frames_are_reported_from_no_answers),
-        FACT(load_cell_out_of_range_or_not_understood_is_not_ready),
-        FACT(load_cell_of_another_baud_rate_is_found_at_it),
+        FACT(healthy_bench_is_ready_and_not_moved),
+        FACT(silent_instruments_are_reported_and_the_others_still_checked),
+        FACT(reply_without_data_is_distinguished_from_no_reply),
+        FACT(load_cell_out_of_range_or_undecodable_is_not_ready),
+        FACT(actual_baud_rate_of_the_load_cell_is_found),
         FACT(stage_in_alarm_or_too_slow_is_not_ready),
-        FACT(travel_that_the_rig_file_forbids_is_not_ready),
-        FACT(missing_marker_is_named_and_drawn_in_the_picture),
+        FACT(travel_beyond_the_limits_of_the_rig_is_not_ready),
+        FACT(missing_marker_is_counted_and_drawn_in_the_picture),
         FACT(server_is_not_asked_to_record),
-        FACT(without_a_specimen_markers_are_counted_and_the_bench_may_be_ready),
-        FACT(last_check_of_the_load_cell_counts),
+        FACT(bench_without_a_specimen_file_is_ready_and_counts_markers),
+        FACT(verdict_depends_on_the_last_check_of_this_load_cell),
         FACT(ports_that_are_missing_or_in_use_are_reported),
-        FACT(folder_that_is_not_there_cannot_take_a_recording),
+        FACT(missing_folder_for_recordings_is_not_ready),
     };
     return cmocka_run_group_tests(facts, NULL, NULL);
 }

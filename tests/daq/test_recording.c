@@ -1,4 +1,5 @@
-/* Recordings without damage: round trip, order, a single file at the end, compressed, read-only. */
+/* Undamaged recordings: round trip, order of time, closing to a single file, compression, reading
+ * from a read-only folder. */
 #include <fcntl.h>
 #include <sqlite3.h>
 #include <sys/wait.h>
@@ -93,7 +94,7 @@ static void meta_events_and_clock_rows_read_back(void **state)
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
-static void chunks_written_out_of_order_are_visited_in_order_of_time(void **state)
+static void chunks_written_out_of_order_are_visited_in_time_order(void **state)
 {
     struct bench *bench = *state;
     struct wb_recording *recording = NULL;
@@ -123,7 +124,7 @@ static enum wb_status stop_at_third(void *context, const struct wb_chunk *chunk)
     return ++*(int *)context == 3 ? WB_ERR_BUSY : WB_OK;
 }
 
-static void visitor_ends_the_walk_with_its_status(void **state)
+static void error_of_a_visitor_ends_the_walk(void **state)
 {
     struct bench *bench = *state;
     bench_make(bench->path, 10);
@@ -147,7 +148,8 @@ static void recording_is_never_overwritten(void **state)
     assert_non_null(strstr(bench->message, "never overwritten"));
     assert_int_equal(wb_hash_file(bench->path, after), WB_OK);
     assert_string_equal(before, after);
-    /* Nor is the remaining log of an earlier recording with this name. */
+    /* A write-ahead log that remains of an earlier recording of this name is not overwritten
+     * either. */
     char other[128], wal[136];
     snprintf(other, sizeof other, "%s/other.wbr", bench->folder);
     snprintf(wal, sizeof wal, "%s-wal", other);
@@ -158,7 +160,7 @@ static void recording_is_never_overwritten(void **state)
     assert_non_null(strstr(bench->message, "other.wbr-wal"));
 }
 
-static void closed_recording_is_one_plain_file_with_its_mark(void **state)
+static void closed_recording_is_a_single_file_with_application_id(void **state)
 {
     struct bench *bench = *state;
     struct wb_recording *recording = NULL;
@@ -178,8 +180,8 @@ static void closed_recording_is_one_plain_file_with_its_mark(void **state)
     assert_int_equal(header[19], 1);
 }
 
-/* The bytes of a row by docs/file-formats.md, assembled independently. */
-static void any_sqlite_reads_it_and_the_checksums_are_those_of_zlib(void **state)
+/* The bytes of each row are written here as docs/file-formats.md describes them. */
+static void recording_is_readable_with_sqlite_and_has_zlib_checksums(void **state)
 {
     static const char first[] = "stream\0"
                                 "\1\0\0\0\0\0\0\0"
@@ -241,8 +243,8 @@ static void any_sqlite_reads_it_and_the_checksums_are_those_of_zlib(void **state
     assert_int_equal(wb_recording_crc32("123456789", 9), 0xcbf43926);
 }
 
-/* An open recording has the checksum of its file, and reads on afterwards. */
-static void assert_hash_while_open(const char *path, const char *expected)
+/* Hashing an open recording gives the checksum of the file and does not disturb later reading. */
+static void assert_hash_of_open_recording(const char *path, const char *expected)
 {
     struct wb_recording *recording;
     struct bench_tally tally;
@@ -270,11 +272,11 @@ static void compressed_recording_reads_the_same_and_has_the_same_checksum(void *
     assert_int_equal(wb_recording_sha256(bench->path, plain_sum, NULL), WB_OK);
     assert_int_equal(wb_recording_sha256(packed, packed_sum, NULL), WB_OK);
     assert_string_equal(plain_sum, packed_sum);
-    assert_hash_while_open(bench->path, plain_sum);
-    assert_hash_while_open(packed, plain_sum);
+    assert_hash_of_open_recording(bench->path, plain_sum);
+    assert_hash_of_open_recording(packed, plain_sum);
     assert_int_equal(wb_hash_file(bench->path, file_sum), WB_OK);
     assert_string_equal(plain_sum, file_sum);
-    /* Reproducible, smaller, and accepted by the zstd tool. */
+    /* Compression is reproducible, and the file is smaller. */
     assert_int_equal(wb_hash_file(packed, packed_sum), WB_OK);
     assert_int_equal(wb_hash_file(again, file_sum), WB_OK);
     assert_string_equal(packed_sum, file_sum);
@@ -283,7 +285,7 @@ static void compressed_recording_reads_the_same_and_has_the_same_checksum(void *
     assert_int_equal(stat(packed, &packed_there), 0);
     assert_true(packed_there.st_size < plain_there.st_size);
 
-    /* The temporary file is gone while the recording is open. */
+    /* The temporary file is already unlinked while the recording is open. */
     setenv("TMPDIR", bench->folder, 1);
     struct wb_recording *recording = NULL;
     assert_int_equal(wb_recording_open(&recording, packed), WB_OK);
@@ -349,7 +351,7 @@ static void unclosed_recording_is_read_from_a_read_only_folder(void **state)
     struct wb_recording *recording = NULL;
     assert_int_equal(wb_recording_create(&recording, live), WB_OK);
     bench_fill(recording, 50);
-    /* A copy made during recording equals the file after a crash. */
+    /* A copy made during recording is in the same state as the file after a crash. */
     snprintf(wal, sizeof wal, "%s-wal", live);
     snprintf(copy_of_wal, sizeof copy_of_wal, "%s-wal", bench->path);
     bench_copy(live, bench->path);
@@ -362,20 +364,20 @@ static void unclosed_recording_is_read_from_a_read_only_folder(void **state)
     assert_int_equal(chmod(bench->folder, 0755), 0);
 }
 
-static void onlooker_reads_a_recording_that_is_being_written(void **state)
+static void recording_can_be_read_while_it_is_written(void **state)
 {
     struct bench *bench = *state;
-    struct wb_recording *recording = NULL, *onlooker = NULL;
+    struct wb_recording *recording = NULL, *reader = NULL;
     assert_int_equal(wb_recording_create(&recording, bench->path), WB_OK);
     bench_fill(recording, 30);
-    onlooker = bench_open(bench->path, false, 90);
-    assert_int_equal(wb_recording_close(onlooker), WB_OK);
-    assert_int_equal(wb_recording_append_event(recording, 1, "mark", "goes on"), WB_OK);
+    reader = bench_open(bench->path, false, 90);
+    assert_int_equal(wb_recording_close(reader), WB_OK);
+    assert_int_equal(wb_recording_append_event(recording, 1, "mark", "after the reader"), WB_OK);
     assert_int_equal(wb_recording_close(recording), WB_OK);
     assert_false(bench_exists(bench->folder, "test.wbr-wal"));
 }
 
-static void path_with_odd_characters_is_opened(void **state)
+static void path_with_special_characters_is_opened(void **state)
 {
     struct bench *bench = *state;
     char path[160];
@@ -412,16 +414,16 @@ int main(void)
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
         FACT(written_recording_reads_back_exactly),
         FACT(meta_events_and_clock_rows_read_back),
-        FACT(chunks_written_out_of_order_are_visited_in_order_of_time),
-        FACT(visitor_ends_the_walk_with_its_status),
+        FACT(chunks_written_out_of_order_are_visited_in_time_order),
+        FACT(error_of_a_visitor_ends_the_walk),
         FACT(recording_is_never_overwritten),
-        FACT(closed_recording_is_one_plain_file_with_its_mark),
-        FACT(any_sqlite_reads_it_and_the_checksums_are_those_of_zlib),
+        FACT(closed_recording_is_a_single_file_with_application_id),
+        FACT(recording_is_readable_with_sqlite_and_has_zlib_checksums),
         FACT(compressed_recording_reads_the_same_and_has_the_same_checksum),
         FACT(closed_recording_is_read_from_a_read_only_folder),
         FACT(unclosed_recording_is_read_from_a_read_only_folder),
-        FACT(onlooker_reads_a_recording_that_is_being_written),
-        FACT(path_with_odd_characters_is_opened),
+        FACT(recording_can_be_read_while_it_is_written),
+        FACT(path_with_special_characters_is_opened),
         FACT(wrong_use_is_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

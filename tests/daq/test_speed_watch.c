@@ -1,25 +1,25 @@
-/* The speed of a motion from the stage's reports. */
+/* The speed of a motion, estimated from the position reports of the stage. */
 #include "daq/acquire/speed_watch.h"
 
 #include "base/units.h"
 #include "tests/check.h"
 
-static const struct wb_motion_limits top = {2.0 * WB_MM, 10.0 * WB_MM};
+static const struct wb_motion_limits commanded = {2.0 * WB_MM, 10.0 * WB_MM};
 
-/* Reports five times a second of a motion whose speed is `share` of the commanded one, each late by
- * up to `late` s. */
-static struct wb_speed_watch watch_motion(double from, double to, double share, double late)
+/* Simulates a motion at `share` of the commanded speed, reported five times a second; every second
+ * report arrives `delay` s late. */
+static struct wb_speed_watch watch_motion(double from, double to, double share, double delay)
 {
     struct wb_speed_watch watch;
     struct wb_motion motion;
-    const struct wb_motion_limits real = {share * top.speed, top.acceleration};
-    wb_speed_watch_begin(&watch, from, to, &top);
-    wb_motion_plan(&motion, 0.05, from, 0.0, to, &real);
+    const struct wb_motion_limits actual = {share * commanded.speed, commanded.acceleration};
+    wb_speed_watch_begin(&watch, from, to, &commanded);
+    wb_motion_plan(&motion, 0.05, from, 0.0, to, &actual);
     for (int i = 0; 0.2 * i < wb_motion_finish(&motion) + 1.0; i++) {
         double x = from, v;
         if (0.2 * i > motion.start)
             wb_motion_at(&motion, 0.2 * i, &x, &v);
-        wb_speed_watch_add(&watch, wb_ns_from_seconds(0.2 * i + (i % 2) * late), x);
+        wb_speed_watch_add(&watch, wb_ns_from_seconds(0.2 * i + (i % 2) * delay), x);
     }
     return watch;
 }

@@ -263,7 +263,7 @@ static void export_writes_every_sample_with_units_and_says_virtual_rig(void **st
     assert_int_equal(system(command), 0);
 }
 
-static void export_into_a_folder_that_is_not_there_fails_with_one_message(void **state)
+static void export_into_a_missing_folder_fails_with_one_message(void **state)
 {
     struct bench *bench = *state;
     small_make(bench->path, true);
@@ -287,7 +287,7 @@ int main(void)
         FACT(each_kind_of_damage_to_a_row_is_found_with_its_position),
         FACT(old_recording_reads_the_same_and_is_partly_protected),
         FACT(export_writes_every_sample_with_units_and_says_virtual_rig),
-        FACT(export_into_a_folder_that_is_not_there_fails_with_one_message),
+        FACT(export_into_a_missing_folder_fails_with_one_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

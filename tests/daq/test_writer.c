@@ -77,10 +77,10 @@ static void flushed_chunks_are_on_disk_while_recording_goes_on(void **state)
         assert_true(push(writer, 0, seq));
     gate_await_rounds(&gate);
     struct bench_tally tally;
-    struct wb_recording *onlooker = NULL;
-    assert_int_equal(wb_recording_open(&onlooker, bench->path), WB_OK);
-    assert_int_equal(bench_walk(onlooker, &tally), WB_OK);
-    assert_int_equal(wb_recording_close(onlooker), WB_OK);
+    struct wb_recording *reader = NULL;
+    assert_int_equal(wb_recording_open(&reader, bench->path), WB_OK);
+    assert_int_equal(bench_walk(reader, &tally), WB_OK);
+    assert_int_equal(wb_recording_close(reader), WB_OK);
     assert_int_equal(tally.chunks, 10);
     assert_int_equal(wb_writer_finish(writer), WB_OK);
 }

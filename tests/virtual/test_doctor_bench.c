@@ -1,6 +1,6 @@
-/* The doctor on the virtual bench, in virtual time: a healthy bench is ready, and each fault that
- * can be detected at rest is named. Faults that occur during motion (clock-restart, unit-change,
- * replug-cell, the unplug ones, stuck-stage, strand-break) cannot be detected. */
+/* `doctor` on the virtual bench, in virtual time: a healthy bench is ready, and each fault that can
+ * be detected at rest is reported. Faults that occur only during motion (clock-restart,
+ * unit-change, replug-cell, unplug-*, stuck-stage, strand-break) cannot be detected at rest. */
 #include <stdlib.h>
 
 #include "base/config.h"
@@ -65,7 +65,7 @@ static void begin(struct fixture *fixture, const char *faults, uint64_t seed)
     assert_int_equal(wb_bench_write_rig(fixture->bench, fixture->rig), WB_OK);
 }
 
-static void look(struct fixture *fixture)
+static void run_doctor(struct fixture *fixture)
 {
     struct wb_doctor *doctor;
     assert_int_equal(wb_doctor_open(&doctor, &fixture->request), WB_OK);
@@ -75,7 +75,8 @@ static void look(struct fixture *fixture)
     wb_doctor_close(doctor, &fixture->report);
 }
 
-/* The text of this item with this verdict that contains these words; NULL if there is none. */
+/* Text of the item that has this name and verdict and contains these words; NULL if there is
+ * none. */
 static const char *find(const struct fixture *fixture, const char *name,
                         enum wb_doctor_verdict verdict, const char *words)
 {
@@ -101,13 +102,13 @@ static const char *expect(const struct fixture *fixture, const char *name,
     const char *const text = find(fixture, name, verdict, words);
     if (!text) {
         print_report(fixture);
-        fail_msg("no item '%s' that is %s and says '%s'", name, wb_doctor_verdict_name(verdict),
-                 words);
+        fail_msg("no item '%s' with verdict %s contains '%s'", name,
+                 wb_doctor_verdict_name(verdict), words);
     }
     return text;
 }
 
-/* No other item is NOT READY. */
+/* Expects an item that is NOT READY, and no other one. */
 static void expect_only(const struct fixture *fixture, const char *name, const char *words)
 {
     (void)expect(fixture, name, WB_DOCTOR_NOT_READY, words);
@@ -127,7 +128,7 @@ static void expect_ready(const struct fixture *fixture)
     fail_msg("not ready");
 }
 
-/* Writes `from` to fixture->changed with `old`, which occurs once, replaced by `new`. */
+/* Writes a copy of the file `from` to fixture->changed, with the first `old` replaced by `new`. */
 static void change(struct fixture *fixture, const char *from, const char *old, const char *new)
 {
     struct wb_text changed = {0};
@@ -148,49 +149,49 @@ static void healthy_bench_is_ready_and_not_moved(void **state)
     struct wb_bench_counts counts;
     char stage[WB_DOCTOR_TEXT];
     begin(fixture, NULL, 1);
-    look(fixture);
+    run_doctor(fixture);
     expect_ready(fixture);
     assert_true(fixture->report.is_virtual);
     (void)expect(fixture, "markers", WB_DOCTOR_READY, "all 7");
     snprintf(stage, sizeof stage, "%s", expect(fixture, "stage", WB_DOCTOR_READY, ""));
-    look(fixture);
+    run_doctor(fixture);
     expect_ready(fixture);
     assert_string_equal(expect(fixture, "stage", WB_DOCTOR_READY, ""), stage);
     wb_bench_count(fixture->bench, &counts);
     assert_close(counts.travel, 0.0, 0.0);
 
     fixture->request.test.specimen_path = NULL;
-    look(fixture);
+    run_doctor(fixture);
     expect_ready(fixture);
     (void)expect(fixture, "markers", WB_DOCTOR_UNKNOWN, "");
     (void)expect(fixture, "clock", WB_DOCTOR_READY, "");
 }
 
-static void wrong_unit_is_named(void **state)
+static void wrong_unit_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     begin(fixture, NULL, 1);
     change(fixture, fixture->rig, "  unit: g", "  unit: kg");
     fixture->request.test.rig_path = fixture->changed;
-    look(fixture);
+    run_doctor(fixture);
     (void)expect(fixture, "unit", WB_DOCTOR_NOT_READY, "load_cell.unit: kg");
 }
 
-static void missing_marker_is_asked_for(void **state)
+static void missing_marker_is_counted_and_drawn_in_the_picture(void **state)
 {
     struct fixture *const fixture = *state;
     begin(fixture, NULL, 1);
     change(fixture, fixture->specimen, "42.5, 56.7", "42.5, 49.6, 56.7");
     fixture->request.test.specimen_path = fixture->changed;
-    look(fixture);
+    run_doctor(fixture);
     (void)expect(fixture, "markers", WB_DOCTOR_NOT_READY, "7 of 8 markers seen");
-    /* Asked for in a separate line, at its place. */
-    int asked = 0;
+    /* The picture has a line of its own, `|  ?`, for the missing marker. */
+    int drawn = 0;
     for (const char *line = fixture->report.picture; *line; line += strcspn(line, "\n") + 1) {
         const size_t blank = strspn(line + 1, " ");
-        asked += line[0] == '|' && blank > 1 && strncmp(line + 1 + blank, "?\n", 2) == 0;
+        drawn += line[0] == '|' && blank > 1 && strncmp(line + 1 + blank, "?\n", 2) == 0;
     }
-    assert_int_equal(asked, 1);
+    assert_int_equal(drawn, 1);
 }
 
 static void wrong_wire_length_is_reported_with_both_lengths(void **state)
@@ -201,7 +202,7 @@ static void wrong_wire_length_is_reported_with_both_lengths(void **state)
            "length_mm: 85\nsample: 1\nmarkers_mm: [0, 14.2, 28.3, 42.5, 56.7, 70.8, 85]",
            "length_mm: 88\nsample: 1\nmarkers_mm: [0, 14.7, 29.3, 44, 58.7, 73.3, 88]");
     fixture->request.test.specimen_path = fixture->changed;
-    look(fixture);
+    run_doctor(fixture);
     const char *const text = expect(fixture, "scale", WB_DOCTOR_NOT_READY, "markers_mm");
     assert_non_null(strstr(text, "85."));
     assert_non_null(strstr(text, "88.0"));
@@ -212,20 +213,20 @@ static void travel_beyond_the_rigs_limit_is_reported(void **state)
     struct fixture *const fixture = *state;
     begin(fixture, NULL, 1);
     fixture->request.test.travel = 59.0 * WB_MM;
-    look(fixture);
+    run_doctor(fixture);
     expect_only(fixture, "travel", "--travel-mm");
 }
 
-static void missing_folder_is_named(void **state)
+static void missing_folder_is_reported(void **state)
 {
     struct fixture *const fixture = *state;
     begin(fixture, NULL, 1);
     fixture->request.folder = "/dev/shm/no/such/folder";
-    look(fixture);
+    run_doctor(fixture);
     expect_only(fixture, "disk", "--folder");
 }
 
-static void swapped_ports_are_named(void **state)
+static void swapped_ports_are_reported(void **state)
 {
     struct fixture *const fixture = *state;
     begin(fixture, NULL, 1);
@@ -233,7 +234,7 @@ static void swapped_ports_are_named(void **state)
     change(fixture, fixture->changed, "sim:stage", "sim:load_cell");
     change(fixture, fixture->changed, "sim:other", "sim:stage");
     fixture->request.test.rig_path = fixture->changed;
-    look(fixture);
+    run_doctor(fixture);
     (void)expect(fixture, "load cell", WB_DOCTOR_NOT_READY, "swapped");
     (void)expect(fixture, "stage", WB_DOCTOR_NOT_READY, "swapped");
 }
@@ -244,15 +245,15 @@ static void other_ports_are_checked_if_one_is_in_use(void **state)
     struct wb_stream *other;
     begin(fixture, NULL, 1);
     assert_int_equal(wb_stream_open(&other, "sim:stage"), WB_OK);
-    look(fixture);
+    run_doctor(fixture);
     wb_stream_close(other);
     (void)expect(fixture, "stage", WB_DOCTOR_NOT_READY, "in use");
     (void)expect(fixture, "load cell", WB_DOCTOR_READY, "");
     (void)expect(fixture, "markers", WB_DOCTOR_READY, "all 7");
 }
 
-/* A fault of the bench, the item that reports it, and the only item that is NOT READY; NULL:
- * none. */
+/* A fault of the bench, the item that reports it with this verdict, and the only item that is NOT
+ * READY (NULL: the bench is ready). */
 static const struct {
     const char *faults, *item, *words;
     enum wb_doctor_verdict verdict;
@@ -276,7 +277,7 @@ static void faults_are_reported(void **state)
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
         const char *const not_ready = faults[i].not_ready;
         begin(fixture, faults[i].faults, faults[i].seed);
-        look(fixture);
+        run_doctor(fixture);
         (void)expect(fixture, faults[i].item, faults[i].verdict, faults[i].words);
         if (not_ready)
             expect_only(fixture, not_ready, "");
@@ -299,14 +300,14 @@ static void interrupt_run(void *context, int64_t now_ns)
     wb_interrupt_set(true);
 }
 
-static void interrupt_ends_the_check_at_once(void **state)
+static void interrupt_ends_the_check_immediately(void **state)
 {
     struct fixture *const fixture = *state;
     const struct wb_virtual_actor actor = {NULL, interrupt_next, interrupt_run};
     begin(fixture, NULL, 1);
     fixture->request.seconds = 60.0;
     wb_virtual_time_add(&actor);
-    look(fixture);
+    run_doctor(fixture);
     wb_virtual_time_remove(&actor);
     assert_int_equal(wb_time_now_ns(), WB_VIRTUAL_TIME_START_NS + 2 * WB_NS_PER_S);
     wb_interrupt_set(false);
@@ -318,15 +319,15 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         FACT(healthy_bench_is_ready_and_not_moved),
-        FACT(wrong_unit_is_named),
-        FACT(missing_marker_is_asked_for),
+        FACT(wrong_unit_is_reported),
+        FACT(missing_marker_is_counted_and_drawn_in_the_picture),
         FACT(wrong_wire_length_is_reported_with_both_lengths),
         FACT(travel_beyond_the_rigs_limit_is_reported),
-        FACT(missing_folder_is_named),
-        FACT(swapped_ports_are_named),
+        FACT(missing_folder_is_reported),
+        FACT(swapped_ports_are_reported),
         FACT(other_ports_are_checked_if_one_is_in_use),
         FACT(faults_are_reported),
-        FACT(interrupt_ends_the_check_at_once),
+        FACT(interrupt_ends_the_check_immediately),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -131,7 +131,7 @@ static void strands_carry_less_once_they_slip(void **unused)
     assert_close_relative(strain_to(&p, yield / E + 5e-3), -0.6 * yield, 1e-3);
 }
 
-static void tangents_are_slopes(void **unused)
+static void tangents_agree_with_finite_differences(void **unused)
 {
     (void)unused;
     double step = 0.3;
@@ -206,7 +206,7 @@ int main(void)
         cmocka_unit_test(a_maxwell_part_relaxes),
         cmocka_unit_test(a_maxwell_part_relaxes_faster_at_a_larger_stress),
         cmocka_unit_test(strands_carry_less_once_they_slip),
-        cmocka_unit_test(tangents_are_slopes),
+        cmocka_unit_test(tangents_agree_with_finite_differences),
         cmocka_unit_test(the_variants_differ_in_unloading_as_intended),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

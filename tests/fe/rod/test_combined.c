@@ -1,6 +1,6 @@
-/* Sections of laws with combined hardening: Chaboche's, Ludwik's with one surface that grows and
- * moves, and parallel parts whose limits grow. Compared with closed forms and with the rate
- * equations, integrated independently in small steps. */
+/* Sections with combined hardening: Chaboche's law, Ludwik's law with a yield surface that grows
+ * and moves, and parallel elastic-plastic parts whose yield limits grow. The references are closed
+ * forms and the rate equations, integrated independently in small steps. */
 #include "fe/material/hardening.h"
 #include "fe/material/law.h"
 #include "fe/rod/lanes.h"
@@ -39,7 +39,7 @@ static struct wb_law growing_parts(double share)
 }
 
 enum {
-    RATED = 7, /* laws of one surface */
+    ONE_SURFACE = 7, /* the first laws of law_of() have a single yield surface */
     LAWS = 8
 };
 
@@ -54,7 +54,7 @@ static struct wb_law law_of(int i)
     case 2:
         return chaboche(1.4 * WB_MPA, 250.0, 0);
     case 3:
-        law.backs[1].recovery = 0.0; /* Prager's */
+        law.backs[1].recovery = 0.0; /* linear back stress, as in Prager's law */
         return law;
     case 4:
         return combined(0.0);
@@ -72,7 +72,7 @@ static double area(void)
     return M_PI * DIAMETER * DIAMETER / 4.0;
 }
 
-/* The stress of a section in tension: equal in all fibres. */
+/* Stress of a section in pure tension, where it is equal in all fibres; commits the history. */
 static double stretch(struct fibre_point *p, double strain, double *tangent)
 {
     const struct wb_fibres_response r = fibre_point_respond(p, strain, 0.0);
@@ -89,15 +89,17 @@ struct rates {
     double strain, plastic, accumulated, grown, back[WB_LAW_MOST_BACKS];
 };
 
-static double distance_of(const struct rates *r)
+/* Stress minus back stresses. */
+static double effective_stress(const struct rates *r)
 {
-    double distance = r->law->material.youngs_modulus * (r->strain - r->plastic);
+    double stress = r->law->material.youngs_modulus * (r->strain - r->plastic);
     for (int i = 0; i < WB_LAW_MOST_BACKS; i++)
-        distance -= r->back[i];
-    return distance;
+        stress -= r->back[i];
+    return stress;
 }
 
-/* Rates per dp for d(plastic strain) = s dp: growth and back stresses. */
+/* Derivatives of the isotropic hardening and of the back stresses with respect to the accumulated
+ * plastic strain; s is the sign of the plastic flow. */
 static void find_rates(const struct rates *r, double s, double *growth, double *back)
 {
     const struct wb_law *const law = r->law;
@@ -115,7 +117,7 @@ static void find_rates(const struct rates *r, double s, double *growth, double *
     back[0] = s * (1.0 - law->isotropic_share) * slope;
 }
 
-static void move_by(struct rates *r, double s, double dp, double growth, const double *back)
+static void advance(struct rates *r, double s, double dp, double growth, const double *back)
 {
     r->plastic += s * dp;
     r->accumulated += dp;
@@ -124,17 +126,17 @@ static void move_by(struct rates *r, double s, double dp, double growth, const d
         r->back[i] += back[i] * dp;
 }
 
-/* Integrates to a strain in n steps of the midpoint rule. */
+/* Integrates to a strain in n steps of the midpoint rule; returns the stress. */
 static double integrate(struct rates *r, double strain, int n)
 {
     const double E = r->law->material.youngs_modulus, step = (strain - r->strain) / n;
     for (int k = 0; k < n; k++) {
         double growth, back[WB_LAW_MOST_BACKS];
         r->strain += step;
-        double over = fabs(distance_of(r)) - r->law->material.yield_stress - r->grown;
+        double over = fabs(effective_stress(r)) - r->law->material.yield_stress - r->grown;
         if (over <= 0.0)
             continue;
-        const double s = distance_of(r) > 0.0 ? 1.0 : -1.0;
+        const double s = effective_stress(r) > 0.0 ? 1.0 : -1.0;
         struct rates middle = *r;
         if (middle.accumulated == 0.0)
             middle.accumulated = r->accumulated = 1e-30;
@@ -146,9 +148,9 @@ static double integrate(struct rates *r, double strain, int n)
             const double dp = over / slope;
             if (half == 0) {
                 middle = *r;
-                move_by(&middle, s, 0.5 * dp, growth, back);
+                advance(&middle, s, 0.5 * dp, growth, back);
             } else {
-                move_by(r, s, dp, growth, back);
+                advance(r, s, dp, growth, back);
             }
         }
     }
@@ -171,7 +173,7 @@ static void vector_exponential_agrees_with_expm1(void **unused)
     assert_true(largest < 5e-16);
 }
 
-static void a_first_loading_is_the_virgin_curve_in_any_steps(void **unused)
+static void first_loading_follows_the_virgin_curve_for_any_step_size(void **unused)
 {
     (void)unused;
     for (int i = 0; i < LAWS; i++) {
@@ -191,7 +193,7 @@ static void a_first_loading_is_the_virgin_curve_in_any_steps(void **unused)
     }
 }
 
-static void chaboches_virgin_curve_is_the_closed_form(void **unused)
+static void virgin_curve_of_chaboche_agrees_with_the_closed_form(void **unused)
 {
     (void)unused;
     const struct wb_law law = law_of(0);
@@ -205,13 +207,12 @@ static void chaboches_virgin_curve_is_the_closed_form(void **unused)
     }
 }
 
-/* Arbitrary paths with reversals compared with the rate equations, whose error is of second order
- * in the step. */
+/* The difference from the rate equations must be small, and smaller with finer steps. */
 static void reversals_follow_the_rate_equations(void **unused)
 {
     (void)unused;
     static const double turns[] = {4e-3, -1e-3, 2e-3, -6e-3, 8e-3, 0.0};
-    for (int i = 0; i < RATED; i++) {
+    for (int i = 0; i < ONE_SURFACE; i++) {
         const struct wb_law law = law_of(i);
         double difference[2] = {0.0, 0.0};
         for (int fine = 0; fine < 2; fine++) {
@@ -224,13 +225,13 @@ static void reversals_follow_the_rate_equations(void **unused)
             }
             fibre_point_release(&p);
         }
-        /* Ludwik's law has an infinite initial slope. */
+        /* The tolerance is wider for Ludwik's law, whose initial slope is infinite. */
         assert_true(difference[1] < (law.form == WB_LAW_CHABOCHE ? 2e-5 : 1e-3) * WB_MPA);
         assert_true(difference[1] < 0.6 * difference[0]);
     }
 }
 
-static void tangents_are_slopes(void **unused)
+static void tangents_agree_with_finite_differences(void **unused)
 {
     (void)unused;
     uint64_t random = 11;
@@ -256,8 +257,7 @@ static void tangents_are_slopes(void **unused)
     }
 }
 
-/* With share 1 combined hardening is isotropic, with share 0 kinematic. */
-static void shares_of_ludwiks_hardening_have_their_ends(void **unused)
+static void ludwik_is_isotropic_at_share_1_and_kinematic_at_share_0(void **unused)
 {
     (void)unused;
     const struct wb_law growing = combined(1.0), moving = combined(0.0);
@@ -286,10 +286,10 @@ static void shares_of_ludwiks_hardening_have_their_ends(void **unused)
     fibre_point_release(&q);
 }
 
-/* One part between two strains: its limit a grows by h dp, h = share / (1 - share), so that after a
- * limit a and a range w it is a + h (w - 2 a) / (1 + h), the next stress; the limit is w / 2,
- * without further yielding. */
-static void a_part_whose_limit_grows_shakes_down(void **unused)
+/* A part is strained between +-w/2. In units of strain its yield limit a grows by h dp, with
+ * h = share / (1 - share). Each half cycle therefore takes a to a + h (w - 2 a) / (1 + h), the
+ * stress at its end over E. The sequence converges to w / 2, where yielding ends. */
+static void part_with_growing_limit_shakes_down(void **unused)
 {
     (void)unused;
     const double E = 3000.0 * WB_MPA, yields_at = 1e-3, strain = 4e-3, share = 0.2;
@@ -311,8 +311,8 @@ static void a_part_whose_limit_grows_shakes_down(void **unused)
     fibre_point_release(&p);
 }
 
-/* Each part alone, on arbitrary paths. */
-static void parts_whose_limits_grow_add_up(void **unused)
+/* On an arbitrary path, the moment of all parts is the sum of the moments of each part alone. */
+static void moments_of_parts_with_growing_limits_add_up(void **unused)
 {
     (void)unused;
     const struct wb_law all = growing_parts(0.2);
@@ -336,7 +336,7 @@ static void parts_whose_limits_grow_add_up(void **unused)
     fibre_point_release(&p);
 }
 
-static void parts_whose_limits_do_not_grow_are_kinematic(void **unused)
+static void parts_with_constant_limits_are_kinematic(void **unused)
 {
     (void)unused;
     const struct wb_law growing = growing_parts(0.0);
@@ -353,12 +353,8 @@ static void parts_whose_limits_do_not_grow_are_kinematic(void **unused)
     fibre_point_release(&same);
 }
 
-/* Stress between two limits with one saturating back stress and no growth: the plastic strain of a
- * cycle, by Lemaitre and Chaboche, Mechanics of Solid Materials, 5.4.4, is
- *
- *     1/gamma ln (((C/gamma)^2 - (least + sigma_Y)^2) / ((C/gamma)^2 - (most - sigma_Y)^2)).
- */
-static double hold_stress(struct fibre_point *p, double stress)
+/* Strains a section until it has this stress; returns the strain. */
+static double reach_stress(struct fibre_point *p, double stress)
 {
     double low = -0.1, high = 0.1;
     for (int i = 0; i < 60; i++) {
@@ -372,7 +368,13 @@ static double hold_stress(struct fibre_point *p, double stress)
     return high;
 }
 
-static void ratchetting_is_that_of_the_closed_form(void **unused)
+/* The stress is cycled between two limits, with one saturating back stress and no isotropic
+ * hardening. By Lemaitre and Chaboche, Mechanics of Solid Materials, 5.4.4, the plastic strain of a
+ * cycle is
+ *
+ *     1/gamma ln (((C/gamma)^2 - (least + sigma_Y)^2) / ((C/gamma)^2 - (most - sigma_Y)^2)).
+ */
+static void ratchetting_agrees_with_the_closed_form(void **unused)
 {
     (void)unused;
     const struct wb_law law = law_of(1);
@@ -381,18 +383,18 @@ static void ratchetting_is_that_of_the_closed_form(void **unused)
     const double least = -law.material.yield_stress - 0.5 * ratio;
     const double expected = log((1.0 - 0.5 * 0.5) / (1.0 - 0.8 * 0.8)) / law.backs[0].recovery;
     struct fibre_point p = make_point(&law, 4);
-    double before = hold_stress(&p, most);
+    double before = reach_stress(&p, most);
     for (int cycle = 0; cycle < 5; cycle++) {
-        (void)hold_stress(&p, least);
-        const double strain = hold_stress(&p, most);
+        (void)reach_stress(&p, least);
+        const double strain = reach_stress(&p, most);
         assert_close_relative(strain - before, expected, 1e-6);
         before = strain;
     }
     fibre_point_release(&p);
 }
 
-/* Between two strains the loop closes, produces no work and has the width given by saturation. */
-static void loops_close_and_dissipate_work(void **unused)
+/* Cycled between two curvatures, the loop closes and its work is not negative. */
+static void loops_close_and_dissipate_energy(void **unused)
 {
     (void)unused;
     for (int i = 0; i < LAWS; i++) {
@@ -412,7 +414,7 @@ static void loops_close_and_dissipate_work(void **unused)
                     M[1] = next;
                 }
             }
-            /* A surface that grows without limit ends up elastic. */
+            /* Without saturation of the isotropic hardening the cycles become elastic. */
             assert_true(work > (law.form == WB_LAW_CHABOCHE ? 1e-3 : -1e-12) * fabs(25.0 * last));
         }
         assert_close_relative(M[0], M[1], law.form == WB_LAW_CHABOCHE ? 1e-3 : 2e-2);
@@ -420,7 +422,7 @@ static void loops_close_and_dissipate_work(void **unused)
     }
 }
 
-static void vector_instructions_do_not_change_a_bit(void **unused)
+static void vector_instructions_give_identical_bits(void **unused)
 {
     (void)unused;
     for (int i = 0; i < LAWS; i++) {
@@ -429,7 +431,7 @@ static void vector_instructions_do_not_change_a_bit(void **unused)
     }
 }
 
-static void a_law_is_exchanged_for_one_of_its_kind(void **unused)
+static void law_can_be_replaced_by_a_compatible_one(void **unused)
 {
     (void)unused;
     const struct wb_law two = law_of(0), one = law_of(1), other = combined(0.3);
@@ -448,18 +450,18 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(vector_exponential_agrees_with_expm1),
-        cmocka_unit_test(a_first_loading_is_the_virgin_curve_in_any_steps),
-        cmocka_unit_test(chaboches_virgin_curve_is_the_closed_form),
+        cmocka_unit_test(first_loading_follows_the_virgin_curve_for_any_step_size),
+        cmocka_unit_test(virgin_curve_of_chaboche_agrees_with_the_closed_form),
         cmocka_unit_test(reversals_follow_the_rate_equations),
-        cmocka_unit_test(tangents_are_slopes),
-        cmocka_unit_test(shares_of_ludwiks_hardening_have_their_ends),
-        cmocka_unit_test(a_part_whose_limit_grows_shakes_down),
-        cmocka_unit_test(parts_whose_limits_grow_add_up),
-        cmocka_unit_test(parts_whose_limits_do_not_grow_are_kinematic),
-        cmocka_unit_test(ratchetting_is_that_of_the_closed_form),
-        cmocka_unit_test(loops_close_and_dissipate_work),
-        cmocka_unit_test(vector_instructions_do_not_change_a_bit),
-        cmocka_unit_test(a_law_is_exchanged_for_one_of_its_kind),
+        cmocka_unit_test(tangents_agree_with_finite_differences),
+        cmocka_unit_test(ludwik_is_isotropic_at_share_1_and_kinematic_at_share_0),
+        cmocka_unit_test(part_with_growing_limit_shakes_down),
+        cmocka_unit_test(moments_of_parts_with_growing_limits_add_up),
+        cmocka_unit_test(parts_with_constant_limits_are_kinematic),
+        cmocka_unit_test(ratchetting_agrees_with_the_closed_form),
+        cmocka_unit_test(loops_close_and_dissipate_energy),
+        cmocka_unit_test(vector_instructions_give_identical_bits),
+        cmocka_unit_test(law_can_be_replaced_by_a_compatible_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

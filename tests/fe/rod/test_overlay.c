@@ -209,7 +209,7 @@ static void no_closed_cycle_produces_work(void **unused)
     }
 }
 
-static void tangents_are_slopes(void **unused)
+static void tangents_agree_with_finite_differences(void **unused)
 {
     (void)unused;
     uint64_t random = 3;
@@ -268,7 +268,7 @@ int main(void)
         cmocka_unit_test(isotropic_hardening_yields_again_at_the_largest_moment),
         cmocka_unit_test(monotonic_loading_does_not_depend_on_the_rule),
         cmocka_unit_test(no_closed_cycle_produces_work),
-        cmocka_unit_test(tangents_are_slopes),
+        cmocka_unit_test(tangents_agree_with_finite_differences),
         cmocka_unit_test(vector_instructions_do_not_change_a_bit),
         cmocka_unit_test(an_overlay_is_replaced_by_one_with_at_most_as_many_parts),
     };

@@ -29,7 +29,7 @@ static struct wb_rod_fibre_state virgin(const struct wb_material *m)
     return (struct wb_rod_fibre_state){.yield = m->yield_stress};
 }
 
-static void without_shear_it_is_the_uniaxial_law(void **unused)
+static void response_without_shear_is_the_uniaxial_law(void **unused)
 {
     (void)unused;
     const struct wb_material *laws[] = {&copper, &prager, &perfect};
@@ -59,7 +59,7 @@ static void without_shear_it_is_the_uniaxial_law(void **unused)
 }
 
 /* Pure torsion: sqrt(3) t = sigma_Y + K (g_p / sqrt(3))^n. */
-static void pure_shear_follows_the_law_in_equivalents(void **unused)
+static void pure_shear_follows_the_law_in_equivalent_stress_and_strain(void **unused)
 {
     (void)unused;
     const double G = 68.2e9 / 2.0 / 1.34;
@@ -117,7 +117,7 @@ static void check_equations(const struct wb_material *m, const double strain[2],
     assert_true(l > 0.0);
 }
 
-static void the_return_mapping_satisfies_its_equations(void **unused)
+static void return_mapping_satisfies_backward_euler(void **unused)
 {
     (void)unused;
     const struct wb_material *laws[] = {&copper, &prager, &perfect};
@@ -145,7 +145,7 @@ static void the_return_mapping_satisfies_its_equations(void **unused)
     }
 }
 
-static void it_agrees_with_its_slow_twin(void **unused)
+static void response_agrees_with_its_slow_twin(void **unused)
 {
     (void)unused;
     const double exponents[] = {0.1, 0.31, 0.9, 1.0, 1.7};
@@ -170,11 +170,11 @@ static void it_agrees_with_its_slow_twin(void **unused)
             assert_close(a.D12, b.D12, 1e-7 * m.youngs_modulus);
         }
     }
-    print_message("against the slow twin: %.2g of the yield stress\n", worst);
+    print_message("largest difference from the slow twin: %.2g of the yield stress\n", worst);
     assert_true(worst < 1e-9);
 }
 
-static void the_tangent_is_the_derivative(void **unused)
+static void tangent_agrees_with_finite_differences(void **unused)
 {
     (void)unused;
     const struct wb_material *laws[] = {&copper, &prager, &perfect};
@@ -191,24 +191,24 @@ static void the_tangent_is_the_derivative(void **unused)
                                       0.03 * (test_random(&seed) - 0.5)};
             const double d = 1e-8;
             struct wb_rod_fibre_state after, ignored;
-            struct wb_rod_fibre_response r, side[4];
+            struct wb_rod_fibre_response r, near[4];
             respond(m, &table, strain, &state, &after, &r);
             for (int k = 0; k < 4; k++) {
                 double moved[2] = {strain[0], strain[1]};
                 moved[k / 2] += k % 2 == 0 ? d : -d;
-                respond(m, &table, moved, &state, &ignored, &side[k]);
+                respond(m, &table, moved, &state, &ignored, &near[k]);
             }
-            const bool one_side = side[0].yields == side[1].yields &&
-                                  side[2].yields == side[3].yields && side[0].yields == r.yields;
+            const bool same_branch = near[0].yields == near[1].yields &&
+                                     near[2].yields == near[3].yields && near[0].yields == r.yields;
             const double unit = 0.5 / d / m->youngs_modulus;
-            if (one_side && r.yields) {
-                worst = fmax(worst, fabs(unit * (side[0].axial - side[1].axial) -
+            if (same_branch && r.yields) {
+                worst = fmax(worst, fabs(unit * (near[0].axial - near[1].axial) -
                                          r.D11 / m->youngs_modulus));
-                worst = fmax(worst, fabs(unit * (side[0].shear - side[1].shear) -
+                worst = fmax(worst, fabs(unit * (near[0].shear - near[1].shear) -
                                          r.D12 / m->youngs_modulus));
-                worst = fmax(worst, fabs(unit * (side[2].axial - side[3].axial) -
+                worst = fmax(worst, fabs(unit * (near[2].axial - near[3].axial) -
                                          r.D12 / m->youngs_modulus));
-                worst = fmax(worst, fabs(unit * (side[2].shear - side[3].shear) -
+                worst = fmax(worst, fabs(unit * (near[2].shear - near[3].shear) -
                                          r.D22 / m->youngs_modulus));
                 checked++;
             }
@@ -216,28 +216,31 @@ static void the_tangent_is_the_derivative(void **unused)
                 state = after;
         }
     }
-    print_message("tangent against differences: %.2g of E (%d points)\n", worst, checked);
+    print_message(
+        "largest difference between tangent and finite differences: %.2g of E (%d points)\n", worst,
+        checked);
     assert_true(checked > 600);
     assert_true(worst < 2e-6);
 }
 
-/* ds = E (de - dl s/q), dt = G (dg - 3 dl t/q), dl from dq = H' dl: the rate equations in explicit
- * sub-steps, for perfect plasticity and Prager's law. */
-static void substep(const struct wb_material *m, int n, const double strain[2], double stress[2])
+/* Integrates the rate equations ds = E (de - dl s/q), dt = G (dg - 3 dl t/q), with dl from
+ * dq = H' dl, in explicit substeps, for perfect plasticity and Prager's law. */
+static void integrate_rates(const struct wb_material *m, int n, const double strain[2],
+                            double stress[2])
 {
     const double E = m->youngs_modulus, G = E / 2.0 / (1.0 + m->poissons_ratio);
     const double H = m->hardening == WB_HARDENING_KINEMATIC_LINEAR ? m->strength_coefficient : 0.0;
     const double de = strain[0] / n, dg = strain[1] / n;
     double s = 0.0, t = 0.0, back_s = 0.0, back_t = 0.0;
 
-    /* A bent path: all of the axial strain in the first half, then the shear. */
+    /* Non-proportional path: the axial strain in the first half, the shear in the second. */
     for (int i = 0; i < 2 * n; i++) {
         const double e = i < n ? de : 0.0, g = i < n ? 0.0 : dg;
         const double xs = s - back_s, xt = t - back_t, q = sqrt(xs * xs + 3.0 * xt * xt);
         double l = 0.0;
         if (q >= m->yield_stress) {
             const double a = xs / q, b = xt / q;
-            /* Includes a correction to the surface, from which explicit steps drift. */
+            /* The last term returns to the yield surface, from which explicit steps drift. */
             l = (a * E * e + 3.0 * b * G * g + (q - m->yield_stress)) /
                 (a * a * (E + H) + 3.0 * b * b * (3.0 * G + H));
             l = fmax(l, 0.0);
@@ -253,7 +256,7 @@ static void substep(const struct wb_material *m, int n, const double strain[2], 
     stress[1] = t;
 }
 
-static void small_steps_approach_the_rate_equations(void **unused)
+static void solution_converges_to_the_rate_equations(void **unused)
 {
     (void)unused;
     const struct wb_material *laws[] = {&perfect, &prager};
@@ -261,7 +264,7 @@ static void small_steps_approach_the_rate_equations(void **unused)
     for (size_t law = 0; law < 2; law++) {
         const struct wb_material *m = laws[law];
         double exact[2], error[2];
-        substep(m, 2000000, strain, exact);
+        integrate_rates(m, 2000000, strain, exact);
         if (law == 0)
             wb_hardening_tabulate(&table, m);
         for (int k = 0; k < 2; k++) {
@@ -275,10 +278,10 @@ static void small_steps_approach_the_rate_equations(void **unused)
             }
             error[k] = hypot(r.axial - exact[0], sqrt(3.0) * (r.shear - exact[1]));
         }
-        print_message("steps of the way / 20, / 40: error %.3g, %.3g of the yield stress\n",
+        print_message("error with 20 and 40 steps per strain: %.3g, %.3g of the yield stress\n",
                       error[0] / m->yield_stress, error[1] / m->yield_stress);
         assert_true(error[1] < 0.02 * m->yield_stress);
-        /* First order. */
+        /* The error is of first order in the step. */
         assert_close(error[0] / error[1], 2.0, 0.25);
     }
 }
@@ -297,12 +300,12 @@ static void non_finite_input_gives_non_finite_output(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_shear_it_is_the_uniaxial_law),
-        cmocka_unit_test(pure_shear_follows_the_law_in_equivalents),
-        cmocka_unit_test(the_return_mapping_satisfies_its_equations),
-        cmocka_unit_test(it_agrees_with_its_slow_twin),
-        cmocka_unit_test(the_tangent_is_the_derivative),
-        cmocka_unit_test(small_steps_approach_the_rate_equations),
+        cmocka_unit_test(response_without_shear_is_the_uniaxial_law),
+        cmocka_unit_test(pure_shear_follows_the_law_in_equivalent_stress_and_strain),
+        cmocka_unit_test(return_mapping_satisfies_backward_euler),
+        cmocka_unit_test(response_agrees_with_its_slow_twin),
+        cmocka_unit_test(tangent_agrees_with_finite_differences),
+        cmocka_unit_test(solution_converges_to_the_rate_equations),
         cmocka_unit_test(non_finite_input_gives_non_finite_output),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
 /* The section model outside the range of the paper's bundles: cycles of other packings, long and
- * short bundles, very little tape or friction; and the reports at its limits. */
+ * short bundles, thin tape, low friction, and states without equilibrium. */
 #include "fe/section/section_run.h"
 
 #include "base/units.h"
@@ -22,7 +22,7 @@ static void compute(void)
     assert_int_equal(wb_section_run(&run, &model, &settings), WB_OK);
 }
 
-/* A bundle without weight, with one loading to its largest deflection. */
+/* Reads a bundle, without weight, for one loading to its largest deflection. */
 static void begin(const char *name, int rows)
 {
     read_bundle(name);
@@ -37,7 +37,7 @@ static double last_force(void)
     return run.rows[run.n_rows - 1].force;
 }
 
-static void cycles_of_other_packings_balance_and_come_back(void **unused)
+static void cycles_of_other_packings_repeat_and_balance_energy(void **unused)
 {
     (void)unused;
     static const char *const names[] = {"7-type3-turned",  "7-type3-capped", "12-type3-circle",
@@ -71,9 +71,9 @@ static void cycles_of_other_packings_balance_and_come_back(void **unused)
     }
 }
 
-/* The weight bends a long bundle strongly. In one increment the trapezoidal rule would miss half of
- * its work, and a bundle of two metres would not converge. */
-static void weight_of_a_long_bundle_is_applied_in_parts(void **unused)
+/* The weight bends a long bundle strongly. If it were applied in one increment, the trapezoidal
+ * rule would miss half of its work, and a bundle of two metres would not converge. */
+static void weight_of_a_long_bundle_is_applied_in_increments(void **unused)
 {
     (void)unused;
     static const double lengths[] = {0.5, 2.0};
@@ -88,8 +88,8 @@ static void weight_of_a_long_bundle_is_applied_in_parts(void **unused)
                       run.imbalance);
         assert_true(run.converged);
         assert_true(run.imbalance < 2e-3);
-        /* At least half of the weight between clamp and strand, minus the part carried by
-         * bending. */
+        /* The vertical force that holds the tip at zero deflection; for a propped elastic
+         * cantilever it is 3/8 of the weight. */
         const double weight =
             WB_STANDARD_GRAVITY * lengths[i] *
             (wb_bundle_model_wire_mass(&model) + wb_bundle_model_tape_mass(&model));
@@ -97,7 +97,7 @@ static void weight_of_a_long_bundle_is_applied_in_parts(void **unused)
     }
 }
 
-static void very_little_tape_or_friction_equals_none(void **unused)
+static void vanishing_tape_or_friction_equals_none(void **unused)
 {
     (void)unused;
     static const char *const names[] = {"7-type3", "12-type3-circle"};
@@ -112,9 +112,9 @@ static void very_little_tape_or_friction_equals_none(void **unused)
 
         begin(names[i], 12);
         model.interface.friction.mu_static = model.interface.friction.mu_kinetic = 1e-9;
-        const double slight = last_force();
+        const double slippery = last_force();
         model.interface.friction.mu_static = model.interface.friction.mu_kinetic = 0.0;
-        assert_close_relative(slight, last_force(), 1e-6);
+        assert_close_relative(slippery, last_force(), 1e-6);
 
         begin(names[i], 12);
         model.interface.shear_stiffness = 1e12;
@@ -130,20 +130,21 @@ static void bend_radius_below_the_depth_is_reported(void **unused)
     begin("7-type3", 12);
     assert_true(last_force() > 2.0);
     assert_true(isnan(wb_section_run_folds(&run)));
-    /* 5 mm long: as long as thick. */
+    /* A length of 5 mm, about the diameter of the bundle. */
     model.length *= 5.0 / 114.0;
     model.run.deflection *= 5.0 / 114.0;
     last_force();
     const double folds = wb_section_run_folds(&run);
-    print_message("5 mm fold from %g mm on\n", folds * 1e3);
+    print_message("5 mm: the bend radius is below the depth from %g mm on\n", folds * 1e3);
     assert_true(folds > 1e-3 && folds <= model.run.deflection);
-    /* Half of the depth (three radii of a wire) times the largest curvature. */
+    /* Half the depth (three wire radii) times the largest curvature, which is about twice the
+     * tip's angle over the length. */
     assert_close_relative(run.rows[1].point.fold / run.rows[1].point.tip_angle,
                           3.0 * 0.7e-3 * 2.0 / model.length, 0.5);
 }
 
-/* Friction larger than the contact forces allow: no state is found, and none is reported. */
-static void a_run_that_finds_no_equilibrium_has_no_rows(void **unused)
+/* The friction coefficient is so large that not even row 0 converges. */
+static void run_without_equilibrium_has_no_rows(void **unused)
 {
     (void)unused;
     begin("19-type3", 12);
@@ -162,7 +163,7 @@ static void non_finite_states_do_not_converge(void **unused)
     struct wb_section_solver_point point;
     const struct wb_section_solver_settings settings = {.friction = 0.2};
 
-    /* At rest, where everything else is zero. */
+    /* Without load, where all other terms are zero. */
     read_bundle("7-type3");
     model.interface.shear_stiffness = (double)NAN;
     create(&settings);
@@ -183,11 +184,11 @@ static void non_finite_states_do_not_converge(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(cycles_of_other_packings_balance_and_come_back, release),
-        cmocka_unit_test_teardown(weight_of_a_long_bundle_is_applied_in_parts, release),
-        cmocka_unit_test_teardown(very_little_tape_or_friction_equals_none, release),
+        cmocka_unit_test_teardown(cycles_of_other_packings_repeat_and_balance_energy, release),
+        cmocka_unit_test_teardown(weight_of_a_long_bundle_is_applied_in_increments, release),
+        cmocka_unit_test_teardown(vanishing_tape_or_friction_equals_none, release),
         cmocka_unit_test_teardown(bend_radius_below_the_depth_is_reported, release),
-        cmocka_unit_test_teardown(a_run_that_finds_no_equilibrium_has_no_rows, release),
+        cmocka_unit_test_teardown(run_without_equilibrium_has_no_rows, release),
         TEST(non_finite_states_do_not_converge),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
