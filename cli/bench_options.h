@@ -1,4 +1,4 @@
-/* Options of the commands for the bench, its recordings and the virtual rig, as rows of settings.
+/* Options of the commands `stage`, `rig`, `record --virtual` and `replay`, as tables of settings.
  */
 #ifndef WB_CLI_BENCH_OPTIONS_H
 #define WB_CLI_BENCH_OPTIONS_H
@@ -14,13 +14,13 @@ struct wb_stage_options {
     struct wb_command_common common;
     const char *rig_path, *action, *value;
     struct wb_stage_job_request job;
-    double seconds;     /* averaging time of a check */
-    double tolerance;   /* fraction; 0: the rig's */
-    const char *masses; /* of a check's series, in g between commas; NULL: the rig's */
+    double seconds;     /* s, averaging time of `stage check` */
+    double tolerance;   /* fraction; 0: that of the rig file */
+    const char *masses; /* of `stage check`, in g, separated by commas; NULL: the rig file's */
 };
 
 struct wb_virtual_version {
-    int major, minor; /* of the motion capture's protocol */
+    int major, minor; /* of NatNet, the protocol of the motion capture */
 };
 
 /* Options of a virtual bench, shared by `rig` and `record --virtual`. */
@@ -34,7 +34,7 @@ struct wb_virtual_options {
 struct wb_rig_options {
     struct wb_command_common common;
     struct wb_virtual_options virtual;
-    const char *run; /* folder of the rig file */
+    const char *run; /* folder that receives the rig file */
 };
 
 struct wb_replay_options {
@@ -42,11 +42,12 @@ struct wb_replay_options {
     double rate; /* 0: as fast as possible */
 };
 
-/* `rig` has the rows of struct wb_rig_options beside those of `virtual`. */
+/* The command `rig` uses the tables _rig and _virtual together. */
 extern const struct wb_setting_table wb_bench_options_stage, wb_bench_options_rig,
     wb_bench_options_virtual, wb_bench_options_replay;
 
-/* Fills in the defaults; after parsing, sets the bench's settings from the options. */
+/* wb_bench_options_default() fills in the defaults; wb_bench_options_complete() must be called
+ * after parsing: it sets seed and protocol version in `bench`. */
 void wb_bench_options_default(struct wb_virtual_options *options);
 void wb_bench_options_complete(struct wb_virtual_options *options);
 

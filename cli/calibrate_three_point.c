@@ -54,9 +54,9 @@ static void print_text(const struct wb_three_point_calibration *c,
     printf("wire %s, three-point bending, span %g mm, %d of %d tests fitted%s\n", info->wire,
            info->length / WB_MM, c->n_fitted, c->n_members,
            info->is_simulation ? ", simulation" : "");
-    printf("rollers %g mm, nose %g mm, friction %g, compliance %g mm/N%s\n",
+    printf("roller radius %g mm, nose radius %g mm, friction %g, compliance %g mm/N%s\n",
            info->machine.roller_radius / WB_MM, c->bench.nose_radius / WB_MM, c->bench.friction,
-           c->bench.compliance / WB_MM, c->is_compliance_known ? "" : " (not known)");
+           c->bench.compliance / WB_MM, c->is_compliance_known ? "" : " (not known: assumed)");
     wb_print_quantities(properties, "friction and nose");
     if (!c->is_rigidity_identifiable)
         printf("EI at zero curvature cannot be determined from loading alone\n");

@@ -293,10 +293,10 @@ static void print_cycles(const struct wb_validate_result *r)
     }
     printf("  unloading      RMS %.3g, largest error %.3g%s\n", cycles->rms, cycles->largest_error,
            r->is_rule_untested ? "; the hardening rule of these properties is not tested" : "");
-    const double left = cycles->residual_measured, predicted = cycles->residual_computed;
-    if (isfinite(left))
+    const double measured = cycles->residual_measured, predicted = cycles->residual_computed;
+    if (isfinite(measured))
         printf("  residual deflection %.2f mm measured, %.2f mm predicted (%+.2f mm)\n",
-               left / WB_MM, predicted / WB_MM, (predicted - left) / WB_MM);
+               measured / WB_MM, predicted / WB_MM, (predicted - measured) / WB_MM);
     for (int i = 0; i < cycles->n_loops; i++) {
         const struct wb_validate_loop *const loop = &cycles->loops[i];
         printf("  cycle %-2d       dissipates %.3g mJ measured, %.3g mJ predicted (%+.1f %%)\n",

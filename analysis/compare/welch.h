@@ -16,7 +16,7 @@ struct wb_welch_group {
 };
 
 struct wb_welch {
-    double difference; /* mean of the second group less that of the first */
+    double difference; /* mean of the second group minus that of the first */
     double error;      /* standard error of it */
     double degrees;    /* of freedom */
     double low, high;  /* its interval of 1 - 2 alpha */

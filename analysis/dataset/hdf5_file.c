@@ -13,7 +13,7 @@ enum {
     GROWTH = 1 << 20 /* bytes by which a file grows in memory */
 };
 
-/* A text of variable length in UTF-8. */
+/* Creates the type of UTF-8 strings of variable length. */
 static hid_t make_text_type(void)
 {
     const hid_t type = H5Tcopy(H5T_C_S1);
@@ -24,7 +24,7 @@ static hid_t make_text_type(void)
     return type;
 }
 
-/* A scalar attribute of an object. */
+/* Adds a scalar attribute to an object. */
 static bool put_attribute(hid_t object, const char *name, hid_t type, const void *value)
 {
     const hid_t space = H5Screate(H5S_SCALAR);
@@ -43,7 +43,8 @@ static bool put_text_attribute(hid_t object, const char *name, const char *text)
     return good;
 }
 
-/* Storage of an array. An empty array cannot be chunked. */
+/* Properties of an array in the file: compressed in chunks, except if it is empty, which HDF5
+ * cannot chunk. */
 static hid_t make_storage(hsize_t rows)
 {
     const hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
@@ -96,8 +97,8 @@ static bool put_table(hid_t file, const struct wb_columns *table)
     return good;
 }
 
-/* Opens a file in memory; negative where this failed. After a failed write to a disk, HDF5 1.10
- * tries again at the end of the process and crashes; therefore it does not write to disks. */
+/* Creates a file in memory; negative on failure. HDF5 must not write to the disk itself: after a
+ * failed write, HDF5 1.10 tries again at the end of the process and crashes. */
 static hid_t make_file(void)
 {
     const hid_t storage = H5Pcreate(H5P_FILE_CREATE), access = H5Pcreate(H5P_FILE_ACCESS);
@@ -122,7 +123,7 @@ static bool put_all(hid_t file, const struct wb_columns *tables, int n, const ch
     return good && H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
 }
 
-/* The file's bytes, allocated; NULL where HDF5 cannot make them. */
+/* The bytes of the file, to be released with free(); NULL on failure. */
 static void *take_image(hid_t file, size_t *size)
 {
     const ssize_t found = H5Fget_file_image(file, NULL, 0);
@@ -138,7 +139,7 @@ static void *take_image(hid_t file, size_t *size)
 enum wb_status wb_hdf5_file_write(const char *path, const struct wb_columns *tables, int n,
                                   const char *source, bool is_virtual)
 {
-    /* Stops the library from printing error messages of its own. */
+    /* The library must not print error messages of its own. */
     H5E_auto2_t print;
     void *context;
     H5Eget_auto2(H5E_DEFAULT, &print, &context);

@@ -13,7 +13,7 @@
 #include "base/columns.h"
 #include "base/status.h"
 
-/* Writes n tables. The file is replaced atomically. WB_ERR_IO where it cannot be written.
+/* Writes n tables. The file is replaced atomically. WB_ERR_IO if it cannot be written.
  * `is_virtual` sets an attribute of that name to 1: the data come from the virtual rig. */
 WB_MUST_CHECK enum wb_status wb_hdf5_file_write(const char *path, const struct wb_columns *tables,
                                                 int n, const char *source, bool is_virtual);

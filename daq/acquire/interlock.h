@@ -31,7 +31,7 @@
 
 enum wb_interlock_reason {
     WB_INTERLOCK_NONE,
-    WB_INTERLOCK_FORCE,       /* the tension exceeds the force limit */
+    WB_INTERLOCK_FORCE,       /* |reading - tare| exceeds the force limit */
     WB_INTERLOCK_OVERLOAD,    /* the range of the load cell is exceeded */
     WB_INTERLOCK_UNIT,        /* the load cell's unit changed or contradicts the rig file */
     WB_INTERLOCK_TRAVEL,      /* the stage is beyond a travel limit */
@@ -60,9 +60,10 @@ struct wb_interlock_settings {
 };
 
 /* Fills the settings from the rig. A force limit of 0 means the cell's overload, a travel limit of
- * 0 the stage's travel. The allowed silence is divided by the time scale of a virtual rig, but is
- * at least WB_INTERLOCK_SILENCE_NS, and for the stage WB_INTERLOCK_STAGE_SILENCE_NS: three periods
- * of its status query, which is sent five times a second. */
+ * 0 the stage's travel. The allowed silence is divided by the time scale of a virtual rig; with a
+ * time scale above 1 it is at least WB_INTERLOCK_SILENCE_NS. For the stage it is always at least
+ * WB_INTERLOCK_STAGE_SILENCE_NS: three periods of its status query, which is sent five times a
+ * second. */
 void wb_interlock_default_settings(struct wb_interlock_settings *settings,
                                    const struct wb_rig *rig);
 #define WB_INTERLOCK_SILENCE_NS INT64_C(250000000)

@@ -19,7 +19,7 @@
 /* Rows per flush. */
 #define BATCH 5000
 
-/* Bytes of a file, mapped. */
+/* A file mapped into memory. */
 struct bytes {
     const uint8_t *at;
     size_t n;
@@ -28,16 +28,16 @@ struct bytes {
 static enum wb_status map(int descriptor, const char *path, struct bytes *bytes,
                           struct wb_reason *why)
 {
-    struct stat there;
+    struct stat info;
     *bytes = (struct bytes){(const uint8_t *)"", 0};
-    if (fstat(descriptor, &there) != 0)
+    if (fstat(descriptor, &info) != 0)
         return wb_fail_to(why, WB_ERR_IO, "cannot read '%s': %s", path, strerror(errno));
-    if (there.st_size == 0)
+    if (info.st_size == 0)
         return WB_OK;
-    void *const at = mmap(NULL, (size_t)there.st_size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+    void *const at = mmap(NULL, (size_t)info.st_size, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (at == MAP_FAILED)
         return wb_fail_to(why, WB_ERR_IO, "cannot read '%s': %s", path, strerror(errno));
-    *bytes = (struct bytes){at, (size_t)there.st_size};
+    *bytes = (struct bytes){at, (size_t)info.st_size};
     return WB_OK;
 }
 
@@ -56,7 +56,7 @@ struct recovery {
     struct wb_recover *found;
     struct wb_reason *why;
     uint64_t unflushed;
-    int64_t last; /* the number of the row before */
+    int64_t last; /* number of the previous row */
 };
 
 /* --- reading the source --- */
@@ -162,7 +162,7 @@ static enum wb_status take_row(void *context, const struct wb_recording_row *row
                           (!found->is_protected && found->is_end_known);
     if (row->kind == WB_RECORDING_CHUNK)
         note_chunk(found, row);
-    /* Closing the new file writes its own end. */
+    /* Not copied: closing the new file writes these rows again. */
     if (is_key(row, WB_RECORDING_DIGEST) || is_key(row, "closed"))
         return WB_OK;
     WB_TRY(wb_recording_append_row(r->to, row->kind, row->values));
@@ -184,14 +184,13 @@ static enum wb_status take_salvage(struct recovery *r, struct wb_recording_salva
     return WB_OK;
 }
 
-/* Writes bytes to a file. */
 static enum wb_status copy(const struct bytes *bytes, const char *path)
 {
     return wb_file_write(path, bytes->at, bytes->n);
 }
 
-/* Schema 1: rows cannot be identified by their checksum; takes the rows that SQLite reads from a
- * copy. */
+/* Takes the rows of schema 1, which have no checksum that identifies them in a damaged file: SQLite
+ * reads them from a copy. */
 static enum wb_status take_old(struct recovery *r)
 {
     char path[WB_PATH], log[WB_PATH + 8], index[WB_PATH + 8];
@@ -256,7 +255,7 @@ static enum wb_status write_to(struct recovery *r, const char *path)
     return status != WB_OK ? status : closed;
 }
 
-/* Writes to a temporary name; the file gets its name when it is complete. */
+/* Writes the new file under a temporary name; it gets its final name when it is complete. */
 static enum wb_status write_whole(struct recovery *r, const char *to)
 {
     static const char *const endings[] = {"", "-wal", "-shm"};
@@ -343,8 +342,8 @@ void wb_recover_missing(const struct wb_recover *found, char *text, size_t size)
                        s->missing + s->chunks);
     }
     if (!found->is_end_known)
-        ADD_CLAUSE("possibly the end, because the recording was not closed");
+        ADD_CLAUSE("possibly the end: the row that closing writes is missing");
     if (found->is_log_missing && !found->is_end_known)
         ADD_CLAUSE("the write-ahead log (-wal)");
-#undef SAY
+#undef ADD_CLAUSE
 }

@@ -7,10 +7,10 @@
  * range. The writer assigns sequence numbers, also to dropped chunks, so that a drop is visible as
  * a gap. Events and meta values are queued even if the queue is full.
  *
- * Entries stay in memory until they are flushed. If a write or flush fails (a full disk, a cable),
- * the thread repeats all of them five times a second until it succeeds: nothing is lost while the
- * queue has space. After a failed sync, all of its data are written again. wb_writer_state() gives
- * the delay of the disk.
+ * Entries stay in memory until they are flushed. If a write or flush fails (disk full, cable
+ * unplugged), the thread retries all of them five times a second until it succeeds: nothing is lost
+ * while the queue has space. After a failed sync, the data of that sync are written again.
+ * wb_writer_state() reports how far the disk lags behind.
  *
  * All functions must be called by one thread; the recording belongs to the writer until it
  * finishes.
@@ -27,22 +27,22 @@
 
 struct wb_writer; /* opaque */
 
-/* Number of streams of a recording at most; ids are 0 to WB_WRITER_STREAMS - 1. */
+/* Largest number of streams in a recording; their ids are 0 to WB_WRITER_STREAMS - 1. */
 #define WB_WRITER_STREAMS 16
 
 struct wb_writer_settings {
-    size_t capacity_bytes;     /* payload bytes that may wait; default 64 MiB */
-    size_t capacity_entries;   /* entries that may wait; default 262144 */
+    size_t capacity_bytes;     /* largest payload in the queue; default 64 MiB */
+    size_t capacity_entries;   /* most entries in the queue; default 262144 */
     int64_t flush_interval_ns; /* period of the flushes; default 100 ms */
-    int64_t patience_ns; /* time that finishing waits for a failing disk; default 10 min. Ctrl-C
-                            ends the wait */
-    void (*before_write)(void *context); /* called by the thread before each batch, for tests that
-                                            stall it; NULL (default): none */
+    int64_t patience_ns; /* longest wait of wb_writer_finish() for a failing disk; default 10 min.
+                            Ctrl-C ends the wait */
+    void (*before_write)(void *context); /* called by the thread before each batch, so that tests
+                                            can stall it; NULL (default): none */
     void *context;
 };
 
 struct wb_writer_counts {
-    uint64_t chunks, bytes; /* accepted */
+    uint64_t chunks, bytes; /* accepted into the queue */
     uint64_t dropped_chunks, dropped_bytes, dropped_probes;
     uint64_t most_waiting_bytes; /* largest size of the queue so far */
 };
@@ -72,7 +72,7 @@ bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_n
 /* Number of chunks of a stream dropped so far; stream < 0: of all streams. */
 uint64_t wb_writer_drops(const struct wb_writer *writer, int stream);
 
-/* Delay of the disk. */
+/* State of the disk and the queue. */
 struct wb_writer_state {
     enum wb_status failing; /* status of the last attempt to write */
     int64_t lag_ns;         /* age of the oldest entry that is not on the disk; 0: none */
@@ -84,14 +84,14 @@ void wb_writer_state(const struct wb_writer *writer, struct wb_writer_state *sta
  * should then end the test. */
 WB_MUST_CHECK enum wb_status wb_writer_status(const struct wb_writer *writer);
 
-/* Must be called in each step of the loop. Writes due entries in virtual time (base/timing.h),
- * where the writer has no thread so that results do not depend on the machine; otherwise does
- * nothing. */
+/* Must be called in each step of the loop. In virtual time (base/timing.h) the writer has no
+ * thread, so that results do not depend on the machine; this function then writes the entries that
+ * are due. Otherwise it does nothing. */
 void wb_writer_tick(struct wb_writer *writer);
 
 /* Writes all waiting entries, ends the thread, closes the recording and frees the writer. If the
  * disk fails, warns and waits up to patience_ns. WB_OK: the recording contains all accepted
- * entries, also after a temporary failure of the disk. Accepts NULL (WB_OK). */
+ * entries, even after a temporary failure of the disk. Accepts NULL (WB_OK). */
 WB_MUST_CHECK enum wb_status wb_writer_finish(struct wb_writer *writer);
 
 #endif

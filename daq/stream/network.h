@@ -1,4 +1,4 @@
-/* The network interfaces of this computer, and the one that routes to a server. */
+/* The network interfaces of this computer, and the interface through which a server is reached. */
 #ifndef WB_DAQ_STREAM_NETWORK_H
 #define WB_DAQ_STREAM_NETWORK_H
 
@@ -12,12 +12,12 @@ struct wb_network_card {
     bool is_loopback;
 };
 
-/* Lists the interfaces that are up and have an IPv4 address, at most `most`. Returns their number.
- */
+/* Writes the interfaces that are up and have an IPv4 address into `cards`, which has space for
+ * `most`. Returns the number written; 0 if the system cannot list them. */
 size_t wb_network_cards(struct wb_network_card *cards, size_t most);
 
-/* Finds the interface that routes to the server of an address `udp:HOST:PORT...`, without sending
- * anything. False: another kind of address, an unknown host, or no route. */
+/* Finds the interface through which the server of an address `udp:HOST:PORT...` is reached. Sends
+ * no packet to that server. False: not an address of this form, unknown host, or no route. */
 bool wb_network_towards(const char *address, struct wb_network_card *card);
 
 #endif

@@ -8,7 +8,7 @@
 #define WB_LOG_DOMAIN "vtk"
 
 enum {
-    HEXAHEDRON = 12, /* VTK's numbers */
+    HEXAHEDRON = 12, /* VTK cell types */
     QUAD = 9
 };
 
@@ -17,7 +17,7 @@ struct state {
     double deflection;
 };
 
-/* --- the arrays' numbers --- */
+/* --- values of the arrays in the file, by index --- */
 
 static const struct wb_bundle_fields *fields_of(const void *state)
 {
@@ -60,11 +60,12 @@ static double position(const void *state, size_t i)
 static double connectivity(const void *state, size_t i)
 {
     const struct wb_bundle_fields *const f = fields_of(state);
-    const size_t of_hexahedra = 8 * (size_t)f->n_hexahedra, k = i - of_hexahedra;
-    return i < of_hexahedra ? f->hexahedron[i / 8][i % 8] : f->quad[k / 4][k % 4];
+    const size_t hexahedra = 8 * (size_t)f->n_hexahedra, k = i - hexahedra;
+    return i < hexahedra ? f->hexahedron[i / 8][i % 8] : f->quad[k / 4][k % 4];
 }
 
-static double end(const void *state, size_t i)
+/* VTK's `offsets`: where the entries of cell i end in `connectivity`. */
+static double offset(const void *state, size_t i)
 {
     const size_t hexahedra = (size_t)fields_of(state)->n_hexahedra;
     return (double)(i < hexahedra ? 8 * (i + 1) : 8 * hexahedra + 4 * (i + 1 - hexahedra));
@@ -93,7 +94,7 @@ enum wb_status wb_bundle_vtk_write(const char *path, const struct wb_bundle_fiel
         {WB_VTK_FILE_POSITIONS, WB_VTK_FILE_FLOAT32, "position_mm", vector, 3 * points, position},
         {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_INT32, "connectivity", NULL, 8 * hexahedra + 4 * quads,
          connectivity},
-        {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_INT32, "offsets", NULL, cells, end},
+        {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_INT32, "offsets", NULL, cells, offset},
         {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_UINT8, "types", NULL, cells, type},
     };
     const struct state state = {fields, at_deflection};

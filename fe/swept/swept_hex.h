@@ -4,9 +4,9 @@
  * strain is integrated in time, so rigid motions cause no stress in any number of steps. There are
  * two formulations:
  *
- * - four points (2x2x1, the default): the axial strain and the two shears with the axis are taken
- *   at 2 x 2 points, each with its own plastic history; the strains within the section are taken at
- *   the centre. One hourglass vector remains, that of the section.
+ * - four points (2x2x1, the default): the axial strain and the two transverse shear strains are
+ *   evaluated at 2 x 2 points, each with its own plastic history; the strains within the section
+ *   are evaluated at the centre. One hourglass vector remains, that of the section.
  * - one point: mean gradients (Flanagan and Belytschko 1981), four hourglass vectors.
  *
  * The hourglass stiffness is elastic. Plastic bending is accurate with a few elements per section
@@ -41,13 +41,14 @@ enum wb_swept_hex_formulation {
 
 struct wb_swept_hex_model {
     const struct wb_swept_section *section; /* borrowed; must outlive the hex */
-    struct wb_material material;            /* with isotropic hardening or none */
+    struct wb_material material;            /* isotropic or no hardening */
     int n_elements;                         /* along the axis */
     double element_length;                  /* m */
     enum wb_swept_hex_formulation formulation;
-    struct wb_swept_range counted; /* elements in sums and the plastic work; all are computed */
-    double hourglass; /* coefficient; 0: 0.05. With one point, 1 gives the bending fields of an
-                         element their elastic stiffness */
+    struct wb_swept_range counted; /* elements that count in sums and plastic work; forces are
+                                      computed for all */
+    double hourglass; /* coefficient; 0: the default, 0.05. With one point, 1 gives the bending
+                         modes of an element their elastic stiffness */
     bool double_precision;
     enum wb_swept_instructions instructions;
 };
@@ -55,12 +56,12 @@ struct wb_swept_hex_model {
 struct wb_swept_hex_fields {
     const double *position;
     void *force;        /* float, or double in double precision */
-    const double *soon; /* NULL, or a field that the caller reads next, block by block, such as
-                           velocities: it is prefetched into the cache */
+    const double *soon; /* NULL, or a field that the caller reads next, such as velocities: it is
+                           prefetched into the cache, block by block */
 };
 
 struct wb_swept_hex_sums {
-    double stored, artificial; /* J: elastic, and of the hourglass stiffness */
+    double stored, artificial; /* J: elastic energy, and that of the hourglass stiffness */
     double largest_strain;     /* largest magnitude of a component of Green's strain */
     long long beyond_limit;    /* number of elements beyond the strain limit, or not finite */
 };
@@ -77,14 +78,14 @@ void wb_swept_hex_destroy(struct wb_swept_hex *hex);
 const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_hex *hex);
 struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex);
 int wb_swept_hex_blocks(const struct wb_swept_hex *hex); /* of WB_SWEPT_LANES stations */
-/* Name of the best instruction set that this processor has. */
+/* Name of the best instruction set that this processor and this build have. */
 const char *wb_swept_hex_best_instructions(void);
 
-/* Stiffness of the section's hourglass vector, N/m, and of the three axial ones, xi, eta, xi eta,
- * which are 0 for four points. */
+/* Stiffnesses of the four hourglass vectors of an element, N/m: that of the section, then the axial
+ * ones, xi, eta and xi eta, which are 0 with four points. */
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4]);
 
-/* One wire's virgin histories. The hex must outlive the state. */
+/* Creates the state of one wire without plastic strain. The hex must outlive the state. */
 struct wb_swept_hex_state *wb_swept_hex_state_create(const struct wb_swept_hex *hex);
 void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
 
@@ -93,22 +94,22 @@ void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
 
 /* Computes the forces on the nodes (negative derivatives of the energy) at the stations of blocks
  * `first` to `end` - 1, and updates the plastic histories there to the current positions. Forces on
- * nodes before wb_swept_hex_first_added() are overwritten; forces on nodes from there on, which
- * include the section's outline, are added to those of contact. The blocks of a step are computed
- * in order, each once, in one call or several: the forces of a block are complete after its call,
- * and its positions are not read again. `sums`, if not NULL, are added to. Threads may work on
- * different states. */
+ * the section's nodes before wb_swept_hex_first_added() are overwritten. The nodes from there on
+ * include the whole outline and may have contact forces, to which the forces are added. The blocks
+ * of a step must be computed in order, each once, in one call or several: after its call the forces
+ * of a block are complete, and its positions are not read again. `sums` (NULL: none) is increased
+ * by the sums of these blocks. Threads may work on different states. */
 int wb_swept_hex_first_added(const struct wb_swept_hex *hex);
 void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
                              const struct wb_swept_hex_fields *fields, int first, int end,
                              struct wb_swept_hex_sums *sums);
 
-/* Plastic work so far, hardening included, J. Costs as much as ten steps. */
+/* Plastic work so far, including hardening, J. Takes as long as ten steps. */
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);
 
-/* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not pi d^2 /
- * 4: with four points 1.2 % smaller for 4 elements, 0.5 % for 12, 0.1 % for 84; with one point 17,
- * 4.8 and 0.6 % larger. The caller corrects the masses for that. */
+/* Scales the mesh of a circular section so that its second moment of area is pi d^4 / 64. With 4,
+ * 12 and 84 elements its area is then 1.2, 0.5 and 0.1 % smaller than pi d^2 / 4 with four points,
+ * and 17, 4.8 and 0.6 % larger with one point. The caller must correct the masses for this. */
 void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
                              enum wb_swept_hex_formulation formulation,
                              const struct wb_material *material);

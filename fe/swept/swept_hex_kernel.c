@@ -6,9 +6,9 @@
  *
  *     F1(q) = sum N_a(q) d_a / h,  F2 = 1/2 sum B_ya s_a,  F3 = 1/2 sum B_za s_a,
  *
- * where B are mean gradients of the section's quadrilateral, which depend only on the diagonals s_2
- * - s_0 and s_3 - s_1. E are Green's strains of F1(mean), F2 and F3; L = E - E^2 + 4/3 diag(E_ii^3)
- *   approximates the logarithmic strain. With four points, in the section,
+ * where B are mean gradients of the section's quadrilateral, which depend only on its diagonals
+ * (s_2 - s_0) and (s_3 - s_1). E are Green's strains of F1(mean), F2 and F3. The logarithmic strain
+ * is approximated by L = E - E^2 + 4/3 diag(E_ii^3). With four points, in the section,
  *
  *     L(q) = L + (l(E11(q)) - l(E11)) diag(1, -1/2, -1/2) + (E12(q) - E12, E13(q) - E13),
  *
@@ -17,10 +17,12 @@
  *
  *     1/2 kappa V (tr L)^2 + mu V sum_q w_q |dev L(q) - Ep(q)|^2 + hourglass,
  *
- * and forces are its derivatives, exactly. With T = dW/dL, the stress conjugate to E is S = T - T E
- * - E T + 4 diag(E_ii^2 T_ii). Hourglass energies are 1/2 k |q|^2 of vectors q = sum gamma_a x_a,
- *   which vanish for linear fields and rotate with the element (D. P. Flanagan, T. Belytschko,
- *   IJNME 17 (1981) 679).
+ * and forces are exactly its derivatives. With T = dW/dL, the stress conjugate to E is
+ *
+ *     S = T - T E - E T + 4 diag(E_ii^2 T_ii).
+ *
+ * Hourglass energies are 1/2 k |q|^2 of vectors q = sum gamma_a x_a, which vanish for linear fields
+ * and rotate with the element (D. P. Flanagan, T. Belytschko, IJNME 17 (1981) 679).
  *
  * All this is invariant to rotations of the frame. Each section therefore has its own frame; s and
  * d minus its rigid motion are computed in double and rotated into it: F is 1 + H with H of the

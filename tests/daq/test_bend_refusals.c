@@ -21,7 +21,7 @@ static void assert_refused(struct fixture *fixture, const char *words, bool reco
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_int_equal(result.end, WB_SEQUENCE_FAILED);
     if (!strstr(result.text, words))
-        fail_msg("'%s' does not say '%s'", result.text, words);
+        fail_msg("'%s' does not contain '%s'", result.text, words);
     assert_false(result.started);
     assert_int_equal(result.recorded, recorded);
     assert_int_equal(access(fixture->output, F_OK) == 0, recorded);
@@ -166,7 +166,7 @@ static void assert_not_opened(struct fixture *fixture, enum wb_status expected, 
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), expected);
     assert_null(test);
     if (!strstr(fixture->errors, words))
-        fail_msg("'%s' does not say '%s'", fixture->errors, words);
+        fail_msg("'%s' does not contain '%s'", fixture->errors, words);
     /* One message, no more. */
     assert_ptr_equal(strchr(fixture->errors, '\n'), fixture->errors + strlen(fixture->errors) - 1);
 }

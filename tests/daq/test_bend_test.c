@@ -327,7 +327,7 @@ static void overload_unit_change_and_alarm_hold_at_their_arrival(void **state)
         assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
         assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
         if (!strstr(result.text, words[i]))
-            fail_msg("'%s' does not say '%s'", result.text, words[i]);
+            fail_msg("'%s' does not contain '%s'", result.text, words[i]);
         assert_true(result.standing);
         assert_true(bench->limit_sent_ns != 0);
         assert_held_at(fixture, bench->limit_sent_ns + WB_SIM_PORT_DELAY_NS);

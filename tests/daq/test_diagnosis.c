@@ -19,7 +19,7 @@ static void assert_stage(const char *bytes, const char *words)
     strcpy(rig.stage.protocol, "grbl");
     wb_diagnosis_stage(&stage, &rig, text);
     if (!strstr(text, words))
-        fail_msg("of '%s': '%s' does not say '%s'", bytes, text, words);
+        fail_msg("of '%s': '%s' does not contain '%s'", bytes, text, words);
 }
 
 static void assert_load(const char *bytes, const char *stage_bytes, const char *words)
@@ -27,7 +27,7 @@ static void assert_load(const char *bytes, const char *stage_bytes, const char *
     const struct wb_diagnosis load = heard(bytes), stage = heard(stage_bytes);
     wb_diagnosis_load(&load, &stage, &rig, text);
     if (!strstr(text, words))
-        fail_msg("of '%s': '%s' does not say '%s'", bytes, text, words);
+        fail_msg("of '%s': '%s' does not contain '%s'", bytes, text, words);
 }
 
 static const char readings[] = ".3 g\r\n   12.34 g\r\n   12.35 g\r\nST,+00018.27  g\r\n";

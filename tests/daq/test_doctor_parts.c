@@ -22,7 +22,7 @@
 static const struct wb_specimen specimen = {
     .length = 0.1, .n_markers = N, .markers = {0.0, 0.02, 0.045, 0.07, 0.1}};
 
-/* The wire along z, counted backwards, with marker `missing` not there; y upwards. */
+/* A wire along z with its markers in reverse order and without marker `missing`; y is up. */
 static void fill(struct wb_mocap_frame *frame, int missing)
 {
     memset(frame, 0, sizeof *frame);

@@ -59,7 +59,7 @@ static void exclusion_needs_a_person_and_a_reason(void **state)
         struct wb_reason why = {.text = ""};
         assert_int_equal(wb_index_read(&index, write_index(bad[i][0]), &why), WB_ERR_FORMAT);
         if (!strstr(why.text, bad[i][1]))
-            fail_msg("'%s' does not say '%s'", why.text, bad[i][1]);
+            fail_msg("'%s' does not contain '%s'", why.text, bad[i][1]);
     }
 }
 

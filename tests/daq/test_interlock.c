@@ -1,4 +1,4 @@
-/* The interlock's decisions and the stop that follows, without any port or clock. */
+/* Decisions of the interlock, and the stop sequence, without ports and clocks. */
 #include "base/units.h"
 #include "daq/acquire/interlock.h"
 #include "tests/check.h"
@@ -44,7 +44,7 @@ static void force_beyond_the_limit_trips_once(void **state)
     assert_int_equal(interlock.t_ns, 12 * S);
 }
 
-static void force_limit_is_on_the_tared_reading_of_either_sign(void **state)
+static void force_limit_applies_to_the_tared_reading_of_either_sign(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -56,7 +56,7 @@ static void force_limit_is_on_the_tared_reading_of_either_sign(void **state)
     assert_int_equal(interlock.reason, WB_INTERLOCK_FORCE);
 }
 
-static void overload_is_on_the_reading_with_its_tare(void **state)
+static void overload_limit_applies_to_the_reading_including_tare(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -67,7 +67,7 @@ static void overload_is_on_the_reading_with_its_tare(void **state)
     assert_int_equal(interlock.reason, WB_INTERLOCK_OVERLOAD);
 }
 
-static void overload_reported_by_the_cell_trips_without_a_number(void **state)
+static void overload_reported_by_the_cell_trips_without_a_force_value(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -110,7 +110,7 @@ static void contradicting_unit_trips_except_during_release(void **state)
     assert_int_equal(interlock.reason, WB_INTERLOCK_UNIT);
 }
 
-static void travel_is_counted_from_the_start_and_downwards(void **state)
+static void travel_is_measured_downwards_from_the_start(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -127,13 +127,13 @@ static void travel_is_counted_from_the_start_and_downwards(void **state)
     interlock = armed();
     interlock.settings.down = -1;
     report.position = 0.3011;
-    assert_true(wb_interlock_stage(&interlock, &report)); /* above the start */
+    assert_true(wb_interlock_stage(&interlock, &report)); /* too far above the start */
     interlock = armed();
     report.position = (double)NAN;
     assert_false(wb_interlock_stage(&interlock, &report));
 }
 
-static void alarm_and_unasked_hold_trip(void **state)
+static void alarm_and_unrequested_hold_trip(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
@@ -179,7 +179,7 @@ static void stalls_up_to_5_s_do_not_count_as_silence(void **state)
     wb_interlock_discount(&interlock, 2 * S);
     assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 13 * S - 1));
     assert_int_equal(wb_interlock_deadline(&interlock), 13 * S);
-    /* No more than 5 s of one silence, */
+    /* At most 5 s of stalls are excluded between two samples. */
     wb_interlock_discount(&interlock, 20 * S);
     assert_int_equal(wb_interlock_deadline(&interlock), 16 * S);
     wb_interlock_discount(&interlock, 20 * S);
@@ -187,7 +187,7 @@ static void stalls_up_to_5_s_do_not_count_as_silence(void **state)
     wb_interlock_tick(&interlock, 16 * S);
     assert_true(interlock.lost[WB_ROLE_LOAD] && interlock.lost[WB_ROLE_STAGE]);
     assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 17 * S));
-    /* and of the next one again. */
+    /* After a sample, stalls are excluded again. */
     const struct wb_load_sample sample = {.t_ns = 20 * S, .valid = true};
     wb_interlock_load(&interlock, &sample);
     wb_interlock_discount(&interlock, S);
@@ -238,11 +238,11 @@ static void defaults_come_from_the_rig(void **state)
     assert_int_equal(settings.down, -1);
     assert_int_equal(settings.stream_lost_ns[WB_ROLE_LOAD], 400 * MS);
     assert_int_equal(settings.stream_lost_ns[WB_ROLE_STAGE], 600 * MS);
-    rig.limits.stream_lost = 1.0; /* 50 ms would be the scheduler's, not the instruments' */
+    rig.limits.stream_lost = 1.0; /* scaled: 50 ms, as short as scheduling delays */
     wb_interlock_default_settings(&settings, &rig);
     assert_int_equal(settings.stream_lost_ns[WB_ROLE_MOCAP], 250 * MS);
     rig.time_scale = 1.0;
-    rig.limits.stream_lost = 0.1; /* on a real bench it is what the rig file says */
+    rig.limits.stream_lost = 0.1; /* not scaled: no minimum */
     wb_interlock_default_settings(&settings, &rig);
     assert_int_equal(settings.stream_lost_ns[WB_ROLE_MOCAP], 100 * MS);
     rig.limits.force = 0.2;
@@ -253,9 +253,9 @@ static void defaults_come_from_the_rig(void **state)
     assert_close(settings.travel, 0.05, 0.0);
 }
 
-/* --- the stop --- */
+/* --- stop sequence --- */
 
-static void give(struct wb_stop *stop, enum wb_stage_state state, int64_t t_ns)
+static void report_state(struct wb_stop *stop, enum wb_stage_state state, int64_t t_ns)
 {
     const struct wb_stage_report report = {.t_ns = t_ns, .state = state};
     wb_stop_report(stop, &report);
@@ -268,9 +268,9 @@ static void hold_is_confirmed_by_its_report(void **state)
     wb_stop_begin(&stop, S);
     assert_int_equal(wb_stop_tick(&stop, S), WB_STOP_DO_ASK);
     assert_int_equal(wb_stop_tick(&stop, S + MS), WB_STOP_DO_NOTHING);
-    give(&stop, WB_STAGE_JOG, S + 20 * MS);
+    report_state(&stop, WB_STAGE_JOG, S + 20 * MS);
     assert_false(wb_stop_over(&stop));
-    give(&stop, WB_STAGE_HOLD, S + 80 * MS);
+    report_state(&stop, WB_STAGE_HOLD, S + 80 * MS);
     assert_int_equal(stop.state, WB_STOP_STANDING);
     assert_int_equal(stop.confirmed_ns, S + 80 * MS);
     assert_int_equal(wb_stop_deadline(&stop), INT64_MAX);
@@ -281,12 +281,12 @@ static void one_idle_report_may_be_older_than_the_hold(void **state)
     (void)state;
     struct wb_stop stop;
     wb_stop_begin(&stop, S);
-    give(&stop, WB_STAGE_IDLE, S + MS);
+    report_state(&stop, WB_STAGE_IDLE, S + MS);
     assert_false(wb_stop_over(&stop));
-    give(&stop, WB_STAGE_JOG, S + 2 * MS);
-    give(&stop, WB_STAGE_IDLE, S + 60 * MS);
+    report_state(&stop, WB_STAGE_JOG, S + 2 * MS);
+    report_state(&stop, WB_STAGE_IDLE, S + 60 * MS);
     assert_false(wb_stop_over(&stop));
-    give(&stop, WB_STAGE_IDLE, S + 120 * MS);
+    report_state(&stop, WB_STAGE_IDLE, S + 120 * MS);
     assert_int_equal(stop.state, WB_STOP_STANDING);
 }
 
@@ -303,7 +303,7 @@ static void unconfirmed_hold_is_followed_by_a_soft_reset(void **state)
     assert_int_equal(stop.state, WB_STOP_HOLDING);
     assert_int_equal(wb_stop_tick(&stop, t_ns), WB_STOP_DO_RESET);
     assert_int_equal(stop.reset_ns, S + 500 * MS);
-    give(&stop, WB_STAGE_ALARM, S + 600 * MS);
+    report_state(&stop, WB_STAGE_ALARM, S + 600 * MS);
     assert_int_equal(stop.state, WB_STOP_STANDING);
     assert_true(stop.reset_ns != 0);
 }
@@ -325,14 +325,14 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stalls_up_to_5_s_do_not_count_as_silence),
         cmocka_unit_test(force_beyond_the_limit_trips_once),
-        cmocka_unit_test(force_limit_is_on_the_tared_reading_of_either_sign),
-        cmocka_unit_test(overload_is_on_the_reading_with_its_tare),
-        cmocka_unit_test(overload_reported_by_the_cell_trips_without_a_number),
+        cmocka_unit_test(force_limit_applies_to_the_tared_reading_of_either_sign),
+        cmocka_unit_test(overload_limit_applies_to_the_reading_including_tare),
+        cmocka_unit_test(overload_reported_by_the_cell_trips_without_a_force_value),
         cmocka_unit_test(reading_that_is_not_a_number_trips),
         cmocka_unit_test(unit_change_trips),
         cmocka_unit_test(contradicting_unit_trips_except_during_release),
-        cmocka_unit_test(travel_is_counted_from_the_start_and_downwards),
-        cmocka_unit_test(alarm_and_unasked_hold_trip),
+        cmocka_unit_test(travel_is_measured_downwards_from_the_start),
+        cmocka_unit_test(alarm_and_unrequested_hold_trip),
         cmocka_unit_test(silence_trips_at_its_limit_and_not_before),
         cmocka_unit_test(invalid_readings_do_not_end_a_silence),
         cmocka_unit_test(unarmed_interlock_detects_silence_but_does_not_trip),

@@ -1,4 +1,4 @@
-/* Lost, repeated and out-of-order samples, compared with the known numbers. */
+/* Counts of lost, repeated and out-of-order samples in synthetic streams with known losses. */
 #include "daq/protocol/loss.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@ static void seed(void)
     state_of_noise = 88172645463325252U;
 }
 
-/* 0 to 1, xorshift. */
+/* Random number from 0 to 1 (xorshift). */
 static double uniform(void)
 {
     state_of_noise ^= state_of_noise << 13;
@@ -26,13 +26,14 @@ static double uniform(void)
     return (double)(state_of_noise >> 11) / 9007199254740992.0;
 }
 
-/* Frames of 120 a second with a clock 200 ppm off, of which this share is lost. */
+/* Adds N frames at 120 frames/s, stamped by a clock with an error of 200 ppm, of which the fraction
+ * `share` is lost. */
 static void frames(struct wb_loss *loss, double share, uint64_t *lost)
 {
     seed();
     *lost = 0;
     for (int i = 0; i < N; i++) {
-        /* The first and the last ones may be out of order. */
+        /* Gaps near both ends are not counted: frames there may be out of order. */
         if (i >= LATEST && i < N - LATEST && uniform() < share)
             ++*lost;
         else
@@ -54,7 +55,7 @@ static void complete_stream_of_frames_has_no_losses(void **state)
     assert_close(counts.period, 1.0002 / 120.0, 1e-9);
 }
 
-static void lost_frames_are_counted_to_the_last_one(void **state)
+static void lost_frames_are_counted_exactly(void **state)
 {
     (void)state;
     static const double shares[] = {0.001, 0.1, 0.3, 0.5};
@@ -147,7 +148,8 @@ enum arrival {
     BUNDLED
 };
 
-/* Arrivals of 80 lines/s, of which this fraction is lost, read every millisecond. */
+/* Adds the arrival times of 80 lines/s, read every millisecond, of which the fraction `share` is
+ * lost. */
 static void lines(struct wb_loss *loss, enum arrival arrival, double share, uint64_t *lost)
 {
     seed();
@@ -170,7 +172,7 @@ static void lines(struct wb_loss *loss, enum arrival arrival, double share, uint
     }
 }
 
-static void late_lines_and_a_stalled_computer_lose_nothing(void **state)
+static void late_lines_and_stalls_are_not_counted_as_lost(void **state)
 {
     (void)state;
     for (int arrival = PROMPT; arrival <= STALLED; arrival++) {
@@ -185,7 +187,8 @@ static void late_lines_and_a_stalled_computer_lose_nothing(void **state)
     }
 }
 
-/* Single lost lines cannot always be distinguished from late ones: within a tenth. */
+/* A single lost line cannot always be distinguished from a late one. The count may therefore be
+ * wrong by 10 %. */
 static void lost_lines_are_counted(void **state)
 {
     (void)state;
@@ -217,10 +220,10 @@ static void bundled_lines_have_no_period(void **state)
     assert_false(wb_loss_is_significant(&loss));
 }
 
-static void any_times_are_tolerated(void **state)
+static void invalid_and_extreme_times_are_tolerated(void **state)
 {
     (void)state;
-    static const double odd[] = {
+    static const double times[] = {
         (double)NAN, (double)INFINITY, -(double)INFINITY, 0.0, 0.0, -1e300, 1e300, 1.0, -1.0,
         5e-324};
     for (int stamped = 0; stamped < 2; stamped++) {
@@ -228,7 +231,7 @@ static void any_times_are_tolerated(void **state)
         seed();
         wb_loss_init(&loss, stamped, 0.0);
         for (int i = 0; i < N; i++)
-            wb_loss_add(&loss, odd[(int)(10.0 * uniform())]);
+            wb_loss_add(&loss, times[(int)(10.0 * uniform())]);
         const struct wb_loss_counts counts = wb_loss_counts(&loss);
         assert_int_equal(counts.received + counts.repeated, N);
     }
@@ -256,7 +259,7 @@ static void period_from_a_busy_computer_gives_no_losses(void **state)
     const struct wb_loss_counts counts = wb_loss_counts(&loss);
     assert_int_equal(counts.received, N);
     assert_close_relative(counts.period, period, 0.002);
-    assert_true(wb_loss_share(&counts) < 0.001); /* before the period is known well */
+    assert_true(wb_loss_share(&counts) < 0.001); /* until the period is accurate */
     assert_false(wb_loss_is_significant(&loss));
 }
 
@@ -278,8 +281,8 @@ static void temporary_stall_is_not_reported_as_loss(void **state)
     }
 }
 
-/* A busy computer that wakes every 5 ms and reads four lines 0.1 ms apart, and later is no longer
- * busy. */
+/* A busy computer reads four lines, 0.1 ms apart, every 5 ms. In the second half of the stream it
+ * is no longer busy and reads each line in time. */
 static void bundles_of_a_busy_computer_give_no_period(void **state)
 {
     (void)state;
@@ -296,11 +299,11 @@ static void bundles_of_a_busy_computer_give_no_period(void **state)
     assert_int_equal(counts.missing, 0);
 }
 
-/* 7 s of 80 lines/s, each delayed by an exponentially distributed time of this mean (s). In some
- * streams the computer stalls occasionally; of some this fraction is lost. */
+/* A stream of 7 s at 80 lines/s, each line delayed by an exponentially distributed time of mean
+ * `mean` (s). The fraction `share` of the lines is lost. */
 struct busy {
     double mean;
-    bool has_stalls;
+    bool has_stalls; /* the computer stalls once in 2 s on average, for up to 0.4 s */
     double share;
 };
 
@@ -337,8 +340,7 @@ static void late_lines_do_not_count_as_lost(void **state)
                 uint64_t lost;
                 busy_stream(&loss, &busy, &lost);
                 if (wb_loss_is_significant(&loss))
-                    fail_msg("late by %g s on average: stream %d is called lossy", means[i],
-                             stream);
+                    fail_msg("mean delay %g s: stream %d is reported as lossy", means[i], stream);
                 missing += wb_loss_counts(&loss).missing;
             }
             /* At the end of a stalled stream the backlog has not been read yet. */
@@ -356,22 +358,22 @@ static void lost_lines_are_counted_among_late_ones(void **state)
         for (int k = 0; k < 2; k++) {
             const struct busy busy = {means[i], false, shares[k]};
             uint64_t all_lost = 0, missing = 0;
-            int told = 0;
+            int n_significant = 0;
             for (int stream = 0; stream < 300; stream++) {
                 struct wb_loss loss;
                 uint64_t lost;
                 busy_stream(&loss, &busy, &lost);
-                told += wb_loss_is_significant(&loss);
+                n_significant += wb_loss_is_significant(&loss);
                 missing += wb_loss_counts(&loss).missing;
                 all_lost += lost;
             }
             assert_close_relative((double)missing, (double)all_lost, 0.05);
-            assert_true(told >= 295);
+            assert_true(n_significant >= 295);
         }
     }
 }
 
-/* Never eight regular intervals in a row. */
+/* The period must be found although there are never eight regular intervals in a row. */
 static void loss_of_every_fourth_line_is_counted(void **state)
 {
     (void)state;
@@ -382,13 +384,13 @@ static void loss_of_every_fourth_line_is_counted(void **state)
             wb_loss_add(&loss, i * 0.0125);
     const struct wb_loss_counts counts = wb_loss_counts(&loss);
     assert_close((double)counts.missing, N / 4.0, 3.0);
-    assert_close((double)counts.gaps, N / 4.0, 10.0); /* those of the ends */
+    assert_close((double)counts.gaps, N / 4.0, 10.0); /* gaps at both ends may not be counted */
     assert_close(counts.longest_gap, 0.0125, 1e-5);
     assert_true(wb_loss_is_significant(&loss));
 }
 
-/* Longer than the gaps that are counted: reported elsewhere. */
-static void interrupted_stream_is_counted_from_its_restart(void **state)
+/* An interruption of 100 s is too long to be counted as lost lines; it is reported elsewhere. */
+static void interruption_is_not_counted_as_lost_lines(void **state)
 {
     (void)state;
     struct wb_loss loss;
@@ -403,22 +405,22 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(complete_stream_of_frames_has_no_losses),
-        cmocka_unit_test(lost_frames_are_counted_to_the_last_one),
+        cmocka_unit_test(lost_frames_are_counted_exactly),
         cmocka_unit_test(announced_rate_is_used_from_the_start),
         cmocka_unit_test(repeated_and_out_of_order_frames_are_not_missing),
         cmocka_unit_test(late_frames_at_either_end_are_not_missing),
         cmocka_unit_test(restarted_server_causes_no_loss),
-        cmocka_unit_test(late_lines_and_a_stalled_computer_lose_nothing),
+        cmocka_unit_test(late_lines_and_stalls_are_not_counted_as_lost),
         cmocka_unit_test(lost_lines_are_counted),
         cmocka_unit_test(bundled_lines_have_no_period),
-        cmocka_unit_test(any_times_are_tolerated),
+        cmocka_unit_test(invalid_and_extreme_times_are_tolerated),
         cmocka_unit_test(period_from_a_busy_computer_gives_no_losses),
         cmocka_unit_test(temporary_stall_is_not_reported_as_loss),
         cmocka_unit_test(bundles_of_a_busy_computer_give_no_period),
         cmocka_unit_test(late_lines_do_not_count_as_lost),
         cmocka_unit_test(lost_lines_are_counted_among_late_ones),
         cmocka_unit_test(loss_of_every_fourth_line_is_counted),
-        cmocka_unit_test(interrupted_stream_is_counted_from_its_restart),
+        cmocka_unit_test(interruption_is_not_counted_as_lost_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,7 +31,7 @@ static void assert_refused(const char *words)
     text[0] = '\0';
     assert_false(wb_stage_check(&settings, &rig, &motion, text));
     if (!strstr(text, words))
-        fail_msg("'%s' does not say '%s'", text, words);
+        fail_msg("'%s' does not contain '%s'", text, words);
 }
 
 static void correctly_configured_stage_passes(void **state)

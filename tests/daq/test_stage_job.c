@@ -323,7 +323,7 @@ static void release_of_a_jammed_clamp_does_not_say_free(void **state)
     assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
     if (!strstr(result.text, "stays at 36.") ||
         !strstr(result.text, "the clamp does not follow the stage"))
-        fail_msg("'%s' does not say what is wrong", result.text);
+        fail_msg("'%s' does not contain the reason", result.text);
     assert_null(strstr(result.text, "free"));
     fixture->zero = (double)NAN;
     result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);

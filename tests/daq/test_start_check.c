@@ -265,7 +265,7 @@ static void stage_must_be_idle_at_a_known_position(void **state)
         report = (struct wb_stage_report){.state = refused[i].state, .position = 0.1};
         assert_false(wb_start_check_stage(&report, "my/rig.yaml", text));
         if (!strstr(text, refused[i].words))
-            fail_msg("'%s' does not say %s", text, refused[i].words);
+            fail_msg("'%s' does not contain %s", text, refused[i].words);
     }
 }
 

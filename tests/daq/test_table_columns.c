@@ -24,7 +24,7 @@ enum {
 static void assert_why(const char *part)
 {
     if (!strstr(why.text, part))
-        fail_msg("'%s' does not say '%s'", why.text, part);
+        fail_msg("'%s' does not contain '%s'", why.text, part);
 }
 
 static void headers_of_many_programs_are_recognised(void **state)

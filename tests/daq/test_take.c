@@ -47,7 +47,7 @@ static void assert_refused(const char *text, const char *part)
 {
     assert_int_equal(read_text(text), WB_ERR_FORMAT);
     if (!strstr(why.text, part))
-        fail_msg("'%s' does not say '%s'", why.text, part);
+        fail_msg("'%s' does not contain '%s'", why.text, part);
     assert_null(take.frames);
 }
 

@@ -160,7 +160,7 @@ static bool read_and_check(const struct text *text, size_t *n_frames, size_t *st
     }
     *n_frames = take.n_frames;
     assert_true(take.n_frames > 0);
-    /* What is not there is counted. */
+    /* Missing frames are counted as skipped rows or jumps. */
     if (take.n_frames < FRAMES && take.declared_frames == FRAMES)
         assert_true(take.n_frames + take.skipped_rows + take.jumped <= FRAMES + 2);
     for (size_t i = 0; i < take.n_places; i++)

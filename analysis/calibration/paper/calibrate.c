@@ -152,7 +152,7 @@ const char *wb_calibrate_end_text(enum wb_calibrate_end end)
     case WB_CALIBRATE_ERROR:
         return "the error became small";
     case WB_CALIBRATE_REFINED:
-        return "Gauss-Newton steps settled";
+        return "Gauss-Newton steps converged";
     case WB_CALIBRATE_ITERATIONS:
         return "the iterations ran out";
     case WB_CALIBRATE_STOPPED:
@@ -385,18 +385,18 @@ static int rising_points(const struct wb_curve *curve)
  * changes only if they converge. */
 static enum wb_status refine_by_gauss_newton(struct wb_calibrate_result *result,
                                              struct objective *objective, double at[2],
-                                             bool *settled)
+                                             bool *converged)
 {
     struct wb_material material = objective->material;
     material.strength_coefficient = at[0] * objective->first_strength;
     material.hardening_exponent = at[1] * objective->first_exponent;
     const struct wb_material before = material;
-    WB_TRY(wb_refit_run(&material, settled, objective->computed, objective->curve,
+    WB_TRY(wb_refit_run(&material, converged, objective->computed, objective->curve,
                         &objective->evaluations));
     const double to[2] = {material.strength_coefficient / objective->first_strength,
                           material.hardening_exponent / objective->first_exponent};
-    *settled = *settled && violation(to[0], material.hardening_exponent) == 0.0;
-    if (!*settled)
+    *converged = *converged && violation(to[0], material.hardening_exponent) == 0.0;
+    if (!*converged)
         return WB_OK;
     for (int i = 0; i < 2; i++) {
         const bool has_moved = i == 0 ? material.strength_coefficient != before.strength_coefficient
@@ -428,9 +428,9 @@ static enum wb_status optimise(struct wb_calibrate_result *result, struct object
     if (settings->restart && result->end != WB_CALIBRATE_STOPPED &&
         result->end != WB_CALIBRATE_ERROR) {
         const double before[2] = {at[0], at[1]};
-        bool settled;
-        WB_TRY(refine_by_gauss_newton(result, objective, at, &settled));
-        if (!settled)
+        bool converged;
+        WB_TRY(refine_by_gauss_newton(result, objective, at, &converged));
+        if (!converged)
             WB_TRY(minimise(result, objective, at, settings));
         result->restarted = true;
         result->restart_moved = fmax(fabs(at[0] / before[0] - 1.0), fabs(at[1] / before[1] - 1.0));
@@ -467,9 +467,9 @@ static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
         scale_closed_forms(&objective->material, measured, &computed, settings);
         objective->first_strength = result->material.strength_coefficient;
         objective->first_exponent = result->material.hardening_exponent;
-        bool settled;
-        WB_TRY(refine_by_gauss_newton(result, objective, at, &settled));
-        if (!settled)
+        bool converged;
+        WB_TRY(refine_by_gauss_newton(result, objective, at, &converged));
+        if (!converged)
             WB_TRY(minimise(result, objective, at, settings));
         take_optimum(result, objective, at);
     }
@@ -546,7 +546,7 @@ struct leaving_out {
  * those of `material`. */
 static enum wb_status refit_curve(const struct leaving_out *how,
                                   const struct wb_bow_samples *samples,
-                                  struct wb_material *material, bool *settled,
+                                  struct wb_material *material, bool *converged,
                                   struct wb_reason *why)
 {
     const struct wb_calibrate_settings *const settings = how->settings;
@@ -563,24 +563,24 @@ static enum wb_status refit_curve(const struct leaving_out *how,
     scale_closed_forms(material, &guess, &before, settings);
     WB_TRY(wb_computed_create(&computed, &info, material, samples->how));
     const enum wb_status status =
-        wb_refit_run(material, settled, computed, samples->curve, how->evaluations);
+        wb_refit_run(material, converged, computed, samples->curve, how->evaluations);
     wb_computed_destroy(computed);
     return status;
 }
 
 static enum wb_status refit_samples(void *context, const struct wb_dataset *const *datasets, int n,
-                                    struct wb_material *material, bool *settled,
+                                    struct wb_material *material, bool *converged,
                                     struct wb_reason *why)
 {
     const struct leaving_out *const how = context;
     const struct wb_curve_grid grid = grid_of(how->settings);
     const struct wb_computed_settings computed = computed_settings(how->settings, why);
     struct wb_curve curve;
-    *settled = false;
+    *converged = false;
     WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
     const struct wb_bow_samples samples = {
         datasets, n, &curve, how->settings->elastic_zone, yield_point(how->settings), &computed};
-    const enum wb_status status = refit_curve(how, &samples, material, settled, why);
+    const enum wb_status status = refit_curve(how, &samples, material, converged, why);
     wb_curve_release(&curve);
     return status;
 }

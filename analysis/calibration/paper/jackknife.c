@@ -24,26 +24,26 @@ static enum wb_status leave_each_out(double deviation[4], const struct wb_datase
                                      const struct wb_jackknife_refit *refit, struct wb_reason *why)
 {
     enum wb_status status = WB_OK;
-    bool all_settled = true;
+    bool all_converged = true;
     const struct wb_dataset **const others = wb_memory_new((size_t)n, sizeof *others);
     double *const values = wb_memory_new(4 * (size_t)n, sizeof *values);
     for (int i = 0; status == WB_OK && i < n; i++) {
         struct wb_material material = *optimum;
         int kept = 0;
-        bool settled;
+        bool converged;
         for (int k = 0; k < n; k++) {
             if (k != i)
                 others[kept++] = datasets[k];
         }
-        status = refit->run(refit->context, others, kept, &material, &settled, why);
-        all_settled = all_settled && settled;
+        status = refit->run(refit->context, others, kept, &material, &converged, why);
+        all_converged = all_converged && converged;
         values[i] = material.youngs_modulus;
         values[n + i] = material.yield_stress;
         values[2 * n + i] = log(material.strength_coefficient / optimum->strength_coefficient);
         values[3 * n + i] = material.hardening_exponent;
     }
     for (int k = 0; status == WB_OK && k < 4; k++)
-        deviation[k] = k < 2 || all_settled ? spread(values + k * n, n) : (double)NAN;
+        deviation[k] = k < 2 || all_converged ? spread(values + k * n, n) : (double)NAN;
     free(others);
     free(values);
     return status;

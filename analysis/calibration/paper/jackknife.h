@@ -15,10 +15,10 @@
 
 /* Calibration of a subset of the samples. */
 struct wb_jackknife_refit {
-    /* `material` is the law of all samples on entry, and that of these `n` on return. *settled: K
+    /* `material` is the law of all samples on entry, and that of these `n` on return. *converged: K
      * and n converged. WB_ERR_DATA: these samples cannot be calibrated. */
     enum wb_status (*run)(void *context, const struct wb_dataset *const *datasets, int n,
-                          struct wb_material *material, bool *settled, struct wb_reason *why);
+                          struct wb_material *material, bool *converged, struct wb_reason *why);
     void *context;
 };
 

@@ -9,18 +9,18 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-/* Steps of ln K and n for their derivatives. */
+/* Step of ln K and of n in finite differences. */
 #define SLOPE_STEP 0.01
-/* Convergence: change of ln K and n below this, or expected relative decrease of the sum of squares
- * below this. */
-#define SETTLED 1e-3
-#define SETTLED_SQUARES 1e-5
+/* Convergence: the step of ln K and n is below the first limit, or the expected relative decrease
+ * of the sum of squares below the second. */
+#define CONVERGED_STEP 1e-3
+#define CONVERGED_DECREASE 1e-5
 #define MOST_STEPS 12
-/* Levenberg's initial damping, with which a step is nearly that of Gauss-Newton. */
+/* Levenberg's damping at the start: the step is nearly that of Gauss-Newton. */
 #define FIRST_DAMPING 1e-3
 /* Largest change of ln K and n in one step. */
 #define LARGEST_STEP 0.5
-/* Range of n; K is positive by its logarithm. */
+/* Range of n. K needs none: its logarithm is fitted. */
 #define SMALLEST_EXPONENT 0.01
 #define LARGEST_EXPONENT 1.5
 
@@ -28,8 +28,8 @@ struct refit {
     struct wb_computed *computed;
     const struct wb_curve *curve;
     struct wb_material material;
-    /* (curve->n) computed values, their derivatives with respect to ln K and n, workspace; one
-     * block, owned by value */
+    /* (curve->n) each, in one block owned by `value`: computed values, their derivatives with
+     * respect to ln K and n, workspace */
     double *value, *by_strength, *by_exponent, *previous;
     int *evaluations;
 };
@@ -63,7 +63,7 @@ static enum wb_status find_slopes(struct refit *refit, bool *complete)
 }
 
 /* Gauss-Newton step of (ln K, n) with Levenberg's `damping`, and the expected relative decrease of
- * the sum of squares; false if ln K and n have the same effect. */
+ * the sum of squares; false if ln K and n have the same effect on the curve. */
 static bool newton_step(const struct refit *refit, double damping, double step[2], double *expected)
 {
     double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0, rr = 0.0;
@@ -104,42 +104,42 @@ static double curve_error(const struct refit *refit, bool complete)
                     : HUGE_VAL;
 }
 
-/* Fits K and n of refit->material; *settled: they converged. */
-static enum wb_status refit_hardening(struct refit *refit, bool *settled)
+/* Fits K and n of refit->material. */
+static enum wb_status refit_hardening(struct refit *refit, bool *converged)
 {
     double damping = FIRST_DAMPING, step[2], expected;
     bool complete;
-    *settled = false;
+    *converged = false;
     WB_TRY(run(refit, 0.0, 0.0, refit->value, &complete));
     double best = curve_error(refit, complete);
     if (complete)
         WB_TRY(find_slopes(refit, &complete));
     if (!complete)
         return WB_OK;
-    for (int i = 0; i < MOST_STEPS && !*settled; i++) {
+    for (int i = 0; i < MOST_STEPS && !*converged; i++) {
         double *const previous = refit->previous;
         if (!newton_step(refit, damping, step, &expected))
             return WB_OK;
-        /* The curve of the last accepted point is kept until the trial is better. */
+        /* Restored below if the step does not reduce the error. */
         memcpy(previous, refit->value, (size_t)refit->curve->n * sizeof *previous);
         WB_TRY(run(refit, step[0], step[1], refit->value, &complete));
         const double error = curve_error(refit, complete);
-        /* A damped step is small anyway; only an undamped one shows convergence. */
-        const bool is_last =
+        /* A strongly damped step is always small: it does not show convergence. */
+        const bool is_small =
             damping <= FIRST_DAMPING &&
-            (fmax(fabs(step[0]), fabs(step[1])) < SETTLED || expected < SETTLED_SQUARES);
+            (fmax(fabs(step[0]), fabs(step[1])) < CONVERGED_STEP || expected < CONVERGED_DECREASE);
         if (!(error < best)) {
-            *settled = is_last;
+            *converged = is_small;
             memcpy(refit->value, previous, (size_t)refit->curve->n * sizeof *previous);
             damping *= 10.0;
             continue;
         }
-        *settled = is_last;
+        *converged = is_small;
         best = error;
         damping *= 0.1;
         refit->material.strength_coefficient *= exp(step[0]);
         refit->material.hardening_exponent += step[1];
-        if (!*settled)
+        if (!*converged)
             WB_TRY(find_slopes(refit, &complete));
         if (!complete)
             return WB_OK;
@@ -147,13 +147,13 @@ static enum wb_status refit_hardening(struct refit *refit, bool *settled)
     return WB_OK;
 }
 
-enum wb_status wb_refit_run(struct wb_material *material, bool *settled,
+enum wb_status wb_refit_run(struct wb_material *material, bool *converged,
                             struct wb_computed *computed, const struct wb_curve *curve,
                             int *evaluations)
 {
     const size_t points = (size_t)curve->n;
     double *const values = wb_memory_new(4 * points, sizeof *values);
-    *settled = false;
+    *converged = false;
     struct refit refit = {
         .computed = computed,
         .curve = curve,
@@ -164,7 +164,7 @@ enum wb_status wb_refit_run(struct wb_material *material, bool *settled,
         .previous = values + 3 * points,
         .evaluations = evaluations,
     };
-    const enum wb_status status = refit_hardening(&refit, settled);
+    const enum wb_status status = refit_hardening(&refit, converged);
     *material = refit.material;
     free(values);
     return status;

@@ -13,10 +13,10 @@
 #include "base/status.h"
 #include "fe/material/material.h"
 
-/* Changes K and n of `material`, the initial guess. *settled is false if the beam did not reach the
- * end of the curve, K and n have the same effect on the curve, or the steps were exhausted; K and n
- * are then invalid. *evaluations is increased by the number of beam runs. */
-WB_MUST_CHECK enum wb_status wb_refit_run(struct wb_material *material, bool *settled,
+/* Changes K and n of `material`, the initial guess. *converged is false if the beam did not reach
+ * the end of the curve, K and n have the same effect on the curve, or the steps were exhausted; K
+ * and n are then invalid. *evaluations is increased by the number of beam runs. */
+WB_MUST_CHECK enum wb_status wb_refit_run(struct wb_material *material, bool *converged,
                                           struct wb_computed *computed,
                                           const struct wb_curve *curve, int *evaluations);
 

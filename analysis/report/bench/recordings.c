@@ -102,8 +102,8 @@ static enum wb_status take_entry(struct wb_recordings_test *test, const struct w
     return WB_OK;
 }
 
-/* A recording that the campaign's index does not know may be excluded in its own folder's. What is
- * wrong with that one, the alignment tells. */
+/* A recording that the campaign's index does not list may be excluded by the index in its own
+ * folder. Errors in that index are ignored here; the alignment reports them. */
 static void take_folders_index(struct wb_recordings_test *test)
 {
     struct wb_index_entry entry;
@@ -112,7 +112,7 @@ static void take_folders_index(struct wb_recordings_test *test)
         test->excluded = entry.excluded;
 }
 
-/* A recording at a path, with what the index knows of it (entry may be NULL). */
+/* Adds a recording at a path, with its `entry` in the index (NULL: none). */
 static enum wb_status add_file(struct wb_recordings_tests *tests, const char *path,
                                const struct wb_index *index, const struct wb_index_entry *entry)
 {
@@ -125,7 +125,7 @@ static enum wb_status add_file(struct wb_recordings_tests *tests, const char *pa
         take_folders_index(&test);
     } else
         snprintf(test.missing, sizeof test.missing, "%s",
-                 entry                       ? "the index lists it, but the file is not there"
+                 entry                       ? "the index lists it, but the file does not exist"
                  : strpbrk(test.name, "*?[") ? "no file matches this pattern"
                                              : "no such file");
     add_test(tests, &test);
@@ -252,10 +252,11 @@ static enum wb_status check_excluded(const struct reading *reading,
 {
     for (int i = 0; i < reading->n_excluded; i++) {
         if (!reading->excluded[i].is_found)
-            return wb_config_refuse(wb_config_item(list, i), "recording",
-                                    "'%s' is no recording of this campaign: give its name as the "
-                                    "report has it",
-                                    reading->excluded[i].name);
+            return wb_config_refuse(
+                wb_config_item(list, i), "recording",
+                "'%s' is not a recording of this campaign: give its name as the "
+                "report has it",
+                reading->excluded[i].name);
     }
     return WB_OK;
 }

@@ -42,9 +42,9 @@
  *         by: N. N.
  *         reason: the clamp slipped at 12 mm
  *
- * Reading a campaign finds its recordings. One that is not there is no error: it is listed with
- * the reason, and the report says so. One that the campaign, its index or the one in its own
- * folder excludes is not used; the report says who excluded it, and why.
+ * Reading a campaign finds its recordings. A missing recording is not an error: it is listed with
+ * the reason, also in the report. A recording that is excluded by the campaign, its index or the
+ * index in the recording's folder is not used; the report states by whom and why.
  */
 #ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_H
 #define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_H
@@ -64,13 +64,13 @@
 struct wb_recordings_test {
     char name[256];     /* file name without folder, or what is missing: "sample 2" */
     char path[WB_PATH]; /* "" when missing */
-    char missing[320];  /* why it is not there; "" when it is */
-    struct wb_index_exclusion excluded; /* as an index or the campaign says; it is shown, and not
+    char missing[320];  /* why it is missing; "": it exists */
+    struct wb_index_exclusion excluded; /* by the campaign or an index; it is reported, but not
                                            used */
-    int sample;                         /* as the index or the count says; 0 unknown */
-    int seed;                           /* as the index says; -1 unknown */
-    char sha256[WB_SHA256_TEXT];        /* as the index says; "" when it is not in the index */
-    /* Paths of files that hold in place of what was recorded; "": the recording's own. */
+    int sample;                         /* number, from the index or by counting; 0 unknown */
+    int seed;                           /* from the index; -1 unknown */
+    char sha256[WB_SHA256_TEXT];        /* from the index; "": not in the index */
+    /* Paths of files that replace the recorded specimen and rig; "": those of the recording. */
     char corrected_specimen[WB_PATH], corrected_rig[WB_PATH];
 };
 
@@ -79,7 +79,7 @@ struct wb_recordings_tests {
     struct wb_recordings_test *items; /* (n), owned */
 };
 
-/* What recordings are for. */
+/* Purpose of recordings. */
 enum wb_recordings_purpose {
     WB_RECORDINGS_CALIBRATION,
     WB_RECORDINGS_VALIDATION, /* the campaign may have none */
@@ -114,7 +114,8 @@ struct wb_recordings {
 WB_MUST_CHECK enum wb_status wb_recordings_keys(void *context, const struct wb_config_node *root);
 void wb_recordings_release(void *context);
 
-/* How many recordings it wants, those not counted that are excluded, and how many are missing. */
+/* Number of recordings that the campaign requires, and how many of them are missing; excluded ones
+ * are not counted. */
 int wb_recordings_count(const struct wb_recordings *campaign, int *n_missing);
 
 #endif

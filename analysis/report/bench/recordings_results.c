@@ -25,13 +25,12 @@ enum job_state {
     JOB_FINISHED
 };
 
-/* The alignment of a recording, or the step that follows for all of a wire: by the paper's route,
- * or on whole cycles. */
+/* The alignment of a recording, or a step of a wire: by the paper's route, or on whole cycles. */
 struct job {
     enum job_state state;
     enum wb_recordings_purpose purpose;
     struct wb_recordings_results_wire *wire;
-    struct wb_recordings_results_test *test; /* of an alignment; NULL: of a wire */
+    struct wb_recordings_results_test *test; /* to align; NULL: the job is a step of a wire */
     bool is_cycle;
 };
 
@@ -55,9 +54,8 @@ static void read_meta(struct wb_recording *recording, const char *key, char *tex
     free(value);
 }
 
-/* What the recording says about bench and specimen. The truth of a virtual rig is not read. */
-/* The text of a file that corrects the recording, else of the recording's meta `key`; NULL without
- * either. */
+/* The text of the correction file, if there is one, else of the recording's meta `key`; NULL if
+ * there is neither. */
 static enum wb_status bench_text(struct wb_recording *recording, const char *key,
                                  const char *corrected, char **text, struct wb_reason *why)
 {
@@ -70,7 +68,8 @@ static enum wb_status bench_text(struct wb_recording *recording, const char *key
     return status == WB_ERR_NOT_FOUND ? WB_OK : status;
 }
 
-/* What the recording says of the bench, with what corrects it. */
+/* Reads rig and specimen from the recording or its correction files. The true values of a virtual
+ * rig are not read. */
 static enum wb_status read_rig_and_specimen(struct wb_recordings_results_test *test,
                                             struct wb_recording *recording, struct wb_reason *why)
 {
@@ -89,7 +88,7 @@ static enum wb_status read_rig_and_specimen(struct wb_recordings_results_test *t
 static enum wb_status read_bench(struct wb_recordings_results_test *test, struct wb_reason *why)
 {
     struct wb_recording *recording;
-    /* Aligning opens it again and tells what is wrong with the file. */
+    /* Alignment opens the recording again and reports defects of the file. */
     WB_TRY(wb_recording_open_with_reason(&recording, test->wanted->path, why));
     char is_virtual[16] = "";
     read_meta(recording, "start_utc", test->start_utc, sizeof test->start_utc);
@@ -120,7 +119,7 @@ static enum wb_status check_identity(const struct wb_recordings_results_test *te
     return WB_OK;
 }
 
-/* Also of a recording that cannot be aligned, so that its reader knows which file it was. */
+/* Also for a recording that cannot be aligned, so that the report identifies the file. */
 static void keep_hash(struct wb_recordings_results_test *test)
 {
     const struct wb_json *const list = wb_json_get(test->dataset.document, "recordings");
@@ -166,7 +165,7 @@ static void run_align(const struct wb_recordings *campaign, const struct job *jo
 }
 
 static const char no_recording[] = "no usable recording";
-static const char no_calibration[] = "the calibration that it builds on is missing";
+static const char no_calibration[] = "there is no calibration to validate";
 
 static int usable_datasets(const struct wb_recordings_results_tests *tests,
                            const struct wb_dataset **datasets)
@@ -221,7 +220,7 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
     return WB_RECORDINGS_FAILED;
 }
 
-/* What the law of the whole cycles says of the other length. */
+/* Predicts the validation recordings with the whole-cycle law. */
 static enum wb_status predict(const struct wb_recordings *campaign,
                               struct wb_recordings_results_wire *wire,
                               const struct wb_dataset *const *datasets, int n,
@@ -259,8 +258,8 @@ static void run_cycle(const struct wb_recordings *campaign, const struct job *jo
 
 /* --- the schedule --- */
 
-/* A calibration waits for the recordings of its own, a validation for all recordings of its wire
- * and for the calibration that it builds on. */
+/* A calibration waits for the alignment of its recordings, a validation for that of all recordings
+ * of its wire and for the calibration. */
 static bool comes_before(const struct job *other, const struct job *job)
 {
     if (other->wire != job->wire)
@@ -289,7 +288,7 @@ static struct job *next_job(struct schedule *schedule)
     return NULL;
 }
 
-static void tell(const struct schedule *schedule, const struct job *job)
+static void report_progress(const struct schedule *schedule, const struct job *job)
 {
     if (!schedule->progress)
         return;
@@ -322,10 +321,10 @@ static void *work(void *context)
         pthread_mutex_lock(&schedule->lock);
         job->state = JOB_FINISHED;
         schedule->n_finished++;
-        tell(schedule, job);
+        report_progress(schedule, job);
         pthread_cond_broadcast(&schedule->changed);
     }
-    /* Others may wait for a job that an interrupted worker will not do any more. */
+    /* After an interrupt, wakes the threads that still wait for a job. */
     pthread_cond_broadcast(&schedule->changed);
     pthread_mutex_unlock(&schedule->lock);
     return NULL;
@@ -378,7 +377,7 @@ static void run_threads(struct schedule *schedule, int n_threads)
 {
     pthread_t threads[16];
     int n = 0;
-    /* The calling thread works too, so one thread that cannot be started is no failure. */
+    /* A thread that cannot be started is not an error: the calling thread works, too. */
     while (n < n_threads - 1 && n < 16 && pthread_create(&threads[n], NULL, work, schedule) == 0)
         n++;
     work(schedule);
@@ -386,7 +385,7 @@ static void run_threads(struct schedule *schedule, int n_threads)
         pthread_join(threads[i], NULL);
 }
 
-/* --- all of it --- */
+/* --- preparing, computing, releasing --- */
 
 static void prepare_tests(struct wb_recordings_results_tests *tests,
                           const struct wb_recordings_tests *wanted)
@@ -528,7 +527,7 @@ void wb_recordings_results_release(void *context)
     memset(results, 0, sizeof *results);
 }
 
-/* --- what they hold --- */
+/* --- access --- */
 
 struct wb_recordings_results_test *
 wb_recordings_results_at(const struct wb_recordings_results *results, int index,

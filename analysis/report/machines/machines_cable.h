@@ -15,10 +15,9 @@ enum {
 
 /* A layered group at curvatures evenly up to its reach. */
 struct wb_machines_layer {
-    int group, n; /* n: of its tests that are used; 0: it cannot be compared */
+    int group, n;                         /* n: usable tests; 0: the group cannot be compared */
     double curvature[WB_MACHINES_PLACES]; /* 1/m, nominal */
-    /* Deflection of the wires there is below this part of their span, where their seating
-     * decides. */
+    /* The deflection of the wires is so small that their seating on the supports dominates. */
     bool is_seating[WB_MACHINES_PLACES];
     struct wb_cable_place place[WB_MACHINES_PLACES];
     double over_first[WB_MACHINES_PLACES]; /* M over that of the first layered group; NaN */

@@ -1,5 +1,5 @@
-/* The wires of a campaign, each calibrated on the tests of all groups that are of it, and validated
- * by leaving each test out. */
+/* The wires of a campaign, each calibrated on the tests of all its groups and validated by leaving
+ * each test out. */
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
 
@@ -9,10 +9,10 @@
 #include "analysis/validation/left_out.h"
 
 struct wb_machines_fit {
-    int first; /* group of the wire */
+    int first; /* first group of the wire */
     int n;     /* tests */
     bool is_fitted, is_validated;
-    struct wb_reason why; /* where it is not */
+    struct wb_reason why; /* why it was not fitted or not validated */
     struct wb_three_point_calibration calibration;
     struct wb_left_out left_out;
 };
@@ -22,7 +22,7 @@ struct wb_machines_fits {
     struct wb_machines_fit *fits; /* (n), owned */
 };
 
-/* How many wires there are to calibrate. */
+/* Number of wires to calibrate. */
 int wb_machines_fits_count_wires(const struct wb_machines *campaign);
 
 struct wb_machines_fits_order {
@@ -31,13 +31,13 @@ struct wb_machines_fits_order {
     void *context;
 };
 
-/* Ctrl-C leaves the rest out. */
+/* After Ctrl-C, the remaining wires are not calibrated. */
 void wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
                               const struct wb_machines_group_results *groups,
                               const struct wb_machines_fits_order *order);
 
-/* The files of the tests that a fit is made of, the first WB_PROPERTIES_MOST_DATASETS; returns how
- * many. */
+/* Lists the files of the tests of a fit, at most WB_PROPERTIES_MOST_DATASETS; returns their number.
+ */
 int wb_machines_fits_list(const struct wb_machines_fit *fit, const struct wb_machines *campaign,
                           const struct wb_machines_group_results *groups,
                           struct wb_properties_dataset *list);

@@ -83,8 +83,8 @@ static void put_estimate(struct wb_document_table *table, const struct wb_estima
                         wb_pages_decimals(e->candidates_high / unit));
 }
 
-/* Fits whose iterations ran out. */
-static int count_unsettled(const struct wb_three_point_calibration *c)
+/* Number of fits that did not converge. */
+static int count_unconverged(const struct wb_three_point_calibration *c)
 {
     int n = 0;
     for (int i = 0; i < c->n_members; i++)
@@ -92,7 +92,7 @@ static int count_unsettled(const struct wb_three_point_calibration *c)
     return n;
 }
 
-/* Why a wire has no law or was not validated, or why single tests have none. */
+/* Lists why a wire was not fitted or validated, and why single tests were not fitted. */
 static void put_problems(struct wb_document *document, const struct wb_machines_results *results,
                          const struct wb_machines_fit *fit)
 {
@@ -110,11 +110,11 @@ static void put_problems(struct wb_document *document, const struct wb_machines_
 static void put_counts(struct wb_document_table *table, const struct wb_machines_fit *fit)
 {
     const struct wb_three_point_calibration *const c = &fit->calibration;
-    const int unsettled = count_unsettled(c);
+    const int unconverged = count_unconverged(c);
     wb_pages_cell(table, c->n_fitted < fit->n ? WB_TONE_WARNING : WB_TONE_PLAIN, "%d of %d",
                   c->n_fitted, fit->n);
-    if (unsettled > 0)
-        wb_pages_cell(table, WB_TONE_WARNING, "%d not", unsettled);
+    if (unconverged > 0)
+        wb_pages_cell(table, WB_TONE_WARNING, "%d not", unconverged);
     else
         wb_pages_cell(table, WB_TONE_PLAIN, "all");
     wb_pages_cell(table, WB_TONE_PLAIN, "%.1f", c->misfit / WB_PERCENT);
@@ -137,10 +137,9 @@ static void put_calibrations(struct wb_document *document,
     struct wb_document_table *const table = wb_document_table(
         document,
         "Moment over curvature of each wire, by a law fitted to each test in its usable range. The "
-        "interval is over tests, or over the means of series; beside it stands the range over the "
-        "friction and the nose's radius that the machine leaves open. Misfit: root mean square "
-        "over "
-        "the largest force.",
+        "interval is over tests, or over the means of series; the last column is the range over "
+        "the friction and nose radii of the machine file. Misfit: root mean square relative to the "
+        "largest force.",
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->fits.n; i++) {
         const struct wb_machines_fit *const fit = &results->fits.fits[i];

@@ -15,7 +15,7 @@ enum wb_status wb_machines_fits_draw(struct wb_figures_item *item);
  * deviation. */
 bool wb_machines_fits_is_biased(const struct wb_machines_fit *fit);
 
-/* Nothing where the campaign does not calibrate. */
+/* These do nothing if the campaign does not calibrate. */
 void wb_machines_fits_put(struct wb_document *document, const struct wb_machines_results *results,
                           const struct wb_figures *drawn);
 void wb_machines_fits_put_json(struct wb_json *root, const struct wb_machines_results *results);

@@ -11,26 +11,27 @@
 static void add_incomplete(struct wb_found *found, const struct wb_machines_results *results)
 {
     const struct wb_kind_outcome *const outcome = &results->outcome;
-    const int n_refused = outcome->n_wanted - outcome->n_missing - outcome->n_usable;
+    const int n_rejected = outcome->n_wanted - outcome->n_missing - outcome->n_usable;
     if (outcome->n_missing > 0 && results->has_folder)
-        wb_found_say(found, WB_FOUND_INCOMPLETE, "<b>Incomplete.</b> %d of %d files are not there.",
+        wb_found_say(found, WB_FOUND_INCOMPLETE, "<b>Incomplete.</b> %d of %d files are missing.",
                      outcome->n_missing, outcome->n_wanted);
     else if (outcome->n_missing > 0)
         wb_found_say(found, WB_FOUND_INCOMPLETE,
-                     "<b>Incomplete.</b> The data are not there: the environment variable "
-                     "<tt>%s</tt>, which names their folder, is not set.",
+                     "<b>Incomplete.</b> The data are missing: the environment variable "
+                     "<tt>%s</tt>, the path of their folder, is not set.",
                      results->campaign->environment);
-    if (n_refused > 0)
+    if (n_rejected > 0)
         wb_found_say(found, WB_FOUND_INCOMPLETE,
                      "<b>Incomplete.</b> %d of %d files could not be used; the tables of the "
-                     "groups say why.",
-                     n_refused, outcome->n_wanted);
+                     "groups give the reasons.",
+                     n_rejected, outcome->n_wanted);
     if (outcome->n_missing > 0)
         wb_found_say(found, WB_FOUND_NEXT,
                      "<b>Missing</b>: provide the files and run the same command again.");
 }
 
-/* A wire's name; of one that is a group alone, the group's label, too. */
+/* Appends the name of a wire. A wire that the campaign does not name has the name of its group;
+ * then the label of the group is appended, too. */
 static void append_wire(struct wb_text *text, const struct wb_machines_results *results,
                         const struct wb_machines_fit *fit)
 {
@@ -42,7 +43,7 @@ static void append_wire(struct wb_text *text, const struct wb_machines_results *
     }
 }
 
-/* The moment of a wire at the largest curvature of its tests. */
+/* Adds the calibrated bending moment of a wire at the largest curvature of its tests. */
 static void add_fit(struct wb_found *found, const struct wb_machines_results *results,
                     const struct wb_machines_fit *fit)
 {
@@ -53,7 +54,7 @@ static void add_fit(struct wb_found *found, const struct wb_machines_results *re
     append_wire(&text, results, fit);
     wb_text_append(&text, "</b>: ");
     if (!fit->is_fitted) {
-        wb_text_append(&text, "no law; the reason is given below.");
+        wb_text_append(&text, "not calibrated; the reason is given below.");
         wb_found_add(found, WB_FOUND_DOUBTFUL, &text);
         return;
     }
@@ -68,7 +69,10 @@ static void add_fit(struct wb_found *found, const struct wb_machines_results *re
     const struct wb_estimate *const EI = &c->rigidity;
     const int digits = wb_pages_decimals(EI->value / WB_NMM2);
     if (!c->is_rigidity_identifiable)
-        wb_text_append(&text, "; the flexural rigidity cannot be determined without an unloading.");
+        wb_text_append(
+            &text,
+            "; the flexural rigidity cannot be determined, because unloading was not recorded "
+            "in every test.");
     else if (isfinite(EI->low))
         wb_text_append(&text, "; flexural rigidity %.*f N mm\xc2\xb2 (%.*f to %.*f).", digits,
                        EI->value / WB_NMM2, digits, EI->low / WB_NMM2, digits, EI->high / WB_NMM2);
@@ -79,7 +83,7 @@ static void add_fit(struct wb_found *found, const struct wb_machines_results *re
                  &text);
 }
 
-/* A group as it was measured; for campaigns that calibrate nothing. */
+/* Adds the measured force and stiffness of a group, in campaigns that do not calibrate. */
 static void add_group(struct wb_found *found, const struct wb_machines_group *group,
                       const struct wb_machines_group_results *of)
 {
@@ -97,8 +101,8 @@ static void add_group(struct wb_found *found, const struct wb_machines_group *gr
                    of->reach / WB_MM);
     if (isfinite(EI))
         wb_text_append(&text,
-                       ", flexural rigidity of an elastic wire at 0.02 of the span %.*f N "
-                       "mm\xc2\xb2",
+                       ", apparent flexural rigidity at a deflection of 0.02 of the span "
+                       "%.*f N mm\xc2\xb2",
                        wb_pages_decimals(EI), EI);
     if (isfinite(of->rigidity_deviation))
         wb_text_append(&text, " with a standard deviation of %.2g %% between tests",
@@ -107,7 +111,7 @@ static void add_group(struct wb_found *found, const struct wb_machines_group *gr
     wb_found_add(found, WB_FOUND_RESULT, &text);
 }
 
-/* A layered group at the largest curvature at which it is compared. */
+/* Adds the moment of a layered group at the largest curvature of its comparison. */
 static void add_layer(struct wb_found *found, const struct wb_machines_results *results,
                       const struct wb_machines_layer *layer)
 {
@@ -131,11 +135,11 @@ static void add_layer(struct wb_found *found, const struct wb_machines_results *
         wb_pages_append_number(&text, place->chi.high, 2);
         wb_text_append(&text, ")");
     }
-    wb_text_append(&text, " between sliding (0) and bonded wires (1).");
+    wb_text_append(&text, " on a scale from sliding (0) to bonded wires (1).");
     wb_found_add(found, WB_FOUND_RESULT, &text);
 }
 
-/* --- whether to trust it --- */
+/* --- checks --- */
 
 static int count_unconverged(const struct wb_three_point_calibration *c)
 {
@@ -145,28 +149,28 @@ static int count_unconverged(const struct wb_three_point_calibration *c)
     return n;
 }
 
-/* Tests that were left out, and fits. */
+/* Adds the bias of each law against tests left out, and the fits that did not converge. */
 static void add_checks(struct wb_found *found, const struct wb_machines_results *results)
 {
-    struct wb_text good = {0};
+    struct wb_text passed = {0};
     for (int i = 0; i < results->fits.n; i++) {
         const struct wb_machines_fit *const fit = &results->fits.fits[i];
         const double ratio = fit->left_out.bias / fit->left_out.scatter;
         struct wb_text text = {0};
         if (fit->is_validated && !wb_machines_fits_is_biased(fit)) {
-            wb_text_append(&good, good.length > 0 ? ", " : "");
-            append_wire(&good, results, fit);
-            wb_text_append(&good, " (%.2f)", ratio);
+            wb_text_append(&passed, passed.length > 0 ? ", " : "");
+            append_wire(&passed, results, fit);
+            wb_text_append(&passed, " (%.2f)", ratio);
         } else if (fit->is_validated) {
             wb_text_append(&text, "Bias of the law of ");
             append_wire(&text, results, fit);
-            wb_text_append(&text,
-                           " against tests left out: %.2f of their standard deviation, limit 0.7.",
-                           ratio);
+            wb_text_append(
+                &text, " against tests left out: %.2f times their standard deviation, limit 0.7.",
+                ratio);
         } else if (fit->is_fitted) {
             wb_text_append(&text, "The law of ");
             append_wire(&text, results, fit);
-            wb_text_append(&text, " could not be compared with tests left out.");
+            wb_text_append(&text, " could not be validated by leaving tests out.");
         }
         wb_found_add(found, WB_FOUND_FAILED, &text);
         const int n = fit->is_fitted ? count_unconverged(&fit->calibration) : 0;
@@ -177,12 +181,13 @@ static void add_checks(struct wb_found *found, const struct wb_machines_results 
         }
         wb_found_add(found, WB_FOUND_FAILED, &text);
     }
-    if (good.length > 0)
-        wb_found_say(found, WB_FOUND_PASSED,
-                     "Bias of the law against tests left out, over their standard deviation, limit "
-                     "0.7: %.600s.",
-                     wb_text_string(&good));
-    wb_text_release(&good);
+    if (passed.length > 0)
+        wb_found_say(
+            found, WB_FOUND_PASSED,
+            "Bias of the law against tests left out, relative to their standard deviation, "
+            "limit 0.7: %.600s.",
+            wb_text_string(&passed));
+    wb_text_release(&passed);
 }
 
 static void add_unchecked(struct wb_found *found, const struct wb_machines_results *results)
@@ -197,22 +202,23 @@ static void add_unchecked(struct wb_found *found, const struct wb_machines_resul
     }
     if (results->fits.n == 0)
         wb_found_say(found, WB_FOUND_UNCHECKED,
-                     "Any law: the campaign does not calibrate (<tt>calibrate: true</tt>).");
+                     "Material laws: the campaign has no <tt>calibrate: true</tt>, so no law was "
+                     "fitted.");
     if (results->fits.n > 0)
         wb_found_say(found, WB_FOUND_UNCHECKED,
-                     "Friction at the posts and the radius of the nose: the tables give the range "
-                     "of each moment over the values that the machine file leaves open.");
+                     "Friction at the supports and nose radius: not measured by these tests. The "
+                     "tables give the range of each moment for the ranges of the machine file.");
     if (!has_compliance)
         wb_found_say(found, WB_FOUND_UNCHECKED,
-                     "Compliance of the machine: it is not given, so the travel includes it.");
+                     "Compliance of the machine: the machine file does not give it, so the travel "
+                     "includes it.");
     if (!has_unloading)
         wb_found_say(found, WB_FOUND_UNCHECKED,
-                     "Unloading and springback: tests without an unloading say nothing about "
-                     "them.");
+                     "Unloading and springback: unloading was not recorded in every test.");
     if (results->cable.n_layers > 0)
         wb_found_say(found, WB_FOUND_UNCHECKED,
-                     "Insulation, lay and outer layers: both bounds of <i>\xcf\x87</i> leave them "
-                     "out.");
+                     "Insulation, lay and outer layers: both bounds of <i>\xcf\x87</i> neglect "
+                     "them.");
 }
 
 static void add_next(struct wb_found *found, const struct wb_machines_results *results)
@@ -226,21 +232,21 @@ static void add_next(struct wb_found *found, const struct wb_machines_results *r
     }
     if (results->fits.n == 0)
         wb_found_say(found, WB_FOUND_NEXT,
-                     "<b>Calibrate</b>: set <tt>calibrate: true</tt> in the campaign for a law of "
-                     "each wire with intervals.");
+                     "<b>Calibrate</b>: set <tt>calibrate: true</tt> in the campaign to fit a law "
+                     "with intervals to each wire.");
     if (!has_unloading)
         wb_found_say(found, WB_FOUND_NEXT,
                      "<b>Unload</b>: record the unloading in the next tests; it determines the "
                      "flexural rigidity and the springback.");
     if (!has_compliance)
-        wb_found_say(
-            found, WB_FOUND_NEXT,
-            "<b>Compliance</b>: measure that of the machine with a stiff bar (<tt>wirebench "
-            "calibrate --compliance</tt>) and enter it in the machine file.");
+        wb_found_say(found, WB_FOUND_NEXT,
+                     "<b>Compliance</b>: measure the compliance of the machine with a stiff bar "
+                     "(<tt>wirebench calibrate --compliance</tt>) and enter it in the machine "
+                     "file.");
     if (any_biased)
         wb_found_say(
             found, WB_FOUND_NEXT,
-            "<b>Bias</b>: where the law is off the tests left out, use the measured curve.");
+            "<b>Bias</b>: use the measured curve where the law is biased against tests left out.");
 }
 
 void wb_machines_found_put(struct wb_document *document, const struct wb_machines_results *results)
@@ -256,7 +262,8 @@ void wb_machines_found_put(struct wb_document *document, const struct wb_machine
         add_layer(&found, results, &results->cable.layers[i]);
     if (results->fits.n > 0 || results->cable.n_layers > 0)
         wb_found_say(&found, WB_FOUND_NOTE,
-                     "In brackets: intervals of 95 %% over tests, or over the means of series.");
+                     "In brackets: 95 %% intervals from the scatter between tests, or between the "
+                     "means of series.");
     add_checks(&found, results);
     add_unchecked(&found, results);
     add_next(&found, results);

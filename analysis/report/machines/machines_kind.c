@@ -307,7 +307,8 @@ static void print(FILE *out, const void *context)
     fprintf(out, "%s: %d of %d tests used\n", campaign->head.title, results->outcome.n_usable,
             results->outcome.n_wanted);
     if (!results->has_folder)
-        fprintf(out, "  the data are not there: %s names their folder\n", campaign->environment);
+        fprintf(out, "  the data are missing: set %s to the path of their folder\n",
+                campaign->environment);
     for (int g = 0; g < campaign->n_groups; g++) {
         const struct wb_machines_group_results *const of = &results->groups[g];
         if (of->n_usable > 0)

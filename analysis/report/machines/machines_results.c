@@ -47,7 +47,7 @@ static void load_test(const struct wb_machines_results *results, int g, int inde
     if (!folder || wb_file_join(path, folder, group->tests[index]) != WB_OK ||
         !wb_file_exists(path)) {
         test->is_missing = true;
-        wb_text_append(&test->problem, "not there");
+        wb_text_append(&test->problem, "the file does not exist");
         return;
     }
     const enum wb_status status = import_test(group, index, path, test, &why);
@@ -66,7 +66,7 @@ enum wb_status wb_machines_results_load(void *context, const void *of)
     results->has_folder = !campaign->environment[0] || getenv(campaign->environment);
     results->groups = wb_memory_new((size_t)campaign->n_groups, sizeof *results->groups);
     if (!results->has_folder)
-        wb_warn("%s is not set: it names the folder of the data", campaign->environment);
+        wb_warn("%s is not set: set it to the path of the data folder", campaign->environment);
     for (int g = 0; g < campaign->n_groups; g++) {
         const int n = campaign->groups[g].n_tests;
         results->groups[g].tests = wb_memory_new((size_t)n, sizeof *results->groups[g].tests);
@@ -89,7 +89,7 @@ static void find_start(const struct wb_machines_group *group, struct wb_machines
     test->start = wb_machines_test_start(test, group->zero_force);
     if (isnan(test->start)) {
         test->is_usable = false;
-        wb_text_append(&test->problem, "its force does not exceed %g mN",
+        wb_text_append(&test->problem, "the force never exceeds %g mN (zero_force_mN)",
                        group->zero_force / WB_MN);
         return;
     }

@@ -1,5 +1,5 @@
-/* Results of a campaign of testing machines: each file imported, each test's curve from where it
- * touches, and each group's mean and scatter. */
+/* Results of a campaign of testing machines: the imported files, the curve of each test beyond its
+ * first contact, and the mean and scatter of each group. */
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_RESULTS_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_RESULTS_H
 
@@ -11,8 +11,8 @@
 
 struct wb_machines_results {
     struct wb_kind_outcome outcome;
-    const struct wb_machines *campaign;       /* borrowed */
-    bool has_folder;                          /* of the data: the environment names one */
+    const struct wb_machines *campaign; /* borrowed */
+    bool has_folder; /* false: the environment variable for the data folder is not set */
     struct wb_machines_group_results *groups; /* (n_groups), owned */
     struct wb_machines_cable_results cable;
     struct wb_machines_fits fits;

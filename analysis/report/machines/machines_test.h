@@ -1,5 +1,5 @@
-/* One test of a campaign of testing machines, as a curve from where it touches; and the tests of a
- * group. */
+/* Tests of a campaign of testing machines: the curve of each test beyond its first contact, and the
+ * mean of a group. */
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_TEST_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_TEST_H
 
@@ -12,14 +12,14 @@ enum {
 };
 
 struct wb_machines_test {
-    bool is_missing; /* the file is not there */
-    bool is_usable;  /* imported, and it touches */
+    bool is_missing; /* the file does not exist */
+    bool is_usable;  /* imported, and the force exceeds the group's zero force */
     struct wb_text problem;
     struct wb_dataset dataset;
     struct wb_machine_import_report report;
     char sha256[WB_SHA256_TEXT];
-    double start;    /* m, travel where the force first exceeds the group's zero */
-    double rigidity; /* N m2: F L^3 / 48 d at d = 0.02 L from there; NaN: not reached */
+    double start;    /* m, travel where the force first exceeds the group's zero force */
+    double rigidity; /* N m2: F L^3 / 48 d at d = 0.02 L beyond `start`; NaN: not reached */
 };
 
 struct wb_machines_group_results {

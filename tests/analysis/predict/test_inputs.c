@@ -1,4 +1,4 @@
-/* Hardening rules of the wires that are drawn for a prediction. */
+/* Hardening rules of the wires in bundles with drawn inputs, as used for predictions. */
 #include "analysis/predict/inputs.h"
 
 #include "base/file.h"
@@ -22,7 +22,8 @@ static const char properties[] = "wire: type3\nouter_diameter_mm: 1.4\n"
                                  "yield_stress_MPa: 4\nstrength_coefficient_MPa: 1000\n"
                                  "hardening_exponent: 0.9\npoissons_ratio: 0.39\nlaw:\n";
 
-/* Yield at strains of 0.002 and 0.01. At the tested strain of 0.02 the yield limits give 16 MPa. */
+/* Two parts in parallel. Without growth of the yield limits the stress at a strain of 0.02 is
+ * 3000 * 0.002 + 1000 * 0.01 = 16 MPa. */
 #define PARTS                                                                                      \
     "  parts:\n    - {modulus_MPa: 3000, yield_strain: 0.002}\n"                                   \
     "    - {modulus_MPa: 1000, yield_strain: 0.01}\n"
@@ -36,10 +37,11 @@ static void write_text(const char *name, const char *first, const char *second, 
     wb_text_release(&text);
 }
 
-/* The law of the wires of a drawn bundle whose properties file has this law. */
+/* Writes a properties file with this YAML `law`, draws a bundle with the median of each input, and
+ * returns the law of its wires. */
 static const struct wb_law *drawn_law(const char *law)
 {
-    double middle[16];
+    double median[16];
     char path[WB_PATH];
     write_text("properties.yaml", properties, law, path);
     write_text("bundle.yaml", bundle, "", path);
@@ -47,15 +49,16 @@ static const struct wb_law *drawn_law(const char *law)
     assert_int_equal(wb_inputs_init(&inputs, &model), WB_OK);
     assert_true(inputs.n_dimensions <= 16);
     for (int i = 0; i < inputs.n_dimensions; i++)
-        middle[i] = 0.5;
-    assert_true(wb_inputs_apply(&inputs, middle, &model, NULL));
+        median[i] = 0.5;
+    assert_true(wb_inputs_apply(&inputs, median, &model, NULL));
     assert_int_equal(model.type[0].law.form, WB_LAW_LUDWIK);
     return &model.type[0].law;
 }
 
-/* With beta = 0.1 growing limits add 0.1 (3000 * 0.018 + 1000 * 0.01) = 6.4 MPa to the 16 MPa: the
- * isotropic share is 6.4 / 22.4 of the stress, not 0.1. */
-static void combined_parts_become_mixed_with_the_share_of_growing_limits(void **state)
+/* An isotropic share of 0.1 lets the yield limits grow by 0.1 (3000 * 0.018 + 1000 * 0.01) =
+ * 6.4 MPa up to a strain of 0.02. The part of the stress from this growth is 6.4 / 22.4: the
+ * isotropic share of the mixed rule that replaces the combined one. */
+static void combined_hardening_of_parts_becomes_mixed_with_the_same_isotropic_stress(void **state)
 {
     (void)state;
     const struct wb_law *const law =
@@ -64,7 +67,7 @@ static void combined_parts_become_mixed_with_the_share_of_growing_limits(void **
     assert_close(law->isotropic_share, 6.4 / 22.4, 1e-12);
 }
 
-static void combined_parts_without_growth_become_kinematic(void **state)
+static void combined_hardening_without_growth_of_yield_limits_becomes_kinematic(void **state)
 {
     (void)state;
     const struct wb_law *const law =
@@ -94,8 +97,8 @@ static void combined_hardening_of_ludwiks_law_is_kept(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(combined_parts_become_mixed_with_the_share_of_growing_limits),
-        cmocka_unit_test(combined_parts_without_growth_become_kinematic),
+        cmocka_unit_test(combined_hardening_of_parts_becomes_mixed_with_the_same_isotropic_stress),
+        cmocka_unit_test(combined_hardening_without_growth_of_yield_limits_becomes_kinematic),
         cmocka_unit_test(mixed_hardening_of_parts_is_kept),
         cmocka_unit_test(combined_hardening_of_ludwiks_law_is_kept),
     };

@@ -1,4 +1,4 @@
-/* Wires of swept hexahedra for the tests: fields and their initial values. */
+/* Wires of swept hexahedra for tests: sections, positions and forces. */
 #ifndef WB_TESTS_FE_SWEPT_SWEPT_BODIES_H
 #define WB_TESTS_FE_SWEPT_SWEPT_BODIES_H
 
@@ -27,6 +27,7 @@ static inline size_t swept_at(const struct wb_swept_layout *layout, int node, in
     return (size_t)(3 * node + component) * (size_t)layout->stride + (size_t)station;
 }
 
+/* Sets the positions of the undeformed wire. */
 static inline void swept_reference(struct swept_body *body)
 {
     const struct wb_swept_hex_model *m = wb_swept_hex_get_model(body->hex);
@@ -75,7 +76,7 @@ static inline double swept_force(const struct swept_body *body, int node, int co
                                                                : (double)((float *)body->force)[at];
 }
 
-/* x = c + F X */
+/* Sets the positions x = c + F X, where X are those of the undeformed wire. */
 static inline void swept_set_linear(struct swept_body *body, double F[3][3], const double c[3])
 {
     const struct wb_swept_hex_model *m = wb_swept_hex_get_model(body->hex);
@@ -90,7 +91,7 @@ static inline void swept_set_linear(struct swept_body *body, double F[3][3], con
     }
 }
 
-/* A rotation about (1, 2, 3) by an angle. */
+/* Rotation matrix about the axis (1, 2, 3); `angle` in rad. */
 static inline void swept_rotation(double angle, double R[3][3])
 {
     const double n[3] = {1 / sqrt(14.0), 2 / sqrt(14.0), 3 / sqrt(14.0)}, c = cos(angle);
@@ -102,7 +103,7 @@ static inline void swept_rotation(double angle, double R[3][3])
     }
 }
 
-/* A section of four distorted quadrilaterals of about the given size. */
+/* A section of about the given size (m), meshed with four distorted quadrilaterals. */
 static inline struct wb_swept_section swept_distorted_section(double size)
 {
     static const double at[9][2] = {{0.0, 0.05}, {1.1, -0.1}, {2.0, 0.0}, {-0.1, 0.9}, {0.8, 1.2},

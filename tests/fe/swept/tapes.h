@@ -1,4 +1,4 @@
-/* Tapes for the tests: fields, shapes, and statics by dynamic relaxation. */
+/* Tapes for tests: model, positions and forces; flat sheets and tubes. */
 #ifndef WB_TESTS_FE_SWEPT_TAPES_H
 #define WB_TESTS_FE_SWEPT_TAPES_H
 
@@ -8,7 +8,7 @@
 #include "fe/swept/swept_tape.h"
 #include "tests/fe/swept/swept_bodies.h"
 
-/* The paper's tape, two half-lapped layers. */
+/* The tape of the paper: two half-lapped layers. */
 static const struct wb_material tape_law = {
     WB_HARDENING_ISOTROPIC_POWER, 119e6, 0.3, 2.4e6, 16.3e6, 0.73};
 static const struct wb_material elastic_tape = {
@@ -23,7 +23,7 @@ struct test_tape {
     void *force, *moment;
 };
 
-/* A model in double precision; the caller sets its positions, which are freed with the tape. */
+/* A model in double precision. The caller sets its positions; test_tape_destroy() frees them. */
 static inline struct wb_swept_tape_model tape_model(const struct wb_material *material, int nodes,
                                                     int stations, bool closed, double spacing)
 {
@@ -95,7 +95,7 @@ static inline double tape_energy(struct test_tape *t)
     return sums.stored + sums.artificial;
 }
 
-/* Component of a force or moment. */
+/* One component of the force or moment at a node, in either precision. */
 static inline double tape_load(const struct test_tape *t, const void *field, int node,
                                int component, int station)
 {
@@ -104,8 +104,8 @@ static inline double tape_load(const struct test_tape *t, const void *field, int
                                      : (double)((const float *)field)[at];
 }
 
-/* A flat sheet of a x b in the plane z = 0, normal +z; inner nodes moved by up to `distortion` of
- * an element. */
+/* A flat sheet of a x b (m) in the plane z = 0, normal +z. Inner nodes are displaced at random by
+ * up to `distortion` times the size of an element. */
 static inline void make_sheet(struct wb_swept_tape_model *model, double a, double b,
                               double distortion)
 {
@@ -123,8 +123,9 @@ static inline void make_sheet(struct wb_swept_tape_model *model, double a, doubl
     }
 }
 
-/* A tube about x whose nodes wind by `winding` radians per station. The ring of a closed tube spans
- * one turn, that of an open one `turns`. */
+/* A tube around the x axis. Its lines of nodes are helices, which turn by `winding` (rad) from one
+ * station to the next. The section of a closed tube is a full circle, that of an open one `turns`
+ * circles. */
 static inline void make_tube(struct wb_swept_tape_model *model, double radius, double winding,
                              double turns)
 {

@@ -38,7 +38,7 @@ static enum wb_status read_campaign(struct wb_recordings *campaign, const char *
     return wb_kind_read(&wb_recordings_kind, campaign, write_text("campaign.yaml", text));
 }
 
-static void recordings_come_from_the_index_and_missing_ones_are_named(void **state)
+static void recordings_are_found_in_the_index_and_missing_ones_are_listed(void **state)
 {
     (void)state;
     write_text("index.yaml", index_text);
@@ -50,9 +50,9 @@ static void recordings_come_from_the_index_and_missing_ones_are_named(void **sta
     const struct wb_recordings_tests *const calibration =
         &campaign.wires[0].tests[WB_RECORDINGS_CALIBRATION];
     assert_int_equal(calibration->n, 2);
-    /* In the order of the samples, not of the index. */
+    /* Sorted by sample number; the index has another order. */
     assert_string_equal(calibration->items[0].name, "two.wbr.zst");
-    assert_non_null(strstr(calibration->items[0].missing, "not there"));
+    assert_non_null(strstr(calibration->items[0].missing, "does not exist"));
     assert_string_equal(calibration->items[1].name, "one.wbr.zst");
     assert_string_equal(calibration->items[1].missing, "");
     assert_string_equal(calibration->items[1].sha256, SHA_A);
@@ -68,7 +68,7 @@ static void recordings_come_from_the_index_and_missing_ones_are_named(void **sta
     wb_recordings_release(&campaign);
 }
 
-static void the_wire_files_properties_are_the_reference_unless_another_is_given(void **state)
+static void reference_is_the_wire_files_properties_unless_the_campaign_gives_one(void **state)
 {
     (void)state;
     struct wb_recordings campaign;
@@ -119,7 +119,7 @@ static void settings_and_limits_are_read_and_have_defaults(void **state)
     wb_recordings_release(&campaign);
 }
 
-static void recordings_may_be_named_by_path_and_glob(void **state)
+static void recordings_can_be_given_by_name_path_or_glob(void **state)
 {
     (void)state;
     write_text("own-b.wbr", "x");
@@ -161,14 +161,14 @@ static void errors_name_file_line_and_key(void **state)
 {
     (void)state;
     static const struct {
-        const char *tail, *said;
+        const char *tail, *expected;
     } cases[] = {
         {"wires:\n  - wire: type1\nspeed: 3\n", "speed"},
         {"wires:\n  - wire: type1\n    paper: 3\n", "paper"},
         {"wires: []\n", "wires"},
         {"wires: type1\n", "wires"},
         {"", "wires"},
-        {"wires:\n  - wire: nobody-knows\n", "nobody-knows"},
+        {"wires:\n  - wire: no-such-wire\n", "no-such-wire"},
         {"wires:\n  - wire: type1\n  - wire: type1\n", "twice"},
         {"wires:\n  - wire: type1\n    calibration: all\n", "list"},
         {"wires:\n  - wire: type1\n    calibration: [[1]]\n", "name or path"},
@@ -184,7 +184,7 @@ static void errors_name_file_line_and_key(void **state)
         struct wb_recordings campaign;
         keep_messages();
         assert_int_not_equal(read_campaign(&campaign, cases[i].tail), WB_OK);
-        assert_message(cases[i].said);
+        assert_message(cases[i].expected);
         assert_int_equal(kept.n, 1);
         assert_null(campaign.wires);
     }
@@ -193,7 +193,7 @@ static void errors_name_file_line_and_key(void **state)
                      WB_ERR_NOT_FOUND);
 }
 
-static void an_excluded_recording_is_neither_wanted_nor_missing(void **state)
+static void recording_excluded_by_an_index_is_not_counted(void **state)
 {
     (void)state;
     int n_missing;
@@ -208,11 +208,13 @@ static void an_excluded_recording_is_neither_wanted_nor_missing(void **state)
         &campaign.wires[0].tests[WB_RECORDINGS_VALIDATION];
     assert_string_equal(validation->items[0].name, "three.wbr.zst");
     assert_string_equal(validation->items[0].excluded.by, "A. Tester");
-    /* "two" is missing, and sample 2 of the validation; "three" is not there either. */
+    /* Missing: two.wbr.zst and sample 2 of the validation. three.wbr.zst does not exist either, but
+     * is excluded. */
     assert_int_equal(wb_recordings_count(&campaign, &n_missing), 3);
     assert_int_equal(n_missing, 2);
     wb_recordings_release(&campaign);
-    /* Named by its path, it is known to the index of its own folder. */
+    /* A recording given by its path and absent from the campaign's index: the exclusion is read
+     * from the index.yaml in the folder of the recording. */
     write_text("own-index.yaml", "[]\n");
     write_text("index.yaml",
                "- {file: one.wbr, wire: type1, length_mm: 85, sample: 1, sha256: " SHA_A
@@ -227,11 +229,11 @@ static void an_excluded_recording_is_neither_wanted_nor_missing(void **state)
     wb_recordings_release(&campaign);
 }
 
-static void a_damaged_index_is_an_error(void **state)
+static void invalid_index_is_rejected(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *said;
+        const char *text, *expected;
     } cases[] = {
         {"- {file: a, wire: w, length_mm: 85, sample: 1}\n", "sha256"},
         {"- {file: a, wire: w, length_mm: 85, sample: 1, sha256: 12}\n", "64 hexadecimal"},
@@ -247,13 +249,12 @@ static void a_damaged_index_is_an_error(void **state)
         keep_messages();
         assert_int_equal(wb_index_read(&index, write_text("bad.yaml", cases[i].text), NULL),
                          WB_ERR_FORMAT);
-        assert_message(cases[i].said);
+        assert_message(cases[i].expected);
         assert_null(index.entries);
     }
 }
 
-static void
-the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders(void **state)
+static void shipped_campaign_is_valid_and_its_name_is_a_relative_path(void **state)
 {
     (void)state;
     char path[WB_PATH];
@@ -271,7 +272,7 @@ the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders(void
     wb_recordings_release(&campaign);
 }
 
-static void an_excluded_recording_is_neither_used_nor_missing(void **state)
+static void recording_excluded_by_the_campaign_is_not_counted(void **state)
 {
     (void)state;
     write_text("index.yaml", index_text);
@@ -294,12 +295,13 @@ static void an_excluded_recording_is_neither_used_nor_missing(void **state)
     wb_recordings_release(&campaign);
 }
 
-static void an_exclusion_says_who_and_why_and_means_a_recording_of_the_campaign(void **state)
+static void exclusions_need_a_recording_of_the_campaign_a_person_and_a_reason(void **state)
 {
     (void)state;
     static const struct refused_campaign cases[] = {
         {"excluded: []\n", "excluded"},
-        {"excluded: [{recording: four.wbr, by: N. N., reason: x}]\n", "'four.wbr' is no recording"},
+        {"excluded: [{recording: four.wbr, by: N. N., reason: x}]\n",
+         "'four.wbr' is not a recording"},
         {"excluded: [{recording: one.wbr.zst, by: N. N.}]\n", "reason"},
         {"excluded: [{recording: one.wbr.zst, by: \"\", reason: x}]\n", "by: expected a text"},
         {"excluded: [{recording: one.wbr.zst, by: N. N., reason: \"\"}]\n",
@@ -312,25 +314,24 @@ static void an_exclusion_says_who_and_why_and_means_a_recording_of_the_campaign(
         snprintf(tail, sizeof tail, "wires:\n  - wire: type1\n%s", cases[i].text);
         assert_true(read_campaign(&campaign, tail) != WB_OK);
         if (!strstr(kept.error, cases[i].message))
-            fail_msg("'%s' does not say '%s'", kept.error, cases[i].message);
+            fail_msg("'%s' does not contain '%s'", kept.error, cases[i].message);
     }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(recordings_come_from_the_index_and_missing_ones_are_named),
-        cmocka_unit_test(the_wire_files_properties_are_the_reference_unless_another_is_given),
+        cmocka_unit_test(recordings_are_found_in_the_index_and_missing_ones_are_listed),
+        cmocka_unit_test(reference_is_the_wire_files_properties_unless_the_campaign_gives_one),
         cmocka_unit_test(settings_and_limits_are_read_and_have_defaults),
-        cmocka_unit_test(recordings_may_be_named_by_path_and_glob),
+        cmocka_unit_test(recordings_can_be_given_by_name_path_or_glob),
         cmocka_unit_test(without_an_index_all_recordings_are_missing),
         cmocka_unit_test(errors_name_file_line_and_key),
-        cmocka_unit_test(an_excluded_recording_is_neither_wanted_nor_missing),
-        cmocka_unit_test(a_damaged_index_is_an_error),
-        cmocka_unit_test(
-            the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders),
-        cmocka_unit_test(an_excluded_recording_is_neither_used_nor_missing),
-        cmocka_unit_test(an_exclusion_says_who_and_why_and_means_a_recording_of_the_campaign),
+        cmocka_unit_test(recording_excluded_by_an_index_is_not_counted),
+        cmocka_unit_test(invalid_index_is_rejected),
+        cmocka_unit_test(shipped_campaign_is_valid_and_its_name_is_a_relative_path),
+        cmocka_unit_test(recording_excluded_by_the_campaign_is_not_counted),
+        cmocka_unit_test(exclusions_need_a_recording_of_the_campaign_a_person_and_a_reason),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }
