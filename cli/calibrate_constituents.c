@@ -149,7 +149,7 @@ static void print_finding(const struct options *o, const struct table *table)
     if (two)
         wb_text_append(&finding.found, " (sliding strands) to %s (bonded)",
                        wb_print_number(wb_layers_rigidity(&o->layers, false) / WB_NMM2, a));
-    wb_text_append(&finding.found, " N mm2; M at %.4g 1/m ", table->curvature[POINTS - 1]);
+    wb_text_append(&finding.found, " N mm2; M at %.4g /m ", table->curvature[POINTS - 1]);
     if (two)
         wb_text_append(&finding.found, "%s to ",
                        wb_print_number(table->sliding[POINTS - 1] / WB_NMM, b));

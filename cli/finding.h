@@ -22,7 +22,7 @@ struct wb_finding {
 void wb_finding_print(struct wb_finding *finding);
 void wb_finding_write(FILE *out, struct wb_finding *finding); /* the same, on another stream */
 
-/* "M at 28.1 1/m 9.36 N mm (8.18 to 10.7)": a quantity of properties with its interval, or the
+/* "M at 28.1 /m 9.36 N mm (8.18 to 10.7)": a quantity of properties with its interval, or the
  * range over laws where no value is known. `k` is the index of its curvature. */
 void wb_finding_append_quantity(struct wb_text *text, const struct wb_properties *properties,
                                 enum wb_quantity_id id, int k);

@@ -132,7 +132,7 @@ static enum wb_status take_residual_curvature_ratio(struct wb_compare_quantity *
                                                     double curvature)
 {
     begin(q, WB_QUANTITY_RESIDUAL_CURVATURE_RATIO, 0.0);
-    snprintf(q->name, sizeof q->name, "%s from %.3g 1/m", q->row->name, curvature);
+    snprintf(q->name, sizeof q->name, "%s from %.3g /m", q->row->name, curvature);
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         double ratio = 1.0;
         if (isfinite(p[i]->residual_curvature_ratio.low))

@@ -128,8 +128,8 @@ grep -q '^method: cycle$' cycle.yaml || fail 'the properties do not say their me
 grep -q '^law:' cycle.yaml && fail 'a law beside the four numbers that say it'
 expect 0 'unloading' "$wirebench" validate cycle.yaml L85
 "$wirebench" calibrate cycle >said || fail 'calibrate cycle'
-for line in '^EI at zero curvature  *85[0-9]\.[0-9] N mm2' '^unloading stiffness over 1 1/m  *8[45][0-9]\.[0-9] N mm2' \
-    '^secant EI to 2 1/m ' '^the data of all specimens begin at' '^M at .* 1/m .* N mm' '^residual curvature ratio' '^loop energy' \
+for line in '^EI at zero curvature  *85[0-9]\.[0-9] N mm2' '^unloading stiffness over 1 /m  *8[45][0-9]\.[0-9] N mm2' \
+    '^secant EI to 2 /m ' '^the data of all specimens begin at' '^M at .* /m .* N mm' '^residual curvature ratio' '^loop energy' \
     '^one specimen: the scatter between specimens is unknown' '^Ludwik, kinematic .* not in the ranges' \
     '^  K  *13[0-9][0-9] MPa' '^  scatter between specimens  *unknown' \
     '^  gain of the load cell, not stated: per 1 %  *(1\.0' '^  free length, not stated: per 1 %  *([123]\.' \
@@ -148,7 +148,7 @@ within "$(number cycle.json length_mm)" 85 85
 
 # The last lines: what was found, whether to trust it, the figure, the next command.
 "$wirebench" calibrate cycle -o found.yaml >said || fail 'calibrate cycle -o'
-for line in '^found .*type3 (simulation, 1 specimen): M at .* N mm.*; unloading stiffness over 1 1/m .* N mm2.*; residual curvature ratio 0' \
+for line in '^found .*type3 (simulation, 1 specimen): M at .* N mm.*; unloading stiffness over 1 /m .* N mm2.*; residual curvature ratio 0' \
     '^trust .*for this specimen: Ludwik, isotropic, fits .* one specimen cannot show' '^figure *found\.svg$' '^next .*two more specimens'; do
     tail -4 said | grep -q "$line" || fail "no line '$line' at the end: $(tail -5 said)"
 done

@@ -68,7 +68,7 @@ const char *wb_quantity_label(enum wb_quantity_id id, double curvature,
 {
     const struct wb_quantity *const row = &wb_quantity_rows[id];
     if (row->most > 0)
-        snprintf(label, WB_QUANTITY_LABEL, "%s %.4g 1/m", row->name, curvature);
+        snprintf(label, WB_QUANTITY_LABEL, "%s %.4g /m", row->name, curvature);
     else
         snprintf(label, WB_QUANTITY_LABEL, "%s", row->name);
     return label;

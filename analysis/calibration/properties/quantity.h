@@ -60,7 +60,7 @@ bool wb_quantity_is_known(const struct wb_estimate *estimate);
 enum {
     WB_QUANTITY_LABEL = 64
 };
-/* Its name, with the curvature (1/m) if it has one: "M at 1.41 1/m". */
+/* Its name, with the curvature (1/m) if it has one: "M at 1.41 /m". */
 const char *wb_quantity_label(enum wb_quantity_id id, double curvature,
                               char label[WB_QUANTITY_LABEL]);
 

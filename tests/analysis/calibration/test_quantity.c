@@ -92,7 +92,7 @@ static void labels_name_the_curvature_where_there_is_one(void **state)
 {
     (void)state;
     char label[WB_QUANTITY_LABEL];
-    assert_string_equal(wb_quantity_label(WB_QUANTITY_MOMENT, 1.41, label), "M at 1.41 1/m");
+    assert_string_equal(wb_quantity_label(WB_QUANTITY_MOMENT, 1.41, label), "M at 1.41 /m");
     assert_string_equal(wb_quantity_label(WB_QUANTITY_RIGIDITY, 1.41, label),
                         "EI at zero curvature");
 }

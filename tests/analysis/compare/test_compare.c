@@ -119,7 +119,7 @@ static void values_are_compared_at_the_same_curvatures(void **state)
     assert_close(c.curvature, 18.0, 0.0);
     for (int k = 0; k < WB_COMPARE_QUANTITIES; k++)
         assert_close(c.quantities[k].welch.difference, 0.0, 1e-6);
-    assert_string_equal(c.quantities[WB_CYCLE_MOMENTS - 1].name, "M at 18 1/m");
+    assert_string_equal(c.quantities[WB_CYCLE_MOMENTS - 1].name, "M at 18 /m");
 }
 
 static void one_quantity_that_differs_makes_batches_different(void **state)
