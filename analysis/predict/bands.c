@@ -45,10 +45,10 @@ struct runs {
     const struct wb_bands_settings *settings;
     struct wb_bundle_model model; /* the model before a run's inputs are applied */
     int n, n_rows;
-    const double *u;    /* (n x dimensions) */
-    double *values;     /* (n x columns) */
-    double *force;      /* (n x n_rows) N; NaN: not reached */
-    double *springback; /* (n) */
+    const double *u;                         /* (n x dimensions) */
+    double *values;                          /* (n x columns) */
+    double *force;                           /* (n x n_rows) N; NaN: not reached */
+    double *springback, *residual_curvature; /* (n) */
     struct curve *curve;
     bool *limited, *lost;
     double *sorted; /* (n) */
@@ -65,6 +65,7 @@ static void keep_run(struct runs *runs, int index, const struct wb_section_run *
     for (int i = 0; i < runs->n_rows; i++)
         force[i] = i < run->n_rows ? run->rows[i].force : (double)NAN;
     runs->springback[index] = wb_section_run_springback(run);
+    runs->residual_curvature[index] = wb_section_run_residual_curvature(run);
     runs->lost[index] = !run->converged;
     curve->n = 1; /* at zero */
     for (int i = 0; i < run->n_curve && i < CURVE; i++) {
@@ -201,19 +202,20 @@ static void find_moments(struct runs *runs, struct wb_bands_case *out)
     widen_all(out->moment, out->n_moment);
 }
 
-static void find_springback(struct runs *runs, struct wb_bands_case *out)
+/* Band of one result per run, NaN where a run has none. */
+static struct wb_bands_interval find_ratio(struct runs *runs, const double *ratio)
 {
     int n = 0;
     for (int i = 0; i < runs->n; i++)
-        if (isfinite(runs->springback[i]))
-            runs->sorted[n++] = runs->springback[i];
+        if (isfinite(ratio[i]))
+            runs->sorted[n++] = ratio[i];
     if (n < reached * runs->n) {
         const double none = (double)NAN;
-        out->springback = (struct wb_bands_interval){none, none, none, none, none};
-        return;
+        return (struct wb_bands_interval){none, none, none, none, none};
     }
-    out->springback = find_band(runs->sorted, n);
-    widen(&out->springback, out->springback.median);
+    struct wb_bands_interval band = find_band(runs->sorted, n);
+    widen(&band, band.median);
+    return band;
 }
 
 /* --- rankings --- */
@@ -288,6 +290,7 @@ static void take_memory(struct runs *runs, struct wb_memory *memory)
     runs->values = wb_memory_take(memory, n, (size_t)runs->inputs->n_columns * sizeof(double));
     runs->force = wb_memory_take(memory, n, (size_t)runs->n_rows * sizeof(double));
     runs->springback = wb_memory_take(memory, n, sizeof(double));
+    runs->residual_curvature = wb_memory_take(memory, n, sizeof(double));
     runs->curve = wb_memory_take(memory, n, sizeof *runs->curve);
     runs->limited = wb_memory_take(memory, n, sizeof(bool));
     runs->lost = wb_memory_take(memory, n, sizeof(bool));
@@ -338,7 +341,8 @@ static enum wb_status compute_case(struct wb_bands *bands, struct runs *runs)
         describe_case(runs, out);
         find_forces(runs, out);
         find_moments(runs, out);
-        find_springback(runs, out);
+        out->springback = find_ratio(runs, runs->springback);
+        out->residual_curvature_ratio = find_ratio(runs, runs->residual_curvature);
         status = find_rankings(runs, out);
         bands->n_cases++;
     }

@@ -59,8 +59,9 @@ struct wb_bands_case {
     int n_force;   /* rows that at least 95 % of the runs reach */
     struct wb_bands_place force[WB_BANDS_ROWS + 1]; /* N over m */
     int n_moment;
-    struct wb_bands_place moment[WB_BANDS_MOMENTS]; /* N m over 1/m */
-    struct wb_bands_interval springback; /* of the deflection, 1; NaN: not computed in any run */
+    struct wb_bands_place moment[WB_BANDS_MOMENTS];    /* N m over 1/m */
+    struct wb_bands_interval springback;               /* of the deflection, 1; NaN: too few runs */
+    struct wb_bands_interval residual_curvature_ratio; /* as `springback` */
     int n_rankings;
     struct wb_bands_ranking ranking[WB_BANDS_RANKINGS];
 };

@@ -46,6 +46,17 @@ static void put_band(struct wb_text *text, const struct wb_bands_interval *band,
     put(text, band->high, unit);
 }
 
+static void put_ratio(struct wb_text *text, const struct wb_bands_case *c, const char *key,
+                      const struct wb_bands_interval *ratio)
+{
+    if (!isfinite(ratio->median) || !last_force(c))
+        return;
+    wb_text_append(text, "%s,%s", c->variant.name, key);
+    put(text, last_force(c)->at, WB_MM);
+    put_band(text, ratio, 1.0);
+    wb_text_append(text, "\n");
+}
+
 static void put_bands(struct wb_text *text, const struct wb_bands_case *c)
 {
     const char *const name = c->variant.name;
@@ -61,12 +72,8 @@ static void put_bands(struct wb_text *text, const struct wb_bands_case *c)
         put_band(text, &c->moment[i].band, WB_MM);
         wb_text_append(text, "\n");
     }
-    if (!isfinite(c->springback.median) || !last_force(c))
-        return;
-    wb_text_append(text, "%s,deflection_springback", name);
-    put(text, last_force(c)->at, WB_MM);
-    put_band(text, &c->springback, 1.0);
-    wb_text_append(text, "\n");
+    put_ratio(text, c, "deflection_springback", &c->springback);
+    put_ratio(text, c, "residual_curvature_ratio", &c->residual_curvature_ratio);
 }
 
 static enum wb_status write_bands(const struct wb_bands *bands, const char *folder)
@@ -87,7 +94,9 @@ static enum wb_status write_cases(const struct wb_bands *bands, const char *fold
                           "force_N,force_low_N,force_high_N,force_runs_low_N,force_runs_high_N,"
                           "deflection_springback,deflection_springback_low,deflection_springback_"
                           "high,deflection_springback_runs_low,"
-                          "deflection_springback_runs_high\n");
+                          "deflection_springback_runs_high,residual_curvature_ratio,"
+                          "residual_curvature_ratio_low,residual_curvature_ratio_high,"
+                          "residual_curvature_ratio_runs_low,residual_curvature_ratio_runs_high\n");
     for (int i = 0; i < bands->n_cases; i++) {
         const struct wb_bands_case *const c = &bands->cases[i];
         const struct wb_bands_place *const last = last_force(c);
@@ -99,6 +108,7 @@ static enum wb_status write_cases(const struct wb_bands *bands, const char *fold
         put(&text, last ? last->at : none, WB_MM);
         put_band(&text, last ? &last->band : &nothing, 1.0);
         put_band(&text, &c->springback, 1.0);
+        put_band(&text, &c->residual_curvature_ratio, 1.0);
         wb_text_append(&text, "\n");
     }
     const enum wb_status status = wb_csv_table_write(folder, "cases.csv", &text);
@@ -234,6 +244,7 @@ static void append_case(struct wb_json *array, const struct wb_bands *bands,
         set_band(object, "force_N", &last_force(c)->band);
     }
     set_band(object, "deflection_springback", &c->springback);
+    set_band(object, "residual_curvature_ratio", &c->residual_curvature_ratio);
     struct wb_json *const rankings = wb_json_set_array(object, "ranking");
     for (int i = 0; i < c->n_rankings; i++)
         append_ranking(rankings, bands, &c->ranking[i]);
@@ -261,6 +272,7 @@ static void append_case_row(struct wb_text *text, const struct wb_bands_case *c,
 {
     const struct wb_bands_place *const last = last_force(c);
     const struct wb_bands_interval *const s = &c->springback;
+    const struct wb_bands_interval *const r = &c->residual_curvature_ratio;
     char range[40] = "";
 
     wb_text_append(text, "%-*s %5d %-9s %6.3g %-7s", name_width, c->variant.name, c->n_wires,
@@ -270,7 +282,8 @@ static void append_case_row(struct wb_text *text, const struct wb_bands_case *c,
         wb_text_append(text, " %6.4g  %-6.4g %-19s", last->at / WB_MM, last->band.median, range);
     }
     if (last && isfinite(s->median))
-        wb_text_append(text, " %.3f (%.3f to %.3f)", s->median, s->wide_low, s->wide_high);
+        wb_text_append(text, "  %.3f (%.3f to %.3f)  %.3f (%.3f to %.3f)", s->median, s->wide_low,
+                       s->wide_high, r->median, r->wide_low, r->wide_high);
     wb_text_append(text, "\n");
 }
 
@@ -301,10 +314,9 @@ void wb_bands_output_summarise(const struct wb_bands *bands, struct wb_text *tex
     }
     wb_text_append(text, "90 %% bands of %d runs a case, with the model's %g %%\n\n", bands->runs,
                    wb_bands_model_error() / WB_PERCENT);
-    wb_text_append(text,
-                   "%-*s wires packing   layers outline     mm  force N (low to high)      "
-                   "springback of the deflection (low to high)\n",
-                   name_width, "case");
+    wb_text_append(text, "%-*s %72s%s\n%-*s wires packing   layers outline     mm  %-27s%-23s%s\n",
+                   name_width, "", "", "springback of the      residual curvature", name_width,
+                   "case", "force N (low to high)", "deflection", "ratio (low to high)");
     for (int i = 0; i < bands->n_cases; i++)
         append_case_row(text, &bands->cases[i], name_width);
     for (int i = 0; bands->n_cases > 0 && i < bands->cases[0].n_rankings; i++)

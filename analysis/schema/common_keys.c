@@ -94,6 +94,9 @@ static const struct wb_schema_row case_rows[] = {
     {"force_N", OBJECT | OPTIONAL, "N", "force at that deflection", &interval},
     {"deflection_springback", OBJECT, "",
      "springback of the deflection: 1 less the residual over the largest deflection", &interval},
+    {"residual_curvature_ratio", OBJECT, "",
+     "largest curvature along the bundle at zero force over that at the largest deflection",
+     &interval},
     {"ranking", OBJECT | LIST, "", "which inputs the bands depend on", &ranking},
 };
 static const struct wb_schema_object of_case = {"prediction_case", "A case that was predicted.",

@@ -186,22 +186,41 @@ static void make_rows(struct wb_section_run *run, const struct wb_bundle_model *
     }
 }
 
-double wb_section_run_springback(const struct wb_section_run *run)
+/* The first row of the first unloading without force, and the part of the step to it at which the
+ * force is zero. NULL: none. */
+static const struct wb_section_run_row *find_free(const struct wb_section_run *run, double *part)
 {
     for (int i = 1; i < run->n_rows && run->rows[i].cycle == 1; i++) {
         const struct wb_section_run_row *const row = &run->rows[i], *const before = row - 1;
-        const bool is_back = row->point.deflection < before->point.deflection;
-        if (!is_back || row->force > 0.0)
-            continue;
-        const double part = before->force / (before->force - row->force);
-        const double free =
-            before->point.deflection + part * (row->point.deflection - before->point.deflection);
-        double most = 0.0;
-        for (int k = 0; k < i; k++)
-            most = fmax(most, run->rows[k].point.deflection);
-        return 1.0 - free / most;
+        if (row->point.deflection < before->point.deflection && !(row->force > 0.0)) {
+            *part = before->force / (before->force - row->force);
+            return row;
+        }
     }
-    return (double)NAN;
+    return NULL;
+}
+
+double wb_section_run_springback(const struct wb_section_run *run)
+{
+    double part, most = 0.0;
+    const struct wb_section_run_row *const row = find_free(run, &part);
+    if (!row)
+        return (double)NAN;
+    for (const struct wb_section_run_row *at = run->rows; at < row; at++)
+        most = fmax(most, at->point.deflection);
+    const double before = row[-1].point.deflection;
+    return 1.0 - (before + part * (row->point.deflection - before)) / most;
+}
+
+double wb_section_run_residual_curvature(const struct wb_section_run *run)
+{
+    double part, most = 0.0;
+    const struct wb_section_run_row *const row = find_free(run, &part);
+    if (!row)
+        return (double)NAN;
+    for (const struct wb_section_run_row *at = run->rows; at < row; at++)
+        most = fmax(most, at->point.fold);
+    return (row[-1].point.fold + part * (row->point.fold - row[-1].point.fold)) / most;
 }
 
 double wb_section_run_loosens(const struct wb_section_run *run, const struct wb_bundle_model *model)

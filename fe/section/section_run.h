@@ -86,9 +86,11 @@ WB_MUST_CHECK enum wb_status wb_section_run(struct wb_section_run *run,
                                             const struct wb_bundle_model *model,
                                             const struct wb_section_run_settings *settings);
 
-/* Springback: 1 - d_0 / d_max of the first loading, from 0 to 1, with the deflection d_0 at which
- * the unloading reaches zero force. NaN: there is no unloading, or it ends before. */
+/* After the first unloading to zero force, from 0 to 1: springback of the deflection, 1 - d_0 /
+ * d_max, and residual curvature ratio, largest curvature along the bundle over that at d_max. NaN:
+ * there is no unloading, or it ends before zero force. */
 double wb_section_run_springback(const struct wb_section_run *run);
+double wb_section_run_residual_curvature(const struct wb_section_run *run);
 
 /* The deflection (m) above which the section model is too stiff (by 14 to 35 % at the end of the
  * explicit runs), because the plastic strain of the tape on its circle exceeds 0.010 and its

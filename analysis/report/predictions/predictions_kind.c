@@ -284,6 +284,7 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
         {.heading = "<i>\xce\xb4</i> (mm)", .right = true},
         {.heading = "Force there (N)", .right = true},
         {.heading = "Springback of the deflection", .right = true, .wraps = true},
+        {.heading = "Residual curvature ratio", .right = true, .wraps = true},
         {.heading = "Runs lost", .right = true, .wraps = true},
     };
     struct wb_text caption = {0};
@@ -292,7 +293,8 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
         "Median and band of 90 %% of %d runs of each case, widened by the model's own error "
         "of %g %%. Cases are choices, not probabilities: a photograph of a cut shows which "
         "one applies. Springback of the deflection: 1 less the residual deflection at zero "
-        "force over the largest deflection.",
+        "force over the largest deflection. Residual curvature ratio: largest curvature along the "
+        "bundle at zero force over that at the largest deflection.",
         bands->runs, wb_bands_model_error() / WB_PERCENT);
     struct wb_document_table *const table =
         wb_pages_start_table(document, &caption, (int)WB_COUNT(columns), columns);
@@ -313,6 +315,7 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
         wb_pages_cell_number(table, last ? last->at / WB_MM : none, 1);
         put_interval(table, last ? &last->band : &nothing, 3);
         put_interval(table, &c->springback, 3);
+        put_interval(table, &c->residual_curvature_ratio, 3);
         wb_pages_cell(table, c->n_lost > 0 ? WB_TONE_WARNING : WB_TONE_PLAIN, "%d", c->n_lost);
     }
 }

@@ -133,7 +133,7 @@ static void a_run_until_free_ends_there_and_reports_springback(void **unused)
     (void)unused;
     static const struct wb_section_run_settings settings = {.until_free = true,
                                                             .no_rigidities = true};
-    double springback[2];
+    double springback[2], ratio[2];
     for (int i = 0; i < 2; i++) {
         read_bundle("7-type3");
         model.run.rows = i == 0 ? 23 : 101;
@@ -147,14 +147,21 @@ static void a_run_until_free_ends_there_and_reports_springback(void **unused)
         assert_close(run.rigidity[0].length, 0.0, 0.0);
         assert_int_equal(run.n_curve, i == 0 ? 12 : 17);
         springback[i] = wb_section_run_springback(&run);
+        ratio[i] = wb_section_run_residual_curvature(&run);
         wb_section_run_release(&run);
     }
-    print_message("springback %.4f and %.4f with 23 and 101 rows\n", springback[0], springback[1]);
+    print_message("springback %.4f, residual curvature ratio %.4f with 23 rows, %.4f and %.4f with "
+                  "101\n",
+                  springback[0], ratio[0], springback[1], ratio[1]);
+    assert_close(ratio[0], ratio[1], 5e-3);
+    /* The clamp has yielded most: more of its curvature remains than of the deflection. */
+    assert_true(ratio[1] > 1.0 - springback[1] && ratio[1] < 1.0);
     assert_close(springback[0], springback[1], 2e-3);
     assert_close(springback[1], 1.0 - 28.39 / 53.0, 3e-3);
     read_bundle("7-type3");
     compute(NULL, NULL);
     assert_true(isnan(wb_section_run_springback(&run)));
+    assert_true(isnan(wb_section_run_residual_curvature(&run)));
 }
 
 static void friction_that_decays_becomes_the_geometric_mean(void **unused)
