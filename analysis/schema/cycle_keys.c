@@ -102,7 +102,8 @@ static const struct wb_schema_object contribution = {
 
 static const struct wb_schema_row budget_rows[] = {
     {"quantity", TEXT, "", "the quantity",
-     .choices = "flexural_rigidity|residual_curvature_ratio|loop_energy|moment|secant_stiffness|"
+     .choices = "flexural_rigidity|residual_curvature_ratio|loop_energy|"
+                "deflection_springback|moment|secant_stiffness|"
                 "unloading_stiffness"},
     {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature; null: the quantity has none"},
     {"standard_uncertainty", NUMBER | UNKNOWN, "",

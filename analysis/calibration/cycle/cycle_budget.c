@@ -38,10 +38,13 @@ static const double unknown_part = 0.5;
  * misfit. */
 static const double as_good = 1.3;
 
-/* A residual curvature is at most the largest curvature. */
+/* A residual curvature is at most the largest curvature, and a deflection springs back at most
+ * completely. */
 static double largest_value(enum wb_cycle_number number)
 {
-    return number == WB_CYCLE_RESIDUAL_CURVATURE ? 1.0 : (double)INFINITY;
+    return number == WB_CYCLE_RESIDUAL_CURVATURE || number == WB_CYCLE_SPRINGBACK
+               ? 1.0
+               : (double)INFINITY;
 }
 
 void wb_cycle_average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
@@ -384,6 +387,7 @@ void wb_cycle_budget_put(struct wb_json *array, const struct wb_cycle_calibratio
         put_budget(array, "residual_curvature_ratio", none,
                    &c->budget[WB_CYCLE_RESIDUAL_CURVATURE]);
         put_budget(array, "loop_energy", none, &c->budget[WB_CYCLE_LOOP_ENERGY]);
+        put_budget(array, "deflection_springback", none, &c->budget[WB_CYCLE_SPRINGBACK]);
     }
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         put_budget(array, "moment", c->curvature[k], &c->budget[WB_CYCLE_FIRST_MOMENT + k]);

@@ -690,6 +690,8 @@ static enum wb_status describe_law(const struct wb_cycle_calibration *calibratio
     value[WB_CYCLE_RIGIDITY] = bending.flexural_rigidity;
     value[WB_CYCLE_RESIDUAL_CURVATURE] = bending.residual_curvature_ratio;
     value[WB_CYCLE_LOOP_ENERGY] = bending.loop_energy;
+    WB_TRY(wb_bending_springback(law, diameter, calibration->mean_length, largest,
+                                 &value[WB_CYCLE_SPRINGBACK]));
     WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature,
                               value + WB_CYCLE_FIRST_MOMENT));
     return wb_bending_stiffness(law, diameter, largest, s->n, s->curvature,
@@ -782,12 +784,14 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
     double first = least_curvature, change = least_curvature;
 
     calibration->largest_curvature = (double)INFINITY;
-    calibration->strain_rate = 0.0;
+    calibration->strain_rate = calibration->mean_length = 0.0;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_answer *const answer =
             &calibration->members[i].answers[calibration->chosen];
         calibration->largest_curvature =
             fmin(calibration->largest_curvature, answer->fit.clamp_curvature);
+        calibration->mean_length +=
+            calibration->members[i].data.info.length / calibration->n_members;
         calibration->strain_rate += answer->fit.law.strain_rate / calibration->n_members;
         first = fmax(first, answer->fit.first_curvature);
         change = fmax(change, answer->fit.turn_change);
@@ -997,6 +1001,8 @@ static struct wb_estimate *estimate_of(struct wb_cycle_calibration *calibration,
         return &calibration->residual_curvature_ratio;
     if (number == WB_CYCLE_LOOP_ENERGY)
         return &calibration->loop_energy;
+    if (number == WB_CYCLE_SPRINGBACK)
+        return &calibration->springback;
     if (number < WB_CYCLE_FIRST_SECANT)
         return &calibration->moment[number - WB_CYCLE_FIRST_MOMENT];
     return number < WB_CYCLE_FIRST_UNLOADING

@@ -80,6 +80,7 @@ enum wb_cycle_number {
     WB_CYCLE_RIGIDITY,           /* EI at curvature zero, N m2 */
     WB_CYCLE_RESIDUAL_CURVATURE, /* 1 */
     WB_CYCLE_LOOP_ENERGY,        /* J/m */
+    WB_CYCLE_SPRINGBACK,         /* of the deflection, 1 */
     WB_CYCLE_FIRST_MOMENT,       /* N m */
     WB_CYCLE_FIRST_SECANT = WB_CYCLE_FIRST_MOMENT + WB_CYCLE_MOMENTS, /* N m2 */
     WB_CYCLE_FIRST_UNLOADING = WB_CYCLE_FIRST_SECANT + WB_CYCLE_STIFFNESSES,
@@ -142,6 +143,8 @@ struct wb_cycle_calibration {
     double strain_rate; /* 1/s, of the outer fibre, mean over the specimens: the results of laws
                            with Maxwell elements are stated at this rate; 0: no Maxwell elements */
     struct wb_estimate rigidity, residual_curvature_ratio, loop_energy; /* N m2, 1, J/m */
+    double mean_length;            /* m, free length, mean over the specimens */
+    struct wb_estimate springback; /* of the deflection of this length, 1 */
     double curvature[WB_CYCLE_MOMENTS];
     struct wb_estimate moment[WB_CYCLE_MOMENTS];
     /* Of the virgin wire from straight, and during unloading over changes of curvature from the

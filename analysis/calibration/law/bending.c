@@ -18,6 +18,7 @@
 enum {
     STRIPS = 100,
     LOOP_STEPS = 200, /* from straight to bent */
+    CANTILEVER_SECTIONS = 24,
     EQUIVALENT_POINTS = 40,
     EQUIVALENT_FREE = 4
 };
@@ -152,6 +153,76 @@ enum wb_status wb_bending_stiffness(const struct wb_law *law, double diameter, d
     const double top = status == WB_OK ? keep_moment(&p, largest) : 0.0;
     for (int i = 0; i < m && status == WB_OK; i++)
         unloading[i] = (top - moment_at(&p, largest - change[i])) / change[i];
+    release_point(&p);
+    return status;
+}
+
+/* --- the cantilever --- */
+
+/* Sections of a cantilever from its free end to the clamp, in equal steps of the loaded curvature:
+ * the curvature that remains, the moment, and its complementary energy, the integral of the
+ * curvature over the moment (N). */
+struct cantilever {
+    double loaded[CANTILEVER_SECTIONS + 1], residual[CANTILEVER_SECTIONS + 1]; /* 1/m */
+    double moment[CANTILEVER_SECTIONS + 1], energy[CANTILEVER_SECTIONS + 1];
+};
+
+static void load_sections(struct point *p, double largest, struct cantilever *c)
+{
+    *c = (struct cantilever){.loaded[0] = 0.0};
+    for (int i = 1; i <= CANTILEVER_SECTIONS; i++) {
+        c->loaded[i] = largest * i / CANTILEVER_SECTIONS;
+        c->moment[i] = keep_moment(p, c->loaded[i]);
+        c->residual[i] = residual_curvature(p, c->loaded[i]);
+        c->energy[i] = c->energy[i - 1] +
+                       0.5 * (c->loaded[i] + c->loaded[i - 1]) * (c->moment[i] - c->moment[i - 1]);
+    }
+}
+
+/* Length of the cantilever with a force at its end, and the deflections of its end, loaded and
+ * unloaded. The angle theta of a section has F sin(theta) = C(M_clamp) - C(M), with the
+ * complementary energy C. */
+static double integrate(const struct cantilever *c, double force, double *loaded, double *unloaded)
+{
+    double length = 0.0, remaining = 0.0; /* angle that remains */
+    *loaded = *unloaded = 0.0;
+    for (int i = CANTILEVER_SECTIONS; i > 0; i--) {
+        const double middle = 0.5 * (c->loaded[i] + c->loaded[i - 1]);
+        const double step = c->moment[i] - c->moment[i - 1];
+        const double energy = c->energy[i - 1] + 0.25 * (c->loaded[i - 1] + middle) * step;
+        const double sine = (c->energy[CANTILEVER_SECTIONS] - energy) / force;
+        const double ds = step / (force * sqrt(1.0 - sine * sine));
+        const double turn = 0.5 * (c->residual[i] + c->residual[i - 1]) * ds;
+        length += ds;
+        *loaded += sine * ds;
+        *unloaded += sin(remaining + 0.5 * turn) * ds;
+        remaining += turn;
+    }
+    return length;
+}
+
+enum wb_status wb_bending_springback(const struct wb_law *law, double diameter, double length,
+                                     double largest, double *springback)
+{
+    struct point p;
+    struct cantilever c;
+    const enum wb_status status = make_point(&p, law, diameter);
+    if (status == WB_OK) {
+        load_sections(&p, largest, &c);
+        /* The length decreases with the force, which is above C(M_clamp): the end is not vertical.
+         */
+        double low = c.energy[CANTILEVER_SECTIONS], high = 2.0 * low, loaded, unloaded;
+        while (integrate(&c, high, &loaded, &unloaded) > length)
+            high *= 2.0;
+        for (int i = 0; i < 60; i++) {
+            const double middle = 0.5 * (low + high);
+            if (integrate(&c, middle, &loaded, &unloaded) > length)
+                low = middle;
+            else
+                high = middle;
+        }
+        *springback = 1.0 - unloaded / loaded;
+    }
     release_point(&p);
     return status;
 }

@@ -29,6 +29,14 @@ WB_MUST_CHECK enum wb_status wb_bending_stiffness(const struct wb_law *law, doub
                                                   double *secant, int m, const double *change,
                                                   double *unloading);
 
+/* Springback of the deflection, 1 - d_0 / d_max, 1: of a cantilever of a free length (m, above 0)
+ * with a vertical force at its end and without weight, bent until its clamp has the curvature
+ * `largest` (1/m, above 0) and then unloaded. At large deflections, from M = F (x_tip - x) and the
+ * curvatures of the section at each moment, loaded and unloaded, by quadrature. */
+WB_MUST_CHECK enum wb_status wb_bending_springback(const struct wb_law *law, double diameter,
+                                                   double length, double largest,
+                                                   double *springback);
+
 /* The law of Ludwik's form with isotropic hardening that bends like `law` on a first loading: E,
  * sigma_Y, K and n by least squares on ln M at curvatures up to `largest`. Its yield strain is at
  * least a thousandth of the largest strain; the misfit shows the error for a law that yields from

@@ -21,7 +21,7 @@ void wb_properties_make_unknown(struct wb_properties *properties)
     properties->ludwik_misfit = properties->largest_curvature = (double)NAN;
     properties->stiffness_deviation = (double)NAN;
     properties->rigidity = properties->residual_curvature_ratio = properties->loop_energy =
-        wb_properties_unknown_estimate;
+        properties->springback = wb_properties_unknown_estimate;
     for (int k = 0; k < WB_PROPERTIES_MOST_MOMENTS; k++)
         properties->moment[k] = wb_properties_unknown_estimate;
 }
@@ -164,6 +164,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
     if (calibration->has_unloading) {
         properties->residual_curvature_ratio =
             known(calibration, &calibration->residual_curvature_ratio);
+        properties->springback = known(calibration, &calibration->springback);
         properties->loop_energy = known(calibration, &calibration->loop_energy);
     }
     properties->is_rule_tested = is_rule_tested(calibration);

@@ -93,6 +93,7 @@ struct wb_properties {
     double largest_curvature;                              /* 1/m, of the data; NaN unknown */
     struct wb_estimate rigidity, residual_curvature_ratio; /* N m2, 1; NaN unknown */
     struct wb_cycle_stiffness secant, unloading;           /* without entries unknown */
+    struct wb_estimate springback;                         /* of the deflection, 1; NaN unknown */
     struct wb_estimate loop_energy; /* J/m, of a loop to the largest curvature; NaN unknown */
     bool is_rule_tested, is_rule_supported;       /* false if unknown */
     int n_moments;                                /* points of the measured law; 0 unknown */

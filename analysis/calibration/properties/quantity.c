@@ -27,6 +27,11 @@ const struct wb_quantity wb_quantity_rows[WB_QUANTITIES] = {
                                               "residual curvature at zero moment over the largest "
                                               "curvature",
                                               1.0, 1.0, .estimate = AT(residual_curvature_ratio)},
+    [WB_QUANTITY_SPRINGBACK] = {"deflection_springback", "value", "springback of the deflection",
+                                "",
+                                "1 less the residual over the largest deflection, of a cantilever "
+                                "of the tests' free length bent to the largest curvature",
+                                1.0, 1.0, .estimate = AT(springback)},
     [WB_QUANTITY_LOOP_ENERGY] = {"loop_energy_mJ_per_m", "value", "loop energy", "mJ/m",
                                  "energy loss per length of a cycle from straight to the largest "
                                  "curvature and back",

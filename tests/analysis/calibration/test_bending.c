@@ -1,5 +1,6 @@
 /* Pure bending of a wire by its law, compared with closed forms of the circle. */
 #include "analysis/calibration/law/bending.h"
+#include "fe/trial/cantilever.h"
 #include "tests/check.h"
 
 #define DIAMETER 1.25e-3
@@ -147,6 +148,75 @@ static void unloading_stiffness_is_the_secant_stiffness_at_half_the_curvature(vo
     }
 }
 
+static double clamp_curvature(const struct wb_law *law, double moment)
+{
+    double low = 0.0, high = 1e3;
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        double M;
+        assert_int_equal(wb_bending_moments(law, DIAMETER, 1, &middle, &M), WB_OK);
+        *(M < moment ? &low : &high) = middle;
+    }
+    return low;
+}
+
+/* Springback of the deflection by the beam elements of the bending test. */
+static void assert_springback(const struct wb_law *law, double deflection)
+{
+    const double length = 0.085;
+    const int steps = 40;
+    struct wb_section section;
+    struct wb_cantilever *cantilever;
+    struct wb_cantilever_model model;
+    struct wb_cantilever_point point;
+    assert_int_equal(wb_section_init_law(&section, DIAMETER, law, 100), WB_OK);
+    wb_cantilever_default_model(&model);
+    model.section = &section;
+    model.length = length;
+    model.gravity_y = 0.0;
+    assert_int_equal(wb_cantilever_create(&cantilever, &model, NULL), WB_OK);
+    for (int i = 1; i <= steps; i++)
+        assert_int_equal(
+            wb_cantilever_move(cantilever, WB_CONTROL_DEFLECTION, deflection * i / steps, &point),
+            WB_OK);
+    const double largest_curvature = clamp_curvature(law, point.root_moment), F = point.tension;
+    for (int i = steps - 1; i >= 0; i--)
+        assert_int_equal(
+            wb_cantilever_move(cantilever, WB_CONTROL_DEAD_FORCE, F * i / steps, &point), WB_OK);
+    assert_int_equal(point.end, WB_CANTILEVER_CONVERGED);
+    double springback;
+    assert_int_equal(wb_bending_springback(law, DIAMETER, length, largest_curvature, &springback),
+                     WB_OK);
+    print_message("springback of the deflection %.4f, of the beam %.4f\n", springback,
+                  1.0 - point.deflection / deflection);
+    assert_close(springback, 1.0 - point.deflection / deflection, 2e-3);
+    wb_cantilever_destroy(cantilever);
+    wb_section_release(&section);
+}
+
+static void the_deflection_springs_back_as_that_of_the_beam(void **unused)
+{
+    (void)unused;
+    const struct wb_material copper = {
+        .hardening = WB_HARDENING_ISOTROPIC_POWER,
+        .youngs_modulus = 5e9,
+        .poissons_ratio = 0.39,
+        .yield_stress = 5e6,
+        .strength_coefficient = 60e6,
+        .hardening_exponent = 0.4,
+    };
+    struct wb_law law = bilinear(5e9, 2e-3, 1e9);
+    assert_springback(&law, 0.02);
+    assert_springback(&law, 0.06);
+    wb_law_init_ludwik(&law, &copper);
+    assert_springback(&law, 0.02);
+    assert_springback(&law, 0.06);
+    law = bilinear(5e9, 0.5, 0.0); /* elastic */
+    double springback;
+    assert_int_equal(wb_bending_springback(&law, DIAMETER, 0.085, largest, &springback), WB_OK);
+    assert_close(springback, 1.0, 1e-9);
+}
+
 static void the_loops_energy_is_the_integral_between_its_branches(void **unused)
 {
     (void)unused;
@@ -253,6 +323,7 @@ int main(void)
         cmocka_unit_test(a_relaxing_circle_follows_its_strain_rate),
         cmocka_unit_test(a_hardening_circle_springs_back_by_masings_rule),
         cmocka_unit_test(unloading_stiffness_is_the_secant_stiffness_at_half_the_curvature),
+        cmocka_unit_test(the_deflection_springs_back_as_that_of_the_beam),
         cmocka_unit_test(the_loops_energy_is_the_integral_between_its_branches),
         cmocka_unit_test(each_moment_is_that_of_a_first_loading),
         cmocka_unit_test(the_equivalent_of_ludwiks_law_is_itself),

@@ -24,7 +24,9 @@ enum {
     UNLOADING = 1,  /* after the moments */
     SECANT,
     RESIDUAL_CURVATURE,
-    NUMBERS = WB_CYCLE_MOMENTS + RESIDUAL_CURVATURE
+    SPRINGBACK,
+    NUMBERS = WB_CYCLE_MOMENTS + SPRINGBACK,
+    SECTIONS = 16 /* of a cantilever, for its springback */
 };
 
 /* Standard uncertainties of a careful bench. */
@@ -96,8 +98,8 @@ struct campaign {
     double cpu_s;
 };
 
-static const char *const names[NUMBERS] = {"M(0.05)", "M(0.1)",    "M(0.3)", "M(0.6)",
-                                           "M(1)",    "unloading", "secant", "residual"};
+static const char *const names[NUMBERS] = {"M(0.05)",   "M(0.1)", "M(0.3)",   "M(0.6)",    "M(1)",
+                                           "unloading", "secant", "residual", "springback"};
 
 static void keep(struct campaign *campaign, int at, const struct wb_estimate *estimate,
                  const struct wb_budget *budget)
@@ -115,6 +117,54 @@ static int at_one(const struct wb_cycle_stiffness *stiffness)
     while (k < stiffness->n - 1 && stiffness->curvature[k] < 1.0)
         k++;
     return k;
+}
+
+/* Sections of a cantilever from its end to the clamp: curvature, curvature that remains, moment. */
+struct sections {
+    double loaded[SECTIONS + 1], residual[SECTIONS + 1], moment[SECTIONS + 1];
+};
+
+/* From the clamp to the end: angle and height, loaded by a vertical force and unloaded, as ordinary
+ * differential equations in the moment. */
+static double walk(const struct sections *c, double force, double *loaded, double *unloaded)
+{
+    double angle = 0.0, remaining = 0.0, length = 0.0;
+    *loaded = *unloaded = 0.0;
+    for (int i = SECTIONS; i > 0; i--) {
+        const int parts = 50;
+        const double dM = (c->moment[i] - c->moment[i - 1]) / parts;
+        for (int k = 0; k < parts; k++) {
+            const double at = 1.0 - (k + 0.5) / parts;
+            const double kappa = at * c->loaded[i] + (1.0 - at) * c->loaded[i - 1];
+            const double rest = at * c->residual[i] + (1.0 - at) * c->residual[i - 1];
+            const double half = 0.5 * dM / (force * cos(angle)) * kappa;
+            const double ds = dM / (force * cos(angle + half));
+            *loaded += sin(angle + half) * ds;
+            *unloaded += sin(remaining + 0.5 * rest * ds) * ds;
+            angle += kappa * ds;
+            remaining += rest * ds;
+            length += ds;
+            if (!(angle < M_PI_2))
+                return (double)INFINITY; /* the force is too small */
+        }
+    }
+    return length;
+}
+
+static double true_springback(const struct fast_rig *wire, double length, double largest)
+{
+    struct sections c = {{0.0}, {0.0}, {0.0}};
+    for (int i = 1; i <= SECTIONS; i++) {
+        c.loaded[i] = largest * i / SECTIONS;
+        fast_rig_truth(wire, 1, &c.loaded[i], &c.moment[i], NULL, &c.residual[i]);
+    }
+    double low = 0.0, high = 10.0 * c.moment[SECTIONS] / length, loaded, unloaded;
+    for (int k = 0; k < 50; k++) {
+        const double force = 0.5 * (low + high);
+        *(walk(&c, force, &loaded, &unloaded) > length ? &low : &high) = force;
+    }
+    (void)walk(&c, high, &loaded, &unloaded);
+    return 1.0 - unloaded / loaded;
 }
 
 static void judge(struct campaign *campaign, const struct fast_rig *wire,
@@ -141,12 +191,16 @@ static void judge(struct campaign *campaign, const struct fast_rig *wire,
          &c.budget[WB_CYCLE_FIRST_SECANT + s]);
     keep(campaign, WB_CYCLE_MOMENTS - 1 + RESIDUAL_CURVATURE, &c.residual_curvature_ratio,
          &c.budget[WB_CYCLE_RESIDUAL_CURVATURE]);
+    keep(campaign, WB_CYCLE_MOMENTS - 1 + SPRINGBACK, &c.springback,
+         &c.budget[WB_CYCLE_SPRINGBACK]);
     fast_rig_truth(wire, WB_CYCLE_MOMENTS, c.curvature, campaign->is, NULL, &residual);
     fast_rig_truth(wire, 1, &c.secant.curvature[s], &secant, NULL, NULL);
     fast_rig_unloading(wire, c.largest_curvature, 1, &c.unloading.curvature[u],
                        &campaign->is[WB_CYCLE_MOMENTS - 1 + UNLOADING]);
     campaign->is[WB_CYCLE_MOMENTS - 1 + SECANT] = secant / c.secant.curvature[s];
     campaign->is[WB_CYCLE_MOMENTS - 1 + RESIDUAL_CURVATURE] = residual / c.largest_curvature;
+    campaign->is[WB_CYCLE_MOMENTS - 1 + SPRINGBACK] =
+        true_springback(wire, c.mean_length, c.largest_curvature);
     campaign->has_answer = c.is_followed;
     for (int i = 0; i < remarks.n; i++) {
         campaign->is_blamed |= remarks.items[i].severity >= WB_CHECK_DOUBT;
